@@ -1,0 +1,36 @@
+# What dem's own programs (tests, examples, benchmarks) share. Nothing here reaches a user of the library.
+
+# dem's headers are compiled with these as well: dem::dem is not a system target inside this project.
+add_library(dem_warnings INTERFACE)
+target_compile_options(
+  dem_warnings INTERFACE $<$<COMPILE_LANG_AND_ID:CXX,GNU,Clang,AppleClang>:-Wall;-Wextra;-Wpedantic;-Wshadow;-Wconversion;-Wno-sign-conversion>
+                         # g++ 12 warns of its own AVX-512 intrinsics (its bug 105593).
+                         $<$<COMPILE_LANG_AND_ID:CXX,GNU>:-Wno-maybe-uninitialized;-Wno-uninitialized>
+)
+
+# dem_program(<target>): links what every program of dem links.
+function(dem_program target)
+  target_link_libraries(${target} PRIVATE dem::dem dem_warnings $<$<BOOL:${DEM_NATIVE}>:dem::native>)
+endfunction()
+
+# dem_subfolders(<out> <pattern>): the names of the folders here that hold a file that matches, in order.
+function(dem_subfolders out pattern)
+  file(GLOB files CONFIGURE_DEPENDS RELATIVE "${CMAKE_CURRENT_SOURCE_DIR}" "*/${pattern}")
+  list(TRANSFORM files REPLACE "/.*" "")
+  list(REMOVE_DUPLICATES files)
+  set(${out} ${files} PARENT_SCOPE)
+endfunction()
+
+# dem_with(<package> <purpose>): an optional package. Afterwards DEM_WITH_<PACKAGE> says whether it is used: the
+# user did not switch it off, and it was found.
+macro(dem_with package purpose)
+  string(TOUPPER "${package}" dem_with_name)
+  option(DEM_WITH_${dem_with_name} "Use ${package}: ${purpose}" ON)
+  if(DEM_WITH_${dem_with_name})
+    find_package(${package} QUIET)
+    if(NOT ${package}_FOUND)
+      message(STATUS "${package} not found, going without: ${purpose}")
+      set(DEM_WITH_${dem_with_name} OFF)
+    endif()
+  endif()
+endmacro()

@@ -1,0 +1,95 @@
+# The kinds of test that dem has. tests/CMakeLists.txt reads as the list of them.
+
+set(DEM_SCRIPTS "${CMAKE_CURRENT_LIST_DIR}")
+
+if(TARGET Catch2::Catch2WithMain) # Catch2 version 3
+  add_library(test_main INTERFACE)
+  target_link_libraries(test_main INTERFACE Catch2::Catch2WithMain)
+else()
+  add_library(test_main STATIC "${CMAKE_CURRENT_SOURCE_DIR}/main.cpp")
+  target_link_libraries(test_main PUBLIC Catch2::Catch2)
+endif()
+
+# dem_add_catch_tests(<name> <label> <source>...): the program test_<name>, and a test per TEST_CASE in it.
+function(dem_add_catch_tests name label)
+  add_executable(test_${name} ${ARGN})
+  target_include_directories(test_${name} PRIVATE "${CMAKE_CURRENT_SOURCE_DIR}")
+  dem_program(test_${name})
+  target_link_libraries(test_${name} PRIVATE test_main)
+  catch_discover_tests(test_${name} TEST_PREFIX "${name}." PROPERTIES LABELS ${label})
+endfunction()
+
+# dem_add_header_checks(<include dir>): every header compiles when it is the first and only one, and also when it is
+# included twice. Built as part of `all`; CUDA headers (*.cuh) are left to nvcc.
+function(dem_add_header_checks include_dir)
+  file(GLOB_RECURSE headers CONFIGURE_DEPENDS RELATIVE "${include_dir}" "${include_dir}/*.hpp")
+  add_library(header_self_containment OBJECT)
+  dem_program(header_self_containment)
+  target_compile_options(header_self_containment PRIVATE -O0)
+  foreach(header IN LISTS headers)
+    set(source "${CMAKE_CURRENT_BINARY_DIR}/header_self_containment/${header}.cpp")
+    file(CONFIGURE OUTPUT "${source}" CONTENT "#include <${header}>\n#include <${header}>\n")
+    target_sources(header_self_containment PRIVATE "${source}")
+  endforeach()
+endfunction()
+
+# Include options for a compiler that is called by hand. It knows /usr/include itself, and must find it last.
+string(CONCAT packages "$<TARGET_PROPERTY:Eigen3::Eigen,INTERFACE_INCLUDE_DIRECTORIES>$<SEMICOLON>"
+                       "$<TARGET_PROPERTY:fmt::fmt,INTERFACE_INCLUDE_DIRECTORIES>")
+set(packages "$<FILTER:${packages},EXCLUDE,^/usr/include$>")
+set(system "-isystem$<SEMICOLON>")
+set(DEM_INCLUDES "-I${PROJECT_SOURCE_DIR}/include" "${system}$<JOIN:${packages},$<SEMICOLON>${system}>")
+
+# dem_add_compile_fail_test(<source>): the source is refused, in the words of its line `// expect: <regex>`.
+function(dem_add_compile_fail_test source)
+  cmake_path(GET source STEM name)
+  add_test(
+    NAME compile_fail.${name}
+    COMMAND ${CMAKE_COMMAND} "-DSOURCE=${source}" -P "${DEM_SCRIPTS}/CompileFail.cmake" --
+            ${CMAKE_CXX_COMPILER} -std=c++20 -fopenmp -fsyntax-only ${DEM_INCLUDES}
+    COMMAND_EXPAND_LISTS)
+  set_tests_properties(compile_fail.${name} PROPERTIES LABELS static)
+endfunction()
+
+# dem_add_cuda_compile_test(<source>): nvcc accepts the source, and no kernel calls a function of the host. Compiling is
+# all: it needs no GPU. Warning 20012 is Eigen's own.
+function(dem_add_cuda_compile_test source)
+  cmake_path(GET source STEM name)
+  if(NOT DEM_NVCC)
+    message(STATUS "nvcc not found, going without: the test cuda_compile.${name}")
+    return()
+  endif()
+  add_test(
+    NAME cuda_compile.${name}
+    COMMAND ${DEM_NVCC} -std=c++20 -arch=sm_75 --expt-relaxed-constexpr -Werror cross-execution-space-call -diag-suppress
+            20012 -ccbin ${CMAKE_CXX_COMPILER} ${DEM_INCLUDES} -c "${source}" -o "${CMAKE_CURRENT_BINARY_DIR}/${name}.cu.o"
+    COMMAND_EXPAND_LISTS)
+  set_tests_properties(cuda_compile.${name} PROPERTIES LABELS static)
+endfunction()
+
+# dem_add_consumer_test(<way> <option>...): configures, builds and runs the project consumers/<way>.
+function(dem_add_consumer_test way)
+  add_test(
+    NAME consumer.${way}
+    COMMAND
+      ${CMAKE_CTEST_COMMAND} --build-and-test "${CMAKE_CURRENT_SOURCE_DIR}/consumers/${way}"
+      "${CMAKE_CURRENT_BINARY_DIR}/consumers/${way}" --build-generator "${CMAKE_GENERATOR}" --build-project consumer
+      --build-options "-DCMAKE_CXX_COMPILER=${CMAKE_CXX_COMPILER}" -DCMAKE_BUILD_TYPE=Debug ${ARGN} --test-command
+      consumer ${PROJECT_VERSION})
+  set_tests_properties(consumer.${way} PROPERTIES LABELS packaging)
+endfunction()
+
+# dem_add_example_test(<example> [ARGS <arg>...] [FILES <file>...] [EXPECT <regex>...]): the example runs with these
+# arguments and `--output <folder>`, leaves these files there, and its output matches every regex.
+function(dem_add_example_test example)
+  cmake_parse_arguments(arg "" "" "ARGS;FILES;EXPECT" ${ARGN})
+  if(NOT TARGET ${example})
+    message(STATUS "${example} is not built, going without: its test")
+    return()
+  endif()
+  add_test(
+    NAME example.${example}
+    COMMAND ${CMAKE_COMMAND} "-DOUTPUT=${CMAKE_CURRENT_BINARY_DIR}/${example}" "-DFILES=${arg_FILES}"
+            "-DEXPECT=${arg_EXPECT}" -P "${DEM_SCRIPTS}/RunExample.cmake" -- $<TARGET_FILE:${example}> ${arg_ARGS})
+  set_tests_properties(example.${example} PROPERTIES LABELS example)
+endfunction()

@@ -1,0 +1,9 @@
+#!/usr/bin/env bash
+# Builds everything and runs all tests but the validation; installs the packages they need first. An argument names
+# another workflow of CMakePresets.json, e.g. asan or validation.
+set -euo pipefail
+
+cd "$(dirname "$0")/.."
+
+bash cmake/packages.sh
+CTEST_PARALLEL_LEVEL=${CTEST_PARALLEL_LEVEL:-$(nproc)} cmake --workflow --preset "${1:-test}"

@@ -1,0 +1,13 @@
+#pragma once
+
+#include "results.hpp"
+
+namespace direct_shear {
+
+/// Makes (or reads) the packing, and tests it at each load: the same grains, in a new rig each time. Fills `campaign`
+/// as it goes; a problem or Ctrl-C ends it early and is noted there. Throws dem::Error for a set-up that cannot work.
+/// One for each integrator: predictor_corrector.cpp, verlet.cpp, euler.cpp.
+template <class Integrator>
+void run_campaign(const Settings& settings, Campaign& campaign);
+
+}  // namespace direct_shear

@@ -1,0 +1,136 @@
+#pragma once
+
+#include "campaign.hpp"
+#include "frames.hpp"
+#include "stages.hpp"
+
+#include <dem/io/csv.hpp>
+#include <dem/soil/packing_file.hpp>
+
+namespace direct_shear {
+
+inline std::string stress_name(const LoadResult& r) { return fmt::format("load_{:.1f}kPa", 1e-3 * r.normal_stress); }
+
+inline dem::soil::Packing read_packing(const Settings& s) {
+  auto packing = dem::soil::load_packing(s.packing_file);
+  const auto differs = [](double a, double b) { return std::abs(a - b) > 1e-9; };
+  if (differs(packing.half_edge, s.half_edge) || differs(packing.length_x, s.box_length) ||
+      differs(packing.length_y, s.box_width)) {
+    dem::fail(
+        "the packing '{}' has grains of half-edge {:g} m in a box of {:g} x {:g} m, but the settings say {:g} m in "
+        "{:g} x {:g} m; give --half-edge {:g} --box-length {:g} --box-width {:g}",
+        s.packing_file, packing.half_edge, packing.length_x, packing.length_y, s.half_edge, s.box_length, s.box_width,
+        packing.half_edge, packing.length_x, packing.length_y);
+  }
+  return packing;
+}
+
+/// What there is to say of a packing from where its grains are.
+inline void measure(PackingResult& p) {
+  const auto& packing = p.packing;
+  const auto region =
+      dem::soil::inner_region(packing.grains, packing.length_x, packing.length_y, 3.0 * packing.half_edge);
+  p.solid_fraction = dem::soil::solid_fraction(packing.grains, packing.half_edge, region);
+  p.height = dem::soil::height_percentile(packing.grains, 0.95) + packing.half_edge;
+}
+
+template <class Integrator>
+void test_load(const Settings& s, Campaign& campaign, LoadResult& r, dem::io::Progress& progress) {
+  const auto& grains = campaign.packing.packing.grains;
+  double highest = 0.0;
+  for (const auto& g : grains) highest = std::max(highest, g.position.z());
+  highest += dem::soil::cube_bounding_radius(s.half_edge);
+  if (highest > s.box_height) {
+    throw Stopped(
+        fmt::format("the specimen is {:.1f} mm tall, but the box {:.1f} mm; take fewer grains, a denser packing, "
+                    "or a higher --box-height",
+                    1e3 * highest, 1e3 * s.box_height));
+  }
+  const double seam = s.seam_height > 0.0 ? s.seam_height : 0.5 * campaign.packing.height;
+  Rig<Integrator> rig(s, {.seam = seam, .wall_top = s.box_height, .lid_mass = r.load, .lid_low = highest}, grains);
+  campaign.time_step_limit = rig.world.stable_time_step().contact;
+  rig.world.prepare();
+  campaign.time_step = rig.world.time_step();
+  const auto count_steps = [&] {
+    campaign.grain_steps += static_cast<double>(rig.world.steps()) * static_cast<double>(grains.size());
+  };
+  try {
+    progress.begin(fmt::format("consolidate {:.1f} kPa", 1e-3 * r.normal_stress), 1.0);
+    consolidate(rig, s, progress);
+    r.consolidation_time = rig.world.time();
+    r.height = rig.lid_low();
+    r.solid_fraction = inner_fraction(rig, s, r.height);
+
+    progress.begin(fmt::format("shear at {:.1f} kPa", 1e-3 * r.normal_stress), s.travel);
+    std::optional<Frames> frames;
+    if (s.vtk) frames.emplace(s, stress_name(r));
+    if (frames) frames->show(rig.world, 0.0);
+    shear(rig, s, r, progress, [&](const auto& now) {
+      if (frames) frames->show(now.world, now.top_displacement());
+    });
+  } catch (...) {
+    count_steps();
+    throw;
+  }
+  count_steps();
+}
+
+inline void save_samples(const Settings& s, const LoadResult& r) {
+  if (r.samples.empty()) return;
+  dem::io::CsvWriter csv(s.output / (stress_name(r) + ".csv"),
+                         {"time_s", "displacement_m", "shear_stress_Pa", "drive_stress_Pa", "lid_rise_m",
+                          "lid_stress_Pa", "plane_normal_stress_Pa"},
+                         {.digits = 7});
+  for (const Sample& x : r.samples) {
+    csv.row(x.time, x.displacement, x.stress, x.drive_stress, x.lid_rise, x.lid_stress, x.plane_stress);
+  }
+}
+
+template <class Integrator>
+void run_campaign(const Settings& s, Campaign& campaign) {
+  const bool read = !s.packing_file.empty();
+  const int making = read ? 0 : s.packing == "random" && s.relative_density == 0.0 ? 1 : 2;
+  dem::io::InterruptGuard guard;
+  const double start = dem::io::steady_seconds();
+  dem::io::ProgressOptions options;
+  options.stages = making + 2 * static_cast<int>(s.loads.size());
+  dem::io::Progress progress(options);
+  try {
+    if (read) campaign.packing.packing = read_packing(s);
+    else campaign.packing = make_packing<Integrator>(s, progress);
+    measure(campaign.packing);
+    if (making > 0) progress.finish(fmt::format("solid fraction {:.3f}", campaign.packing.solid_fraction));
+    if (!read) dem::soil::save_packing(campaign.packing.packing, s.save_packing);
+    for (const double load : s.loads) {
+      LoadResult& r = campaign.loads.emplace_back();
+      r.load = load;
+      r.normal_stress = s.normal_stress(load);
+      // The shear is spread over a band about ten grains thick.
+      r.inertial_number = s.shear_speed / 10.0 * std::sqrt(s.density / r.normal_stress);
+      if (r.inertial_number > 1e-3) {
+        progress.message(
+            fmt::format("warning: at {:.1f} kPa the inertial number is {:.2g}, above 1e-3: not slow any more; "
+                        "lower --shear-speed to {:.3g} m/s",
+                        1e-3 * r.normal_stress, r.inertial_number, s.shear_speed * 1e-3 / r.inertial_number));
+      }
+      try {
+        test_load<Integrator>(s, campaign, r, progress);
+      } catch (...) {
+        evaluate(r, s);
+        save_samples(s, r);
+        throw;
+      }
+      evaluate(r, s);
+      save_samples(s, r);
+      progress.finish(fmt::format("maximum {:.1f} kPa", 1e-3 * r.maximum));
+    }
+  } catch (const Interrupted&) {
+    campaign.interrupted = true;
+  } catch (const Stopped& stop) {
+    campaign.problem = stop.what();
+  }
+  progress.stop(campaign.problem);
+  campaign.wall_time = dem::io::steady_seconds() - start;
+}
+
+}  // namespace direct_shear

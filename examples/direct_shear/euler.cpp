@@ -1,0 +1,5 @@
+#include "campaign_impl.hpp"
+
+#include <dem/integrator/symplectic_euler.hpp>
+
+template void direct_shear::run_campaign<dem::integrator::SymplecticEuler>(const Settings&, Campaign&);

@@ -1,0 +1,38 @@
+// Direct shear test of cubical sand grains (chapter 3 of the thesis): packs grains into a box of two halves, loads a
+// lid, shears one half over the other, and fits the angle of friction. See --help.
+
+#include "campaign.hpp"
+#include "report.hpp"
+
+#include <dem/integrator/predictor_corrector.hpp>
+#include <dem/integrator/symplectic_euler.hpp>
+#include <dem/integrator/velocity_verlet.hpp>
+#include <dem/io/file.hpp>
+
+#include <fmt/format.h>
+
+#include <cstdio>
+
+int main(int argc, char** argv) {
+  using namespace direct_shear;
+  namespace integrator = dem::integrator;
+  try {
+    Settings settings;
+    std::string config;
+    if (!read_settings(argc, argv, settings, config)) return 0;
+    dem::io::write_file(settings.output / "settings.toml", config);
+
+    Campaign campaign;
+    if (settings.integrator == "verlet") run_campaign<integrator::VelocityVerlet>(settings, campaign);
+    else if (settings.integrator == "euler") run_campaign<integrator::SymplecticEuler>(settings, campaign);
+    else run_campaign<integrator::PredictorCorrector>(settings, campaign);
+
+    report(settings, campaign, "direct_shear --config settings.toml");
+    if (!campaign.problem.empty()) fmt::print(stderr, "direct_shear: {}\n", campaign.problem);
+    if (campaign.interrupted) return 130;
+    return campaign.problem.empty() ? 0 : 1;
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "direct_shear: {}\n", error.what());
+    return 2;
+  }
+}

@@ -1,0 +1,5 @@
+#include "campaign_impl.hpp"
+
+#include <dem/integrator/predictor_corrector.hpp>
+
+template void direct_shear::run_campaign<dem::integrator::PredictorCorrector>(const Settings&, Campaign&);

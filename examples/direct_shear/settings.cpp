@@ -1,0 +1,212 @@
+#include "settings.hpp"
+
+#include <dem/core/error.hpp>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <CLI/CLI.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+#include <thread>
+
+namespace direct_shear {
+
+namespace {
+
+struct Size {
+  const char* name;
+  double half_edge, shear_speed, travel;
+  std::vector<double> loads;
+};
+
+const Size& size_named(const std::string& name) {
+  // Speeds keep the inertial number at the lightest load below 1e-3.
+  static const std::vector<Size> sizes = {{"smoke", 3.0e-3, 0.020, 2e-3, {16.2}},
+                                          {"quick", 1.6e-3, 0.020, 6e-3, {6.2, 16.2, 26.2}},
+                                          {"full", 0.9e-3, 0.020, 6e-3, {6.2, 16.2, 26.2}}};
+  for (const Size& size : sizes) {
+    if (name == size.name) return size;
+  }
+  dem::fail("--size is '{}', but must be smoke, quick or full", name);
+}
+
+void add_specimen_options(CLI::App& app, Settings& s) {
+  const std::string group = "Specimen and box";
+  const auto add = [&](const char* name, auto& value, const char* text) {
+    return app.add_option(name, value, text)->group(group)->capture_default_str();
+  };
+  add("--half-edge", s.half_edge, "half edge of a cube [m]; 0: by size (full: 0.0009)");
+  add("--grains", s.grains, "number of grains; 0: the fill of 14256 of half-edge 0.0009");
+  add("--box-length", s.box_length, "inner length along the shearing direction [m]");
+  add("--box-width", s.box_width, "inner width [m]");
+  add("--box-height", s.box_height, "inner height [m]");
+  add("--seam-height", s.seam_height, "where the halves meet [m]; 0: half the specimen");
+  add("--wall-thickness", s.wall_thickness, "[m]; 0: 15 mm or twice the travel");
+  add("--lid-clearance", s.lid_clearance, "lid to wall, in radii of a grain's sphere");
+  add("--packing", s.packing, "random or poured")->check(CLI::IsMember({"random", "poured"}));
+  add("--relative-density", s.relative_density, "of a random packing, 0 (as it settles) to 1");
+  add("--tilt", s.tilt_deg, "of the poured block about each axis [deg]");
+  add("--shake-amplitude", s.shake_amplitude, "[m]");
+  add("--shake-frequency", s.shake_frequency, "[Hz]");
+  add("--shake-time", s.shake_time, "for a poured packing [s]");
+  add("--densify-time", s.densify_time, "for a random packing: friction goes to zero in this time [s]");
+  add("--settle-limit", s.settle_limit, "a packing must be at rest by then [s]");
+  add("--packing-file", s.packing_file, "read the packing from this file instead of making one");
+  add("--save-packing", s.save_packing, "file for the packing; empty: packing.txt in the output folder");
+  app.add_flag("--packing-only", s.packing_only, "make, measure and save the packing; no test")->group(group);
+}
+
+void add_contact_options(CLI::App& app, Settings& s) {
+  const std::string group = "Contacts";
+  const auto add = [&](const char* name, auto& value, const char* text) {
+    app.add_option(name, value, text)->group(group)->capture_default_str();
+  };
+  add("--stiffness", s.stiffness, "K [N/m]");
+  add("--damping", s.damping, "C [N s/m]");
+  add("--separation-factor", s.separation_factor, "Sp, share of C while separating");
+  add("--friction", s.friction, "mu, grain on grain");
+  add("--wall-friction", s.wall_friction, "mu, grain on wall; negative: as grain on grain");
+  add("--friction-stiffness", s.friction_stiffness, "kt [N/m]; negative: as K");
+  add("--velocity-stiffness", s.velocity_stiffness, "cv [N s/m]");
+  add("--breaking-factor", s.breaking_factor, "friction kept by a broken asperity");
+  add("--density", s.density, "of a grain [kg/m^3]");
+  add("--constants-for", s.constants_for, "half-edge that K, kt, C and cv are given for [m]");
+  add("--scale-contacts", s.scale_contacts, "scale them to other sizes: K, kt ~ size, C, cv ~ size^2");
+}
+
+void add_test_options(CLI::App& app, Settings& s) {
+  std::string group = "Test";
+  const auto add = [&](const char* name, auto& value, const char* text) {
+    return app.add_option(name, value, text)->group(group)->capture_default_str();
+  };
+  add("--loads", s.loads, "masses on the lid [kg], e.g. 6.2,16.2,26.2")->delimiter(',');
+  add("--lid-speed", s.lid_speed, "[m/s]");
+  add("--rest-speed", s.rest_speed, "the lid is at rest below it [m/s]");
+  add("--consolidation-limit", s.consolidation_limit, "[s]");
+  add("--shear-speed", s.shear_speed, "[m/s]; 0: by size");
+  add("--travel", s.travel, "[m]; 0: by size");
+  add("--ramp-time", s.ramp_time, "smooth start of the shearing [s]");
+  add("--smoothing", s.smoothing, "the maximum is that of the stress averaged over this travel [m]");
+  add("--residual-share", s.residual_share, "last share of the travel that the residual is the mean of");
+  add("--area-correction", s.area_correction, "divide by the area that shrinks as the halves slide apart");
+  group = "Numerics";
+  add("--integrator", s.integrator, "predictor-corrector, verlet or euler")
+      ->check(CLI::IsMember({"predictor-corrector", "verlet", "euler"}));
+  add("--time-step", s.time_step, "[s]; 0: 0.8 of the largest stable one");
+  add("--overlap-limit", s.overlap_limit, "overlap that ends the run, in sphere radii");
+  add("--seed", s.seed, "of the random packing");
+  add("--threads", s.threads, "0: all, at least 1000 grains for each");
+  group = "Output";
+  add("--output", s.output, "folder");
+  app.add_flag("!--no-vtk", s.vtk, "no files for ParaView")->group(group);
+  app.add_flag("--vtk-spheres", s.vtk_spheres, "ParaView files also with the eight spheres of each grain")
+      ->group(group);
+  add("--vtk-interval", s.vtk_interval, "travel between two frames [m]; 0: a twentieth of the travel");
+}
+
+/// CLI11 writes empty texts and lists in a form that it does not read; they are defaults, so they may go.
+std::string without_empty_values(const std::string& toml) {
+  std::istringstream in(toml);
+  std::string kept;
+  for (std::string line; std::getline(in, line);) {
+    const bool empty = line.ends_with("=\"\"") || line.ends_with("=\"[]\"") || line.ends_with("=[]");
+    if (!empty) kept += line + '\n';
+  }
+  return kept;
+}
+
+}  // namespace
+
+bool read_settings(int argc, char** argv, Settings& s, std::string& config) {
+  CLI::App app{"Direct shear test of cubical sand grains: shear strength at several normal stresses"};
+  app.set_config("--config", "", "TOML file with any of these options");
+  app.add_option("--size", s.size, "smoke (seconds), quick (minutes) or full (14256 grains)")->capture_default_str();
+  add_specimen_options(app, s);
+  add_contact_options(app, s);
+  add_test_options(app, s);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::CallForHelp&) {
+    fmt::print("{}", app.help());
+    return false;
+  } catch (const CLI::ParseError& e) {
+    dem::fail("{} (--help lists the options)", e.what());
+  }
+  config = without_empty_values(app.config_to_str(true, false));
+  resolve(s);
+  return true;
+}
+
+void resolve(Settings& s) {
+  const Size& size = size_named(s.size);
+  const auto fill = [](double& value, double by_size) {
+    if (value == 0.0) value = by_size;
+  };
+  fill(s.half_edge, size.half_edge);
+  fill(s.shear_speed, size.shear_speed);
+  fill(s.travel, size.travel);
+  if (s.loads.empty()) s.loads = size.loads;
+  dem::require_positive(s.half_edge, "--half-edge", "m");
+  dem::require_positive(s.box_length, "--box-length", "m");
+  dem::require_positive(s.box_width, "--box-width", "m");
+  dem::require_positive(s.travel, "--travel", "m");
+  dem::require_positive(s.shear_speed, "--shear-speed", "m/s");
+  dem::require_positive(s.lid_speed, "--lid-speed", "m/s");
+  dem::require_positive(s.density, "--density", "kg/m^3");
+  if (s.grains == 0) {
+    const double fill_height = 14256.0 * std::pow(0.9e-3, 3) / (0.06 * 0.06);
+    s.grains = static_cast<std::uint64_t>(std::llround(fill_height * s.area() / std::pow(s.half_edge, 3)));
+  }
+  fill(s.wall_thickness, std::max(0.015, 2.0 * s.travel));
+  if (s.threads == 0) {
+    const auto cores = std::max(1u, std::thread::hardware_concurrency());
+    s.threads = static_cast<int>(std::clamp<std::uint64_t>(s.grains / 1000, 1, cores));
+  }
+  if (s.wall_friction < 0.0) s.wall_friction = s.friction;
+  if (s.friction_stiffness < 0.0) s.friction_stiffness = s.stiffness;
+  fill(s.vtk_interval, s.travel / 20.0);
+  dem::require_within(s.relative_density, 0.0, 1.0, "--relative-density");
+  dem::require_within(s.lid_clearance, 0.0, 0.99, "--lid-clearance");
+  dem::require_within(s.residual_share, 0.01, 1.0, "--residual-share");
+  dem::require_within(s.travel, 0.0, 0.5 * s.box_length, "--travel (at most half the box length)");
+  if (s.packing_only) s.loads.clear();
+  for (const double load : s.loads) dem::require_positive(load, "a mass of --loads", "kg");
+  if (s.save_packing.empty()) s.save_packing = (s.output / "packing.txt").string();
+}
+
+double contact_scale(const Settings& s) { return s.scale_contacts ? s.half_edge / s.constants_for : 1.0; }
+
+std::vector<std::pair<std::string, std::string>> list_settings(const Settings& s) {
+  const double k = contact_scale(s);
+  const auto mm = [](double metres) { return fmt::format("{:g} mm", 1e3 * metres); };
+  return {
+      {"size", s.size},
+      {"grains", fmt::format("{} cubes of 8 spheres", s.grains)},
+      {"half-edge", mm(s.half_edge)},
+      {"grain density", fmt::format("{:g} kg/m³", s.density)},
+      {"box", fmt::format("{:g} x {:g} x {:g} mm", 1e3 * s.box_length, 1e3 * s.box_width, 1e3 * s.box_height)},
+      {"normal stiffness K",
+       fmt::format("{:g} N/m (given {:g} for {})", k * s.stiffness, s.stiffness, mm(s.constants_for))},
+      {"normal damping C", fmt::format("{:g} N s/m (given {:g})", k * k * s.damping, s.damping)},
+      {"separation factor Sp", fmt::format("{:g}", s.separation_factor)},
+      {"friction, grain on grain", fmt::format("{:g}", s.friction)},
+      {"friction, grain on wall", fmt::format("{:g}", s.wall_friction)},
+      {"friction stiffness kt", fmt::format("{:g} N/m (given {:g})", k * s.friction_stiffness, s.friction_stiffness)},
+      {"velocity stiffness cv",
+       fmt::format("{:g} N s/m (given {:g})", k * k * s.velocity_stiffness, s.velocity_stiffness)},
+      {"asperity breaking factor", fmt::format("{:g}", s.breaking_factor)},
+      {"packing", !s.packing_file.empty() ? "from " + std::filesystem::path(s.packing_file).filename().string()
+                  : s.packing == "poured" ? fmt::format("poured block, tilted by {:g}° about each axis", s.tilt_deg)
+                                          : fmt::format("random, relative density {:g} asked for", s.relative_density)},
+      {"seed", fmt::format("{}", s.seed)},
+      {"loads", fmt::format("{} kg", fmt::join(s.loads, ", "))},
+      {"shearing", fmt::format("{:g} mm at {:g} mm/s", 1e3 * s.travel, 1e3 * s.shear_speed)},
+      {"stress is force over", s.area_correction ? "the area of contact of the halves" : "the nominal area of the box"},
+      {"maximum is of the mean over", mm(s.smoothing)},
+      {"integrator", s.integrator},
+  };
+}
+
+}  // namespace direct_shear

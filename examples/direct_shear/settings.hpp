@@ -1,0 +1,99 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace direct_shear {
+
+/// Everything that can be chosen. A value of 0 where it says "0: by size" is filled in by resolve(). Units: SI, as
+/// given on the command line too, except where a name says otherwise.
+struct Settings {
+  std::string size = "quick";  ///< smoke, quick or full
+
+  // Specimen and box (thesis section 3.2: 60 x 60 x 50 mm, 14,256 cubes of half-edge 0.9 mm)
+  double half_edge = 0.0;       ///< m; 0: by size
+  std::uint64_t grains = 0;     ///< 0: as many as fill the box as high as 14,256 of half-edge 0.9 mm do
+  double box_length = 0.06;     ///< m, along the shearing direction
+  double box_width = 0.06;      ///< m
+  double box_height = 0.05;     ///< m
+  double seam_height = 0.0;     ///< m, where the halves meet; 0: half the specimen's height
+  double wall_thickness = 0.0;  ///< m; 0: 15 mm or twice the travel, whichever is more
+  double lid_clearance = 0.25;  ///< of lid and walls, in radii of a grain's sphere; below 1
+
+  // Contacts (thesis table 3.2 and figure 3.6) of a grain of half-edge `constants_for`
+  double stiffness = 20000.0;         ///< K, N/m: the screenshots' value; the tables' 2000 is too soft, see README.md
+  double damping = 0.015;             ///< C, N s/m
+  double separation_factor = 0.05;    ///< Sp
+  double friction = 0.4;              ///< mu, grain on grain
+  double wall_friction = -1.0;        ///< mu, grain on wall; negative: as grain on grain
+  double friction_stiffness = -1.0;   ///< kt, N/m; negative: as K
+  double velocity_stiffness = 0.015;  ///< cv, N s/m
+  double breaking_factor = 0.975;     ///< share of the friction that a broken asperity keeps
+  double density = 2650.0;            ///< kg/m^3, of a grain
+  double constants_for = 0.9e-3;      ///< m
+  bool scale_contacts = true;         ///< K, kt ~ size and C, cv ~ size^2: see contact_scale()
+
+  // Packing
+  std::string packing = "random";  ///< random or poured
+  double relative_density = 0.2;   ///< of a random packing; 0: as it settles
+  double tilt_deg = 10.0;          ///< of a poured block, about each axis
+  double shake_amplitude = 2e-4;   ///< m
+  double shake_frequency = 25.0;   ///< Hz
+  double shake_time = 0.2;         ///< s, of a poured packing
+  double densify_time = 0.5;       ///< s, in which friction goes from full to none while a random packing is shaken
+  double settle_limit = 3.0;       ///< s; a packing that is not at rest by then ends the run
+  std::string packing_file;        ///< read instead of made
+  std::string save_packing;        ///< empty: <output>/packing.txt
+  bool packing_only = false;       ///< make, measure and save the packing; no test
+
+  // Test
+  std::vector<double> loads;         ///< kg, on the lid; empty: by size
+  double lid_speed = 0.1;            ///< m/s, at which the lid is lowered before it meets the grains
+  double rest_speed = 2e-4;          ///< m/s, below which the lid is at rest
+  double consolidation_limit = 2.0;  ///< s
+  double shear_speed = 0.0;          ///< m/s; 0: by size
+  double travel = 0.0;               ///< m; 0: by size
+  double ramp_time = 0.02;           ///< s, of the smooth start
+  double smoothing = 1.5e-4;         ///< m of travel, over which the stress is averaged before its maximum is taken
+  double residual_share = 0.25;      ///< last share of the travel, over which the residual stress is averaged
+  bool area_correction = false;      ///< stress over the shrinking area of contact of the halves, not the nominal one
+
+  // Numerics
+  std::string integrator = "verlet";  ///< the thesis's predictor-corrector gives the same at twice the cost
+  double time_step = 0.0;             ///< s; 0: 0.8 of the largest stable one
+  /// Overlap, in sphere radii, that ends the run. K = 2000 N/m is soft: force chains press spheres half a radius
+  /// together.
+  double overlap_limit = 1.0;
+  std::uint64_t seed = 1;
+  int threads = 0;  ///< 0: all, but not more than one for each 1000 grains
+
+  // Output
+  std::filesystem::path output = "direct_shear_output";
+  bool vtk = true;
+  bool vtk_spheres = false;   ///< also the eight spheres of each grain
+  double vtk_interval = 0.0;  ///< m of travel between two frames; 0: a twentieth of the travel
+
+  double area() const { return box_length * box_width; }                    ///< m^2, nominal
+  double normal_stress(double load) const { return 9.81 * load / area(); }  ///< Pa
+};
+
+/// Reads the command line and, with --config, a TOML file. Returns false when only help was asked for; throws
+/// dem::Error when something makes no sense, CLI::ParseError never. `config` becomes a TOML file that repeats the run.
+bool read_settings(int argc, char** argv, Settings& settings, std::string& config);
+
+/// Fills in what depends on the size and checks everything. Throws dem::Error.
+void resolve(Settings& s);
+
+/// What a coarser grain's stiffness is multiplied by (its square: damping). Overlap/size under a stress P is P d/K and
+/// the damping ratio is C/sqrt(K m), so that K ~ d and C ~ d^2 keep both: a coarse specimen deforms as the fine one
+/// does. 1 for the full size.
+double contact_scale(const Settings& s);
+
+/// Names and values for the report.
+std::vector<std::pair<std::string, std::string>> list_settings(const Settings& s);
+
+}  // namespace direct_shear

@@ -1,0 +1,5 @@
+#include "campaign_impl.hpp"
+
+#include <dem/integrator/velocity_verlet.hpp>
+
+template void direct_shear::run_campaign<dem::integrator::VelocityVerlet>(const Settings&, Campaign&);

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <concepts>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace dem::broadphase {
+
+/// Centres of the grains, n each (m).
+struct Positions {
+  const double* x;
+  const double* y;
+  const double* z;
+  std::size_t n;
+};
+
+/// A broad phase finds candidates for contact. It has
+///   build(positions, reach)   takes note of all grains; two grains farther apart than `reach` need not be found;
+///   finder()                  an object of which each thread has its own, with for_each_candidate(i, f): calls f(j)
+///   once
+///                             for each j > i within reach of i (and for others), in any order;
+///   order()                   a permutation that puts grains near in space near in memory (or an empty span);
+///   memory_bytes()            what it holds.
+template <class B>
+concept BroadPhase = requires(B& b, const B& built, const Positions& positions, double reach) {
+  b.build(positions, reach);
+  built.finder().for_each_candidate(std::size_t{0}, [](std::uint32_t) {});
+  { built.memory_bytes() } -> std::convertible_to<std::size_t>;
+  { built.order() } -> std::convertible_to<std::span<const std::uint32_t>>;
+};
+
+template <class B>
+constexpr void check_broad_phase() {
+  static_assert(
+      requires(B & b, const Positions& positions) { b.build(positions, 1.0); },
+      "BroadPhase: needs build(const Positions&, double reach)");
+  static_assert(
+      BroadPhase<B>,
+      "BroadPhase: needs finder() const with for_each_candidate(i, f), which calls f(j) for each j > i; order() const; "
+      "memory_bytes() const");
+}
+
+}  // namespace dem::broadphase

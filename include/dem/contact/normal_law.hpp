@@ -1,0 +1,45 @@
+#pragma once
+
+#include <dem/contact/state.hpp>
+
+#include <concepts>
+
+namespace dem::contact {
+
+/// A normal law is a struct of static functions and two struct templates of Ts:
+///   Parameters<T>  constants of a pair of materials;
+///   History<T>     what a contact has to remember between steps (empty if nothing);
+///   force(parameters, state, history) -> T   the repulsive force in N (the world cuts off negative values only if the
+///                  law does; a law that pulls is allowed);
+///   stiffness(parameters, state) -> double   the largest slope dF/d(overlap) in N/m, from which the stable time step
+///                  follows;
+///   check(parameters)   throws dem::Error, in words, if a constant makes no sense.
+template <class L>
+concept NormalLaw = requires(const typename L::template Parameters<double>& p, const NormalState<double>& state,
+                             typename L::template History<double>& history) {
+  { L::force(p, state, history) } -> std::same_as<double>;
+  { L::stiffness(p, state) } -> std::convertible_to<double>;
+  L::check(p);
+};
+
+template <class L>
+constexpr void check_normal_law() {
+  static_assert(
+      requires { typename L::template Parameters<double>; },
+      "NormalLaw: needs 'template <class T> struct Parameters', the constants of a pair of materials");
+  static_assert(
+      requires { typename L::template History<double>; },
+      "NormalLaw: needs 'template <class T> struct History', what a contact remembers (may be empty)");
+  static_assert(
+      requires(const typename L::template Parameters<double>& p, const NormalState<double>& state,
+               typename L::template History<double>& history) {
+        { L::force(p, state, history) } -> std::same_as<double>;
+      },
+      "NormalLaw: needs 'template <class T> static T force(const Parameters<T>&, const NormalState<T>&, History<T>&)' "
+      "that returns the repulsive force as a T");
+  static_assert(NormalLaw<L>,
+                "NormalLaw: needs static stiffness(const Parameters<double>&, const NormalState<double>&) in N/m and "
+                "check(const Parameters<double>&)");
+}
+
+}  // namespace dem::contact

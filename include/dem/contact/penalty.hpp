@@ -1,0 +1,35 @@
+#pragma once
+
+#include <dem/contact/normal_law.hpp>
+#include <dem/core/error.hpp>
+
+namespace dem::contact {
+
+/// Penalty spring with an asymmetric damper (thesis eq. 25): F = A (K d + C d') while approaching, A (K d + Sp C d')
+/// while separating, never pulling.
+struct Penalty {
+  template <class T>
+  struct Parameters {
+    T stiffness;          ///< K, N/m (per unit area if the shape's contact points have areas)
+    T damping;            ///< C, N s/m
+    T separation_factor;  ///< Sp in [0, 1]: the share of the damping that acts while separating
+  };
+  template <class T>
+  struct History {};
+
+  template <class T>
+  static DEM_HOT T force(const Parameters<T>& p, const NormalState<T>& s, History<T>&) {
+    const T factor = select(s.approach_speed < T(0), p.separation_factor, T(1));
+    return max(T(0), s.area * (p.stiffness * s.overlap + factor * p.damping * s.approach_speed));
+  }
+
+  static double stiffness(const Parameters<double>& p, const NormalState<double>& s) { return p.stiffness * s.area; }
+
+  static void check(const Parameters<double>& p) {
+    require_positive(p.stiffness, "normal stiffness", "N/m");
+    require_non_negative(p.damping, "normal damping", "N s/m");
+    require_within(p.separation_factor, 0.0, 1.0, "separation damping factor");
+  }
+};
+
+}  // namespace dem::contact

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <dem/math/vector.hpp>
+
+#include <type_traits>
+
+namespace dem::contact {
+
+/// What a normal law may read about one contact (T = double) or a pack of contacts (T = Pack).
+template <class T>
+struct NormalState {
+  T overlap;           ///< m, d of eq. 25; not negative where the bodies touch
+  T approach_speed;    ///< m/s, d' of eq. 26; positive while the bodies move together
+  T area;              ///< m^2 belonging to the contact point, A of eq. 25; 1 where the shape has none (spheres)
+  T effective_radius;  ///< m, 1/(1/Ri + 1/Rj)
+  T effective_mass;    ///< kg, 1/(1/mi + 1/mj)
+  T time_step;         ///< s
+};
+
+/// What a friction law may read.
+template <class T>
+struct TangentialState {
+  Vector3<T> velocity;  ///< m/s, of i relative to j at the contact point, in the tangent plane (eq. 28)
+  T normal_force;       ///< N, not negative
+  T overlap;            ///< m
+  T area;               ///< m^2, as in NormalState
+  T effective_radius;   ///< m
+  T effective_mass;     ///< kg
+  T time_step;          ///< s
+};
+
+/// Number of doubles in a law's Parameters or History struct, which holds nothing but Ts; an empty struct has none.
+template <class Struct>
+inline constexpr int field_count = std::is_empty_v<Struct> ? 0 : static_cast<int>(sizeof(Struct) / sizeof(double));
+
+}  // namespace dem::contact

@@ -1,0 +1,63 @@
+#pragma once
+
+#include <dem/math/vector.hpp>
+
+namespace dem::contact {
+
+// A touch is what a narrow phase hands to its sink: the raw numbers of one contact, from which `geometry()` computes
+// normal, overlap and lever arm for a whole pack of contacts at once. A touch is a struct of Ts only. All vectors are
+// in global axes, seen from the centre of particle i.
+
+/// The contact as the laws need it.
+template <class T>
+struct Geometry {
+  Vector3<T> normal;   ///< unit vector from i towards j
+  T overlap;           ///< m
+  Vector3<T> arm;      ///< m, from the centre of i to the contact point
+  T effective_radius;  ///< m
+  T area;              ///< m^2; 1 for spheres
+};
+
+/// Two free spheres whose centres are the particles' centres.
+template <class T>
+struct SphereTouch {
+  Vector3<T> link;  ///< from sphere i to sphere j
+  T radius_i, radius_j;
+
+  DEM_HOT Geometry<T> geometry() const {
+    const T distance = max(norm(link), T(1e-300));
+    const Vector3<T> normal = (T(1) / distance) * link;
+    const T overlap = radius_i + radius_j - distance;
+    return {normal, overlap, (radius_i - T(0.5) * overlap) * normal, radius_i * radius_j / (radius_i + radius_j), T(1)};
+  }
+};
+
+/// Two spheres that belong to clusters.
+template <class T>
+struct ClusterTouch {
+  Vector3<T> centre;  ///< of the sphere of i
+  Vector3<T> link;    ///< from the sphere of i to the sphere of j
+  T radius_i, radius_j;
+
+  DEM_HOT Geometry<T> geometry() const {
+    Geometry<T> g = SphereTouch<T>{link, radius_i, radius_j}.geometry();
+    g.arm += centre;
+    return g;
+  }
+};
+
+/// A sphere of a particle (or a point: radius 0) and a surface of a machine part.
+template <class T>
+struct SurfaceTouch {
+  Vector3<T> centre;  ///< of the sphere
+  Vector3<T> normal;  ///< unit vector into the surface
+  T radius;
+  T gap;  ///< distance from the sphere's centre to the surface along the normal; negative behind it
+
+  DEM_HOT Geometry<T> geometry() const {
+    const T overlap = radius - gap;
+    return {normal, overlap, centre + (radius - T(0.5) * overlap) * normal, radius, T(1)};
+  }
+};
+
+}  // namespace dem::contact

@@ -1,0 +1,50 @@
+#pragma once
+
+// fmt 9 switches its constexpr off under nvcc, and then its own format strings do not compile.
+#if defined(__CUDACC__) && !defined(FMT_USE_CONSTEXPR)
+#define FMT_USE_CONSTEXPR 1
+#endif
+#include <fmt/format.h>
+
+#include <stdexcept>
+#include <utility>
+
+namespace dem {
+
+/// Thrown when the set-up of a simulation is wrong. The text says what is wrong, the value that was given, the
+/// allowed range and what to change. A running step never throws: it returns a StepReport.
+struct Error : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+/// Throws Error with a formatted text.
+template <class... Args>
+[[noreturn]] void fail(fmt::format_string<Args...> text, Args&&... args) {
+  throw Error(fmt::format(text, std::forward<Args>(args)...));
+}
+
+/// Throws unless `value` is finite and greater than zero; returns it.
+inline double require_positive(double value, const char* what, const char* unit) {
+  if (!(value > 0.0) || value > 1e300) {
+    fail("{} is {:g} {}, but must be finite and greater than zero", what, value, unit);
+  }
+  return value;
+}
+
+/// Throws unless `value` is finite and at least zero; returns it.
+inline double require_non_negative(double value, const char* what, const char* unit) {
+  if (!(value >= 0.0) || value > 1e300) {
+    fail("{} is {:g} {}, but must be finite and not negative", what, value, unit);
+  }
+  return value;
+}
+
+/// Throws unless lowest <= value <= highest; returns it.
+inline double require_within(double value, double lowest, double highest, const char* what) {
+  if (!(value >= lowest && value <= highest)) {
+    fail("{} is {:g}, but must lie between {:g} and {:g}", what, value, lowest, highest);
+  }
+  return value;
+}
+
+}  // namespace dem

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <compare>
+#include <cstdint>
+
+namespace dem {
+
+/// An index that cannot be mixed up with an index of another kind. `Tag` only tells the kinds apart.
+template <class Tag>
+struct Id {
+  std::uint32_t value = 0xffffffffu;
+
+  constexpr Id() = default;
+  constexpr explicit Id(std::size_t index) : value(static_cast<std::uint32_t>(index)) {}
+  constexpr std::size_t index() const { return value; }
+  constexpr bool valid() const { return value != 0xffffffffu; }
+  constexpr auto operator<=>(const Id&) const = default;
+};
+
+using MaterialId = Id<struct MaterialTag>;  ///< a row of the material-pair table
+using SpeciesId = Id<struct SpeciesTag>;    ///< shape, size, mass and material of grains
+using ParticleId = Id<struct ParticleTag>;  ///< a grain; stays the same when storage is re-sorted
+using BodyId = Id<struct BodyTag>;          ///< a rigid body of a machine
+using SurfaceId = Id<struct SurfaceTag>;    ///< a surface that a body shows to the grains
+
+}  // namespace dem

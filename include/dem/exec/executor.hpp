@@ -1,0 +1,22 @@
+#pragma once
+
+#include <concepts>
+#include <cstddef>
+
+namespace dem::exec {
+
+/// An executor runs f(0) ... f(n-1), in any order and on any number of threads. Every phase of the step is written such
+/// that the result does not depend on either.
+template <class E>
+concept Executor = requires(E& executor) {
+  executor.for_each(std::size_t{1}, [](std::size_t) {});
+  { executor.threads() } -> std::convertible_to<int>;
+  executor.set_threads(1);
+};
+
+template <class E>
+constexpr void check_executor() {
+  static_assert(Executor<E>, "Executor: needs for_each(n, f), threads() and set_threads(n)");
+}
+
+}  // namespace dem::exec

@@ -1,0 +1,188 @@
+#pragma once
+
+#include <dem/mbd/coordinate.hpp>
+#include <dem/mbd/signal.hpp>
+
+#include <limits>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace dem::mbd {
+
+/// What an actuator is made from. Gains as in eqs. 34 and 38: force = -position_gain (l - l_set) - speed_gain (l' -
+/// l'_set), positive where it makes the coordinate l grow (pushes two points apart, drives b forward along or about a
+/// joint). A gain of zero switches that part off: position_gain = 0 is a speed controller.
+struct ActuatorSpec {
+  std::string name;
+  JointId joint = {};  ///< acts on this joint's coordinate; if not valid, between two points
+  BodyId a = {}, b = {};
+  Vec3 at_a = Vec3::Zero(), at_b = Vec3::Zero();          ///< m, global at assembly
+  Vec3 toward_a = Vec3::Zero(), toward_b = Vec3::Zero();  ///< m, global; arms of a rotational actuator on three points
+  bool three_points = false;
+  double position_gain = 0.0;                                  ///< K, N/m or N m/rad
+  double speed_gain = 0.0;                                     ///< c, N s/m or N m s/rad
+  Signal set_point = 0.0;                                      ///< m or rad, with its rate
+  double max_force = std::numeric_limits<double>::infinity();  ///< N or N m; the force is cut at +- this
+  Curve torque_curve = {};  ///< a motor: N m over rad/s (or N over m/s), times the throttle
+  double throttle = 0.0;    ///< -1 .. 1
+  bool on = true;
+
+  ActuatorSpec with_max_force(double f) const {
+    ActuatorSpec s = *this;
+    s.max_force = f;
+    return s;
+  }
+  ActuatorSpec switched_off() const {
+    ActuatorSpec s = *this;
+    s.on = false;
+    return s;
+  }
+};
+
+/// Between two points (eqs. 34-37): the coordinate is their distance, which must not become zero.
+inline ActuatorSpec linear_actuator(std::string name, BodyId a, const Vec3& at_a, BodyId b, const Vec3& at_b,
+                                    double position_gain, double speed_gain, Signal set_point = 0.0) {
+  return {.name = std::move(name),
+          .a = a,
+          .b = b,
+          .at_a = at_a,
+          .at_b = at_b,
+          .position_gain = position_gain,
+          .speed_gain = speed_gain,
+          .set_point = std::move(set_point)};
+}
+/// On the coordinate of a joint: force on one that slides, torque on one that turns (eq. 38, over whole turns).
+inline ActuatorSpec joint_actuator(std::string name, JointId joint, double position_gain, double speed_gain,
+                                   Signal set_point = 0.0) {
+  return {.name = std::move(name),
+          .joint = joint,
+          .position_gain = position_gain,
+          .speed_gain = speed_gain,
+          .set_point = std::move(set_point)};
+}
+/// On three points (section 2.4.2): the angle at `corner` from `toward_a` on body a to `toward_b` on body b, counted
+/// positive about a x b at assembly.
+inline ActuatorSpec rotational_actuator(std::string name, BodyId a, const Vec3& corner, const Vec3& toward_a, BodyId b,
+                                        const Vec3& toward_b, double position_gain, double speed_gain,
+                                        Signal set_point = 0.0) {
+  return {.name = std::move(name),
+          .a = a,
+          .b = b,
+          .at_a = corner,
+          .at_b = corner,
+          .toward_a = toward_a,
+          .toward_b = toward_b,
+          .three_points = true,
+          .position_gain = position_gain,
+          .speed_gain = speed_gain,
+          .set_point = std::move(set_point)};
+}
+/// A motor on a joint: torque (N m) over speed (rad/s), times a throttle between -1 and 1 that is set while running.
+inline ActuatorSpec motor(std::string name, JointId joint, Curve torque_over_speed, double throttle = 1.0) {
+  return {.name = std::move(name), .joint = joint, .torque_curve = std::move(torque_over_speed), .throttle = throttle};
+}
+
+/// An actuator, ready to run, and what it did in the newest force evaluation.
+struct Actuator {
+  ActuatorSpec spec;
+  std::uint32_t a = 0, b = 0;
+  Vector3<double> point_a = {}, point_b = {};     ///< m, body frames
+  double coordinate = 0.0;                        ///< m or rad
+  double speed = 0.0;                             ///< m/s or rad/s
+  double force = 0.0;                             ///< N or N m, positive where it makes the coordinate grow
+  Signal::Sample target = {};                     ///< the set point
+  double power() const { return force * speed; }  ///< W, delivered to the bodies
+};
+
+/// The coordinate "distance of two points", with the line between them as its axis.
+inline Coordinate distance_of(const Vector3<double>& point_a, const Vector3<double>& point_b, const Body& a,
+                              const Body& b) {
+  const Matrix3<double>&A = a.motion.rotation, &B = b.motion.rotation;
+  Coordinate q;
+  q.arm_b = B * point_b;
+  q.arm_a = A * point_a;
+  const Vector3<double> d = b.motion.position + q.arm_b - a.motion.position - q.arm_a;
+  q.value = norm(d);
+  q.axis = (1.0 / max(q.value, 1e-300)) * d;
+  q.speed = dot(q.axis, b.motion.velocity + cross(B * b.motion.angular_velocity, q.arm_b) - a.motion.velocity -
+                            cross(A * a.motion.angular_velocity, q.arm_a));
+  return q;
+}
+
+[[gnu::flatten]] inline void apply_actuator(Actuator& u, const std::vector<Joint>& joints, std::vector<Body>& bodies,
+                                            double time) {
+  Body &a = bodies[u.a], &b = bodies[u.b];
+  const Coordinate q = u.spec.joint.valid() ? coordinate_of(joints[u.spec.joint.index()], a, b)
+                                            : distance_of(u.point_a, u.point_b, a, b);
+  u.coordinate = q.value;
+  u.speed = q.speed;
+  u.force = 0.0;
+  if (!u.spec.on) return;
+  if (u.spec.torque_curve.empty()) {
+    u.target = u.spec.set_point(time);
+    u.force = -u.spec.position_gain * (q.value - u.target.value) - u.spec.speed_gain * (q.speed - u.target.rate);
+  } else {
+    u.force = u.spec.throttle * u.spec.torque_curve(q.speed);
+  }
+  u.force = max(-u.spec.max_force, min(u.spec.max_force, u.force));
+  q.apply(u.force, a, b);
+}
+
+/// A spring and damper between two points: force over length from a table or a stiffness and a free length.
+struct SpringSpec {
+  std::string name;
+  BodyId a = {}, b = {};
+  Vec3 at_a = Vec3::Zero(), at_b = Vec3::Zero();  ///< m, global at assembly
+  Curve force_over_length = {};                   ///< N over m; positive pushes the points apart
+  Curve force_over_speed = {};                    ///< N over m/s of lengthening; positive pushes the points apart
+};
+
+/// A linear spring (N/m) of free length (m; the length at assembly if negative) with a linear damper (N s/m).
+inline SpringSpec spring(std::string name, BodyId a, const Vec3& at_a, BodyId b, const Vec3& at_b, double stiffness,
+                         double damping = 0.0, double free_length = -1.0) {
+  require_non_negative(stiffness, "stiffness of a spring", "N/m");
+  require_non_negative(damping, "damping of a spring", "N s/m");
+  const double l0 = free_length < 0.0 ? (at_b - at_a).norm() : free_length;
+  return {.name = std::move(name),
+          .a = a,
+          .b = b,
+          .at_a = at_a,
+          .at_b = at_b,
+          .force_over_length = Curve::line(stiffness * l0, -stiffness),
+          .force_over_speed = damping > 0.0 ? Curve::line(0.0, -damping) : Curve{}};
+}
+/// A spring of free length (m) whose force (N) over its compression (m, positive when shorter) is a table.
+inline SpringSpec spring_table(std::string name, BodyId a, const Vec3& at_a, BodyId b, const Vec3& at_b,
+                               double free_length, const Curve& force_over_compression, double damping = 0.0) {
+  require_positive(free_length, "free length of a spring", "m");
+  std::vector<std::pair<double, double>> points;
+  for (const auto& [x, f] : force_over_compression.points()) points.emplace_back(free_length - x, f);
+  return {.name = std::move(name),
+          .a = a,
+          .b = b,
+          .at_a = at_a,
+          .at_b = at_b,
+          .force_over_length = Curve({points.rbegin(), points.rend()}),
+          .force_over_speed = damping > 0.0 ? Curve::line(0.0, -damping) : Curve{}};
+}
+
+struct Spring {
+  SpringSpec spec;
+  Vector3<double> point_a = {}, point_b = {};  ///< m, body frames
+  double length = 0.0, speed = 0.0;            ///< m, m/s
+  double force = 0.0;                          ///< N, positive pushes the points apart
+};
+
+[[gnu::flatten]] inline void apply_spring(Spring& s, std::vector<Body>& bodies) {
+  Body &a = bodies[s.spec.a.index()], &b = bodies[s.spec.b.index()];
+  const Coordinate q = distance_of(s.point_a, s.point_b, a, b);
+  s.length = q.value;
+  s.speed = q.speed;
+  s.force = 0.0;
+  if (!s.spec.force_over_length.empty()) s.force += s.spec.force_over_length(q.value);
+  if (!s.spec.force_over_speed.empty()) s.force += s.spec.force_over_speed(q.speed);
+  q.apply(s.force, a, b);
+}
+
+}  // namespace dem::mbd

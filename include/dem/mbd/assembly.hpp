@@ -1,0 +1,235 @@
+#pragma once
+
+#include <dem/mbd/assemble.hpp>
+#include <dem/mbd/derive.hpp>
+#include <dem/mbd/forces.hpp>
+
+namespace dem::mbd {
+
+/// A mechanism as it is put together and looked at: bodies, joints and everything that acts between them. `Machine`
+/// adds the motion. Every add_... function checks what it is given, throws Error in words, and returns an id.
+class Assembly {
+ public:
+  // ------------------------------------------------------------------------------------------------- building it
+
+  BodyId add_body(const BodySpec& spec) { return keep_body(build_body(spec)); }
+  /// A body that is given in its own frame: centre of mass and principal axes.
+  BodyId add_body(const Body& body) {
+    check_body(body);
+    return keep_body({body, Vec3::Zero(), Mat3::Identity()});
+  }
+  BodyId add_fixed_body(std::string name, const Vec3& position = Vec3::Zero()) {
+    return add_body(fixed_body(std::move(name), position));
+  }
+  /// The fixed body "ground" at the origin; made when first asked for.
+  BodyId ground() {
+    if (!ground_.valid()) ground_ = add_fixed_body("ground");
+    return ground_;
+  }
+  /// A connection point (section 2.3) at a global point.
+  ConnectionId add_connection(std::string name, BodyId body, const Vec3& at) {
+    const Body& b = known_body(parts_, body, fmt::format("connection point '{}'", name));
+    parts_.connections.push_back({std::move(name), body, detail::to_body(b, at)});
+    return ConnectionId(parts_.connections.size() - 1);
+  }
+  /// A connection point at a point of the body's reference frame.
+  ConnectionId add_connection_in_reference(std::string name, BodyId body, const Vec3& point) {
+    known_body(parts_, body, fmt::format("connection point '{}'", name));
+    return add_connection(std::move(name), body, reference_point(body, point));
+  }
+  JointId add_joint(JointSpec spec) {
+    const Joint j = detail::make_joint(parts_, spec);
+    JointExtras extras;
+    extras.joint = static_cast<std::uint32_t>(parts_.joints.size());
+    if (detail::make_extras(spec, extras)) {
+      parts_.extras.push_back(extras);
+    }
+    parts_.joints.push_back(j);
+    parts_.joint_specs.push_back(std::move(spec));
+    changed_ = true;
+    return JointId(parts_.joints.size() - 1);
+  }
+  ActuatorId add_actuator(ActuatorSpec spec) {
+    const std::string who = fmt::format("actuator '{}'", spec.name);
+    require_non_negative(spec.position_gain, ("position gain of " + who).c_str(), "N/m or N m/rad");
+    require_non_negative(spec.speed_gain, ("speed gain of " + who).c_str(), "N s/m or N m s/rad");
+    if (!(spec.max_force > 0.0)) {
+      fail("the largest force of {} is {:g} N or N m, but must be greater than zero; leave it out for no limit", who,
+           spec.max_force);
+    }
+    Actuator u;
+    if (spec.three_points) spec = on_three_points(std::move(spec), who);
+    if (spec.joint.valid()) {
+      const Joint& j = known_joint(parts_, spec.joint, who);
+      if (!turns(j.kind) && !slides(j.kind)) {
+        fail(
+            "{} acts on {} '{}', which has no coordinate to drive; use a revolute, cylindrical, prismatic, planar or "
+            "point-on-line joint",
+            who, name_of(j.kind), parts_.joint_specs[spec.joint.index()].name);
+      }
+      u.a = j.a;
+      u.b = j.b;
+    } else {
+      detail::attach_points(parts_, u, spec, who, true);
+      u.a = spec.a.value;
+      u.b = spec.b.value;
+    }
+    u.spec = std::move(spec);
+    parts_.actuators.push_back(std::move(u));
+    return ActuatorId(parts_.actuators.size() - 1);
+  }
+  SpringId add_spring(SpringSpec spec) {
+    Spring s;
+    detail::attach_points(parts_, s, spec, fmt::format("spring '{}'", spec.name), true);
+    s.spec = std::move(spec);
+    parts_.springs.push_back(std::move(s));
+    return SpringId(parts_.springs.size() - 1);
+  }
+  CouplingId add_coupling(CouplingSpec spec) {
+    parts_.couplings.push_back(detail::make_coupling(parts_, std::move(spec)));
+    changed_ = true;
+    return CouplingId(parts_.couplings.size() - 1);
+  }
+  LoadId add_load(LoadSpec spec) {
+    const std::string who = fmt::format("load '{}'", spec.name);
+    const Body& b = known_body(parts_, spec.body, who);
+    const Vec3 n = unit(spec.direction, who);
+    Load load;
+    load.point = from_eigen(detail::to_body(b, spec.at));
+    load.direction = from_eigen(spec.follows_body ? Vec3(b.rotation().transpose() * n) : n);
+    load.spec = std::move(spec);
+    parts_.loads.push_back(std::move(load));
+    return LoadId(parts_.loads.size() - 1);
+  }
+  MotionId add_motion(MotionSpec spec) {
+    parts_.motions.push_back(detail::make_motion(parts_, std::move(spec)));
+    return MotionId(parts_.motions.size() - 1);
+  }
+  SensorId add_sensor(SensorSpec spec) {
+    const std::size_t count = spec.target == SensorTarget::joint      ? parts_.joints.size()
+                              : spec.target == SensorTarget::actuator ? parts_.actuators.size()
+                              : spec.target == SensorTarget::drive    ? parts_.motions.size()
+                                                                      : parts_.bodies.size();
+    if (spec.index >= count) {
+      fail("sensor '{}' measures number {}, but the machine has {} of that kind; use the id that add_... returned",
+           spec.name, spec.index, count);
+    }
+    WindowAverage average(spec.window);
+    parts_.sensors.push_back({std::move(spec), average});
+    return SensorId(parts_.sensors.size() - 1);
+  }
+
+  // ------------------------------------------------------------------------------------------------- looking at it
+
+  /// All bodies, in the order of their ids. Mass, inertia and `fixed` are read when a run starts (initialise).
+  std::vector<Body>& bodies() { return parts_.bodies; }
+  const std::vector<Body>& bodies() const { return parts_.bodies; }
+  Body& body(BodyId id) { return parts_.bodies[id.index()]; }
+  const Body& body(BodyId id) const { return parts_.bodies[id.index()]; }
+  /// The body of that name. Throws Error if there is none.
+  BodyId body_named(const std::string& name) const {
+    for (std::size_t i = 0; i < parts_.bodies.size(); ++i) {
+      if (parts_.bodies[i].name == name) return BodyId(i);
+    }
+    fail("no body is named '{}'", name);
+  }
+  /// Global position (m) of a point of the body's reference frame.
+  Vec3 reference_point(BodyId id, const Vec3& point) const {
+    const BuiltBody& built = parts_.built[id.index()];
+    return body(id).point(built.reference_origin + built.reference_axes * point);
+  }
+  /// Reference frame -> global.
+  Mat3 reference_rotation(BodyId id) const { return body(id).rotation() * parts_.built[id.index()].reference_axes; }
+  Vec3 connection_position(ConnectionId id) const {
+    const Connection& c = parts_.connections[id.index()];
+    return body(c.body).point(c.point);
+  }
+
+  /// A joint's own coordinate and speed: the rotation (rad, over whole turns) of one that turns, else the slide (m).
+  double coordinate(JointId id) const { return of(id, coordinate_of).value; }
+  double speed(JointId id) const { return of(id, coordinate_of).speed; }
+  /// The slide along z (m, m/s), e.g. the second coordinate of a cylindrical joint.
+  double slide(JointId id) const { return of(id, displacement_of).value; }
+  double slide_speed(JointId id) const { return of(id, displacement_of).speed; }
+  Violation violation(JointId id) const { return of(id, violation_of); }
+  /// Force (N) and torque (N m, about the joint's point) that the joint puts on its body b: springs and dampers.
+  Wrench reaction(JointId id) const { return {joint(id).force, joint(id).torque}; }
+  const Joint& joint(JointId id) const { return parts_.joints[id.index()]; }
+  /// Stops and friction of a joint; nullptr if it has none.
+  const JointExtras* extras(JointId id) const {
+    for (const JointExtras& e : parts_.extras) {
+      if (e.joint == id.value) return &e;
+    }
+    return nullptr;
+  }
+  /// Sets the preload (N) of a joint's friction while running: a brake. Throws Error if the joint has no friction.
+  void set_friction_preload(JointId id, double newtons) {
+    for (JointExtras& e : parts_.extras) {
+      if (e.joint == id.value && e.rubs) {
+        e.preload = require_non_negative(newtons, "preload of a joint's friction", "N");
+        return;
+      }
+    }
+    fail("joint '{}' has no friction to preload; add it with with_friction", parts_.joint_specs[id.index()].name);
+  }
+
+  const Actuator& actuator(ActuatorId id) const { return parts_.actuators[id.index()]; }
+  /// Sets the set point (m or rad) and its rate from outside, for instance every step.
+  void set_target(ActuatorId id, double value, double rate = 0.0) {
+    parts_.actuators[id.index()].spec.set_point = Signal::held(value, rate);
+  }
+  void set_target(ActuatorId id, Signal signal) { parts_.actuators[id.index()].spec.set_point = std::move(signal); }
+  void set_throttle(ActuatorId id, double throttle) {
+    parts_.actuators[id.index()].spec.throttle = require_within(throttle, -1.0, 1.0, "throttle of a motor");
+  }
+  void switch_on(ActuatorId id, bool on = true) { parts_.actuators[id.index()].spec.on = on; }
+  void switch_on(MotionId id, bool on = true) { parts_.motions[id.index()].spec.on = on; }
+  void switch_on(LoadId id, bool on = true) { parts_.loads[id.index()].spec.on = on; }
+  void set_load(LoadId id, Signal size) { parts_.loads[id.index()].spec.size = std::move(size); }
+  void set_motion(MotionId id, Signal motion) { parts_.motions[id.index()].spec.motion = std::move(motion); }
+
+  const Spring& spring(SpringId id) const { return parts_.springs[id.index()]; }
+  const Coupling& coupling(CouplingId id) const { return parts_.couplings[id.index()]; }
+  const PrescribedMotion& motion(MotionId id) const { return parts_.motions[id.index()]; }
+  const WindowAverage& sensor(SensorId id) const { return parts_.sensors[id.index()].average; }
+  const Parts& parts() const { return parts_; }
+  Parts& parts() { return parts_; }
+
+ private:
+  BodyId keep_body(BuiltBody built) {
+    if (built.body.name.empty()) built.body.name = fmt::format("body {}", parts_.bodies.size());
+    for (const Body& b : parts_.bodies) {
+      if (b.name == built.body.name) fail("two bodies are named '{}'; rename one, so that reports are clear", b.name);
+    }
+    parts_.bodies.push_back(built.body);
+    parts_.built.push_back(std::move(built));
+    changed_ = true;
+    return BodyId(parts_.bodies.size() - 1);
+  }
+  template <class T>
+  T of(JointId id, T (*f)(const Joint&, const Body&, const Body&)) const {
+    const Joint& j = joint(id);
+    return f(j, parts_.bodies[j.a], parts_.bodies[j.b]);
+  }
+  /// A rotational actuator between three points acts on a free joint about the normal of their plane.
+  ActuatorSpec on_three_points(ActuatorSpec spec, const std::string& who) {
+    const Vec3 to_a = unit(spec.toward_a - spec.at_a, who), to_b = unit(spec.toward_b - spec.at_b, who);
+    const Vec3 normal = to_a.cross(to_b);
+    if (normal.norm() < 1e-6) {
+      fail("the three points of {} lie on a line, so its axis is not known; use joint_actuator on a revolute joint",
+           who);
+    }
+    spec.joint = add_joint(free_joint(spec.name, spec.a, spec.b, spec.at_a, normal)
+                               .starting_at(std::atan2(normal.norm(), to_a.dot(to_b))));
+    return spec;
+  }
+
+ protected:
+  Parts parts_;
+  bool changed_ = false;  ///< a body, joint or coupling was added since the last initialise
+
+ private:
+  BodyId ground_;
+};
+
+}  // namespace dem::mbd

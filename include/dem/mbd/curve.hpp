@@ -1,0 +1,78 @@
+#pragma once
+
+#include <dem/core/error.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <initializer_list>
+#include <utility>
+#include <vector>
+
+namespace dem::mbd {
+
+/// A table y(x) with straight lines between its points: force over length, torque over speed. Outside its range it goes
+/// on with the slope of its last piece, unless it is `held_outside`.
+class Curve {
+ public:
+  Curve() = default;
+  /// Points (x, y) in rising x, at least two. Throws Error if x does not rise or a value is not finite.
+  Curve(std::vector<std::pair<double, double>> points) : points_(std::move(points)) {  // NOLINT
+    if (points_.size() < 2) fail("a curve has {} points, but needs at least 2", points_.size());
+    for (std::size_t i = 0; i < points_.size(); ++i) {
+      if (!std::isfinite(points_[i].first) || !std::isfinite(points_[i].second)) {
+        fail("point {} of a curve is ({:g}, {:g}), but must be finite", i, points_[i].first, points_[i].second);
+      }
+      if (i > 0 && !(points_[i].first > points_[i - 1].first)) {
+        fail("point {} of a curve has x = {:g} after x = {:g}: x must rise from point to point; sort the table", i,
+             points_[i].first, points_[i - 1].first);
+      }
+    }
+  }
+  Curve(std::initializer_list<std::pair<double, double>> points)
+      : Curve(std::vector<std::pair<double, double>>(points)) {}
+
+  /// y = y0 + slope x.
+  static Curve line(double y0, double slope) { return {{0.0, y0}, {1.0, y0 + slope}}; }
+
+  /// The same curve, that keeps its first and last value outside its range.
+  Curve held_outside() const {
+    Curve c = *this;
+    c.held_ = true;
+    return c;
+  }
+
+  double operator()(double x) const {
+    const auto& [p, q] = piece(x);
+    if (held_) x = std::clamp(x, points_.front().first, points_.back().first);
+    return p.second + (q.second - p.second) / (q.first - p.first) * (x - p.first);
+  }
+  double slope(double x) const {
+    if (held_ && (x < points_.front().first || x > points_.back().first)) return 0.0;
+    const auto& [p, q] = piece(x);
+    return (q.second - p.second) / (q.first - p.first);
+  }
+  /// The steepest slope, by size: what limits the time step.
+  double steepest() const {
+    double s = 0.0;
+    for (std::size_t i = 1; i < points_.size(); ++i) {
+      s = std::max(s,
+                   std::abs((points_[i].second - points_[i - 1].second) / (points_[i].first - points_[i - 1].first)));
+    }
+    return s;
+  }
+  bool empty() const { return points_.empty(); }
+  const std::vector<std::pair<double, double>>& points() const { return points_; }
+
+ private:
+  using Point = std::pair<double, double>;
+  std::pair<const Point&, const Point&> piece(double x) const {
+    const auto above = std::upper_bound(points_.begin() + 1, points_.end() - 1, x,
+                                        [](double value, const Point& p) { return value < p.first; });
+    return {*(above - 1), *above};
+  }
+
+  std::vector<Point> points_;
+  bool held_ = false;
+};
+
+}  // namespace dem::mbd

@@ -1,0 +1,183 @@
+#pragma once
+
+#include <dem/math/vector.hpp>
+#include <dem/mbd/ids.hpp>
+
+#include <limits>
+#include <optional>
+#include <string>
+#include <utility>
+
+namespace dem::mbd {
+
+/// What a joint leaves free. Joint frame: origin in the joint's point, z along its axis.
+enum class JointKind {
+  fixed,              ///< nothing
+  spherical,          ///< all rotations
+  revolute,           ///< rotation about z
+  cylindrical,        ///< rotation about z and sliding along z
+  prismatic,          ///< sliding along z
+  planar,             ///< sliding along x and y, rotation about z
+  universal,          ///< rotation about x of body a and about y of body b, the arms of its cross
+  constant_velocity,  ///< bending in any direction; carries the rotation about the shafts unchanged
+  point_on_line,      ///< all rotations and sliding along z
+  point_on_plane,     ///< all rotations and sliding along x and y
+  distance,           ///< all but the distance of two points
+  bushing,            ///< everything, against springs and dampers of its own along and about x, y, z
+  free                ///< everything; measures a rotation and a displacement, e.g. for a rotational actuator
+};
+
+inline const char* name_of(JointKind kind) {
+  constexpr const char* names[] = {
+      "fixed joint",         "spherical joint",      "revolute joint",  "cylindrical joint",
+      "prismatic joint",     "planar joint",         "universal joint", "constant-velocity joint",
+      "point-on-line joint", "point-on-plane joint", "distance joint",  "bushing",
+      "free joint"};
+  return names[static_cast<int>(kind)];
+}
+
+/// A stop at each end of a joint's coordinate (rad for joints that turn, m for joints that slide).
+struct JointLimits {
+  double lower = -std::numeric_limits<double>::infinity();
+  double upper = std::numeric_limits<double>::infinity();
+  std::optional<double> stiffness = {};  ///< N/m or N m/rad; derived if not given
+  std::optional<double> damping = {};    ///< N s/m or N m s/rad, while moving into the stop; derived if not given
+};
+
+/// Asperity friction in a joint (thesis section 2.2.2). The normal force is that which the joint carries, plus a
+/// preload.
+struct JointFriction {
+  double coefficient = 0.0;
+  double radius = 1.0;   ///< m, of the bearing: turns sliding into rotation
+  double preload = 0.0;  ///< N, added to the normal force; a brake is a joint with a preload
+  double lever = 0.0;    ///< m, distance of the bearings: adds torque/lever; 0: left out
+  double breaking_factor = 0.975;
+  std::optional<double> stiffness = {};           ///< N/m; derived if not given
+  std::optional<double> velocity_stiffness = {};  ///< N s/m; derived if not given
+};
+
+/// What a joint is made from. The functions below make the usual ones; the `with_...` functions refine them.
+/// A stiffness or damping that is not given is derived when the machine learns its time step (see stability.hpp).
+struct JointSpec {
+  std::string name;
+  JointKind kind = JointKind::fixed;
+  BodyId a = {}, b = {};
+  Vec3 at_a = Vec3::Zero(), at_b = Vec3::Zero();        ///< m, global at assembly: the joint's point on a and on b
+  Vec3 axis_a = Vec3::UnitZ(), axis_b = Vec3::UnitZ();  ///< global at assembly: z of the joint's frame on a and on b
+  ConnectionId connection_a = {}, connection_b = {};    ///< instead of a, at_a and b, at_b
+  std::optional<double> stiffness = {};                 ///< N/m
+  std::optional<double> damping = {};                   ///< N s/m
+  std::optional<double> rotational_stiffness = {};      ///< N m/rad
+  std::optional<double> rotational_damping = {};        ///< N m s/rad
+  Vec3 bushing_stiffness = Vec3::Zero(), bushing_damping = Vec3::Zero();                        ///< N/m, N s/m
+  Vec3 bushing_rotational_stiffness = Vec3::Zero(), bushing_rotational_damping = Vec3::Zero();  ///< N m/rad, N m s/rad
+  std::optional<double> length = {};  ///< m, of a distance joint; the distance at assembly if not given
+  double start = 0.0;                 ///< rad or m, the coordinate at assembly
+  std::optional<JointLimits> limits = {};
+  std::optional<JointFriction> friction = {};
+  double tolerance = 1e-6;  ///< m, within which the two points have to meet at assembly; rad for the axes
+
+  JointSpec with_stiffness(double translation, double rotation) const {
+    JointSpec s = *this;
+    s.stiffness = translation;
+    s.rotational_stiffness = rotation;
+    return s;
+  }
+  JointSpec with_damping(double translation, double rotation) const {
+    JointSpec s = *this;
+    s.damping = translation;
+    s.rotational_damping = rotation;
+    return s;
+  }
+  JointSpec with_limits(double lower, double upper) const { return with_limits(JointLimits{lower, upper}); }
+  JointSpec with_limits(const JointLimits& stops) const {
+    JointSpec s = *this;
+    s.limits = stops;
+    return s;
+  }
+  JointSpec with_friction(const JointFriction& f) const {
+    JointSpec s = *this;
+    s.friction = f;
+    return s;
+  }
+  /// The coordinate counts from this value (rad or m) at assembly.
+  JointSpec starting_at(double coordinate) const {
+    JointSpec s = *this;
+    s.start = coordinate;
+    return s;
+  }
+};
+
+/// A joint of any kind at a global point, with a global axis that both bodies share at assembly.
+inline JointSpec joint(JointKind kind, std::string name, BodyId a, BodyId b, const Vec3& at,
+                       const Vec3& axis = Vec3::UnitZ()) {
+  return {
+      .name = std::move(name), .kind = kind, .a = a, .b = b, .at_a = at, .at_b = at, .axis_a = axis, .axis_b = axis};
+}
+/// A joint of any kind between two connection points, which have to meet.
+inline JointSpec joint(JointKind kind, std::string name, ConnectionId a, ConnectionId b,
+                       const Vec3& axis = Vec3::UnitZ()) {
+  return {.name = std::move(name), .kind = kind, .axis_a = axis, .axis_b = axis, .connection_a = a, .connection_b = b};
+}
+
+inline JointSpec fixed(std::string name, BodyId a, BodyId b, const Vec3& at) {
+  return joint(JointKind::fixed, std::move(name), a, b, at);
+}
+inline JointSpec spherical(std::string name, BodyId a, BodyId b, const Vec3& at) {
+  return joint(JointKind::spherical, std::move(name), a, b, at);
+}
+inline JointSpec revolute(std::string name, BodyId a, BodyId b, const Vec3& at, const Vec3& axis) {
+  return joint(JointKind::revolute, std::move(name), a, b, at, axis);
+}
+inline JointSpec cylindrical(std::string name, BodyId a, BodyId b, const Vec3& at, const Vec3& axis) {
+  return joint(JointKind::cylindrical, std::move(name), a, b, at, axis);
+}
+inline JointSpec prismatic(std::string name, BodyId a, BodyId b, const Vec3& at, const Vec3& axis) {
+  return joint(JointKind::prismatic, std::move(name), a, b, at, axis);
+}
+inline JointSpec planar(std::string name, BodyId a, BodyId b, const Vec3& at, const Vec3& normal) {
+  return joint(JointKind::planar, std::move(name), a, b, at, normal);
+}
+/// Shaft a runs along axis_a and shaft b along axis_b, both pointing the way the torque goes.
+inline JointSpec universal(std::string name, BodyId a, BodyId b, const Vec3& at, const Vec3& axis_a,
+                           const Vec3& axis_b) {
+  JointSpec s = joint(JointKind::universal, std::move(name), a, b, at, axis_a);
+  s.axis_b = axis_b;
+  return s;
+}
+inline JointSpec constant_velocity(std::string name, BodyId a, BodyId b, const Vec3& at, const Vec3& axis_a,
+                                   const Vec3& axis_b) {
+  JointSpec s = universal(std::move(name), a, b, at, axis_a, axis_b);
+  s.kind = JointKind::constant_velocity;
+  return s;
+}
+/// A point of b stays on a line that is fixed to a.
+inline JointSpec point_on_line(std::string name, BodyId a, BodyId b, const Vec3& at, const Vec3& axis) {
+  return joint(JointKind::point_on_line, std::move(name), a, b, at, axis);
+}
+/// A point of b stays on a plane that is fixed to a.
+inline JointSpec point_on_plane(std::string name, BodyId a, BodyId b, const Vec3& at, const Vec3& normal) {
+  return joint(JointKind::point_on_plane, std::move(name), a, b, at, normal);
+}
+/// A massless rod between a point of a and a point of b.
+inline JointSpec distance(std::string name, BodyId a, const Vec3& at_a, BodyId b, const Vec3& at_b) {
+  JointSpec s = joint(JointKind::distance, std::move(name), a, b, at_a);
+  s.at_b = at_b;
+  return s;
+}
+/// Springs (N/m, N m/rad) and dampers (N s/m, N m s/rad) along and about the x, y, z axes of a frame with z along axis.
+inline JointSpec bushing(std::string name, BodyId a, BodyId b, const Vec3& at, const Vec3& axis, const Vec3& stiffness,
+                         const Vec3& damping, const Vec3& rotational_stiffness, const Vec3& rotational_damping) {
+  JointSpec s = joint(JointKind::bushing, std::move(name), a, b, at, axis);
+  s.bushing_stiffness = stiffness;
+  s.bushing_damping = damping;
+  s.bushing_rotational_stiffness = rotational_stiffness;
+  s.bushing_rotational_damping = rotational_damping;
+  return s;
+}
+/// Holds nothing; measures the rotation about and the displacement along an axis.
+inline JointSpec free_joint(std::string name, BodyId a, BodyId b, const Vec3& at, const Vec3& axis) {
+  return joint(JointKind::free, std::move(name), a, b, at, axis);
+}
+
+}  // namespace dem::mbd

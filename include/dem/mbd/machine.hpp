@@ -1,0 +1,164 @@
+#pragma once
+
+#include <dem/mbd/machine_phases.hpp>
+
+#include <cmath>
+#include <utility>
+#include <vector>
+
+namespace dem::mbd {
+
+/// A machine: an Assembly that moves, with the integrator of the grains. With grains, the world calls the phases of a
+/// step (MachinePhases); without, `step` and `run` are all it takes.
+///
+///     Machine<integrator::PredictorCorrector> m;
+///     const BodyId rod = m.add_body(box_body("rod", {1, 0.1, 0.1}, 100).at({0.5, 0, 0}));
+///     m.add_joint(revolute("hinge", m.ground(), rod, {0, 0, 0}, {0, 1, 0}));
+///     m.run(10.0, 1e-4);
+template <integrator::Integrator I>
+class Machine : public MachinePhases<I> {
+  using Base = MachinePhases<I>;
+  using Base::bad_, Base::contacts_, Base::design_dt_, Base::earlier_contacts_, Base::memory_, Base::parts_,
+      Base::time_;
+
+ public:
+  using Base::add_forces, Base::advance, Base::before_forces, Base::clear_forces, Base::design_for, Base::gravity,
+      Base::initialise, Base::prescribe, Base::report, Base::stage_time;
+
+  // ------------------------------------------------------------------------------------------- without any world
+
+  /// One step of dt (s).
+  MachineReport step(double dt) {
+    prepare(dt);
+    raw_step(dt);
+    return report();
+  }
+
+  /// Steps of dt (s) for a duration (s; the number of steps is rounded). Stops at the first body that blows up.
+  MachineReport run(double duration, double dt) {
+    return run(duration, dt, [] {});
+  }
+  /// The same, calling `after_step()` after each step, e.g. to record.
+  template <class F>
+  MachineReport run(double duration, double dt, F&& after_step) {
+    prepare(dt);
+    const long steps = std::lround(duration / dt);
+    for (long s = 0; s < steps && !bad_.valid(); ++s) {
+      raw_step(dt);
+      after_step();
+    }
+    return report();
+  }
+
+  // ------------------------------------------------------------------------------- several steps within the world's
+
+  /// Remembers the grains' forces that the bodies carry now, at the world's state of this stage.
+  void hold_contacts(int stage) {
+    if (stage == 0) std::swap(contacts_, earlier_contacts_);
+    std::vector<Wrench>& now = stage == 0 ? contacts_ : corrected_contacts_;
+    now.resize(parts_.bodies.size());
+    for (std::size_t i = 0; i < now.size(); ++i) now[i] = {parts_.bodies[i].force, parts_.bodies[i].torque};
+  }
+
+  /// Takes `substeps` machine steps in place of add_forces, advance and prescribe, for machines that are stiffer than
+  /// the grains. The grains' forces (hold_contacts) run linearly in time: in the first stage on from their values at
+  /// the start of this and of the last step, in the second between the start and the predicted end of the step. In a
+  /// world's step:
+  ///
+  ///     clear_forces(); (grains) hold_contacts(stage); advance_substeps(stage, dt, gravity);
+  ///
+  /// and where the integrator predicts, before the grains' forces: advance_substeps(...); clear_forces(); (grains)
+  /// hold_contacts(stage). before_forces, add_forces, advance and prescribe are then not called.
+  void advance_substeps(int stage, double dt, const Vec3& g) {
+    gravity = g;
+    const int n = this->checked_substeps();
+    const double h = dt / n;
+    const bool trial = stage < I::stages - 1;  // done again in the next stage, from the same start
+    if constexpr (I::stages > 1) {
+      stage == 0 ? save() : restore();
+      if (trial) std::swap(parts_.sensors, no_sensors_);
+    }
+    const std::vector<Wrench>& from = stage == 0 ? earlier_contacts_ : contacts_;
+    const std::vector<Wrench>& to = stage == 0 ? contacts_ : corrected_contacts_;
+    const double phase = stage == 0 ? 1.0 : 0.0;
+    for (int s = 0; s < n; ++s) {
+      const double start = time_;
+      for (int k = 0; k < I::stages; ++k) {
+        before_forces(k, h);
+        const double x = phase + (stage_time(s * h, h, k)) / dt;
+        for (std::size_t i = 0; i < parts_.bodies.size(); ++i) {
+          const Wrench w = (1.0 - x) * from[i] + x * to[i];
+          parts_.bodies[i].force = w.force;
+          parts_.bodies[i].torque = w.torque;
+        }
+        add_forces(stage_time(start, h, k), h, k, k == I::stages - 1);
+        advance(k, h, g);
+        prescribe(start + h, h);
+      }
+    }
+    if constexpr (I::stages > 1) {
+      if (trial) std::swap(parts_.sensors, no_sensors_);
+    }
+  }
+
+ private:
+  void prepare(double dt) {
+    require_positive(dt, "time step", "s");
+    if (!this->is_designed_ && (dt != design_dt_ || this->changed_)) {
+      derive_stiffness(parts_, dt);
+      design_dt_ = dt;
+    }
+    if (!this->is_initialised()) {
+      if (this->is_designed_) design_for(design_dt_);
+      clear_forces();
+      initialise(time_, gravity);
+    }
+  }
+
+  void raw_step(double dt) {
+    const double start = time_;
+    for (int stage = 0; stage < I::stages; ++stage) {
+      before_forces(stage, dt);
+      clear_forces();
+      add_forces(stage_time(start, dt, stage), dt, stage, stage == I::stages - 1);
+      advance(stage, dt, gravity);
+      prescribe(start + dt, dt);
+    }
+  }
+
+  /// Keeps the state at the start of a step / goes back to it.
+  void save() {
+    saved_.time = time_;
+    saved_.memory = memory_;
+    saved_.motions.resize(parts_.bodies.size());
+    for (std::size_t i = 0; i < parts_.bodies.size(); ++i) saved_.motions[i] = parts_.bodies[i].motion;
+    saved_.turns.resize(parts_.joints.size());
+    for (std::size_t i = 0; i < parts_.joints.size(); ++i) saved_.turns[i] = parts_.joints[i].angle_estimate;
+    saved_.extras = parts_.extras;
+    saved_.drives.resize(parts_.motions.size());
+    for (std::size_t i = 0; i < parts_.motions.size(); ++i) saved_.drives[i] = parts_.motions[i].drive;
+  }
+  void restore() {
+    time_ = saved_.time;
+    memory_ = saved_.memory;
+    for (std::size_t i = 0; i < parts_.bodies.size(); ++i) parts_.bodies[i].motion = saved_.motions[i];
+    for (std::size_t i = 0; i < parts_.joints.size(); ++i) parts_.joints[i].angle_estimate = saved_.turns[i];
+    parts_.extras = saved_.extras;
+    for (std::size_t i = 0; i < parts_.motions.size(); ++i) parts_.motions[i].drive = saved_.drives[i];
+  }
+
+  struct Saved {
+    double time = 0.0;
+    std::vector<typename Base::Memory> memory;
+    std::vector<integrator::Motion<double>> motions;
+    std::vector<double> turns;
+    std::vector<JointExtras> extras;
+    std::vector<PrescribedMotion::Drive> drives;
+  };
+
+  std::vector<Wrench> corrected_contacts_;
+  std::vector<Sensor> no_sensors_;
+  Saved saved_;
+};
+
+}  // namespace dem::mbd

@@ -1,0 +1,213 @@
+#pragma once
+
+#include <dem/mbd/assembly.hpp>
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+namespace dem::mbd {
+
+/// What became of a step or a run.
+struct MachineReport {
+  bool ok = true;
+  double time = 0.0;  ///< s, reached
+  BodyId body = {};   ///< the body that went wrong
+  std::string text;   ///< what happened and which setting to change; empty if all is well
+  explicit operator bool() const { return ok; }
+};
+
+/// The phases of a machine's step, one after the other as a world calls them. Machine adds what needs no world.
+template <integrator::Integrator I>
+class MachinePhases : public Assembly {
+ public:
+  Vec3 gravity = {0.0, 0.0, -9.81};  ///< m/s^2; the world hands its own to initialise and advance
+  double largest_speed = 1e5;        ///< m/s or rad/s; a body that is faster is reported as blown up
+  int substeps = 1;                  ///< machine steps within one step dt of the world, see advance_substeps
+
+  double time() const { return time_; }  ///< s
+
+  /// Derives what was left open (stiffness, damping) for a step of dt (s). Call it before initialise. Without it, step
+  /// and run derive for the dt that they are given; after it, they keep what was derived, also for a smaller dt.
+  void design_for(double dt) {
+    derive_stiffness(parts_, dt / checked_substeps());
+    design_dt_ = dt;
+    is_designed_ = true;
+  }
+
+  /// The largest stable time step of the world, all substeps of the machine together, and the part that limits it.
+  StableTimeStep stable_time_step() const {
+    StableTimeStep limit = stable_time_step_of<I>(parts_);
+    limit.dt *= checked_substeps();
+    return limit;
+  }
+
+  /// False before initialise, and after a body, a joint or a coupling was added since: design_for and initialise are
+  /// due.
+  bool is_initialised() const { return initialised_ && !changed_; }
+
+  /// Starts at `time`: the integrator's memory is filled from the forces at this state, with what the caller has
+  /// already put on the bodies (the grains). Throws Error if a stiffness has to be derived and no time step is known.
+  void initialise(double time, const Vec3& g) {
+    if (design_dt_ <= 0.0) {
+      const std::string open = first_underived(parts_);
+      if (!open.empty()) {
+        fail(
+            "the stiffness of {} is to be derived, but the machine does not know its time step: call "
+            "machine.design_for(dt) before the first step, or give stiffness and damping",
+            open);
+      }
+    }
+    time_ = time;
+    gravity = g;
+    const std::size_t n = parts_.bodies.size();
+    memory_.assign(n, {});
+    inverse_.resize(n);
+    parts_.spin.assign(n, {0, 0, 0});
+    parts_.outside.assign(n, {});
+    for (std::size_t i = 0; i < n; ++i) {
+      const Body& b = parts_.bodies[i];
+      check_body(b);
+      inverse_[i] = {1.0 / b.mass, from_eigen(b.inertia), from_eigen(Vec3(b.inertia.cwiseInverse()))};
+    }
+    for (PrescribedMotion& p : parts_.motions) {
+      apply_motion(p, parts_.joints, parts_.bodies, time, 0.0, from_eigen(g));
+    }
+    mbd::add_forces(parts_, time, 0.0, false);
+    contacts_ = earlier_contacts_ = parts_.outside;
+    for (std::size_t i = 0; i < n; ++i) I::template initialise<double>(memory_[i], acceleration(i, from_eigen(g)));
+    assembled_limit_ = stable_time_step();
+    initialised_ = true;
+    changed_ = false;
+  }
+
+  // --------------------------------------------------------------------------------- the phases of a world's step
+
+  /// Moves the bodies first, if the integrator predicts.
+  void before_forces(int stage, double dt) {
+    if constexpr (I::predicts_before_forces) {
+      for (std::size_t i = 0; i < parts_.bodies.size(); ++i) {
+        if (!parts_.bodies[i].fixed) predict(i, stage, dt);
+      }
+      prescribe(time_ + dt, 0.0);  // forces see driven bodies where they are at the end of the step
+    }
+  }
+
+  void clear_forces() { mbd::clear_forces(parts_); }
+
+  /// Adds the machine's own forces; `time` is that of the state they act at (see stage_time).
+  void add_forces(double time, double dt, [[maybe_unused]] int stage, bool is_last_stage) {
+    mbd::add_forces(parts_, time, dt, is_last_stage);
+  }
+
+  /// Lets the forces move the bodies.
+  void advance(int stage, double dt, const Vec3& g) {
+    const Vector3<double> g3 = from_eigen(g);
+    const bool last = stage == I::stages - 1;
+    const bool tidy = last && ++steps_ % 256 == 0;
+    for (std::size_t i = 0; i < parts_.bodies.size(); ++i) {
+      Body& b = parts_.bodies[i];
+      if (b.fixed) continue;
+      move(i, stage, dt, g3);
+      if (tidy) b.motion.rotation = orthonormalised(b.motion.rotation);
+      if (last) watch(i);
+    }
+    if (tidy) settle_turns();
+    gravity = g;
+    if (last) time_ += dt;
+  }
+
+  /// Sets prescribed motions (eq. 19) for the end of the step.
+  void prescribe(double time_at_end_of_step, double dt) {
+    const Vector3<double> g = from_eigen(gravity);
+    for (PrescribedMotion& p : parts_.motions) {
+      apply_motion(p, parts_.joints, parts_.bodies, time_at_end_of_step, dt, g);
+    }
+  }
+
+  /// The time of the state at which a stage's forces are evaluated, in a step of dt from `time`.
+  static double stage_time(double time, double dt, int stage) {
+    return I::predicts_before_forces || stage > 0 ? time + dt : time;
+  }
+
+  /// All is well, or which body blew up, when, and what to change.
+  MachineReport report() const {
+    if (!bad_.valid()) return {true, time_, {}, {}};
+    const StableTimeStep& limit = assembled_limit_;
+    std::string text =
+        fmt::format("body '{}' blew up at t = {:g} s: its speed is not finite or above largest_speed = {:g}. ",
+                    parts_.bodies[bad_.index()].name, bad_time_, largest_speed);
+    if (limit.limited_by.empty()) {
+      text += "Check the applied forces and set points, or take a smaller time step.";
+    } else {
+      text += fmt::format(
+          "The stable time step at assembly is {:g} s, limited by {}: take a smaller time step, or a "
+          "lower stiffness there.",
+          limit.dt, limit.limited_by);
+    }
+    return {false, bad_time_, bad_, text};
+  }
+
+ protected:
+  using Memory = typename I::template Memory<double>;
+
+  int checked_substeps() const {
+    if (substeps < 1) fail("the machine's substeps are {}, but must be at least 1", substeps);
+    return substeps;
+  }
+
+  std::vector<Memory> memory_;
+  double time_ = 0.0, design_dt_ = 0.0;
+  bool initialised_ = false, is_designed_ = false;
+  BodyId bad_;
+  StableTimeStep assembled_limit_;
+  std::vector<Wrench> contacts_, earlier_contacts_;  ///< the grains' forces at the start of this step and of the last
+
+ private:
+  struct Inverse {
+    double mass;
+    Vector3<double> inertia, inverse_inertia;
+  };
+
+  integrator::Acceleration<double> acceleration(std::size_t i, const Vector3<double>& g, double lead = 0.0) const {
+    const Body& b = parts_.bodies[i];
+    const Inverse& inv = inverse_[i];
+    return {g + inv.mass * b.force,
+            integrator::angular_acceleration(transpose_times(b.motion.rotation, b.torque), b.motion.angular_velocity,
+                                             inv.inertia, inv.inverse_inertia, lead)};
+  }
+
+  // Flattened, because the vector operators in them have to be inlined however large the program is.
+  [[gnu::flatten]] void predict(std::size_t i, int stage, double dt) {
+    I::template before_forces<double>(stage, dt, parts_.bodies[i].motion, memory_[i]);
+  }
+  [[gnu::flatten]] void move(std::size_t i, int stage, double dt, const Vector3<double>& g) {
+    I::template after_forces<double>(stage, dt, parts_.bodies[i].motion, memory_[i],
+                                     acceleration(i, g, integrator::gyroscopic_lead<I>(dt)));
+  }
+
+  void watch(std::size_t i) {
+    const auto& m = parts_.bodies[i].motion;
+    const double speed2 = max(dot(m.velocity, m.velocity), dot(m.angular_velocity, m.angular_velocity));
+    const double sum = speed2 + dot(m.position, m.position);
+    if (!(speed2 < largest_speed * largest_speed && sum < 1e300) && !bad_.valid()) [[unlikely]] {
+      bad_ = BodyId(i);
+      bad_time_ = time_;
+    }
+  }
+
+  /// Turn counts are sums of speed times dt; now and then they are set to the exact angles.
+  void settle_turns() {
+    for (Joint& j : parts_.joints) {
+      if (j.turns) {
+        j.angle_estimate = rotation_of(j, parts_.bodies[j.a], parts_.bodies[j.b]).value - j.angle_offset;
+      }
+    }
+  }
+
+  std::vector<Inverse> inverse_;
+  double bad_time_ = 0.0;
+  long steps_ = 0;
+};
+
+}  // namespace dem::mbd

@@ -1,0 +1,70 @@
+#pragma once
+
+#include <dem/mbd/actuator.hpp>
+#include <dem/mbd/body_builder.hpp>
+#include <dem/mbd/coupling.hpp>
+#include <dem/mbd/joint_extras.hpp>
+#include <dem/mbd/load.hpp>
+#include <dem/mbd/prescribed.hpp>
+#include <dem/mbd/sensor.hpp>
+
+#include <string>
+#include <vector>
+
+namespace dem::mbd {
+
+/// A named point of a body to which joints are attached (thesis section 2.3).
+struct Connection {
+  std::string name;
+  BodyId body;
+  Vec3 point = Vec3::Zero();  ///< m, body frame
+};
+
+/// All that a machine is made of, as plain arrays; an Id is an index into its array.
+struct Parts {
+  std::vector<Body> bodies;
+  std::vector<BuiltBody> built;  ///< each body as it was added, with its reference frame
+  std::vector<Connection> connections;
+  std::vector<Joint> joints;           ///< what a step needs
+  std::vector<JointSpec> joint_specs;  ///< as given: what was left to derive is still empty
+  std::vector<JointExtras> extras;     ///< stops and friction, of the joints that have them
+  std::vector<Coupling> couplings;
+  std::vector<Actuator> actuators;
+  std::vector<Spring> springs;
+  std::vector<Load> loads;
+  std::vector<PrescribedMotion> motions;
+  std::vector<Sensor> sensors;
+
+  // Scratch of a force evaluation, one entry per body.
+  std::vector<Vector3<double>> spin;  ///< rad/s, global
+  std::vector<Wrench> outside;        ///< contact forces that the world added, about the centre of mass
+};
+
+/// The body of an id, or an Error that names who asked for it.
+inline const Body& known_body(const Parts& parts, BodyId id, const std::string& asker) {
+  if (!id.valid()) fail("{} names a body that was never added; use the BodyId that add_body returned", asker);
+  if (id.index() >= parts.bodies.size()) {
+    fail("{} names body {}, but the machine has {} (0 to {}); use the BodyId that add_body returned", asker, id.index(),
+         parts.bodies.size(), static_cast<long>(parts.bodies.size()) - 1);
+  }
+  return parts.bodies[id.index()];
+}
+
+inline const Joint& known_joint(const Parts& parts, JointId id, const std::string& asker) {
+  if (!id.valid() || id.index() >= parts.joints.size()) {
+    fail("{} names a joint that the machine does not have (it has {}); use the JointId that add_joint returned", asker,
+         parts.joints.size());
+  }
+  return parts.joints[id.index()];
+}
+
+inline Vec3 unit(const Vec3& v, const std::string& asker) {
+  const double length = v.norm();
+  if (!(length > 1e-12) || !std::isfinite(length)) {
+    fail("the direction of {} is ({:g}, {:g}, {:g}), but needs a length; give any vector along it", asker, v.x(), v.y(),
+         v.z());
+  }
+  return v / length;
+}
+
+}  // namespace dem::mbd

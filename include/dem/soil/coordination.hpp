@@ -1,0 +1,68 @@
+#pragma once
+
+#include <dem/broadphase/uniform_grid.hpp>
+#include <dem/core/aligned.hpp>
+#include <dem/core/ids.hpp>
+#include <dem/math/vector.hpp>
+
+#include <cstddef>
+#include <cstdint>
+#include <numeric>
+#include <vector>
+
+namespace dem::soil {
+
+/// How each grain (by id) is held by the others.
+struct Coordination {
+  std::vector<std::int32_t> neighbours;  ///< grains that touch it
+  std::vector<std::int32_t> contacts;    ///< points at which they do
+
+  /// Mean number of grains that touch a grain.
+  double mean() const {
+    const double sum = std::accumulate(neighbours.begin(), neighbours.end(), 0.0);
+    return neighbours.empty() ? 0.0 : sum / static_cast<double>(neighbours.size());
+  }
+};
+
+/// Finds who touches whom at the grains' present places. A search of its own, for now and then.
+template <class World>
+Coordination coordination(const World& world) {
+  using Shape = typename World::Shape;
+  const std::size_t n = world.particle_count();
+  Coordination result{std::vector<std::int32_t>(n, 0), std::vector<std::int32_t>(n, 0)};
+  std::vector<double> x(n), y(n), z(n);
+  AlignedVector<double> pose(n * Shape::pose_size + 1);
+  double largest = 0.0;
+  const auto shape_of = [&](std::size_t i) -> const Shape& {
+    return world.species(world.species_of(ParticleId(i))).shape;
+  };
+  for (std::size_t i = 0; i < n; ++i) {
+    const Vec3 p = world.position(ParticleId(i));
+    x[i] = p.x();
+    y[i] = p.y();
+    z[i] = p.z();
+    largest = std::max(largest, shape_of(i).bounding_radius());
+    if constexpr (Shape::pose_size > 0) {
+      shape_of(i).orient(from_eigen(world.rotation(ParticleId(i))), &pose[i * Shape::pose_size]);
+    }
+  }
+  if (n == 0) return result;
+  broadphase::UniformGrid grid;
+  grid.build(broadphase::Positions{x.data(), y.data(), z.data(), n}, 2.0 * largest);
+  for (std::size_t i = 0; i < n; ++i) {
+    grid.finder().for_each_candidate(i, [&](std::size_t j) {
+      std::int32_t points = 0;
+      Shape::collide(shape_of(i), &pose[i * Shape::pose_size], shape_of(j), &pose[j * Shape::pose_size],
+                     Vector3<double>{x[j] - x[i], y[j] - y[i], z[j] - z[i]},
+                     [&](std::uint32_t, const auto&) { ++points; });
+      if (points == 0) return;
+      for (const std::size_t k : {i, j}) {
+        ++result.neighbours[k];
+        result.contacts[k] += points;
+      }
+    });
+  }
+  return result;
+}
+
+}  // namespace dem::soil

@@ -1,0 +1,54 @@
+#pragma once
+
+#include <dem/core/error.hpp>
+#include <dem/core/ids.hpp>
+#include <dem/math/vector.hpp>
+
+#include <algorithm>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace dem::soil {
+
+/// Where a grain is.
+struct Placement {
+  Vec3 position = Vec3::Zero();      ///< m, centre of mass
+  Mat3 rotation = Mat3::Identity();  ///< grain frame -> global
+};
+
+/// Grains of one size at rest in a box: what a rig starts from. The floor of the box is z = 0, its middle is x = y = 0.
+struct Packing {
+  double half_edge = 0.0;  ///< m, of the cubical grain (shape::cube8)
+  double length_x = 0.0;   ///< m, inner size of the box
+  double length_y = 0.0;   ///< m
+  std::string note = {};   ///< one line: how it was made
+  std::vector<Placement> grains = {};
+};
+
+/// Volume (m^3) of a grain: that of the solid cube of edge 2 h, which is also what gives it its mass.
+inline double cube_volume(double half_edge) { return 8.0 * half_edge * half_edge * half_edge; }
+
+/// The height (m) below which the given share of the grains' centres lie. Throws Error without grains.
+inline double height_percentile(std::span<const Placement> grains, double share) {
+  require_within(share, 0.0, 1.0, "share of the grains");
+  if (grains.empty()) fail("no grains, so there is no height to find; add some");
+  std::vector<double> z;
+  z.reserve(grains.size());
+  for (const Placement& g : grains) z.push_back(g.position.z());
+  const auto k = static_cast<std::ptrdiff_t>(share * static_cast<double>(z.size() - 1) + 0.5);
+  std::nth_element(z.begin(), z.begin() + k, z.end());
+  return z[static_cast<std::size_t>(k)];
+}
+
+/// Where the grains of a world are, in the order of their ids.
+template <class World>
+std::vector<Placement> placements(const World& world) {
+  std::vector<Placement> grains(world.particle_count());
+  for (std::size_t i = 0; i < grains.size(); ++i) {
+    grains[i] = {world.position(ParticleId(i)), world.rotation(ParticleId(i))};
+  }
+  return grains;
+}
+
+}  // namespace dem::soil

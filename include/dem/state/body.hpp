@@ -1,0 +1,59 @@
+#pragma once
+
+#include <dem/core/error.hpp>
+#include <dem/core/ids.hpp>
+#include <dem/integrator/motion.hpp>
+
+#include <string>
+
+namespace dem {
+
+/// A rigid body of a machine (thesis section 2.1). The body frame sits in the centre of mass, its axes are the
+/// principal axes of inertia. Forces and torques are gathered in the global frame, torques about the centre of mass.
+struct Body {
+  std::string name;
+  double mass = 1.0;            ///< kg
+  Vec3 inertia = Vec3::Ones();  ///< kg m^2, principal moments
+  bool fixed = false;           ///< never moves by itself; prescribed motion may still move it
+
+  integrator::Motion<double> motion = {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}, Matrix3<double>::identity()};
+  Vector3<double> force = {0, 0, 0};   ///< N, sum of this stage's forces, gravity not included
+  Vector3<double> torque = {0, 0, 0};  ///< N m, about the centre of mass, global axes
+
+  Vec3 position() const { return to_eigen(motion.position); }
+  Vec3 velocity() const { return to_eigen(motion.velocity); }
+  Mat3 rotation() const { return to_eigen(motion.rotation); }
+  /// rad/s in global axes.
+  Vec3 angular_velocity() const { return to_eigen(motion.rotation * motion.angular_velocity); }
+
+  /// Global position of a point given in the body frame (eq. 20).
+  Vec3 point(const Vec3& local) const { return position() + rotation() * local; }
+  /// Global velocity of a point given in the body frame (eq. 20).
+  Vec3 point_velocity(const Vec3& local) const { return velocity() + angular_velocity().cross(rotation() * local); }
+
+  /// Adds a force (N, global axes) that acts at a global point (eqs. 22-24).
+  void apply(const Vec3& f, const Vec3& at) {
+    force += from_eigen(f);
+    torque += from_eigen((at - position()).cross(f));
+  }
+  void apply_torque(const Vec3& t) { torque += from_eigen(t); }
+};
+
+/// Throws Error if the body cannot be integrated.
+inline void check_body(const Body& b) {
+  if (b.fixed) return;
+  const auto what = [&](const char* field) { return fmt::format("{} of body '{}'", field, b.name); };
+  require_positive(b.mass, what("mass").c_str(), "kg (or set fixed = true)");
+  for (int k = 0; k < 3; ++k) {
+    require_positive(b.inertia[k], what("principal inertia").c_str(), "kg m^2 (or set fixed = true)");
+  }
+  const double largest = b.inertia.maxCoeff();
+  if (largest > (b.inertia.sum() - largest) * (1.0 + 1e-9)) {
+    fail(
+        "principal inertias {:g}, {:g}, {:g} kg m^2 of body '{}' belong to no mass distribution: the largest must not "
+        "exceed the sum of the other two; check the units and the order",
+        b.inertia.x(), b.inertia.y(), b.inertia.z(), b.name);
+  }
+}
+
+}  // namespace dem

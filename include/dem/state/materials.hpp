@@ -1,0 +1,107 @@
+#pragma once
+
+#include <dem/contact/normal_law.hpp>
+#include <dem/core/error.hpp>
+#include <dem/core/ids.hpp>
+#include <dem/friction/friction_law.hpp>
+
+#include <algorithm>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace dem {
+
+/// The constants of a contact between two materials.
+template <class Model>
+struct ContactParameters {
+  typename Model::Normal::template Parameters<double> normal;
+  typename Model::Friction::template Parameters<double> friction;
+};
+
+/// Materials by name, and a table with the contact constants of each pair. A pair that was not set takes the default.
+template <class Model>
+class Materials {
+ public:
+  using Parameters = ContactParameters<Model>;
+
+  /// The material of that name; made when it is new.
+  MaterialId id(std::string_view name) {
+    for (std::size_t k = 0; k < names_.size(); ++k) {
+      if (names_[k] == name) return MaterialId(k);
+    }
+    names_.emplace_back(name);
+    entry_.assign(names_.size() * names_.size(), default_entry);
+    for (std::size_t k = 0; k < pairs_.size(); ++k) {
+      entry(pairs_[k].a, pairs_[k].b) = static_cast<std::uint32_t>(k + 1);
+      entry(pairs_[k].b, pairs_[k].a) = static_cast<std::uint32_t>(k + 1);
+    }
+    return MaterialId(names_.size() - 1);
+  }
+
+  /// Constants of every pair that has none of its own. Throws Error if one makes no sense.
+  void set_default(const Parameters& p) {
+    check(p);
+    table_[default_entry] = p;
+    has_default_ = true;
+  }
+  /// Constants of the pair a, b (and b, a). Throws Error if one makes no sense.
+  void set(std::string_view a, std::string_view b, const Parameters& p) {
+    check(p);
+    const MaterialId ia = id(a), ib = id(b);
+    if (const std::uint32_t known = entry(ia, ib); known != default_entry) {
+      table_[known] = p;
+      return;
+    }
+    pairs_.push_back({ia, ib});
+    table_.push_back(p);
+    entry(ia, ib) = entry(ib, ia) = static_cast<std::uint32_t>(table_.size() - 1);
+  }
+
+  /// Row of the table for a pair.
+  std::uint32_t row(MaterialId a, MaterialId b) const { return entry_[a.index() * names_.size() + b.index()]; }
+  const std::vector<Parameters>& table() const { return table_; }
+  const std::string& name(MaterialId m) const { return names_.at(m.index()); }
+  std::size_t count() const { return names_.size(); }
+
+  /// Notes that grains, not only machine parts, are made of this material.
+  void mark_as_grain(MaterialId m) {
+    grain_.resize(std::max(grain_.size(), names_.size()), false);
+    grain_[m.index()] = true;
+  }
+  /// Throws Error if two materials that may meet (at least one of them of grains) have no constants.
+  void check_complete() const {
+    if (has_default_) return;
+    for (std::size_t a = 0; a < names_.size(); ++a) {
+      for (std::size_t b = 0; b <= a; ++b) {
+        if (!(is_grain(a) || is_grain(b)) || row(MaterialId(a), MaterialId(b)) != default_entry) continue;
+        fail(
+            "no contact constants for the materials '{}' and '{}'; call set_contact(\"{}\", \"{}\", ...), or "
+            "set_contact(...) for all pairs",
+            names_[b], names_[a], names_[b], names_[a]);
+      }
+    }
+  }
+
+ private:
+  struct Pair {
+    MaterialId a, b;
+  };
+  static constexpr std::uint32_t default_entry = 0;
+
+  bool is_grain(std::size_t m) const { return m < grain_.size() && grain_[m]; }
+  static void check(const Parameters& p) {
+    Model::Normal::check(p.normal);
+    Model::Friction::check(p.friction);
+  }
+  std::uint32_t& entry(MaterialId a, MaterialId b) { return entry_[a.index() * names_.size() + b.index()]; }
+
+  std::vector<std::string> names_;
+  std::vector<Parameters> table_ = {Parameters{}};
+  std::vector<Pair> pairs_;  // pairs_[k] has row k + 1
+  std::vector<std::uint32_t> entry_;
+  std::vector<bool> grain_;
+  bool has_default_ = false;
+};
+
+}  // namespace dem

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <dem/core/ids.hpp>
+#include <dem/math/vector.hpp>
+
+#include <vector>
+
+namespace dem {
+
+/// Grains of one shape, size, density and material.
+template <class Shape>
+struct Species {
+  Shape shape;
+  MaterialId material;
+  double density;       ///< kg/m^3
+  double mass;          ///< kg
+  double inverse_mass;  ///< 1/kg
+  Vec3 inertia;         ///< kg m^2, principal
+};
+
+/// The numbers of a species that the integration loop reads.
+struct SpeciesInertia {
+  double inverse_mass;
+  double mobility;  ///< 1, or 0 for grains that never move
+  double inertia[3], inverse_inertia[3];
+};
+
+}  // namespace dem

@@ -1,0 +1,52 @@
+#pragma once
+
+#include <dem/math/vector.hpp>
+
+#include <concepts>
+#include <cstdint>
+#include <variant>
+
+namespace dem::surface {
+
+/// Axis-aligned box.
+struct Bounds {
+  Vec3 low, high;  ///< m
+};
+
+struct AnySink {
+  void operator()(std::uint32_t, const Vector3<double>&, double) const {}
+};
+
+/// A surface is what a machine part shows to the grains, a solid in its own frame. It has
+///   near(point, radius)          false only if a sphere there cannot touch (cheap, may say true too often); for T =
+///   double
+///                                and for packs, where it gives a mask;
+///   touch(point, radius, sink)   calls sink(feature, normal, gap) once per contact of the sphere, features ascending:
+///                                unit normal from the sphere into the surface, distance along it from the sphere's
+///                                centre to the surface (negative inside);
+///   bounds()                     in its own frame; infinite where it has no end.
+template <class S>
+concept Surface = requires(const S& s, const Vector3<double>& point, double radius, const Vector3<Pack>& points) {
+  { s.near(point, radius) } -> std::same_as<bool>;
+  { s.near(points, Pack(radius)) } -> std::same_as<PackMask>;
+  s.touch(point, radius, AnySink{});
+  { s.bounds() } -> std::same_as<Bounds>;
+};
+
+template <class S>
+constexpr void check_surface() {
+  static_assert(
+      requires(const S& s) {
+        { s.bounds() } -> std::same_as<Bounds>;
+      },
+      "Surface: needs bounds() that returns surface::Bounds in the surface's own frame");
+  static_assert(
+      Surface<S>,
+      "Surface: needs near(point, radius), for doubles (bool) and packs (PackMask), and touch(point, radius, sink)");
+}
+
+/// The kinds of surface that a model's machine parts may have.
+template <Surface... Kinds>
+using Set = std::variant<Kinds...>;
+
+}  // namespace dem::surface

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <dem/broadphase/uniform_grid.hpp>
+#include <dem/contact/penalty.hpp>
+#include <dem/exec/openmp.hpp>
+#include <dem/friction/asperity_spring.hpp>
+#include <dem/integrator/predictor_corrector.hpp>
+#include <dem/shape/sphere.hpp>
+#include <dem/surface/box.hpp>
+#include <dem/surface/plane.hpp>
+
+namespace dem {
+
+/// The policies of a world. Derive from it and name those that differ:
+///   struct Sand : dem::Model { using Shape = dem::shape::SphereCluster<8>; };
+struct Model {
+  using Shape = shape::Sphere;
+  using Surfaces = surface::Set<surface::Plane, surface::Box>;
+  using Normal = contact::Penalty;
+  using Friction = friction::AsperitySpring;
+  using BroadPhase = broadphase::UniformGrid;
+  using Integrator = integrator::PredictorCorrector;
+  using Executor = exec::OpenMP;
+};
+
+template <class... Kinds>
+constexpr bool check_surfaces(const std::variant<Kinds...>*) {
+  (surface::check_surface<Kinds>(), ...);
+  return true;
+}
+
+/// Refuses a wrong policy in words, at compile time.
+template <class M>
+constexpr bool check_model() {
+  shape::check_shape<typename M::Shape>();
+  check_surfaces(static_cast<typename M::Surfaces*>(nullptr));
+  contact::check_normal_law<typename M::Normal>();
+  friction::check_friction_law<typename M::Friction>();
+  broadphase::check_broad_phase<typename M::BroadPhase>();
+  integrator::check_integrator<typename M::Integrator>();
+  exec::check_executor<typename M::Executor>();
+  return true;
+}
+
+}  // namespace dem

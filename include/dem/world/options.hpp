@@ -1,0 +1,47 @@
+#pragma once
+
+#include <dem/core/ids.hpp>
+#include <dem/math/vector.hpp>
+#include <dem/surface/surface.hpp>
+
+#include <optional>
+#include <string>
+
+namespace dem {
+
+/// Settings of a world. All have defaults that suit a first try.
+struct WorldOptions {
+  Vec3 gravity = {0.0, 0.0, -9.81};       ///< m/s^2
+  double time_step = 0.0;                 ///< s; 0: `time_step_safety` times the largest stable one
+  double time_step_safety = 0.5;          ///< in (0, 1]
+  bool allow_unstable_time_step = false;  ///< accept a time step above the stable one
+  double skin = 0.0;                      ///< m, reach of the neighbour list; 0: a tenth of the largest bounding radius
+  double overlap_limit = 0.5;  ///< overlap, in effective diameters 2 Ri Rj/(Ri + Rj), that is reported as a problem
+  std::optional<surface::Bounds> domain = {};  ///< a grain whose centre leaves it is reported as lost
+  int threads = 0;                             ///< 0: as many as the executor offers
+};
+
+/// A grain to be added.
+struct NewParticle {
+  SpeciesId species = {};
+  Vec3 position = Vec3::Zero();          ///< m
+  Vec3 velocity = Vec3::Zero();          ///< m/s
+  Mat3 rotation = Mat3::Identity();      ///< grain frame -> global
+  Vec3 angular_velocity = Vec3::Zero();  ///< rad/s, global axes
+};
+
+/// What a species is made of.
+struct SpeciesOptions {
+  std::string material = "grain";
+  double density = 2650.0;  ///< kg/m^3; the default is quartz
+};
+
+/// Where a surface sits on its body.
+struct SurfaceOptions {
+  std::string material = "wall";
+  std::string name = {};
+  Vec3 position = Vec3::Zero();      ///< m, in the body's frame
+  Mat3 rotation = Mat3::Identity();  ///< surface frame -> body frame
+};
+
+}  // namespace dem

@@ -1,0 +1,24 @@
+#pragma once
+
+#include <dem/core/ids.hpp>
+
+#include <cstdint>
+#include <string>
+
+namespace dem {
+
+/// How a step or a run ended. Converts to true if all is well; otherwise `text` says which grain or body, when, and
+/// which setting to change.
+struct StepReport {
+  enum class Problem { none, not_finite, lost, overlap, machine };
+
+  Problem problem = Problem::none;
+  double time = 0.0;       ///< s, at which it was found
+  std::uint64_t step = 0;  ///< steps done
+  ParticleId particle;     ///< the grain, if it is one
+  std::string text;
+
+  explicit operator bool() const { return problem == Problem::none; }
+};
+
+}  // namespace dem

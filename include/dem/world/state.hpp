@@ -1,0 +1,109 @@
+#pragma once
+
+#include <dem/mbd/machine.hpp>
+#include <dem/pipeline/neighbours.hpp>
+#include <dem/state/machine_surface.hpp>
+#include <dem/state/materials.hpp>
+#include <dem/world/model.hpp>
+#include <dem/world/options.hpp>
+#include <dem/world/stopwatch.hpp>
+
+namespace dem {
+
+/// Everything a world consists of. Only World and the functions of the step see it.
+template <class Model>
+struct WorldState {
+  using Shape = typename Model::Shape;
+  using Integrator = typename Model::Integrator;
+  using Surface = MachineSurface<typename Model::Surfaces>;
+
+  WorldOptions options;
+  double time = 0.0;
+  double time_step = 0.0;
+  std::uint64_t step = 0;
+
+  Materials<Model> materials;
+  std::vector<Species<Shape>> species;
+  std::vector<SpeciesInertia> inertia;  ///< of the species
+  double largest_radius = 0.0;          ///< m, bounding radius
+
+  Particles<Shape, Integrator> particles;
+  std::vector<Chunk<Model>> chunks;
+  typename Model::BroadPhase broad_phase;
+  std::vector<std::uint32_t> incoming_first;
+  std::vector<pipeline::Incoming> incoming;
+  bool list_valid = false;     ///< false after grains were added or moved by hand
+  std::uint64_t rebuilds = 0;  ///< neighbour lists made
+
+  mbd::Machine<Integrator> machine;
+  std::vector<Surface> surfaces;
+  typename Model::Executor executor;
+  Stopwatch stopwatch;
+
+  double skin() const { return options.skin > 0.0 ? options.skin : 0.1 * largest_radius; }
+};
+
+/// True when some grain moved more than half the skin since the neighbour list was made.
+template <class Model>
+bool neighbours_outdated(const WorldState<Model>& w) {
+  if (!w.list_valid) return w.particles.count > 0;
+  double moved2 = 0.0;
+  for (const auto& chunk : w.chunks) moved2 = std::max(moved2, chunk.moved2);
+  return 4.0 * moved2 > w.skin() * w.skin();
+}
+
+/// Sorts the grains in space, lists their neighbours, and carries the contacts' memories over.
+template <class Model>
+void rebuild_neighbours(WorldState<Model>& w) {
+  auto& p = w.particles;
+  std::vector<pipeline::Remembered<history_size<Model>>> pairs, surfaces;
+  pipeline::collect_memories<Model>(std::span<const Chunk<Model>>(w.chunks), p, pairs, surfaces);
+
+  const double reach = 2.0 * w.largest_radius + w.skin();
+  const auto positions = [&] {
+    return broadphase::Positions{p.position.x.data(), p.position.y.data(), p.position.z.data(), p.count};
+  };
+  w.broad_phase.build(positions(), reach);
+  if (const auto order = w.broad_phase.order(); !order.empty()) {
+    const std::vector<std::uint32_t> sorted(order.begin(), order.end());
+    p.permute(sorted);
+    w.broad_phase.build(positions(), reach);
+  }
+  p.listed_at = p.position;
+  p.pad();
+
+  w.chunks.resize(p.chunks());
+  w.executor.for_each(w.chunks.size(), [&](std::size_t c) {
+    pipeline::list_candidates<Model>(c, w.chunks[c], p, w.broad_phase, w.species, w.skin());
+    pipeline::refresh_chunk<Model>(c, w.chunks[c], p, w.species);
+  });
+  pipeline::list_incoming<Model>(std::span<const Chunk<Model>>(w.chunks), p.count, w.incoming_first, w.incoming);
+  pipeline::return_memories<Model>(std::span<Chunk<Model>>(w.chunks), p, pairs, surfaces);
+  w.list_valid = true;
+  ++w.rebuilds;
+}
+
+/// Surfaces go where their bodies are.
+template <class Model>
+void follow_bodies(WorldState<Model>& w) {
+  for (auto& s : w.surfaces) s.follow(w.machine.bodies()[s.body.index()]);
+}
+
+/// Sums the chunks' loads on each surface, in the order of the chunks, and hands them to the bodies.
+template <class Model>
+void load_bodies(WorldState<Model>& w) {
+  for (auto& s : w.surfaces) s.force = s.torque = {0, 0, 0};
+  for (const auto& chunk : w.chunks) {
+    for (const SurfaceLoad& load : chunk.surface_loads) {
+      w.surfaces[load.surface.index()].force += load.force;
+      w.surfaces[load.surface.index()].torque += load.torque;
+    }
+  }
+  for (const auto& s : w.surfaces) {
+    Body& body = w.machine.body(s.body);
+    body.force += s.force;
+    body.torque += s.torque;
+  }
+}
+
+}  // namespace dem

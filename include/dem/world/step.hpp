@@ -1,0 +1,109 @@
+#pragma once
+
+#include <dem/pipeline/move.hpp>
+#include <dem/pipeline/pair_contacts.hpp>
+#include <dem/pipeline/surface_contacts.hpp>
+#include <dem/world/state.hpp>
+
+namespace dem {
+
+/// Contacts of the grains with each other and with surfaces at the present state, and the loads that surfaces hand to
+/// their bodies. Each contact's forces stay with its chunk, for gather_forces.
+template <class Model>
+void find_contacts(WorldState<Model>& w) {
+  w.stopwatch.start();
+  if (neighbours_outdated(w)) rebuild_neighbours(w);
+  w.stopwatch.stop(Phase::neighbours);
+
+  w.stopwatch.start();
+  follow_bodies(w);
+  w.executor.for_each(w.chunks.size(), [&](std::size_t c) {
+    thread_local pipeline::PairScratch<Model> pair_scratch;
+    thread_local pipeline::SurfaceScratch surface_scratch;
+    pipeline::ForceSums sums;
+    pipeline::find_pair_contacts<Model>(c, w.chunks[c], w.particles, w.species, w.materials, w.time_step, sums,
+                                        pair_scratch);
+    pipeline::find_surface_contacts<Model>(c, w.chunks[c], w.particles, std::span(std::as_const(w.species)),
+                                           w.materials, std::span(std::as_const(w.surfaces)), w.machine.bodies(),
+                                           w.largest_radius, w.time_step, sums, surface_scratch);
+    sums.write(c, w.particles);
+  });
+  w.stopwatch.stop(Phase::contacts);
+  w.machine.clear_forces();
+  load_bodies(w);
+}
+
+/// The machine's share of a stage, before the contacts: only where the integrator predicts.
+template <class Model>
+void predict_machine(WorldState<Model>& w, int stage) {
+  if (w.machine.substeps > 1) {
+    w.machine.advance_substeps(stage, w.time_step, w.options.gravity);
+  } else {
+    w.machine.before_forces(stage, w.time_step);
+  }
+}
+
+/// The machine's share of a stage, after the contacts: joints and actuators, motion, prescribed motion; in one step
+/// with the grains, or in several shorter ones.
+template <class Model>
+void move_machine(WorldState<Model>& w, int stage, bool last_stage) {
+  using Integrator = typename Model::Integrator;
+  auto& machine = w.machine;
+  if (machine.substeps > 1) {
+    machine.hold_contacts(stage);
+    if (!Integrator::predicts_before_forces) machine.advance_substeps(stage, w.time_step, w.options.gravity);
+    return;
+  }
+  machine.add_forces(machine.stage_time(w.time, w.time_step, stage), w.time_step, stage, last_stage);
+  machine.advance(stage, w.time_step, w.options.gravity);
+  machine.prescribe(w.time + w.time_step, w.time_step);
+}
+
+/// One time step (thesis section 2.5): as many force evaluations as the integrator has stages (the thesis: a predictor
+/// and a corrector). What contacts remember is committed in the last stage.
+template <class Model>
+void advance(WorldState<Model>& w) {
+  using Integrator = typename Model::Integrator;
+  const Vec3& gravity = w.options.gravity;
+  const bool clean_rotations = w.step % pipeline::steps_between_orthonormalisations == 0;
+
+  for (int stage = 0; stage < Integrator::stages; ++stage) {
+    const bool last = stage + 1 == Integrator::stages;
+    if constexpr (Integrator::predicts_before_forces) {
+      w.executor.for_each(w.chunks.size(), [&](std::size_t c) {
+        pipeline::predict_chunk<Model>(c, w.chunks[c], w.particles, w.species, stage, w.time_step);
+      });
+      predict_machine(w, stage);
+    }
+    find_contacts(w);
+
+    w.stopwatch.start();
+    move_machine(w, stage, last);
+    w.stopwatch.stop(Phase::machine);
+
+    w.stopwatch.start();
+    w.executor.for_each(w.chunks.size(), [&](std::size_t c) {
+      pipeline::gather_forces<Model>(c, w.chunks, w.particles, w.incoming_first, w.incoming);
+      pipeline::move_chunk<Model>(c, w.chunks[c], w.particles, w.species, w.inertia, gravity, stage, w.time_step,
+                                  clean_rotations && last);
+      if (last) w.chunks[c].commit();
+    });
+    w.stopwatch.stop(Phase::motion);
+  }
+  w.time += w.time_step;
+  ++w.step;
+}
+
+/// Before the first step, and after anything was changed by hand: forces at the present state, from which integrators
+/// that remember an acceleration take their first one.
+template <class Model>
+void initialise(WorldState<Model>& w) {
+  find_contacts(w);
+  w.executor.for_each(w.chunks.size(), [&](std::size_t c) {
+    pipeline::gather_forces<Model>(c, w.chunks, w.particles, w.incoming_first, w.incoming);
+    pipeline::initialise_chunk<Model>(c, w.particles, w.inertia, w.options.gravity);
+  });
+  w.machine.initialise(w.time, w.options.gravity);
+}
+
+}  // namespace dem

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <array>
+#include <chrono>
+
+namespace dem {
+
+/// The phases of a step, for timing.
+enum class Phase { neighbours, contacts, machine, motion };
+inline constexpr std::array<const char*, 4> phase_names = {"neighbour lists", "contacts", "machine", "sums and motion"};
+
+/// Adds up the wall time of each phase while it is switched on; costs one branch a phase while it is off.
+class Stopwatch {
+ public:
+  void switch_on(bool on) {
+    on_ = on;
+    seconds_.fill(0.0);
+  }
+  /// A phase begins.
+  void start() {
+    if (on_) [[unlikely]]
+      since_ = Clock::now();
+  }
+  /// The phase is over.
+  void stop(Phase phase) {
+    if (!on_) [[likely]]
+      return;
+    seconds_[static_cast<std::size_t>(phase)] += std::chrono::duration<double>(Clock::now() - since_).count();
+  }
+  double seconds(Phase phase) const { return seconds_[static_cast<std::size_t>(phase)]; }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  bool on_ = false;
+  Clock::time_point since_;
+  std::array<double, phase_names.size()> seconds_ = {};
+};
+
+}  // namespace dem

@@ -1,0 +1,232 @@
+#pragma once
+
+#include <dem/pipeline/stable_time_step.hpp>
+#include <dem/world/check.hpp>
+#include <dem/world/report.hpp>
+#include <dem/world/step.hpp>
+
+#include <utility>
+
+namespace dem {
+
+/// A simulation: grains, machine, and the laws between them, specialised at compile time for a Model.
+template <class M>
+class World {
+ public:
+  using Model = M;
+  using Shape = typename Model::Shape;
+  using Machine = mbd::Machine<typename Model::Integrator>;
+  using Parameters = ContactParameters<Model>;
+  static_assert(check_model<Model>());
+
+  /// Throws Error if an option is out of range.
+  explicit World(const WorldOptions& options = {}) {
+    require_non_negative(options.time_step, "time step", "s (0 chooses one)");
+    require_within(options.time_step_safety, 1e-6, 1.0, "time step safety");
+    require_non_negative(options.skin, "skin", "m (0 chooses one)");
+    require_positive(options.overlap_limit, "overlap limit", "effective diameters");
+    if (!options.gravity.allFinite()) fail("gravity has a component that is not a finite number");
+    state_.options = options;
+    if (options.threads != 0) state_.executor.set_threads(options.threads);
+  }
+
+  // ---- set-up ----------------------------------------------------------------------------------------------------
+
+  /// A kind of grain. Throws Error unless the density is positive.
+  SpeciesId add_species(const Shape& shape, const SpeciesOptions& o = {}) {
+    require_positive(o.density, "density of a species", "kg/m^3");
+    const MaterialId material = state_.materials.id(o.material);
+    state_.materials.mark_as_grain(material);
+    const Species<Shape> s = {shape,
+                              material,
+                              o.density,
+                              o.density * shape.volume(),
+                              1.0 / (o.density * shape.volume()),
+                              o.density * shape.unit_inertia()};
+    SpeciesInertia numbers = {1.0 / s.mass, 1.0, {}, {}};
+    for (int k = 0; k < 3; ++k) {
+      numbers.inertia[k] = s.inertia[k];
+      numbers.inverse_inertia[k] = 1.0 / s.inertia[k];
+    }
+    state_.species.push_back(s);
+    state_.inertia.push_back(numbers);
+    state_.largest_radius = std::max(state_.largest_radius, shape.bounding_radius());
+    checked_ = false;
+    return SpeciesId(state_.species.size() - 1);
+  }
+
+  /// Contact constants for every pair of materials that has none of its own. Throws Error if one makes no sense.
+  void set_contact(const Parameters& p) {
+    state_.materials.set_default(p);
+    checked_ = false;
+  }
+  /// Contact constants for one pair of materials.
+  void set_contact(std::string_view a, std::string_view b, const Parameters& p) {
+    state_.materials.set(a, b, p);
+    checked_ = false;
+  }
+
+  /// Adds a grain. Throws Error for an unknown species, a position that is not finite, or a rotation that is none.
+  ParticleId add_particle(const NewParticle& n) {
+    auto& p = state_.particles;
+    if (n.species.index() >= state_.species.size()) {
+      fail("a grain was given species {}, but the world has {}; call add_species first", n.species.value,
+           state_.species.size());
+    }
+    if (!n.position.allFinite() || !n.velocity.allFinite() || !n.angular_velocity.allFinite()) {
+      fail("grain {} was given a position or velocity that is not finite", p.count);
+    }
+    // Written such that a NaN fails as well.
+    if (!((n.rotation.transpose() * n.rotation - Mat3::Identity()).norm() <= 1e-6) ||
+        !(n.rotation.determinant() > 0.0)) {
+      fail("grain {} was given a rotation matrix that is no rotation; normalise it (R^T R = I, det R = 1)", p.count);
+    }
+    const std::size_t row = p.count;
+    p.resize(row + 1);
+    p.position.set(row, from_eigen(n.position));
+    p.velocity.set(row, from_eigen(n.velocity));
+    const Mat3 rotation = Shape::has_orientation ? n.rotation : Mat3(Mat3::Identity());
+    p.set_rotation(row, from_eigen(rotation));
+    p.spin.set(row, from_eigen(Vec3(rotation.transpose() * n.angular_velocity)));
+    p.angular_velocity.set(row, from_eigen(n.angular_velocity));
+    p.species[row] = n.species.value;
+    p.id[row] = static_cast<std::uint32_t>(p.row_of.size());
+    p.row_of.push_back(static_cast<std::uint32_t>(row));
+    touched();
+    return ParticleId(p.row_of.size() - 1);
+  }
+
+  /// Bodies, joints, actuators, sensors.
+  Machine& machine() { return state_.machine; }
+  const Machine& machine() const { return state_.machine; }
+  /// The fixed body of the world: carries walls that never move.
+  BodyId ground() { return state_.machine.ground(); }
+
+  /// Gives a body a surface that grains feel.
+  SurfaceId add_surface(BodyId body, const typename Model::Surfaces& geometry, const SurfaceOptions& o = {}) {
+    if (body.index() >= state_.machine.bodies().size()) {
+      fail("surface '{}' was given body {}, but the machine has {}", o.name, body.value,
+           state_.machine.bodies().size());
+    }
+    if (state_.surfaces.size() >= 0xffff) fail("a world takes at most 65,535 surfaces");
+    typename WorldState<Model>::Surface s{o.name,   body,       state_.materials.id(o.material),
+                                          geometry, o.position, o.rotation};
+    state_.surfaces.push_back(s);
+    checked_ = false;
+    return SurfaceId(state_.surfaces.size() - 1);
+  }
+  /// Lets a surface touch grains, or not.
+  void set_active(SurfaceId s, bool active) { state_.surfaces.at(s.index()).active = active; }
+
+  // ---- running ---------------------------------------------------------------------------------------------------
+
+  /// Checks the set-up and chooses or checks the time step; called by step() and run() when something changed. Throws
+  /// Error if contact constants are missing or the time step is too large.
+  void prepare() {
+    if (!checked_) {
+      state_.materials.check_complete();
+      choose_time_step();
+      checked_ = true;
+    }
+    if (!initialised_ || !state_.machine.is_initialised()) {
+      state_.machine.design_for(time_step());
+      initialise(state_);
+      initialised_ = true;
+    }
+  }
+  StepReport step() { return run(1); }
+  /// Runs n steps, or fewer if a problem shows.
+  StepReport run(std::uint64_t n) {
+    prepare();
+    for (std::uint64_t k = 0; k < n; ++k) {
+      advance(state_);
+      if (StepReport report = find_problem(state_); !report) return report;
+    }
+    return ok();
+  }
+  /// Runs for a time span (s), rounded to whole steps.
+  StepReport run_for(double seconds) {
+    prepare();
+    return run(
+        static_cast<std::uint64_t>(std::llround(require_non_negative(seconds, "time to run", "s") / time_step())));
+  }
+
+  double time() const { return state_.time; }
+  std::uint64_t steps() const { return state_.step; }
+  double time_step() const { return state_.time_step; }
+  /// Largest stable time step of grains and machine, and what limits it.
+  pipeline::StableTimeStep stable_time_step() const {
+    std::vector<MaterialId> of_surfaces;
+    for (const auto& s : state_.surfaces) of_surfaces.push_back(s.material);
+    auto limit =
+        pipeline::stable_time_step<Model>(state_.species, state_.materials, of_surfaces, state_.options.overlap_limit);
+    const auto machine = state_.machine.stable_time_step();
+    if (machine.dt < limit.value) limit = {machine.dt, machine.limited_by};
+    return limit;
+  }
+  void set_threads(int n) { state_.executor.set_threads(n); }
+  int threads() const { return state_.executor.threads(); }
+  void set_gravity(const Vec3& g) {
+    state_.options.gravity = g;
+    initialised_ = false;
+  }
+
+  // ---- looking -----------------------------------------------------------------------------------------------------
+
+  std::size_t particle_count() const { return state_.particles.count; }
+  Vec3 position(ParticleId p) const { return to_eigen(state_.particles.position[row(p)]); }
+  Vec3 velocity(ParticleId p) const { return to_eigen(state_.particles.velocity[row(p)]); }
+  Vec3 angular_velocity(ParticleId p) const { return to_eigen(state_.particles.angular_velocity[row(p)]); }
+  Mat3 rotation(ParticleId p) const { return to_eigen(state_.particles.rotation(row(p))); }
+  /// Contact force (N) and torque (N m) on a grain in the last force evaluation.
+  Vec3 force(ParticleId p) const { return to_eigen(state_.particles.force[row(p)]); }
+  Vec3 torque(ParticleId p) const { return to_eigen(state_.particles.torque[row(p)]); }
+  SpeciesId species_of(ParticleId p) const { return SpeciesId(state_.particles.species[row(p)]); }
+  const Species<Shape>& species(SpeciesId s) const { return state_.species.at(s.index()); }
+
+  void set_velocity(ParticleId p, const Vec3& v) {
+    state_.particles.velocity.set(row(p), from_eigen(v));
+    initialised_ = false;
+  }
+
+  /// Force (N) that the grains exert on a surface, from the last force evaluation.
+  Vec3 surface_force(SurfaceId s) const { return to_eigen(state_.surfaces.at(s.index()).force); }
+  /// Torque (N m) of the grains on a surface about its body's centre of mass.
+  Vec3 surface_torque(SurfaceId s) const { return to_eigen(state_.surfaces.at(s.index()).torque); }
+
+  const WorldState<Model>& state() const { return state_; }
+  WorldState<Model>& state() { return state_; }
+
+ private:
+  std::size_t row(ParticleId p) const { return state_.particles.row_of.at(p.index()); }
+  /// Grains came or were moved by hand.
+  void touched() {
+    state_.list_valid = false;
+    initialised_ = false;
+  }
+  StepReport ok() const { return {StepReport::Problem::none, state_.time, state_.step, {}, {}}; }
+
+  void choose_time_step() {
+    const pipeline::StableTimeStep limit = stable_time_step();
+    const WorldOptions& o = state_.options;
+    if (o.time_step == 0.0) {
+      if (limit.value >= 1e300) fail("nothing in the world limits the time step; set time_step");
+      // A step that was chosen before is kept while it is stable: a change of friction must not change it.
+      if (state_.time_step == 0.0 || state_.time_step > limit.value)
+        state_.time_step = o.time_step_safety * limit.value;
+      return;
+    }
+    if (o.time_step > limit.value && !o.allow_unstable_time_step) {
+      fail(
+          "time step {:g} s is above the largest stable one, {:.4g} s ({}); lower time_step or the stiffness, or set "
+          "allow_unstable_time_step",
+          o.time_step, limit.value, limit.contact);
+    }
+    state_.time_step = o.time_step;
+  }
+
+  WorldState<Model> state_;
+  bool checked_ = false, initialised_ = false;
+};
+
+}  // namespace dem

@@ -1,0 +1,193 @@
+#include "catch.hpp"
+
+#include <dem/broadphase/all_pairs.hpp>
+#include <dem/broadphase/uniform_grid.hpp>
+#include <dem/math/vector.hpp>
+
+#include <functional>
+#include <random>
+#include <set>
+
+using dem::Vec3;
+using dem::broadphase::AllPairs;
+using dem::broadphase::UniformGrid;
+
+namespace {
+
+using Pairs = std::set<std::pair<std::size_t, std::size_t>>;
+
+struct Scene {
+  std::vector<double> x, y, z;
+  void add(const Vec3& p) {
+    x.push_back(p.x());
+    y.push_back(p.y());
+    z.push_back(p.z());
+  }
+  dem::broadphase::Positions positions() const { return {x.data(), y.data(), z.data(), x.size()}; }
+  Vec3 at(std::size_t i) const { return {x[i], y[i], z[i]}; }
+};
+
+/// Candidates that are within reach. Checks the promises of the concept on the way: j > i, none twice.
+template <class BroadPhase>
+Pairs pairs_within(const Scene& s, BroadPhase& b, double reach, std::size_t* candidates = nullptr) {
+  b.build(s.positions(), reach);
+  Pairs found, all;
+  auto finder = b.finder();
+  for (std::size_t i = 0; i < s.x.size(); ++i) {
+    finder.for_each_candidate(i, [&](std::uint32_t j) {
+      REQUIRE(j > i);
+      REQUIRE(j < s.x.size());
+      REQUIRE(all.insert({i, j}).second);
+      if ((s.at(i) - s.at(j)).norm() <= reach) found.insert({i, j});
+    });
+  }
+  if (candidates != nullptr) *candidates = all.size();
+  return found;
+}
+
+std::size_t check_same(const Scene& s, double reach) {
+  UniformGrid grid;
+  AllPairs all;
+  const Pairs expected = pairs_within(s, all, reach), found = pairs_within(s, grid, reach);
+  CHECK(found == expected);
+  // The order is a permutation.
+  const std::set<std::uint32_t> rows(grid.order().begin(), grid.order().end());
+  CHECK(grid.order().size() == s.x.size());
+  CHECK(rows.size() == s.x.size());
+  CHECK((rows.empty() || *rows.rbegin() == s.x.size() - 1));
+  return expected.size();
+}
+
+Scene random_scene(std::size_t n, const std::function<Vec3(std::mt19937&)>& place, unsigned seed) {
+  std::mt19937 engine(seed);
+  Scene s;
+  for (std::size_t k = 0; k < n; ++k) s.add(place(engine));
+  return s;
+}
+
+Vec3 in_box(std::mt19937& engine, const Vec3& half, const Vec3& centre = Vec3::Zero()) {
+  std::uniform_real_distribution<double> d(-1.0, 1.0);
+  return {centre.x() + half.x() * d(engine), centre.y() + half.y() * d(engine), centre.z() + half.z() * d(engine)};
+}
+Vec3 in_cube(std::mt19937& engine, double half, const Vec3& centre = Vec3::Zero()) {
+  return in_box(engine, Vec3::Constant(half), centre);
+}
+
+}  // namespace
+
+TEST_CASE("the grid finds what all pairs find") {
+  for (unsigned seed = 1; seed <= 5; ++seed) {
+    // About zero, so that cells of negative coordinates meet those of positive ones.
+    CHECK(check_same(random_scene(
+                         400, [](auto& e) { return in_cube(e, 1.0); }, seed),
+                     0.3) > 100);
+    // Everything in one cell, and hardly anything near anything.
+    CHECK(check_same(random_scene(
+                         50, [](auto& e) { return in_cube(e, 0.1); }, seed),
+                     1.0) == 50 * 49 / 2);
+    CHECK(check_same(random_scene(
+                         400, [](auto& e) { return in_cube(e, 1e4); }, seed),
+                     1.0) < 10);
+    // Far from the origin, where a cell is still 1e9 roundings wide.
+    CHECK(check_same(random_scene(
+                         400,
+                         [](auto& e) {
+                           return in_cube(e, 1.0, {1e6, -3e5, 7e6});
+                         },
+                         seed),
+                     0.3) > 100);
+    // Flat, and in a line.
+    CHECK(check_same(random_scene(
+                         400,
+                         [](auto& e) {
+                           return in_box(e, {1, 1, 0});
+                         },
+                         seed),
+                     0.1) > 100);
+    CHECK(check_same(random_scene(
+                         400,
+                         [](auto& e) {
+                           return in_box(e, {0, 0, 1});
+                         },
+                         seed),
+                     0.02) > 100);
+  }
+}
+
+TEST_CASE("the grid finds clusters that are far apart") {
+  const auto clustered = [](std::mt19937& e) {
+    static const Vec3 centres[] = {{0, 0, 0}, {1e3, 0, -1e3}, {-5e5, 2e5, 1e6}};
+    return in_cube(e, 0.5, centres[e() % 3]);
+  };
+  CHECK(check_same(random_scene(300, clustered, 9), 0.2) > 100);
+}
+
+TEST_CASE("one grain far away changes nothing for the others") {
+  Scene s = random_scene(
+      300, [](auto& e) { return in_cube(e, 1.0); }, 4);
+  const std::size_t near_pairs = check_same(s, 0.3);
+  // The last is beyond what the cell numbers of a 64-bit integer hold.
+  for (const double far : {1e6, -1e6, 1e12, 1e300}) {
+    Scene with = s;
+    with.add({far, -far, far});
+    CHECK(check_same(with, 0.3) == near_pairs);
+  }
+}
+
+TEST_CASE("grains on the borders of cells are found") {
+  Scene s;
+  const double reach = 0.25;  // exact in binary, so the grains are exactly on the borders and exactly at reach
+  for (int x = -3; x <= 3; ++x) {
+    for (int y = -3; y <= 3; ++y) {
+      for (int z = -3; z <= 3; ++z) s.add({x * reach, y * reach, z * reach});
+    }
+  }
+  CHECK(check_same(s, reach) == 3 * 7 * 7 * 6);
+}
+
+TEST_CASE("cells so far apart that their numbers coincide only cost candidates") {
+  // Coordinates wrap round after 2^21 cells: the second cluster lands on the cells of the first.
+  Scene s;
+  std::mt19937 engine(6);
+  const double period = 2097152.0;
+  for (int k = 0; k < 100; ++k) {
+    const Vec3 p = in_cube(engine, 2.0);
+    s.add(p);
+    s.add(p + Vec3(period, 0, 0));
+  }
+  CHECK(check_same(s, 1.0) > 100);
+  // And the neighbours across the seam of the numbering are neighbours still.
+  Scene seam;
+  for (int k = -5; k < 5; ++k) seam.add({period / 2 + 0.4 * k, 0, period / 2 - 0.4 * k});
+  CHECK(check_same(seam, 1.0) > 8);
+}
+
+TEST_CASE("the grid spares most pairs") {
+  const Scene s = random_scene(
+      2000, [](auto& e) { return in_cube(e, 1.0); }, 8);
+  UniformGrid grid;
+  std::size_t candidates = 0;
+  pairs_within(s, grid, 0.1, &candidates);
+  // 27 cells of 0.1^3 in a volume of 8, each pair once: 2000 * 2000/2 * 27/8000 = 6750.
+  CHECK(candidates < 7500);
+  CHECK(candidates > 5000);
+}
+
+TEST_CASE("no grains and one grain have no pairs") {
+  Scene s;
+  CHECK(check_same(s, 1.0) == 0);
+  s.add({1, 2, 3});
+  CHECK(check_same(s, 1.0) == 0);
+}
+
+TEST_CASE("a grid forgets what it was built from before") {
+  UniformGrid grid;
+  AllPairs all;
+  for (unsigned seed = 1; seed < 6; ++seed) {
+    const Scene s = random_scene(
+        500 / seed, [](auto& e) { return in_cube(e, 1.0); }, seed);
+    const double reach = 0.1 * seed;
+    const Pairs expected = pairs_within(s, all, reach);
+    CHECK(pairs_within(s, grid, reach) == expected);
+  }
+}

@@ -1,0 +1,6 @@
+// expect: Shape: needs .static constexpr int pose_size., doubles cached per grain
+#include <dem/shape/sphere.hpp>
+
+struct Blob {};
+
+int main() { dem::shape::check_shape<Blob>(); }

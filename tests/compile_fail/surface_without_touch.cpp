@@ -1,0 +1,11 @@
+// expect: Surface: needs near\(point, radius\), for doubles .bool. and packs .PackMask., and touch\(point, radius, sink\)
+#include <dem/world/model.hpp>
+
+struct Veil {
+  dem::surface::Bounds bounds() const { return {}; }
+};
+struct Grain : dem::Model {
+  using Surfaces = std::variant<Veil>;
+};
+
+int main() { dem::check_model<Grain>(); }

@@ -1,0 +1,129 @@
+#include "catch.hpp"
+#include "files.hpp"
+
+#include <dem/io/csv.hpp>
+
+#include <cmath>
+#include <cstdlib>
+#include <limits>
+#include <string>
+#include <vector>
+
+using dem::io::csv_quote;
+using dem::io::CsvWriter;
+using dem::io::read_file;
+
+TEST_CASE("csv text is quoted as RFC 4180 says") {
+  CHECK(csv_quote("plain text") == "plain text");
+  CHECK(csv_quote("") == "");
+  CHECK(csv_quote("a,b") == "\"a,b\"");
+  CHECK(csv_quote("a;b") == "a;b");
+  CHECK(csv_quote("a;b", ';') == "\"a;b\"");
+  CHECK(csv_quote("say \"no\"") == "\"say \"\"no\"\"\"");
+  CHECK(csv_quote("two\nlines") == "\"two\nlines\"");
+  CHECK(csv_quote(" outer") == "\" outer\"");
+}
+
+TEST_CASE("csv rows follow a header") {
+  const TempFolder folder;
+  CsvWriter csv(folder / "new/deep/shear.csv", {"time_s", "stress, total_Pa", "packing", "grains", "settled"});
+  csv.row(0.1, 101325.0, "loose", 14256, true);
+  csv.row(0.2F, -1e-30, std::string("dense, wet"), std::size_t{7}, false);
+  csv.flush();
+  CHECK(csv.rows() == 2);
+  CHECK(read_file(csv.path()) ==
+        "time_s,\"stress, total_Pa\",packing,grains,settled\n"
+        "0.1,101325,loose,14256,1\n"
+        "0.2,-1e-30,\"dense, wet\",7,0\n");
+}
+
+TEST_CASE("csv numbers read back as the same numbers") {
+  const TempFolder folder;
+  const std::vector<double> values{1.0 / 3,
+                                   0.1 + 0.2,
+                                   6.02214076e23,
+                                   std::numeric_limits<double>::denorm_min(),
+                                   -std::numeric_limits<double>::max(),
+                                   1e15,
+                                   123456789012345678.0};
+  CsvWriter csv(folder / "a.csv", {"a", "b", "c", "d", "e", "f", "g"});
+  csv.row(values);
+  csv.flush();
+  std::string text = read_file(csv.path());
+  text.erase(0, text.find('\n') + 1);
+  const char* at = text.c_str();
+  for (const double value : values) {
+    char* end = nullptr;
+    CHECK(std::strtod(at, &end) == value);
+    at = end + 1;
+  }
+}
+
+TEST_CASE("csv digits, separator and odd numbers") {
+  const TempFolder folder;
+  CsvWriter csv(folder / "a.csv", {"a", "b", "c"}, {.digits = 4, .separator = ';'});
+  csv.row(1.0 / 3, std::nan(""), -std::numeric_limits<double>::infinity());
+  csv.flush();
+  CHECK(read_file(csv.path()) == "a;b;c\n0.3333;nan;-inf\n");
+}
+
+TEST_CASE("csv rows are on disk while the writer still lives") {
+  const TempFolder folder;
+  CsvWriter at_once(folder / "a.csv", {"a"}, {.flush_s = 0});
+  at_once.row(1);
+  CHECK(read_file(folder / "a.csv") == "a\n1\n");
+  const CsvWriter header_only(folder / "b.csv", {"b"});
+  CHECK(read_file(folder / "b.csv") == "b\n");
+}
+
+TEST_CASE("csv mistakes are told") {
+  const TempFolder folder;
+  const std::string path = (folder / "a.csv").string();
+  CHECK(error_of([&] { CsvWriter(path, {}); }) ==
+        "csv file '" + path + "': no columns; name at least one, e.g. \"time_s\"");
+  CHECK(error_of([&] {
+          CsvWriter(path, {"a", ""});
+        }) == "csv file '" + path + "': column 1 has an empty name; name it, with its unit");
+  CHECK(error_of([&] {
+          CsvWriter(path, {"a", "b", "a"});
+        }) == "csv file '" + path + "': the column 'a' is named twice; rename one");
+  CsvWriter csv(path, {"a", "b"});
+  const std::string too_long =
+      "csv file '" + path + "': a row has 3 cells, but there are 2 columns (a, b); give one cell a column";
+  CHECK(error_of([&] { csv.row(1, 2, 3); }) == too_long);
+  CHECK(error_of([&] { csv.row(std::vector<double>{1, 2, 3}); }) == too_long);
+  CHECK(csv.rows() == 0);
+}
+
+TEST_CASE("a file that cannot be opened or read is told") {
+  const TempFolder folder;
+  const std::string path = folder.path().string();
+  CHECK(error_of([&] { CsvWriter(path, {"a"}); }) ==
+        "cannot open '" + path + "' for writing (Is a directory); choose a path that you may write to");
+  dem::io::write_file(folder / "file", "");
+  CHECK_THAT(error_of([&] { CsvWriter(folder / "file/a.csv", {"a"}); }),
+             Catch::Matchers::StartsWith("cannot make the folder '" + path + "/file' ("));
+  CHECK(error_of([&] { (void)read_file(folder / "none"); }) ==
+        "cannot read the file '" + path + "/none'; check that it exists and may be read");
+}
+
+TEST_CASE("a full disk is told") {
+  if (!std::filesystem::exists("/dev/full")) return;
+  CHECK(error_of([] { CsvWriter("/dev/full", {"a"}); }) ==
+        "cannot write to '/dev/full' (No space left on device); check that the disk is not full");
+}
+
+TEST_CASE("an atomic file appears complete or not at all") {
+  const TempFolder folder;
+  const auto path = folder / "a.txt";
+  dem::io::write_file(path, "old");
+  {
+    dem::io::AtomicFile file(path);
+    file.write("half");
+    CHECK(read_file(path) == "old");
+  }
+  CHECK(read_file(path) == "old");
+  CHECK(!std::filesystem::exists(folder / "a.txt.tmp"));
+  dem::io::write_file(path, "new");
+  CHECK(read_file(path) == "new");
+}

@@ -1,0 +1,299 @@
+#include "catch.hpp"
+#include "files.hpp"
+#include "xml.hpp"
+
+#include <dem/io/vtk.hpp>
+#include <dem/math/vector.hpp>
+
+#include <Eigen/Geometry>
+
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <map>
+#include <set>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+using namespace dem::io;
+using Catch::Approx;
+using dem::Mat3;
+using dem::Vec3;
+
+namespace {
+
+/// A VTK XML file read back: its tags, and the bytes of its arrays by name.
+struct VtkContent {
+  std::vector<XmlTag> tags;
+  std::map<std::string, std::string> bytes;
+
+  [[nodiscard]] const XmlTag& tag(const std::string& name) const {
+    for (const auto& t : tags) {
+      if (t.name == name) return t;
+    }
+    throw std::runtime_error("no tag " + name);
+  }
+  [[nodiscard]] const XmlTag& array(const std::string& name) const {
+    for (const auto& t : tags) {
+      if (t.name == "DataArray" && t.at("Name") == name) return t;
+    }
+    throw std::runtime_error("no array " + name);
+  }
+  template <class T>
+  [[nodiscard]] std::vector<T> values(const std::string& name) const {
+    const std::string& from = bytes.at(name);
+    REQUIRE(from.size() % sizeof(T) == 0);
+    std::vector<T> to(from.size() / sizeof(T));
+    if (!to.empty()) std::memcpy(to.data(), from.data(), from.size());
+    return to;
+  }
+};
+
+VtkContent read_vtk(const std::filesystem::path& path) {
+  const std::string file = read_file(path);
+  const std::string start = "<AppendedData encoding=\"raw\">\n_", end = "\n</AppendedData>\n</VTKFile>\n";
+  const auto at = file.find(start);
+  REQUIRE(at != std::string::npos);
+  REQUIRE(file.size() >= end.size());
+  REQUIRE(file.substr(file.size() - end.size()) == end);
+  const std::string data = file.substr(at + start.size(), file.size() - at - start.size() - end.size());
+
+  VtkContent content;
+  content.tags = XmlReader::tags(file.substr(0, at) + "</VTKFile>");
+  std::size_t next = 0;
+  for (const auto& tag : content.tags) {
+    if (tag.name != "DataArray" || tag.at("format") != "appended") continue;
+    CHECK(tag.at("offset") == std::to_string(next));  // the blocks touch
+    std::uint64_t size = 0;
+    REQUIRE(next + sizeof size <= data.size());
+    std::memcpy(&size, data.data() + next, sizeof size);
+    REQUIRE(next + sizeof size + size <= data.size());
+    content.bytes[tag.at("Name")] = data.substr(next + sizeof size, size);
+    next += sizeof size + size;
+  }
+  CHECK(next == data.size());
+  CHECK(content.tag("VTKFile").at("type") == "PolyData");
+  CHECK(content.tag("VTKFile").at("header_type") == "UInt64");
+  CHECK(content.tag("VTKFile").at("byte_order") == "LittleEndian");
+  return content;
+}
+
+}  // namespace
+
+TEST_CASE("points and their data are read back from a vtp file") {
+  const TempFolder folder;
+  const std::vector<Vec3> positions{{1, 2, 3}, {4, 5, 6}}, velocities{{0, 0, -1}, {0.1, 0.2, 0.3}};
+  const std::vector<double> radii{0.5, 1.0 / 3};
+  const std::vector<int> species{7, -8};
+  const std::vector<std::int64_t> ids{1LL << 40, 2};
+  const std::array<std::uint8_t, 2> flags{0, 255};
+  const std::array<float, 2> heat{1.5F, 2.5F};
+  const std::vector<std::uint32_t> grains{4'000'000'000U, 1};
+  const std::vector<std::size_t> steps{1ULL << 40U, 2};
+  const std::vector<dem::Vector3<double>> forces{{1, 2, 3}, {4, 5, 6}};
+  const auto path = folder / "new/grains.vtp";
+  write_vtk_points(path, flat(positions),
+                   {{"radius", 1, radii},
+                    {"velocity <\"m/s\">", 3, flat(velocities)},
+                    {"species", 1, species},
+                    {"id", 1, ids},
+                    {"flag", 1, flags},
+                    {"heat", 1, heat},
+                    {"grain", 1, grains},
+                    {"step", 1, steps},
+                    {"force_N", 3, flat(forces)}},
+                   {.time_s = 0.25});
+
+  const VtkContent file = read_vtk(path);
+  CHECK(file.tag("Piece").at("NumberOfPoints") == "2");
+  CHECK(file.tag("Piece").at("NumberOfVerts") == "2");
+  CHECK(file.values<double>("Points") == std::vector<double>{1, 2, 3, 4, 5, 6});
+  CHECK(file.array("Points").parents == "VTKFile/PolyData/Piece/Points/");
+  CHECK(file.array("Points").at("NumberOfComponents") == "3");
+  CHECK(file.values<double>("radius") == radii);
+  CHECK(file.array("radius").parents == "VTKFile/PolyData/Piece/PointData/");
+  CHECK(file.array("radius").at("type") == "Float64");
+  CHECK(file.values<double>("velocity &lt;&quot;m/s&quot;&gt;") == std::vector<double>{0, 0, -1, 0.1, 0.2, 0.3});
+  CHECK(file.values<std::int32_t>("species") == species);
+  CHECK(file.array("species").at("type") == "Int32");
+  CHECK(file.values<std::int64_t>("id") == ids);
+  CHECK(file.array("id").at("type") == "Int64");
+  CHECK(file.values<std::uint8_t>("flag") == std::vector<std::uint8_t>{0, 255});
+  CHECK(file.array("flag").at("type") == "UInt8");
+  CHECK(file.values<float>("heat") == std::vector<float>{1.5F, 2.5F});
+  CHECK(file.array("heat").at("type") == "Float32");
+  CHECK(file.values<std::uint32_t>("grain") == grains);
+  CHECK(file.array("grain").at("type") == "UInt32");
+  CHECK(file.values<std::size_t>("step") == steps);
+  CHECK(file.array("step").at("type") == "UInt64");
+  CHECK(file.values<double>("force_N") == std::vector<double>{1, 2, 3, 4, 5, 6});
+  CHECK(file.values<std::int32_t>("connectivity") == std::vector<std::int32_t>{0, 1});
+  CHECK(file.values<std::int32_t>("offsets") == std::vector<std::int32_t>{1, 2});
+  CHECK(file.array("TimeValue").parents == "VTKFile/PolyData/FieldData/");
+  CHECK_THAT(read_file(path), Catch::Matchers::ContainsSubstring("format=\"ascii\">0.25</DataArray>"));
+}
+
+TEST_CASE("single precision stores doubles as floats and integers as they are") {
+  const TempFolder folder;
+  const std::vector<double> positions{0.1, 0.2, 0.3};
+  const std::vector<int> species{3};
+  write_vtk_points(folder / "a.vtp", positions, {{"species", 1, species}}, {.single_precision = true});
+  const VtkContent file = read_vtk(folder / "a.vtp");
+  CHECK(file.array("Points").at("type") == "Float32");
+  CHECK(file.values<float>("Points") == std::vector<float>{0.1F, 0.2F, 0.3F});
+  CHECK(file.values<std::int32_t>("species") == species);
+}
+
+TEST_CASE("columns are interleaved") {
+  CHECK(interleave(std::vector{1.0, 2.0}, std::vector{3.0, 4.0}, std::vector{5.0, 6.0}) ==
+        std::vector<double>{1, 3, 5, 2, 4, 6});
+  CHECK(error_of([] { (void)interleave(std::vector{1.0}, {}, std::vector{1.0}); }) ==
+        "interleave: 1 x, 0 y and 1 z values; give as many of each");
+}
+
+TEST_CASE("vectors of nothing are no numbers") {
+  CHECK(flat(std::vector<Vec3>{}).empty());
+  CHECK(flat(std::vector<Eigen::Vector2f>(3)).size() == 6);
+}
+
+TEST_CASE("a file without points is still a file") {
+  const TempFolder folder;
+  write_vtk_points(folder / "a.vtp", {}, {{"radius", 1, std::span<const double>{}}});
+  const VtkContent file = read_vtk(folder / "a.vtp");
+  CHECK(file.tag("Piece").at("NumberOfPoints") == "0");
+  CHECK(file.values<double>("radius").empty());
+}
+
+TEST_CASE("bodies are written at their poses with the values of their body") {
+  const TempFolder folder;
+  const SurfaceMesh plate = rectangle_mesh(2, 4);
+  const SurfaceMesh wedge{.vertices = {Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(0, 1, 0)}, .triangles = {{0, 1, 2}}};
+  Mat3 quarter_turn;
+  quarter_turn = Eigen::AngleAxisd(std::acos(0.0), Eigen::Vector3d::UnitZ()).toRotationMatrix();
+  const std::vector<double> load{10, 20, 30}, velocity{1, 2, 3, 4, 5, 6, 7, 8, 9};
+  write_vtk_bodies(folder / "b.vtp",
+                   {{&wedge}, {&plate, Vec3(10, 0, 5), quarter_turn}, {&wedge, Vec3(0, 0, 1), Mat3::Identity()}},
+                   {{"load_N", 1, load}, {"velocity_m_s", 3, velocity}});
+
+  const VtkContent file = read_vtk(folder / "b.vtp");
+  CHECK(file.tag("Piece").at("NumberOfPoints") == "10");
+  CHECK(file.tag("Piece").at("NumberOfPolys") == "3");
+  CHECK(file.values<std::int32_t>("connectivity") == std::vector<std::int32_t>{0, 1, 2, 3, 4, 5, 6, 7, 8, 9});
+  CHECK(file.values<std::int32_t>("offsets") == std::vector<std::int32_t>{3, 7, 10});
+  CHECK(file.array("offsets").parents == "VTKFile/PolyData/Piece/Polys/");
+  CHECK(file.values<std::int32_t>("body") == std::vector<std::int32_t>{0, 1, 2});
+  CHECK(file.array("load_N").parents == "VTKFile/PolyData/Piece/CellData/");
+  CHECK(file.values<double>("load_N") == load);
+  CHECK(file.values<double>("velocity_m_s") == velocity);
+  const auto points = file.values<double>("Points");
+  // The plate's first corner (-1, -2, 0) is turned to (2, -1, 0) and moved.
+  CHECK(points[9] == Approx(12));
+  CHECK(points[10] == Approx(-1));
+  CHECK(points[11] == Approx(5));
+  CHECK(points[23] == Approx(1));
+}
+
+TEST_CASE("the ready-made meshes are closed and face outwards") {
+  for (const SurfaceMesh& mesh : {box_mesh({2, 3, 4}), cylinder_mesh(0.5, 2, 96)}) {
+    std::set<std::pair<int, int>> edges;
+    double volume = 0;
+    const auto add = [&](const auto& face) {
+      for (std::size_t k = 0; k < face.size(); ++k) {
+        CHECK(edges.emplace(face[k], face[(k + 1) % face.size()]).second);
+      }
+      const auto vertex = [&](std::size_t k) { return mesh.vertices[static_cast<std::size_t>(face[k])]; };
+      for (std::size_t k = 2; k < face.size(); ++k) volume += vertex(0).dot(vertex(k - 1).cross(vertex(k))) / 6;
+    };
+    for (const auto& face : mesh.triangles) add(face);
+    for (const auto& face : mesh.quads) add(face);
+    for (const auto& [a, b] : edges) CHECK(edges.count({b, a}) == 1);
+    CHECK(volume == Approx(mesh.triangles.empty() ? 24.0 : std::acos(-1.0) * 0.5).epsilon(2e-3));
+  }
+}
+
+TEST_CASE("a collection is complete after each file") {
+  const TempFolder folder;
+  const auto pvd = folder / "run 1/shear & more.pvd";
+  VtkSeries series(pvd);
+  const auto entries = [&] {
+    auto tags = XmlReader::tags(read_file(pvd));
+    REQUIRE(tags.size() >= 2);
+    CHECK(tags[0].name == "VTKFile");
+    CHECK(tags[0].at("type") == "Collection");
+    CHECK(tags[1].name == "Collection");
+    tags.erase(tags.begin(), tags.begin() + 2);
+    return tags;
+  };
+  CHECK(entries().empty());
+
+  for (std::size_t i = 0; i < 3; ++i) {
+    const double time = 0.5 * static_cast<double>(i);
+    const auto grains = series.next_path("grains");
+    CHECK(grains == folder / ("run 1/shear & more/grains_00000" + std::to_string(i) + ".vtp").c_str());
+    write_vtk_points(grains, std::vector<double>{0, 0, 0});
+    series.add(time, grains, "grains");
+    REQUIRE(entries().size() == 2 * i + 1);
+    series.add(time, folder / "elsewhere.vtp", "blade \"A\"");
+    const auto all = entries();
+    REQUIRE(all.size() == 2 * i + 2);
+    CHECK(all[2 * i].at("timestep") == fmt::format("{}", time));
+    CHECK(all[2 * i].at("part") == "0");
+    CHECK(all[2 * i].at("name") == "grains");
+    CHECK(all[2 * i].at("file") == fmt::format("shear &amp; more/grains_{:06}.vtp", i));
+    CHECK(all[2 * i + 1].at("part") == "1");
+    CHECK(all[2 * i + 1].at("name") == "blade &quot;A&quot;");
+    CHECK(all[2 * i + 1].at("file") == "../elsewhere.vtp");
+    CHECK(!std::filesystem::exists(folder / "run 1/shear & more.pvd.tmp"));
+  }
+}
+
+TEST_CASE("a collection in the current folder has relative names, too") {
+  const TempFolder folder;
+  const auto before = std::filesystem::current_path();
+  std::filesystem::current_path(folder.path());
+  VtkSeries series("run.pvd");
+  CHECK(series.next_path("grains") == "run/grains_000000.vtp");
+  series.add(0, series.next_path("grains"), "grains");
+  CHECK_THAT(read_file("run.pvd"), Catch::Matchers::ContainsSubstring("file=\"run/grains_000000.vtp\""));
+  std::filesystem::current_path(before);
+}
+
+TEST_CASE("vtk mistakes are told") {
+  const TempFolder folder;
+  const std::string path = (folder / "a.vtp").string(), start = "vtk file '" + path + "': ";
+  const std::vector<double> one{0, 0, 0}, two{0, 0};
+  CHECK(error_of([&] { write_vtk_points(path, two); }) ==
+        start + "positions has 2 values, which is no multiple of 3; give x y z of each point");
+  CHECK(error_of([&] {
+          write_vtk_points(path, one, {{"v", 3, two}});
+        }) == start + "array 'v' has 2 values, but 1 points with 3 components need 3");
+  CHECK(error_of([&] { write_vtk_points(path, one, {{"", 3, one}}); }) == start + "array 0 has no name; give it one");
+  CHECK(error_of([&] {
+          write_vtk_points(path, one, {{"v", 3, one}, {"v", 3, one}});
+        }) == start + "two arrays are named 'v'; rename one");
+  CHECK(error_of([&] {
+          write_vtk_points(path, one, {{"v", 0, one}});
+        }) == start + "array 'v' has 0 components; give 1 (scalar), 3 (vector) or more");
+  CHECK(error_of([&] { write_vtk_bodies(path, {BodyMesh{}}); }) == start + "body 0 has no mesh; set BodyMesh::mesh");
+  const SurfaceMesh broken{.vertices = {Vec3(0, 0, 0)}, .triangles = {{0, 0, 1}}};
+  CHECK(error_of([&] { write_vtk_bodies(path, {{&broken}}); }) ==
+        start + "body 0: a face uses vertex 1, but the mesh has 1 vertices (0 to 0)");
+  CHECK(error_of([&] {
+          write_vtk_bodies(path, {}, {{"body", 1, std::span<const double>{}}});
+        }) == start + "the array name 'body' is taken; rename yours");
+  CHECK(!std::filesystem::exists(path));
+
+  const std::string pvd = (folder / "a.pvd").string();
+  CHECK(error_of([&] { VtkSeries(folder / "a.vtp"); }) ==
+        "vtk series '" + path + "': ParaView knows a collection by its ending; name it 'a.pvd'");
+  VtkSeries series(pvd);
+  CHECK(error_of([&] { (void)series.next_path("../x"); }) ==
+        "vtk series '" + pvd + "': '../x' cannot name files; use letters, digits, _ and -");
+  CHECK(error_of([&] { series.add(0.0 / 0.0, "f.vtp"); }).find("the time of 'f.vtp' is") != std::string::npos);
+  CHECK(error_of([] { (void)box_mesh({1, 0, 2}); }) == "box_mesh: size is 1 x 0 x 2 m; each must be > 0");
+  CHECK(error_of([] { (void)rectangle_mesh(1, -1); }) == "rectangle_mesh: size is 1 x -1 m; both must be > 0");
+  CHECK(error_of([] { (void)cylinder_mesh(1, 1, 2); }) ==
+        "cylinder_mesh: radius 1 m, length 1 m, 2 segments; both lengths must be > 0, and segments >= 3");
+}

@@ -1,0 +1,74 @@
+#include "catch.hpp"
+
+#include <dem/math/rotation.hpp>
+
+#include <numbers>
+
+using dem::from_eigen;
+using dem::Mat3;
+using dem::Pack;
+using dem::to_eigen;
+using dem::Vec3;
+
+namespace {
+
+/// Largest deviation from a rotation.
+double not_a_rotation(const Mat3& r) {
+  return std::max((r.transpose() * r - Mat3::Identity()).cwiseAbs().maxCoeff(), std::abs(r.determinant() - 1.0));
+}
+
+/// Eigen's formula with sin and cos, which shares no code with the library's series.
+Mat3 reference(const Vec3& angle) {
+  const double t = angle.norm();
+  return t == 0.0 ? Mat3(Mat3::Identity()) : Mat3(Eigen::AngleAxisd(t, angle / t).toRotationMatrix());
+}
+
+const Vec3 axis = Vec3(1, -2, 3).normalized();
+
+}  // namespace
+
+TEST_CASE("a rotation vector of any length gives its rotation") {
+  // Both branches, their border at 0.5, and half and whole turns. Six products each: below 1e-15 but for the argument
+  // reduction of sin and cos.
+  for (const double t :
+       {0.0, 1e-300, 1e-9, 1e-4, 0.01, 0.3, 0.499999, 0.5, 0.500001, 1.0, std::numbers::pi, 6.0, 100.0}) {
+    const Mat3 r = to_eigen(dem::rotation_from_vector(from_eigen(Vec3(t * axis))));
+    CAPTURE(t);
+    CHECK((r - reference(t * axis)).cwiseAbs().maxCoeff() < 2e-15 * std::max(1.0, t));
+    CHECK(not_a_rotation(r) < 2e-15);
+  }
+}
+
+TEST_CASE("a rotation turns the right way") {
+  const auto quarter = dem::rotation_from_vector(dem::Vector3<double>{0, 0, std::numbers::pi / 2});
+  const Vec3 turned = to_eigen(quarter * dem::Vector3<double>{1, 0, 0});
+  CHECK((turned - Vec3(0, 1, 0)).norm() < 1e-15);
+}
+
+TEST_CASE("each lane of a pack turns by its own angle, large or small") {
+  const auto angle = [](int k) { return k % 2 == 0 ? 0.01 * (k + 1) : 0.9 * k; };
+  const Pack t = dem::generate(angle);
+  const dem::Vector3<Pack> v = {t * Pack(axis.x()), t * Pack(axis.y()), t * Pack(axis.z())};
+  const dem::Matrix3<Pack> r = dem::rotation_from_vector(v);
+  for (int k = 0; k < dem::pack_width; ++k) {
+    const auto row = [&](const dem::Vector3<Pack>& p) {
+      return dem::Vector3<double>{dem::lane(p.x, k), dem::lane(p.y, k), dem::lane(p.z, k)};
+    };
+    const Mat3 one = to_eigen(dem::Matrix3<double>{row(r.row0), row(r.row1), row(r.row2)});
+    CHECK((one - reference(angle(k) * axis)).cwiseAbs().maxCoeff() < 4e-15);
+  }
+}
+
+TEST_CASE("orthonormalising squares the error") {
+  const Mat3 r = reference(0.7 * axis);
+  Mat3 noise;
+  noise << 1, -2, 0.5, 0.3, -1, 2, -0.7, 1.5, 0.9;
+  for (const double error : {1e-3, 1e-6, 1e-9}) {
+    const Mat3 off = r + error * noise;
+    REQUIRE(not_a_rotation(off) > error);
+    const Mat3 once = to_eigen(dem::orthonormalised(from_eigen(off)));
+    // Newton: 3/8 (R^T R - 1)^2; the noise has size 3.6, so R^T R is off by up to 10 times `error`. And rounding.
+    CHECK(not_a_rotation(once) < 40 * error * error + 2e-15);
+    CHECK((once - r).norm() < 10 * error);  // it stays the same rotation
+  }
+}

@@ -1,0 +1,155 @@
+#include "mbd_test.hpp"
+
+using namespace dem;
+using namespace dem::mbd;
+using namespace dem::mbd::test;
+
+TEST_CASE("wrong assemblies are refused in words") {
+  Machine<PredictorCorrector> m;
+  const BodyId a = m.add_body(brick("crank", {0, 0, 0}));
+  const BodyId b = m.add_body(brick("rod", {1, 0, 0}));
+  const ConnectionId pin = m.add_connection("pin", a, {0.5, 0, 0});
+  const ConnectionId eye = m.add_connection("eye", b, {0.51, 0, 0});
+  const auto refused = [&](const JointSpec& s) { return message_of([&] { m.add_joint(s); }); };
+
+  CHECK_THAT(refused(joint(JointKind::revolute, "big end", pin, eye)),
+             Contains("the points of revolute joint 'big end' do not meet") && Contains("0.01 m apart") &&
+                 Contains("allowed is 1e-06 m") && Contains("raise the joint's tolerance"));
+  CHECK_THAT(refused(revolute("big end", a, a, {0, 0, 0}, Z)), Contains("joins body 'crank' to itself"));
+  CHECK_THAT(refused(revolute("big end", a, BodyId(7), {0, 0, 0}, Z)),
+             Contains("revolute joint 'big end' names body 7, but the machine has 2 (0 to 1)"));
+  CHECK_THAT(refused(revolute("big end", a, BodyId(), {0, 0, 0}, Z)), Contains("was never added"));
+  CHECK_THAT(refused(revolute("big end", a, b, {0, 0, 0}, {0, 0, 0})), Contains("needs a length"));
+  JointSpec crooked = revolute("big end", a, b, {0.5, 0, 0}, Z);
+  crooked.axis_b = Vec3(0, 0.1, 1);
+  CHECK_THAT(refused(crooked), Contains("axes of revolute joint 'big end' are 0.0996") && Contains("rad apart"));
+  CHECK_THAT(refused(revolute("big end", a, b, {0.5, 0, 0}, Z).with_limits(1.0, -1.0)),
+             Contains("limits of revolute joint 'big end' are 1 to -1"));
+  CHECK_THAT(refused(spherical("ball", a, b, {0.5, 0, 0}).with_limits(0, 1)), Contains("no coordinate of its own"));
+  CHECK_THAT(refused(distance("rod", a, X, b, X)), Contains("need a distance"));
+  CHECK_THAT(refused(universal("cross", a, b, X, X, -X)), Contains("bent by 180 deg"));
+  CHECK_THAT(refused(fixed("weld", a, b, X).with_stiffness(-1.0, 1.0)),
+             Contains("stiffness of fixed joint 'weld' is -1 N/m"));
+  CHECK_THAT(refused(fixed("weld", a, b, X).with_friction({.coefficient = 0.1})), Contains("friction goes on"));
+  CHECK_THAT(refused(bushing("rubber", a, b, X, Z, Vec3::Zero(), Vec3::Zero(), Vec3::Zero(), Vec3::Zero())),
+             Contains("has no stiffness at all"));
+
+  CHECK_THAT(message_of([&] { m.add_actuator(linear_actuator("ram", a, X, BodyId(9), Y, 1, 1)); }),
+             Contains("actuator 'ram' names body 9, but the machine has 2"));
+  CHECK_THAT(message_of([&] { m.add_actuator(linear_actuator("ram", a, X, b, X, 1, 1)); }),
+             Contains("two points of actuator 'ram' are 0 m apart"));
+  CHECK_THAT(message_of([&] { m.add_actuator(joint_actuator("ram", JointId(3), 1, 1)); }),
+             Contains("names a joint that the machine does not have"));
+  CHECK_THAT(message_of([&] { m.add_actuator(linear_actuator("ram", a, X, b, Y, -1, 1)); }),
+             Contains("position gain of actuator 'ram' is -1"));
+  CHECK_THAT(message_of([&] { m.add_spring(spring("coil", a, X, b, Y, -5)); }),
+             Contains("stiffness of a spring is -5"));
+  CHECK_THAT(message_of([&] { m.add_connection("pin", BodyId(5), X); }),
+             Contains("connection point 'pin' names body 5"));
+  const JointId ball = m.add_joint(spherical("ball", a, b, {0.5, 0, 0}));
+  CHECK_THAT(message_of([&] { m.add_actuator(joint_actuator("ram", ball, 1, 1)); }),
+             Contains("which has no coordinate to drive"));
+  CHECK_THAT(message_of([&] { m.add_coupling({"gear", {{ball, 1.0}}}); }), Contains("needs at least 2"));
+  CHECK_THAT(message_of([&] { m.add_sensor(joint_sensor("cell", JointId(4), 0.1)); }),
+             Contains("sensor 'cell' measures number 4"));
+  CHECK_THAT(message_of([&] { m.set_friction_preload(ball, 1.0); }), Contains("has no friction to preload"));
+  CHECK_THAT(message_of([&] { m.initialise(0.0, Vec3::Zero()); }),
+             Contains("the stiffness of spherical joint 'ball' is to be derived") && Contains("design_for(dt)"));
+  CHECK_THAT(message_of([&] { m.step(0.0); }), Contains("time step is 0 s"));
+  m.substeps = 0;
+  CHECK_THAT(message_of([&] { m.design_for(1e-3); }), Contains("substeps are 0"));
+}
+
+TEST_CASE("connection points that meet are joined, wherever the bodies are") {
+  Machine<PredictorCorrector> m;
+  const Mat3 turn = Eigen::AngleAxisd(0.5, Vec3::UnitY()).toRotationMatrix();
+  const BodyId a = m.add_body(brick("a", {0, 0, 0}).at({1, 2, 3}, turn));
+  const BodyId b = m.add_body(brick("b", {0, 0, 0}));
+  const ConnectionId pa = m.add_connection_in_reference("pa", a, {-1, -2, 0});
+  const ConnectionId pb = m.add_connection("pb", b, m.connection_position(pa));
+  const JointId j = m.add_joint(joint(JointKind::spherical, "j", pa, pb));
+  CHECK(m.violation(j).displacement < 1e-14);
+  CHECK((m.connection_position(pa) - (Vec3(1, 2, 3) + turn * Vec3(-1, -2, 0))).norm() < 1e-14);
+}
+
+TEST_CASE("bodies and joints can be added while a machine runs") {
+  Machine<PredictorCorrector> m;
+  const BodyId a = m.add_body(brick("a", {0, 0, 0}));
+  m.add_joint(fixed("weld", m.ground(), a, {0, 0, 0}));
+  CHECK_FALSE(m.is_initialised());
+  m.run(0.1, 1e-4);
+  CHECK(m.is_initialised());
+  const BodyId b = m.add_body(brick("b", {0.5, 0, 0}));
+  const JointId second = m.add_joint(fixed("second", a, b, {0.2, 0, 0}));
+  CHECK_FALSE(m.is_initialised());
+  REQUIRE(m.run(0.5, 1e-4));
+  CHECK(m.time() == Approx(0.6));
+  CHECK(m.reaction(second).force.z == Approx(9.81).epsilon(1e-5));
+}
+
+TEST_CASE("the stable time step names the part that limits it, and is one") {
+  Machine<SymplecticEuler> m;
+  m.gravity.setZero();
+  const BodyId a = m.add_body(given_body("a", 2.0, Vec3(1, 1, 1)));
+  const BodyId b = m.add_body(given_body("b", 2.0, Vec3(1, 1, 1)).at({1, 0, 0}).moving({0, 1e-3, 0}));
+  m.add_spring(spring("soft", a, {0, 0, 0}, b, {1, 0, 0}, 10.0));
+  m.add_joint(point_on_plane("stiff", a, b, {0.5, 0, 0}, X).with_stiffness(1e6, 0).with_damping(0, 0));
+  const StableTimeStep limit = m.stable_time_step();
+  CHECK(limit.limited_by == "point-on-plane joint 'stiff'");
+  // Two masses of 2 kg and one spring of 1e6 N/m along their line: omega = 1000 rad/s, limit 2/omega. The bound that
+  // sums over a body's parts knows the soft spring too, which takes 5e-6 off.
+  CHECK(limit.dt == Approx(2e-3).epsilon(1e-3));
+  CHECK(limit.dt < 2e-3 * (1 + 1e-4));
+}
+
+TEST_CASE("derived stiffness is stable with room to spare, for every integrator") {
+  const auto room = [](auto machine) {
+    const BodyId ground = machine.ground();
+    BodyId last = ground;
+    for (int k = 0; k < 5; ++k) {
+      const BodyId link =
+          machine.add_body(box_body("link " + std::to_string(k), {0.3, 0.05, 0.05}, 7800).at({0.3 * k + 0.15, 0, 0}));
+      machine.add_joint(revolute("hinge " + std::to_string(k), last, link, {0.3 * k, 0, 0}, k % 2 ? Y : Z));
+      last = link;
+    }
+    const MachineReport report = machine.run(0.5, 1e-4);
+    CHECK(report.ok);
+    return machine.stable_time_step().dt / 1e-4;
+  };
+  CHECK(room(Machine<SymplecticEuler>{}) > 1.5);
+  CHECK(room(Machine<VelocityVerlet>{}) > 1.5);
+  CHECK(room(Machine<PredictorCorrector>{}) > 1.5);
+}
+
+TEST_CASE("a machine that blows up says which body, when, and what to change") {
+  Machine<PredictorCorrector> m;
+  const BodyId b = m.add_body(brick("pendulum bob", {1, 0, 0}));
+  m.add_joint(spherical("pivot", m.ground(), b, {0, 0, 0}).with_stiffness(1e8, 0).with_damping(0, 0));
+  const MachineReport report = m.run(1.0, 1e-2);
+  CHECK_FALSE(report.ok);
+  CHECK(report.body == b);
+  CHECK(report.time < 1.0);
+  CHECK_THAT(report.text, Contains("body 'pendulum bob' blew up at t = ") && Contains("spherical joint 'pivot'") &&
+                              Contains("smaller time step"));
+}
+
+TEST_CASE("a recorder samples joints, bodies and the user's own numbers") {
+  Machine<PredictorCorrector> m;
+  const BodyId b = m.add_body(brick("rod", {1, 0, 0}));
+  const JointId hinge = m.add_joint(revolute("hinge", m.ground(), b, {0, 0, 0}, Y));
+  Recorder recorder(m);
+  recorder.add("time_s", [&] { return m.time(); }).add(hinge).add(b);
+  REQUIRE(recorder.columns().size() == 1 + 8 + 6);
+  CHECK(recorder.columns()[1] == "hinge_angle_rad");
+  CHECK(recorder.columns()[3] == "hinge_force_x_N");
+  int rows = 0;
+  m.run(0.1, 1e-3, [&] {
+    if (recorder.is_due(m.time(), 0.01)) {
+      const auto row = recorder.sample();
+      CHECK(row[0] == m.time());
+      CHECK(row[1] == m.coordinate(hinge));
+      rows += 1;
+    }
+  });
+  CHECK(rows == 10);
+}

@@ -1,0 +1,258 @@
+#include <array>
+#include <random>
+#include <vector>
+
+#include "mbd_test.hpp"
+
+using namespace dem;
+using namespace dem::mbd;
+using namespace dem::mbd::test;
+
+namespace {
+
+constexpr std::array all_kinds = {JointKind::fixed,          JointKind::spherical,         JointKind::revolute,
+                                  JointKind::cylindrical,    JointKind::prismatic,         JointKind::planar,
+                                  JointKind::universal,      JointKind::constant_velocity, JointKind::point_on_line,
+                                  JointKind::point_on_plane, JointKind::distance,          JointKind::bushing};
+
+Mat3 turned(const Vec3& angle) { return to_eigen(rotation_from_vector(from_eigen(angle))); }
+
+JointSpec joint_of(JointKind kind, BodyId a, BodyId b) {
+  const Vec3 at(0.5, 0.1, -0.2), axis = Vec3(1, 2, -1).normalized();
+  JointSpec s =
+      kind == JointKind::distance ? distance("j", a, at, b, at + Vec3(0.3, 0, 0.4)) : joint(kind, "j", a, b, at, axis);
+  if (kind == JointKind::bushing) {
+    s = bushing("j", a, b, at, axis, {1000, 2000, 3000}, {1, 2, 3}, {100, 150, 120}, {1, 2, 3});
+  }
+  return s.with_stiffness(2000.0, 300.0).with_damping(5.0, 2.0);
+}
+
+}  // namespace
+
+TEST_CASE("without damping, every joint's force is the gradient of its energy") {
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
+  const auto vector = [&](double size) { return Vec3(size * Vec3(uniform(random), uniform(random), uniform(random))); };
+  for (const JointKind kind : all_kinds) {
+    Machine<PredictorCorrector> m;
+    const BodyId a = m.add_body(brick("a", {0, 0, 0}).at({0, 0, 0}, turned({0.3, 0.2, -0.4})));
+    const BodyId b = m.add_body(brick("b", {1, 0, 0}).at({1, 0, 0}, turned({-0.1, 0.5, 0.2})));
+    JointSpec spec = joint_of(kind, a, b).with_damping(0.0, 0.0);
+    spec.bushing_damping.setZero();
+    spec.bushing_rotational_damping.setZero();
+    m.add_joint(spec);
+    m.design_for(1e-3);
+    // Somewhere off the assembled pose.
+    m.body(b).motion.position += from_eigen(vector(0.05));
+    m.body(b).motion.rotation = from_eigen(Mat3(turned(vector(0.2)) * m.body(b).rotation()));
+    m.clear_forces();
+    m.initialise(0.0, Vec3::Zero());
+    const Vec3 f = to_eigen(m.body(b).force), t = to_eigen(m.body(b).torque);
+    INFO(name_of(kind));
+    // Force and counterforce, and their moments about the origin.
+    CHECK((f + to_eigen(m.body(a).force)).norm() < 1e-10);
+    const Vec3 moment = t + m.body(b).position().cross(f) + to_eigen(m.body(a).torque) +
+                        m.body(a).position().cross(to_eigen(m.body(a).force));
+    CHECK(moment.norm() < 1e-10);
+    const double h = 1e-5;
+    const auto energy = [&](const Vec3& shift, const Vec3& turn) {
+      Body moved = m.body(b);
+      moved.motion.position += from_eigen(shift);
+      moved.motion.rotation = from_eigen(Mat3(turned(turn) * moved.rotation()));
+      return elastic_energy(m.parts().joints[0], m.body(a), moved);
+    };
+    for (int k = 0; k < 3; ++k) {
+      const Vec3 e = Vec3::Unit(k), none = Vec3::Zero();
+      // Central differences of order h^2 = 1e-10 on energies of order 10.
+      CHECK(f[k] == Approx((energy(-h * e, none) - energy(h * e, none)) / (2 * h)).margin(1e-4));
+      CHECK(t[k] == Approx((energy(none, -h * e) - energy(none, h * e)) / (2 * h)).margin(1e-4));
+    }
+  }
+}
+
+TEST_CASE("dampers of a joint never feed energy, and keep momentum") {
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
+  const auto vector = [&](double size) { return Vec3(size * Vec3(uniform(random), uniform(random), uniform(random))); };
+  for (const JointKind kind : all_kinds) {
+    Machine<PredictorCorrector> m;
+    const Vec3 va = vector(1.0), wa = vector(1.0), vb = vector(1.0), wb = vector(1.0);
+    const BodyId a = m.add_body(brick("a", {0, 0, 0}).moving(va, wa));
+    const BodyId b = m.add_body(brick("b", {1, 0, 0}).moving(vb, wb));
+    JointSpec spec = joint_of(kind, a, b);
+    m.add_joint(spec);
+    m.design_for(1e-3);
+    m.initialise(0.0, Vec3::Zero());  // at the assembled pose the springs are at rest: only the dampers act
+    const auto power = [&](BodyId id) {
+      const Body& body = m.body(id);
+      return to_eigen(body.force).dot(body.velocity()) + to_eigen(body.torque).dot(body.angular_velocity());
+    };
+    INFO(name_of(kind));
+    CHECK(power(a) + power(b) <= 1e-12);
+  }
+}
+
+TEST_CASE("a revolute joint is two spherical joints on a line") {
+  // Half the stiffness at +-h each gives the same force as one revolute joint with kr = k h^2.
+  const double k = 4000.0, h = 0.1;
+  const auto build = [&](bool revolute_joint) {
+    Machine<PredictorCorrector> m;
+    const BodyId a = m.ground(), b = m.add_body(brick("b", {1, 0, 0}));
+    if (revolute_joint) {
+      m.add_joint(revolute("r", a, b, {0, 0, 0}, Z).with_stiffness(k, k * h * h).with_damping(0, 0));
+    } else {
+      m.add_joint(spherical("s1", a, b, h * Z).with_stiffness(k / 2, 0).with_damping(0, 0));
+      m.add_joint(spherical("s2", a, b, -h * Z).with_stiffness(k / 2, 0).with_damping(0, 0));
+    }
+    m.body(b).motion.position += {0.01, 0.02, -0.03};
+    m.body(b).motion.rotation = from_eigen(turned({0.2, -0.1, 0.5}));
+    m.initialise(0.0, Vec3::Zero());
+    return m.body(b);
+  };
+  const Body one = build(true), two = build(false);
+  CHECK((to_eigen(one.force) - to_eigen(two.force)).norm() < 1e-10);
+  CHECK((to_eigen(one.torque) - to_eigen(two.torque)).norm() < 1e-10);
+}
+
+TEST_CASE("a joint leaves its free coordinates alone and holds the others") {
+  // A push along and a twist about every axis: what is free moves as a free body would, what is held does not.
+  struct Case {
+    JointKind kind;
+    std::array<bool, 6> is_free;  // x y z, about x y z
+  };
+  const Case cases[] = {
+      {JointKind::fixed, {0, 0, 0, 0, 0, 0}},         {JointKind::spherical, {0, 0, 0, 1, 1, 1}},
+      {JointKind::revolute, {0, 0, 0, 0, 0, 1}},      {JointKind::cylindrical, {0, 0, 1, 0, 0, 1}},
+      {JointKind::prismatic, {0, 0, 1, 0, 0, 0}},     {JointKind::planar, {1, 1, 0, 0, 0, 1}},
+      {JointKind::universal, {0, 0, 0, 1, 1, 0}},     {JointKind::constant_velocity, {0, 0, 0, 1, 1, 0}},
+      {JointKind::point_on_line, {0, 0, 1, 1, 1, 1}}, {JointKind::point_on_plane, {1, 1, 0, 1, 1, 1}}};
+  for (const Case& c : cases) {
+    for (int k = 0; k < 6; ++k) {
+      Machine<PredictorCorrector> m;
+      m.gravity.setZero();
+      const BodyId b = m.add_body(given_body("b", 2.0, Vec3(0.1, 0.1, 0.1)));
+      m.add_joint(joint(c.kind, "j", m.ground(), b, {0, 0, 0}, Z));
+      const Vec3 axis = Vec3::Unit(k % 3);
+      if (k < 3) {
+        m.add_load(applied_force("push", b, {0, 0, 0}, axis, 4.0));
+      } else {
+        m.add_load(applied_torque("twist", b, axis, 0.2));
+      }
+      m.run(0.1, 1e-4);
+      // Free: a t^2/2 = 2 0.01/2 either way. Held: force over stiffness, k > 1e6 N/m and > 1e5 N m/rad.
+      const double moved =
+          k < 3 ? m.body(b).position()[k]
+                : 0.5 * (m.body(b).rotation() - m.body(b).rotation().transpose())((k + 2) % 3, (k + 1) % 3);
+      INFO(name_of(c.kind) << ", direction " << k);
+      if (c.is_free[static_cast<std::size_t>(k)]) {
+        CHECK(moved == Approx(0.01).epsilon(1e-3));
+      } else {
+        CHECK(std::abs(moved) < 1e-5);
+      }
+    }
+  }
+}
+
+TEST_CASE("a joint carries the weight, and says so") {
+  Machine<PredictorCorrector> m;
+  const BodyId b = m.add_body(brick("b", {0.4, 0, 0}, 3.0));
+  const JointId weld = m.add_joint(fixed("weld", m.ground(), b, {0, 0, 0}));
+  m.run(0.5, 1e-4);
+  const Wrench r = m.reaction(weld);
+  CHECK(r.force.z == Approx(3.0 * 9.81).epsilon(1e-6));
+  CHECK(r.torque.y == Approx(-3.0 * 9.81 * 0.4).epsilon(1e-6));
+  const Violation v = m.violation(weld);
+  CHECK(v.displacement == Approx(3.0 * 9.81 / m.joint(weld).k).epsilon(1e-3));
+  CHECK(v.rotation == Approx(3.0 * 9.81 * 0.4 / m.joint(weld).kr).epsilon(1e-3));
+}
+
+TEST_CASE("a bushing gives way as its springs say, in each direction") {
+  const Vec3 k(1e4, 2e4, 4e4), kr(100, 200, 400);
+  for (int i = 0; i < 6; ++i) {
+    Machine<PredictorCorrector> m;
+    m.gravity.setZero();
+    const BodyId b = m.add_body(given_body("b", 1.0, Vec3(0.01, 0.01, 0.01)));
+    m.add_joint(bushing("rubber", m.ground(), b, {0, 0, 0}, Z, k, Vec3(200, 200, 200), kr, Vec3(2, 2, 2)));
+    // The joint's x is not the global one; ask in its own axes.
+    const Axes axes = m.parts().joints[0].axes_a;
+    const Vec3 directions[3] = {to_eigen(axes.x), to_eigen(axes.y), to_eigen(axes.z)};
+    const Vec3 n = directions[i % 3];
+    if (i < 3) {
+      m.add_load(applied_force("push", b, {0, 0, 0}, n, 10.0));
+    } else {
+      m.add_load(applied_torque("twist", b, n, 0.1));
+    }
+    m.run(0.3, 1e-4);
+    if (i < 3) {
+      CHECK(m.body(b).position().dot(n) == Approx(10.0 / k[i]).epsilon(1e-6));
+    } else {
+      const Mat3 r = m.body(b).rotation();
+      const Vec3 angle = 0.5 * Vec3(r(2, 1) - r(1, 2), r(0, 2) - r(2, 0), r(1, 0) - r(0, 1));
+      CHECK(angle.dot(n) == Approx(0.1 / kr[i - 3]).epsilon(1e-5));
+    }
+  }
+}
+
+TEST_CASE("the angle of a hinge counts on over whole turns, to the last digits") {
+  Machine<SymplecticEuler> m;
+  m.gravity.setZero();
+  const BodyId wheel = m.add_body(given_body("wheel", 1.0, Vec3(0.1, 0.1, 0.2)).moving(Vec3::Zero(), {0, 0, -40.0}));
+  const JointId hinge = m.add_joint(revolute("axle", m.ground(), wheel, {0, 0, 0}, Z).starting_at(1.0));
+  m.run(10.0, 1e-3);
+  CHECK(m.coordinate(hinge) == Approx(1.0 - 400.0).epsilon(1e-12));
+  CHECK(m.speed(hinge) == Approx(-40.0).epsilon(1e-12));
+}
+
+TEST_CASE("stops catch a joint that turns and one that slides") {
+  Machine<PredictorCorrector> m;
+  m.gravity.setZero();
+  const BodyId arm = m.add_body(given_body("arm", 1.0, Vec3(0.1, 0.1, 0.1)).moving(Vec3::Zero(), {0, 0, 3.0}));
+  const BodyId cart = m.add_body(given_body("cart", 2.0, Vec3(0.1, 0.1, 0.1)).at({0, 5, 0}).moving({0, 0, -1.0}));
+  const JointId hinge = m.add_joint(revolute("hinge", m.ground(), arm, {0, 0, 0}, Z).with_limits(-1.0, 0.5));
+  const JointId guide = m.add_joint(prismatic("guide", m.ground(), cart, {0, 5, 0}, Z)
+                                        .with_limits({.lower = -0.2, .upper = 0.3, .stiffness = 2e5, .damping = 0.0}));
+  m.add_load(applied_torque("twist", arm, Z, 5.0));
+  double lowest = 0.0;
+  m.run(1.0, 1e-4, [&] { lowest = std::min(lowest, m.coordinate(guide)); });
+  CHECK(m.coordinate(hinge) == Approx(0.5).margin(1e-4));
+  CHECK(m.extras(hinge)->stop_force == Approx(-5.0).epsilon(1e-3));
+  // Undamped stops give the speed back, here twice; the deepest point is v sqrt(m/k). Entering a stop within a step
+  // costs an error of order omega dt = 0.03 in the force of that step, 1e-3 in the speed.
+  CHECK(lowest == Approx(-0.2 - std::sqrt(2.0 / 2e5)).epsilon(1e-4));
+  CHECK(m.speed(guide) == Approx(-1.0).epsilon(1e-3));
+}
+
+TEST_CASE("joint friction: sticks below its limit, slides with it, and stops a wheel on time") {
+  const double mu = 0.3;
+  for (const double slope : {0.25, 0.4}) {  // tan of the incline, below and above mu
+    Machine<PredictorCorrector> m;
+    const double angle = std::atan(slope);
+    m.gravity = 9.81 * Vec3(std::sin(angle), 0, -std::cos(angle));
+    const BodyId cart = m.add_body(given_body("cart", 2.0, Vec3(0.1, 0.1, 0.1)));
+    const JointId guide =
+        m.add_joint(prismatic("guide", m.ground(), cart, {0, 0, 0}, X).with_friction({.coefficient = mu}));
+    m.run(1.0, 1e-4);
+    if (slope < mu) {
+      CHECK(std::abs(m.coordinate(guide)) < 1e-4);
+      CHECK(m.extras(guide)->friction_force.x == Approx(-2.0 * 9.81 * std::sin(angle)).epsilon(1e-3));
+    } else {
+      const double a = 9.81 * (std::sin(angle) - mu * std::cos(angle));
+      CHECK(m.speed(guide) == Approx(a).epsilon(5e-3));  // the start, while friction builds up, is not Coulomb's
+    }
+  }
+  // A wheel of 2 kg m^2 at 10 rad/s on a bearing of 0.05 m under 40 kg: mu m g r = 5.886 N m stops it in 3.398 s.
+  Machine<SymplecticEuler> m;
+  const BodyId wheel = m.add_body(given_body("wheel", 40.0, Vec3(1.5, 2.0, 1.5)).moving(Vec3::Zero(), {0, 10, 0}));
+  const JointId axle =
+      m.add_joint(revolute("axle", m.ground(), wheel, {0, 0, 0}, Y).with_friction({.coefficient = mu, .radius = 0.05}));
+  const double torque = mu * 40.0 * 9.81 * 0.05;
+  m.run(2.0, 1e-4);
+  CHECK(m.speed(axle) == Approx(10.0 - torque / 2.0 * 2.0).epsilon(1e-3));
+  m.run(2.0, 1e-4);
+  CHECK(std::abs(m.speed(axle)) < 1e-3);
+  // A brake is a preload: 1000 N more stop it eleven times as fast; a torque below the limit then moves nothing.
+  m.set_friction_preload(axle, 1000.0);
+  m.add_load(applied_torque("drive", wheel, Y, 15.0));
+  m.run(1.0, 1e-4);
+  CHECK(std::abs(m.speed(axle)) < 1e-3);
+}

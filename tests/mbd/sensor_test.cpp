@@ -1,0 +1,56 @@
+#include "mbd_test.hpp"
+
+using namespace dem;
+using namespace dem::mbd;
+using namespace dem::mbd::test;
+
+TEST_CASE("a window average forgets what is older than its window") {
+  WindowAverage average(1.0);
+  const auto sample = [](double f) { return Wrench{{f, 2 * f, 0}, {0, 0, -f}}; };
+  for (int k = 0; k < 1000; ++k) average.add(sample(100.0), 1e-3);
+  CHECK(average.mean().force.x == Approx(100.0));
+  for (int k = 0; k < 500; ++k) average.add(sample(0.0), 1e-3);
+  CHECK(average.mean().force.x == Approx(50.0).epsilon(0.04));  // the oldest edge is 1/64 of the window coarse
+  for (int k = 0; k < 600; ++k) average.add(sample(0.0), 1e-3);
+  CHECK(average.mean().force.x == 0.0);
+  CHECK(average.latest().torque.z == 0.0);
+  average.add(sample(7.0), 1e-3);
+  CHECK(average.latest().force.y == 14.0);
+  average.clear();
+  CHECK(average.mean().force.x == 7.0);  // nothing in the window: the newest sample
+  CHECK_THAT(message_of([] { WindowAverage(-1.0); }), Contains("averaging window is -1 s"));
+}
+
+TEST_CASE("a mean over an oscillation finds its middle") {
+  WindowAverage average(0.5);
+  for (int k = 0; k < 20000; ++k) average.add({{3.0 + std::sin(2 * pi * 40.0 * k * 1e-4), 0, 0}, {}}, 1e-4);
+  CHECK(average.mean().force.x == Approx(3.0).epsilon(5e-3));
+}
+
+TEST_CASE("sensors read contacts, sums, joints and actuators") {
+  Machine<PredictorCorrector> m;
+  const BodyId lid = m.add_body(given_body("lid", 2.0, Vec3(0.1, 0.1, 0.1)));
+  const JointId weld = m.add_joint(fixed("weld", m.ground(), lid, {0, 0, 0}));
+  const SensorId contact = m.add_sensor(contact_sensor("grains on the lid", lid, 0.05));
+  const SensorId total = m.add_sensor(total_force_sensor("all on the lid", lid, 0.05));
+  const SensorId joint = m.add_sensor(joint_sensor("load cell", weld, 0.05));
+  const double dt = 1e-4;
+  m.design_for(dt);
+  m.initialise(0.0, m.gravity);
+  for (int k = 0; k < 3000; ++k) {  // the phases as a world calls them, with a push in place of grains
+    for (int stage = 0; stage < PredictorCorrector::stages; ++stage) {
+      m.before_forces(stage, dt);
+      m.clear_forces();
+      m.body(lid).apply({0, 0, -5.0}, {0.1, 0, 0});
+      m.add_forces(m.stage_time(k * dt, dt, stage), dt, stage, stage == 1);
+      m.advance(stage, dt, m.gravity);
+      m.prescribe((k + 1) * dt, dt);
+    }
+  }
+  CHECK(m.time() == Approx(0.3));
+  CHECK(m.sensor(contact).mean().force.z == Approx(-5.0));
+  CHECK(m.sensor(contact).mean().torque.y == Approx(0.5));
+  CHECK(m.sensor(joint).mean().force.z == Approx(5.0 + 2.0 * 9.81).epsilon(1e-6));
+  CHECK(m.sensor(joint).mean().torque.y == Approx(-0.5).epsilon(1e-6));
+  CHECK(m.sensor(total).mean().force.z == Approx(2.0 * 9.81).epsilon(1e-6));
+}

@@ -1,0 +1,124 @@
+#include "mbd_test.hpp"
+
+using namespace dem;
+using namespace dem::mbd;
+using namespace dem::mbd::test;
+
+namespace {
+
+/// Two shafts bent by an angle, joined in the middle; shaft a is driven at 10 rad/s, shaft b feels a small friction.
+struct Shafts {
+  Machine<PredictorCorrector> m;
+  JointId in, out;
+
+  Shafts(JointKind kind, double bend) {
+    const Vec3 axis_a = X, axis_b(std::cos(bend), std::sin(bend), 0);
+    m.gravity.setZero();
+    const BodyId a = m.add_body(
+        given_body("shaft a", 1.0, Vec3(0.01, 0.01, 0.01)).at(-0.5 * axis_a).moving(Vec3::Zero(), 10.0 * axis_a));
+    const BodyId b = m.add_body(
+        given_body("shaft b", 1.0, Vec3(0.01, 0.01, 0.01)).at(0.5 * axis_b).moving(Vec3::Zero(), 10.0 * axis_b));
+    in = m.add_joint(revolute("bearing a", m.ground(), a, -0.5 * axis_a, axis_a));
+    out = m.add_joint(revolute("bearing b", m.ground(), b, 0.5 * axis_b, axis_b));
+    JointSpec middle = universal("middle", a, b, {0, 0, 0}, axis_a, axis_b);
+    middle.kind = kind;
+    m.add_joint(middle);
+    m.add_motion(prescribed_joint("motor", in, Signal::ramp(0.0, 10.0)));
+    m.add_actuator(joint_actuator("load", out, 0.0, 0.01));
+  }
+};
+
+}  // namespace
+
+TEST_CASE("a universal joint at 30 degrees has the known ripple: cos(b) to 1/cos(b)") {
+  const double bend = pi / 6;
+  Shafts s(JointKind::universal, bend);
+  s.m.run(0.2, 1e-4);  // the start is a jolt: shaft b begins at the mean speed
+  double lowest = 1e9, highest = 0.0, worst = 0.0;
+  // The cross's first arm stands at across(axis a) for angle 0; tan(out) = tan(in) cos(bend) or / cos(bend).
+  s.m.run(pi / 10.0 * 2, 1e-4, [&] {
+    const double ratio = s.m.speed(s.out) / 10.0;
+    lowest = std::min(lowest, ratio);
+    highest = std::max(highest, ratio);
+    // sin(bend)^2 cos^2 of the angle from the arm's plane; the arm of shaft a is z at assembly, out of the plane of
+    // bend.
+    const double q = 10.0 * s.m.time();
+    const double one = std::cos(bend) / (1 - std::pow(std::sin(bend) * std::cos(q), 2));
+    const double two = std::cos(bend) / (1 - std::pow(std::sin(bend) * std::sin(q), 2));
+    worst = std::max(worst, std::min(std::abs(ratio - one), std::abs(ratio - two)));
+  });
+  CHECK(lowest == Approx(std::cos(bend)).epsilon(2e-4));
+  CHECK(highest == Approx(1.0 / std::cos(bend)).epsilon(2e-4));
+  CHECK(worst < 5e-4);
+}
+
+TEST_CASE("a constant-velocity joint at 30 degrees turns both shafts at the same speed") {
+  Shafts s(JointKind::constant_velocity, pi / 6);
+  s.m.run(0.2, 1e-4);
+  double worst = 0.0;
+  s.m.run(pi / 10.0 * 2, 1e-4, [&] { worst = std::max(worst, std::abs(s.m.speed(s.out) / 10.0 - 1.0)); });
+  CHECK(worst < 1e-6);
+  CHECK(s.m.coordinate(s.out) == Approx(s.m.coordinate(s.in)).epsilon(1e-6));
+}
+
+TEST_CASE("gears turn in their ratio and see each other's inertia") {
+  // Outer gears 20 : 60 teeth: ratio -1/3. A torque T on the pinion: a1 = T / (I1 + I2/9).
+  Machine<PredictorCorrector> m;
+  const BodyId pinion = m.add_body(given_body("pinion", 1.0, Vec3(0.02, 0.02, 0.02)));
+  const BodyId wheel = m.add_body(given_body("wheel", 5.0, Vec3(0.9, 0.9, 0.9)).at({1, 0, 0}));
+  const JointId p = m.add_joint(revolute("pinion axle", m.ground(), pinion, {0, 0, 0}, Z));
+  const JointId w = m.add_joint(revolute("wheel axle", m.ground(), wheel, {1, 0, 0}, Z));
+  const CouplingId teeth = m.add_coupling(gear("teeth", p, w, -20.0 / 60.0));
+  m.add_load(applied_torque("motor", pinion, Z, 6.0));
+  m.run(1.0, 1e-4);
+  const double a = 6.0 / (0.02 + 0.9 / 9.0);
+  CHECK(m.speed(p) == Approx(a).epsilon(1e-5));
+  CHECK(m.speed(w) / m.speed(p) == Approx(-1.0 / 3.0).epsilon(1e-6));
+  CHECK(m.coordinate(w) / m.coordinate(p) == Approx(-1.0 / 3.0).epsilon(1e-5));  // the teeth give way by torque / k
+  // The torque through the teeth on the wheel, 1/3 of the turn: I2 a / 3.
+  CHECK(std::abs(m.coupling(teeth).multiplier) == Approx(0.9 * a / 3.0).epsilon(1e-4));
+}
+
+TEST_CASE("a rack slides by the pinion's radius per radian") {
+  Machine<PredictorCorrector> m;
+  m.gravity.setZero();
+  const BodyId pinion = m.add_body(given_body("pinion", 1.0, Vec3(0.01, 0.01, 0.01)));
+  const BodyId rack = m.add_body(given_body("rack", 9.072, Vec3(0.1, 0.1, 0.1)).at({0, 0.1, 0}));
+  const JointId p = m.add_joint(revolute("steering", m.ground(), pinion, {0, 0, 0}, Z));
+  const JointId r = m.add_joint(prismatic("slide", m.ground(), rack, {0, 0.1, 0}, X));
+  m.add_coupling(rack_and_pinion("teeth", p, r, 0.1));
+  m.add_actuator(joint_actuator("hands", p, 500.0, 20.0, Signal::smooth_step(0.0, 0.9, 0.0, 0.5)));
+  m.run(2.0, 1e-4);
+  CHECK(m.coordinate(p) == Approx(0.9).epsilon(1e-4));
+  CHECK(m.coordinate(r) == Approx(0.1 * m.coordinate(p)).epsilon(1e-9));
+
+  Machine<PredictorCorrector> n;
+  n.gravity.setZero();
+  const BodyId spindle =
+      n.add_body(given_body("spindle", 1.0, Vec3(0.01, 0.01, 0.01)).moving(Vec3::Zero(), {5.0, 0, 0}));
+  const BodyId nut = n.add_body(given_body("nut", 1.0, Vec3(0.01, 0.01, 0.01)).moving({5.0 * 0.004 / (2 * pi), 0, 0}));
+  const JointId turning = n.add_joint(revolute("bearing", n.ground(), spindle, {0, 0, 0}, X));
+  const JointId sliding = n.add_joint(prismatic("guide", n.ground(), nut, {0, 0, 0}, X));
+  n.add_coupling(screw("thread", turning, sliding, 0.004));
+  n.run(4.0 * pi / 5.0, 1e-4);
+  CHECK(n.coordinate(sliding) == Approx(2 * 0.004).epsilon(1e-4));
+}
+
+TEST_CASE("a differential splits the torque and shares the speed") {
+  // Input at ratio 4 to the mean of two wheels; the left one is four times as heavy to turn.
+  Machine<PredictorCorrector> m;
+  const auto wheel = [&](const char* name, double inertia, double y) {
+    const BodyId id = m.add_body(given_body(name, 1.0, Vec3(inertia, inertia, inertia)).at({0, y, 0}));
+    return m.add_joint(revolute(name, m.ground(), id, {0, y, 0}, Y));
+  };
+  const JointId in = wheel("input", 0.01, 0.0), left = wheel("left", 0.8, 1.0), right = wheel("right", 0.2, -1.0);
+  m.add_coupling(differential("differential", in, left, right, 4.0));
+  m.add_load(applied_torque("engine", m.body_named("input"), Y, 3.0));
+  m.run(1.0, 1e-4);
+  // Both wheels get the same torque, so their speeds are as 1 : 4, and the input is 4 times their mean.
+  CHECK(m.speed(right) / m.speed(left) == Approx(4.0).epsilon(1e-5));
+  CHECK(m.speed(in) == Approx(2.0 * (m.speed(left) + m.speed(right))).epsilon(1e-5));
+  // T = I a with wheels' torque 2 (T_in - I_in a_in) each: a_in = 2 (a_l + a_r), a_l = tau/0.8, a_r = tau/0.2.
+  const double tau = 2.0 * 3.0 / (1.0 + 2.0 * 0.01 * 2.0 * (1.0 / 0.8 + 1.0 / 0.2));
+  CHECK(m.speed(left) == Approx(tau / 0.8).epsilon(1e-4));
+}

@@ -1,0 +1,27 @@
+#pragma once
+
+#include <dem/shape/shape.hpp>
+
+#include <vector>
+
+/// A contact as a test looks at it.
+struct Contact {
+  std::uint32_t feature;
+  dem::Vec3 normal, point;  ///< the point from the centre of a
+  double overlap, effective_radius;
+};
+
+/// All contacts of shape a with b, b being `separation` away, in the order in which they are found.
+template <class Shape>
+std::vector<Contact> contacts(const Shape& a, const dem::Mat3& turn_a, const Shape& b, const dem::Mat3& turn_b,
+                              const dem::Vec3& separation) {
+  alignas(64) double pose_a[Shape::pose_size + 1] = {}, pose_b[Shape::pose_size + 1] = {};
+  a.orient(dem::from_eigen(turn_a), pose_a);
+  b.orient(dem::from_eigen(turn_b), pose_b);
+  std::vector<Contact> found;
+  Shape::collide(a, pose_a, b, pose_b, dem::from_eigen(separation), [&](std::uint32_t feature, const auto& touch) {
+    const auto g = touch.geometry();
+    found.push_back({feature, to_eigen(g.normal), to_eigen(g.arm), g.overlap, g.effective_radius});
+  });
+  return found;
+}

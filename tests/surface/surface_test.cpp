@@ -1,0 +1,108 @@
+#include "core/error_of.hpp"
+
+#include <dem/surface/box.hpp>
+#include <dem/surface/plane.hpp>
+
+#include <random>
+#include <vector>
+
+using Catch::Approx;
+using dem::Vec3;
+using dem::surface::Box;
+using dem::surface::Plane;
+
+namespace {
+
+struct Touch {
+  std::uint32_t feature;
+  Vec3 normal;
+  double gap;
+};
+
+template <class Surface>
+std::vector<Touch> touches(const Surface& surface, const Vec3& p, double radius) {
+  std::vector<Touch> found;
+  surface.touch(dem::from_eigen(p), radius, [&](std::uint32_t feature, const dem::Vector3<double>& normal, double gap) {
+    found.push_back({feature, to_eigen(normal), gap});
+  });
+  return found;
+}
+
+void check_one(const std::vector<Touch>& found, const Vec3& normal, double gap) {
+  REQUIRE(found.size() == 1);
+  CHECK((found[0].normal - normal).norm() < 1e-14);
+  CHECK(found[0].gap == Approx(gap).margin(1e-15));
+}
+
+}  // namespace
+
+TEST_CASE("a sphere touches a plane from above, and from below too") {
+  const Plane plane;
+  check_one(touches(plane, {3, -4, 0.4}, 0.5), {0, 0, -1}, 0.4);
+  check_one(touches(plane, {0, 0, -2.0}, 0.5), {0, 0, -1}, -2.0);  // deep inside it is pushed out all the same
+  CHECK(touches(plane, {0, 0, 0.51}, 0.5).empty());
+  CHECK(plane.near({0, 0, 0.4}, 0.5));
+  CHECK(!plane.near({0, 0, 0.6}, 0.5));
+  CHECK(plane.bounds().high.z() == 0.0);
+}
+
+TEST_CASE("a sphere touches a box once, on a face, an edge or a corner") {
+  const Box box({2, 4, 6});
+  CHECK(box.edges() == Vec3(2, 4, 6));
+  check_one(touches(box, {0.3, 0.4, 3.4}, 0.5), {0, 0, -1}, 0.4);
+  check_one(touches(box, {-1.4, 0.4, 0}, 0.5), {1, 0, 0}, 0.4);
+  check_one(touches(box, {1.3, 2.4, 0}, 0.6), {-0.6, -0.8, 0}, 0.5);
+  check_one(touches(box, {-1.1, -2.2, -3.2}, 0.4), Vec3(1, 2, 2) / 3, 0.3);
+  CHECK(touches(box, {1.3, 2.4, 0}, 0.4).empty());
+}
+
+TEST_CASE("a sphere whose centre is inside a box leaves it through the nearest face") {
+  const Box box({2, 4, 6});
+  check_one(touches(box, {0.9, 0, 0}, 0.5), {-1, 0, 0}, -0.1);
+  check_one(touches(box, {-0.9, 0, 0}, 0.5), {1, 0, 0}, -0.1);
+  check_one(touches(box, {0, -1.8, 0}, 0.5), {0, 1, 0}, -0.2);
+  check_one(touches(box, {0, 0, 2.7}, 0.5), {0, 0, -1}, -0.3);
+  // The centre of a cube, and a point (a sphere of radius 0).
+  REQUIRE(touches(Box({2, 2, 2}), Vec3::Zero(), 0.5).size() == 1);
+  check_one(touches(box, {0.9, 0, 0}, 0.0), {-1, 0, 0}, -0.1);
+  CHECK(touches(box, {1.1, 0, 0}, 0.0).empty());
+}
+
+TEST_CASE("the contact with a box changes little where faces, edges and corners meet") {
+  // Walk round an edge in small steps: the normal may not jump, or resting grains would be shaken.
+  const Box box({2, 2, 2});
+  Vec3 last = Vec3::Zero();
+  for (double t = 0.0; t <= 1.35; t += 0.01) {
+    const Vec3 p(0.5 + t, 0.0, 1.85 - t);  // from above the top face to beside the right one, passing the edge
+    const auto found = touches(box, p, 1.0);
+    REQUIRE(found.size() == 1);
+    CHECK(found[0].normal.norm() == Approx(1.0));
+    if (t > 0.0) CHECK((found[0].normal - last).norm() < 0.06);  // at 0.25 from the edge a step of 0.014 turns 0.057
+    last = found[0].normal;
+  }
+}
+
+TEST_CASE("near never misses a touch, and bounds hold what touches") {
+  std::mt19937 engine(2);
+  std::uniform_real_distribution<double> place(-3.0, 3.0), size(0.0, 1.0);
+  const Box box({2, 3, 1});
+  int touching = 0, excluded = 0;
+  for (int trial = 0; trial < 5000; ++trial) {
+    const Vec3 p(place(engine), place(engine), place(engine));
+    const double r = size(engine);
+    const bool touches_box = !touches(box, p, r).empty();
+    touching += touches_box;
+    excluded += !box.near(dem::from_eigen(p), r);
+    if (touches_box) {
+      CHECK(box.near(dem::from_eigen(p), r));
+      CHECK(((p.array() >= box.bounds().low.array() - r).all() && (p.array() <= box.bounds().high.array() + r).all()));
+    }
+  }
+  CHECK(touching > 200);
+  CHECK(excluded > 200);
+}
+
+TEST_CASE("a box of no size is refused") {
+  check_refused([] { Box({1, 0, 1}); }, "edge length of a box is 0 m");
+  check_refused([] { Box({1, 1, -3}); }, "edge length of a box is -3 m", "greater than zero");
+}

@@ -1,0 +1,139 @@
+#include "scenes.hpp"
+
+using Catch::Approx;
+using Catch::Matchers::ContainsSubstring;
+using Problem = dem::StepReport::Problem;
+
+namespace {
+
+template <class Model = Balls>
+dem::World<Model> make(dem::WorldOptions o, const dem::ContactParameters<Model>& p = sand<Model>()) {
+  dem::World<Model> w(o);
+  w.set_contact(p);
+  if constexpr (std::is_same_v<typename Model::Shape, Sphere>) w.add_species(Sphere(1e-3));
+  else w.add_species(dem::shape::cube8(1e-3));
+  return w;
+}
+template <class World>
+ParticleId add(World& w, const Vec3& position, const Vec3& velocity = Vec3::Zero()) {
+  dem::NewParticle n;
+  n.species = SpeciesId(0);
+  n.position = position;
+  n.velocity = velocity;
+  return w.add_particle(n);
+}
+
+}  // namespace
+
+TEST_CASE("a good run says that all is well") {
+  auto w = make(options({0, 0, -9.81}, 1e-5));
+  add(w, {0, 0, 0});
+  const dem::StepReport report = w.run(10);
+  CHECK(report);
+  CHECK(report.problem == Problem::none);
+  CHECK(report.step == 10);
+  CHECK(report.time == Approx(1e-4));
+  CHECK(w.steps() == 10);
+  CHECK(w.time() == Approx(1e-4));
+}
+
+TEST_CASE("a grain that leaves the domain is named") {
+  dem::WorldOptions o = options({0, 0, 0}, 2e-5);
+  o.domain = dem::surface::Bounds{Vec3(-1, -1, -1), Vec3(1, 1, 1)};
+  for (const Vec3& way :
+       {Vec3(1, 0, 0), Vec3(-1, 0, 0), Vec3(0, 1, 0), Vec3(0, -1, 0), Vec3(0, 0, 1), Vec3(0, 0, -1)}) {
+    auto w = make(o);
+    for (int k = 0; k < 80; ++k) add(w, {-0.9 + 0.02 * k, 0, -0.7});
+    const auto flier = add(w, {5e-3, 0.5, 0}, 100.0 * way);
+    add(w, {0, -0.5, 0.3});
+    const dem::StepReport report = w.run(1000);
+    REQUIRE(!report);
+    CHECK(report.problem == Problem::lost);
+    CHECK(report.particle == flier);
+    CHECK(report.step == w.steps());
+    CHECK(report.time == Approx(w.time()));
+    // It has 0.5 to 1.5 m to go at 100 m/s.
+    CHECK(report.time > 0.004);
+    CHECK(report.time < 0.016);
+    CHECK_THAT(report.text, ContainsSubstring(fmt::format("grain {} left the domain", flier.value)));
+    CHECK_THAT(report.text, ContainsSubstring(fmt::format("t = {:.6g} s", report.time)));
+    CHECK_THAT(report.text, ContainsSubstring("time_step"));
+    CHECK_THAT(report.text, ContainsSubstring("domain"));
+  }
+}
+
+TEST_CASE("a lost grain does not stop a run that goes on, nor the contacts of others") {
+  dem::WorldOptions o = options({0, 0, -9.81}, 1e-5);
+  o.domain = dem::surface::Bounds{Vec3(-1, -1, -1), Vec3(1, 1, 1)};
+  auto w = make<Cubes>(o);
+  const auto plate = w.add_surface(w.ground(), dem::surface::Plane{});
+  add(w, {0, 0, 1e-3});
+  add(w, {0, 0.5, 0.9}, {1e4, 0, 1e4});
+  REQUIRE(!w.run(100));
+  for (int k = 0; k < 30000; ++k) CHECK(w.step().problem == Problem::lost);
+  CHECK(-w.surface_force(plate).z() == Approx(w.species(SpeciesId(0)).mass * 9.81).epsilon(1e-6));
+}
+
+TEST_CASE("a grain that is pressed too deep is named") {
+  dem::WorldOptions o = options({0, 0, 0}, 1e-6);
+  o.overlap_limit = 0.1;
+  auto w = make(o);
+  for (int k = 0; k < 5; ++k) add(w, {0.01 * k, 0, 0});
+  const auto deep = add(w, {0.02, 1.75e-3, 0});  // 0.25 mm of an effective diameter of 1 mm
+  const dem::StepReport report = w.run(10);
+  REQUIRE(!report);
+  CHECK(report.problem == Problem::overlap);
+  CHECK((report.particle == deep || report.particle == ParticleId(2)));
+  CHECK(report.step == 1);
+  CHECK_THAT(report.text, ContainsSubstring("overlaps"));
+  CHECK_THAT(report.text, ContainsSubstring("0.25"));
+  CHECK_THAT(report.text, ContainsSubstring("overlap_limit 0.1"));
+  CHECK_THAT(report.text, ContainsSubstring("stiffness"));
+  // With the limit above it all is well.
+  o.overlap_limit = 0.3;
+  auto v = make(o);
+  add(v, {0, 0, 0});
+  add(v, {0, 1.75e-3, 0});
+  CHECK(v.run(10));
+}
+
+TEST_CASE("an overlap with a surface is reported too") {
+  dem::WorldOptions o = options({0, 0, 0}, 1e-6);
+  o.overlap_limit = 0.1;
+  auto w = make(o);
+  w.add_surface(w.ground(), dem::surface::Plane{});
+  const auto deep = add(w, {0, 0, 0.7e-3});  // 0.3 mm of 2 mm, the diameter: an effective one beside a flat wall
+  const dem::StepReport report = w.run(10);
+  REQUIRE(!report);
+  CHECK(report.problem == Problem::overlap);
+  CHECK(report.particle == deep);
+  CHECK_THAT(report.text, ContainsSubstring("0.15"));
+}
+
+TEST_CASE("a run that blows up is stopped and says where, when and what to change") {
+  dem::WorldOptions o = options({0, 0, 0}, 1e10);
+  o.allow_unstable_time_step = true;
+  o.overlap_limit = 1e300;
+  auto w = make(o, {{1e300, 0.0, 1.0}, {0.0, 0.0, 0.0, 0.0}});
+  for (int k = 0; k < 70; ++k) add(w, {0.1 * k, 0, 0});
+  const auto first = add(w, {0, 5, 0}), second = add(w, {1e-3, 5, 0});
+  const dem::StepReport report = w.run(100);
+  REQUIRE(!report);
+  CHECK(report.problem == Problem::not_finite);
+  CHECK((report.particle == first || report.particle == second));
+  CHECK_THAT(report.text, ContainsSubstring("not a number"));
+  CHECK_THAT(report.text, ContainsSubstring(fmt::format("grain {}", report.particle.value)));
+  CHECK_THAT(report.text, ContainsSubstring("time_step (now 1e+10 s)"));
+  CHECK_THAT(report.text, ContainsSubstring(fmt::format("step {}", report.step)));
+}
+
+TEST_CASE("a velocity that is set to no number is found in the next step") {
+  auto w = make(options({0, 0, 0}, 1e-5));
+  for (int k = 0; k < 100; ++k) add(w, {0.01 * k, 0, 0});
+  REQUIRE(w.step());
+  w.set_velocity(ParticleId(57), Vec3(0, std::nan(""), 0));
+  const dem::StepReport report = w.step();
+  CHECK(report.problem == Problem::not_finite);
+  CHECK(report.particle == ParticleId(57));
+  CHECK(report.step == 2);
+}

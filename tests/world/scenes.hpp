@@ -1,0 +1,148 @@
+#pragma once
+
+// What the tests of whole worlds share: models, settings, and sums over all grains.
+
+#include "catch.hpp"
+
+#include <dem/broadphase/all_pairs.hpp>
+#include <dem/exec/serial.hpp>
+#include <dem/integrator/symplectic_euler.hpp>
+#include <dem/integrator/velocity_verlet.hpp>
+#include <dem/shape/sphere_cluster.hpp>
+#include <dem/world/world.hpp>
+
+#include <random>
+#include <vector>
+
+using dem::Mat3;
+using dem::ParticleId;
+using dem::SpeciesId;
+using dem::SurfaceId;
+using dem::Vec3;
+
+template <class S, class I = dem::integrator::SymplecticEuler, class B = dem::broadphase::UniformGrid,
+          class E = dem::exec::OpenMP>
+struct Grains : dem::Model {
+  using Shape = S;
+  using Integrator = I;
+  using BroadPhase = B;
+  using Executor = E;
+};
+using Sphere = dem::shape::Sphere;
+using Cube8 = dem::shape::SphereCluster<8>;
+using Balls = Grains<Sphere>;
+using Cubes = Grains<Cube8>;
+
+inline dem::WorldOptions options(const Vec3& gravity, double time_step = 0.0, double skin = 0.0) {
+  dem::WorldOptions o;
+  o.gravity = gravity;
+  o.time_step = time_step;
+  o.skin = skin;
+  o.threads = 1;  // tests share the machine; those that are about threads say so
+  return o;
+}
+
+/// The thesis's contact constants with a friction coefficient of choice.
+template <class Model>
+dem::ContactParameters<Model> sand(double mu = 0.4, double breaking_factor = 0.975) {
+  return {{2000.0, 0.015, 0.05}, {mu, 2000.0, 0.015, breaking_factor}};
+}
+
+/// Five walls that never move, open at the top: 0 <= x <= edges.x and so on.
+template <class World>
+std::vector<SurfaceId> add_open_box(World& world, const Vec3& edges) {
+  std::vector<SurfaceId> walls;
+  const auto wall = [&](const Vec3& position, const Vec3& normal) {
+    dem::SurfaceOptions o;
+    o.position = position;
+    o.rotation =
+        Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), Eigen::Vector3d(normal)).toRotationMatrix();
+    walls.push_back(world.add_surface(world.ground(), dem::surface::Plane{}, o));
+  };
+  wall({0, 0, 0}, {0, 0, 1});
+  wall({0, 0, 0}, {1, 0, 0});
+  wall({edges.x(), 0, 0}, {-1, 0, 0});
+  wall({0, 0, 0}, {0, 1, 0});
+  wall({0, edges.y(), 0}, {0, -1, 0});
+  return walls;
+}
+
+struct Random {
+  std::mt19937 engine;
+  explicit Random(unsigned seed = 1) : engine(seed) {}
+  double between(double low, double high) {
+    return low + (high - low) * (static_cast<double>(engine()) / 4294967296.0);
+  }
+  Vec3 vector(double size = 1.0) {
+    const double x = between(-size, size), y = between(-size, size);
+    return {x, y, between(-size, size)};
+  }
+  Mat3 rotation() {
+    const double angle = between(0.0, 3.0);
+    return Eigen::AngleAxisd(angle, vector().normalized()).toRotationMatrix();
+  }
+};
+
+/// A block of nx x ny x nz grains, `distance` apart, at random orientations and with random velocities up to `speed`.
+template <class World>
+void add_block(World& world, SpeciesId species, const Vec3& corner, double distance, int nx, int ny, int nz,
+               double speed, unsigned seed = 1) {
+  Random random(seed);
+  for (int k = 0; k < nz; ++k) {
+    for (int j = 0; j < ny; ++j) {
+      for (int i = 0; i < nx; ++i) {
+        dem::NewParticle p;
+        p.species = species;
+        p.position = corner + distance * Vec3(i, j, k);
+        p.rotation = random.rotation();
+        p.velocity = random.vector(speed);
+        world.add_particle(p);
+      }
+    }
+  }
+}
+
+template <class World>
+double mass_of(const World& w, ParticleId p) {
+  return w.species(w.species_of(p)).mass;
+}
+template <class World, class F>
+void for_each_grain(const World& w, F&& f) {
+  for (std::size_t k = 0; k < w.particle_count(); ++k) f(ParticleId(k));
+}
+template <class World>
+double total_mass(const World& w) {
+  double m = 0.0;
+  for_each_grain(w, [&](ParticleId p) { m += mass_of(w, p); });
+  return m;
+}
+template <class World>
+Vec3 momentum(const World& w) {
+  Vec3 sum = Vec3::Zero();
+  for_each_grain(w, [&](ParticleId p) { sum += mass_of(w, p) * w.velocity(p); });
+  return sum;
+}
+/// About the origin.
+template <class World>
+Vec3 angular_momentum(const World& w) {
+  Vec3 sum = Vec3::Zero();
+  for_each_grain(w, [&](ParticleId p) {
+    const Mat3 r = w.rotation(p);
+    const Vec3 spin = r.transpose() * w.angular_velocity(p);
+    sum +=
+        mass_of(w, p) * w.position(p).cross(w.velocity(p)) + r * w.species(w.species_of(p)).inertia.cwiseProduct(spin);
+  });
+  return sum;
+}
+template <class World>
+double kinetic_energy(const World& w) {
+  double sum = 0.0;
+  for_each_grain(w, [&](ParticleId p) {
+    const Vec3 spin = w.rotation(p).transpose() * w.angular_velocity(p);
+    sum += 0.5 * mass_of(w, p) * w.velocity(p).squaredNorm() +
+           0.5 * spin.dot(w.species(w.species_of(p)).inertia.cwiseProduct(spin));
+  });
+  return sum;
+}
+/// Largest deviation of a matrix from a rotation.
+inline double not_a_rotation(const Mat3& r) { return (r.transpose() * r - Mat3::Identity()).cwiseAbs().maxCoeff(); }
