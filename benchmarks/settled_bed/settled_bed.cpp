@@ -1,0 +1,158 @@
+// Whole-scene benchmark: a settled bed of cubes of 8 spheres, or of spheres, timed for a number of steps and threads.
+// The works are those that the tables in benchmarks/RESULTS.md give for other programs: linear spring and dashpot,
+// restitution 0.3, friction 0.4 with history.
+
+#include <dem/dem.hpp>
+#include <dem/io/ascii_table.hpp>
+
+#include <CLI/CLI.hpp>
+
+#include <algorithm>
+#include <chrono>
+#include <numbers>
+#include <random>
+
+namespace {
+
+using Seconds = std::chrono::duration<double>;
+
+struct Cubes : dem::Model {
+  using Shape = dem::shape::SphereCluster<8>;
+  using Integrator = dem::integrator::SymplecticEuler;
+  static Shape grain() { return dem::shape::cube8(1.2e-3); }
+  static constexpr double width = 0.045, pitch = 0.0045;
+  static constexpr int grains = 4000, per_row = 10;
+};
+struct Spheres : dem::Model {
+  using Integrator = dem::integrator::SymplecticEuler;
+  static Shape grain() { return dem::shape::Sphere(1e-3); }
+  static constexpr double width = 0.040, pitch = 0.0025;
+  static constexpr int grains = 20000, per_row = 16;
+};
+
+struct Settings {
+  std::string work = "both";
+  int steps = 5000, settle = 60000, repeats = 3, threads = 0;
+  double skin = 0.0;
+};
+
+/// Constants of a contact with restitution 0.3 for an effective mass (kg): C = 2 zeta sqrt(K m), zeta = 0.3579.
+template <class Model>
+dem::ContactParameters<Model> contact(double effective_mass) {
+  const double stiffness = 2000.0, damping = 2.0 * 0.3579 * std::sqrt(stiffness * effective_mass);
+  return {{stiffness, damping, 1.0}, {0.4, 2.0 / 7.0 * stiffness, 0.5 * damping, 1.0}};
+}
+
+/// A loose lattice of grains with random orientations and velocities, in an open box.
+template <class Model>
+dem::World<Model> loose_bed(const Settings& settings) {
+  dem::World<Model> world({.time_step = 1e-5, .skin = settings.skin});
+  const auto grain = world.add_species(Model::grain());
+  const double mass = world.species(grain).mass, w = Model::width, thick = 0.02, high = 0.3;
+  world.set_contact("grain", "grain", contact<Model>(0.5 * mass));
+  world.set_contact("grain", "wall", contact<Model>(mass));
+  const auto wall = [&](const dem::Vec3& middle, const dem::Vec3& edges) {
+    world.add_surface(world.ground(), dem::surface::Box(edges), {.position = middle});
+  };
+  wall({w / 2, w / 2, -thick / 2}, {w + 2 * thick, w + 2 * thick, thick});
+  for (const double side : {-thick / 2, w + thick / 2}) {
+    wall({side, w / 2, high / 2}, {thick, w + 2 * thick, high});
+    wall({w / 2, side, high / 2}, {w + 2 * thick, thick, high});
+  }
+  std::mt19937 random(20240501);
+  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
+  std::normal_distribution<double> normal;
+  for (int k = 0; k < Model::grains; ++k) {
+    const int n = Model::per_row;
+    const dem::Vec3 cell(k % n + 0.5, k / n % n + 0.5, k / (n * n) + 0.5);
+    const dem::Vec3 jitter = 0.05e-3 * dem::Vec3(uniform(random), uniform(random), uniform(random));
+    const dem::Quaternion turn = dem::Quaternion(normal(random), normal(random), normal(random), normal(random));
+    world.add_particle({.species = grain,
+                        .position = Model::pitch * cell + jitter,
+                        .velocity = 0.2 * dem::Vec3(uniform(random), uniform(random), uniform(random)),
+                        .rotation = turn.normalized().toRotationMatrix()});
+  }
+  return world;
+}
+
+double median(std::vector<double> values) {
+  std::sort(values.begin(), values.end());
+  return values[values.size() / 2];
+}
+
+template <class Model>
+void run(const char* name, const Settings& settings) {
+  dem::World<Model> world = loose_bed<Model>(settings);
+  const int most_threads = settings.threads > 0 ? settings.threads : world.threads();
+  world.set_threads(most_threads);
+  fmt::print("{}: settling {} grains for {} steps\n", name, Model::grains, settings.settle);
+  if (const auto report = world.run(static_cast<std::uint64_t>(settings.settle)); !report) dem::fail("{}", report.text);
+
+  double energy = 0.0;
+  std::size_t contacts = 0, wall_contacts = 0;
+  for (int k = 0; k < Model::grains; ++k) {
+    const dem::ParticleId p{static_cast<std::size_t>(k)};
+    energy += 0.5 * world.species(world.species_of(p)).mass * world.velocity(p).squaredNorm();
+  }
+  for (const auto& chunk : world.state().chunks) {
+    contacts += static_cast<std::size_t>(chunk.pair_contacts.count());
+    wall_contacts += static_cast<std::size_t>(chunk.surface_contacts.count());
+  }
+  fmt::print("kinetic energy {:.2g} J, {} contacts and {} wall contacts ({:.2f} a grain), {} bytes a grain\n", energy,
+             contacts, wall_contacts, double(contacts + wall_contacts) / Model::grains,
+             dem::memory_bytes(world.state()) / Model::grains);
+
+  dem::io::Table table;
+  table.header = {"threads", "million grain-steps/s", "lowest", "highest", "ratio", "lists made"};
+  for (const char* phase : dem::phase_names) table.header.push_back(fmt::format("{}, us/step", phase));
+  double one_thread = 0.0;
+  for (int threads = 1; threads <= most_threads; ++threads) {
+    world.set_threads(threads);
+    world.run(200);
+    std::vector<double> rates;
+    const std::uint64_t lists = world.state().rebuilds;
+    world.state().stopwatch.switch_on(true);
+    for (int k = 0; k < settings.repeats; ++k) {
+      const auto start = std::chrono::steady_clock::now();
+      world.run(static_cast<std::uint64_t>(settings.steps));
+      const double seconds = Seconds(std::chrono::steady_clock::now() - start).count();
+      rates.push_back(1e-6 * Model::grains * settings.steps / seconds);
+    }
+    const double rate = median(rates);
+    if (threads == 1) one_thread = rate;
+    std::vector<std::string> row = {fmt::format("{}", threads),
+                                    fmt::format("{:.2f}", rate),
+                                    fmt::format("{:.2f}", *std::min_element(rates.begin(), rates.end())),
+                                    fmt::format("{:.2f}", *std::max_element(rates.begin(), rates.end())),
+                                    fmt::format("{:.2f}", rate / one_thread),
+                                    fmt::format("{}", world.state().rebuilds - lists)};
+    for (std::size_t k = 0; k < dem::phase_names.size(); ++k) {
+      const double seconds = world.state().stopwatch.seconds(static_cast<dem::Phase>(k));
+      row.push_back(fmt::format("{:.1f}", 1e6 * seconds / settings.repeats / settings.steps));
+    }
+    table.rows.push_back(row);
+    world.state().stopwatch.switch_on(false);
+  }
+  print(table);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  Settings settings;
+  CLI::App app("Times settled beds of cubes of 8 spheres and of spheres.");
+  app.add_option("--work", settings.work, "cubes, spheres or both")->check(CLI::IsMember({"cubes", "spheres", "both"}));
+  app.add_option("--steps", settings.steps, "steps that are timed")->check(CLI::PositiveNumber);
+  app.add_option("--settle", settings.settle, "steps to settle first")->check(CLI::NonNegativeNumber);
+  app.add_option("--repeats", settings.repeats, "how often the steps are timed; the median counts");
+  app.add_option("--threads", settings.threads, "most threads (0: all)")->check(CLI::NonNegativeNumber);
+  app.add_option("--skin", settings.skin, "reach of the neighbour list in m (0: automatic)");
+  CLI11_PARSE(app, argc, argv);
+  try {
+    if (settings.work != "spheres") run<Cubes>("cubes", settings);
+    if (settings.work != "cubes") run<Spheres>("spheres", settings);
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "settled_bed: {}\n", error.what());
+    return 1;
+  }
+}
