@@ -1,0 +1,100 @@
+// Andrews' squeezer at t = 0.03 s against the seven reference angles, and how the error falls with the time step and
+// with the stiffness of the joints.
+
+#include <dem/integrator/predictor_corrector.hpp>
+#include <dem/integrator/symplectic_euler.hpp>
+#include <dem/integrator/velocity_verlet.hpp>
+
+#include <chrono>
+#include <cmath>
+
+#include "../../examples/squeezer/squeezer.hpp"
+#include "catch.hpp"
+
+namespace {
+
+using namespace dem;
+
+struct Outcome {
+  double error, seconds, opening;
+};
+
+/// dt: time step; designed: the time step that the joints' stiffness is derived from.
+template <class I>
+Outcome squeeze(double dt, double designed) {
+  auto s = squeezer::make<I>();
+  s.machine.design_for(designed);
+  const auto start = std::chrono::steady_clock::now();
+  REQUIRE(s.machine.run(0.03, dt));
+  double opening = 0.0;
+  for (const auto id : s.angles) opening = std::max(opening, s.machine.violation(id).displacement);
+  return {s.error(), std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(), opening};
+}
+
+std::string line(const char* what, double dt, double designed, const Outcome& o) {
+  return fmt::format("\n{:<20}{:>8.1e}{:>11.1e}{:>9.1e}{:>7.1f}{:>9.0e}{:>7.2f}", what, dt, std::pow(designed, -2),
+                     o.error, -std::log10(o.error), o.opening, o.seconds);
+}
+// Lines short enough for the test runner not to break them. Stiffness is that of the joints, in units of that derived
+// for dt = 1 s; opening is how far the joints stand open at the end.
+constexpr const char* header = "\nintegrator            dt/s  stiffness    error digits opening/m time/s";
+
+}  // namespace
+
+TEST_CASE("squeezer: the seven angles to 1e-4") {
+  std::string table = header;
+  const auto check = [&](const char* name, const Outcome& o, double dt) {
+    table += line(name, dt, dt, o);
+    CHECK(o.error < 1e-4);
+  };
+  check("predictor-corrector", squeeze<integrator::PredictorCorrector>(5e-8, 5e-8), 5e-8);
+  check("velocity Verlet", squeeze<integrator::VelocityVerlet>(5e-8, 5e-8), 5e-8);
+  check("symplectic Euler", squeeze<integrator::SymplecticEuler>(5e-8, 5e-8), 5e-8);
+  WARN(table);
+}
+
+TEST_CASE("squeezer: error over time step, stiffness derived from it") {
+  std::string table = header;
+  double last = 0.0;
+  for (const double dt : {8e-7, 4e-7, 2e-7, 1e-7, 5e-8, 2.5e-8}) {
+    const Outcome o = squeeze<integrator::PredictorCorrector>(dt, dt);
+    table += line("predictor-corrector", dt, dt, o);
+    // Both the rule and the give of the joints (1/k, k as 1/dt^2) are of second order.
+    if (last > 0.0) CHECK(last / o.error == Approx(4.0).epsilon(0.1));
+    last = o.error;
+  }
+  WARN(table);
+}
+
+TEST_CASE("squeezer: error over the stiffness of the joints, at one time step") {
+  std::string table = header;
+  double last = 0.0;
+  for (const double designed : {1.6e-6, 8e-7, 4e-7, 2e-7, 1e-7}) {
+    const Outcome o = squeeze<integrator::VelocityVerlet>(5e-8, designed);
+    table += line("velocity Verlet", 5e-8, designed, o);
+    if (last > 0.0) CHECK(last / o.error == Approx(4.0).epsilon(0.1));
+    last = o.error;
+  }
+  WARN(table);
+}
+
+TEST_CASE("squeezer: error over the time step, at one stiffness") {
+  // The give of the joints is the same, so what changes is the rule's own error, against the finest time step.
+  std::string table = "\ndt (s)    change of beta against dt = 2.5e-8 s (relative)";
+  const double designed = 4e-7;
+  const auto beta = [&](double dt) {
+    auto s = squeezer::make<integrator::PredictorCorrector>();
+    s.machine.design_for(designed);
+    REQUIRE(s.machine.run(0.03, dt));
+    return s.machine.coordinate(s.angles[0]);
+  };
+  const double fine = beta(2.5e-8);
+  double worst = 0.0;
+  for (const double dt : {4e-7, 2e-7, 1e-7}) {
+    const double change = std::abs(beta(dt) / fine - 1.0);
+    table += fmt::format("\n{:.1e}   {:.2e}", dt, change);
+    worst = std::max(worst, change);
+  }
+  CHECK(worst < 1e-4);
+  WARN(table);
+}
