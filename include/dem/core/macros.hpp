@@ -10,13 +10,26 @@
 #define DEM_FN inline
 #endif
 
+// Sanitizers put checks into every function: inlining all of them by force would take minutes a file.
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#define DEM_SANITIZED 1
+#elif defined(__has_feature)
+#if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer)
+#define DEM_SANITIZED 1
+#endif
+#endif
+
 /// DEM_HOT: inlined even where the compiler's size heuristics would stop; only for kernels of the contact loop.
+/// DEM_FLATTEN: all calls in the function are inlined.
 #if defined(__CUDACC__)
 #define DEM_HOT __host__ __device__ __forceinline__
-#elif defined(__GNUC__)
+#define DEM_FLATTEN
+#elif defined(__GNUC__) && !defined(DEM_SANITIZED)
 #define DEM_HOT __attribute__((always_inline)) inline
+#define DEM_FLATTEN [[gnu::flatten]]
 #else
 #define DEM_HOT inline
+#define DEM_FLATTEN
 #endif
 
 /// DEM_ASSERT states an invariant of the library itself (never a check of user input, which throws dem::Error).

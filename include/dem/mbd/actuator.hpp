@@ -1,5 +1,6 @@
 #pragma once
 
+#include <dem/core/macros.hpp>
 #include <dem/mbd/coordinate.hpp>
 #include <dem/mbd/signal.hpp>
 
@@ -110,8 +111,8 @@ inline Coordinate distance_of(const Vector3<double>& point_a, const Vector3<doub
   return q;
 }
 
-[[gnu::flatten]] inline void apply_actuator(Actuator& u, const std::vector<Joint>& joints, std::vector<Body>& bodies,
-                                            double time) {
+DEM_FLATTEN inline void apply_actuator(Actuator& u, const std::vector<Joint>& joints, std::vector<Body>& bodies,
+                                       double time) {
   Body &a = bodies[u.a], &b = bodies[u.b];
   const Coordinate q = u.spec.joint.valid() ? coordinate_of(joints[u.spec.joint.index()], a, b)
                                             : distance_of(u.point_a, u.point_b, a, b);
@@ -174,7 +175,7 @@ struct Spring {
   double force = 0.0;                          ///< N, positive pushes the points apart
 };
 
-[[gnu::flatten]] inline void apply_spring(Spring& s, std::vector<Body>& bodies) {
+DEM_FLATTEN inline void apply_spring(Spring& s, std::vector<Body>& bodies) {
   Body &a = bodies[s.spec.a.index()], &b = bodies[s.spec.b.index()];
   const Coordinate q = distance_of(s.point_a, s.point_b, a, b);
   s.length = q.value;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <dem/core/macros.hpp>
 #include <dem/mbd/coordinate.hpp>
 
 #include <numbers>
@@ -60,7 +61,7 @@ inline double coupling_sum(const CouplingSpec& spec, const std::vector<Joint>& j
   return sum;
 }
 
-[[gnu::flatten]] inline void apply_coupling(Coupling& g, const std::vector<Joint>& joints, std::vector<Body>& bodies) {
+DEM_FLATTEN inline void apply_coupling(Coupling& g, const std::vector<Joint>& joints, std::vector<Body>& bodies) {
   double sum = 0.0, rate = 0.0;
   for (const auto& term : g.spec.terms) {
     const Joint& j = joints[term.joint.index()];

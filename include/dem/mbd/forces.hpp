@@ -1,5 +1,6 @@
 #pragma once
 
+#include <dem/core/macros.hpp>
 #include <dem/mbd/parts.hpp>
 
 namespace dem::mbd {
@@ -26,7 +27,7 @@ inline void sample_sensors(Parts& m, double dt) {
 /// All forces of the machine itself, added to what the bodies already carry (the grains' contact forces). `time` (s) is
 /// that of the state the forces are evaluated at. Joint friction is evaluated from the committed history, and
 /// committed, like turns and sensors, in the last stage only.
-[[gnu::flatten]] inline void add_forces(Parts& m, double time, double dt, bool is_last_stage) {
+DEM_FLATTEN inline void add_forces(Parts& m, double time, double dt, bool is_last_stage) {
   const double followed = is_last_stage ? dt : 0.0;
   for (std::size_t i = 0; i < m.bodies.size(); ++i) {
     const Body& b = m.bodies[i];

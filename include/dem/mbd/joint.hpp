@@ -4,6 +4,7 @@
 // one of held rotations (Align): the thesis's revolute joint, two spherical joints on a line at +-h, each of half the
 // stiffness k, is exactly Hold::point with k and Align::parallel with k h^2, evaluated in closed form.
 
+#include <dem/core/macros.hpp>
 #include <dem/mbd/joint_spec.hpp>
 #include <dem/state/body.hpp>
 
@@ -149,8 +150,8 @@ constexpr Align align_of(JointKind kind) {
 /// Flattened, because the vector operators in it have to be inlined however large the program is.
 /// Adds a joint's penalty force to its bodies and keeps it as the reaction. dt is the time by which the joint's turns
 /// are followed: the time step in the last stage of a step, else 0.
-[[gnu::flatten]] inline void apply_penalty(Joint& j, Body& a, Body& b, const Vector3<double>& wa,
-                                           const Vector3<double>& wb, double dt) {
+DEM_FLATTEN inline void apply_penalty(Joint& j, Body& a, Body& b, const Vector3<double>& wa, const Vector3<double>& wb,
+                                      double dt) {
   using enum JointKind;
 #define DEM_MBD_JOINT(kind) \
   case kind: return detail::penalty<hold_of(kind), align_of(kind)>(j, a, b, wa, wb, dt)

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <dem/core/macros.hpp>
 #include <dem/friction/asperity_spring.hpp>
 #include <dem/mbd/coordinate.hpp>
 
@@ -22,7 +23,7 @@ struct JointExtras {
 };
 
 /// A stop pushes back with a spring and, on the way in, a damper; it never pulls.
-[[gnu::flatten]] inline void apply_stop(JointExtras& e, const Joint& j, Body& a, Body& b) {
+DEM_FLATTEN inline void apply_stop(JointExtras& e, const Joint& j, Body& a, Body& b) {
   const Coordinate q = coordinate_of(j, a, b);
   e.stop_force = 0.0;
   if (q.value < e.lower) {
@@ -37,8 +38,8 @@ struct JointExtras {
 
 /// Asperity friction on the joint's free motion. The spring is stretched from the committed history by the velocity
 /// times `slip_time` (0 in a stage at the start of the step); the history is committed only where `commit` says so.
-[[gnu::flatten]] inline void apply_friction(JointExtras& e, const Joint& j, Body& a, Body& b, double slip_time,
-                                            bool commit) {
+DEM_FLATTEN inline void apply_friction(JointExtras& e, const Joint& j, Body& a, Body& b, double slip_time,
+                                       bool commit) {
   using V = Vector3<double>;
   const Matrix3<double>&A = a.motion.rotation, &B = b.motion.rotation;
   const V wa = A * a.motion.angular_velocity, wb = B * b.motion.angular_velocity;

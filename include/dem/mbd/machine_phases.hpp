@@ -1,5 +1,6 @@
 #pragma once
 
+#include <dem/core/macros.hpp>
 #include <dem/mbd/assembly.hpp>
 
 #include <cmath>
@@ -178,10 +179,10 @@ class MachinePhases : public Assembly {
   }
 
   // Flattened, because the vector operators in them have to be inlined however large the program is.
-  [[gnu::flatten]] void predict(std::size_t i, int stage, double dt) {
+  DEM_FLATTEN void predict(std::size_t i, int stage, double dt) {
     I::template before_forces<double>(stage, dt, parts_.bodies[i].motion, memory_[i]);
   }
-  [[gnu::flatten]] void move(std::size_t i, int stage, double dt, const Vector3<double>& g) {
+  DEM_FLATTEN void move(std::size_t i, int stage, double dt, const Vector3<double>& g) {
     I::template after_forces<double>(stage, dt, parts_.bodies[i].motion, memory_[i],
                                      acceleration(i, g, integrator::gyroscopic_lead<I>(dt)));
   }
