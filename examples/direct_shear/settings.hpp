@@ -63,7 +63,7 @@ struct Settings {
   bool area_correction = false;      ///< stress over the shrinking area of contact of the halves, not the nominal one
 
   // Numerics
-  std::string integrator = "verlet";  ///< the thesis's predictor-corrector gives the same at twice the cost
+  std::string integrator = "verlet";  ///< the thesis's predictor-corrector takes twice the time
   double time_step = 0.0;             ///< s; 0: 0.8 of the largest stable one
   /// Overlap, in sphere radii, that ends the run. K = 2000 N/m is soft: force chains press spheres half a radius
   /// together.
