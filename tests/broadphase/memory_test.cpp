@@ -8,6 +8,9 @@
 #include <new>
 #include <random>
 
+// The sanitizers have allocators of their own, which must not be mixed with these.
+#if !defined(DEM_SANITIZED)
+
 // Counts what this program holds on the heap.
 namespace {
 std::size_t held = 0, most = 0;
@@ -63,3 +66,5 @@ TEST_CASE("the grid's memory follows the number of grains, not the size of the d
   // Ten times the grains, ten times the memory (vectors and tables grow by powers of two).
   CHECK(bytes_to_build(10 * n, 1e6) < 25 * sparse);
 }
+
+#endif
