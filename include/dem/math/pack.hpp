@@ -23,7 +23,10 @@ namespace dem {
 DEM_HOT double select(bool condition, double yes, double no) { return condition ? yes : no; }
 DEM_HOT double min(double a, double b) { return a < b ? a : b; }
 DEM_HOT double max(double a, double b) { return a < b ? b : a; }
-DEM_HOT double sqrt(double a) { return std::sqrt(a); }
+// The very same functions, so that after `using namespace dem` sqrt(double) is not ambiguous.
+using std::cbrt;
+using std::exp;
+using std::sqrt;
 DEM_HOT bool any_of(bool condition) { return condition; }
 
 #if defined(DEM_HAS_SIMD)
@@ -41,6 +44,8 @@ DEM_HOT Pack select(const PackMask& condition, const Pack& yes, const Pack& no) 
 DEM_HOT Pack min(const Pack& a, const Pack& b) { return stdx::min(a, b); }
 DEM_HOT Pack max(const Pack& a, const Pack& b) { return stdx::max(a, b); }
 DEM_HOT Pack sqrt(const Pack& a) { return stdx::sqrt(a); }
+DEM_HOT Pack cbrt(const Pack& a) { return stdx::cbrt(a); }
+DEM_HOT Pack exp(const Pack& a) { return stdx::exp(a); }
 DEM_HOT bool any_of(const PackMask& condition) { return stdx::any_of(condition); }
 
 /// Loads a pack from memory aligned to its size.

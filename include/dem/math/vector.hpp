@@ -86,6 +86,11 @@ DEM_HOT Matrix3<T> operator*(const Matrix3<T>& a, const Matrix3<T>& b) {
   return {transpose_times(b, a.row0), transpose_times(b, a.row1), transpose_times(b, a.row2)};
 }
 
+template <class T>
+DEM_HOT Matrix3<T> transposed(const Matrix3<T>& m) {
+  return {{m.row0.x, m.row1.x, m.row2.x}, {m.row0.y, m.row1.y, m.row2.y}, {m.row0.z, m.row1.z, m.row2.z}};
+}
+
 /// A 3-vector or a 3 x 3 matrix (or an expression of that size) as the plain struct.
 template <class Derived>
 auto from_eigen(const Eigen::MatrixBase<Derived>& expression) {

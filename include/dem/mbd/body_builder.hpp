@@ -60,6 +60,10 @@ inline BodySpec cylinder_body(std::string name, double radius, double length, do
 inline BodySpec sphere_body(std::string name, double radius, double density) {
   return {.name = std::move(name), .mass_properties = sphere_mass(radius, density)};
 }
+/// A solid that a closed mesh encloses, in the frame of the mesh (kg/m^3). Throws Error if the mesh encloses no volume.
+inline BodySpec mesh_body(std::string name, const IndexedMesh& mesh, double density) {
+  return {.name = std::move(name), .mass_properties = mesh_mass(mesh, density)};
+}
 /// A body that stays where it is (or is moved by prescribed motion alone); it needs no mass.
 inline BodySpec fixed_body(std::string name, const Vec3& position = Vec3::Zero()) {
   return {.name = std::move(name), .position = position, .fixed = true};

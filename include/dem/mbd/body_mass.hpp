@@ -65,37 +65,14 @@ inline BodyMass sphere_mass(double radius, double density) {
   return of_density(sphere_mass_properties(radius), density);
 }
 
-/// A closed triangle mesh (corners counter-clockwise seen from outside), by summing the signed tetrahedra that the
-/// triangles span with the first vertex. Throws Error if a corner index is out of range or the volume is not positive.
+/// A closed triangle mesh (corners counter-clockwise seen from outside), of density in kg/m^3. Throws Error if a corner
+/// index is out of range or the volume is not positive.
 inline BodyMass mesh_mass(std::span<const Vec3> vertices, std::span<const std::array<std::uint32_t, 3>> triangles,
                           double density) {
-  require_positive(density, "density", "kg/m^3");
-  double volume = 0.0;
-  Vec3 first = Vec3::Zero();   // integral of x
-  Mat3 second = Mat3::Zero();  // integral of x x^T
-  for (const auto& t : triangles) {
-    for (const auto corner : t) {
-      if (corner >= vertices.size()) {
-        fail("a triangle of a mesh names corner {}, but there are {} vertices", corner, vertices.size());
-      }
-    }
-    // Relative to the first vertex, so that a mesh far from the origin loses no digits.
-    const Vec3 a = vertices[t[0]] - vertices[0], b = vertices[t[1]] - vertices[0], c = vertices[t[2]] - vertices[0];
-    const double v = a.dot(b.cross(c)) / 6.0;
-    const Vec3 sum = a + b + c;
-    volume += v;
-    first += v / 4.0 * sum;
-    second += v / 20.0 * (sum * sum.transpose() + a * a.transpose() + b * b.transpose() + c * c.transpose());
-  }
-  if (!(volume > 0.0)) {
-    fail(
-        "a mesh encloses {:g} m^3, but a body needs a positive volume: close the mesh and order the corners of each "
-        "triangle counter-clockwise seen from outside",
-        volume);
-  }
-  const Vec3 c = first / volume;
-  const Mat3 covariance = second - volume * c * c.transpose();
-  return {density * volume, c + vertices[0], density * (covariance.trace() * Mat3::Identity() - covariance)};
+  return of_density(mesh_mass_properties(vertices, triangles), density);
+}
+inline BodyMass mesh_mass(const IndexedMesh& mesh, double density) {
+  return mesh_mass(mesh.vertices, mesh.triangles, density);
 }
 
 }  // namespace dem::mbd

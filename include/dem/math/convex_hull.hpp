@@ -1,0 +1,123 @@
+#pragma once
+
+#include <dem/core/error.hpp>
+#include <dem/math/vector.hpp>
+
+#include <array>
+#include <span>
+#include <vector>
+
+namespace dem {
+
+using Triangle = std::array<int, 3>;
+
+/// Convex hull of a cloud of points as triangles, counter-clockwise from outside, that name points of the cloud.
+/// Quickhull (Barber, Dobkin and Huhdanpaa 1996, DOI 10.1145/235815.235821) without its lists of outside points: each
+/// round takes the point that stands out furthest and replaces the triangles that see it. Points within 1e-9 of the
+/// cloud's size of the hull so far are left out, so doubled points do no harm.
+class HullBuilder {
+ public:
+  /// Throws Error unless there are four finite points that do not lie in one plane.
+  explicit HullBuilder(std::span<const Vec3> points) : points_(points) {
+    if (points.size() < 4) fail("a convex hull was given {} points, but needs at least 4", points.size());
+    Vec3 low = points[0], high = points[0];
+    for (std::size_t k = 0; k < points.size(); ++k) {
+      if (!points[k].allFinite()) fail("point {} of a convex hull is not finite", k);
+      low = low.cwiseMin(points[k]);
+      high = high.cwiseMax(points[k]);
+    }
+    size_ = (high - low).norm();
+    middle_ = 0.5 * (low + high);
+    first_tetrahedron();
+    while (grow()) continue;
+  }
+
+  std::vector<Triangle> triangles() const {
+    std::vector<Triangle> result;
+    for (const Facet& f : facets_) result.push_back(f.corner);
+    return result;
+  }
+
+ private:
+  struct Facet {
+    Triangle corner;
+    Vec3 normal;
+    double offset;
+  };
+
+  Facet facet(int a, int b, int c) const {
+    const Vec3 normal = (at(b) - at(a)).cross(at(c) - at(a)).normalized();
+    return {{a, b, c}, normal, normal.dot(at(a))};
+  }
+  const Vec3& at(int k) const { return points_[static_cast<std::size_t>(k)]; }
+
+  /// The point for which f is largest. A little of a strictly convex function decides between points that are equally
+  /// far out, such that only true corners of the hull are ever taken, never points amid an edge or a face.
+  template <class F>
+  int furthest(F&& f) const {
+    int best = 0;
+    double most = -1e300;
+    for (int k = 0; k < static_cast<int>(points_.size()); ++k) {
+      const double value = f(at(k)) + 1e-7 * (at(k) - middle_).squaredNorm() / size_;
+      if (value > most) {
+        most = value;
+        best = k;
+      }
+    }
+    return best;
+  }
+
+  void first_tetrahedron() {
+    const int a = furthest([&](const Vec3& p) { return (p - middle_).norm(); });
+    const int b = furthest([&](const Vec3& p) { return (p - at(a)).norm(); });
+    const Vec3 along = (at(b) - at(a)).normalized();
+    const int c = furthest([&](const Vec3& p) { return (p - at(a)).cross(along).norm(); });
+    const Vec3 normal = (at(b) - at(a)).cross(at(c) - at(a)).normalized();
+    const int d = furthest([&](const Vec3& p) { return std::abs(normal.dot(p - at(a))); });
+    const double thickness = std::abs(normal.dot(at(d) - at(a)));
+    if (!(size_ > 0.0) || !(thickness > 1e-6 * size_)) {
+      fail("the points of a convex hull lie in one plane: they are {:g} m across, but only {:.3g} m thick", size_,
+           size_ > 0.0 ? thickness : 0.0);
+    }
+    const Vec3 inside = 0.25 * (at(a) + at(b) + at(c) + at(d));
+    facets_ = {facet(a, b, c), facet(a, b, d), facet(b, c, d), facet(c, a, d)};
+    for (Facet& f : facets_) {
+      if (f.normal.dot(inside) > f.offset) f = facet(f.corner[0], f.corner[2], f.corner[1]);
+    }
+  }
+
+  /// Takes one more corner in; false when no point stands out any more.
+  bool grow() {
+    const auto outermost = [&](const Vec3& p) {
+      double most = -1e300;
+      for (const Facet& f : facets_) most = std::max(most, f.normal.dot(p) - f.offset);
+      return most;
+    };
+    const int next = furthest(outermost);
+    if (outermost(at(next)) <= 1e-9 * size_) return false;
+    std::vector<Facet> kept;
+    std::vector<std::array<int, 2>> rim;  // directed edges of the facets that go
+    for (const Facet& f : facets_) {
+      if (f.normal.dot(at(next)) - f.offset <= 1e-9 * size_) {
+        kept.push_back(f);
+        continue;
+      }
+      for (std::size_t k = 0; k < 3; ++k) rim.push_back({f.corner[k], f.corner[(k + 1) % 3]});
+    }
+    for (const auto& edge : rim) {
+      const bool inner = std::find(rim.begin(), rim.end(), std::array<int, 2>{edge[1], edge[0]}) != rim.end();
+      if (!inner) kept.push_back(facet(edge[0], edge[1], next));
+    }
+    facets_ = kept;
+    return true;
+  }
+
+  std::span<const Vec3> points_;
+  std::vector<Facet> facets_;
+  double size_ = 0.0;
+  Vec3 middle_ = Vec3::Zero();
+};
+
+inline std::vector<Triangle> convex_hull(std::span<const Vec3> points) { return HullBuilder(points).triangles(); }
+
+}  // namespace dem
