@@ -26,11 +26,16 @@ TEST_CASE("wrong assemblies are refused in words") {
   CHECK_THAT(refused(revolute("big end", a, b, {0.5, 0, 0}, Z).with_limits(1.0, -1.0)),
              Contains("limits of revolute joint 'big end' are 1 to -1"));
   CHECK_THAT(refused(spherical("ball", a, b, {0.5, 0, 0}).with_limits(0, 1)), Contains("no coordinate of its own"));
+  CHECK_THAT(refused(revolute("pin", a, b, {0.5, 0, 0}, Z).with_limits(Freedom::slide, 0, 1)),
+             Contains("'slide' of a revolute joint") && Contains("only: angle"));
+  CHECK_THAT(refused(fixed("weld", a, b, X).with_limits(Freedom::turn, 0, 1)), Contains("no coordinate free"));
+  CHECK_THAT(refused(revolute("pin", a, b, {0.5, 0, 0}, Z).with_limits(0, 1).with_limits(0, 2)),
+             Contains("two pairs of limits"));
   CHECK_THAT(refused(distance("rod", a, X, b, X)), Contains("need a distance"));
   CHECK_THAT(refused(universal("cross", a, b, X, X, -X)), Contains("bent by 180 deg"));
   CHECK_THAT(refused(fixed("weld", a, b, X).with_stiffness(-1.0, 1.0)),
              Contains("stiffness of fixed joint 'weld' is -1 N/m"));
-  CHECK_THAT(refused(fixed("weld", a, b, X).with_friction({.coefficient = 0.1})), Contains("friction goes on"));
+  CHECK_THAT(refused(fixed("weld", a, b, X).with_friction({.coefficient = 0.1})), Contains("nothing in it slides"));
   CHECK_THAT(refused(bushing("rubber", a, b, X, Z, Vec3::Zero(), Vec3::Zero(), Vec3::Zero(), Vec3::Zero())),
              Contains("has no stiffness at all"));
 
@@ -48,7 +53,7 @@ TEST_CASE("wrong assemblies are refused in words") {
              Contains("connection point 'pin' names body 5"));
   const JointId ball = m.add_joint(spherical("ball", a, b, {0.5, 0, 0}));
   CHECK_THAT(message_of([&] { m.add_actuator(joint_actuator("ram", ball, 1, 1)); }),
-             Contains("which has no coordinate to drive"));
+             Contains("actuator 'ram'") && Contains("name one of its freedoms: bend"));
   CHECK_THAT(message_of([&] { m.add_coupling({"gear", {{ball, 1.0}}}); }), Contains("needs at least 2"));
   CHECK_THAT(message_of([&] { m.add_sensor(joint_sensor("cell", JointId(4), 0.1)); }),
              Contains("sensor 'cell' measures number 4"));

@@ -215,7 +215,7 @@ TEST_CASE("stops catch a joint that turns and one that slides") {
   double lowest = 0.0;
   m.run(1.0, 1e-4, [&] { lowest = std::min(lowest, m.coordinate(guide)); });
   CHECK(m.coordinate(hinge) == Approx(0.5).margin(1e-4));
-  CHECK(m.extras(hinge)->stop_force == Approx(-5.0).epsilon(1e-3));
+  CHECK(m.stops(hinge)->force == Approx(-5.0).epsilon(1e-3));
   // Undamped stops give the speed back, here twice; the deepest point is v sqrt(m/k). Entering a stop within a step
   // costs an error of order omega dt = 0.03 in the force of that step, 1e-3 in the speed.
   CHECK(lowest == Approx(-0.2 - std::sqrt(2.0 / 2e5)).epsilon(1e-4));
@@ -234,7 +234,7 @@ TEST_CASE("joint friction: sticks below its limit, slides with it, and stops a w
     m.run(1.0, 1e-4);
     if (slope < mu) {
       CHECK(std::abs(m.coordinate(guide)) < 1e-4);
-      CHECK(m.extras(guide)->friction_force.x == Approx(-2.0 * 9.81 * std::sin(angle)).epsilon(1e-3));
+      CHECK(m.rubbing(guide)->force.x == Approx(-2.0 * 9.81 * std::sin(angle)).epsilon(1e-3));
     } else {
       const double a = 9.81 * (std::sin(angle) - mu * std::cos(angle));
       CHECK(m.speed(guide) == Approx(a).epsilon(5e-3));  // the start, while friction builds up, is not Coulomb's

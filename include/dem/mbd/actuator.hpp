@@ -28,7 +28,13 @@ struct ActuatorSpec {
   Curve torque_curve = {};  ///< a motor: N m over rad/s (or N over m/s), times the throttle
   double throttle = 0.0;    ///< -1 .. 1
   bool on = true;
+  Freedom freedom = Freedom::own;  ///< the joint's coordinate that it drives
 
+  ActuatorSpec along(Freedom f) const {
+    ActuatorSpec s = *this;
+    s.freedom = f;
+    return s;
+  }
   ActuatorSpec with_max_force(double f) const {
     ActuatorSpec s = *this;
     s.max_force = f;
@@ -114,7 +120,7 @@ inline Coordinate distance_of(const Vector3<double>& point_a, const Vector3<doub
 DEM_FLATTEN inline void apply_actuator(Actuator& u, const std::vector<Joint>& joints, std::vector<Body>& bodies,
                                        double time) {
   Body &a = bodies[u.a], &b = bodies[u.b];
-  const Coordinate q = u.spec.joint.valid() ? coordinate_of(joints[u.spec.joint.index()], a, b)
+  const Coordinate q = u.spec.joint.valid() ? coordinate_of(joints[u.spec.joint.index()], a, b, u.spec.freedom)
                                             : distance_of(u.point_a, u.point_b, a, b);
   u.coordinate = q.value;
   u.speed = q.speed;

@@ -48,6 +48,12 @@ inline void check_penalty(const JointSpec& s, const std::string& who) {
   check(s.damping, "damping", "N s/m");
   check(s.rotational_stiffness, "rotational stiffness", "N m/rad");
   check(s.rotational_damping, "rotational damping", "N m s/rad");
+  if (s.kind == JointKind::bushing) {
+    for (const Vec3* v :
+         {&s.bushing_stiffness, &s.bushing_damping, &s.bushing_rotational_stiffness, &s.bushing_rotational_damping}) {
+      for (int k = 0; k < 3; ++k) require_non_negative((*v)[k], ("a constant of " + who).c_str(), "(SI units)");
+    }
+  }
   if (s.kind == JointKind::bushing && s.bushing_stiffness.norm() + s.bushing_rotational_stiffness.norm() <= 0.0) {
     fail("{} has no stiffness at all: give it bushing_stiffness (N/m) or bushing_rotational_stiffness (N m/rad)", who);
   }
@@ -70,7 +76,7 @@ inline Joint make_joint(const Parts& parts, JointSpec& s) {
   const double apart = hold_of(s.kind) == Hold::line    ? (gap - za.dot(gap) * za).norm()
                        : hold_of(s.kind) == Hold::plane ? std::abs(za.dot(gap))
                                                         : gap.norm();
-  if (!may_be_apart && apart > s.tolerance) {
+  if (!may_be_apart && !(apart <= s.tolerance)) {
     fail(
         "the points of {} do not meet: ({:g}, {:g}, {:g}) on body '{}' and ({:g}, {:g}, {:g}) on body '{}' are {:g} m "
         "apart, allowed is {:g} m; move a body or a point, or raise the joint's tolerance",
@@ -125,41 +131,42 @@ inline Joint make_joint(const Parts& parts, JointSpec& s) {
   return j;
 }
 
-/// Stops and friction; false if the joint has neither.
-inline bool make_extras(const JointSpec& s, JointExtras& e) {
+inline void add_stops(Parts& parts, const JointSpec& s, std::uint32_t joint) {
   const std::string who = fmt::format("{} '{}'", name_of(s.kind), s.name);
-  if (s.limits) {
-    if (!turns(s.kind) && !slides(s.kind)) {
-      fail(
-          "{} has limits, but no coordinate of its own to limit; limits go on revolute, cylindrical, planar, prismatic "
-          "and point-on-line joints",
-          who);
+  for (const JointLimits& l : s.limits) {
+    require_freedom(s.kind, l.freedom, "a stop of " + who);
+    if (!(l.lower < l.upper)) {
+      fail("the limits of {} are {:g} to {:g}: the lower one must be below the upper one", who, l.lower, l.upper);
     }
-    if (!(s.limits->lower < s.limits->upper)) {
-      fail("the limits of {} are {:g} to {:g}: the lower one must be below the upper one", who, s.limits->lower,
-           s.limits->upper);
+    if (l.stiffness) require_non_negative(*l.stiffness, ("stop stiffness of " + who).c_str(), "N/m or N m/rad");
+    if (l.damping) require_non_negative(*l.damping, ("stop damping of " + who).c_str(), "N s/m or N m s/rad");
+    for (const JointStops& e : parts.stops) {
+      if (e.joint == joint && e.freedom == l.freedom) {
+        fail("{} has two pairs of limits for its {}; give one", who, name_of(l.freedom));
+      }
     }
-    e.limited = true;
-    e.lower = s.limits->lower;
-    e.upper = s.limits->upper;
-    e.stop_stiffness = s.limits->stiffness.value_or(0.0);
-    e.stop_damping = s.limits->damping.value_or(0.0);
+    parts.stops.push_back(
+        {joint, l.freedom, l.lower, l.upper, l.stiffness.value_or(0.0), l.damping.value_or(0.0), 0.0});
   }
-  if (s.friction) {
-    using enum JointKind;
-    if (s.kind != revolute && s.kind != cylindrical && s.kind != prismatic && s.kind != planar && s.kind != spherical) {
-      fail("{} has friction, but friction goes on revolute, cylindrical, prismatic, planar and spherical joints only",
-           who);
-    }
-    e.rubs = true;
-    e.radius = require_positive(s.friction->radius, ("bearing radius of " + who).c_str(), "m");
-    e.preload = require_non_negative(s.friction->preload, ("preload of " + who).c_str(), "N");
-    e.lever = require_non_negative(s.friction->lever, ("lever of " + who).c_str(), "m");
-    e.law = {s.friction->coefficient, s.friction->stiffness.value_or(0.0), s.friction->velocity_stiffness.value_or(0.0),
-             s.friction->breaking_factor};
-    friction::AsperitySpring::check(e.law);
+}
+
+inline void add_rubbing(Parts& parts, const JointSpec& s, std::uint32_t joint) {
+  if (!s.friction) return;
+  const std::string who = fmt::format("{} '{}'", name_of(s.kind), s.name);
+  using enum JointKind;
+  if (s.kind == fixed || s.kind == distance || s.kind == bushing || s.kind == free) {
+    fail("{} has friction, but nothing in it slides; a bushing has dampers, and other kinds of joint have friction",
+         who);
   }
-  return e.limited || e.rubs;
+  JointRubbing e;
+  e.joint = joint;
+  e.radius = require_positive(s.friction->radius, ("bearing radius of " + who).c_str(), "m");
+  e.preload = require_non_negative(s.friction->preload, ("preload of " + who).c_str(), "N");
+  e.lever = require_non_negative(s.friction->lever, ("lever of " + who).c_str(), "m");
+  e.law = {s.friction->coefficient, s.friction->stiffness.value_or(0.0), s.friction->velocity_stiffness.value_or(0.0),
+           s.friction->breaking_factor};
+  friction::AsperitySpring::check(e.law);
+  parts.rubbing.push_back(e);
 }
 
 /// Checks the two ends of an element between points and puts the points into body frames.
@@ -182,12 +189,14 @@ inline Coupling make_coupling(const Parts& parts, CouplingSpec spec) {
   if (spec.terms.size() < 2) fail("{} joins {} coordinates, but needs at least 2", who, spec.terms.size());
   for (std::size_t i = 0; i < spec.terms.size(); ++i) {
     const Joint& j = known_joint(parts, spec.terms[i].joint, who);
-    if (!turns(j.kind) && !slides(j.kind)) fail("{} joins a {}, which has no coordinate", who, name_of(j.kind));
+    require_freedom(j.kind, spec.terms[i].freedom, who);
     if (!std::isfinite(spec.terms[i].ratio) || spec.terms[i].ratio == 0.0) {
       fail("ratio {} of {} is {:g}, but must be finite and not zero", i + 1, who, spec.terms[i].ratio);
     }
     for (std::size_t k = 0; k < i; ++k) {
-      if (spec.terms[k].joint == spec.terms[i].joint) fail("{} names the same joint twice; add up the ratios", who);
+      if (spec.terms[k].joint == spec.terms[i].joint && spec.terms[k].freedom == spec.terms[i].freedom) {
+        fail("{} names the same coordinate twice; add up the ratios", who);
+      }
     }
   }
   Coupling g;
@@ -203,7 +212,7 @@ inline PrescribedMotion make_motion(const Parts& parts, MotionSpec spec) {
   PrescribedMotion p;
   if (spec.target == MotionSpec::Target::joint) {
     const Joint& j = known_joint(parts, spec.joint, who);
-    if (!turns(j.kind) && !slides(j.kind)) fail("{} drives a {}, which has no coordinate", who, name_of(j.kind));
+    require_freedom(j.kind, Freedom::own, who);
     spec.body = BodyId(j.b);
   }
   const Body& b = known_body(parts, spec.body, who);

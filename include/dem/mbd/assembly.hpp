@@ -39,10 +39,14 @@ class Assembly {
   }
   JointId add_joint(JointSpec spec) {
     const Joint j = detail::make_joint(parts_, spec);
-    JointExtras extras;
-    extras.joint = static_cast<std::uint32_t>(parts_.joints.size());
-    if (detail::make_extras(spec, extras)) {
-      parts_.extras.push_back(extras);
+    const auto number = static_cast<std::uint32_t>(parts_.joints.size());
+    const std::size_t stops = parts_.stops.size();
+    try {
+      detail::add_stops(parts_, spec, number);
+      detail::add_rubbing(parts_, spec, number);
+    } catch (...) {  // a refused joint leaves nothing behind
+      parts_.stops.resize(stops);
+      throw;
     }
     parts_.joints.push_back(j);
     parts_.joint_specs.push_back(std::move(spec));
@@ -61,12 +65,7 @@ class Assembly {
     if (spec.three_points) spec = on_three_points(std::move(spec), who);
     if (spec.joint.valid()) {
       const Joint& j = known_joint(parts_, spec.joint, who);
-      if (!turns(j.kind) && !slides(j.kind)) {
-        fail(
-            "{} acts on {} '{}', which has no coordinate to drive; use a revolute, cylindrical, prismatic, planar or "
-            "point-on-line joint",
-            who, name_of(j.kind), parts_.joint_specs[spec.joint.index()].name);
-      }
+      require_freedom(j.kind, spec.freedom, who);
       u.a = j.a;
       u.b = j.b;
     } else {
@@ -76,6 +75,7 @@ class Assembly {
     }
     u.spec = std::move(spec);
     parts_.actuators.push_back(std::move(u));
+    changed_ = true;
     return ActuatorId(parts_.actuators.size() - 1);
   }
   SpringId add_spring(SpringSpec spec) {
@@ -83,6 +83,7 @@ class Assembly {
     detail::attach_points(parts_, s, spec, fmt::format("spring '{}'", spec.name), true);
     s.spec = std::move(spec);
     parts_.springs.push_back(std::move(s));
+    changed_ = true;
     return SpringId(parts_.springs.size() - 1);
   }
   CouplingId add_coupling(CouplingSpec spec) {
@@ -145,27 +146,37 @@ class Assembly {
     return body(c.body).point(c.point);
   }
 
-  /// A joint's own coordinate and speed: the rotation (rad, over whole turns) of one that turns, else the slide (m).
-  double coordinate(JointId id) const { return of(id, coordinate_of).value; }
-  double speed(JointId id) const { return of(id, coordinate_of).speed; }
+  /// A coordinate and its speed, one of freedoms_of(the joint's kind). Without a name the joint's own: the rotation
+  /// (rad, over whole turns) of one that turns, else the slide (m).
+  double coordinate(JointId id, Freedom freedom = Freedom::own) const { return coordinate_now(id, freedom).value; }
+  double speed(JointId id, Freedom freedom = Freedom::own) const { return coordinate_now(id, freedom).speed; }
   /// The slide along z (m, m/s), e.g. the second coordinate of a cylindrical joint.
-  double slide(JointId id) const { return of(id, displacement_of).value; }
-  double slide_speed(JointId id) const { return of(id, displacement_of).speed; }
-  Violation violation(JointId id) const { return of(id, violation_of); }
+  double slide(JointId id) const { return coordinate(id, Freedom::slide); }
+  double slide_speed(JointId id) const { return speed(id, Freedom::slide); }
+  Violation violation(JointId id) const {
+    const Joint& j = joint(id);
+    return violation_of(j, parts_.bodies[j.a], parts_.bodies[j.b]);
+  }
   /// Force (N) and torque (N m, about the joint's point) that the joint puts on its body b: springs and dampers.
   Wrench reaction(JointId id) const { return {joint(id).force, joint(id).torque}; }
   const Joint& joint(JointId id) const { return parts_.joints[id.index()]; }
-  /// Stops and friction of a joint; nullptr if it has none.
-  const JointExtras* extras(JointId id) const {
-    for (const JointExtras& e : parts_.extras) {
+  /// Stops of a joint's coordinate, or its friction; nullptr if it has none.
+  const JointStops* stops(JointId id, Freedom freedom = Freedom::own) const {
+    for (const JointStops& e : parts_.stops) {
+      if (e.joint == id.value && e.freedom == freedom) return &e;
+    }
+    return nullptr;
+  }
+  const JointRubbing* rubbing(JointId id) const {
+    for (const JointRubbing& e : parts_.rubbing) {
       if (e.joint == id.value) return &e;
     }
     return nullptr;
   }
   /// Sets the preload (N) of a joint's friction while running: a brake. Throws Error if the joint has no friction.
   void set_friction_preload(JointId id, double newtons) {
-    for (JointExtras& e : parts_.extras) {
-      if (e.joint == id.value && e.rubs) {
+    for (JointRubbing& e : parts_.rubbing) {
+      if (e.joint == id.value) {
         e.preload = require_non_negative(newtons, "preload of a joint's friction", "N");
         return;
       }
@@ -206,10 +217,9 @@ class Assembly {
     changed_ = true;
     return BodyId(parts_.bodies.size() - 1);
   }
-  template <class T>
-  T of(JointId id, T (*f)(const Joint&, const Body&, const Body&)) const {
+  Coordinate coordinate_now(JointId id, Freedom freedom) const {
     const Joint& j = joint(id);
-    return f(j, parts_.bodies[j.a], parts_.bodies[j.b]);
+    return coordinate_of(j, parts_.bodies[j.a], parts_.bodies[j.b], freedom);
   }
   /// A rotational actuator between three points acts on a free joint about the normal of their plane.
   ActuatorSpec on_three_points(ActuatorSpec spec, const std::string& who) {

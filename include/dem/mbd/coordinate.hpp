@@ -23,17 +23,6 @@ struct Coordinate {
   }
 };
 
-/// Whether a kind's own coordinate is a rotation about z (else a displacement along z).
-constexpr bool turns(JointKind kind) {
-  using enum JointKind;
-  return kind == revolute || kind == cylindrical || kind == planar || kind == free;
-}
-/// Whether a kind has a coordinate that slides along z.
-constexpr bool slides(JointKind kind) {
-  using enum JointKind;
-  return kind == prismatic || kind == cylindrical || kind == point_on_line || kind == free;
-}
-
 /// Rotation of b about z of a's joint frame, counted over whole turns. Exact to rounding: the arc tangent gives the
 /// angle and the estimate only says which turn it belongs to.
 inline Coordinate rotation_of(const Joint& j, const Body& a, const Body& b) {
@@ -49,22 +38,68 @@ inline Coordinate rotation_of(const Joint& j, const Body& a, const Body& b) {
   return q;
 }
 
-/// Displacement of b's point along z of a's joint frame.
-inline Coordinate displacement_of(const Joint& j, const Body& a, const Body& b) {
+/// Displacement of b's point along an axis (x, y or z) of a's joint frame.
+inline Coordinate displacement_along(const Vector3<double>& axis_in_a, const Joint& j, const Body& a, const Body& b) {
   const Matrix3<double>&A = a.motion.rotation, &B = b.motion.rotation;
   Coordinate q;
-  q.axis = A * j.axes_a.z;
+  q.axis = A * axis_in_a;
   q.arm_b = B * j.point_b;
   q.arm_a = b.motion.position - a.motion.position + q.arm_b;
-  q.value = dot(q.axis, q.arm_a - A * j.point_a) + j.slide_offset;
+  q.value = dot(q.axis, q.arm_a - A * j.point_a);
   q.speed = dot(q.axis, b.motion.velocity - a.motion.velocity + cross(B * b.motion.angular_velocity, q.arm_b) -
                             cross(A * a.motion.angular_velocity, q.arm_a));
   return q;
 }
+inline Coordinate displacement_of(const Joint& j, const Body& a, const Body& b) {
+  Coordinate q = displacement_along(j.axes_a.z, j, a, b);
+  q.value += j.slide_offset;
+  return q;
+}
 
-/// The joint's own coordinate: the rotation of joints that turn, else the displacement along z.
-inline Coordinate coordinate_of(const Joint& j, const Body& a, const Body& b) {
-  return turns(j.kind) ? rotation_of(j, a, b) : displacement_of(j, a, b);
+/// A rotation about a global axis by an angle.
+inline Coordinate rotation_about(const Vector3<double>& axis, double angle, const Body& a, const Body& b) {
+  Coordinate q;
+  q.rotation = true;
+  q.axis = axis;
+  q.value = angle;
+  q.speed = dot(axis, b.motion.rotation * b.motion.angular_velocity - a.motion.rotation * a.motion.angular_velocity);
+  return q;
+}
+
+/// The angle between the z axes, about the axis that turns za into zb. Where they are parallel any axis across will do.
+inline Coordinate bend_of(const Joint& j, const Body& a, const Body& b) {
+  const Vector3<double> za = a.motion.rotation * j.axes_a.z, zb = b.motion.rotation * j.axes_b.z;
+  const Vector3<double> n = cross(za, zb);
+  const double sine = norm(n);
+  return rotation_about(sine > 1e-12 ? (1.0 / sine) * n : a.motion.rotation * j.axes_a.x, std::atan2(sine, dot(za, zb)),
+                        a, b);
+}
+/// The two angles of a universal joint: of its cross about xa, and of body b about yb. As xa and yb are square to each
+/// other, the relative angular velocity is bend_x' xa + bend_y' yb.
+inline Coordinate bend_x_of(const Joint& j, const Body& a, const Body& b) {
+  const Matrix3<double>&A = a.motion.rotation, &B = b.motion.rotation;
+  const Vector3<double> yb = B * j.axes_b.y;
+  return rotation_about(A * j.axes_a.x, std::atan2(dot(A * j.axes_a.z, yb), dot(A * j.axes_a.y, yb)), a, b);
+}
+inline Coordinate bend_y_of(const Joint& j, const Body& a, const Body& b) {
+  const Matrix3<double>&A = a.motion.rotation, &B = b.motion.rotation;
+  const Vector3<double> xa = A * j.axes_a.x;
+  return rotation_about(B * j.axes_b.y, std::atan2(dot(xa, B * j.axes_b.z), dot(xa, B * j.axes_b.x)), a, b);
+}
+
+/// A coordinate of a joint, which has to be one of freedoms_of(its kind). By default the joint's own: the rotation of
+/// joints that turn, else the displacement along z.
+inline Coordinate coordinate_of(const Joint& j, const Body& a, const Body& b, Freedom freedom = Freedom::own) {
+  switch (freedom) {
+    case Freedom::turn: return rotation_of(j, a, b);
+    case Freedom::slide: return displacement_of(j, a, b);
+    case Freedom::slide_x: return displacement_along(j.axes_a.x, j, a, b);
+    case Freedom::slide_y: return displacement_along(j.axes_a.y, j, a, b);
+    case Freedom::bend: return bend_of(j, a, b);
+    case Freedom::bend_x: return bend_x_of(j, a, b);
+    case Freedom::bend_y: return bend_y_of(j, a, b);
+    default: return turns(j.kind) ? rotation_of(j, a, b) : displacement_of(j, a, b);
+  }
 }
 
 /// How far a joint is from holding what it should: m, and rad for small angles.

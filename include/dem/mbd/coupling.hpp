@@ -18,6 +18,7 @@ struct CouplingSpec {
   struct Term {
     JointId joint;
     double ratio;
+    Freedom freedom = Freedom::own;
   };
   std::string name;
   std::vector<Term> terms;
@@ -56,7 +57,7 @@ inline double coupling_sum(const CouplingSpec& spec, const std::vector<Joint>& j
   double sum = 0.0;
   for (const auto& term : spec.terms) {
     const Joint& j = joints[term.joint.index()];
-    sum += term.ratio * coordinate_of(j, bodies[j.a], bodies[j.b]).value;
+    sum += term.ratio * coordinate_of(j, bodies[j.a], bodies[j.b], term.freedom).value;
   }
   return sum;
 }
@@ -65,7 +66,7 @@ DEM_FLATTEN inline void apply_coupling(Coupling& g, const std::vector<Joint>& jo
   double sum = 0.0, rate = 0.0;
   for (const auto& term : g.spec.terms) {
     const Joint& j = joints[term.joint.index()];
-    const Coordinate q = coordinate_of(j, bodies[j.a], bodies[j.b]);
+    const Coordinate q = coordinate_of(j, bodies[j.a], bodies[j.b], term.freedom);
     sum += term.ratio * q.value;
     rate += term.ratio * q.speed;
   }
@@ -73,7 +74,7 @@ DEM_FLATTEN inline void apply_coupling(Coupling& g, const std::vector<Joint>& jo
   g.multiplier = -g.k * g.error - g.c * rate;
   for (const auto& term : g.spec.terms) {
     const Joint& j = joints[term.joint.index()];
-    coordinate_of(j, bodies[j.a], bodies[j.b]).apply(term.ratio * g.multiplier, bodies[j.a], bodies[j.b]);
+    coordinate_of(j, bodies[j.a], bodies[j.b], term.freedom).apply(term.ratio * g.multiplier, bodies[j.a], bodies[j.b]);
   }
 }
 

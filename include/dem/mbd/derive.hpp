@@ -6,6 +6,11 @@
 
 namespace dem::mbd {
 
+/// The limits that a joint's user gave for a coordinate that has stops.
+inline const JointLimits& limits_of(const JointSpec& s, Freedom freedom) {
+  return *std::find_if(s.limits.begin(), s.limits.end(), [&](const JointLimits& l) { return l.freedom == freedom; });
+}
+
 /// Fills in every stiffness and damping that the user left open, for a time step dt (s); the formula stands in
 /// stability.hpp. What the user gave stays.
 inline void derive_stiffness(Parts& m, double dt) {
@@ -34,28 +39,29 @@ inline void derive_stiffness(Parts& m, double dt) {
     j.c = s.damping.value_or(damping_of(s.stiffness, j.k, displacement));
     j.cr = s.rotational_damping.value_or(damping_of(s.rotational_stiffness, j.kr, rotation));
   }
-  for (JointExtras& e : m.extras) {
+  const auto along = [&](const Joint& j, Freedom freedom) {
+    const auto [wa, wb] = coordinate_mobility(j, m.bodies[j.a], m.bodies[j.b], freedom);
+    return n[j.a] * wa + n[j.b] * wb;
+  };
+  for (JointStops& e : m.stops) {
+    const double w = along(m.joints[e.joint], e.freedom);
+    const JointLimits& given = limits_of(m.joint_specs[e.joint], e.freedom);
+    e.stiffness = given.stiffness.value_or(stiff(joint_frequency, w));
+    e.damping = given.damping.value_or(damp(e.stiffness, w));
+  }
+  for (JointRubbing& e : m.rubbing) {
     const Joint& j = m.joints[e.joint];
-    const JointSpec& s = m.joint_specs[e.joint];
-    const JointMobility w = mobility_of(j, m.bodies[j.a], m.bodies[j.b]);
-    const double coordinate = n[j.a] * w.coordinate_a + n[j.b] * w.coordinate_b;
-    if (e.limited) {
-      e.stop_stiffness = s.limits->stiffness.value_or(stiff(joint_frequency, coordinate));
-      e.stop_damping = s.limits->damping.value_or(damp(e.stop_stiffness, coordinate));
-    }
-    if (e.rubs) {
-      const double r2 = turns(j.kind) || j.kind == JointKind::spherical ? e.radius * e.radius : 1.0;
-      e.law.stiffness = s.friction->stiffness.value_or(stiff(friction_frequency, r2 * coordinate));
-      e.law.velocity_stiffness = s.friction->velocity_stiffness.value_or(damp(e.law.stiffness, r2 * coordinate));
-    }
+    const auto [wa, wb] = rubbing_mobility(j, m.bodies[j.a], m.bodies[j.b], e.radius);
+    const double w = n[j.a] * wa + n[j.b] * wb;
+    const JointFriction& given = *m.joint_specs[e.joint].friction;
+    e.law.stiffness = given.stiffness.value_or(stiff(friction_frequency, w));
+    e.law.velocity_stiffness = given.velocity_stiffness.value_or(damp(e.law.stiffness, w));
   }
   for (Coupling& g : m.couplings) {
     double w = 0.0;
     for (const auto& term : g.spec.terms) {
       const Joint& j = m.joints[term.joint.index()];
-      const JointMobility u = mobility_of(j, m.bodies[j.a], m.bodies[j.b]);
-      w += term.ratio * term.ratio * static_cast<double>(g.spec.terms.size()) *
-           (n[j.a] * u.coordinate_a + n[j.b] * u.coordinate_b);
+      w += term.ratio * term.ratio * static_cast<double>(g.spec.terms.size()) * along(j, term.freedom);
     }
     g.k = g.spec.stiffness.value_or(stiff(joint_frequency, w));
     g.c = g.spec.damping.value_or(damp(g.k, w));
@@ -70,7 +76,9 @@ inline std::string first_underived(const Parts& m) {
     const bool displacement = hold_of(s.kind) != Hold::nothing && !(s.stiffness && s.damping);
     const bool rotation = align_of(s.kind) != Align::nothing && !(s.rotational_stiffness && s.rotational_damping);
     if (displacement || rotation) return fmt::format("{} '{}'", name_of(s.kind), s.name);
-    if (s.limits && !(s.limits->stiffness && s.limits->damping)) return fmt::format("stops of '{}'", s.name);
+    for (const JointLimits& stops : s.limits) {
+      if (!(stops.stiffness && stops.damping)) return fmt::format("stops of '{}'", s.name);
+    }
     if (s.friction && !(s.friction->stiffness && s.friction->velocity_stiffness)) {
       return fmt::format("friction of '{}'", s.name);
     }

@@ -36,11 +36,12 @@ DEM_FLATTEN inline void add_forces(Parts& m, double time, double dt, bool is_las
   }
   for (const Load& load : m.loads) apply_load(load, m.bodies, time);
   for (Joint& j : m.joints) apply_penalty(j, m.bodies[j.a], m.bodies[j.b], m.spin[j.a], m.spin[j.b], followed);
-  for (JointExtras& e : m.extras) {
+  for (JointRubbing& e : m.rubbing) {
     const Joint& j = m.joints[e.joint];
-    if (e.rubs) apply_friction(e, j, m.bodies[j.a], m.bodies[j.b], followed, is_last_stage);
-    if (e.limited) apply_stop(e, j, m.bodies[j.a], m.bodies[j.b]);
+    apply_friction(e, j, m.bodies[j.a], m.bodies[j.b], followed, is_last_stage);
   }
+  for (JointStops& e : m.stops)
+    apply_stops(e, m.joints[e.joint], m.bodies[m.joints[e.joint].a], m.bodies[m.joints[e.joint].b]);
   for (Coupling& g : m.couplings) apply_coupling(g, m.joints, m.bodies);
   for (Spring& s : m.springs) apply_spring(s, m.bodies);
   for (Actuator& u : m.actuators) apply_actuator(u, m.joints, m.bodies, time);

@@ -2,46 +2,23 @@
 
 #include <dem/math/vector.hpp>
 #include <dem/mbd/ids.hpp>
+#include <dem/mbd/joint_kind.hpp>
 
 #include <limits>
 #include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
 namespace dem::mbd {
 
-/// What a joint leaves free. Joint frame: origin in the joint's point, z along its axis.
-enum class JointKind {
-  fixed,              ///< nothing
-  spherical,          ///< all rotations
-  revolute,           ///< rotation about z
-  cylindrical,        ///< rotation about z and sliding along z
-  prismatic,          ///< sliding along z
-  planar,             ///< sliding along x and y, rotation about z
-  universal,          ///< rotation about x of body a and about y of body b, the arms of its cross
-  constant_velocity,  ///< bending in any direction; carries the rotation about the shafts unchanged
-  point_on_line,      ///< all rotations and sliding along z
-  point_on_plane,     ///< all rotations and sliding along x and y
-  distance,           ///< all but the distance of two points
-  bushing,            ///< everything, against springs and dampers of its own along and about x, y, z
-  free                ///< everything; measures a rotation and a displacement, e.g. for a rotational actuator
-};
-
-inline const char* name_of(JointKind kind) {
-  constexpr const char* names[] = {
-      "fixed joint",         "spherical joint",      "revolute joint",  "cylindrical joint",
-      "prismatic joint",     "planar joint",         "universal joint", "constant-velocity joint",
-      "point-on-line joint", "point-on-plane joint", "distance joint",  "bushing",
-      "free joint"};
-  return names[static_cast<int>(kind)];
-}
-
-/// A stop at each end of a joint's coordinate (rad for joints that turn, m for joints that slide).
+/// A stop at each end of a coordinate of a joint (rad for rotations, m for slides).
 struct JointLimits {
   double lower = -std::numeric_limits<double>::infinity();
   double upper = std::numeric_limits<double>::infinity();
   std::optional<double> stiffness = {};  ///< N/m or N m/rad; derived if not given
   std::optional<double> damping = {};    ///< N s/m or N m s/rad, while moving into the stop; derived if not given
+  Freedom freedom = Freedom::own;        ///< which coordinate
 };
 
 /// Asperity friction in a joint (thesis section 2.2.2). The normal force is that which the joint carries, plus a
@@ -71,9 +48,9 @@ struct JointSpec {
   std::optional<double> rotational_damping = {};        ///< N m s/rad
   Vec3 bushing_stiffness = Vec3::Zero(), bushing_damping = Vec3::Zero();                        ///< N/m, N s/m
   Vec3 bushing_rotational_stiffness = Vec3::Zero(), bushing_rotational_damping = Vec3::Zero();  ///< N m/rad, N m s/rad
-  std::optional<double> length = {};  ///< m, of a distance joint; the distance at assembly if not given
-  double start = 0.0;                 ///< rad or m, the coordinate at assembly
-  std::optional<JointLimits> limits = {};
+  std::optional<double> length = {};     ///< m, of a distance joint; the distance at assembly if not given
+  double start = 0.0;                    ///< rad or m, the coordinate at assembly
+  std::vector<JointLimits> limits = {};  ///< one for each coordinate that has stops
   std::optional<JointFriction> friction = {};
   double tolerance = 1e-6;  ///< m, within which the two points have to meet at assembly; rad for the axes
 
@@ -90,9 +67,12 @@ struct JointSpec {
     return s;
   }
   JointSpec with_limits(double lower, double upper) const { return with_limits(JointLimits{lower, upper}); }
+  JointSpec with_limits(Freedom freedom, double lower, double upper) const {
+    return with_limits(JointLimits{.lower = lower, .upper = upper, .freedom = freedom});
+  }
   JointSpec with_limits(const JointLimits& stops) const {
     JointSpec s = *this;
-    s.limits = stops;
+    s.limits.push_back(stops);
     return s;
   }
   JointSpec with_friction(const JointFriction& f) const {

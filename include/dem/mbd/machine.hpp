@@ -134,7 +134,7 @@ class Machine : public MachinePhases<I> {
     for (std::size_t i = 0; i < parts_.bodies.size(); ++i) saved_.motions[i] = parts_.bodies[i].motion;
     saved_.turns.resize(parts_.joints.size());
     for (std::size_t i = 0; i < parts_.joints.size(); ++i) saved_.turns[i] = parts_.joints[i].angle_estimate;
-    saved_.extras = parts_.extras;
+    saved_.rubbing = parts_.rubbing;
     saved_.drives.resize(parts_.motions.size());
     for (std::size_t i = 0; i < parts_.motions.size(); ++i) saved_.drives[i] = parts_.motions[i].drive;
   }
@@ -143,7 +143,7 @@ class Machine : public MachinePhases<I> {
     memory_ = saved_.memory;
     for (std::size_t i = 0; i < parts_.bodies.size(); ++i) parts_.bodies[i].motion = saved_.motions[i];
     for (std::size_t i = 0; i < parts_.joints.size(); ++i) parts_.joints[i].angle_estimate = saved_.turns[i];
-    parts_.extras = saved_.extras;
+    parts_.rubbing = saved_.rubbing;
     for (std::size_t i = 0; i < parts_.motions.size(); ++i) parts_.motions[i].drive = saved_.drives[i];
   }
 
@@ -152,7 +152,7 @@ class Machine : public MachinePhases<I> {
     std::vector<typename Base::Memory> memory;
     std::vector<integrator::Motion<double>> motions;
     std::vector<double> turns;
-    std::vector<JointExtras> extras;
+    std::vector<JointRubbing> rubbing;
     std::vector<PrescribedMotion::Drive> drives;
   };
 

@@ -27,7 +27,8 @@ struct Parts {
   std::vector<Connection> connections;
   std::vector<Joint> joints;           ///< what a step needs
   std::vector<JointSpec> joint_specs;  ///< as given: what was left to derive is still empty
-  std::vector<JointExtras> extras;     ///< stops and friction, of the joints that have them
+  std::vector<JointStops> stops;       ///< of the coordinates that have them
+  std::vector<JointRubbing> rubbing;   ///< of the joints that have friction
   std::vector<Coupling> couplings;
   std::vector<Actuator> actuators;
   std::vector<Spring> springs;

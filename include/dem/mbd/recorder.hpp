@@ -30,19 +30,18 @@ class Recorder {
     row_.resize(values_.size());
     return *this;
   }
-  /// Coordinate and speed (where the joint has them), reaction force and torque on its body b in global axes.
+  /// All free coordinates and their speeds, reaction force and torque on its body b in global axes.
   Recorder& add(JointId id) {
     const Assembly* m = machine_;
     known_joint(m->parts(), id, "a recorder");
     const std::string name = m->parts().joint_specs[id.index()].name;
     const JointKind kind = m->joint(id).kind;
-    if (turns(kind)) {
-      add(name + "_angle_rad", [m, id] { return m->coordinate(id); });
-      add(name + "_speed_rad_per_s", [m, id] { return m->speed(id); });
-    }
-    if (slides(kind)) {
-      add(name + "_slide_m", [m, id] { return m->slide(id); });
-      add(name + "_slide_speed_m_per_s", [m, id] { return m->slide_speed(id); });
+    for (const Freedom f : freedoms_of(kind)) {
+      const bool rotation = is_rotation(f);
+      add(fmt::format("{}_{}_{}", name, name_of(f), rotation ? "rad" : "m"),
+          [m, id, f] { return m->coordinate(id, f); });
+      add(fmt::format("{}_{}_speed_{}_per_s", name, name_of(f), rotation ? "rad" : "m"),
+          [m, id, f] { return m->speed(id, f); });
     }
     add(name + "_force_x_N", [m, id] { return m->reaction(id).force.x; });
     add(name + "_force_y_N", [m, id] { return m->reaction(id).force.y; });

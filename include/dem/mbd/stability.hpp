@@ -104,9 +104,9 @@ inline HeldDirections held_directions(const Joint& j, const Body& a, const Body&
   return held;
 }
 
-/// Mobilities of the two bodies of a joint, displacement and rotation in held directions, and along the coordinate.
+/// Mobilities of the two bodies of a joint, displacement and rotation in held directions.
 struct JointMobility {
-  double displacement_a, displacement_b, rotation_a, rotation_b, coordinate_a, coordinate_b;
+  double displacement_a, displacement_b, rotation_a, rotation_b;
 };
 inline JointMobility mobility_of(const Joint& j, const Body& a, const Body& b) {
   const HeldDirections held = held_directions(j, a, b);
@@ -114,17 +114,45 @@ inline JointMobility mobility_of(const Joint& j, const Body& a, const Body& b) {
   const Mat3 wa = point_mobility(a, at - a.position()), wb = point_mobility(b, at - b.position());
   const Mat3 ra = rotational_mobility(a), rb = rotational_mobility(b);
   const auto gain = [](const Mat3& root, const Mat3& w) { return std::max(0.0, largest_eigenvalue(root * w * root)); };
-  const Vec3 z = a.rotation() * to_eigen(j.axes_a.z);
-  const bool all = j.kind == JointKind::spherical, turning = turns(j.kind);
-  const auto along = [&](const Mat3& w, const Mat3& r) {
-    return all ? largest_eigenvalue(r) : turning ? z.dot(r * z) : z.dot(w * z);
+  return {gain(held.displacement, wa), gain(held.displacement, wb), gain(held.rotation, ra), gain(held.rotation, rb)};
+}
+
+/// Mobilities of the two bodies along a coordinate of their joint. The axis of a bend may point anywhere.
+inline std::pair<double, double> coordinate_mobility(const Joint& j, const Body& a, const Body& b, Freedom freedom) {
+  if (freedom == Freedom::bend) {
+    return {largest_eigenvalue(rotational_mobility(a)), largest_eigenvalue(rotational_mobility(b))};
+  }
+  const Coordinate q = coordinate_of(j, a, b, freedom);
+  const Vec3 n = to_eigen(q.axis), at = b.point(to_eigen(j.point_b));
+  if (q.rotation) return {n.dot(rotational_mobility(a) * n), n.dot(rotational_mobility(b) * n)};
+  return {n.dot(point_mobility(a, at - a.position()) * n), n.dot(point_mobility(b, at - b.position()) * n)};
+}
+
+/// Mobilities of the two bodies along the directions that a joint's friction acts in: the largest of them, as all have
+/// the same spring; rotations times the square of the bearing's radius, which turns sliding into rotation.
+inline std::pair<double, double> rubbing_mobility(const Joint& j, const Body& a, const Body& b, double radius) {
+  std::pair<double, double> most = {0.0, 0.0};
+  const auto consider = [&](Freedom freedom) {
+    const double share = is_rotation(freedom) ? radius * radius : 1.0;
+    const auto [wa, wb] = coordinate_mobility(j, a, b, freedom);
+    most = {std::max(most.first, share * wa), std::max(most.second, share * wb)};
   };
-  return {gain(held.displacement, wa),
-          gain(held.displacement, wb),
-          gain(held.rotation, ra),
-          gain(held.rotation, rb),
-          along(wa, ra),
-          along(wb, rb)};
+  switch (j.kind) {
+    case JointKind::planar:
+    case JointKind::point_on_plane:
+      consider(Freedom::slide_x);
+      consider(Freedom::slide_y);
+      break;
+    case JointKind::cylindrical:
+      consider(Freedom::turn);
+      consider(Freedom::slide);
+      break;
+    case JointKind::revolute: consider(Freedom::turn); break;
+    case JointKind::prismatic:
+    case JointKind::point_on_line: consider(Freedom::slide); break;
+    default: consider(Freedom::bend); break;
+  }
+  return most;
 }
 
 /// Mobility of the line between two points.
@@ -141,49 +169,45 @@ inline std::vector<Element> elements_of(const Parts& m) {
   const auto label = [&](std::size_t i) {
     return fmt::format("{} '{}'", name_of(m.joint_specs[i].kind), m.joint_specs[i].name);
   };
-  std::vector<JointMobility> mobility;
   for (std::size_t i = 0; i < m.joints.size(); ++i) {
     const Joint& j = m.joints[i];
     const JointMobility w = mobility_of(j, m.bodies[j.a], m.bodies[j.b]);
-    mobility.push_back(w);
     if (j.kind == JointKind::free) continue;
     Element e{label(i), {{j.a}, {j.b}}};
-    if (j.kind == JointKind::bushing) {  // its mobility holds the stiffness; the dampers count in the same proportion
-      const auto ratio = [](const Vector3<double>& c, const Vector3<double>& k) {
-        return std::max({c.x / max(k.x, 1e-30), c.y / max(k.y, 1e-30), c.z / max(k.z, 1e-30)});
-      };
-      const double t = ratio(j.c3, j.k3), r = ratio(j.cr3, j.kr3);
-      e.sides[0] = {j.a, w.displacement_a + w.rotation_a, t * w.displacement_a + r * w.rotation_a};
-      e.sides[1] = {j.b, w.displacement_b + w.rotation_b, t * w.displacement_b + r * w.rotation_b};
+    if (j.kind == JointKind::bushing) {  // its mobilities hold the stiffness, and those of its dampers the damping
+      Joint damper = j;
+      damper.k3 = j.c3;
+      damper.kr3 = j.cr3;
+      const JointMobility d = mobility_of(damper, m.bodies[j.a], m.bodies[j.b]);
+      e.sides[0] = {j.a, w.displacement_a + w.rotation_a, d.displacement_a + d.rotation_a};
+      e.sides[1] = {j.b, w.displacement_b + w.rotation_b, d.displacement_b + d.rotation_b};
     } else {
       e.sides[0] = {j.a, j.k * w.displacement_a + j.kr * w.rotation_a, j.c * w.displacement_a + j.cr * w.rotation_a};
       e.sides[1] = {j.b, j.k * w.displacement_b + j.kr * w.rotation_b, j.c * w.displacement_b + j.cr * w.rotation_b};
     }
     list.push_back(std::move(e));
   }
-  for (const JointExtras& x : m.extras) {
+  const auto along = [&](std::string name, const Joint& j, Freedom freedom, double k, double c) {
+    const auto [wa, wb] = coordinate_mobility(j, m.bodies[j.a], m.bodies[j.b], freedom);
+    list.push_back({std::move(name), {{j.a, k * wa, c * wa}, {j.b, k * wb, c * wb}}});
+  };
+  for (const JointRubbing& x : m.rubbing) {
     const Joint& j = m.joints[x.joint];
-    const JointMobility& w = mobility[x.joint];
-    const double r2 = turns(j.kind) || j.kind == JointKind::spherical ? x.radius * x.radius : 1.0;
-    if (x.rubs) {
-      const double k = r2 * x.law.stiffness, c = r2 * x.law.velocity_stiffness;
-      list.push_back({"friction of " + label(x.joint),
-                      {{j.a, k * w.coordinate_a, c * w.coordinate_a}, {j.b, k * w.coordinate_b, c * w.coordinate_b}}});
-    }
-    if (x.limited) {
-      const double k = x.stop_stiffness, c = x.stop_damping;
-      list.push_back({"stops of " + label(x.joint),
-                      {{j.a, k * w.coordinate_a, c * w.coordinate_a}, {j.b, k * w.coordinate_b, c * w.coordinate_b}}});
-    }
+    const auto [wa, wb] = rubbing_mobility(j, m.bodies[j.a], m.bodies[j.b], x.radius);
+    const double k = x.law.stiffness, c = x.law.velocity_stiffness;
+    list.push_back({"friction of " + label(x.joint), {{j.a, k * wa, c * wa}, {j.b, k * wb, c * wb}}});
+  }
+  for (const JointStops& x : m.stops) {
+    along("stops of " + label(x.joint), m.joints[x.joint], x.freedom, x.stiffness, x.damping);
   }
   for (const Coupling& g : m.couplings) {
     Element e{fmt::format("coupling '{}'", g.spec.name), {}};
     for (const auto& term : g.spec.terms) {
-      const JointMobility& w = mobility[term.joint.index()];
       const Joint& j = m.joints[term.joint.index()];
+      const auto [wa, wb] = coordinate_mobility(j, m.bodies[j.a], m.bodies[j.b], term.freedom);
       const double r2 = term.ratio * term.ratio * static_cast<double>(g.spec.terms.size());  // (sum x)^2 <= n sum x^2
-      e.sides.push_back({j.a, g.k * r2 * w.coordinate_a, g.c * r2 * w.coordinate_a});
-      e.sides.push_back({j.b, g.k * r2 * w.coordinate_b, g.c * r2 * w.coordinate_b});
+      e.sides.push_back({j.a, g.k * r2 * wa, g.c * r2 * wa});
+      e.sides.push_back({j.b, g.k * r2 * wb, g.c * r2 * wb});
     }
     list.push_back(std::move(e));
   }
@@ -203,9 +227,7 @@ inline std::vector<Element> elements_of(const Parts& m) {
     if (!u.spec.joint.valid()) {
       line(name, u, u.a, u.b, k, c);
     } else {
-      const JointMobility& w = mobility[u.spec.joint.index()];
-      list.push_back(
-          {name, {{u.a, k * w.coordinate_a, c * w.coordinate_a}, {u.b, k * w.coordinate_b, c * w.coordinate_b}}});
+      along(name, m.joints[u.spec.joint.index()], u.spec.freedom, k, c);
     }
   }
   return list;

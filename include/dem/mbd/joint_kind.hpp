@@ -1,0 +1,104 @@
+#pragma once
+
+#include <dem/core/error.hpp>
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+namespace dem::mbd {
+
+/// What a joint leaves free. Joint frame: origin in the joint's point, z along its axis.
+enum class JointKind {
+  fixed,              ///< nothing
+  spherical,          ///< all rotations
+  revolute,           ///< rotation about z
+  cylindrical,        ///< rotation about z and sliding along z
+  prismatic,          ///< sliding along z
+  planar,             ///< sliding along x and y, rotation about z
+  universal,          ///< rotation about x of body a and about y of body b, the arms of its cross
+  constant_velocity,  ///< bending in any direction; carries the rotation about the shafts unchanged
+  point_on_line,      ///< all rotations and sliding along z
+  point_on_plane,     ///< all rotations and sliding along x and y
+  distance,           ///< all but the distance of two points
+  bushing,            ///< everything, against springs and dampers of its own along and about x, y, z
+  free                ///< everything; measures a rotation and a displacement, e.g. for a rotational actuator
+};
+
+inline const char* name_of(JointKind kind) {
+  constexpr const char* names[] = {
+      "fixed joint",         "spherical joint",      "revolute joint",  "cylindrical joint",
+      "prismatic joint",     "planar joint",         "universal joint", "constant-velocity joint",
+      "point-on-line joint", "point-on-plane joint", "distance joint",  "bushing",
+      "free joint"};
+  return names[static_cast<int>(kind)];
+}
+
+/// A coordinate of a joint, seen from body a: how far b's point has moved along an axis of a's joint frame, or how b
+/// has turned.
+enum class Freedom {
+  own,      ///< the rotation of joints that turn about z, else the displacement of those that slide along z
+  turn,     ///< rad, about z, over whole turns
+  slide,    ///< m, along z
+  slide_x,  ///< m
+  slide_y,  ///< m
+  bend,     ///< rad, angle between the two z axes, 0 to pi
+  bend_x,   ///< rad, of a universal joint: about x of body a, the arm of its cross on a
+  bend_y    ///< rad, of a universal joint: about y of body b, the arm of its cross on b
+};
+
+inline const char* name_of(Freedom freedom) {
+  constexpr const char* names[] = {"coordinate", "angle", "slide", "slide_x", "slide_y", "bend", "bend_x", "bend_y"};
+  return names[static_cast<int>(freedom)];
+}
+constexpr bool is_rotation(Freedom f) { return f == Freedom::turn || f >= Freedom::bend; }
+
+/// The coordinates that a kind of joint leaves free, its own one first.
+inline std::vector<Freedom> freedoms_of(JointKind kind) {
+  using enum Freedom;
+  switch (kind) {
+    case JointKind::revolute: return {turn};
+    case JointKind::cylindrical: return {turn, slide};
+    case JointKind::prismatic: return {slide};
+    case JointKind::planar: return {turn, slide_x, slide_y};
+    case JointKind::universal: return {bend_x, bend_y, bend};
+    case JointKind::spherical:
+    case JointKind::constant_velocity: return {bend};
+    case JointKind::point_on_line: return {slide, bend};
+    case JointKind::point_on_plane: return {slide_x, slide_y, bend};
+    case JointKind::bushing: return {slide, slide_x, slide_y, bend};
+    case JointKind::free: return {turn, slide, slide_x, slide_y, bend};
+    default: return {};
+  }
+}
+
+/// Whether a kind's own coordinate is a rotation about z (else a displacement along z).
+constexpr bool turns(JointKind kind) {
+  using enum JointKind;
+  return kind == revolute || kind == cylindrical || kind == planar || kind == free;
+}
+/// Whether a kind has a coordinate that slides along z.
+constexpr bool slides(JointKind kind) {
+  using enum JointKind;
+  return kind == prismatic || kind == cylindrical || kind == point_on_line || kind == free;
+}
+inline bool has_freedom(JointKind kind, Freedom freedom) {
+  if (freedom == Freedom::own) return turns(kind) || slides(kind);
+  const std::vector<Freedom> list = freedoms_of(kind);
+  return std::find(list.begin(), list.end(), freedom) != list.end();
+}
+
+/// Throws Error, with the coordinates that there are, unless joints of this kind have that one.
+inline void require_freedom(JointKind kind, Freedom freedom, const std::string& who) {
+  if (has_freedom(kind, freedom)) return;
+  std::string known;
+  for (const Freedom f : freedoms_of(kind)) known += fmt::format("{}{}", known.empty() ? "" : ", ", name_of(f));
+  if (known.empty()) fail("{} acts on a {}, which leaves no coordinate free", who, name_of(kind));
+  if (freedom == Freedom::own) {
+    fail("{} acts on a {}, which has no coordinate of its own; name one of its freedoms: {}", who, name_of(kind),
+         known);
+  }
+  fail("{} acts on '{}' of a {}, which has only: {}", who, name_of(freedom), name_of(kind), known);
+}
+
+}  // namespace dem::mbd
