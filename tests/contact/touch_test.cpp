@@ -42,12 +42,12 @@ TEST_CASE("the same contact seen from either side is the same contact") {
 }
 
 TEST_CASE("a sphere touches a surface in the middle of the overlap") {
-  const Geometry<double> g = SurfaceTouch<double>{{0.5, 0, 0}, {0, 0, -1}, 1.0, 0.6}.geometry();
+  const Geometry<double> g = SurfaceTouch<double>{{0.5, 0, 0}, {0, 0, -1}, 1.0, 0.6, 1.0, 1.0}.geometry();
   CHECK(g.overlap == Approx(0.4));
   check_close(g.arm, {0.5, 0, -0.8});
   CHECK(g.effective_radius == 1.0);
   // A centre behind the surface: the gap is negative and the overlap larger than the radius.
-  CHECK(SurfaceTouch<double>{{0, 0, 0}, {0, 0, -1}, 1.0, -0.5}.geometry().overlap == Approx(1.5));
+  CHECK(SurfaceTouch<double>{{0, 0, 0}, {0, 0, -1}, 1.0, -0.5, 1.0, 1.0}.geometry().overlap == Approx(1.5));
 }
 
 TEST_CASE("spheres with the same centre give finite numbers") {

@@ -1,12 +1,29 @@
 // The kernels that device code may call compile for a device. Nothing is run.
 
+#include <dem/cohesion/constant.hpp>
+#include <dem/cohesion/dmt.hpp>
+#include <dem/cohesion/jkr.hpp>
+#include <dem/cohesion/liquid_bridge.hpp>
+#include <dem/cohesion/none.hpp>
+#include <dem/contact/hertz.hpp>
+#include <dem/contact/hysteretic.hpp>
+#include <dem/contact/linear_spring_dashpot.hpp>
 #include <dem/contact/penalty.hpp>
 #include <dem/contact/touch.hpp>
 #include <dem/friction/asperity_spring.hpp>
+#include <dem/friction/coulomb_viscous.hpp>
+#include <dem/friction/cundall_strack.hpp>
+#include <dem/friction/mindlin.hpp>
 #include <dem/friction/none.hpp>
+#include <dem/friction/varying.hpp>
 #include <dem/integrator/predictor_corrector.hpp>
 #include <dem/integrator/symplectic_euler.hpp>
 #include <dem/integrator/velocity_verlet.hpp>
+#include <dem/rolling/constant_torque.hpp>
+#include <dem/rolling/elastic_plastic.hpp>
+#include <dem/rolling/none.hpp>
+#include <dem/rolling/sum.hpp>
+#include <dem/rolling/torsion.hpp>
 #include <dem/surface/box.hpp>
 #include <dem/surface/plane.hpp>
 
@@ -49,6 +66,62 @@ __global__ void contact_forces(int n, Contact* contacts, Constants constants, Ve
               force(c.spheres.geometry(), c.velocity, constants, c.slip) +
               force(c.surface.geometry(), c.velocity, constants, c.slip);
 }
+
+/// One contact under one law of each kind: its parameters, and what it remembers.
+template <class Normal, class Friction, class Rolling, class Cohesion>
+struct LawContact {
+  typename Normal::template Parameters<double> normal;
+  typename Friction::template Parameters<double> friction;
+  typename Rolling::template Parameters<double> rolling;
+  typename Cohesion::template Parameters<double> cohesion;
+  typename Normal::template History<double> normal_history;
+  typename Friction::template History<double> friction_history;
+  typename Rolling::template History<double> rolling_history;
+  typename Cohesion::template History<double> cohesion_history;
+  dem::contact::NormalState<double> state;
+  Vector3<double> velocity, spin;
+};
+
+template <class Normal, class Friction, class Rolling, class Cohesion>
+__global__ void law_forces(int n, LawContact<Normal, Friction, Rolling, Cohesion>* contacts, Vector3<double>* forces) {
+  const int k = static_cast<int>(blockIdx.x * blockDim.x + threadIdx.x);
+  if (k >= n) return;
+  auto& c = contacts[k];
+  const dem::contact::NormalState<double>& s = c.state;
+  const double repulsion = Normal::force(c.normal, s, c.normal_history);
+  const auto attraction = Cohesion::force(c.cohesion, s, c.cohesion_history);
+  const double pressing = dem::max(0.0, repulsion + attraction.grip);
+  const auto turn = [](const Vector3<double>& v) { return -v; };
+  Friction::carry(c.friction_history, turn);
+  Rolling::carry(c.rolling_history, turn);
+  const dem::friction::TangentialState<double> sliding = {c.velocity,         pressing,         s.overlap,  s.area,
+                                                          s.effective_radius, s.effective_mass, s.time_step};
+  const dem::rolling::RollingState<double> rolling = {{0, 0, 1},          c.spin,           c.spin.z,   pressing,
+                                                      s.effective_radius, s.effective_mass, s.time_step};
+  forces[k] = Friction::force(c.friction, sliding, c.friction_history) +
+              Rolling::torque(c.rolling, rolling, c.rolling_history) +
+              Vector3<double>{0, 0, attraction.pull - repulsion};
+}
+
+template <class Normal, class Friction, class Rolling, class Cohesion>
+void launch(LawContact<Normal, Friction, Rolling, Cohesion>* contacts, Vector3<double>* forces) {
+  law_forces<<<1, 32>>>(32, contacts, forces);
+}
+namespace contact = dem::contact;
+namespace friction = dem::friction;
+namespace rolling = dem::rolling;
+namespace cohesion = dem::cohesion;
+template void launch(LawContact<contact::Hertz, friction::Mindlin, rolling::ElasticPlastic, cohesion::JKR>*,
+                     Vector3<double>*);
+template void launch(LawContact<contact::LinearSpringDashpot, friction::CundallStrack,
+                                rolling::Sum<rolling::ElasticPlastic, rolling::Torsion>, cohesion::LiquidBridge>*,
+                     Vector3<double>*);
+template void launch(LawContact<contact::Hysteretic, friction::CoulombViscous,
+                                rolling::Sum<rolling::ConstantTorque, rolling::Torsion>, cohesion::DMT>*,
+                     Vector3<double>*);
+template void launch(
+    LawContact<contact::Penalty, friction::Varying<friction::AsperitySpring>, rolling::None, cohesion::Constant>*,
+    Vector3<double>*);
 
 struct Body {
   dem::integrator::Motion<double> motion;

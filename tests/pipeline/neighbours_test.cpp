@@ -86,7 +86,7 @@ TEST_CASE("friction remembers across new neighbour lists and re-sorting") {
     const double h = 1.2e-3;
     const auto cube = w.add_species(dem::shape::cube8(h));
     w.add_surface(w.ground(), dem::surface::Plane{});
-    for (int column = 0; column < 70; ++column) {  // more than a chunk
+    for (int column = 0; column < 140; ++column) {  // more than a chunk
       for (int k = 0; k < 2; ++k) {
         dem::NewParticle n;
         n.species = cube;
@@ -106,7 +106,7 @@ TEST_CASE("friction remembers across new neighbour lists and re-sorting") {
   build(seldom);
   REQUIRE(often.run(6000));
   REQUIRE(seldom.run(6000));
-  const auto flier = ParticleId(140);
+  const auto flier = ParticleId(280);
   std::vector<Vec3> before;
   for_each_grain(often, [&](ParticleId p) { before.push_back(often.position(p)); });
   REQUIRE(often.run(6000));

@@ -1,5 +1,9 @@
 #include "world/scenes.hpp"
 
+#include <dem/contact/hertz.hpp>
+#include <dem/friction/cundall_strack.hpp>
+#include <dem/rolling/elastic_plastic.hpp>
+
 using Catch::Approx;
 
 namespace {
@@ -52,6 +56,58 @@ TEST_CASE("the smallest, the stiffest and the friction spring limit the time ste
   CHECK(walled.stable_time_step().value == Approx(fine));
   walled.add_surface(walled.ground(), dem::surface::Plane{});
   CHECK(walled.stable_time_step().value < fine / 20);
+}
+
+TEST_CASE("a damper shortens the step as much as a force that lags by half a step needs") {
+  // x'' = -k w x - c w x' with the velocity of the last half step in the force: grows above the limit, dies below.
+  const double k = 2000.0, w = 1e5;
+  for (const double ratio : {0.0, 0.1, 1.0, 5.0}) {
+    const double c = 2 * ratio * std::sqrt(k / w), limit = dem::pipeline::stable_step(2.0, k, c, w);
+    const auto grows = [&](double dt) {
+      double x = 1.0, v = 0.0;
+      for (int step = 0; step < 3000; ++step) {
+        v -= dt * w * (k * x + c * v);
+        x += dt * v;
+      }
+      return !(std::abs(x) < 10.0);  // a NaN has grown as well
+    };
+    CAPTURE(ratio);
+    CHECK_FALSE(grows(0.99 * limit));
+    CHECK(grows(1.01 * limit));
+  }
+  CHECK(dem::pipeline::stable_step(2.0, 0.0, 0.5, w) == Approx(2.0 / (0.5 * w)));  // a damper alone: c w dt < 2
+  CHECK(dem::pipeline::stable_step(2.0, 0.0, 0.0, w) == 1e300);
+}
+
+TEST_CASE("laws that stiffen, and rolling springs, limit the time step too") {
+  struct Model : Balls {
+    using Normal = dem::contact::Hertz;
+    using Friction = dem::friction::CundallStrack;
+    using Rolling = dem::rolling::ElasticPlastic;
+  };
+  const double r = 1e-3;
+  const auto limit_of = [&](double damping_ratio, double kt, double kr, double overlap_limit) {
+    dem::WorldOptions o;
+    o.overlap_limit = overlap_limit;
+    dem::World<Model> w(o);
+    w.set_contact({{1e8, damping_ratio}, {0.5, kt, 0.0}, {0.1, kr, 0.0}});
+    w.add_species(Sphere(r));
+    return w.stable_time_step();
+  };
+  // Hertz at the reported overlap, 2 x limit x R*: the slope 2 E* sqrt(R* d) = 2 E* R* sqrt(2 limit).
+  const double m = 2650.0 * Sphere(r).volume(), w = 2 / m * 3.5, k = 2e8 * 0.5 * r * std::sqrt(0.02);
+  const double n = dem::pipeline::contacts_in_line;
+  const double soft = limit_of(0.0, 1.0, 1.0, 0.01).value;
+  CHECK(soft == Approx(dem::pipeline::stable_step(2.0, n * k, 0.0, w)).epsilon(1e-12));
+  CHECK(limit_of(0.0, 1.0, 1.0, 0.16).value == Approx(soft / 2));  // the fourth root
+  CHECK(limit_of(0.5, 1.0, 1.0, 0.01).value < 0.9 * soft);
+  CHECK_THAT(limit_of(0.5, 1.0, 1.0, 0.01).contact, Catch::Matchers::ContainsSubstring("damper"));
+  CHECK(limit_of(0.0, 16 * k, 1.0, 0.01).value == Approx(soft / 4));
+  CHECK_THAT(limit_of(0.0, 16 * k, 1.0, 0.01).contact, Catch::Matchers::ContainsSubstring("friction stiffness"));
+  // Rolling: kr R*^2 against 2/I, I = 2/5 m r^2.
+  const auto rolling = limit_of(0.0, 1.0, 1e6, 0.01);
+  CHECK(rolling.value == Approx(dem::pipeline::stable_step(2.0, n * 1e6 * 0.25 * r * r, 0.0, 5 / (m * r * r))));
+  CHECK_THAT(rolling.contact, Catch::Matchers::ContainsSubstring("rolling stiffness"));
 }
 
 TEMPLATE_TEST_CASE("a bed is stable at the stable time step", "", Sphere, Cube8) {

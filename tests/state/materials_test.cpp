@@ -1,5 +1,7 @@
 #include "core/error_of.hpp"
 
+#include <dem/cohesion/liquid_bridge.hpp>
+#include <dem/rolling/elastic_plastic.hpp>
 #include <dem/state/body.hpp>
 #include <dem/state/materials.hpp>
 #include <dem/world/model.hpp>
@@ -70,6 +72,31 @@ TEST_CASE("constants that make no sense are refused where they are set") {
   Materials m;
   check_refused([&] { m.set_default({{-1.0, 0.0, 1.0}, {0.1, 1.0, 0.0, 0.0}}); }, "normal stiffness is -1");
   check_refused([&] { m.set("a", "b", {{1.0, 0.0, 1.0}, {-0.1, 1.0, 0.0, 0.0}}); }, "friction coefficient is -0.1");
+}
+
+TEST_CASE("constants of rolling and cohesion are checked, and the farthest reach of all pairs is known") {
+  struct Wet : dem::Model {
+    using Rolling = dem::rolling::ElasticPlastic;
+    using Cohesion = dem::cohesion::LiquidBridge;
+  };
+  dem::Materials<Wet> m;
+  const auto pair = [](double mu_r, double rupture) {
+    return dem::ContactParameters<Wet>{{2000, 0, 1}, {0.4, 1000, 0, 0}, {mu_r, 1000, 0.3}, {0.07, 1e-12, rupture}};
+  };
+  check_refused([&] { m.set_default(pair(-0.1, 1e-4)); }, "rolling coefficient is -0.1");
+  check_refused([&] { m.set("a", "b", pair(0.1, -1.0)); }, "rupture distance of a liquid bridge is -1 m");
+  m.find_range(1e-3);
+  CHECK(m.range() == 0.0);
+  m.set("a", "a", pair(0.1, 1e-4));
+  m.set("a", "b", pair(0.1, 3e-4));
+  m.find_range(1e-3);
+  CHECK(m.range() == 3e-4);
+  m.set_default(pair(0.1, 5e-4));
+  m.find_range(1e-3);
+  CHECK(m.range() == 5e-4);
+  CHECK(m.table()[m.row(m.id("b"), m.id("a"))].rolling.coefficient == 0.1);
+  // A model that names neither takes no more room for them.
+  STATIC_REQUIRE(sizeof(dem::ContactParameters<dem::Model>) == 7 * sizeof(double));
 }
 
 TEST_CASE("a body that cannot be integrated is refused") {

@@ -1,40 +1,15 @@
 #include "core/error_of.hpp"
+#include "touches.hpp"
 
 #include <dem/surface/box.hpp>
 #include <dem/surface/plane.hpp>
 
 #include <random>
-#include <vector>
 
 using Catch::Approx;
 using dem::Vec3;
 using dem::surface::Box;
 using dem::surface::Plane;
-
-namespace {
-
-struct Touch {
-  std::uint32_t feature;
-  Vec3 normal;
-  double gap;
-};
-
-template <class Surface>
-std::vector<Touch> touches(const Surface& surface, const Vec3& p, double radius) {
-  std::vector<Touch> found;
-  surface.touch(dem::from_eigen(p), radius, [&](std::uint32_t feature, const dem::Vector3<double>& normal, double gap) {
-    found.push_back({feature, to_eigen(normal), gap});
-  });
-  return found;
-}
-
-void check_one(const std::vector<Touch>& found, const Vec3& normal, double gap) {
-  REQUIRE(found.size() == 1);
-  CHECK((found[0].normal - normal).norm() < 1e-14);
-  CHECK(found[0].gap == Approx(gap).margin(1e-15));
-}
-
-}  // namespace
 
 TEST_CASE("a sphere touches a plane from above, and from below too") {
   const Plane plane;
@@ -66,6 +41,8 @@ TEST_CASE("a sphere whose centre is inside a box leaves it through the nearest f
   REQUIRE(touches(Box({2, 2, 2}), Vec3::Zero(), 0.5).size() == 1);
   check_one(touches(box, {0.9, 0, 0}, 0.0), {-1, 0, 0}, -0.1);
   CHECK(touches(box, {1.1, 0, 0}, 0.0).empty());
+  CHECK(box.near({0.9, 0, 0}, 0.0));
+  CHECK(!box.near({1.1, 0, 0}, 0.0));
 }
 
 TEST_CASE("the contact with a box changes little where faces, edges and corners meet") {

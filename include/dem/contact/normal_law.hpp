@@ -13,7 +13,10 @@ namespace dem::contact {
 ///                  law does; a law that pulls is allowed);
 ///   stiffness(parameters, state) -> double   the largest slope dF/d(overlap) in N/m, from which the stable time step
 ///                  follows;
-///   check(parameters)   throws dem::Error, in words, if a constant makes no sense.
+///   check(parameters)   throws dem::Error, in words, if a constant makes no sense;
+///   damping(parameters, state) -> double   optional: the largest slope dF/d(approach speed) in N s/m, which shortens
+///                  the stable time step as well.
+/// The state for stiffness and damping is the deepest that a world allows (WorldOptions::overlap_limit).
 template <class L>
 concept NormalLaw = requires(const typename L::template Parameters<double>& p, const NormalState<double>& state,
                              typename L::template History<double>& history) {
@@ -21,6 +24,16 @@ concept NormalLaw = requires(const typename L::template Parameters<double>& p, c
   { L::stiffness(p, state) } -> std::convertible_to<double>;
   L::check(p);
 };
+
+/// The damping of a law that tells it, in N s/m; 0 for one that does not.
+template <class L>
+double damping_of(const typename L::template Parameters<double>& p, const NormalState<double>& state) {
+  if constexpr (requires { L::damping(p, state); }) {
+    return L::damping(p, state);
+  } else {
+    return 0.0;
+  }
+}
 
 template <class L>
 constexpr void check_normal_law() {

@@ -11,7 +11,7 @@ struct Penalty {
   template <class T>
   struct Parameters {
     T stiffness;          ///< K, N/m (per unit area if the shape's contact points have areas)
-    T damping;            ///< C, N s/m
+    T damping;            ///< C, N s/m (per unit area likewise)
     T separation_factor;  ///< Sp in [0, 1]: the share of the damping that acts while separating
   };
   template <class T>

@@ -11,7 +11,7 @@ template <class T>
 struct NormalState {
   T overlap;           ///< m, d of eq. 25; not negative where the bodies touch
   T approach_speed;    ///< m/s, d' of eq. 26; positive while the bodies move together
-  T area;              ///< m^2 belonging to the contact point, A of eq. 25; 1 where the shape has none (spheres)
+  T area;              ///< weight of the point: its m^2 (A of eq. 25), or its share of a whole contact; 1 for spheres
   T effective_radius;  ///< m, 1/(1/Ri + 1/Rj)
   T effective_mass;    ///< kg, 1/(1/mi + 1/mj)
   T time_step;         ///< s
@@ -23,7 +23,7 @@ struct TangentialState {
   Vector3<T> velocity;  ///< m/s, of i relative to j at the contact point, in the tangent plane (eq. 28)
   T normal_force;       ///< N, not negative
   T overlap;            ///< m
-  T area;               ///< m^2, as in NormalState
+  T area;               ///< as in NormalState
   T effective_radius;   ///< m
   T effective_mass;     ///< kg
   T time_step;          ///< s

@@ -46,17 +46,46 @@ struct ClusterTouch {
   }
 };
 
-/// A sphere of a particle (or a point: radius 0) and a surface of a machine part.
+/// A contact that the narrow phase knows already as the laws need it: what shapes of any kind can hand over.
+template <class T>
+struct PointTouch {
+  Vector3<T> normal;   ///< unit vector from i towards j
+  T overlap;           ///< m
+  Vector3<T> arm;      ///< m, from the centre of i to the contact point
+  T effective_radius;  ///< m
+  T area;              ///< m^2; 1 where the laws' stiffness is that of a whole contact, less for a point of a patch
+
+  DEM_HOT Geometry<T> geometry() const { return {normal, overlap, arm, effective_radius, area}; }
+};
+
+/// How many contacts a shape may have at once where others have one, and their area in all: the face of a grain whose
+/// contacts are points of its skin.
+struct Patch {
+  double points = 1.0;
+  double area = 1.0;  ///< m^2, or without unit, as the touches' areas
+};
+
+/// What a grain shows to surfaces: a sphere, or a point of its skin (radius 0).
+struct Probe {
+  Vector3<double> centre;   ///< m, from the grain's centre, global axes
+  double radius;            ///< m
+  double effective_radius;  ///< m, of the grain's skin there
+  double area = 1.0;        ///< m^2 of skin that belongs to a point; 1 for spheres
+};
+
+/// A probe of a grain and a surface of a machine part.
 template <class T>
 struct SurfaceTouch {
-  Vector3<T> centre;  ///< of the sphere
+  Vector3<T> centre;  ///< of the probe
   Vector3<T> normal;  ///< unit vector into the surface
-  T radius;
-  T gap;  ///< distance from the sphere's centre to the surface along the normal; negative behind it
+  T radius;           ///< of the probe
+  T gap;              ///< distance from the probe's centre to the surface along the normal; negative behind it
+  T effective_radius;
+  T area;
 
   DEM_HOT Geometry<T> geometry() const {
     const T overlap = radius - gap;
-    return {normal, overlap, centre + (radius - T(0.5) * overlap) * normal, radius, T(1)};
+    return {normal, overlap, centre + (radius - T(0.5) * overlap) * normal, effective_radius, area};
   }
 };
 

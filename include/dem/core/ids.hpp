@@ -17,10 +17,11 @@ struct Id {
   constexpr auto operator<=>(const Id&) const = default;
 };
 
-using MaterialId = Id<struct MaterialTag>;  ///< a row of the material-pair table
-using SpeciesId = Id<struct SpeciesTag>;    ///< shape, size, mass and material of grains
-using ParticleId = Id<struct ParticleTag>;  ///< a grain; stays the same when storage is re-sorted
-using BodyId = Id<struct BodyTag>;          ///< a rigid body of a machine
-using SurfaceId = Id<struct SurfaceTag>;    ///< a surface that a body shows to the grains
+using MaterialId = Id<struct MaterialTag>;        ///< a row of the material-pair table
+using SpeciesId = Id<struct SpeciesTag>;          ///< shape, size, mass and material of grains
+using ParticleId = Id<struct ParticleTag>;        ///< a grain; stays the same when storage is re-sorted
+using BodyId = Id<struct BodyTag>;                ///< a rigid body of a machine
+using SurfaceId = Id<struct SurfaceTag>;          ///< a surface that a body shows to the grains
+using BodyContactId = Id<struct BodyContactTag>;  ///< two surfaces of bodies that may touch each other
 
 }  // namespace dem

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <dem/contact/state.hpp>
+#include <dem/contact/normal_law.hpp>
 
 #include <concepts>
 
@@ -8,19 +8,40 @@ namespace dem::friction {
 
 using contact::TangentialState;
 
+/// A law that tells its stiffness, which may depend on the overlap.
+template <class L>
+concept HasStiffness = requires(const typename L::template Parameters<double>& p,
+                                const contact::NormalState<double>& state) {
+  { L::stiffness(p, state) } -> std::convertible_to<double>;
+}
+|| requires(const typename L::template Parameters<double>& p) {
+  { L::stiffness(p) } -> std::convertible_to<double>;
+};
+
 /// A friction law is a struct of static functions and two struct templates of Ts, like a normal law:
-///   Parameters<T>, History<T>, check(parameters), stiffness(parameters, state) in N/m, and
+///   Parameters<T>, History<T>, check(parameters), stiffness(parameters) in N/m, or stiffness(parameters, NormalState)
+///   where it depends on the overlap, optionally damping(parameters, NormalState) in N s/m, and
 ///   force(parameters, state, history) -> Vector3<T>   the force on i in N, in the tangent plane.
 /// Vectors in a History are given in global axes; before each call the world turns them with the contact, and
 /// carry(history, turn) says how: it applies `turn` to every vector member.
 template <class L>
-concept FrictionLaw = requires(const typename L::template Parameters<double>& p, const TangentialState<double>& state,
-                               typename L::template History<double>& history) {
+concept FrictionLaw = HasStiffness<L> &&
+    requires(const typename L::template Parameters<double>& p, const TangentialState<double>& state,
+             typename L::template History<double>& history) {
   { L::force(p, state, history) } -> std::same_as<Vector3<double>>;
-  { L::stiffness(p) } -> std::convertible_to<double>;
   L::check(p);
   L::carry(history, [](const Vector3<double>& v) { return v; });
 };
+
+/// A friction law's stiffness, in N/m.
+template <HasStiffness L>
+double stiffness_of(const typename L::template Parameters<double>& p, const contact::NormalState<double>& state) {
+  if constexpr (requires { L::stiffness(p, state); }) {
+    return L::stiffness(p, state);
+  } else {
+    return L::stiffness(p);
+  }
+}
 
 template <class L>
 constexpr void check_friction_law() {

@@ -1,62 +1,11 @@
 #pragma once
 
-#include <dem/contact/touch.hpp>
-#include <dem/state/contacts.hpp>
-#include <dem/state/materials.hpp>
+#include <dem/pipeline/encounters.hpp>
 
 #include <span>
 #include <vector>
 
 namespace dem::pipeline {
-
-/// Motion of the two partners of a contact relative to each other, global axes.
-template <class T>
-struct Encounter {
-  Vector3<T> separation;      ///< m, from the centre of i to the centre of j
-  Vector3<T> velocity;        ///< m/s, of the centre of i minus that of j
-  Vector3<T> spin_i, spin_j;  ///< rad/s
-  T inverse_mass;             ///< 1/kg, 1/mi + 1/mj
-};
-
-template <class T>
-struct Wrench {
-  Vector3<T> force;               ///< N, on i; the partner feels the opposite
-  Vector3<T> torque_i, torque_j;  ///< N m, each about its own centre
-};
-
-/// The laws applied to one contact (T = double) or to a pack of contacts: eqs. 20-30. Updates the history and returns
-/// the wrench and, in `overlap_ratio`, the overlap in effective diameters.
-template <class Model, class T, class Touch>
-DEM_HOT Wrench<T> contact_wrench(const Touch& touch, const Encounter<T>& e,
-                                 const typename Model::Normal::template Parameters<T>& normal_parameters,
-                                 const typename Model::Friction::template Parameters<T>& friction_parameters, T dt,
-                                 ContactHistory<Model, T>& history, T& overlap_ratio) {
-  const contact::Geometry<T> g = touch.geometry();
-  const Vector3<T> arm_j = g.arm - e.separation;
-  const Vector3<T> velocity = e.velocity + cross(e.spin_i, g.arm) - cross(e.spin_j, arm_j);
-  const T approach = dot(velocity, g.normal);
-  const Vector3<T> sliding = velocity - approach * g.normal;
-  const T mass = T(1) / e.inverse_mass;
-
-  const T normal_force = Model::Normal::force(
-      normal_parameters, contact::NormalState<T>{g.overlap, approach, g.area, g.effective_radius, mass, dt},
-      history.normal);
-
-  // The history's vectors follow the contact: they turn with the mean twist of the partners about the normal and stay
-  // in the tangent plane.
-  const T twist = T(0.5) * dt * dot(e.spin_i + e.spin_j, g.normal);
-  Model::Friction::carry(history.friction, [&](const Vector3<T>& v) {
-    return v + twist * cross(g.normal, v) - dot(g.normal, v) * g.normal;
-  });
-  const Vector3<T> friction = Model::Friction::force(
-      friction_parameters,
-      contact::TangentialState<T>{sliding, normal_force, g.overlap, g.area, g.effective_radius, mass, dt},
-      history.friction);
-
-  const Vector3<T> force = friction - normal_force * g.normal;
-  overlap_ratio = T(0.5) * g.overlap / g.effective_radius;
-  return {force, cross(g.arm, force), -cross(arm_j, force)};
-}
 
 /// A contact as the narrow phase found it.
 struct Hit {
@@ -84,7 +33,8 @@ struct ContactForces {
 
 /// Evaluates the laws for a list of contacts, a pack at a time, and finds each contact's memory by walking along last
 /// step's in step: both lists ascend in their keys. What a contact gives does not depend on its neighbours in the pack.
-template <class Model, template <class> class Touch>
+/// `patches`: see shape::PatchShape.
+template <class Model, template <class> class Touch, bool patches = false>
 class ContactEvaluator {
  public:
   using Memories = ContactMemories<history_size<Model>>;
@@ -92,17 +42,18 @@ class ContactEvaluator {
 
   ContactEvaluator(const std::vector<Parameters>& table, double dt) : table_(table), dt_(dt) { set_uniform(0); }
 
-  /// Fills this step's memories and the forces; touch_of(k) gives the raw numbers of contact k and encounter_of(k) the
-  /// partners' relative motion. Returns the largest overlap in effective diameters.
-  template <class TouchOf, class EncounterOf>
-  double run(std::span<const Hit> hits, Memories& memories, ContactForces& forces, TouchOf&& touch_of,
-             EncounterOf&& encounter_of) {
+  /// Fills this step's memories and the forces; touch_of(k) gives the raw numbers of contact k, view_i(k) and view_j(k)
+  /// its partners. Returns the largest overlap in effective diameters.
+  template <class TouchOf, class ViewI, class ViewJ>
+  double run(std::span<const Hit> hits, Memories& memories, ContactForces& forces, TouchOf&& touch_of, ViewI&& view_i,
+             ViewJ&& view_j) {
     const int count = static_cast<int>(hits.size());
     memories.now.count = count;
     memories.make_room(count);
     forces.make_room(hits.size());
     Pack worst(0.0);
     int cursor = 0;
+    PartnerLanes partners;
     for (int at = 0; at < count; at += pack_width) {
       const int lanes = std::min(pack_width, count - at);
       for (int lane = 0; lane < lanes; ++lane) {
@@ -110,24 +61,23 @@ class ContactEvaluator {
         const Hit& hit = hits[k];
         memories.now.key[k] = hit.key;
         scatter(touch_of(k), &touch_[0][0], lane);
-        scatter(encounter_of(k), &encounter_[0][0], lane);
+        partners.set(lane, view_i(k), view_j(k));
         law_[lane] = hit.law;
-        if constexpr (history_size < Model >> 0) recall(memories.last, hit.key, cursor, lane);
       }
-      for (int lane = lanes; lane < pack_width; ++lane) copy_lane(0, lane);
-      worst = max(worst, evaluate(memories, forces, static_cast<std::size_t>(at)));
+      if constexpr (history_size < Model >> 0) recall(memories, at, lanes, cursor);
+      for (int lane = lanes; lane < pack_width; ++lane) {
+        copy_lane(0, lane);
+        partners.set(lane, *partners.i[0], *partners.j[0]);
+      }
+      worst = max(worst, evaluate(encounters(partners), memories, forces, static_cast<std::size_t>(at)));
     }
     return largest(worst);
   }
 
  private:
   static constexpr int touch_size = contact::field_count<Touch<double>>;
-  static constexpr int encounter_size = contact::field_count<Encounter<double>>;
 
-  struct PackParameters {
-    typename Model::Normal::template Parameters<Pack> normal;
-    typename Model::Friction::template Parameters<Pack> friction;
-  };
+  using PackParameters = ContactParameters<Model, Pack>;
 
   /// Field k of `value` goes to lane `lane` of row k.
   template <class Value>
@@ -148,19 +98,51 @@ class ContactEvaluator {
     return result;
   }
 
-  /// The contact's history goes to a lane; zero if it is new.
+  /// The histories of the contacts from `at` on go to the lanes; zero where a contact is new. Mostly the contacts of
+  /// last step are there again, in the same order: then whole packs are copied.
+  DEM_HOT void recall(const Memories& memories, int at, int lanes, int& cursor) {
+    const auto& last = memories.last;
+    const std::uint64_t* keys = memories.now.key.data() + at;
+    if (lanes == pack_width && cursor + pack_width <= last.count) {
+      std::uint64_t differ = 0;
+      for (int lane = 0; lane < pack_width; ++lane)
+        differ |= keys[lane] ^ last.key[static_cast<std::size_t>(cursor + lane)];
+      if (differ == 0) {
+        for (std::size_t k = 0; k < last.history.size(); ++k) {
+          store(load_unaligned(&last.history[k][static_cast<std::size_t>(cursor)]), history_[k]);
+        }
+        cursor += pack_width;
+        return;
+      }
+    }
+    for (int lane = 0; lane < lanes; ++lane) {
+      while (cursor < last.count && last.key[static_cast<std::size_t>(cursor)] < keys[lane]) ++cursor;
+      const bool known = cursor < last.count && last.key[static_cast<std::size_t>(cursor)] == keys[lane];
+      for (std::size_t k = 0; k < last.history.size(); ++k) {
+        history_[k][lane] = known ? last.history[k][static_cast<std::size_t>(cursor)] : 0.0;
+      }
+      if constexpr (patches) {
+        if (!known) inherit(last, keys[lane], cursor, lane);
+      }
+      cursor += known ? 1 : 0;
+    }
+  }
+  /// A new point of a patch that was there takes the mean of what the patch's points remember.
   template <class Memory>
-  DEM_HOT void recall(const Memory& last, std::uint64_t key, int& cursor, int lane) {
-    while (cursor < last.count && last.key[static_cast<std::size_t>(cursor)] < key) ++cursor;
-    const bool known = cursor < last.count && last.key[static_cast<std::size_t>(cursor)] == key;
-    for (std::size_t k = 0; k < last.history.size(); ++k) {
-      history_[k][lane] = known ? last.history[k][static_cast<std::size_t>(cursor)] : 0.0;
+  void inherit(const Memory& last, std::uint64_t key, int cursor, int lane) {
+    const auto pair_at = [&](int c) { return last.key[static_cast<std::size_t>(c)] >> 32; };
+    int first = cursor, end = cursor;
+    while (first > 0 && pair_at(first - 1) == key >> 32) --first;
+    while (end < last.count && pair_at(end) == key >> 32) ++end;
+    for (int c = first; c < end; ++c) {
+      for (std::size_t k = 0; k < last.history.size(); ++k) {
+        history_[k][lane] += last.history[k][static_cast<std::size_t>(c)] / (end - first);
+      }
     }
   }
   /// Lanes that no contact fills repeat another, so that they hold ordinary numbers and change nothing.
   void copy_lane(int from, int to) {
     for (auto& row : touch_) row[to] = row[from];
-    for (auto& row : encounter_) row[to] = row[from];
     for (auto& row : history_) row[to] = row[from];
     law_[to] = law_[from];
   }
@@ -178,6 +160,8 @@ class ContactEvaluator {
     };
     gather(p.normal, [](const Parameters& q) { return q.normal; });
     gather(p.friction, [](const Parameters& q) { return q.friction; });
+    gather(p.rolling, [](const Parameters& q) { return q.rolling; });
+    gather(p.cohesion, [](const Parameters& q) { return q.cohesion; });
     return p;
   }
   void set_uniform(std::uint32_t law) {
@@ -186,28 +170,36 @@ class ContactEvaluator {
     uniform_law_ = law;
   }
 
-  DEM_HOT Pack evaluate(Memories& memories, ContactForces& forces, std::size_t at) {
+  DEM_HOT Pack evaluate(const Encounter<Pack>& encounter, Memories& memories, ContactForces& forces, std::size_t at) {
     bool same = true;
     for (int lane = 0; lane < pack_width; ++lane) same &= law_[lane] == law_[0];
     if (same && law_[0] != uniform_law_) [[unlikely]]
       set_uniform(law_[0]);
 
     ContactHistory<Model, Pack> history{};
-    history.normal = packed<decltype(history.normal)>(history_[0]);
-    history.friction = packed<decltype(history.friction)>(&history_[0][0] + normal_history_size<Model> * pack_width);
+    for_each_history(
+        history, [&](auto& h, int row) { h = packed<std::decay_t<decltype(h)>>(&history_[0][0] + row * pack_width); });
     const PackParameters parameters = same ? uniform_ : gather_parameters();
     Pack overlap_ratio;
-    const Wrench<Pack> w =
-        contact_wrench<Model, Pack>(packed<Touch<Pack>>(&touch_[0][0]), packed<Encounter<Pack>>(&encounter_[0][0]),
-                                    parameters.normal, parameters.friction, Pack(dt_), history, overlap_ratio);
+    const Wrench<Pack> w = contact_wrench<Model, Pack>(packed<Touch<Pack>>(&touch_[0][0]), encounter, parameters,
+                                                       Pack(dt_), history, overlap_ratio);
     store3(w.force, forces.force, at);
     store3(w.torque_i, forces.torque_i, at);
     store3(w.torque_j, forces.torque_j, at);
-    store_history(history.normal, memories, 0, at);
-    store_history(history.friction, memories, normal_history_size<Model>, at);
+    for_each_history(history,
+                     [&](const auto& h, int row) { store_history(h, memories, static_cast<std::size_t>(row), at); });
     return overlap_ratio;
   }
 
+  /// Calls f(history, row) for each law's history, where its fields begin at that row of the memories.
+  template <class F>
+  static DEM_HOT void for_each_history(ContactHistory<Model, Pack>& h, F&& f) {
+    constexpr int friction = normal_history_size<Model>, rolling = friction + friction_history_size<Model>;
+    f(h.normal, 0);
+    f(h.friction, friction);
+    f(h.rolling, rolling);
+    f(h.cohesion, rolling + rolling_history_size<Model>);
+  }
   template <class History>
   static DEM_HOT void store_history(const History& h, Memories& memories, std::size_t offset, std::size_t at) {
     if constexpr (!std::is_empty_v<History>) {
@@ -222,7 +214,6 @@ class ContactEvaluator {
   }
 
   alignas(64) double touch_[touch_size][pack_width];
-  alignas(64) double encounter_[encounter_size][pack_width];
   alignas(64) double history_[history_size<Model> > 0 ? history_size<Model> : 1][pack_width];
   std::uint32_t law_[pack_width];
   PackParameters uniform_;

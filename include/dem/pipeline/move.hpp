@@ -61,13 +61,23 @@ DEM_HOT integrator::Acceleration<Pack> acceleration(std::size_t i, const Particl
           integrator::angular_acceleration(torque, m.angular_velocity, moments, inverse, Pack(lead))};
 }
 
-/// Refreshes what depends on where the grains of a chunk are: poses, bounds, and how far they moved since the neighbour
-/// list was made.
+/// What contacts read of the grains of one chunk.
+template <class Particles, class Shape>
+void refresh_views(std::size_t begin, std::size_t end, Particles& p, std::span<const Species<Shape>> species) {
+  for (std::size_t i = begin; i < end; ++i) {
+    const Species<Shape>& kind = species[p.species[i]];
+    p.view[i] = {p.position[i], kind.shape.bounding_radius(), p.velocity[i], kind.inverse_mass, p.angular_velocity(i)};
+  }
+}
+
+/// Refreshes what depends on where the grains of a chunk are: views, poses, bounds, and how far they moved since the
+/// neighbour list was made.
 template <class Model, class Particles>
 void refresh_chunk(std::size_t chunk_index, Chunk<Model>& chunk, Particles& p,
                    std::span<const Species<typename Model::Shape>> species) {
   const std::size_t begin = chunk_index * chunk_size;
   const std::size_t end = std::min(begin + chunk_size, p.count);
+  refresh_views(begin, end, p, species);
   if constexpr (Model::Shape::pose_size > 0) {
     for (std::size_t i = begin; i < end; ++i) species[p.species[i]].shape.orient(p.rotation(i), p.pose_of(i));
   }

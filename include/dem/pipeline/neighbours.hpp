@@ -28,19 +28,26 @@ std::array<double, static_cast<std::size_t>(HistorySize)> history_of(const Block
   return h;
 }
 
+/// Turns the vectors of a law's history round; `fields` is where it begins.
+template <class Law>
+void mirror_history(double* fields) {
+  using History = typename Law::template History<double>;
+  if constexpr (!std::is_empty_v<History>) {
+    History h;
+    std::memcpy(&h, fields, sizeof(h));
+    Law::carry(h, [](const Vector3<double>& v) { return -v; });
+    std::memcpy(fields, &h, sizeof(h));
+  }
+}
+
 /// Turns a pair contact's memory round: seen from the other grain, vectors point the other way.
 template <class Model>
 void mirror(Remembered<history_size<Model>>& r) {
   std::swap(r.i, r.j);
   r.feature = Model::Shape::mirrored(r.feature);
-  if constexpr (friction_history_size < Model >> 0) {
-    using History = typename Model::Friction::template History<double>;
-    History h;
-    double* fields = r.history.data() + normal_history_size<Model>;
-    std::memcpy(&h, fields, sizeof(h));
-    Model::Friction::carry(h, [](const Vector3<double>& v) { return -v; });
-    std::memcpy(fields, &h, sizeof(h));
-  }
+  double* fields = r.history.data() + normal_history_size<Model>;
+  mirror_history<typename Model::Friction>(fields);
+  mirror_history<typename Model::Rolling>(fields + friction_history_size<Model>);
 }
 
 /// Reads the committed memories of all contacts, pair contacts and surface contacts apart.
@@ -100,6 +107,7 @@ void list_candidates(std::size_t chunk_index, Chunk<Model>& chunk, const Particl
               static_cast<std::uint8_t>(k));
   }
   chunk.partner_load_first.assign(chunk.candidate.size() + 1, 0);
+  chunk.searches.reset(chunk.candidate.size());
 }
 
 /// The reverse of the candidate lists: for each grain, where it is a partner in another chunk; owners ascending.

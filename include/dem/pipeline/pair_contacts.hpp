@@ -30,10 +30,20 @@ struct ChunkPairs {
   const Materials<Model>& materials;
   std::size_t begin;  ///< first grain of the chunk
 
+  /// How far apart grains may be and still be a contact.
+  DEM_HOT auto gap() const {
+    if constexpr (cohesion::reaches<typename Model::Cohesion>) {
+      return materials.range();
+    } else {
+      return shape::NoGap{};
+    }
+  }
   DEM_HOT std::size_t i(std::uint32_t candidate) const { return begin + chunk.owner[candidate]; }
   DEM_HOT std::size_t j(std::uint32_t candidate) const { return chunk.candidate[candidate]; }
   DEM_HOT const Species<Shape>& kind(std::size_t grain) const { return species[p.species[grain]]; }
-  DEM_HOT Vector3<double> separation(std::size_t i, std::size_t j) const { return p.position[j] - p.position[i]; }
+  DEM_HOT Vector3<double> separation(std::size_t i, std::size_t j) const {
+    return p.view[j].position - p.view[i].position;
+  }
   DEM_HOT Hit hit(std::uint32_t candidate, std::uint32_t feature) const {
     const auto a = static_cast<std::uint32_t>(i(candidate)), b = static_cast<std::uint32_t>(j(candidate));
     const std::uint32_t law = materials.table().size() == 1 ? 0 : materials.row(kind(a).material, kind(b).material);
@@ -41,24 +51,39 @@ struct ChunkPairs {
   }
 };
 
-/// Candidates whose bounding spheres overlap; without branches, as the answer is a coin toss. A shape that is its own
-/// bounding sphere gets all candidates: the narrow phase would ask the same question again.
-template <class Shape, class Pairs>
+/// Candidates whose bounding spheres overlap, a pack at a time and without branches, as the answer is a coin toss.
+template <class Pairs>
 std::size_t list_close(const Pairs& pairs, std::uint32_t candidates, std::vector<std::uint32_t>& close) {
-  close.resize(candidates + 1);
+  close.resize(candidates + std::size_t{pack_width});
   std::size_t count = 0;
-  if constexpr (!Shape::has_orientation) {
-    for (std::uint32_t k = 0; k < candidates; ++k) close[k] = k;
-    return candidates;
-  }
-  for (std::uint32_t k = 0; k < candidates; ++k) {
-    const std::size_t i = pairs.i(k), j = pairs.j(k);
-    const Vector3<double> d = pairs.separation(i, j);
-    const double reach = pairs.kind(i).shape.bounding_radius() + pairs.kind(j).shape.bounding_radius();
-    close[count] = k;
-    count += dot(d, d) < reach * reach ? 1 : 0;
+  PartnerLanes partners;
+  for (std::uint32_t at = 0; at < candidates; at += pack_width) {
+    for (std::uint32_t lane = 0; lane < pack_width; ++lane) {
+      const std::uint32_t k = std::min(at + lane, candidates - 1);
+      partners.set(static_cast<int>(lane), pairs.p.view[pairs.i(k)], pairs.p.view[pairs.j(k)]);
+    }
+    const auto [x, y, z, radii] = separations(partners);
+    const Pack reach = shape::widened(radii, pairs.gap());
+    const std::uint32_t near = bits(x * x + y * y + z * z < reach * reach);
+    for (std::uint32_t lane = 0; lane < pack_width; ++lane) {
+      close[count] = at + lane;
+      count += near >> lane & (at + lane < candidates ? 1u : 0u);
+    }
   }
   return count;
+}
+
+/// Which points of grain i touch which of grain j, or come within the reach of cohesion, as bits.
+template <class Model, class Pairs>
+DEM_HOT std::uint64_t touching(const Pairs& pairs, std::size_t i, std::size_t j) {
+  using Shape = typename Model::Shape;
+  const auto& a = pairs.kind(i).shape;
+  const auto& b = pairs.kind(j).shape;
+  if constexpr (cohesion::reaches<typename Model::Cohesion>) {
+    return Shape::touching(a, pairs.p.pose_of(i), b, pairs.p.pose_of(j), pairs.separation(i, j), pairs.gap());
+  } else {
+    return Shape::touching(a, pairs.p.pose_of(i), b, pairs.p.pose_of(j), pairs.separation(i, j));
+  }
 }
 
 /// Narrow phase of shapes that answer in bits: bits of all close pairs first, then one loop over the contacts, which
@@ -66,13 +91,17 @@ std::size_t list_close(const Pairs& pairs, std::uint32_t candidates, std::vector
 template <class Model, class Pairs>
 void find_hits_by_bits(const Pairs& pairs, std::size_t close_count, PairScratch<Model>& s) {
   using Shape = typename Model::Shape;
+  if constexpr (!Shape::has_orientation) {  // a sphere is its own bounding sphere: the question is answered
+    s.hits.resize(close_count);
+    for (std::size_t c = 0; c < close_count; ++c) s.hits[c] = pairs.hit(s.close[c], 0);
+    return;
+  }
   s.touching.resize(close_count + 1);
   std::size_t touching_pairs = 0, total = 0;
   for (std::size_t c = 0; c < close_count; ++c) {
     const std::uint32_t k = s.close[c];
     const std::size_t i = pairs.i(k), j = pairs.j(k);
-    const std::uint64_t bits = Shape::touching(pairs.kind(i).shape, pairs.p.pose_of(i), pairs.kind(j).shape,
-                                               pairs.p.pose_of(j), pairs.separation(i, j));
+    const std::uint64_t bits = touching<Model>(pairs, i, j);
     total += static_cast<std::size_t>(std::popcount(bits));
     s.close[touching_pairs] = k;
     s.touching[touching_pairs] = bits;
@@ -93,18 +122,26 @@ void find_hits_by_bits(const Pairs& pairs, std::size_t close_count, PairScratch<
 
 /// Narrow phase of all other shapes.
 template <class Model, class Pairs>
-void find_hits_one_by_one(const Pairs& pairs, std::size_t close_count, PairScratch<Model>& s) {
+void find_hits_one_by_one(const Pairs& pairs, std::size_t close_count,
+                          shape::PairMemories<typename Model::Shape>& searches, PairScratch<Model>& s) {
   using Shape = typename Model::Shape;
   s.hits.clear();
   s.touches.clear();
   for (std::size_t c = 0; c < close_count; ++c) {
     const std::uint32_t k = s.close[c];
     const std::size_t i = pairs.i(k), j = pairs.j(k);
-    Shape::collide(pairs.kind(i).shape, pairs.p.pose_of(i), pairs.kind(j).shape, pairs.p.pose_of(j),
-                   pairs.separation(i, j), [&](std::uint32_t feature, const auto& touch) {
-                     s.hits.push_back(pairs.hit(k, feature));
-                     s.touches.push_back(touch);
-                   });
+    const Shape &a = pairs.kind(i).shape, &b = pairs.kind(j).shape;
+    const auto sink = [&](std::uint32_t feature, const auto& touch) {
+      s.hits.push_back(pairs.hit(k, feature));
+      s.touches.push_back(touch);
+    };
+    if constexpr (cohesion::reaches<typename Model::Cohesion>) {
+      Shape::collide(a, pairs.p.pose_of(i), b, pairs.p.pose_of(j), pairs.separation(i, j), sink, pairs.gap());
+    } else if constexpr (shape::RememberingShape<Shape>) {
+      Shape::collide(a, pairs.p.pose_of(i), b, pairs.p.pose_of(j), pairs.separation(i, j), searches.memory[k], sink);
+    } else {
+      Shape::collide(a, pairs.p.pose_of(i), b, pairs.p.pose_of(j), pairs.separation(i, j), sink);
+    }
   }
 }
 
@@ -139,12 +176,12 @@ void find_pair_contacts(std::size_t chunk_index, Chunk<Model>& chunk, const Part
   using Shape = typename Model::Shape;
   const std::size_t begin = chunk_index * chunk_size;
   const ChunkPairs<Model, Particles> pairs{chunk, p, species, materials, begin};
-  const std::size_t close_count = list_close<Shape>(pairs, static_cast<std::uint32_t>(chunk.candidate.size()), s.close);
+  const std::size_t close_count = list_close(pairs, static_cast<std::uint32_t>(chunk.candidate.size()), s.close);
 
   if constexpr (shape::BitShape<Shape>) {
     find_hits_by_bits<Model>(pairs, close_count, s);
   } else {
-    find_hits_one_by_one<Model>(pairs, close_count, s);
+    find_hits_one_by_one<Model>(pairs, close_count, chunk.searches, s);
   }
 
   const auto touch_of = [&](std::size_t c) {
@@ -156,13 +193,11 @@ void find_pair_contacts(std::size_t chunk_index, Chunk<Model>& chunk, const Part
       return s.touches[c];
     }
   };
-  const auto encounter_of = [&](std::size_t c) {
-    const std::size_t i = s.hits[c].i, j = s.hits[c].partner;
-    return Encounter<double>{pairs.separation(i, j), p.velocity[i] - p.velocity[j], p.angular_velocity[i],
-                             p.angular_velocity[j], pairs.kind(i).inverse_mass + pairs.kind(j).inverse_mass};
-  };
-  ContactEvaluator<Model, Shape::template PairTouch> evaluator(materials.table(), dt);
-  chunk.worst_overlap = evaluator.run(s.hits, chunk.pair_contacts, s.forces, touch_of, encounter_of);
+  ContactEvaluator<Model, Shape::template PairTouch, shape::PatchShape<Shape>> evaluator(materials.table(), dt);
+  chunk.worst_overlap = evaluator.run(
+      s.hits, chunk.pair_contacts, s.forces, touch_of,
+      [&](std::size_t c) -> const PartnerView& { return p.view[s.hits[c].i]; },
+      [&](std::size_t c) -> const PartnerView& { return p.view[s.hits[c].partner]; });
   share_forces(begin, chunk, s, sums);
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <dem/shape/shape.hpp>
 #include <dem/state/materials.hpp>
 #include <dem/state/species.hpp>
 
@@ -17,11 +18,20 @@ struct StableTimeStep {
   std::string contact;   ///< which contact limits it, in words
 };
 
-/// Largest stable time step of the grains. One contact of stiffness k between partners of mass m and inertia I, with
-/// the lever arm R (bounding radius), has the frequency
-///   omega^2 = k (1/m_i + 1/m_j + R_i^2/I_i + R_j^2/I_j)
-/// and a grain with n contacts in line n times that. Explicit integration is stable while omega dt stays under the
-/// integrator's limit. `typical` tells at which contact state a nonlinear law's stiffness is taken.
+/// Largest stable time step of one law in contacts of stiffness k and damping c, already times the number that acts in
+/// line, between partners of mass m and inertia I with the lever arm R (bounding radius): with
+///   omega^2 = k W,   B = c W/2,   W = 1/m_i + 1/m_j + R_i^2/I_i + R_j^2/I_j,
+/// explicit integration is stable while dt (sqrt(omega^2 + B^2) + B) stays under the integrator's limit: a force that
+/// is taken from the velocity of a step before makes a damper shorten the step (Belytschko, Liu and Moran 2000).
+/// Rolling resistance has W = 1/I_i + 1/I_j instead.
+inline double stable_step(double limit, double k, double c, double w) {
+  const double b = 0.5 * c * w, sum = std::sqrt(k * w + b * b) + b;
+  return sum > 0.0 ? limit / sum : 1e300;
+}
+
+/// Largest stable time step of the grains: the smallest of all laws and pairs of species and surfaces. A shape whose
+/// contacts are points counts with as many as may touch at once. A nonlinear law's stiffness is taken at the overlap
+/// that the world reports as too deep, WorldOptions::overlap_limit.
 template <class Model>
 StableTimeStep stable_time_step(std::span<const Species<typename Model::Shape>> species,
                                 const Materials<Model>& materials, std::span<const MaterialId> surface_materials,
@@ -31,25 +41,37 @@ StableTimeStep stable_time_step(std::span<const Species<typename Model::Shape>> 
     const double radius = s.shape.bounding_radius();
     return 1.0 / s.mass + radius * radius / s.inertia.minCoeff();
   };
-  const auto consider = [&](MaterialId a, MaterialId b, double inverse_mass, double mass, double radius) {
-    const auto& parameters = materials.table()[materials.row(a, b)];
-    const contact::NormalState<double> deepest = {2.0 * overlap_limit * radius, 0.0, 1.0, radius, mass, 0.0};
-    const double k =
-        std::max(Model::Normal::stiffness(parameters.normal, deepest), Model::Friction::stiffness(parameters.friction));
-    if (!(k > 0.0)) return;
-    const double dt = Model::Integrator::stability_limit / std::sqrt(contacts_in_line * k * inverse_mass);
-    if (dt < result.value) {
-      result = {dt, fmt::format("{} on {}: stiffness {:g} N/m, grain of {:.4g} kg", materials.name(a),
-                                materials.name(b), k, mass)};
-    }
+  const auto turning = [](const Species<typename Model::Shape>& s) { return 1.0 / s.inertia.minCoeff(); };
+  const auto consider = [&](MaterialId a, MaterialId b, double w, double w_turning, double mass, double radius,
+                            const contact::Patch& patch) {
+    const auto& p = materials.table()[materials.row(a, b)];
+    const contact::NormalState<double> deepest = {
+        2.0 * overlap_limit * radius, 0.0, patch.area / patch.points, radius, mass, 0.0};
+    const auto limit_by = [&](const char* law, const char* unit, double k, double c, double inverse_inertia) {
+      const double n = contacts_in_line * patch.points;
+      const double dt = stable_step(Model::Integrator::stability_limit, n * k, n * c, inverse_inertia);
+      if (!(dt < result.value)) return;
+      const char* damper = c > 0.0 ? " with a damper" : "";
+      result = {dt, fmt::format("{} on {}: {}stiffness {:g} {}{}, grain of {:.4g} kg", materials.name(a),
+                                materials.name(b), law, k, unit, damper, mass)};
+    };
+    limit_by("", "N/m", Model::Normal::stiffness(p.normal, deepest) + Model::Cohesion::stiffness(p.cohesion, deepest),
+             contact::damping_of<typename Model::Normal>(p.normal, deepest), w);
+    limit_by("friction ", "N/m", friction::stiffness_of<typename Model::Friction>(p.friction, deepest),
+             contact::damping_of<typename Model::Friction>(p.friction, deepest), w);
+    limit_by("rolling ", "N m", Model::Rolling::stiffness(p.rolling, deepest),
+             contact::damping_of<typename Model::Rolling>(p.rolling, deepest), w_turning);
   };
   for (const auto& a : species) {
     const double ra = a.shape.bounding_radius();
     for (const auto& b : species) {
       const double rb = b.shape.bounding_radius();
-      consider(a.material, b.material, softness(a) + softness(b), std::min(a.mass, b.mass), ra * rb / (ra + rb));
+      consider(a.material, b.material, softness(a) + softness(b), turning(a) + turning(b), std::min(a.mass, b.mass),
+               ra * rb / (ra + rb), shape::patch_of(a.shape));
     }
-    for (const MaterialId m : surface_materials) consider(a.material, m, softness(a), a.mass, ra);
+    for (const MaterialId m : surface_materials) {
+      consider(a.material, m, softness(a), turning(a), a.mass, ra, shape::surface_patch_of(a.shape));
+    }
   }
   return result;
 }

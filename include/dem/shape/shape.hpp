@@ -5,6 +5,7 @@
 
 #include <concepts>
 #include <cstdint>
+#include <vector>
 
 namespace dem::shape {
 
@@ -14,7 +15,7 @@ struct AnySink {
   void operator()(std::uint32_t, const Touch&) const {}
 };
 struct AnyProbe {
-  void operator()(std::uint32_t, const Vector3<double>&, double) const {}
+  void operator()(std::uint32_t, const contact::Probe&) const {}
 };
 
 /// A shape is what a grain is. Its frame sits in the centre of mass along the principal axes. It has
@@ -26,9 +27,8 @@ struct AnyProbe {
 ///   collide(a, pose_a, b, pose_b, separation, sink)   calls sink(feature, PairTouch) once per contact, features
 ///                        ascending, where separation leads from a's centre to b's;
 ///   mirrored(feature)    the feature number of the same contact when a and b change places;
-///   probe(pose, sink)    calls sink(index, centre, radius) for each sphere (or point: radius 0) that the shape shows
-///   to
-///                        surfaces.
+///   probe(pose, sink)    calls sink(index, contact::Probe) for each sphere or point that the shape shows to surfaces,
+///                        indices ascending, below 4095.
 template <class S>
 concept Shape = requires(const S& shape, const Matrix3<double>& rotation, double* pose,
                          const Vector3<double>& separation) {
@@ -55,6 +55,87 @@ concept BitShape = Shape<S> && requires(const S& shape, const double* pose, cons
   { S::feature_of(0) } -> std::same_as<std::uint32_t>;
   { S::touch(shape, pose, shape, pose, separation, 0u) } -> std::same_as<typename S::template PairTouch<double>>;
 };
+
+/// A shape that may meet cohesion at a distance also finds contacts across a gap: collide takes the gap (m) as a last
+/// argument and then hands over pairs of points up to that far apart, with a negative overlap; touching of a BitShape
+/// likewise.
+template <class S>
+concept ReachingShape = Shape<S> && requires(const S& shape, const double* pose, const Vector3<double>& separation) {
+  S::collide(shape, pose, shape, pose, separation, AnySink{}, 1.0);
+} &&(!BitShape<S> || requires(const S& shape, const double* pose, const Vector3<double>& separation) {
+  { S::touching(shape, pose, shape, pose, separation, 1.0) } -> std::same_as<std::uint64_t>;
+});
+
+/// The gap of models without cohesion at a distance: none. Widening by it is no instruction.
+struct NoGap {};
+template <class T>
+DEM_HOT T widened(const T& reach, NoGap) {
+  return reach;
+}
+template <class T>
+DEM_HOT T widened(const T& reach, double gap) {
+  return reach + T(gap);
+}
+
+template <class S>
+constexpr void check_reaching_shape() {
+  static_assert(ReachingShape<S>,
+                "Shape: the model's cohesion acts at a distance, so collide (and touching, if there) must take a gap "
+                "in m as a last argument and find pairs up to that far apart; or choose a cohesion without range()");
+}
+
+/// A shape whose search for contacts takes up where it stopped a step ago: PairMemory is what it keeps for each pair of
+/// neighbours (empty when they are listed anew), and collide(a, pose_a, b, pose_b, separation, memory, sink) uses it.
+/// The memory belongs to the pair, not to a thread: results stay the same for any number of threads.
+template <class S>
+concept RememberingShape = Shape<S> &&
+    requires(const S& shape, const double* pose, const Vector3<double>& separation, typename S::PairMemory& memory) {
+  S::collide(shape, pose, shape, pose, separation, memory, AnySink{});
+};
+
+/// The memories of a list of pairs; nothing for shapes that keep none.
+template <class S>
+struct PairMemories {
+  void reset(std::size_t) {}
+  std::size_t bytes() const { return 0; }
+};
+template <RememberingShape S>
+struct PairMemories<S> {
+  std::vector<typename S::PairMemory> memory;
+  void reset(std::size_t pairs) { memory.assign(pairs, {}); }
+  std::size_t bytes() const { return memory.capacity() * sizeof(typename S::PairMemory); }
+};
+
+/// A shape whose pair contacts are the points of one patch says so with `static constexpr bool has_patches = true`. Its
+/// points slide as one, so a point that turns up in a patch remembers what the others do: when the patch changes its
+/// corners, or the way it is found, friction goes on.
+template <class S>
+concept PatchShape = Shape<S> && requires {
+  requires S::has_patches;
+};
+
+/// A shape made of points may touch with many at once: patch() says with how many and of what area, in a pair of
+/// grains, and surface_patch() on a surface. For all others both are one.
+template <class S>
+contact::Patch patch_of(const S& shape) {
+  if constexpr (requires {
+                  { shape.patch() } -> std::same_as<contact::Patch>;
+                }) {
+    return shape.patch();
+  } else {
+    return {};
+  }
+}
+template <class S>
+contact::Patch surface_patch_of(const S& shape) {
+  if constexpr (requires {
+                  { shape.surface_patch() } -> std::same_as<contact::Patch>;
+                }) {
+    return shape.surface_patch();
+  } else {
+    return {};
+  }
+}
 
 template <class S>
 constexpr void check_shape() {

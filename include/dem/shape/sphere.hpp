@@ -23,9 +23,10 @@ class Sphere {
 
   void orient(const Matrix3<double>&, double*) const {}
 
+  template <class Gap = NoGap>
   static DEM_HOT std::uint64_t touching(const Sphere& a, const double*, const Sphere& b, const double*,
-                                        const Vector3<double>& separation) {
-    const double reach = a.radius_ + b.radius_;
+                                        const Vector3<double>& separation, Gap gap = {}) {
+    const double reach = widened(a.radius_ + b.radius_, gap);
     return dot(separation, separation) < reach * reach ? 1u : 0u;
   }
   static constexpr std::uint32_t feature_of(int bit) { return static_cast<std::uint32_t>(bit); }
@@ -33,16 +34,16 @@ class Sphere {
                                          const Vector3<double>& separation, std::uint32_t) {
     return {separation, a.radius_, b.radius_};
   }
-  template <class Sink>
+  template <class Sink, class Gap = NoGap>
   static DEM_HOT void collide(const Sphere& a, const double* pose_a, const Sphere& b, const double* pose_b,
-                              const Vector3<double>& separation, Sink&& sink) {
-    if (touching(a, pose_a, b, pose_b, separation) != 0) sink(0u, touch(a, pose_a, b, pose_b, separation, 0u));
+                              const Vector3<double>& separation, Sink&& sink, Gap gap = {}) {
+    if (touching(a, pose_a, b, pose_b, separation, gap) != 0) sink(0u, touch(a, pose_a, b, pose_b, separation, 0u));
   }
   static std::uint32_t mirrored(std::uint32_t feature) { return feature; }
 
   template <class Sink>
   DEM_HOT void probe(const double*, Sink&& sink) const {
-    sink(0u, Vector3<double>{0, 0, 0}, radius_);
+    sink(0u, contact::Probe{{0, 0, 0}, radius_, radius_});
   }
 
  private:

@@ -53,6 +53,7 @@ class SphereCluster {
 
   int count() const { return count_; }
   Ball ball(int k) const { return {Vec3(x_[k], y_[k], z_[k]), radius_[k]}; }
+  double radius(int k) const { return radius_[k]; }
   double bounding_radius() const { return bounding_radius_; }
   double volume() const { return volume_; }
   const Vec3& unit_inertia() const { return unit_inertia_; }
@@ -70,10 +71,11 @@ class SphereCluster {
 
   /// Which spheres of a overlap which of b, without branches, for clusters small enough that one word holds all
   /// answers: bit k * stride + m for sphere k of a and sphere m of b.
+  template <class Gap = NoGap>
   static DEM_HOT std::uint64_t touching(const SphereCluster& a, const double* pose_a, const SphereCluster& b,
-                                        const double* pose_b,
-                                        const Vector3<double>& separation) requires(N* stride <= 64) {
-    return touching_bits(a, pose_a, 0, b, pose_b, 0, separation);
+                                        const double* pose_b, const Vector3<double>& separation,
+                                        Gap gap = {}) requires(N* stride <= 64) {
+    return touching_bits(a, pose_a, 0, b, pose_b, 0, separation, gap);
   }
   static constexpr std::uint32_t feature_of(int bit) requires(N* stride <= 64) {
     return static_cast<std::uint32_t>(bit / stride * N + bit % stride);
@@ -88,12 +90,12 @@ class SphereCluster {
     return {centre, (separation - centre) + other, a.radius_[k], b.radius_[m]};
   }
 
-  template <class Sink>
+  template <class Sink, class Gap = NoGap>
   static DEM_HOT void collide(const SphereCluster& a, const double* pose_a, const SphereCluster& b,
-                              const double* pose_b, const Vector3<double>& separation, Sink&& sink) {
+                              const double* pose_b, const Vector3<double>& separation, Sink&& sink, Gap gap = {}) {
     for (int row = 0; row < N; row += rows_per_word) {
       for (int lane = 0; lane < stride; lane += lanes_per_word) {
-        for (std::uint64_t found = touching_bits(a, pose_a, row, b, pose_b, lane, separation); found != 0;
+        for (std::uint64_t found = touching_bits(a, pose_a, row, b, pose_b, lane, separation, gap); found != 0;
              found &= found - 1) {
           const int bit = std::countr_zero(found);
           const auto feature =
@@ -108,7 +110,8 @@ class SphereCluster {
   template <class Sink>
   DEM_HOT void probe(const double* pose, Sink&& sink) const {
     for (int k = 0; k < count_; ++k) {
-      sink(static_cast<std::uint32_t>(k), Vector3<double>{pose[k], pose[stride + k], pose[2 * stride + k]}, radius_[k]);
+      sink(static_cast<std::uint32_t>(k),
+           contact::Probe{{pose[k], pose[stride + k], pose[2 * stride + k]}, radius_[k], radius_[k]});
     }
   }
 
@@ -117,10 +120,11 @@ class SphereCluster {
   static constexpr int lanes_per_word = stride < 64 ? stride : 64;
   static constexpr int rows_per_word = 64 / lanes_per_word < N ? 64 / lanes_per_word : N;
 
-  /// Bit (k - row) * lanes_per_word + (m - lane): sphere k of a overlaps sphere m of b.
+  /// Bit (k - row) * lanes_per_word + (m - lane): sphere k of a overlaps sphere m of b, or comes within the gap.
+  template <class Gap>
   static DEM_HOT std::uint64_t touching_bits(const SphereCluster& a, const double* pose_a, int row,
                                              const SphereCluster& b, const double* pose_b, int lane,
-                                             const Vector3<double>& separation) {
+                                             const Vector3<double>& separation, Gap gap) {
     std::uint64_t touching = 0;
     for (int m = lane; m < lane + lanes_per_word && m < stride; m += pack_width) {
       const Pack x = load(pose_b + m) + Pack(separation.x);
@@ -129,7 +133,7 @@ class SphereCluster {
       const Pack radius = load(b.radius_ + m);
       for (int k = row; k < row + rows_per_word && k < N; ++k) {
         const Pack dx = x - Pack(pose_a[k]), dy = y - Pack(pose_a[stride + k]), dz = z - Pack(pose_a[2 * stride + k]);
-        const Pack reach = radius + Pack(a.radius_[k]);
+        const Pack reach = widened(radius + Pack(a.radius_[k]), gap);
         const auto hits = std::uint64_t{bits(dx * dx + dy * dy + dz * dz < reach * reach)};
         touching |= hits << ((k - row) * lanes_per_word + m - lane);
       }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <dem/core/ids.hpp>
+#include <dem/shape/shape.hpp>
 #include <dem/state/contacts.hpp>
 #include <dem/state/particles.hpp>
 
@@ -25,6 +26,7 @@ struct Chunk {
   std::array<std::uint32_t, chunk_size + 1> candidate_first = {};  ///< candidates of the k-th grain of the chunk
   std::vector<std::uint32_t> candidate;                            ///< partners j > i, ascending for each i
   std::vector<std::uint8_t> owner;                                 ///< of each candidate: its i in the chunk
+  [[no_unique_address]] shape::PairMemories<typename Model::Shape> searches;  ///< of the candidates
   ContactMemories<history_size<Model>> pair_contacts, surface_contacts;
 
   std::vector<PartnerLoad> partner_loads;         ///< of the contacts whose partner is in another chunk, in their order
@@ -32,9 +34,10 @@ struct Chunk {
   std::vector<SurfaceLoad> surface_loads;
 
   Vec3 low = Vec3::Zero(), high = Vec3::Zero();  ///< of the grains' centres
-  double moved2 = 0.0;         ///< m^2, largest squared displacement since the neighbour list was made
-  double worst_overlap = 0.0;  ///< largest overlap / effective diameter in this step
-  bool finite = true;          ///< no position or velocity is NaN or infinite
+  double moved2 = 0.0;           ///< m^2, largest squared displacement since the neighbour list was made
+  double worst_overlap = 0.0;    ///< largest overlap / effective diameter in this step
+  double surface_seconds = 0.0;  ///< s, spent on contacts with surfaces while the stopwatch was on
+  bool finite = true;            ///< no position or velocity is NaN or infinite
 
   /// The contacts' memories of this step become the ones that the next step starts from.
   void commit() {

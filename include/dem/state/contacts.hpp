@@ -10,11 +10,13 @@
 
 namespace dem {
 
-/// What a contact remembers: the histories of the normal and of the friction law.
+/// What a contact remembers: the histories of its laws, one after the other.
 template <class Model, class T>
 struct ContactHistory {
   typename Model::Normal::template History<T> normal;
   typename Model::Friction::template History<T> friction;
+  typename Model::Rolling::template History<T> rolling;
+  typename Model::Cohesion::template History<T> cohesion;
 };
 
 template <class Model>
@@ -22,7 +24,12 @@ inline constexpr int normal_history_size = contact::field_count<typename Model::
 template <class Model>
 inline constexpr int friction_history_size = contact::field_count<typename Model::Friction::template History<double>>;
 template <class Model>
-inline constexpr int history_size = normal_history_size<Model> + friction_history_size<Model>;
+inline constexpr int rolling_history_size = contact::field_count<typename Model::Rolling::template History<double>>;
+template <class Model>
+inline constexpr int cohesion_history_size = contact::field_count<typename Model::Cohesion::template History<double>>;
+template <class Model>
+inline constexpr int history_size = normal_history_size<Model> + friction_history_size<Model> +
+                                    rolling_history_size<Model> + cohesion_history_size<Model>;
 
 /// The memory of the contacts of one chunk: keys ascending, one history each. A key says who touches whom, and where:
 /// (candidate << 32 | feature).

@@ -2,6 +2,7 @@
 
 #include <dem/core/ids.hpp>
 #include <dem/state/body.hpp>
+#include <dem/state/partner_view.hpp>
 #include <dem/surface/surface.hpp>
 
 #include <string>
@@ -25,11 +26,15 @@ struct MachineSurface {
   Matrix3<double> axes = Matrix3<double>::identity();
   Vec3 low = Vec3::Zero(), high = Vec3::Zero();  ///< m, bounding box in global axes
 
+  PartnerView view = {};  ///< of the body
+
   // Sum over all grains of the last force evaluation.
   Vector3<double> force = {0, 0, 0};   ///< N, on the surface
   Vector3<double> torque = {0, 0, 0};  ///< N m, about its body's centre of mass
 
   void follow(const Body& b) {
+    view = {b.motion.position, 0.0, b.motion.velocity, b.fixed ? 0.0 : 1.0 / b.mass,
+            b.motion.rotation * b.motion.angular_velocity};
     origin = b.motion.position + b.motion.rotation * from_eigen(position);
     axes = b.motion.rotation * from_eigen(rotation);
     const surface::Bounds local = std::visit([](const auto& g) { return g.bounds(); }, geometry);

@@ -1,9 +1,11 @@
 #pragma once
 
+#include <dem/cohesion/cohesion_law.hpp>
 #include <dem/contact/normal_law.hpp>
 #include <dem/core/error.hpp>
 #include <dem/core/ids.hpp>
 #include <dem/friction/friction_law.hpp>
+#include <dem/rolling/rolling_law.hpp>
 
 #include <algorithm>
 #include <string>
@@ -12,11 +14,13 @@
 
 namespace dem {
 
-/// The constants of a contact between two materials.
-template <class Model>
+/// The constants of a contact between two materials (T = double) or those of a pack of contacts.
+template <class Model, class T = double>
 struct ContactParameters {
-  typename Model::Normal::template Parameters<double> normal;
-  typename Model::Friction::template Parameters<double> friction;
+  typename Model::Normal::template Parameters<T> normal;
+  typename Model::Friction::template Parameters<T> friction;
+  [[no_unique_address]] typename Model::Rolling::template Parameters<T> rolling = {};
+  [[no_unique_address]] typename Model::Cohesion::template Parameters<T> cohesion = {};
 };
 
 /// Materials by name, and a table with the contact constants of each pair. A pair that was not set takes the default.
@@ -64,6 +68,18 @@ class Materials {
   const std::string& name(MaterialId m) const { return names_.at(m.index()); }
   std::size_t count() const { return names_.size(); }
 
+  /// The largest gap (m) at which partners of that effective radius or less may still act on each other: 0 unless the
+  /// cohesion law acts at a distance. World finds it when it is prepared.
+  void find_range(double radius) {
+    range_ = 0.0;
+    if constexpr (cohesion::reaches<typename Model::Cohesion>) {
+      for (const Parameters& p : table_) {
+        if (&p != table_.data() || has_default_) range_ = std::max(range_, Model::Cohesion::range(p.cohesion, radius));
+      }
+    }
+  }
+  double range() const { return range_; }
+
   /// Notes that grains, not only machine parts, are made of this material.
   void mark_as_grain(MaterialId m) {
     grain_.resize(std::max(grain_.size(), names_.size()), false);
@@ -74,13 +90,17 @@ class Materials {
     if (has_default_) return;
     for (std::size_t a = 0; a < names_.size(); ++a) {
       for (std::size_t b = 0; b <= a; ++b) {
-        if (!(is_grain(a) || is_grain(b)) || row(MaterialId(a), MaterialId(b)) != default_entry) continue;
-        fail(
-            "no contact constants for the materials '{}' and '{}'; call set_contact(\"{}\", \"{}\", ...), or "
-            "set_contact(...) for all pairs",
-            names_[b], names_[a], names_[b], names_[a]);
+        if (is_grain(a) || is_grain(b)) check_pair(MaterialId(b), MaterialId(a));
       }
     }
+  }
+  /// Throws Error if the two materials have no constants.
+  void check_pair(MaterialId a, MaterialId b) const {
+    if (has_default_ || row(a, b) != default_entry) return;
+    fail(
+        "no contact constants for the materials '{}' and '{}'; call set_contact(\"{}\", \"{}\", ...), or "
+        "set_contact(...) for all pairs",
+        name(a), name(b), name(a), name(b));
   }
 
  private:
@@ -93,6 +113,8 @@ class Materials {
   static void check(const Parameters& p) {
     Model::Normal::check(p.normal);
     Model::Friction::check(p.friction);
+    Model::Rolling::check(p.rolling);
+    Model::Cohesion::check(p.cohesion);
   }
   std::uint32_t& entry(MaterialId a, MaterialId b) { return entry_[a.index() * names_.size() + b.index()]; }
 
@@ -102,6 +124,7 @@ class Materials {
   std::vector<std::uint32_t> entry_;
   std::vector<bool> grain_;
   bool has_default_ = false;
+  double range_ = 0.0;
 };
 
 }  // namespace dem

@@ -3,6 +3,7 @@
 #include <dem/contact/state.hpp>
 #include <dem/core/aligned.hpp>
 #include <dem/integrator/motion.hpp>
+#include <dem/state/partner_view.hpp>
 
 #include <algorithm>
 #include <array>
@@ -15,7 +16,7 @@ namespace dem {
 
 /// Grains are worked on in chunks of this many: one chunk's contacts fit the first-level cache, and a chunk, not a
 /// thread, is the unit of work, so that results do not depend on the number of threads.
-inline constexpr std::size_t chunk_size = 128;
+inline constexpr std::size_t chunk_size = 256;
 
 /// Three columns x, y, z.
 struct Columns3 {
@@ -55,11 +56,11 @@ struct Particles {
   std::size_t count = 0;        ///< grains, padding not counted
   Columns3 position, velocity;  ///< m, m/s
   Columns3 spin;                ///< rad/s, body frame (what the integrator advances)
-  Columns3 angular_velocity;    ///< rad/s, global frame (what the contacts need)
   Columns3 row0, row1, row2;    ///< rotation, body -> global, by rows
   Columns3 force, torque;       ///< N, N m of the last force evaluation, gravity not included; global axes
   Columns3 listed_at;           ///< m, position when the neighbour list was made
   std::array<AlignedVector<double>, static_cast<std::size_t>(memory_size)> memory;  ///< of the integrator
+  AlignedVector<PartnerView> view;                                                  ///< what contacts read
   AlignedVector<double> pose;                                                       ///< Shape::pose_size a grain
   std::vector<std::uint32_t> species, id;
   std::vector<std::uint32_t> row_of;  ///< by id
@@ -69,6 +70,11 @@ struct Particles {
   double* pose_of(std::size_t i) { return pose.data() + i * Shape::pose_size; }
 
   Matrix3<double> rotation(std::size_t i) const { return {row0[i], row1[i], row2[i]}; }
+  /// rad/s, global axes.
+  Vector3<double> angular_velocity(std::size_t i) const {
+    if constexpr (has_orientation) return rotation(i) * spin[i];
+    return spin[i];
+  }
   void set_rotation(std::size_t i, const Matrix3<double>& r) {
     row0.set(i, r.row0);
     row1.set(i, r.row1);
@@ -90,9 +96,6 @@ struct Particles {
       row0.set_pack(i, m.rotation.row0);
       row1.set_pack(i, m.rotation.row1);
       row2.set_pack(i, m.rotation.row2);
-      angular_velocity.set_pack(i, m.rotation * m.angular_velocity);
-    } else {
-      angular_velocity.set_pack(i, m.angular_velocity);
     }
   }
   Memory<Pack> memory_pack(std::size_t i) const {
@@ -114,8 +117,7 @@ struct Particles {
   /// Calls f(column) for every column of doubles that has one entry a grain.
   template <class F>
   void for_each_column(F&& f) {
-    for (Columns3* c :
-         {&position, &velocity, &spin, &angular_velocity, &row0, &row1, &row2, &force, &torque, &listed_at}) {
+    for (Columns3* c : {&position, &velocity, &spin, &row0, &row1, &row2, &force, &torque, &listed_at}) {
       c->for_each_column(f);
     }
     for (auto& column : memory) f(column);
@@ -125,6 +127,7 @@ struct Particles {
   void resize(std::size_t n) {
     const std::size_t rows = (n + chunk_size - 1) / chunk_size * chunk_size;
     for_each_column([&](AlignedVector<double>& column) { column.resize(rows, 0.0); });
+    view.resize(rows);
     pose.resize(rows * Shape::pose_size, 0.0);
     species.resize(rows, 0);
     id.resize(rows, 0xffffffffu);
@@ -136,7 +139,7 @@ struct Particles {
     for (std::size_t i = count; i < position.x.size(); ++i) {
       position.set(i, position[count - 1]);
       listed_at.set(i, listed_at[count - 1]);
-      for (Columns3* c : {&velocity, &spin, &angular_velocity, &force, &torque}) c->set(i, {0, 0, 0});
+      for (Columns3* c : {&velocity, &spin, &force, &torque}) c->set(i, {0, 0, 0});
       set_rotation(i, Matrix3<double>::identity());
     }
   }

@@ -10,9 +10,13 @@ namespace dem::surface {
 /// A solid box, centred in its own frame. A sphere touches it once: on a face, an edge or a corner.
 class Box {
  public:
-  /// Edge lengths in m. Throws Error unless all are positive.
-  explicit Box(const Vec3& edges) : half_{0.5 * edges.x(), 0.5 * edges.y(), 0.5 * edges.z()} {
+  /// Edge lengths in m. Against sharp grains and other bodies the box shows its corners and, where an edge is cut into
+  /// more pieces than one, the points between. Throws Error unless all edges are positive, for less than 1 piece or
+  /// more than 1000.
+  explicit Box(const Vec3& edges, int pieces = 1)
+      : half_{0.5 * edges.x(), 0.5 * edges.y(), 0.5 * edges.z()}, pieces_(pieces) {
     for (int k = 0; k < 3; ++k) require_positive(edges[k], "edge length of a box", "m");
+    require_within(pieces, 1, 1000, "pieces of an edge of a box");
   }
 
   Vec3 edges() const { return 2.0 * to_eigen(half_); }
@@ -20,7 +24,7 @@ class Box {
   template <class T>
   DEM_HOT auto near(const Vector3<T>& p, const T& radius) const {
     const T x = outside(p.x, half_.x), y = outside(p.y, half_.y), z = outside(p.z, half_.z);
-    return x * x + y * y + z * z < radius * radius;
+    return x * x + y * y + z * z <= radius * radius;  // also for points (radius 0) inside
   }
 
   template <class Sink>
@@ -52,6 +56,20 @@ class Box {
     }
   }
 
+  /// Points for contact with other surfaces: sink(number, point, radius), numbers ascending.
+  template <class Sink>
+  void points(const Bounds&, Sink&& sink) const {
+    for_each_point([&](std::uint32_t k, const Vector3<double>& p) { sink(k, p, 0.0); });
+  }
+  /// Those within a radius of p, for grains that offer penetration(): sink(number, point).
+  template <class Sink>
+  void corners(const Vector3<double>& p, double radius, Sink&& sink) const {
+    for_each_point([&](std::uint32_t k, const Vector3<double>& c) {
+      if (dot(c - p, c - p) <= radius * radius) sink(k, c);
+    });
+  }
+  std::size_t points_at_once() const { return 4 * static_cast<std::size_t>(pieces_); }
+
   Bounds bounds() const { return {-to_eigen(half_), to_eigen(half_)}; }
 
  private:
@@ -62,7 +80,27 @@ class Box {
   }
   static DEM_HOT double clamped(double value, double limit) { return max(-limit, min(limit, value)); }
 
+  /// Edge by edge: four along each axis, each from its lower corner on; the upper corners belong to the edges along x.
+  template <class F>
+  void for_each_point(F&& f) const {
+    const double half[3] = {half_.x, half_.y, half_.z};
+    std::uint32_t number = 0;
+    for (int axis = 0; axis < 3; ++axis) {
+      for (int side = 0; side < 4; ++side) {
+        const int first = axis == 0 ? 0 : 1, last = axis == 0 ? pieces_ : pieces_ - 1;
+        for (int k = first; k <= last; ++k) {
+          double x[3];
+          x[axis] = (2.0 * k / pieces_ - 1.0) * half[axis];
+          x[(axis + 1) % 3] = (side & 1) != 0 ? half[(axis + 1) % 3] : -half[(axis + 1) % 3];
+          x[(axis + 2) % 3] = (side & 2) != 0 ? half[(axis + 2) % 3] : -half[(axis + 2) % 3];
+          f(number++, Vector3<double>{x[0], x[1], x[2]});
+        }
+      }
+    }
+  }
+
   Vector3<double> half_;
+  int pieces_;
 };
 
 }  // namespace dem::surface

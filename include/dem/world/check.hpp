@@ -62,6 +62,17 @@ StepReport find_problem(const WorldState<Model>& w) {
                       p.id[i], chunk.worst_overlap, when(), w.options.overlap_limit, w.time_step));
     }
   }
+  if (w.body_contacts.worst_overlap > w.options.overlap_limit) [[unlikely]] {
+    const pipeline::BodyPair& pair = w.body_contacts.pairs[w.body_contacts.worst_pair];
+    const auto body = [&](SurfaceId s) { return w.machine.bodies()[w.surfaces[s.index()].body.index()].name; };
+    return problem(
+        StepReport::Problem::overlap, p.count,
+        fmt::format("body '{}' overlaps body '{}' by {:.3g} of their effective diameter {}, more than "
+                    "overlap_limit {:g}; raise the normal stiffness between their materials, lower time_step "
+                    "(now {:g} s), or start with the bodies apart",
+                    body(pair.a), body(pair.b), w.body_contacts.worst_overlap, when(), w.options.overlap_limit,
+                    w.time_step));
+  }
   if (const auto report = w.machine.report(); !report) {
     return problem(StepReport::Problem::machine, p.count, report.text);
   }

@@ -23,7 +23,7 @@ std::size_t memory_bytes(const WorldState<Model>& w) {
   };
   for (const Chunk<Model>& c : w.chunks) {
     sum += sizeof(c) + bytes(c.candidate) + bytes(c.owner) + bytes(c.partner_load_first) + bytes(c.partner_loads) +
-           bytes(c.surface_loads) + of_memories(c.pair_contacts) + of_memories(c.surface_contacts);
+           bytes(c.surface_loads) + of_memories(c.pair_contacts) + of_memories(c.surface_contacts) + c.searches.bytes();
   }
   return sum;
 }

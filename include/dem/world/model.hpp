@@ -1,13 +1,18 @@
 #pragma once
 
 #include <dem/broadphase/uniform_grid.hpp>
+#include <dem/cohesion/none.hpp>
 #include <dem/contact/penalty.hpp>
 #include <dem/exec/openmp.hpp>
 #include <dem/friction/asperity_spring.hpp>
 #include <dem/integrator/predictor_corrector.hpp>
+#include <dem/rolling/none.hpp>
 #include <dem/shape/sphere.hpp>
 #include <dem/surface/box.hpp>
+#include <dem/surface/cylinder.hpp>
 #include <dem/surface/plane.hpp>
+#include <dem/surface/sphere.hpp>
+#include <dem/surface/triangle_mesh.hpp>
 
 namespace dem {
 
@@ -15,9 +20,14 @@ namespace dem {
 ///   struct Sand : dem::Model { using Shape = dem::shape::SphereCluster<8>; };
 struct Model {
   using Shape = shape::Sphere;
-  using Surfaces = surface::Set<surface::Plane, surface::Box>;
+  /// Those that cost no time where they are not used. Others by name: surface::Set<surface::Plane,
+  /// surface::Superquadric>.
+  using Surfaces =
+      surface::Set<surface::Plane, surface::Box, surface::Sphere, surface::Cylinder, surface::TriangleMesh>;
   using Normal = contact::Penalty;
   using Friction = friction::AsperitySpring;
+  using Rolling = rolling::None;
+  using Cohesion = cohesion::None;
   using BroadPhase = broadphase::UniformGrid;
   using Integrator = integrator::PredictorCorrector;
   using Executor = exec::OpenMP;
@@ -36,6 +46,9 @@ constexpr bool check_model() {
   check_surfaces(static_cast<typename M::Surfaces*>(nullptr));
   contact::check_normal_law<typename M::Normal>();
   friction::check_friction_law<typename M::Friction>();
+  rolling::check_rolling_law<typename M::Rolling>();
+  cohesion::check_cohesion_law<typename M::Cohesion>();
+  if constexpr (cohesion::reaches<typename M::Cohesion>) shape::check_reaching_shape<typename M::Shape>();
   broadphase::check_broad_phase<typename M::BroadPhase>();
   integrator::check_integrator<typename M::Integrator>();
   exec::check_executor<typename M::Executor>();

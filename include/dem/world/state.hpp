@@ -1,6 +1,7 @@
 #pragma once
 
 #include <dem/mbd/machine.hpp>
+#include <dem/pipeline/body_contacts.hpp>
 #include <dem/pipeline/neighbours.hpp>
 #include <dem/state/machine_surface.hpp>
 #include <dem/state/materials.hpp>
@@ -32,11 +33,13 @@ struct WorldState {
   typename Model::BroadPhase broad_phase;
   std::vector<std::uint32_t> incoming_first;
   std::vector<pipeline::Incoming> incoming;
+  double list_skin = 0.0;      ///< m, with which the neighbour list was made
   bool list_valid = false;     ///< false after grains were added or moved by hand
   std::uint64_t rebuilds = 0;  ///< neighbour lists made
 
   mbd::Machine<Integrator> machine;
   std::vector<Surface> surfaces;
+  pipeline::BodyContacts<Model> body_contacts;
   typename Model::Executor executor;
   Stopwatch stopwatch;
 
@@ -49,7 +52,7 @@ bool neighbours_outdated(const WorldState<Model>& w) {
   if (!w.list_valid) return w.particles.count > 0;
   double moved2 = 0.0;
   for (const auto& chunk : w.chunks) moved2 = std::max(moved2, chunk.moved2);
-  return 4.0 * moved2 > w.skin() * w.skin();
+  return 4.0 * moved2 > w.list_skin * w.list_skin;
 }
 
 /// Sorts the grains in space, lists their neighbours, and carries the contacts' memories over.
@@ -59,7 +62,7 @@ void rebuild_neighbours(WorldState<Model>& w) {
   std::vector<pipeline::Remembered<history_size<Model>>> pairs, surfaces;
   pipeline::collect_memories<Model>(std::span<const Chunk<Model>>(w.chunks), p, pairs, surfaces);
 
-  const double reach = 2.0 * w.largest_radius + w.skin();
+  const double reach = 2.0 * w.largest_radius + w.materials.range() + w.skin();
   const auto positions = [&] {
     return broadphase::Positions{p.position.x.data(), p.position.y.data(), p.position.z.data(), p.count};
   };
@@ -74,12 +77,13 @@ void rebuild_neighbours(WorldState<Model>& w) {
 
   w.chunks.resize(p.chunks());
   w.executor.for_each(w.chunks.size(), [&](std::size_t c) {
-    pipeline::list_candidates<Model>(c, w.chunks[c], p, w.broad_phase, w.species, w.skin());
+    pipeline::list_candidates<Model>(c, w.chunks[c], p, w.broad_phase, w.species, w.materials.range() + w.skin());
     pipeline::refresh_chunk<Model>(c, w.chunks[c], p, w.species);
   });
   pipeline::list_incoming<Model>(std::span<const Chunk<Model>>(w.chunks), p.count, w.incoming_first, w.incoming);
   pipeline::return_memories<Model>(std::span<Chunk<Model>>(w.chunks), p, pairs, surfaces);
   w.list_valid = true;
+  w.list_skin = w.skin();
   ++w.rebuilds;
 }
 

@@ -23,14 +23,20 @@ void find_contacts(WorldState<Model>& w) {
     pipeline::ForceSums sums;
     pipeline::find_pair_contacts<Model>(c, w.chunks[c], w.particles, w.species, w.materials, w.time_step, sums,
                                         pair_scratch);
+    const double start = w.stopwatch.clock();
     pipeline::find_surface_contacts<Model>(c, w.chunks[c], w.particles, std::span(std::as_const(w.species)),
-                                           w.materials, std::span(std::as_const(w.surfaces)), w.machine.bodies(),
-                                           w.largest_radius, w.time_step, sums, surface_scratch);
+                                           w.materials, std::span(std::as_const(w.surfaces)), w.largest_radius,
+                                           w.time_step, sums, surface_scratch);
+    w.chunks[c].surface_seconds += w.stopwatch.clock() - start;
     sums.write(c, w.particles);
   });
   w.stopwatch.stop(Phase::contacts);
+  w.stopwatch.start();
   w.machine.clear_forces();
   load_bodies(w);
+  pipeline::find_body_contacts<Model>(w.body_contacts, std::span(std::as_const(w.surfaces)), w.materials,
+                                      std::span(w.machine.bodies()), w.time_step);
+  w.stopwatch.stop(Phase::machine);
 }
 
 /// The machine's share of a stage, before the contacts: only where the integrator predicts.
@@ -88,6 +94,7 @@ void advance(WorldState<Model>& w) {
                                   clean_rotations && last);
       if (last) w.chunks[c].commit();
     });
+    if (last) w.body_contacts.memories.commit();
     w.stopwatch.stop(Phase::motion);
   }
   w.time += w.time_step;
@@ -98,6 +105,10 @@ void advance(WorldState<Model>& w) {
 /// that remember an acceleration take their first one.
 template <class Model>
 void initialise(WorldState<Model>& w) {
+  if (w.list_valid) {
+    w.executor.for_each(w.chunks.size(),
+                        [&](std::size_t c) { pipeline::refresh_chunk<Model>(c, w.chunks[c], w.particles, w.species); });
+  }
   find_contacts(w);
   w.executor.for_each(w.chunks.size(), [&](std::size_t c) {
     pipeline::gather_forces<Model>(c, w.chunks, w.particles, w.incoming_first, w.incoming);

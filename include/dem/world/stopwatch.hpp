@@ -27,6 +27,12 @@ class Stopwatch {
       return;
     seconds_[static_cast<std::size_t>(phase)] += std::chrono::duration<double>(Clock::now() - since_).count();
   }
+  /// The time in s while it is on, else 0: for work inside a phase, clock() after less clock() before.
+  double clock() const {
+    if (!on_) [[likely]]
+      return 0.0;
+    return std::chrono::duration<double>(Clock::now().time_since_epoch()).count();
+  }
   double seconds(Phase phase) const { return seconds_[static_cast<std::size_t>(phase)]; }
 
  private:

@@ -88,7 +88,6 @@ class World {
     const Mat3 rotation = Shape::has_orientation ? n.rotation : Mat3(Mat3::Identity());
     p.set_rotation(row, from_eigen(rotation));
     p.spin.set(row, from_eigen(Vec3(rotation.transpose() * n.angular_velocity)));
-    p.angular_velocity.set(row, from_eigen(n.angular_velocity));
     p.species[row] = n.species.value;
     p.id[row] = static_cast<std::uint32_t>(p.row_of.size());
     p.row_of.push_back(static_cast<std::uint32_t>(row));
@@ -108,6 +107,14 @@ class World {
       fail("surface '{}' was given body {}, but the machine has {}", o.name, body.value,
            state_.machine.bodies().size());
     }
+    // Written such that a NaN fails as well: a wall whose place is not known would let everything through.
+    if (!o.position.allFinite() || !((o.rotation.transpose() * o.rotation - Mat3::Identity()).norm() <= 1e-6) ||
+        !(o.rotation.determinant() > 0.0)) {
+      fail(
+          "surface '{}' was given a position that is not finite or a rotation matrix that is no rotation (R^T R = I, "
+          "det R = 1)",
+          o.name);
+    }
     if (state_.surfaces.size() >= 0xffff) fail("a world takes at most 65,535 surfaces");
     typename WorldState<Model>::Surface s{o.name,   body,       state_.materials.id(o.material),
                                           geometry, o.position, o.rotation};
@@ -115,7 +122,64 @@ class World {
     checked_ = false;
     return SurfaceId(state_.surfaces.size() - 1);
   }
-  /// Lets a surface touch grains, or not.
+  /// Lets two surfaces of different bodies touch each other, with the contact constants of their materials. Each shows
+  /// its points (corners, vertices, rims) to the other; a plane has none. Throws Error for surfaces of one body, of two
+  /// fixed bodies, or that both have no points.
+  BodyContactId add_body_contact(SurfaceId a, SurfaceId b) {
+    auto& w = state_;
+    for (const SurfaceId s : {a, b}) {
+      if (s.index() >= w.surfaces.size()) {
+        fail("a body contact names surface {}, but the world has {}; use the SurfaceId that add_surface returned",
+             s.value, w.surfaces.size());
+      }
+    }
+    const auto &sa = w.surfaces[a.index()], &sb = w.surfaces[b.index()];
+    const Body &body_a = w.machine.body(sa.body), &body_b = w.machine.body(sb.body);
+    if (sa.body == sb.body) {
+      fail("surfaces {} and {} both belong to body '{}' and cannot touch each other", a.value, b.value, body_a.name);
+    }
+    if (body_a.fixed && body_b.fixed) {
+      fail("body '{}' and body '{}' are both fixed, so no force between them would move anything", body_a.name,
+           body_b.name);
+    }
+    if (pipeline::points_at_once(sa) + pipeline::points_at_once(sb) == 0) {
+      fail("neither surface {} nor surface {} has points that could touch the other (planes have none)", a.value,
+           b.value);
+    }
+    if (w.body_contacts.pairs.size() >= pipeline::BodyKey::most_pairs) {
+      fail("a world takes at most {} body contacts", pipeline::BodyKey::most_pairs);
+    }
+    w.body_contacts.pairs.push_back({a, b});
+    checked_ = initialised_ = false;
+    return BodyContactId(w.body_contacts.pairs.size() - 1);
+  }
+  /// Lets all surfaces touch each other that were added so far, but for those of one body, of two fixed bodies, or of
+  /// bodies that a joint connects; pairs that are known already are not added again. Returns how many pairs were added.
+  std::size_t add_body_contacts() {
+    const auto& w = state_;
+    std::size_t added = 0;
+    for (std::size_t a = 0; a < w.surfaces.size(); ++a) {
+      for (std::size_t b = a + 1; b < w.surfaces.size(); ++b) {
+        const BodyId i = w.surfaces[a].body, j = w.surfaces[b].body;
+        bool skip = i == j || (w.machine.body(i).fixed && w.machine.body(j).fixed) ||
+                    pipeline::points_at_once(w.surfaces[a]) + pipeline::points_at_once(w.surfaces[b]) == 0;
+        for (const auto& joint : w.machine.parts().joints) {
+          skip |= (joint.a == i.value && joint.b == j.value) || (joint.a == j.value && joint.b == i.value);
+        }
+        for (const auto& pair : w.body_contacts.pairs) {
+          skip |= (pair.a.index() == a && pair.b.index() == b) || (pair.a.index() == b && pair.b.index() == a);
+        }
+        if (skip) continue;
+        add_body_contact(SurfaceId(a), SurfaceId(b));
+        ++added;
+      }
+    }
+    return added;
+  }
+  /// Force (N) on the body of the pair's first surface in the last force evaluation; the other body feels the opposite.
+  Vec3 body_contact_force(BodyContactId c) const { return to_eigen(state_.body_contacts.pairs.at(c.index()).force); }
+
+  /// Lets a surface touch grains and bodies, or not.
   void set_active(SurfaceId s, bool active) { state_.surfaces.at(s.index()).active = active; }
 
   // ---- running ---------------------------------------------------------------------------------------------------
@@ -123,8 +187,14 @@ class World {
   /// Checks the set-up and chooses or checks the time step; called by step() and run() when something changed. Throws
   /// Error if contact constants are missing or the time step is too large.
   void prepare() {
-    if (!checked_) {
+    if (!checked_ || (initialised_ && !state_.machine.is_initialised())) {
       state_.materials.check_complete();
+      const double range = state_.materials.range();
+      state_.materials.find_range(state_.largest_radius);
+      if (state_.materials.range() > range) state_.list_valid = false;
+      for (const auto& pair : state_.body_contacts.pairs) {
+        state_.materials.check_pair(state_.surfaces[pair.a.index()].material, state_.surfaces[pair.b.index()].material);
+      }
       choose_time_step();
       checked_ = true;
     }
@@ -160,6 +230,10 @@ class World {
     for (const auto& s : state_.surfaces) of_surfaces.push_back(s.material);
     auto limit =
         pipeline::stable_time_step<Model>(state_.species, state_.materials, of_surfaces, state_.options.overlap_limit);
+    const auto bodies = pipeline::stable_time_step_of_bodies<Model>(
+        state_.body_contacts.pairs, std::span(state_.surfaces), std::span(state_.machine.bodies()), state_.materials,
+        state_.options.overlap_limit);
+    if (bodies.value < limit.value) limit = bodies;
     const auto machine = state_.machine.stable_time_step();
     if (machine.dt < limit.value) limit = {machine.dt, machine.limited_by};
     return limit;
@@ -176,7 +250,7 @@ class World {
   std::size_t particle_count() const { return state_.particles.count; }
   Vec3 position(ParticleId p) const { return to_eigen(state_.particles.position[row(p)]); }
   Vec3 velocity(ParticleId p) const { return to_eigen(state_.particles.velocity[row(p)]); }
-  Vec3 angular_velocity(ParticleId p) const { return to_eigen(state_.particles.angular_velocity[row(p)]); }
+  Vec3 angular_velocity(ParticleId p) const { return to_eigen(state_.particles.angular_velocity(row(p))); }
   Mat3 rotation(ParticleId p) const { return to_eigen(state_.particles.rotation(row(p))); }
   /// Contact force (N) and torque (N m) on a grain in the last force evaluation.
   Vec3 force(ParticleId p) const { return to_eigen(state_.particles.force[row(p)]); }

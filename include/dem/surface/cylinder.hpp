@@ -1,0 +1,127 @@
+#pragma once
+
+#include <dem/surface/sphere.hpp>
+
+#include <algorithm>
+#include <numbers>
+
+namespace dem::surface {
+
+/// A cylinder about the z axis of its own frame, centred there: a solid with flat ends, a drum (a closed cavity), or a
+/// tube (a wall of some thickness, open at both ends, with grains inside and outside). Seen in the half plane of radius
+/// and z, the solid is a rectangle, and the nearest place on it is the contact: a face, a rim, or the mantle. A drum is
+/// touched on mantle and ends, each of them once. Behind the walls of a drum grains are found up to one radius deep.
+class Cylinder {
+ public:
+  /// Feature numbers of a drum; a solid and a tube have 0 only.
+  static constexpr std::uint32_t mantle = 0, low_end = 1, high_end = 2;
+
+  /// Radius and length in m; `side` inside makes a drum. Throws Error unless both are positive.
+  Cylinder(double radius, double length, Side side = Side::outside)
+      : outer_(require_positive(radius, "radius of a cylinder", "m")),
+        half_(0.5 * require_positive(length, "length of a cylinder", "m")),
+        is_drum_(side == Side::inside) {}
+
+  /// An open tube. Throws Error unless 0 < inner radius < outer radius and length > 0.
+  static Cylinder tube(double inner_radius, double outer_radius, double length) {
+    require_positive(inner_radius, "inner radius of a tube", "m");
+    if (!(outer_radius > inner_radius)) {
+      fail("the outer radius of a tube is {:g} m, but must exceed the inner one, {:g} m", outer_radius, inner_radius);
+    }
+    Cylinder c(outer_radius, length);
+    c.inner_ = inner_radius;
+    return c;
+  }
+  /// The same with n points on each rim, which it shows to other bodies and to sharp grains. Throws Error for n < 3.
+  Cylinder with_rim_points(int n) const {
+    require_within(n, 3, 4096, "points on a rim of a cylinder");
+    Cylinder c = *this;
+    c.rim_points_ = n;
+    return c;
+  }
+
+  double radius() const { return outer_; }
+  double inner_radius() const { return inner_; }
+  double length() const { return 2.0 * half_; }
+  bool is_drum() const { return is_drum_; }
+
+  template <class T>
+  DEM_HOT auto near(const Vector3<T>& p, const T& radius) const {
+    const T rho2 = p.x * p.x + p.y * p.y, z = max(p.z, -p.z);
+    if (is_drum_) {
+      const T free = max(T(outer_) - radius, T(0));  // rho beyond which the mantle may be touched
+      return rho2 >= free * free || z >= T(half_) - radius;
+    }
+    const T reach = T(outer_) + radius, hole = max(T(inner_) - radius, T(0));
+    return rho2 <= reach * reach && z <= T(half_) + radius && rho2 >= hole * hole;
+  }
+
+  template <class Sink>
+  DEM_HOT void touch(const Vector3<double>& p, double radius, Sink&& sink) const {
+    const double rho = std::sqrt(p.x * p.x + p.y * p.y);
+    // Away from the axis; on the axis every direction is as good.
+    const Vector3<double> out = rho > 0.0 ? Vector3<double>{p.x / rho, p.y / rho, 0.0} : Vector3<double>{1, 0, 0};
+    if (is_drum_) {
+      if (outer_ - rho < radius) sink(mantle, out, outer_ - rho);
+      if (half_ + p.z < radius) sink(low_end, Vector3<double>{0, 0, -1}, half_ + p.z);
+      if (half_ - p.z < radius) sink(high_end, Vector3<double>{0, 0, 1}, half_ - p.z);
+      return;
+    }
+    const double dr = max(inner_, min(outer_, rho)) - rho, dz = max(-half_, min(half_, p.z)) - p.z;
+    const double distance2 = dr * dr + dz * dz;
+    if (distance2 > 0.0) {
+      if (distance2 >= radius * radius) return;
+      const double distance = std::sqrt(distance2);
+      sink(0u, (dr / distance) * out + Vector3<double>{0, 0, dz / distance}, distance);
+      return;
+    }
+    // The centre is inside: out through the nearest face.
+    const double through_mantle = rho - outer_, through_end = std::abs(p.z) - half_;
+    const double through_hole = inner_ > 0.0 ? inner_ - rho : -1e300;
+    if (through_mantle >= through_end && through_mantle >= through_hole) {
+      sink(0u, -out, through_mantle);
+    } else if (through_end >= through_hole) {
+      sink(0u, Vector3<double>{0, 0, p.z < 0.0 ? 1.0 : -1.0}, through_end);
+    } else {
+      sink(0u, out, through_hole);
+    }
+  }
+
+  /// Points of the rims, for contact with other bodies: sink(number, point, radius), numbers ascending. A drum has
+  /// none.
+  template <class Sink>
+  void points(const Bounds&, Sink&& sink) const {
+    for_each_rim_point([&](std::uint32_t k, const Vector3<double>& p) { sink(k, p, 0.0); });
+  }
+  /// Those within a radius of p, for grains that offer penetration(): sink(number, point).
+  template <class Sink>
+  void corners(const Vector3<double>& p, double radius, Sink&& sink) const {
+    for_each_rim_point([&](std::uint32_t k, const Vector3<double>& c) {
+      if (dot(c - p, c - p) <= radius * radius) sink(k, c);
+    });
+  }
+  std::size_t points_at_once() const { return is_drum_ ? 0 : static_cast<std::size_t>(rim_points_); }
+
+  Bounds bounds() const {
+    const double behind = is_drum_ ? outer_ : 0.0;
+    const Vec3 half(outer_ + behind, outer_ + behind, half_ + behind);
+    return {-half, half};
+  }
+
+ private:
+  template <class F>
+  void for_each_rim_point(F&& f) const {
+    if (is_drum_) return;
+    for (int k = 0; k < 2 * rim_points_; ++k) {
+      const double angle = 2.0 * std::numbers::pi * (k % rim_points_) / rim_points_;
+      f(static_cast<std::uint32_t>(k),
+        Vector3<double>{outer_ * std::cos(angle), outer_ * std::sin(angle), k < rim_points_ ? -half_ : half_});
+    }
+  }
+
+  double inner_ = 0.0, outer_, half_;
+  bool is_drum_ = false;
+  int rim_points_ = 48;
+};
+
+}  // namespace dem::surface

@@ -1,0 +1,274 @@
+#pragma once
+
+#include <dem/surface/mesh_data.hpp>
+
+#include <array>
+#include <memory>
+#include <numbers>
+
+namespace dem::surface {
+
+/// From which side a mesh may be touched.
+enum class MeshSide {
+  solid,      ///< closed; what comes behind the surface is inside and is pushed out
+  one_sided,  ///< a sheet that is touched from the side its triangles look to; what comes behind is pushed back
+  two_sided   ///< a sheet without thickness that spheres touch from both sides; points (radius 0) pass it
+};
+
+struct MeshOptions {
+  MeshSide side = MeshSide::solid;
+  MeshFacing facing = MeshFacing::outward;  ///< inward: the solid is outside (a drum)
+  double smooth_angle = 25.0;  ///< degrees; contacts closer than this in direction are one, see TriangleMesh
+  double depth = 0.0;          ///< m, how far behind the surface a probe is still found and pushed out; 0: spheres to
+                               ///< their radius, points (radius 0) to a quarter of the mean edge
+  double point_spacing = 0.0;  ///< m, of points on sharp edges (against sharp grains and bodies); 0: only vertices
+  double tolerance = 0.0;      ///< m, within which vertices are one; 0: 1e-9 of the mesh's diagonal
+};
+
+/// A surface of triangles. The contacts of a sphere are the local minima of the distance from its centre to the
+/// surface: a flat mesh gives one contact as a plane does, an edge or a corner pushes once, a concave edge once from
+/// each side. On a finely cut concave surface several facets may be such minima; of contacts whose normals differ by
+/// less than `smooth_angle` the deepest counts. Its overlap is a steady function of the sphere's place, so no energy
+/// comes from the edges. Contacts are remembered by groups of triangles (MeshGroups), not by triangles.
+class TriangleMesh {
+ public:
+  /// Repairs the mesh (math/mesh_repair.hpp). Throws Error if an option is out of range, and if a solid is not closed.
+  explicit TriangleMesh(const IndexedMesh& mesh, const MeshOptions& o = {}) : options_(o) {
+    require_within(o.smooth_angle, 0.0, 60.0, "smooth angle of a mesh in degrees");
+    require_non_negative(o.depth, "depth of a mesh", "m (0 chooses one)");
+    require_non_negative(o.point_spacing, "point spacing of a mesh", "m (0: only vertices)");
+    const double angle = o.smooth_angle * std::numbers::pi / 180.0;
+    auto data = std::make_shared<MeshData>(build_mesh(mesh, o.facing, angle, o.point_spacing, o.tolerance));
+    if (o.side == MeshSide::solid && (!data->report.closed() || !data->report.oriented())) {
+      fail(
+          "a solid must be enclosed by its mesh, but this one is not closed. {}Close it, or take a sheet: side = "
+          "MeshSide::one_sided or two_sided",
+          data->report.text());
+    }
+    if (o.side == MeshSide::one_sided && !data->report.oriented()) {
+      fail("a one-sided sheet must have sides. {}Take MeshSide::two_sided", data->report.text());
+    }
+    const double thin = (data->bounds.high - data->bounds.low).minCoeff();
+    point_depth_ = o.depth > 0.0 ? o.depth : 0.25 * data->mean_edge;
+    if (o.depth == 0.0 && o.side == MeshSide::solid) point_depth_ = std::min(point_depth_, 0.5 * thin);
+    if (o.side == MeshSide::two_sided) options_.depth = point_depth_ = 0.0;
+    merge_cosine_ = std::min(std::cos(angle), 1.0 - 1e-9);
+    // What is behind a cavity or a sheet lies outside of the box of the triangles.
+    const bool box_holds_solid = o.side == MeshSide::solid && data->report.enclosed_volume > 0.0;
+    const double grow = box_holds_solid ? 0.0 : point_depth_;
+    low_ = from_eigen(Vec3(data->bounds.low.array() - grow));
+    high_ = from_eigen(Vec3(data->bounds.high.array() + grow));
+    data_ = std::move(data);
+  }
+
+  const MeshReport& report() const { return data_->report; }
+  /// As repaired; triangles are in the order of the tree.
+  const IndexedMesh& mesh() const { return data_->mesh; }
+  const MeshData& data() const { return *data_; }
+  const MeshOptions& options() const { return options_; }
+
+  template <class T>
+  DEM_HOT auto near(const Vector3<T>& p, const T& radius) const {
+    const T x = max(max(T(low_.x) - p.x, p.x - T(high_.x)), T(0)),
+            y = max(max(T(low_.y) - p.y, p.y - T(high_.y)), T(0)),
+            z = max(max(T(low_.z) - p.z, p.z - T(high_.z)), T(0));
+    return x * x + y * y + z * z <= radius * radius;
+  }
+
+  /// False only if no probe in a sphere of that radius can touch: cheap for grains that are near the mesh's bounding
+  /// box but not near its triangles.
+  bool close(const Vector3<double>& p, double radius) const {
+    const double reach = radius + point_depth_;
+    return data_->tree.reaches(p, reach * reach);
+  }
+
+  template <class Sink>
+  void touch(const Vector3<double>& p, double radius, Sink&& sink) const {
+    Found found;
+    if (radius > 0.0) find_minima(p, radius, found);
+    const double depth = radius > 0.0 ? options_.depth : point_depth_;
+    if (found.count == 0 && depth > radius) {
+      Minimum nearest;
+      if (find_nearest(p, depth, nearest) && nearest.behind) {
+        sink(nearest.group << slot_bits, nearest.normal, -nearest.distance);
+      }
+      return;
+    }
+    if (found.count == 0) return;
+    sort(found, [](const Minimum& a, const Minimum& b) { return a.distance < b.distance; });
+    if (found[0].behind) {  // the centre is inside: out the shortest way
+      sink(found[0].group << slot_bits, found[0].normal, -found[0].distance);
+      return;
+    }
+    reduce(found);
+    for (int k = 0, slot = 0; k < found.count; ++k) {
+      slot = k > 0 && found[k - 1].group == found[k].group ? slot + 1 : 0;
+      sink(found[k].group << slot_bits | static_cast<std::uint32_t>(slot), found[k].normal, found[k].distance);
+    }
+  }
+
+  /// Points for contact with other surfaces: sink(number, point, radius), numbers ascending.
+  template <class Sink>
+  void points(const Bounds& box, Sink&& sink) const {
+    data_->points.for_each_in(box, [&](std::uint32_t k, const Vector3<double>& p) { sink(k, p, 0.0); });
+  }
+  /// Sharp points within a radius of p, for grains that offer penetration(): sink(number, point).
+  template <class Sink>
+  void corners(const Vector3<double>& p, double radius, Sink&& sink) const {
+    data_->corners.for_each_near(p, radius, sink);
+  }
+  /// How many points may touch a plane at once.
+  std::size_t points_at_once() const { return std::max<std::size_t>(3, data_->groups.most_vertices_in_a_plane); }
+
+  Bounds bounds() const { return {to_eigen(low_), to_eigen(high_)}; }
+
+ private:
+  static constexpr int slot_bits = 4, most = 1 << slot_bits;  // contacts of one sphere
+  using Part = NearestOnFace::Part;
+
+  struct Minimum {
+    double distance;         ///< m, not negative
+    Vector3<double> normal;  ///< into the surface as seen from the probe
+    std::uint32_t group;
+    bool behind;
+  };
+  struct Found {
+    int count = 0;
+    std::array<Minimum, most> minimum;
+
+    Minimum& operator[](int k) { return minimum[static_cast<std::size_t>(k)]; }
+  };
+
+  /// True if the nearest point of face f is a local minimum of the distance to the whole surface. A generous tolerance
+  /// does no harm: what is found twice has one normal and becomes one contact.
+  bool is_minimum(std::uint32_t f, const NearestOnFace& q, const Vector3<double>& v) const {
+    constexpr double tolerance = 1e-7;
+    const MeshData& m = *data_;
+    if (q.part == Part::face) return true;
+    const double length2 = dot(v, v);
+    if (q.part == Part::edge) {
+      const std::uint32_t other = m.topology.neighbour[f][q.number];
+      if (other == MeshTopology::none) return true;
+      const Vector3<double> e = edge(f, q.number);
+      const Vector3<double> into = cross(e, m.faces[other].normal);  // from the edge into the other triangle
+      return dot(v, into) <= tolerance * std::sqrt(length2 * dot(e, e));
+    }
+    const std::uint32_t vertex = m.mesh.triangles[f][q.number];
+    for (std::uint32_t k = m.ring_first[vertex]; k < m.ring_first[vertex + 1]; ++k) {
+      const Vector3<double> e = m.vertices[m.ring[k]] - m.vertices[vertex];
+      if (dot(v, e) > tolerance * std::sqrt(length2 * dot(e, e))) return false;
+    }
+    return true;
+  }
+  Vector3<double> edge(std::uint32_t f, int k) const {
+    const Face& face = data_->faces[f];
+    return k == 0 ? face.ab : k == 1 ? face.ac - face.ab : -face.ac;
+  }
+
+  /// The contact at a minimum; which side p is on is told by the normal there: of the face, of both faces of an edge,
+  /// or the angle-weighted one of a vertex.
+  Minimum minimum_at(std::uint32_t f, const NearestOnFace& q, const Vector3<double>& v, double distance) const {
+    const MeshData& m = *data_;
+    Vector3<double> outward = m.faces[f].normal;
+    std::uint32_t group = m.groups.group[f];
+    bool sided = true, flat = q.part == Part::face;
+    if (q.part == Part::edge) {
+      const std::uint32_t other = m.topology.neighbour[f][q.number];
+      if (other != MeshTopology::none) {
+        flat = detail::is_flat(outward, m.faces[other].normal);
+        if (!flat) outward += m.faces[other].normal;
+        group = std::min(group, m.groups.group[other]);
+      } else {
+        sided = false;  // beside the rim of a sheet there is no behind
+      }
+    } else if (q.part == Part::vertex) {
+      const std::uint32_t vertex = m.mesh.triangles[f][q.number];
+      sided = m.vertex_rim[vertex] == 0;
+      flat = sided && m.vertex_flat[vertex] != 0;
+      if (!flat) outward = m.vertex_normal[vertex];
+      group = m.vertex_group[vertex];
+    }
+    const bool behind = sided && options_.side != MeshSide::two_sided && dot(v, outward) < 0.0;
+    Vector3<double> normal;
+    if (flat) {  // free of the rounding of the nearest point
+      normal = dot(v, outward) < 0.0 && !behind ? outward : -outward;
+      distance = std::abs(dot(v, outward));
+    } else if (distance > 1e-12 * m.mean_edge) {
+      normal = (behind ? 1.0 : -1.0) / distance * v;
+    } else {
+      normal = -1.0 / max(norm(outward), 1e-300) * outward;
+    }
+    return {distance, normal, group, behind};
+  }
+
+  void find_minima(const Vector3<double>& p, double radius, Found& found) const {
+    const double reach2 = radius * radius;
+    data_->tree.for_each_near(p, reach2, [&](std::uint32_t f) {
+      const Face& face = data_->faces[f];
+      if (std::abs(dot(p - face.a, face.normal)) >= radius) return;  // already its plane is too far
+      const NearestOnFace q = face.nearest(p);
+      const Vector3<double> v = p - q.point;
+      const double distance2 = dot(v, v);
+      if (distance2 >= reach2 || !is_minimum(f, q, v)) return;
+      const Minimum m = minimum_at(f, q, v, std::sqrt(distance2));
+      if (found.count < most) {
+        found[found.count++] = m;
+        return;
+      }
+      auto farthest = std::max_element(found.minimum.begin(), found.minimum.end(),
+                                       [](const Minimum& a, const Minimum& b) { return a.distance < b.distance; });
+      if (m.distance < farthest->distance) *farthest = m;
+    });
+  }
+  bool find_nearest(const Vector3<double>& p, double depth, Minimum& nearest) const {
+    double reach2 = depth * depth;
+    bool any = false;
+    std::uint32_t face = 0;
+    NearestOnFace at{};
+    data_->tree.for_each_near(p, reach2, [&](std::uint32_t f) {
+      const NearestOnFace q = data_->faces[f].nearest(p);
+      const Vector3<double> v = p - q.point;
+      const double distance2 = dot(v, v);
+      if (distance2 > reach2 || (any && distance2 == reach2)) return;
+      reach2 = distance2;
+      any = true;
+      face = f;
+      at = q;
+    });
+    if (any) nearest = minimum_at(face, at, p - at.point, std::sqrt(reach2));
+    return any;
+  }
+
+  /// Insertion sort: there are few. Equal ones keep their order.
+  template <class Before>
+  static void sort(Found& found, Before&& before) {
+    for (int k = 1; k < found.count; ++k) {
+      for (int at = k; at > 0 && before(found[at], found[at - 1]); --at) std::swap(found[at], found[at - 1]);
+    }
+  }
+  /// Of contacts with nearly the same normal the deepest stays; what is seen from behind lies beyond the solid. Those
+  /// of one group are numbered along a fixed direction, so that they keep their numbers from step to step.
+  void reduce(Found& found) const {
+    int kept = 0;
+    for (int k = 0; k < found.count; ++k) {
+      const Minimum m = found[k];
+      bool is_new = !m.behind;
+      for (int other = 0; other < kept; ++other) is_new &= dot(m.normal, found[other].normal) < merge_cosine_;
+      if (is_new) found[kept++] = m;
+    }
+    found.count = kept;
+    sort(found, [](const Minimum& a, const Minimum& b) {
+      const auto place = [](const Minimum& m) {
+        return 0.5377 * m.normal.x + 0.8012 * m.normal.y + 0.2625 * m.normal.z;
+      };
+      return a.group != b.group ? a.group < b.group : place(a) < place(b);
+    });
+  }
+
+  MeshOptions options_;
+  double merge_cosine_ = 1.0, point_depth_ = 0.0;
+  Vector3<double> low_, high_;
+  std::shared_ptr<const MeshData> data_;
+};
+
+}  // namespace dem::surface

@@ -1,0 +1,53 @@
+#include "catch.hpp"
+
+#include <dem/surface/box_tree.hpp>
+
+#include <random>
+
+using dem::Vec3;
+using dem::surface::Bounds;
+using dem::surface::BoxTree;
+
+TEST_CASE("a tree of boxes finds what a loop over all boxes finds, in the order of its places") {
+  std::mt19937 engine(1);
+  std::uniform_real_distribution<double> place(-1.0, 1.0), size(0.0, 0.2);
+  for (const std::size_t n : {0u, 1u, 4u, 5u, 37u, 1000u}) {
+    std::vector<Bounds> boxes;
+    for (std::size_t k = 0; k < n; ++k) {
+      const Vec3 low(place(engine), place(engine), place(engine));
+      boxes.push_back({low, low + Vec3(size(engine), size(engine), size(engine))});
+    }
+    const BoxTree tree(boxes);
+    REQUIRE(tree.order().size() == n);
+    CHECK(tree.nodes() <= 2 * n);
+    for (int trial = 0; trial < 200; ++trial) {
+      const Vec3 p(place(engine), place(engine), place(engine));
+      const double radius = 3.0 * size(engine), reach2 = radius * radius;
+      std::vector<std::uint32_t> found;
+      tree.for_each_near(dem::from_eigen(p), reach2, [&](std::uint32_t k) { found.push_back(k); });
+      CHECK(std::is_sorted(found.begin(), found.end()));
+      CHECK(std::adjacent_find(found.begin(), found.end()) == found.end());
+      std::vector<std::uint32_t> in_box;
+      tree.for_each_in(dem::from_eigen(p), dem::from_eigen(Vec3(p.array() + radius)),
+                       [&](std::uint32_t k) { in_box.push_back(k); });
+      for (std::uint32_t k = 0; k < n; ++k) {
+        const Bounds& b = boxes[tree.order()[k]];
+        const double distance = (p.cwiseMax(b.low).cwiseMin(b.high) - p).norm();
+        if (distance < radius) CHECK(std::binary_search(found.begin(), found.end(), k));
+        if ((b.low.array() <= p.array() + radius).all() && (b.high.array() >= p.array()).all()) {
+          CHECK(std::binary_search(in_box.begin(), in_box.end(), k));
+        }
+      }
+    }
+  }
+}
+
+TEST_CASE("boxes that lie on each other do not spoil a tree") {
+  const std::vector<Bounds> boxes(1000, {Vec3(0, 0, 0), Vec3(1, 1, 1)});
+  const BoxTree tree(boxes);
+  CHECK(tree.nodes() < 2000);
+  std::size_t found = 0;
+  const double reach2 = 0.01;
+  tree.for_each_near({0.5, 0.5, 1.05}, reach2, [&](std::uint32_t) { ++found; });
+  CHECK(found == 1000);
+}

@@ -1,0 +1,245 @@
+#include "world/laws.hpp"
+
+using Catch::Approx;
+
+namespace {
+
+using JkrModel = Laws<contact::Hertz, friction::Mindlin, rolling::None, cohesion::JKR>;
+using StickyModel = Laws<Linear, friction::CundallStrack, rolling::None, cohesion::Constant>;
+template <class S>
+struct Wet : Laws<Linear, friction::CundallStrack, rolling::None, cohesion::LiquidBridge, S> {
+  using Executor = exec::OpenMP;
+};
+using WetModel = Wet<Sphere>;
+using Pair = shape::SphereCluster<2>;
+
+constexpr double r = 1e-3, density = 2500.0, stiffness = 2000.0;
+const double mass = density * Sphere(r).volume();
+
+// Soft and sticky: pull-off at 2.4e-3 N, 225 times the weight.
+constexpr double work = 0.5;
+const contact::ElasticPair soft = {1e7, 3e6};
+const double pull_off = 1.5 * M_PI * work * r;
+const double unit = std::cbrt(2.0 * M_PI * work * r * r / soft.modulus);  // of the contact radius
+// Energy (J) that JKR takes from an impact: what tearing costs beyond the overlap 0, minus what the jump at the touch
+// does not give back. The integral of F dd over the curve from x = a/unit = 1 (touch) to 4^(-2/3) (pull-off) is
+// pi w unit^2 [16/15 x^5 - 8/3 x^(7/2) + x^2].
+const double torn = [] {
+  const auto f = [](double x) { return 16.0 / 15.0 * std::pow(x, 5) - 8.0 / 3.0 * std::pow(x, 3.5) + x * x; };
+  return M_PI * work * unit * unit * (f(std::pow(4.0, -2.0 / 3.0)) - f(1.0));
+}();
+
+ContactParameters<JkrModel> jkr(double e, double mu = 0.0) {
+  return {contact::Hertz::with_restitution(soft, e),
+          friction::Mindlin::with(soft, mu),
+          {},
+          cohesion::JKR::with(soft, work)};
+}
+const cohesion::LiquidBridge::Parameters<double> water = cohesion::LiquidBridge::of(0.072, 0.0, 2.7e-11);  // 0.3 mm
+template <class Model = WetModel>
+ContactParameters<Model> wet(double e) {
+  return {Linear::with_restitution(stiffness, e), {0.0, 1.0, 0.0}, {}, water};
+}
+double bridge_force(double gap) {
+  const double s = gap * std::sqrt(2 * r / water.volume);
+  return 4 * M_PI * r * water.wetting_tension / (1 + 1.05 * s + 2.5 * s * s);
+}
+/// Work (J) of tearing a bridge between a ball and a plane.
+const double drawn = [] {
+  double sum = 0.0;
+  const int n = 100000;
+  for (int k = 0; k < n; ++k) sum += bridge_force((k + 0.5) * water.rupture / n) * water.rupture / n;
+  return sum;
+}();
+
+/// A ball over a plane.
+template <class Model>
+struct OnPlane {
+  World<Model> world;
+  ParticleId id;
+
+  OnPlane(const ContactParameters<Model>& p, double gap, const Vec3& velocity, double dt, bool box = false)
+      : world(options({0, 0, 0}, dt)) {
+    world.set_contact(p);
+    world.add_species(Sphere(r), {"grain", density});
+    SurfaceOptions o;
+    o.position = {0, 0, box ? -0.5 : 0.0};
+    if (box) {
+      world.add_surface(world.ground(), surface::Box({1, 1, 1}), o);
+    } else {
+      world.add_surface(world.ground(), surface::Plane{}, o);
+    }
+    id = world.add_particle(grain({0, 0, r + gap}, velocity));
+  }
+  double gap() const { return world.position(id).z() - r; }
+  double speed() const { return world.velocity(id).z(); }
+};
+
+/// Pulls at the ball with a force that grows slowly to `force` (N), and says whether it still sticks.
+template <class Model>
+bool holds(OnPlane<Model>& ball, double from, double to, double range) {
+  for (int k = 0; k < 100; ++k) {
+    ball.world.set_gravity({0, 0, (from + (to - from) * (k + 1) / 100) / mass});
+    REQUIRE(ball.world.run(60));
+  }
+  REQUIRE(ball.world.run(3000));
+  return ball.gap() <= range;
+}
+
+}  // namespace
+
+TEST_CASE("cohesion holds a ball up to its pull-off force") {
+  // Loads go up in steps of 1 % and less, over ten swings of the ball: 2 % on either side.
+  const auto check = [](auto ball, double force, double range) {
+    CHECK(holds(ball, 0.0, 0.9 * force, range));
+    CHECK(holds(ball, 0.9 * force, 0.98 * force, range));
+    CHECK_FALSE(holds(ball, 0.98 * force, 1.02 * force, range));
+  };
+  check(OnPlane<JkrModel>(jkr(0.2), -0.57 * unit * unit / r, {0, 0, 0}, 1e-6), pull_off,
+        cohesion::JKR::range(jkr(0.2).cohesion, r));
+  check(OnPlane<StickyModel>({Linear::with_restitution(stiffness, 0.2), {0, 1, 0}, {}, {2e-3}}, -1e-6, {0, 0, 0}, 3e-6),
+        2e-3, 0.0);
+  check(OnPlane<WetModel>(wet(0.2), -4 * M_PI * r * 0.072 / stiffness, {0, 0, 0}, 3e-6), 4 * M_PI * r * 0.072,
+        0.5 * water.rupture);
+}
+
+TEST_CASE("JKR takes the work of tearing from an impact, and catches what is too slow") {
+  const double capture = std::sqrt(2 * torn / mass);
+  for (const double speed : {1.06 * capture, 2 * capture, 5 * capture}) {
+    OnPlane<JkrModel> ball(jkr(1.0), 1e-7, {0, 0, -speed}, 2e-7);
+    REQUIRE(ball.world.run_for(2e-3));
+    CAPTURE(speed, capture);
+    // The touch and the pull-off fall anywhere within steps of 2e-7 s v: 2 % of the torn energy.
+    CHECK(ball.speed() * ball.speed() == Approx(speed * speed - 2 * torn / mass).margin(0.02 * capture * capture));
+    CHECK(ball.gap() > 0.0);
+  }
+  OnPlane<JkrModel> caught(jkr(1.0), 1e-7, {0, 0, -0.94 * capture}, 2e-7);
+  REQUIRE(caught.world.run_for(2e-3));
+  CHECK(caught.gap() < cohesion::JKR::range(jkr(1.0).cohesion, r));
+}
+
+TEST_CASE("a liquid bridge pulls after the touch only, over its distance, and takes its work") {
+  const double speed = 0.2;
+  for (const bool box : {false, true}) {
+    OnPlane<WetModel> ball(wet(1.0), 0.9 * water.rupture, {0, 0, -speed}, 1e-6, box);
+    auto& w = ball.world;
+    double at = ball.gap();
+    while (at > 1e-6) {
+      CHECK(w.force(ball.id).norm() == 0.0);
+      REQUIRE(w.run(10));
+      at = ball.gap();
+    }
+    while (ball.gap() <= 0.0 || ball.speed() <= 0.0) REQUIRE(w.step());
+    int seen = 0;
+    while (ball.gap() < water.rupture) {
+      CHECK(w.force(ball.id).z() == Approx(-bridge_force(ball.gap())).epsilon(1e-9));
+      REQUIRE(w.run(20));
+      ++seen;
+    }
+    CHECK(seen > 20);
+    REQUIRE(w.step());
+    CHECK(w.force(ball.id).norm() == 0.0);
+    // A step of 1e-6 s is 0.07 % of the way at either end.
+    CHECK(ball.speed() * ball.speed() == Approx(speed * speed - 2 * drawn / mass).epsilon(2e-3));
+    CHECK(drawn / (0.5 * mass * speed * speed) > 0.2);
+  }
+}
+
+TEMPLATE_TEST_CASE("grains find partners as far away as bridges reach, whatever the skin", "", Sphere, Pair) {
+  // Two grains part at once; the neighbour list's skin is a thirtieth of the bridge. Clusters face each other with a
+  // ball of each.
+  const auto shape = [] {
+    if constexpr (std::is_same_v<TestType, Sphere>) {
+      return Sphere(r);
+    } else {
+      const Ball balls[] = {{{0, 0, 0}, r}, {{1.5 * r, 0, 0}, r}};
+      return Pair(balls);
+    }
+  }();
+  for (const bool joined : {true, false}) {
+    using Model = Wet<TestType>;
+    World<Model> w(options({0, 0, 0}, 1e-6, 1e-5));
+    w.set_contact(wet<Model>(1.0));
+    w.add_species(shape, {"grain", density});
+    const double reach = shape.bounding_radius(), start = joined ? -1e-6 : 1e-9;
+    const auto a = w.add_particle(grain({0, 0, 0}));
+    const auto b = w.add_particle(grain({2 * reach + start, 0, 0}, {0.3, 0, 0}));
+    const Vec3 p = momentum(w);
+    const auto gap = [&] { return (w.position(b) - w.position(a)).norm() - 2 * reach; };
+    // Spheres of radius r each: R* = r/2.
+    const auto pull = [&](double d) {
+      return 2 * M_PI * r * 0.072 / (1 + 1.05 * d * std::sqrt(r / water.volume) + 2.5 * d * d * r / water.volume);
+    };
+    w.prepare();
+    int seen = 0;
+    while (gap() < 0.99 * water.rupture) {
+      REQUIRE(w.run(10));
+      const double expected = joined ? pull(gap()) : 0.0;
+      if (gap() < water.rupture) CHECK(w.force(a).x() == Approx(expected).epsilon(1e-9).margin(1e-15));
+      ++seen;
+    }
+    CHECK(seen > 50);
+    REQUIRE(w.run(200));
+    CHECK(gap() > water.rupture);
+    CHECK(w.force(a).norm() == 0.0);
+    CHECK((momentum(w) - p).norm() < 1e-12 * p.norm());
+    CHECK(w.state().rebuilds > 5);
+  }
+}
+
+TEST_CASE("wet grains go the same way, to the bit, on any number of threads") {
+  const auto run = [](int threads) {
+    WorldOptions o = options({0, 0, -9.81}, 5e-6, 1e-4);
+    o.threads = threads;
+    World<WetModel> w(o);
+    w.set_contact(wet(0.5));
+    const auto species = w.add_species(Sphere(r), {"grain", density});
+    add_open_box(w, {14e-3, 14e-3, 1});
+    add_block(w, species, Vec3::Constant(1.05e-3), 2.02e-3, 6, 6, 15, 0.3);  // three chunks
+    REQUIRE(w.run(300));
+    std::vector<Vec3> all;
+    for_each_grain(w, [&](ParticleId p) { all.push_back(w.position(p)); });
+    for_each_grain(w, [&](ParticleId p) { all.push_back(w.angular_velocity(p)); });
+    return std::pair(all, w.state().rebuilds);
+  };
+  const auto [one, rebuilds] = run(1);
+  CHECK(rebuilds > 1);
+  CHECK(run(2).first == one);
+  CHECK(run(3).first == one);
+}
+
+TEST_CASE("what cohesion presses together rubs") {
+  // Weightless balls that cohesion holds on a plane slide: constant pull F, mu F; JKR without a load, mu x twice the
+  // pull-off force.
+  const double mu = 0.3, u0 = 2.0, t = 1e-3;
+  OnPlane<StickyModel> constant({Linear::with_restitution(stiffness, 0.5), {mu, 1e4, 0}, {}, {2e-3}}, -2e-3 / stiffness,
+                                {u0, 0, 0}, 1e-6);
+  REQUIRE(constant.world.run_for(t));
+  CHECK(u0 - constant.world.velocity(constant.id).x() == Approx(mu * 2e-3 / mass * t).epsilon(1e-3));
+  // Zero load at x^(3/2) = 3/2: D = x^2 - sqrt(x).
+  const double x = std::pow(1.5, 2.0 / 3.0), depth = (x * x - std::sqrt(x)) * unit * unit / r;
+  OnPlane<JkrModel> jkr_ball(jkr(0.5, mu), -depth, {u0, 0, 0}, 1e-6);
+  REQUIRE(jkr_ball.world.run_for(t));
+  CHECK(jkr_ball.gap() == Approx(-depth).epsilon(1e-3));
+  CHECK(u0 - jkr_ball.world.velocity(jkr_ball.id).x() == Approx(mu * 2 * pull_off / mass * t).epsilon(1e-3));
+}
+
+TEST_CASE("sticky grains in a box never gain more than their cohesion can give") {
+  {
+    World<WetModel> w(options({0, 0, 0}));
+    w.set_contact(wet(0.7));
+    // A bridge in contact lowers the energy by F^2/(2 k); 27 grains have 3 contacts each between them, and walls.
+    const double f = 4 * M_PI * r * 0.072;
+    CHECK(run_box(w, Sphere(r), r, 0.2, 5000, 27 * 4 * f * f / (2 * stiffness)) < 0.2);
+  }
+  {
+    World<JkrModel> w(options({0, 0, 0}));
+    w.set_contact(jkr(0.7, 0.4));
+    // At zero load the energy is lower than at the touch by the integral above from x = 1 to 1.31.
+    const double x = std::pow(1.5, 2.0 / 3.0);
+    const auto f = [](double y) { return 16.0 / 15.0 * std::pow(y, 5) - 8.0 / 3.0 * std::pow(y, 3.5) + y * y; };
+    const double well = M_PI * work * unit * unit * (f(1.0) - f(x));
+    CHECK(well > 0.0);
+    CHECK(run_box(w, Sphere(r), r, 0.2, 10000, 27 * 4 * well) < 0.2);
+  }
+}
