@@ -178,10 +178,11 @@ TEST_CASE("a cluster shows each of its balls to surfaces, and no more") {
   const Mat3 turn = Random().rotation();
   c.orient(dem::from_eigen(turn), pose);
   std::uint32_t next = 0;
-  c.probe(pose, [&](std::uint32_t k, const dem::Vector3<double>& centre, double radius) {
+  c.probe(pose, [&](std::uint32_t k, const dem::contact::Probe& probe) {
     CHECK(k == next++);
-    CHECK((to_eigen(centre) - turn * c.ball(static_cast<int>(k)).centre).norm() < 1e-15);
-    CHECK(radius == c.ball(static_cast<int>(k)).radius);
+    CHECK((to_eigen(probe.centre) - turn * c.ball(static_cast<int>(k)).centre).norm() < 1e-15);
+    CHECK(probe.radius == c.ball(static_cast<int>(k)).radius);
+    CHECK(probe.effective_radius == probe.radius);
   });
   CHECK(next == 3);
 }

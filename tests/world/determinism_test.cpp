@@ -43,7 +43,7 @@ struct Poured {
                small = world.add_species(dem::shape::cube8(0.9e-3));
     walls = add_open_box(world, {0.02, 0.02, 0});
     add_block(world, large, {2.5e-3, 2.5e-3, 2.5e-3}, 3.6e-3, 5, 5, 6, 0.5, seed);
-    add_block(world, small, {2.5e-3, 2.5e-3, 2.5e-3 + 6 * 3.6e-3}, 3.0e-3, 5, 5, 6, 0.5, seed + 1);
+    add_block(world, small, {2.5e-3, 2.5e-3, 2.5e-3 + 6 * 3.6e-3}, 3.0e-3, 5, 5, 26, 0.5, seed + 1);
   }
   /// Gravity swings: the box is shaken.
   void run(int steps) {

@@ -147,14 +147,14 @@ TEST_CASE("grains may be added during a run") {
   w.set_contact(sand<Cubes>());
   const auto cube = w.add_species(dem::shape::cube8(1e-3));
   const auto plate = w.add_surface(w.ground(), dem::surface::Plane{});
-  for (int k = 0; k < 150; ++k) {  // across the size of a chunk
+  for (int k = 0; k < 300; ++k) {  // across the size of a chunk
     dem::NewParticle n;
     n.species = cube;
     n.position = {2.5e-3 * (k % 10), 2.5e-3 * (k / 10), 1e-3};
     CHECK(w.add_particle(n).index() == static_cast<std::size_t>(k));
     REQUIRE(w.run(3));
   }
-  CHECK(w.particle_count() == 150);
+  CHECK(w.particle_count() == 300);
   REQUIRE(w.run_for(0.1));
   for_each_grain(w, [&](ParticleId p) {
     CHECK(w.position(p).x() == Approx(2.5e-3 * static_cast<double>(p.index() % 10)).margin(1e-7));

@@ -29,20 +29,22 @@ inline Mat3 random_rotation(std::mt19937_64& random) {
 inline double cube_bounding_radius(double half_edge) { return (0.5 * std::sqrt(3.0) + 0.5) * half_edge; }
 
 /// Grains in a simple cubic lattice that fills the box from the floor up, each turned at random and shifted by up to
-/// half of the room between bounding spheres: a loose cloud to be rained. `room` is that room in bounding diameters.
-/// Throws Error if not even one grain fits beside the walls.
+/// half of the room between bounding spheres: a loose cloud to be rained. `room` is that room in bounding diameters,
+/// `bounding_radius` (m) is that of a shape::cube8 unless given. Throws Error if not even one grain fits beside the
+/// walls.
 inline std::vector<Placement> random_lattice(std::size_t count, double half_edge, double length_x, double length_y,
-                                             std::uint64_t seed, double room = 0.05) {
+                                             std::uint64_t seed, double room = 0.05, double bounding_radius = 0.0) {
   require_positive(half_edge, "half-edge of a grain", "m");
   require_non_negative(room, "room between grains", "bounding diameters");
-  const double cell = 2.0 * (1.0 + room) * cube_bounding_radius(half_edge);
+  const double radius = bounding_radius > 0.0 ? bounding_radius : cube_bounding_radius(half_edge);
+  const double cell = 2.0 * (1.0 + room) * radius;
   const auto nx = static_cast<long>(length_x / cell), ny = static_cast<long>(length_y / cell);
   if (nx < 1 || ny < 1) {
     fail("a box of {:g} m x {:g} m has no place for a grain that needs {:g} m; lower the half-edge or enlarge the box",
          length_x, length_y, cell);
   }
   std::mt19937_64 random(seed);
-  const double free = cell - 2.0 * cube_bounding_radius(half_edge);
+  const double free = cell - 2.0 * radius;
   std::vector<Placement> grains(count);
   for (std::size_t i = 0; i < count; ++i) {
     const auto k = static_cast<long>(i);

@@ -1,0 +1,136 @@
+#pragma once
+
+#include <dem/core/aligned.hpp>
+#include <dem/shape/shape.hpp>
+#include <dem/shape/superquadric_integrals.hpp>
+#include <dem/shape/superquadric_skin.hpp>
+
+#include <numbers>
+
+namespace dem::shape {
+
+/// What the points of a grain's surface weigh in laws that multiply by an area (eq. 25).
+enum class PointArea {
+  physical,  ///< the point's share of the surface in m^2: stiffness and damping are per area, N/m^3 and N s/m^3
+  relative,  ///< that share over the mean share: stiffness and damping are those of a mean point, N/m and N s/m
+  one,       ///< 1: each point has the stiffness of a whole contact, N/m
+};
+
+/// Points of a grain's surface in whole packs; the last ones are padded with points that nothing contains.
+struct PointTable {
+  AlignedVector<double> x, y, z, area;
+  int count = 0;
+
+  Vector3<double> operator[](int k) const {
+    const auto at = static_cast<std::size_t>(k);
+    return {x[at], y[at], z[at]};
+  }
+};
+
+/// What superquadric grains of either contact policy share: the solid |x/a|^p + |y/b|^q + |z/c|^r <= 1 with its mass
+/// properties, its rotation as the pose, and points on its surface.
+class SuperquadricGrain {
+ public:
+  static constexpr int pose_size = 9;  ///< the rotation, by rows
+  static constexpr bool has_orientation = true;
+  template <class T>
+  using PairTouch = contact::PointTouch<T>;
+
+  const SuperquadricSolid& solid() const { return solid_; }
+  const PointTable& points() const { return points_; }
+  /// Points on a cube's edge, less one.
+  int divisions() const { return divisions_; }
+  double bounding_radius() const { return bounding_radius_; }
+  double volume() const { return mass_.volume; }
+  Vec3 unit_inertia() const { return mass_.inertia.diagonal(); }
+  /// m, of the sphere of the same volume: the radius that contact laws see.
+  double mean_radius() const { return mean_radius_; }
+  /// The most points that may lie on a surface at once: of the three sides, those no deeper behind the tangent plane
+  /// than a tenth of the mean radius (the default overlap limit), weighted by the square of the cosine of their
+  /// normals.
+  contact::Patch surface_patch() const { return patch_; }
+
+  DEM_HOT void orient(const Matrix3<double>& r, double* pose) const {
+    const double rows[pose_size] = {r.row0.x, r.row0.y, r.row0.z, r.row1.x, r.row1.y,
+                                    r.row1.z, r.row2.x, r.row2.y, r.row2.z};
+    std::copy_n(rows, pose_size, pose);
+  }
+  static DEM_HOT Matrix3<double> rotation(const double* pose) {
+    return {{pose[0], pose[1], pose[2]}, {pose[3], pose[4], pose[5]}, {pose[6], pose[7], pose[8]}};
+  }
+
+  /// The points of the surface.
+  template <class Sink>
+  DEM_HOT void probe(const double* pose, Sink&& sink) const {
+    const Matrix3<double> r = rotation(pose);
+    for (int k = 0; k < points_.count; ++k) {
+      sink(static_cast<std::uint32_t>(k),
+           contact::Probe{r * points_[k], 0.0, mean_radius_, points_.area[static_cast<std::size_t>(k)]});
+    }
+  }
+  /// The point of the surface that lies farthest along a direction (global axes): where a plane touches first.
+  DEM_HOT Vector3<double> support(const double* pose, const Vector3<double>& direction) const {
+    const Matrix3<double> r = rotation(pose);
+    Vector3<double> local;
+    solid_.support(transpose_times(r, direction), local);
+    return r * local;
+  }
+  /// Whether a point (m, from the grain's centre, global axes) lies inside; then its depth and the outward normal
+  /// there, as SuperquadricSolid::penetration defines them.
+  DEM_HOT bool penetration(const double* pose, const Vector3<double>& point, double& depth,
+                           Vector3<double>& outward_normal) const {
+    const Matrix3<double> r = rotation(pose);
+    Vector3<double> local;
+    if (!solid_.penetration(transpose_times(r, point), depth, local)) return false;
+    outward_normal = r * local;
+    return true;
+  }
+
+ protected:
+  SuperquadricGrain(const Vec3& radii, const Vec3& exponents, int divisions, PointArea area)
+      : solid_(radii, exponents), divisions_(divisions) {
+    mass_ = superquadric_mass_properties(radii, exponents);
+    bounding_radius_ = superquadric_bounding_radius(radii, exponents);
+    mean_radius_ = std::cbrt(mass_.volume * 0.75 / std::numbers::pi);
+    const SuperquadricSkin skin = superquadric_skin(solid_, divisions);
+    double total = 0.0;
+    for (const double a : skin.areas) total += a;
+
+    points_.count = static_cast<int>(skin.points.size());
+    const auto padded = static_cast<std::size_t>(round_up_to_pack(points_.count));
+    for (auto* column : {&points_.x, &points_.y, &points_.z}) column->assign(padded, 1e30);
+    points_.area.assign(padded, 0.0);
+    Vec3 area_across = Vec3::Zero(), points_across = Vec3::Zero();
+    for (std::size_t k = 0; k < skin.points.size(); ++k) {
+      const SurfacePoint& point = skin.points[k];
+      points_.x[k] = point.position.x;
+      points_.y[k] = point.position.y;
+      points_.z[k] = point.position.z;
+      points_.area[k] = area == PointArea::physical   ? skin.areas[k]
+                        : area == PointArea::relative ? skin.areas[k] * points_.count / total
+                                                      : 1.0;
+      for (int axis = 0; axis < 3; ++axis) {
+        if (to_eigen(point.position)[axis] < radii[axis] - 0.1 * mean_radius_) continue;
+        const double cosine = to_eigen(point.normal)[axis];
+        area_across[axis] += points_.area[k] * cosine * cosine;
+        points_across[axis] += cosine * cosine;
+      }
+    }
+    patch_ = {std::max(1.0, points_across.maxCoeff()), area_across.maxCoeff()};
+    if (area == PointArea::one) patch_.area = patch_.points;
+  }
+
+  DEM_HOT double effective_radius(const SuperquadricGrain& other) const {
+    return mean_radius_ * other.mean_radius_ / (mean_radius_ + other.mean_radius_);
+  }
+
+ private:
+  SuperquadricSolid solid_;
+  PointTable points_;
+  MassProperties mass_;
+  contact::Patch patch_;
+  int divisions_;
+  double bounding_radius_, mean_radius_;
+};
+
+}  // namespace dem::shape

@@ -1,0 +1,223 @@
+#include "catch.hpp"
+#include "contacts.hpp"
+
+#include <dem/shape/superquadric.hpp>
+#include <dem/shape/superquadric_points.hpp>
+
+#include <numbers>
+#include <random>
+
+using Catch::Approx;
+using dem::Mat3;
+using dem::Vec3;
+using dem::shape::PointArea;
+using dem::shape::Superquadric;
+using dem::shape::SuperquadricPoints;
+
+namespace {
+
+struct Random {
+  std::mt19937 engine{5};
+  Vec3 direction() {
+    std::normal_distribution<double> normal;
+    const double x = normal(engine), y = normal(engine);
+    return Vec3(x, y, normal(engine)).normalized();
+  }
+  Mat3 rotation() {
+    return Eigen::AngleAxisd(std::uniform_real_distribution<double>(0, 3.1)(engine), direction()).toRotationMatrix();
+  }
+};
+
+double deepest(const std::vector<Contact>& found) {
+  double depth = 0.0;
+  for (const Contact& c : found) depth = std::max(depth, c.overlap);
+  return depth;
+}
+
+/// Sum of area times depth along the normals: the force of a stiffness of one.
+template <class Shape>
+Vec3 push(const Shape& a, const Mat3& ra, const Shape& b, const Mat3& rb, const Vec3& separation) {
+  double pose_a[Shape::pose_size], pose_b[Shape::pose_size];
+  a.orient(dem::from_eigen(ra), pose_a);
+  b.orient(dem::from_eigen(rb), pose_b);
+  Vec3 sum = Vec3::Zero();
+  Shape::collide(a, pose_a, b, pose_b, dem::from_eigen(separation),
+                 [&](std::uint32_t, const auto& touch) { sum += touch.area * touch.overlap * to_eigen(touch.normal); });
+  return sum;
+}
+
+}  // namespace
+
+TEST_CASE("points of spheres reach into each other as spheres do") {
+  const double ra = 1.0, rb = 1.5, d = 2.3;
+  const SuperquadricPoints a(Vec3::Constant(ra), {2, 2, 2}, 26), b(Vec3::Constant(rb), {2, 2, 2}, 26);
+  Random random;
+  const Vec3 along = random.direction();
+  const auto found = contacts(a, random.rotation(), b, random.rotation(), Vec3(d * along));
+  REQUIRE(found.size() > 50);
+  for (const Contact& c : found) {
+    // Radial depth is exact for spheres. The contact lies midway between the point and the other sphere's surface.
+    const bool point_of_a = c.feature < SuperquadricPoints::other_way;
+    const Vec3 out = point_of_a ? Vec3(-c.normal) : c.normal;
+    const Vec3 point = c.point - 0.5 * c.overlap * out;
+    const Vec3 from_other = point_of_a ? Vec3(point - d * along) : point;
+    CHECK(from_other.norm() == Approx((point_of_a ? rb : ra) - c.overlap).epsilon(1e-12));
+    CHECK((from_other.normalized() - out).norm() < 1e-12);
+    CHECK((point_of_a ? point : Vec3(point - d * along)).norm() == Approx(point_of_a ? ra : rb).epsilon(1e-12));
+  }
+  // The integral of depth over the cap of a in b, at the distance s from b's centre: dA = 2 pi ra s ds / d, and the
+  // same for b's cap; across the axis, forces cancel. Along it the normal's share is (d^2 + s^2 - ra^2) / (2 d s).
+  const auto cap = [&](double mine, double other) {
+    double sum = 0.0;
+    const int n = 2000;
+    for (int k = 0; k < n; ++k) {
+      const double s = d - mine + (other + mine - d) * (k + 0.5) / n;
+      sum += (other - s) * 2 * std::numbers::pi * mine * s / d * (d * d + s * s - mine * mine) / (2 * d * s) *
+             (other + mine - d) / n;
+    }
+    return sum;
+  };
+  const Vec3 force = push(a, Mat3::Identity(), b, random.rotation(), Vec3(d * along));
+  // About a hundred points share the caps, so their rims are drawn to a few per cent.
+  CHECK(force.dot(along) == Approx(cap(ra, rb) + cap(rb, ra)).epsilon(0.03));
+  CHECK((force - force.dot(along) * along).norm() < 0.03 * force.norm());
+}
+
+TEST_CASE("points and the common normal agree the better, the finer the points") {
+  Random random;
+  for (const double p : {2.0, 4.0, 8.0}) {
+    const Vec3 radii(1, 1.2, 0.8), e = Vec3::Constant(p);
+    const Superquadric direct(radii, e, 1);
+    const SuperquadricPoints coarse(radii, e, 6), fine(radii, e, 26);
+    double missed_coarse = 0.0, missed_fine = 0.0, above = 0.0;
+    int pairs = 0;
+    while (pairs < 150) {
+      const Mat3 ra = random.rotation(), rb = random.rotation();
+      const Vec3 way = random.direction();
+      // The distance at which they overlap by 1 %.
+      double apart = 3.2, deep = 0.0;
+      std::vector<Contact> exact;
+      for (int step = 0; step < 40; ++step) {
+        const double middle = 0.5 * (apart + deep);
+        const auto found = contacts(direct, ra, direct, rb, Vec3(middle * way));
+        (found.empty() || found[0].overlap < 0.01 ? apart : deep) = middle;
+        if (deep == middle) exact = found;
+      }
+      const double distance = deep;
+      ++pairs;
+      const double few = deepest(contacts(coarse, ra, coarse, rb, Vec3(distance * way)));
+      const double many = deepest(contacts(fine, ra, fine, rb, Vec3(distance * way)));
+      missed_coarse += (exact[0].overlap - few) / exact[0].overlap;
+      missed_fine += (exact[0].overlap - many) / exact[0].overlap;
+      above = std::max(above, many / exact[0].overlap);
+    }
+    INFO("exponent " << p << ": points miss " << missed_coarse / pairs << " and " << missed_fine / pairs);
+    // A point in the other grain is at most as deep as the grains overlap, but for the overestimate of its depth.
+    CHECK(above < 1.001);
+    CHECK(missed_fine < 0.5 * missed_coarse);
+    CHECK(missed_fine / pairs < 0.25);
+  }
+}
+
+TEST_CASE("faces that lie on each other push with the area of the face") {
+  const SuperquadricPoints cube(Vec3::Ones(), Vec3::Constant(8), 24);
+  const Mat3 one = Mat3::Identity();
+  const double depth = 0.01;
+  const Vec3 force = push(cube, one, cube, one, Vec3(2 - depth, 0, 0));
+  // Depth at (y, z) is that of one face, (1 - y^8 - z^8)^(1/8), and its mirror: integrated over the face, both ways
+  // round. Points stand for cells, whose rims are drawn to a few per cent.
+  double expected = 0.0;
+  const int n = 400;
+  for (int i = 0; i < n; ++i) {
+    for (int j = 0; j < n; ++j) {
+      const double y = (i + 0.5) / n, z = (j + 0.5) / n;
+      const double rest = 1 - std::pow(y, 8) - std::pow(z, 8);
+      if (rest <= 0) continue;
+      const double d = 2 * std::pow(rest, 1.0 / 8) - (2 - depth);
+      if (d > 0) expected += 2 * 4 * d / (n * n);
+    }
+  }
+  CHECK(force.x() == Approx(expected).epsilon(0.05));
+  CHECK(force.tail<2>().norm() < 1e-9 * force.x());
+
+  // Relative areas: the same force, in mean points.
+  const SuperquadricPoints relative(Vec3::Ones(), Vec3::Constant(8), 24, PointArea::relative);
+  double total = 0.0;
+  for (int k = 0; k < cube.points().count; ++k) total += cube.points().area[static_cast<std::size_t>(k)];
+  const Vec3 same = push(relative, one, relative, one, Vec3(2 - depth, 0, 0));
+  CHECK(same.x() * total / cube.points().count == Approx(force.x()).epsilon(1e-12));
+
+  // What the time step is told: the points of a face and their area.
+  const auto patch = cube.surface_patch();
+  CHECK(cube.patch().points == 2 * patch.points);  // in a pair, a face of each
+  CHECK(cube.patch().area == 2 * patch.area);
+  // Behind the face's plane by less than a tenth of the mean radius 1.216: |y|^8 + |z|^8 < 1 - 0.878^8 = 0.647, which
+  // is 4 * 0.647^(1/4) Gamma(9/8)^2 / Gamma(5/4) = 3.51; less the slope at the rim.
+  CHECK(patch.area < 3.51);
+  CHECK(patch.area == Approx(3.51).epsilon(0.1));
+  CHECK(patch.points == Approx(25 * 25).epsilon(0.15));
+  CHECK(Superquadric(Vec3::Ones(), Vec3::Constant(8), 24).surface_patch().area == Approx(patch.points));
+}
+
+TEST_CASE("points look the same from either side and in any frame, and contacts keep their numbers") {
+  Random random;
+  const SuperquadricPoints a({1, 1.3, 0.7}, {3, 4, 8}, 8), b({1.1, 0.9, 1.2}, {2, 2.5, 6}, 8);
+  int touching = 0;
+  for (int k = 0; k < 60; ++k) {
+    const Mat3 ra = random.rotation(), rb = random.rotation(), turn = random.rotation();
+    const Vec3 d = 1.9 * random.direction();
+    const auto from_a = contacts(a, ra, b, rb, d), from_b = contacts(b, rb, a, ra, -d);
+    const auto turned = contacts(a, turn * ra, b, turn * rb, turn * d);
+    touching += !from_a.empty();
+    REQUIRE(from_b.size() == from_a.size());
+    REQUIRE(turned.size() == from_a.size());
+    for (std::size_t c = 0; c < from_a.size(); ++c) {
+      if (c > 0) CHECK(from_a[c].feature > from_a[c - 1].feature);
+      const std::uint32_t number = SuperquadricPoints::mirrored(from_a[c].feature);
+      const auto same =
+          std::find_if(from_b.begin(), from_b.end(), [&](const Contact& x) { return x.feature == number; });
+      REQUIRE(same != from_b.end());
+      CHECK(same->overlap == Approx(from_a[c].overlap).margin(1e-12));
+      CHECK((same->normal + from_a[c].normal).norm() < 1e-9);
+      CHECK((same->point + d - from_a[c].point).norm() < 1e-12);
+      CHECK(turned[c].feature == from_a[c].feature);
+      CHECK(turned[c].overlap == Approx(from_a[c].overlap).margin(1e-12));
+      CHECK((turned[c].normal - turn * from_a[c].normal).norm() < 1e-9);
+    }
+  }
+  CHECK(touching > 20);
+}
+
+TEST_CASE("a grain tells whether a point lies in it, whichever way it is turned") {
+  Random random;
+  const SuperquadricPoints grain({1, 1.3, 0.7}, {3, 4, 8}, 3);
+  for (int k = 0; k < 200; ++k) {
+    const Mat3 r = random.rotation();
+    double pose[SuperquadricPoints::pose_size];
+    grain.orient(dem::from_eigen(r), pose);
+    const Vec3 x = random.direction();
+    double depth = -1, own_depth = -1;
+    dem::Vector3<double> normal{}, own{};
+    const bool in = grain.penetration(pose, dem::from_eigen(Vec3(r * x)), depth, normal);
+    REQUIRE(in == grain.solid().penetration(dem::from_eigen(x), own_depth, own));
+    if (!in) continue;
+    CHECK(depth == Approx(own_depth).margin(1e-12));
+    CHECK((to_eigen(normal) - r * to_eigen(own)).norm() < 1e-9);
+  }
+}
+
+TEST_CASE("a plane touches a turned ellipsoid where the closed form says") {
+  Random random;
+  const Vec3 radii(1, 1.3, 0.7);
+  const SuperquadricPoints grain(radii, {2, 2, 2}, 3);
+  for (int k = 0; k < 50; ++k) {
+    const Mat3 r = random.rotation();
+    double pose[SuperquadricPoints::pose_size];
+    grain.orient(dem::from_eigen(r), pose);
+    const Vec3 n = random.direction();
+    // With the matrix A = R diag(r_i^2) R^T of the ellipsoid: A n over the root of n . A n.
+    const Mat3 a = r * radii.cwiseAbs2().asDiagonal() * r.transpose();
+    const Vec3 expected = a * n / std::sqrt(n.dot(a * n));
+    CHECK((to_eigen(grain.support(pose, dem::from_eigen(n))) - expected).norm() < 1e-12);
+  }
+}
