@@ -2,8 +2,10 @@
 #include "files.hpp"
 #include "xml.hpp"
 
+#include <dem/io/polyhedron_mesh.hpp>
 #include <dem/io/vtk.hpp>
 #include <dem/math/vector.hpp>
+#include <dem/shape/polyhedra.hpp>
 
 #include <Eigen/Geometry>
 
@@ -164,6 +166,34 @@ TEST_CASE("a file without points is still a file") {
   const VtkContent file = read_vtk(folder / "a.vtp");
   CHECK(file.tag("Piece").at("NumberOfPoints") == "0");
   CHECK(file.values<double>("radius").empty());
+}
+
+TEST_CASE("polyhedral grains are written with a polygon for each face") {
+  const TempFolder folder;
+  const SurfaceMesh mesh = polyhedron_mesh(dem::shape::prism(6, 1.0, 2.0));
+  const Mat3 turn = Eigen::AngleAxisd(0.3, Eigen::Vector3d::UnitY()).toRotationMatrix();
+  const std::vector<double> speed{1.5, 2.5};
+  write_vtk_bodies(folder / "p.vtp", {{&mesh, Vec3(1, 2, 3), turn}, {&mesh}}, {{"speed_m_s", 1, speed}});
+  const VtkContent file = read_vtk(folder / "p.vtp");
+  CHECK(file.tag("Piece").at("NumberOfPoints") == "24");
+  CHECK(file.tag("Piece").at("NumberOfPolys") == "16");
+  const auto points = file.values<double>("Points");
+  const auto corner = [&](std::int32_t k) { return Vec3(points.data() + 3 * k); };
+  const auto connectivity = file.values<std::int32_t>("connectivity"), offsets = file.values<std::int32_t>("offsets");
+  REQUIRE(connectivity.size() == 2 * 36);
+  // Outward polygons around the first prism's middle close its volume, 3 sqrt(3)/2 R^2 h.
+  double volume = 0.0;
+  int from = 0, hexagons = 0;
+  for (std::size_t f = 0; f < 8; ++f) {
+    hexagons += offsets[f] - from == 6;
+    const auto at = [&](int k) -> Vec3 { return corner(connectivity[static_cast<std::size_t>(k)]) - Vec3(1, 2, 3); };
+    for (int k = from + 2; k < offsets[f]; ++k) volume += at(from).dot(at(k - 1).cross(at(k))) / 6.0;
+    from = offsets[f];
+  }
+  CHECK(hexagons == 2);
+  CHECK(volume == Approx(3.0 * std::sqrt(3.0)));
+  CHECK(file.values<double>("speed_m_s")[7] == 1.5);
+  CHECK(file.values<double>("speed_m_s")[8] == 2.5);
 }
 
 TEST_CASE("bodies are written at their poses with the values of their body") {

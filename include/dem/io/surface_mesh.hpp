@@ -12,11 +12,13 @@
 
 namespace dem::io {
 
-/// Triangles and quads over shared vertices, in the frame of a body [m]. Only for looking at: it need not be closed.
+/// Triangles, quads and other polygons over shared vertices, in the frame of a body [m]. Only for looking at: it need
+/// not be closed.
 struct SurfaceMesh {
   std::vector<Vec3> vertices = {};
   std::vector<std::array<std::int32_t, 3>> triangles = {};  ///< indices into vertices, counter-clockwise from outside
   std::vector<std::array<std::int32_t, 4>> quads = {};      ///< likewise
+  std::vector<std::vector<std::int32_t>> polygons = {};     ///< likewise, with any number of corners
 };
 
 /// A box with edges along the axes, centred at the origin; `size` [m] are its full edge lengths, each > 0.
@@ -65,7 +67,8 @@ struct SurfaceMesh {
   const double x = size_x / 2, y = size_y / 2;
   return {.vertices = {Vec3(-x, -y, 0), Vec3(x, -y, 0), Vec3(x, y, 0), Vec3(-x, y, 0)},
           .triangles = {},
-          .quads = {{0, 1, 2, 3}}};
+          .quads = {{0, 1, 2, 3}},
+          .polygons = {}};
 }
 
 }  // namespace dem::io

@@ -47,6 +47,7 @@ struct WorldMesh {
     };
     add_faces(placed.mesh->triangles);
     add_faces(placed.mesh->quads);
+    add_faces(placed.mesh->polygons);
   }
 };
 
@@ -65,6 +66,7 @@ inline void check_mesh(const std::filesystem::path& path, const BodyMesh& placed
   };
   check_faces(placed.mesh->triangles);
   check_faces(placed.mesh->quads);
+  check_faces(placed.mesh->polygons);
 }
 
 /// `values` with the tuple of each face's body.
@@ -96,8 +98,9 @@ inline void write_vtk_bodies(const std::filesystem::path& path, const std::vecto
   detail::WorldMesh world;
   for (std::size_t i = 0; i < bodies.size(); ++i) {
     detail::check_mesh(path, bodies[i], i);
-    detail::check_index_count(path, world.connectivity.size() + 4 * bodies[i].mesh->quads.size() +
-                                        3 * bodies[i].mesh->triangles.size() + bodies[i].mesh->vertices.size());
+    std::size_t more = 4 * bodies[i].mesh->quads.size() + 3 * bodies[i].mesh->triangles.size();
+    for (const auto& polygon : bodies[i].mesh->polygons) more += polygon.size();
+    detail::check_index_count(path, world.connectivity.size() + more + bodies[i].mesh->vertices.size());
     world.add(bodies[i], static_cast<std::int32_t>(i));
   }
   const std::span<const std::int32_t> body(world.body);

@@ -1,0 +1,68 @@
+#pragma once
+// Triangle meshes in OBJ files (Wavefront): vertices and faces; everything else in such a file is skipped.
+
+#include <dem/io/file.hpp>
+#include <dem/io/mesh_text.hpp>
+#include <dem/math/indexed_mesh.hpp>
+
+namespace dem::io {
+
+/// The mesh in the text of an OBJ file; `file` is its name for messages. Reads `v x y z` and `f a b c ...`, where a
+/// face names vertices from 1 on, or backwards from -1, perhaps with /texture/normal, which is skipped; a face of more
+/// than three corners is cut into a fan. Lines may go on after a backslash. Throws Error with the line for a vertex
+/// that is not three numbers, a face that names a vertex that is not there, and a file without faces.
+[[nodiscard]] inline IndexedMesh parse_obj(std::string_view given, const std::string& file) {
+  std::string text(given);
+  for (std::size_t at = text.find('\\'); at != std::string::npos; at = text.find('\\', at + 1)) {
+    std::size_t end = at + 1;
+    if (end < text.size() && text[end] == '\r') ++end;
+    if (end < text.size() && text[end] == '\n') ++end;
+    for (std::size_t k = at; end > at + 1 && k < end; ++k) text[k] = ' ';
+  }
+  detail::Words words(text, file);
+  IndexedMesh mesh;
+  while (!words.at_end()) {
+    const std::string_view keyword = words.next();
+    if (keyword == "v") {
+      Vec3 v;
+      for (Eigen::Index c = 0; c < 3; ++c) v[c] = words.number(words.next_in_line(), "a coordinate");
+      mesh.vertices.push_back(v);
+    } else if (keyword == "f") {
+      std::vector<std::uint32_t> corners;
+      for (std::string_view word = words.next_in_line(); !word.empty() && word[0] != '#'; word = words.next_in_line()) {
+        const std::string_view digits = word.substr(0, word.find('/'));
+        long long index = 0;
+        const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), index);
+        const auto count = static_cast<long long>(mesh.vertices.size());
+        const bool is_number = error == std::errc() && end == digits.data() + digits.size() && !digits.empty();
+        const long long place = index < 0 ? count + index : index - 1;
+        if (!is_number || index == 0 || place < 0 || place >= count) {
+          fail(
+              "'{}', line {}: a face names the vertex '{}', but must name one of the {} before it: 1 to {}, or -1 "
+              "(the last) to -{}; correct the index",
+              file, words.line(), detail::shown(word), count, count, count);
+        }
+        corners.push_back(static_cast<std::uint32_t>(place));
+      }
+      if (corners.size() < 3) {
+        fail("'{}', line {}: a face has {} corners, but needs at least 3; correct or remove it", file, words.line(),
+             corners.size());
+      }
+      for (std::size_t k = 2; k < corners.size(); ++k) {
+        mesh.triangles.push_back({corners[0], corners[k - 1], corners[k]});
+      }
+    }
+    words.skip_line();
+  }
+  if (mesh.triangles.empty()) {
+    fail("'{}' holds {} vertices and no faces ('f' lines); export it as a mesh, not as curves or points", file,
+         mesh.vertices.size());
+  }
+  return mesh;
+}
+/// Reads an OBJ file. Throws Error as parse_obj does, or if the file cannot be read.
+[[nodiscard]] inline IndexedMesh read_obj(const std::filesystem::path& path) {
+  return parse_obj(read_file(path), path.string());
+}
+
+}  // namespace dem::io

@@ -1,0 +1,71 @@
+#pragma once
+// Grains of any shape for ParaView (.vtp): each drawn with the mesh of its species.
+
+#include <dem/core/ids.hpp>
+#include <dem/io/polyhedron_mesh.hpp>
+#include <dem/io/vtk_bodies.hpp>
+#include <dem/shape/mixed.hpp>
+
+namespace dem::io {
+
+/// The skin of a superquadric with `divisions` cells along each edge of the cube that it is drawn from [m].
+[[nodiscard]] inline SurfaceMesh grain_mesh(const shape::SuperquadricSolid& solid, int divisions = 8) {
+  const shape::SuperquadricSkin skin = shape::superquadric_skin(solid, divisions);
+  SurfaceMesh mesh;
+  for (const shape::SurfacePoint& point : skin.points) mesh.vertices.push_back(to_eigen(point.position));
+  mesh.quads = skin.quads;
+  return mesh;
+}
+[[nodiscard]] inline SurfaceMesh grain_mesh(const shape::SuperquadricGrain& grain, int divisions = 8) {
+  return grain_mesh(grain.solid(), divisions);
+}
+
+/// The balls of a sphere or cluster, each whole.
+template <shape::BallShape S>
+[[nodiscard]] SurfaceMesh grain_mesh(const S& shape, int divisions = 4) {
+  alignas(64) double pose[S::pose_size + 1] = {};
+  shape.orient(Matrix3<double>::identity(), pose);
+  SurfaceMesh mesh;
+  for (int k = 0; k < shape::ball_count(shape); ++k) {
+    const shape::PosedBall ball = shape::posed_ball(shape, pose, k);
+    const SurfaceMesh one = grain_mesh(shape::SuperquadricSolid(ball.radius), divisions);
+    const auto base = static_cast<std::int32_t>(mesh.vertices.size());
+    for (const Vec3& v : one.vertices) mesh.vertices.push_back(v + to_eigen(ball.centre));
+    for (auto quad : one.quads) {
+      for (std::int32_t& vertex : quad) vertex += base;
+      mesh.quads.push_back(quad);
+    }
+  }
+  return mesh;
+}
+
+/// The mesh of the kind that a mixed grain is.
+template <class... Kinds>
+[[nodiscard]] SurfaceMesh grain_mesh(const shape::Mixed<Kinds...>& mixed, int divisions = 4) {
+  return std::visit([&](const auto& kind) { return grain_mesh(kind, divisions); }, mixed.kind());
+}
+
+/// Writes all grains of a world as meshes, `divisions` cells along an edge (each ball or superquadric has 6 n^2 quads:
+/// mind the size of the file), with the cell arrays "body" (the grain's number), "species" and "speed" [m/s]. Shapes of
+/// your own need a grain_mesh(shape, divisions) beside them. Throws dem::Error as write_vtk_bodies does.
+template <class World>
+void write_vtk_grains(const std::filesystem::path& path, const World& world, int divisions = 4,
+                      const VtkOptions& options = {}) {
+  std::vector<SurfaceMesh> meshes;
+  for (const auto& species : world.state().species) meshes.push_back(grain_mesh(species.shape, divisions));
+  std::vector<BodyMesh> grains;
+  std::vector<std::int32_t> kinds;
+  std::vector<double> speeds;
+  for (std::size_t k = 0; k < world.particle_count(); ++k) {
+    const ParticleId p(k);
+    const std::size_t species = world.species_of(p).index();
+    grains.push_back({&meshes[species], world.position(p), world.rotation(p)});
+    kinds.push_back(static_cast<std::int32_t>(species));
+    speeds.push_back(world.velocity(p).norm());
+  }
+  write_vtk_bodies(
+      path, grains,
+      {{"species", 1, std::span<const std::int32_t>(kinds)}, {"speed", 1, std::span<const double>(speeds)}}, options);
+}
+
+}  // namespace dem::io

@@ -1,0 +1,206 @@
+#include "core/error_of.hpp"
+#include "scenes.hpp"
+
+#include <dem/math/mesh_shapes.hpp>
+
+using Catch::Approx;
+using dem::BodyId;
+using dem::mbd::box_body;
+using dem::surface::Box;
+using dem::surface::Plane;
+using dem::surface::TriangleMesh;
+namespace mesh = dem::mesh;
+
+namespace {
+
+constexpr double g = 9.81;
+const Vec3 edges(0.2, 0.1, 0.08);
+
+/// A block of 1.6 kg on a floor, of which either may be a box, triangles or a plane.
+struct Block {
+  dem::World<Balls> world;
+  BodyId block;
+  dem::BodyContactId contact;
+
+  Block(const Balls::Surfaces& of_block, const Balls::Surfaces& of_floor, double floor_top, const Vec3& gravity,
+        double height, double mu)
+      : world(options(gravity, 5e-5)) {
+    world.set_contact({{1e5, 60.0, 1.0}, {mu, 1e5, 100.0, 0.975}});
+    block = world.machine().add_body(box_body("block", edges, 1000.0).at({0, 0, 0.04 + height}));
+    const auto upper = world.add_surface(block, of_block);
+    dem::SurfaceOptions o;
+    o.position = {0.013, 0.017, -floor_top};  // no point of the block above a vertex of the floor
+    contact = world.add_body_contact(upper, world.add_surface(world.ground(), of_floor, o));
+  }
+  const dem::Body& body() const { return world.machine().body(block); }
+};
+
+struct Pairing {
+  const char* name;
+  Balls::Surfaces block, floor;
+  double floor_top;
+};
+std::vector<Pairing> pairings() {
+  const Box box(edges), ground({4, 4, 0.4});
+  const TriangleMesh cut(mesh::box(edges, 2)), ground_cut(mesh::box({4, 4, 0.4}, 3));
+  return {{"box on plane", box, Plane{}, 0.0}, {"mesh on plane", cut, Plane{}, 0.0},
+          {"box on box", box, ground, 0.2},    {"box on mesh", box, ground_cut, 0.2},
+          {"mesh on box", cut, ground, 0.2},   {"mesh on mesh", cut, ground_cut, 0.2}};
+}
+
+}  // namespace
+
+TEST_CASE("a body dropped on the ground rests with m g and stays where it is") {
+  for (const Pairing& p : pairings()) {
+    CAPTURE(p.name);
+    Block scene(p.block, p.floor, p.floor_top, {0, 0, -g}, 2e-4, 0.5);
+    auto& w = scene.world;
+    const auto sensor = w.machine().add_sensor(dem::mbd::contact_sensor("floor", scene.block, 0.0));
+    // Damped with exp(-n C/(2 m) t), at least exp(-75/s t), and its friction springs as well.
+    REQUIRE(w.run_for(1.0));
+    const double weight = 1.6 * g;
+    CHECK((w.body_contact_force(scene.contact) - Vec3(0, 0, weight)).norm() < 1e-9 * weight);
+    CHECK(w.machine().sensor(sensor).latest().force.z == Approx(weight).epsilon(1e-9));
+    const Vec3 settled = scene.body().position();
+    CHECK(settled.head(2).norm() < 1e-9);
+    REQUIRE(w.run_for(0.5));
+    CHECK((scene.body().position() - settled).norm() < 1e-14);  // rounding of 1e-17 m a step at the most
+    CHECK((scene.body().rotation() - Mat3::Identity()).norm() < 1e-9);
+  }
+}
+
+TEST_CASE("a block sticks below the angle of friction and slides above with g (sin - mu cos)") {
+  const double mu = 0.5;
+  for (const Pairing& p : pairings()) {
+    for (const double slope : {0.9 * mu, 1.4 * mu}) {
+      CAPTURE(p.name, slope);
+      const double angle = std::atan(slope);
+      const Vec3 gravity(g * std::sin(angle), 0, -g * std::cos(angle));
+      Block scene(p.block, p.floor, p.floor_top, gravity, -1e-5, mu);
+      auto& w = scene.world;
+      REQUIRE(w.run_for(0.4));
+      const double v = scene.body().velocity().x();
+      REQUIRE(w.run_for(0.2));
+      const double acceleration = (scene.body().velocity().x() - v) / 0.2;
+      if (slope < mu) {
+        CHECK(std::abs(acceleration) < 1e-9 * g);
+        CHECK(scene.body().velocity().norm() < 1e-10);
+        CHECK(scene.body().position().head(2).norm() < 1e-3);
+      } else {
+        // All contact points slide the same way, so friction is mu times the normal force to rounding, and what is left
+        // of the start's swing: exp(-75 * 0.4). On triangles points change their partners' edges, not the plane.
+        CHECK(acceleration == Approx(g * (std::sin(angle) - mu * std::cos(angle))).epsilon(1e-6));
+        CHECK(std::abs(scene.body().position().y()) < 1e-9);
+      }
+    }
+  }
+}
+
+TEST_CASE("a wheel of triangles rolls down an incline with 2/3 g sin") {
+  // 96 segments: it rolls on a polygon, whose height changes by R (1 - cos(pi/96)) = 5e-4 R. The springs are soft
+  // enough to carry it on several edges at once, which smooths that; the rest loses some energy at each edge.
+  const double R = 0.15, slope = 0.2, angle = std::atan(slope);
+  const auto wheel = mesh::cylinder(R, 0.1, 96);
+  dem::World<Balls> w(options({g * std::sin(angle), 0, -g * std::cos(angle)}, 5e-5));
+  w.set_contact({{2e4, 10.0, 1.0}, {0.8, 2e4, 5.0, 1.0}});
+  const Mat3 lie = Eigen::AngleAxisd(std::numbers::pi / 2, Eigen::Vector3d::UnitX()).toRotationMatrix();
+  const auto body = w.machine().add_body(dem::mbd::mesh_body("wheel", wheel, 1000.0).at({0, 0, R - 2e-4}, lie));
+  dem::SurfaceOptions o;
+  o.rotation = w.machine().body(body).rotation().transpose() * lie;
+  w.add_body_contact(w.add_surface(body, TriangleMesh(wheel), o), w.add_surface(w.ground(), Plane{}));
+  REQUIRE(w.run_for(0.2));
+  const double v = w.machine().body(body).velocity().x();
+  REQUIRE(w.run_for(0.6));
+  const dem::Body& b = w.machine().body(body);
+  const double acceleration = (b.velocity().x() - v) / 0.6;
+  CHECK(acceleration == Approx(2.0 / 3.0 * g * std::sin(angle)).epsilon(0.02));
+  CHECK(b.angular_velocity().y() == Approx(b.velocity().x() / R).epsilon(0.01));
+  CHECK(std::abs(b.velocity().y()) < 1e-6);
+}
+
+TEST_CASE("two free bodies that collide keep their momentum and angular momentum") {
+  const Box box({0.1, 0.12, 0.14});
+  const TriangleMesh ball(mesh::sphere(0.07, 2)), wheel(mesh::wheel({0.06, 0.05, 8, 0.01, 0.01, 24}));
+  const std::vector<std::pair<Balls::Surfaces, Balls::Surfaces>> pairs = {{box, box}, {box, ball}, {ball, wheel}};
+  for (std::size_t k = 0; k < pairs.size(); ++k) {
+    dem::World<Balls> w(options({0, 0, 0}, 2e-5));
+    w.set_contact({{5e4, 5.0, 0.5}, {0.4, 5e4, 5.0, 0.975}});
+    const auto a =
+        w.machine().add_body(box_body("a", {0.1, 0.12, 0.14}, 800).at({-0.09, 0, 0}).moving({2, 0, 0.1}, {3, -2, 5}));
+    const auto b = w.machine().add_body(box_body("b", {0.1, 0.12, 0.14}, 500)
+                                            .at({0.09, 0.03, 0.02}, Random(5).rotation())
+                                            .moving({-1, 0.2, 0}, {0, 4, 1}));
+    const auto c = w.add_body_contact(w.add_surface(a, pairs[k].first), w.add_surface(b, pairs[k].second));
+    const auto momenta = [&] {
+      Vec3 linear = Vec3::Zero(), angular = linear;
+      for (const BodyId i : {a, b}) {
+        const dem::Body& body = w.machine().body(i);
+        const Vec3 spin = body.rotation().transpose() * body.angular_velocity();
+        linear += body.mass * body.velocity();
+        angular +=
+            body.mass * body.position().cross(body.velocity()) + body.rotation() * body.inertia.cwiseProduct(spin);
+      }
+      return std::pair(linear, angular);
+    };
+    const auto before = momenta();
+    double largest = 0.0;
+    for (int step = 0; step < 5000; ++step) {
+      REQUIRE(w.step());
+      largest = std::max(largest, w.body_contact_force(c).norm());
+    }
+    const auto after = momenta();
+    CHECK(largest > 100.0);
+    CHECK((after.first - before.first).norm() < 1e-11);
+    // Symplectic Euler turns the momentum of a free tumbling body by an error of first order in the step.
+    CHECK((after.second - before.second).norm() < 1e-4 * before.second.norm());
+  }
+}
+
+TEST_CASE("an elastic head-on collision of two bodies exchanges their velocities") {
+  dem::World<Balls> w(options({0, 0, 0}, 1e-5));
+  w.set_contact({{5e4, 0.0, 1.0}, {0.0, 0.0, 0.0, 1.0}});
+  const auto a = w.machine().add_body(box_body("a", {0.1, 0.1, 0.1}, 1000).moving({1, 0, 0}));
+  const auto b = w.machine().add_body(box_body("b", {0.1, 0.08, 0.08}, 1000.0 / 0.64).at({0.11, 0, 0}));
+  w.add_body_contact(w.add_surface(a, Box({0.1, 0.1, 0.1})), w.add_surface(b, Box({0.1, 0.08, 0.08})));
+  REQUIRE(w.run_for(0.05));
+  CHECK(w.machine().body(a).velocity().norm() < 1e-4);  // O(omega dt) of symplectic Euler at the first and last touch
+  CHECK(w.machine().body(b).velocity().x() == Approx(1.0).epsilon(1e-4));
+}
+
+TEST_CASE("contacts of bodies are found by rule, but not those of joints, of one body, or of the ground with itself") {
+  dem::World<Balls> w(options({0, 0, -g}, 1e-4));
+  w.set_contact({{1e4, 10.0, 1.0}, {0.4, 1e4, 10.0, 1.0}});
+  auto& m = w.machine();
+  const auto a = m.add_body(box_body("a", {0.1, 0.1, 0.1}, 1000).at({0, 0, 1}));
+  const auto b = m.add_body(box_body("b", {0.1, 0.1, 0.1}, 1000).at({0.1, 0, 1}));
+  const auto c = m.add_body(box_body("c", {0.1, 0.1, 0.1}, 1000).at({5, 0, 1}));
+  m.add_joint(dem::mbd::revolute("hinge", a, b, {0.05, 0, 1}, {0, 1, 0}));
+  for (const BodyId body : {a, a, b, c, w.ground(), w.ground()}) w.add_surface(body, Box({0.1, 0.1, 0.1}));
+  w.add_surface(w.ground(), Plane{});
+  // a1, a2, b, c, three of the ground: pairs of different bodies 5 * ... without a-b and ground-ground.
+  CHECK(w.add_body_contacts() == 2 * 1 + 2 * 3 + 1 * 1 + 3 + 3);
+  CHECK(w.add_body_contacts() == 0);
+  check_refused([&] { w.add_body_contact(SurfaceId(0), SurfaceId(1)); }, "both belong to body 'a'");
+  check_refused([&] { w.add_body_contact(SurfaceId(4), SurfaceId(99)); }, "surface 99");
+  check_refused(
+      [&] {
+        const auto fixed = w.machine().add_fixed_body("post");
+        w.add_body_contact(w.add_surface(fixed, Plane{}), SurfaceId(4));
+      },
+      "both fixed");
+  CHECK(w.state().body_contacts.pairs.size() == 15);
+}
+
+TEST_CASE("bodies limit the time step, and need contact constants") {
+  dem::World<Balls> w(options({0, 0, -g}));
+  const auto a = w.machine().add_body(box_body("a", edges, 1000).at({0, 0, 1}));
+  w.add_body_contact(w.add_surface(a, Box(edges)), w.add_surface(w.ground(), Plane{}));
+  check_refused([&] { w.prepare(); }, "no contact constants");
+  w.set_contact({{1e6, 0.0, 1.0}, {0.0, 0.0, 0.0, 1.0}});
+  // Four corners at R = |edges|/2 from the centre of mass: omega^2 = 4 k (1/m + R^2/I).
+  const double I = 1.6 / 12 * (0.01 + 0.0064), R2 = 0.25 * edges.squaredNorm();
+  CHECK(w.stable_time_step().value == Approx(2.0 / std::sqrt(4 * 1e6 * (1 / 1.6 + R2 / I))));
+  CHECK_THAT(w.stable_time_step().contact, Catch::Matchers::ContainsSubstring("body 'a' on body 'ground'"));
+  w.prepare();
+  CHECK(w.time_step() == Approx(0.5 * w.stable_time_step().value));
+}

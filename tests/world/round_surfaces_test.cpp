@@ -1,0 +1,107 @@
+#include "scenes.hpp"
+
+#include <dem/math/mesh_shapes.hpp>
+#include <dem/surface/superquadric.hpp>
+
+using Catch::Approx;
+namespace surface = dem::surface;
+
+namespace {
+
+constexpr double g = 9.81;
+
+struct Round : Balls {
+  using Surfaces =
+      surface::Set<surface::Plane, surface::Sphere, surface::Cylinder, surface::Superquadric, surface::TriangleMesh>;
+};
+
+struct Rest {
+  const char* name;
+  Round::Surfaces geometry;
+  Vec3 at;  ///< where the ball rests, but for the overlap
+};
+
+}  // namespace
+
+TEST_CASE("the weight of a grain arrives in the sensor through every kind of surface") {
+  const double r = 5e-3;
+  // The ball stands on the highest point, or lies in the lowest: labile places hold to rounding in 0.2 s.
+  const std::vector<Rest> rests = {
+      {"ball", surface::Sphere(0.03), {0, 0, 0.03 + r}},
+      {"round cavity", surface::Sphere(0.03, surface::Side::inside), {0, 0, -0.03 + r}},
+      {"cylinder's end", surface::Cylinder(0.03, 0.04), {0.01, 0, 0.02 + r}},
+      {"drum's end", surface::Cylinder(0.03, 0.04, surface::Side::inside), {0.01, 0, -0.02 + r}},
+      {"tube's rim", surface::Cylinder::tube(0.01, 0.03, 0.04), {0.02, 0, 0.02 + r}},
+      {"superquadric", surface::Superquadric({0.03, 0.03, 0.03}, {8, 8, 8}), {0, 0, 0.03 + r}},
+      {"hollow superquadric",
+       surface::Superquadric({0.03, 0.04, 0.03}, {2, 2, 2}, surface::Side::inside),
+       {0, 0, -0.03 + r}},
+      {"mesh", surface::TriangleMesh(dem::mesh::cylinder(0.03, 0.04, 24)), {0.01, 0, 0.02 + r}}};
+  for (const Rest& rest : rests) {
+    CAPTURE(rest.name);
+    dem::World<Round> w(options({0, 0, -g}, 2e-5));
+    w.set_contact({{2000.0, 1.0, 1.0}, {0.4, 2000.0, 0.5, 1.0}});
+    const auto body = w.machine().add_fixed_body("scale");
+    const auto s = w.add_surface(body, rest.geometry);
+    const auto sensor = w.machine().add_sensor(dem::mbd::contact_sensor("weight", body, 0.0));
+    const auto ball = w.add_particle({w.add_species(Sphere(r)), rest.at + Vec3(0, 0, 1e-5)});
+    REQUIRE(w.run_for(0.2));  // damped with exp(-360/s t)
+    const double weight = mass_of(w, ball) * g;
+    CHECK((w.surface_force(s) + Vec3(0, 0, weight)).norm() < 1e-9 * weight);
+    CHECK(w.machine().sensor(sensor).latest().force.z == Approx(-weight).epsilon(1e-9));
+  }
+}
+
+TEST_CASE("a ball inside a drum swings as a pendulum does, sliding and rolling") {
+  // Without friction it slides: omega^2 = g/(R - r); with enough friction it rolls: 5/7 of that. Amplitude 0.1 rad: the
+  // period is longer by a^2/16. The contact's compression changes R - r by 7e-6/0.045.
+  const double R = 0.05, r = 5e-3, amplitude = 0.1;
+  for (const double mu : {0.0, 0.8}) {
+    dem::World<Round> w(options({-g, 0, 0}, 1e-5));
+    w.set_contact({{2000.0, 1.0, 1.0}, {mu, 2000.0, 0.02, 1.0}});
+    w.add_surface(w.ground(), surface::Cylinder(R, 0.1, surface::Side::inside));
+    const Vec3 at = (R - r + 7e-6) * Vec3(-std::cos(amplitude), std::sin(amplitude), 0);
+    const auto ball = w.add_particle({w.add_species(Sphere(r)), at});
+    std::vector<double> crossings;
+    for (double last = at.y(); crossings.size() < 5 && w.time() < 3.0;) {
+      REQUIRE(w.run(10));
+      const double y = w.position(ball).y();
+      if (last * y < 0.0) crossings.push_back(w.time() - 1e-4 * y / (y - last));
+      last = y;
+    }
+    REQUIRE(crossings.size() == 5);
+    const double inertia = mu > 0.0 ? 7.0 / 5.0 : 1.0;
+    const double exact =
+        2 * std::numbers::pi * std::sqrt(inertia * (R - r + 7e-6) / g) * (1 + amplitude * amplitude / 16);
+    CHECK(0.5 * (crossings[4] - crossings[0]) == Approx(exact).epsilon(5e-4));
+  }
+}
+
+TEST_CASE("a body that is a ball moves on a mesh as a grain that is a ball does") {
+  const double r = 5e-3, density = 2650.0;
+  const surface::TriangleMesh block(dem::mesh::box({0.1, 0.1, 0.02}, 4));
+  const Vec3 at(-0.03, 0.011, 0.01 + r + 1e-4), velocity(0.5, -0.1, -0.1);
+  const dem::ContactParameters<Round> constants = {{2000.0, 0.1, 0.5}, {0.3, 2000.0, 0.05, 0.975}};
+
+  dem::World<Round> grain(options({0.3, 0, -g}, 1e-5)), body(options({0.3, 0, -g}, 1e-5));
+  grain.set_contact(constants);
+  body.set_contact(constants);
+  grain.add_surface(grain.ground(), block);
+  dem::SpeciesOptions o;
+  o.density = density;
+  const auto p = grain.add_particle({grain.add_species(Sphere(r), o), at, velocity});
+  const auto b = body.machine().add_body(dem::mbd::sphere_body("ball", r, density).at(at).moving(velocity));
+  body.add_body_contact(body.add_surface(body.ground(), block), body.add_surface(b, surface::Sphere(r)));
+  double apart = 0.0, spin_apart = 0.0;
+  for (int k = 0; k < 220; ++k) {
+    REQUIRE(grain.run(200));
+    REQUIRE(body.run(200));
+    const dem::Body& ball = body.machine().body(b);
+    apart = std::max(apart, (grain.position(p) - ball.position()).norm());
+    spin_apart = std::max(spin_apart, (grain.angular_velocity(p) - ball.angular_velocity()).norm());
+  }
+  // It slid, rolled, and fell off an edge; rounding differs between the two loops.
+  CHECK(grain.position(p).z() < 0.0);
+  CHECK(apart < 1e-9);
+  CHECK(spin_apart < 1e-6);
+}
