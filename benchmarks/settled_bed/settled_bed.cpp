@@ -1,9 +1,10 @@
-// Whole-scene benchmark: a settled bed of cubes of 8 spheres, or of spheres, timed for a number of steps and threads.
-// The works are those that the tables in benchmarks/RESULTS.md give for other programs: linear spring and dashpot,
-// restitution 0.3, friction 0.4 with history.
+// Whole-scene benchmark: a settled bed of cubes (of 8 spheres, superquadrics or polyhedra), or of spheres, timed for a
+// number of steps and threads. The works are those that the tables in benchmarks/RESULTS.md give for other programs:
+// linear spring and dashpot, restitution 0.3, friction 0.4 with history.
 
 #include <dem/dem.hpp>
 #include <dem/io/ascii_table.hpp>
+#include <dem/shape/polyhedra.hpp>
 
 #include <CLI/CLI.hpp>
 
@@ -21,18 +22,36 @@ struct Cubes : dem::Model {
   using Shape = dem::shape::SphereCluster<8>;
   using Integrator = dem::integrator::SymplecticEuler;
   static Shape grain() { return dem::shape::cube8(1.2e-3); }
-  static constexpr double width = 0.045, pitch = 0.0045;
+  static constexpr double width = 0.045, pitch = 0.0045, stiffness = 2000.0;
   static constexpr int grains = 4000, per_row = 10;
+};
+struct SharpCubes : Cubes {
+  using Shape = dem::shape::Polyhedron;
+  static Shape grain() { return dem::shape::cube(1.2e-3); }
 };
 struct Spheres : dem::Model {
   using Integrator = dem::integrator::SymplecticEuler;
   static Shape grain() { return dem::shape::Sphere(1e-3); }
-  static constexpr double width = 0.040, pitch = 0.0025;
+  static constexpr double width = 0.040, pitch = 0.0025, stiffness = 2000.0;
   static constexpr int grains = 20000, per_row = 16;
 };
 
+/// Rounded cubes as wide as those of spheres, with a contact a pair or with points.
+template <class S>
+struct RoundedCubes : Cubes {
+  using Shape = S;
+  static Shape grain() { return Shape(dem::Vec3::Constant(1.2e-3), dem::Vec3::Constant(8)); }
+};
+struct Superquadrics : RoundedCubes<dem::shape::Superquadric> {};
+struct Points : RoundedCubes<dem::shape::SuperquadricPoints> {
+  static constexpr double stiffness = 500.0;  // of a mean point; up to 25 touch at once
+  static Shape grain() {
+    return Shape(dem::Vec3::Constant(1.2e-3), dem::Vec3::Constant(8), 4, dem::shape::PointArea::relative);
+  }
+};
+
 struct Settings {
-  std::string work = "both";
+  std::string work = "both", shape = "cube8";
   int steps = 5000, settle = 60000, repeats = 3, threads = 0;
   double skin = 0.0;
 };
@@ -40,7 +59,7 @@ struct Settings {
 /// Constants of a contact with restitution 0.3 for an effective mass (kg): C = 2 zeta sqrt(K m), zeta = 0.3579.
 template <class Model>
 dem::ContactParameters<Model> contact(double effective_mass) {
-  const double stiffness = 2000.0, damping = 2.0 * 0.3579 * std::sqrt(stiffness * effective_mass);
+  const double stiffness = Model::stiffness, damping = 2.0 * 0.3579 * std::sqrt(stiffness * effective_mass);
   return {{stiffness, damping, 1.0}, {0.4, 2.0 / 7.0 * stiffness, 0.5 * damping, 1.0}};
 }
 
@@ -144,8 +163,11 @@ void run(const char* name, const Settings& settings) {
 
 int main(int argc, char** argv) {
   Settings settings;
-  CLI::App app("Times settled beds of cubes of 8 spheres and of spheres.");
+  CLI::App app("Times settled beds of cubes and of spheres.");
   app.add_option("--work", settings.work, "cubes, spheres or both")->check(CLI::IsMember({"cubes", "spheres", "both"}));
+  app.add_option("--shape", settings.shape,
+                 "of the cubes: cube8 (eight spheres), polyhedron, superquadric (one contact a pair) or points")
+      ->check(CLI::IsMember({"cube8", "polyhedron", "superquadric", "points"}));
   app.add_option("--steps", settings.steps, "steps that are timed")->check(CLI::PositiveNumber);
   app.add_option("--settle", settings.settle, "steps to settle first")->check(CLI::NonNegativeNumber);
   app.add_option("--repeats", settings.repeats, "how often the steps are timed; the median counts");
@@ -153,7 +175,11 @@ int main(int argc, char** argv) {
   app.add_option("--skin", settings.skin, "reach of the neighbour list in m (0: automatic)");
   CLI11_PARSE(app, argc, argv);
   try {
-    if (settings.work != "spheres") run<Cubes>("cubes", settings);
+    const bool cubes = settings.work != "spheres";
+    if (cubes && settings.shape == "cube8") run<Cubes>("cubes", settings);
+    if (cubes && settings.shape == "polyhedron") run<SharpCubes>("polyhedra", settings);
+    if (cubes && settings.shape == "superquadric") run<Superquadrics>("superquadrics, one contact a pair", settings);
+    if (cubes && settings.shape == "points") run<Points>("superquadrics, 98 points each", settings);
     if (settings.work != "cubes") run<Spheres>("spheres", settings);
   } catch (const std::exception& error) {
     fmt::print(stderr, "settled_bed: {}\n", error.what());

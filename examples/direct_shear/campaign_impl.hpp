@@ -34,12 +34,12 @@ inline void measure(PackingResult& p) {
   p.height = dem::soil::height_percentile(packing.grains, 0.95) + packing.half_edge;
 }
 
-template <class Integrator>
+template <class Integrator, class Shape>
 void test_load(const Settings& s, Campaign& campaign, LoadResult& r, dem::io::Progress& progress) {
   const auto& grains = campaign.packing.packing.grains;
   double highest = 0.0;
   for (const auto& g : grains) highest = std::max(highest, g.position.z());
-  highest += dem::soil::cube_bounding_radius(s.half_edge);
+  highest += Grain<Shape>::make(s.half_edge).bounding_radius();
   if (highest > s.box_height) {
     throw Stopped(
         fmt::format("the specimen is {:.1f} mm tall, but the box {:.1f} mm; take fewer grains, a denser packing, "
@@ -47,7 +47,8 @@ void test_load(const Settings& s, Campaign& campaign, LoadResult& r, dem::io::Pr
                     1e3 * highest, 1e3 * s.box_height));
   }
   const double seam = s.seam_height > 0.0 ? s.seam_height : 0.5 * campaign.packing.height;
-  Rig<Integrator> rig(s, {.seam = seam, .wall_top = s.box_height, .lid_mass = r.load, .lid_low = highest}, grains);
+  Rig<Integrator, Shape> rig(s, {.seam = seam, .wall_top = s.box_height, .lid_mass = r.load, .lid_low = highest},
+                             grains);
   campaign.time_step_limit = rig.world.stable_time_step().contact;
   rig.world.prepare();
   campaign.time_step = rig.world.time_step();
@@ -86,7 +87,7 @@ inline void save_samples(const Settings& s, const LoadResult& r) {
   }
 }
 
-template <class Integrator>
+template <class Integrator, class Shape>
 void run_campaign(const Settings& s, Campaign& campaign) {
   const bool read = !s.packing_file.empty();
   const int making = read ? 0 : s.packing == "random" && s.relative_density == 0.0 ? 1 : 2;
@@ -97,7 +98,7 @@ void run_campaign(const Settings& s, Campaign& campaign) {
   dem::io::Progress progress(options);
   try {
     if (read) campaign.packing.packing = read_packing(s);
-    else campaign.packing = make_packing<Integrator>(s, progress);
+    else campaign.packing = make_packing<Integrator, Shape>(s, progress);
     measure(campaign.packing);
     if (making > 0) progress.finish(fmt::format("solid fraction {:.3f}", campaign.packing.solid_fraction));
     if (!read) dem::soil::save_packing(campaign.packing.packing, s.save_packing);
@@ -114,7 +115,7 @@ void run_campaign(const Settings& s, Campaign& campaign) {
                         1e-3 * r.normal_stress, r.inertial_number, s.shear_speed * 1e-3 / r.inertial_number));
       }
       try {
-        test_load<Integrator>(s, campaign, r, progress);
+        test_load<Integrator, Shape>(s, campaign, r, progress);
       } catch (...) {
         evaluate(r, s);
         save_samples(s, r);

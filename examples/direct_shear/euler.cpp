@@ -2,4 +2,5 @@
 
 #include <dem/integrator/symplectic_euler.hpp>
 
-template void direct_shear::run_campaign<dem::integrator::SymplecticEuler>(const Settings&, Campaign&);
+template void direct_shear::run_campaign<dem::integrator::SymplecticEuler, dem::shape::SphereCluster<8>>(
+    const Settings&, Campaign&);

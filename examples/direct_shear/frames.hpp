@@ -2,7 +2,9 @@
 
 #include "settings.hpp"
 
+#include <dem/io/polyhedron_mesh.hpp>
 #include <dem/io/vtk.hpp>
+#include <dem/io/vtk_grains.hpp>
 #include <dem/soil/coordination.hpp>
 #include <dem/surface/box.hpp>
 
@@ -25,7 +27,15 @@ class Frames {
     next_ = displacement + interval_;
     write_grains(world);
     write_boxes(world);
-    if (spheres_) write_spheres(world);
+    if constexpr (std::is_same_v<typename World::Shape, dem::shape::Superquadric>) {
+      const auto path = series_.next_path("superquadrics");
+      dem::io::write_vtk_grains(path, world, 4, {.single_precision = true, .time_s = world.time()});
+      series_.add(world.time(), path, "superquadrics");
+    } else if constexpr (std::is_same_v<typename World::Shape, dem::shape::Polyhedron>) {
+      write_polyhedra(world);
+    } else if (spheres_) {
+      write_spheres(world);
+    }
   }
 
  private:
@@ -81,6 +91,25 @@ class Frames {
         {{"radius_m", 1, radius}, {"velocity_m_s", 3, dem::io::flat(velocity)}, {"grain", 1, grain}},
         {.single_precision = true, .time_s = world.time()});
     series_.add(world.time(), path, "spheres");
+  }
+
+  /// Every grain as what it is.
+  template <class World>
+  void write_polyhedra(const World& world) {
+    const auto mesh = dem::io::polyhedron_mesh(world.species(dem::SpeciesId(0)).shape);
+    std::vector<dem::io::BodyMesh> grains;
+    std::vector<dem::Vec3> velocity, force;
+    for (std::size_t i = 0; i < world.particle_count(); ++i) {
+      const dem::ParticleId p(i);
+      grains.push_back({&mesh, world.position(p), world.rotation(p)});
+      velocity.push_back(world.velocity(p));
+      force.push_back(world.force(p));
+    }
+    const auto path = series_.next_path("polyhedra");
+    dem::io::write_vtk_bodies(
+        path, grains, {{"velocity_m_s", 3, dem::io::flat(velocity)}, {"net_contact_force_N", 3, dem::io::flat(force)}},
+        {.single_precision = true, .time_s = world.time()});
+    series_.add(world.time(), path, "polyhedra");
   }
 
   template <class World>

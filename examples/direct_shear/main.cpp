@@ -8,6 +8,9 @@
 #include <dem/integrator/symplectic_euler.hpp>
 #include <dem/integrator/velocity_verlet.hpp>
 #include <dem/io/file.hpp>
+#include <dem/shape/polyhedron.hpp>
+#include <dem/shape/sphere_cluster.hpp>
+#include <dem/shape/superquadric.hpp>
 
 #include <fmt/format.h>
 
@@ -23,9 +26,15 @@ int main(int argc, char** argv) {
     dem::io::write_file(settings.output / "settings.toml", config);
 
     Campaign campaign;
-    if (settings.integrator == "verlet") run_campaign<integrator::VelocityVerlet>(settings, campaign);
-    else if (settings.integrator == "euler") run_campaign<integrator::SymplecticEuler>(settings, campaign);
-    else run_campaign<integrator::PredictorCorrector>(settings, campaign);
+    using Cube8 = dem::shape::SphereCluster<8>;
+    using Polyhedron = dem::shape::Polyhedron;
+    using Superquadric = dem::shape::Superquadric;
+    if (settings.shape == "polyhedron") run_campaign<integrator::VelocityVerlet, Polyhedron>(settings, campaign);
+    else if (settings.shape == "superquadric")
+      run_campaign<integrator::VelocityVerlet, Superquadric>(settings, campaign);
+    else if (settings.integrator == "verlet") run_campaign<integrator::VelocityVerlet, Cube8>(settings, campaign);
+    else if (settings.integrator == "euler") run_campaign<integrator::SymplecticEuler, Cube8>(settings, campaign);
+    else run_campaign<integrator::PredictorCorrector, Cube8>(settings, campaign);
 
     report(settings, campaign, "direct_shear --config settings.toml");
     if (!campaign.problem.empty()) fmt::print(stderr, "direct_shear: {}\n", campaign.problem);

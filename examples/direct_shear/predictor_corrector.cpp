@@ -2,4 +2,5 @@
 
 #include <dem/integrator/predictor_corrector.hpp>
 
-template void direct_shear::run_campaign<dem::integrator::PredictorCorrector>(const Settings&, Campaign&);
+template void direct_shear::run_campaign<dem::integrator::PredictorCorrector, dem::shape::SphereCluster<8>>(
+    const Settings&, Campaign&);

@@ -2,7 +2,9 @@
 
 #include "settings.hpp"
 
+#include <dem/shape/polyhedra.hpp>
 #include <dem/shape/sphere_cluster.hpp>
+#include <dem/shape/superquadric.hpp>
 #include <dem/soil/packing.hpp>
 #include <dem/world/world.hpp>
 
@@ -13,9 +15,29 @@
 
 namespace direct_shear {
 
-template <class I>
+/// The cube of half-edge h (m) as grains of a shape.
+template <class Shape>
+struct Grain;
+template <>
+struct Grain<dem::shape::SphereCluster<8>> {
+  static auto make(double half_edge) { return dem::shape::cube8(half_edge); }
+};
+template <>
+struct Grain<dem::shape::Polyhedron> {
+  static auto make(double half_edge) { return dem::shape::cube(half_edge); }
+};
+
+/// Rounded: exponents of 8 leave 94 % of the cube's volume.
+template <>
+struct Grain<dem::shape::Superquadric> {
+  static auto make(double half_edge) {
+    return dem::shape::Superquadric(dem::Vec3::Constant(half_edge), dem::Vec3::Constant(8.0));
+  }
+};
+
+template <class I, class S>
 struct Sand : dem::Model {
-  using Shape = dem::shape::SphereCluster<8>;
+  using Shape = S;
   using Surfaces = dem::surface::Set<dem::surface::Box>;
   using Normal = dem::contact::Penalty;
   using Friction = dem::friction::AsperitySpring;
@@ -35,10 +57,10 @@ struct RigShape {
 /// The rig of thesis table 3.1: four bodies (ground, bottom box, top box, lid), three prismatic joints, three linear
 /// actuators (shaker, shearing, lid), full of grains. The floor's upper side is z = 0, the middle of the bottom box is
 /// x = y = 0, and shearing moves the top box along +x. Walls are solid boxes, so rim and ledges are solid too.
-template <class Integrator>
+template <class Integrator, class Shape>
 class Rig {
  public:
-  using World = dem::World<Sand<Integrator>>;
+  using World = dem::World<Sand<Integrator, Shape>>;
   static constexpr double lid_thickness = 0.01;  ///< m
   static constexpr double box_mass = 2.0;        ///< kg, of each half; the test is too slow for it to matter
 
@@ -50,7 +72,7 @@ class Rig {
                .threads = s.threads}),
         settings_(s),
         shape_(shape) {
-    species_ = world.add_species(dem::shape::cube8(s.half_edge), {.material = "grain", .density = s.density});
+    species_ = world.add_species(Grain<Shape>::make(s.half_edge), {.material = "grain", .density = s.density});
     set_friction(s.friction, s.wall_friction);
     build_boxes();
     build_lid();

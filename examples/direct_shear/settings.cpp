@@ -37,6 +37,10 @@ void add_specimen_options(CLI::App& app, Settings& s) {
   const auto add = [&](const char* name, auto& value, const char* text) {
     return app.add_option(name, value, text)->group(group)->capture_default_str();
   };
+  add("--shape", s.shape,
+      "of the cubes: cube8 (eight spheres), polyhedron (sharp edges) or superquadric (rounded); the last two with "
+      "--integrator verlet")
+      ->check(CLI::IsMember({"cube8", "polyhedron", "superquadric"}));
   add("--half-edge", s.half_edge, "half edge of a cube [m]; 0: by size (full: 0.0009)");
   add("--grains", s.grains, "number of grains; 0: the fill of 14256 of half-edge 0.0009");
   add("--box-length", s.box_length, "inner length along the shearing direction [m]");
@@ -46,7 +50,7 @@ void add_specimen_options(CLI::App& app, Settings& s) {
   add("--wall-thickness", s.wall_thickness, "[m]; 0: 15 mm or twice the travel");
   add("--lid-clearance", s.lid_clearance, "lid to wall, in radii of a grain's sphere");
   add("--packing", s.packing, "random or poured")->check(CLI::IsMember({"random", "poured"}));
-  add("--relative-density", s.relative_density, "of a random packing, 0 (as it settles) to 1");
+  add("--relative-density", s.relative_density, "of a random packing, 0 (as it settles) to 1, in the limits of cube8");
   add("--tilt", s.tilt_deg, "of the poured block about each axis [deg]");
   add("--shake-amplitude", s.shake_amplitude, "[m]");
   add("--shake-frequency", s.shake_frequency, "[Hz]");
@@ -171,6 +175,9 @@ void resolve(Settings& s) {
   dem::require_within(s.lid_clearance, 0.0, 0.99, "--lid-clearance");
   dem::require_within(s.residual_share, 0.01, 1.0, "--residual-share");
   dem::require_within(s.travel, 0.0, 0.5 * s.box_length, "--travel (at most half the box length)");
+  if (s.shape != "cube8" && s.integrator != "verlet") {
+    dem::fail("--integrator is '{}', but --shape {} runs with verlet only", s.integrator, s.shape);
+  }
   if (s.packing_only) s.loads.clear();
   for (const double load : s.loads) dem::require_positive(load, "a mass of --loads", "kg");
   if (s.save_packing.empty()) s.save_packing = (s.output / "packing.txt").string();
@@ -183,7 +190,10 @@ std::vector<std::pair<std::string, std::string>> list_settings(const Settings& s
   const auto mm = [](double metres) { return fmt::format("{:g} mm", 1e3 * metres); };
   return {
       {"size", s.size},
-      {"grains", fmt::format("{} cubes of 8 spheres", s.grains)},
+      {"grains", fmt::format("{} {}", s.grains,
+                             s.shape == "cube8"        ? "cubes of 8 spheres"
+                             : s.shape == "polyhedron" ? "polyhedral cubes"
+                                                       : "superquadric cubes")},
       {"half-edge", mm(s.half_edge)},
       {"grain density", fmt::format("{:g} kg/m³", s.density)},
       {"box", fmt::format("{:g} x {:g} x {:g} mm", 1e3 * s.box_length, 1e3 * s.box_width, 1e3 * s.box_height)},

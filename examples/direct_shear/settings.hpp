@@ -14,6 +14,9 @@ namespace direct_shear {
 struct Settings {
   std::string size = "quick";  ///< smoke, quick or full
 
+  std::string shape =
+      "cube8";  ///< of the cubical grains: cube8 (eight spheres), polyhedron (sharp edges), superquadric (rounded)
+
   // Specimen and box (thesis section 3.2: 60 x 60 x 50 mm, 14,256 cubes of half-edge 0.9 mm)
   double half_edge = 0.0;       ///< m; 0: by size
   std::uint64_t grains = 0;     ///< 0: as many as fill the box as high as 14,256 of half-edge 0.9 mm do

@@ -105,17 +105,18 @@ void densify(Rig& rig, const Settings& s, dem::io::Progress& progress) {
 
 /// Pours the grains, makes them as dense as asked for, and takes them out as a packing. The walls are as high as the
 /// grains need while they are poured: a collar.
-template <class Integrator>
+template <class Integrator, class Shape>
 PackingResult make_packing(const Settings& s, dem::io::Progress& progress) {
   const bool poured = s.packing == "poured";
   const auto grains = poured ? dem::soil::tilted_block(s.grains, s.half_edge, s.box_length, s.box_width,
                                                        s.tilt_deg * std::numbers::pi / 180.0)
-                             : dem::soil::random_lattice(s.grains, s.half_edge, s.box_length, s.box_width, s.seed);
+                             : dem::soil::random_lattice(s.grains, s.half_edge, s.box_length, s.box_width, s.seed, 0.05,
+                                                         Grain<Shape>::make(s.half_edge).bounding_radius());
   double highest = s.box_height;
   for (const auto& g : grains) highest = std::max(highest, g.position.z() + 3.0 * s.half_edge);
   const double solid_height = static_cast<double>(s.grains) * dem::soil::cube_volume(s.half_edge) / s.area();
   const double seam = s.seam_height > 0.0 ? s.seam_height : 0.5 * solid_height / dem::soil::solid_fraction_at(0.5);
-  Rig<Integrator> rig(s, {.seam = seam, .wall_top = highest, .lid_low = highest}, grains);
+  Rig<Integrator, Shape> rig(s, {.seam = seam, .wall_top = highest, .lid_low = highest}, grains);
   rig.hold_lid();
 
   progress.begin("pour");
