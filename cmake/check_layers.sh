@@ -3,8 +3,8 @@
 # headers never include each other in a circle. Usage: check_layers.sh [folder that holds dem/]
 set -euo pipefail
 
-layers="core math contact friction shape surface broadphase integrator exec state pipeline mbd world"
-layers+=" io soil terramechanics vehicle"
+layers="core math contact friction rolling cohesion shape surface broadphase integrator exec state pipeline mbd world"
+layers+=" io soil terramechanics"
 
 cd "${1:-$(dirname "$0")/../include}"
 
