@@ -130,12 +130,136 @@ TEST_CASE("a machine that blows up says which body, when, and what to change") {
   Machine<PredictorCorrector> m;
   const BodyId b = m.add_body(brick("pendulum bob", {1, 0, 0}));
   m.add_joint(spherical("pivot", m.ground(), b, {0, 0, 0}).with_stiffness(1e8, 0).with_damping(0, 0));
+  check_refused([&] { m.run(1.0, 1e-2); }, "time step 0.01 s", "largest stable one", "spherical joint 'pivot'",
+                "allow_unstable_time_step");
+  m.allow_unstable_time_step = true;
   const MachineReport report = m.run(1.0, 1e-2);
   CHECK_FALSE(report.ok);
   CHECK(report.body == b);
   CHECK(report.time < 1.0);
   CHECK_THAT(report.text, Contains("body 'pendulum bob' blew up at t = ") && Contains("spherical joint 'pivot'") &&
                               Contains("smaller time step"));
+}
+
+TEST_CASE("a blow-up at a stable time step is not blamed on it, and a NaN is named") {
+  const auto report_of = [](auto&& build) {
+    Machine<PredictorCorrector> m;
+    const BodyId cart = m.add_body(brick("cart", {0, 0, 0}));
+    const JointId guide = m.add_joint(prismatic("guide", m.ground(), cart, {0, 0, 0}, X));
+    build(m, cart, guide);
+    const MachineReport report = m.run(0.1, 1e-4);
+    CHECK_FALSE(report.ok);
+    return report.text;
+  };
+  const auto nan = Signal::function([](double t) { return t > 0.05 ? std::sqrt(-t) : 0.0; });
+  CHECK_THAT(report_of([](auto& m, BodyId b, JointId) {
+               m.add_load(applied_force("push", b, {0, 0, 0}, X, 1e12));
+             }),
+             Contains("The time step, 0.0001 s, was stable at the start of the run (up to ") &&
+                 Contains("check the applied forces"));
+  CHECK_THAT(report_of([&](auto& m, BodyId, JointId j) {
+               m.add_actuator(joint_actuator("ram", j, 1e3, 10.0, nan).with_max_force(5.0));
+             }),
+             Contains("body 'cart' blew up at t = 0.0") &&
+                 Contains("set point of actuator 'ram' is not a number: check the function"));
+  CHECK_THAT(report_of([&](auto& m, BodyId b, JointId) { m.add_load(applied_torque("twist", b, X, nan)); }),
+             Contains("size of load 'twist' is not a number"));
+  CHECK_THAT(report_of([&](auto& m, BodyId, JointId) {
+               m.add_motion(prescribed_position("lift", m.add_fixed_body("wall"), Z, nan));
+             }),
+             Contains("body 'wall' blew up") && Contains("value of motion 'lift' is not a number"));
+}
+
+TEST_CASE("a machine alone takes its substeps, and derives for them") {
+  // A weight that hangs on a derived joint: k = 0.5 (0.7/h)^2 of one mass, so four substeps make it 16 times as stiff.
+  const auto hang = [](int substeps) {
+    Machine<SymplecticEuler> m;
+    m.substeps = substeps;
+    const BodyId b = m.add_body(given_body("b", 2.0, Vec3(0.1, 0.1, 0.1)));
+    const JointId weld = m.add_joint(fixed("weld", m.ground(), b, {0, 0, 0}));
+    REQUIRE(m.run(0.5, 1e-3));
+    CHECK(m.time() == Approx(0.5));
+    CHECK(m.reaction(weld).force.z == Approx(2.0 * 9.81).epsilon(1e-6));
+    return m.violation(weld).displacement;
+  };
+  CHECK(hang(1) / hang(4) == Approx(16.0).epsilon(1e-6));
+
+  // Changed between runs, they are derived for anew; a step that is too large for one is none for eight.
+  Machine<SymplecticEuler> m;
+  const BodyId b = m.add_body(given_body("b", 2.0, Vec3(0.1, 0.1, 0.1)));
+  const JointId weld = m.add_joint(fixed("weld", m.ground(), b, {0, 0, 0}));
+  m.run(0.01, 1e-3);
+  const double k = m.joint(weld).k;
+  m.substeps = 4;
+  CHECK_FALSE(m.is_initialised());
+  m.run(0.01, 1e-3);
+  CHECK(m.joint(weld).k == Approx(16.0 * k));
+  CHECK(m.time() == Approx(0.02));
+  const BodyId c = m.add_body(given_body("c", 2.0, Vec3(0.1, 0.1, 0.1)).at({1, 0, 0}));
+  m.add_spring(spring("stiff", m.ground(), {0.5, 0, 0}, c, {1, 0, 0}, 2e8));  // 1e4 rad/s: 2e-4 s
+  m.substeps = 1;
+  for (int again = 0; again < 2; ++again) {
+    check_refused([&] { m.step(1e-3); }, "spring 'stiff'", "raise substeps (now 1)");
+  }
+  m.substeps = 8;
+  CHECK(m.step(1e-3));
+  check_refused([&] { m.run(-1.0, 1e-3); }, "time to run is -1 s");
+  check_refused([&] { m.run(std::nan(""), 1e-3); }, "time to run is nan s");
+}
+
+TEST_CASE("joints that cannot be meant are refused") {
+  Machine<PredictorCorrector> m;
+  const BodyId a = m.add_body(brick("a", {0, 0, 0}));
+  const BodyId wall = m.add_fixed_body("wall");
+  const auto refused = [&](const JointSpec& s) { return message_of([&] { m.add_joint(s); }); };
+  CHECK_THAT(
+      refused(revolute("hinge", m.ground(), a, X, Z).with_limits(0.5, 1.0)),
+      Contains("limits of revolute joint 'hinge' are 0.5 to 1, but its angle starts at 0") && Contains("starting_at"));
+  m.add_joint(revolute("hinge", m.ground(), a, X, Z).starting_at(0.7).with_limits(0.5, 1.0));
+  CHECK_THAT(refused(revolute("nan", m.ground(), a, X, Z).starting_at(std::nan(""))), Contains("starts at nan"));
+  JointSpec rod = distance("rod", m.ground(), Vec3::Zero(), a, X);
+  rod.length = 1.001;
+  CHECK_THAT(refused(rod), Contains("is 1.001 m long, but its points are 1 m apart") && Contains("under load"));
+  rod.tolerance = 0.01;
+  CHECK(m.joint(m.add_joint(rod)).length == 1.001);
+  CHECK_THAT(refused(fixed("bolt", m.ground(), wall, X)), Contains("'ground' and 'wall', which are both fixed"));
+  m.add_joint(free_joint("gauge", m.ground(), wall, X, Z));
+  // `own` is another name for a coordinate, not another coordinate.
+  CHECK_THAT(refused(revolute("pin", m.ground(), a, X, Z).with_limits(-1, 1).with_limits(Freedom::turn, -1, 2)),
+             Contains("two pairs of limits for its angle"));
+  const JointId slide = m.add_joint(prismatic("slide", m.ground(), a, X, X).with_limits(-1, 1));
+  CHECK(m.stops(slide, Freedom::slide) == m.stops(slide));
+  CHECK(m.stops(slide) != nullptr);
+  check_refused(
+      [&] {
+        m.add_coupling({"gear", {{slide, 1.0}, {slide, 2.0, Freedom::slide}}});
+      },
+      "same coordinate twice");
+  CHECK_THAT(refused(revolute("dry", m.ground(), a, X, Z).with_friction({.coefficient = 0.1})),
+             Contains("JointFriction::radius") && Contains("'dry' is 0 m"));
+  CouplingSpec teeth = gear("teeth", slide, JointId(0), 2.0);
+  teeth.stiffness = -1.0;
+  check_refused([&] { m.add_coupling(teeth); }, "stiffness of coupling 'teeth' is -1");
+}
+
+TEST_CASE("an id of another machine is refused by every accessor") {
+  Machine<PredictorCorrector> m;
+  m.add_body(brick("a", {0, 0, 0}));
+  check_refused([&] { m.body(BodyId(7)); }, "body 7 was asked for", "has 1 of them");
+  check_refused([&] { m.coordinate(JointId(1)); }, "joint 1");
+  check_refused([&] { m.reaction(JointId()); }, "joint (never added)");
+  check_refused([&] { m.violation(JointId(2)); }, "joint 2");
+  check_refused([&] { m.stops(JointId(2)); }, "joint 2");
+  check_refused([&] { m.set_friction_preload(JointId(2), 1.0); }, "joint 2");
+  check_refused([&] { m.actuator(ActuatorId(0)); }, "actuator 0");
+  check_refused([&] { m.set_target(ActuatorId(0), 1.0); }, "actuator 0");
+  check_refused([&] { m.set_throttle(ActuatorId(0), 1.0); }, "actuator 0");
+  check_refused([&] { m.switch_on(MotionId(3)); }, "prescribed motion 3");
+  check_refused([&] { m.set_load(LoadId(1), 1.0); }, "load 1");
+  check_refused([&] { m.spring(SpringId(0)); }, "spring 0");
+  check_refused([&] { m.coupling(CouplingId(0)); }, "coupling 0");
+  check_refused([&] { m.sensor(SensorId(0)); }, "sensor 0");
+  check_refused([&] { m.connection_position(ConnectionId(0)); }, "connection point 0");
 }
 
 TEST_CASE("a recorder samples joints, bodies and the user's own numbers") {

@@ -36,6 +36,9 @@ TEST_CASE("a closed mesh has the mass properties of the solid it encloses") {
   std::vector<std::array<std::uint32_t, 3>> inside_out = faces;
   for (auto& f : inside_out) std::swap(f[0], f[1]);
   CHECK_THAT(message_of([&] { mesh_mass(corners, inside_out, 10.0); }), Contains("counter-clockwise"));
+  std::vector<std::array<std::uint32_t, 3>> open(faces.begin(), faces.end() - 1);
+  CHECK_THAT(message_of([&] { mesh_mass(corners, open, 10.0); }),
+             Contains("not closed: 3 of its edges belong to one triangle only"));
   CHECK_THAT(message_of([&] {
                mesh_mass(corners, std::vector<std::array<std::uint32_t, 3>>{{0, 1, 9}}, 1.0);
              }),
@@ -77,6 +80,13 @@ TEST_CASE("impossible bodies are refused in words") {
              Contains("not a right-handed rotation"));
   CHECK_THAT(message_of([&] { box_body("b", {1, 0, 1}, 1000.0); }), Contains("smallest edge of a box is 0 m"));
   CHECK_THAT(message_of([&] { sphere_body("b", 1, -1.0); }), Contains("density is -1"));
+  CHECK_THAT(message_of([&] { m.add_body(brick("arm", Vec3(0, std::nan(""), 0))); }),
+             Contains("body 'arm' was given (0, nan, 0)") && Contains("must be finite"));
+  CHECK_THAT(message_of([&] { m.add_body(brick("arm", X).moving(Vec3(HUGE_VAL, 0, 0))); }), Contains("must be finite"));
+  Mat3 half = Vec3(1.0, 1.2, 1.4).asDiagonal();
+  half(1, 0) = 0.1;  // without its mirror image
+  CHECK_THAT(message_of([&] { m.add_body(given_body("arm", 1.0, half)); }),
+             Contains("inertia tensor is not symmetric") && Contains("differ by 0.1"));
   m.add_body(brick("arm", X));
   CHECK_THAT(message_of([&] { m.add_body(brick("arm", Y)); }), Contains("two bodies are named 'arm'"));
   CHECK_THAT(message_of([&] { m.body_named("leg"); }), Contains("no body is named 'leg'"));

@@ -16,16 +16,12 @@ struct Bent {
   Machine<PredictorCorrector> machine;
   BodyId shaft;
   JointId cross;
-  Vec3 xa, ya;
 
   Bent(double about_x, double about_y) {
     machine.gravity.setZero();
     shaft = machine.add_body(given_body("shaft", 1.0, Vec3(0.1, 0.1, 0.1)));
     cross = machine.add_joint(universal("cross", machine.ground(), shaft, {0, 0, 0}, Z, Z));
-    xa = to_eigen(machine.joint(cross).axes_a.x);
-    ya = to_eigen(machine.joint(cross).axes_a.y);
-    const Mat3 bent = turn(about_x, xa) * turn(about_y, ya);
-    machine.body(shaft).motion.rotation = from_eigen(Mat3(bent * machine.body(shaft).rotation()));
+    machine.body(shaft).motion.rotation = from_eigen(Mat3(turn(about_x, X) * turn(about_y, Y)));
   }
 };
 
@@ -39,10 +35,10 @@ TEST_CASE("a universal joint reports the two angles of its cross, their speeds a
       CHECK(u.machine.coordinate(u.cross, Freedom::bend_y) == Approx(y).margin(1e-14));
       // The angle between the shafts: cos = cos x cos y. Near 0 the arc cosine is good to the root of rounding only.
       CHECK(u.machine.coordinate(u.cross, Freedom::bend) == Approx(std::acos(std::cos(x) * std::cos(y))).margin(2e-8));
-      // Angular velocity 2 about xa and 3 about yb: those are the speeds.
+      // Angular velocity 2 about x and 3 about yb: those are the speeds.
       auto& body = u.machine.body(u.shaft);
-      const Vec3 yb = turn(x, u.xa) * u.ya;
-      body.motion.angular_velocity = from_eigen(Vec3(body.rotation().transpose() * (2.0 * u.xa + 3.0 * yb)));
+      const Vec3 yb = turn(x, X) * Y;
+      body.motion.angular_velocity = from_eigen(Vec3(body.rotation().transpose() * (2.0 * X + 3.0 * yb)));
       CHECK(u.machine.speed(u.cross, Freedom::bend_x) == Approx(2.0).epsilon(1e-13));
       CHECK(u.machine.speed(u.cross, Freedom::bend_y) == Approx(3.0).epsilon(1e-13));
     }
@@ -55,11 +51,25 @@ TEST_CASE("a planar joint and a point on a plane report where they are, along x 
   const JointId table = m.add_joint(planar("table", m.ground(), puck, {0, 0, 0}, Z));
   m.body(puck).motion.position = {0.3, -0.2, 0};
   m.body(puck).motion.velocity = {1, 2, 0};
-  const Vec3 x = to_eigen(m.joint(table).axes_a.x), y = to_eigen(m.joint(table).axes_a.y);
-  CHECK(m.coordinate(table, Freedom::slide_x) == Approx(x.dot(Vec3(0.3, -0.2, 0))));
-  CHECK(m.coordinate(table, Freedom::slide_y) == Approx(y.dot(Vec3(0.3, -0.2, 0))));
-  CHECK(m.speed(table, Freedom::slide_x) == Approx(x.dot(Vec3(1, 2, 0))));
-  CHECK(m.speed(table, Freedom::slide_y) == Approx(y.dot(Vec3(1, 2, 0))));
+  CHECK(m.coordinate(table, Freedom::slide_x) == Approx(0.3));
+  CHECK(m.coordinate(table, Freedom::slide_y) == Approx(-0.2));
+  CHECK(m.speed(table, Freedom::slide_x) == Approx(1.0));
+  CHECK(m.speed(table, Freedom::slide_y) == Approx(2.0));
+}
+
+TEST_CASE("a distance joint reports its length, and nothing may drive it") {
+  Machine<PredictorCorrector> m;
+  const BodyId bob = m.add_body(brick("bob", {3, 0, 4}));
+  const JointId rod = m.add_joint(distance("rod", m.ground(), {0, 0, 0}, bob, {3, 0, 4}));
+  m.body(bob).motion.velocity = {1, 2, 0};
+  CHECK(m.coordinate(rod) == Approx(5.0));
+  CHECK(m.speed(rod) == Approx(0.6));
+  check_refused([&] { m.add_actuator(joint_actuator("ram", rod, 1, 1)); }, "'ram'", "length of a distance joint");
+  // Joints without a coordinate of their own say which they have.
+  const JointId ball = m.add_joint(spherical("ball", m.ground(), bob, {3, 0, 4}));
+  CHECK(m.coordinate(ball, Freedom::bend) == Approx(0.0).margin(1e-12));
+  check_refused([&] { m.coordinate(ball); }, "'ball'", "name one of its freedoms: bend");
+  check_refused([&] { m.speed(rod, Freedom::slide); }, "'slide' of a distance joint", "only: length");
 }
 
 TEST_CASE("stops hold the slide of a cylindrical joint, the cone of a ball joint and a universal joint's arms") {
@@ -75,10 +85,9 @@ TEST_CASE("stops hold the slide of a cylindrical joint, the cone of a ball joint
       m.add_joint(spherical("socket", m.ground(), ball, {0, 3, 0}).with_limits(Freedom::bend, -1.0, 0.5));
   const JointId cross =
       m.add_joint(universal("cross", m.ground(), shaft, {0, 6, 0}, Z, Z).with_limits(Freedom::bend_y, -0.3, 0.4));
-  const Vec3 yb = to_eigen(m.joint(cross).axes_a.y);
   m.add_load(applied_force("push", rod, {0, 0, 0}, Z, 4.0));
   m.add_load(applied_torque("tilt", ball, Vec3(1, 1, 0), 3.0));
-  m.add_load(applied_torque("twist", shaft, yb, -2.0));
+  m.add_load(applied_torque("twist", shaft, Y, -2.0));
   m.run(3.0, 1e-3);
   // At rest against its stop each coordinate is at the limit, less what the load presses into the derived spring, and
   // the stop's force balances the load.
@@ -123,8 +132,7 @@ TEST_CASE("friction brakes the bending of a universal joint") {
   const BodyId shaft = m.add_body(given_body("shaft", 1.0, Vec3(0.1, 0.1, 0.1)));
   const JointId cross = m.add_joint(universal("cross", m.ground(), shaft, {0, 0, 0}, Z, Z)
                                         .with_friction({.coefficient = 0.5, .radius = 0.02, .preload = 100.0}));
-  const Vec3 xa = to_eigen(m.joint(cross).axes_a.x);
-  m.body(shaft).motion.angular_velocity = from_eigen(Vec3(2.0 * xa));
+  m.body(shaft).motion.angular_velocity = {2.0, 0, 0};
   m.run(0.1, 1e-4);
   CHECK(m.speed(cross, Freedom::bend_x) == Approx(1.0).epsilon(0.01));  // the spring takes some steps to build up
   m.run(0.4, 1e-4);

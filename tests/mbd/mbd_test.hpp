@@ -10,6 +10,7 @@
 #include <string>
 
 #include "catch.hpp"
+#include "core/error_of.hpp"
 
 namespace dem::mbd::test {
 
@@ -20,17 +21,6 @@ using integrator::VelocityVerlet;
 
 inline constexpr double pi = std::numbers::pi;
 inline const Vec3 X = Vec3::UnitX(), Y = Vec3::UnitY(), Z = Vec3::UnitZ();
-
-/// The text of the Error that f throws, or an empty text.
-template <class F>
-std::string message_of(F&& f) {
-  try {
-    f();
-  } catch (const Error& e) {
-    return e.what();
-  }
-  return {};
-}
 
 inline BodySpec brick(const std::string& name, const Vec3& at, double mass = 1.0) {
   return given_body(name, mass, Vec3(mass * Vec3(0.02, 0.03, 0.04))).at(at);

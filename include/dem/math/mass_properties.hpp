@@ -27,9 +27,16 @@ struct PrincipalAxes {
 };
 
 /// Finds the principal axes. A tensor that is diagonal already (to 1e-12) keeps its axes, so that a part that was drawn
-/// along its axes stays as drawn.
+/// along its axes stays as drawn. Throws Error unless the tensor is symmetric (to 1e-9).
 inline PrincipalAxes principal_axes(const Mat3& inertia) {
   const double scale = inertia.cwiseAbs().maxCoeff();
+  const double skew = (inertia - inertia.transpose()).cwiseAbs().maxCoeff();
+  if (!(skew <= 1e-9 * scale)) {  // also if an element is not a number
+    fail(
+        "an inertia tensor is not symmetric: elements across its diagonal differ by {:g} where the largest is {:g}, "
+        "allowed is 1e-9 of it; give both halves of the tensor, with the products of inertia negative",
+        skew, scale);
+  }
   const Mat3 off = inertia - Mat3(inertia.diagonal().asDiagonal());
   if (off.cwiseAbs().maxCoeff() <= 1e-12 * scale) return {inertia.diagonal(), Mat3::Identity()};
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(inertia);

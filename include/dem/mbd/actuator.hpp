@@ -25,8 +25,8 @@ struct ActuatorSpec {
   double speed_gain = 0.0;                                     ///< c, N s/m or N m s/rad
   Signal set_point = 0.0;                                      ///< m or rad, with its rate
   double max_force = std::numeric_limits<double>::infinity();  ///< N or N m; the force is cut at +- this
-  Curve torque_curve = {};  ///< a motor: N m over rad/s (or N over m/s), times the throttle
-  double throttle = 0.0;    ///< -1 .. 1
+  Curve torque_curve = {};  ///< a motor: N m over rad/s (or N over m/s) at full throttle
+  double throttle = 0.0;    ///< -1 .. 1; below 0 the motor runs the other way, with the mirrored curve
   bool on = true;
   Freedom freedom = Freedom::own;  ///< the joint's coordinate that it drives
 
@@ -86,7 +86,10 @@ inline ActuatorSpec rotational_actuator(std::string name, BodyId a, const Vec3& 
           .set_point = std::move(set_point)};
 }
 /// A motor on a joint: torque (N m) over speed (rad/s), times a throttle between -1 and 1 that is set while running.
+/// In reverse it is the same motor the other way round: torque = throttle curve(-speed).
 inline ActuatorSpec motor(std::string name, JointId joint, Curve torque_over_speed, double throttle = 1.0) {
+  if (torque_over_speed.empty()) fail("motor '{}' has no torque curve; give it points (speed, torque)", name);
+  require_within(throttle, -1.0, 1.0, ("throttle of motor '" + name + "'").c_str());
   return {.name = std::move(name), .joint = joint, .torque_curve = std::move(torque_over_speed), .throttle = throttle};
 }
 
@@ -102,21 +105,6 @@ struct Actuator {
   double power() const { return force * speed; }  ///< W, delivered to the bodies
 };
 
-/// The coordinate "distance of two points", with the line between them as its axis.
-inline Coordinate distance_of(const Vector3<double>& point_a, const Vector3<double>& point_b, const Body& a,
-                              const Body& b) {
-  const Matrix3<double>&A = a.motion.rotation, &B = b.motion.rotation;
-  Coordinate q;
-  q.arm_b = B * point_b;
-  q.arm_a = A * point_a;
-  const Vector3<double> d = b.motion.position + q.arm_b - a.motion.position - q.arm_a;
-  q.value = norm(d);
-  q.axis = (1.0 / max(q.value, 1e-300)) * d;
-  q.speed = dot(q.axis, b.motion.velocity + cross(B * b.motion.angular_velocity, q.arm_b) - a.motion.velocity -
-                            cross(A * a.motion.angular_velocity, q.arm_a));
-  return q;
-}
-
 DEM_FLATTEN inline void apply_actuator(Actuator& u, const std::vector<Joint>& joints, std::vector<Body>& bodies,
                                        double time) {
   Body &a = bodies[u.a], &b = bodies[u.b];
@@ -130,9 +118,12 @@ DEM_FLATTEN inline void apply_actuator(Actuator& u, const std::vector<Joint>& jo
     u.target = u.spec.set_point(time);
     u.force = -u.spec.position_gain * (q.value - u.target.value) - u.spec.speed_gain * (q.speed - u.target.rate);
   } else {
-    u.force = u.spec.throttle * u.spec.torque_curve(q.speed);
+    // Reverse is the mirror image of forward: the curve is read at the speed in the direction of the torque.
+    u.force = u.spec.throttle * u.spec.torque_curve(u.spec.throttle < 0.0 ? -q.speed : q.speed);
   }
-  u.force = max(-u.spec.max_force, min(u.spec.max_force, u.force));
+  // Compared such that a NaN stays one and reaches the report.
+  if (u.force > u.spec.max_force) u.force = u.spec.max_force;
+  if (u.force < -u.spec.max_force) u.force = -u.spec.max_force;
   q.apply(u.force, a, b);
 }
 
@@ -163,6 +154,7 @@ inline SpringSpec spring(std::string name, BodyId a, const Vec3& at_a, BodyId b,
 inline SpringSpec spring_table(std::string name, BodyId a, const Vec3& at_a, BodyId b, const Vec3& at_b,
                                double free_length, const Curve& force_over_compression, double damping = 0.0) {
   require_positive(free_length, "free length of a spring", "m");
+  require_non_negative(damping, "damping of a spring", "N s/m");
   std::vector<std::pair<double, double>> points;
   for (const auto& [x, f] : force_over_compression.points()) points.emplace_back(free_length - x, f);
   return {.name = std::move(name),

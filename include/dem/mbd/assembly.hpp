@@ -42,7 +42,7 @@ class Assembly {
     const auto number = static_cast<std::uint32_t>(parts_.joints.size());
     const std::size_t stops = parts_.stops.size();
     try {
-      detail::add_stops(parts_, spec, number);
+      detail::add_stops(parts_, spec, j, number);
       detail::add_rubbing(parts_, spec, number);
     } catch (...) {  // a refused joint leaves nothing behind
       parts_.stops.resize(stops);
@@ -55,17 +55,12 @@ class Assembly {
   }
   ActuatorId add_actuator(ActuatorSpec spec) {
     const std::string who = fmt::format("actuator '{}'", spec.name);
-    require_non_negative(spec.position_gain, ("position gain of " + who).c_str(), "N/m or N m/rad");
-    require_non_negative(spec.speed_gain, ("speed gain of " + who).c_str(), "N s/m or N m s/rad");
-    if (!(spec.max_force > 0.0)) {
-      fail("the largest force of {} is {:g} N or N m, but must be greater than zero; leave it out for no limit", who,
-           spec.max_force);
-    }
+    detail::check_actuator(spec, who);
     Actuator u;
     if (spec.three_points) spec = on_three_points(std::move(spec), who);
     if (spec.joint.valid()) {
       const Joint& j = known_joint(parts_, spec.joint, who);
-      require_freedom(j.kind, spec.freedom, who);
+      spec.freedom = require_freedom(j.kind, spec.freedom, who);
       u.a = j.a;
       u.b = j.b;
     } else {
@@ -107,14 +102,7 @@ class Assembly {
     return MotionId(parts_.motions.size() - 1);
   }
   SensorId add_sensor(SensorSpec spec) {
-    const std::size_t count = spec.target == SensorTarget::joint      ? parts_.joints.size()
-                              : spec.target == SensorTarget::actuator ? parts_.actuators.size()
-                              : spec.target == SensorTarget::drive    ? parts_.motions.size()
-                                                                      : parts_.bodies.size();
-    if (spec.index >= count) {
-      fail("sensor '{}' measures number {}, but the machine has {} of that kind; use the id that add_... returned",
-           spec.name, spec.index, count);
-    }
+    detail::check_sensor(parts_, spec);
     WindowAverage average(spec.window);
     parts_.sensors.push_back({std::move(spec), average});
     return SensorId(parts_.sensors.size() - 1);
@@ -125,8 +113,8 @@ class Assembly {
   /// All bodies, in the order of their ids. Mass, inertia and `fixed` are read when a run starts (initialise).
   std::vector<Body>& bodies() { return parts_.bodies; }
   const std::vector<Body>& bodies() const { return parts_.bodies; }
-  Body& body(BodyId id) { return parts_.bodies[id.index()]; }
-  const Body& body(BodyId id) const { return parts_.bodies[id.index()]; }
+  Body& body(BodyId id) { return known(parts_.bodies, id, "body"); }
+  const Body& body(BodyId id) const { return known(parts_.bodies, id, "body"); }
   /// The body of that name. Throws Error if there is none.
   BodyId body_named(const std::string& name) const {
     for (std::size_t i = 0; i < parts_.bodies.size(); ++i) {
@@ -136,18 +124,20 @@ class Assembly {
   }
   /// Global position (m) of a point of the body's reference frame.
   Vec3 reference_point(BodyId id, const Vec3& point) const {
-    const BuiltBody& built = parts_.built[id.index()];
+    const BuiltBody& built = known(parts_.built, id, "body");
     return body(id).point(built.reference_origin + built.reference_axes * point);
   }
   /// Reference frame -> global.
-  Mat3 reference_rotation(BodyId id) const { return body(id).rotation() * parts_.built[id.index()].reference_axes; }
+  Mat3 reference_rotation(BodyId id) const {
+    return body(id).rotation() * known(parts_.built, id, "body").reference_axes;
+  }
   Vec3 connection_position(ConnectionId id) const {
-    const Connection& c = parts_.connections[id.index()];
+    const Connection& c = known(parts_.connections, id, "connection point");
     return body(c.body).point(c.point);
   }
 
   /// A coordinate and its speed, one of freedoms_of(the joint's kind). Without a name the joint's own: the rotation
-  /// (rad, over whole turns) of one that turns, else the slide (m).
+  /// (rad, over whole turns) of one that turns, the slide (m) of one that slides, the length (m) of a distance joint.
   double coordinate(JointId id, Freedom freedom = Freedom::own) const { return coordinate_now(id, freedom).value; }
   double speed(JointId id, Freedom freedom = Freedom::own) const { return coordinate_now(id, freedom).speed; }
   /// The slide along z (m, m/s), e.g. the second coordinate of a cylindrical joint.
@@ -157,11 +147,16 @@ class Assembly {
     const Joint& j = joint(id);
     return violation_of(j, parts_.bodies[j.a], parts_.bodies[j.b]);
   }
-  /// Force (N) and torque (N m, about the joint's point) that the joint puts on its body b: springs and dampers.
-  Wrench reaction(JointId id) const { return {joint(id).force, joint(id).torque}; }
-  const Joint& joint(JointId id) const { return parts_.joints[id.index()]; }
+  /// Force (N) and torque (N m, about the joint's point) that the joint puts on its body b: its springs and dampers,
+  /// stops and friction. Actuators, couplings and drives that act on its coordinates report their own.
+  Wrench reaction(JointId id) const {
+    joint(id);
+    return reaction_of(parts_, id.index());
+  }
+  const Joint& joint(JointId id) const { return known(parts_.joints, id, "joint"); }
   /// Stops of a joint's coordinate, or its friction; nullptr if it has none.
   const JointStops* stops(JointId id, Freedom freedom = Freedom::own) const {
+    freedom = resolved(joint(id).kind, freedom);
     for (const JointStops& e : parts_.stops) {
       if (e.joint == id.value && e.freedom == freedom) return &e;
     }
@@ -175,6 +170,7 @@ class Assembly {
   }
   /// Sets the preload (N) of a joint's friction while running: a brake. Throws Error if the joint has no friction.
   void set_friction_preload(JointId id, double newtons) {
+    joint(id);
     for (JointRubbing& e : parts_.rubbing) {
       if (e.joint == id.value) {
         e.preload = require_non_negative(newtons, "preload of a joint's friction", "N");
@@ -184,25 +180,27 @@ class Assembly {
     fail("joint '{}' has no friction to preload; add it with with_friction", parts_.joint_specs[id.index()].name);
   }
 
-  const Actuator& actuator(ActuatorId id) const { return parts_.actuators[id.index()]; }
-  /// Sets the set point (m or rad) and its rate from outside, for instance every step.
-  void set_target(ActuatorId id, double value, double rate = 0.0) {
-    parts_.actuators[id.index()].spec.set_point = Signal::held(value, rate);
+  const Actuator& actuator(ActuatorId id) const { return known(parts_.actuators, id, "actuator"); }
+  /// Sets the set point (m or rad) and its rate from outside, for instance every step. Throws Error unless finite.
+  void set_target(ActuatorId id, double value, double rate = 0.0) { set_target(id, Signal::held(value, rate)); }
+  void set_target(ActuatorId id, Signal signal) {
+    known(parts_.actuators, id, "actuator").spec.set_point = std::move(signal);
   }
-  void set_target(ActuatorId id, Signal signal) { parts_.actuators[id.index()].spec.set_point = std::move(signal); }
   void set_throttle(ActuatorId id, double throttle) {
-    parts_.actuators[id.index()].spec.throttle = require_within(throttle, -1.0, 1.0, "throttle of a motor");
+    known(parts_.actuators, id, "actuator").spec.throttle = require_within(throttle, -1.0, 1.0, "throttle of a motor");
   }
-  void switch_on(ActuatorId id, bool on = true) { parts_.actuators[id.index()].spec.on = on; }
-  void switch_on(MotionId id, bool on = true) { parts_.motions[id.index()].spec.on = on; }
-  void switch_on(LoadId id, bool on = true) { parts_.loads[id.index()].spec.on = on; }
-  void set_load(LoadId id, Signal size) { parts_.loads[id.index()].spec.size = std::move(size); }
-  void set_motion(MotionId id, Signal motion) { parts_.motions[id.index()].spec.motion = std::move(motion); }
+  void switch_on(ActuatorId id, bool on = true) { known(parts_.actuators, id, "actuator").spec.on = on; }
+  void switch_on(MotionId id, bool on = true) { known(parts_.motions, id, "prescribed motion").spec.on = on; }
+  void switch_on(LoadId id, bool on = true) { known(parts_.loads, id, "load").spec.on = on; }
+  void set_load(LoadId id, Signal size) { known(parts_.loads, id, "load").spec.size = std::move(size); }
+  void set_motion(MotionId id, Signal motion) {
+    known(parts_.motions, id, "prescribed motion").spec.motion = std::move(motion);
+  }
 
-  const Spring& spring(SpringId id) const { return parts_.springs[id.index()]; }
-  const Coupling& coupling(CouplingId id) const { return parts_.couplings[id.index()]; }
-  const PrescribedMotion& motion(MotionId id) const { return parts_.motions[id.index()]; }
-  const WindowAverage& sensor(SensorId id) const { return parts_.sensors[id.index()].average; }
+  const Spring& spring(SpringId id) const { return known(parts_.springs, id, "spring"); }
+  const Coupling& coupling(CouplingId id) const { return known(parts_.couplings, id, "coupling"); }
+  const PrescribedMotion& motion(MotionId id) const { return known(parts_.motions, id, "prescribed motion"); }
+  const WindowAverage& sensor(SensorId id) const { return known(parts_.sensors, id, "sensor").average; }
   const Parts& parts() const { return parts_; }
   Parts& parts() { return parts_; }
 
@@ -219,7 +217,9 @@ class Assembly {
   }
   Coordinate coordinate_now(JointId id, Freedom freedom) const {
     const Joint& j = joint(id);
-    return coordinate_of(j, parts_.bodies[j.a], parts_.bodies[j.b], freedom);
+    const std::string& name = parts_.joint_specs[id.index()].name;
+    return coordinate_of(j, parts_.bodies[j.a], parts_.bodies[j.b],
+                         known_freedom(j.kind, freedom, "a coordinate of '" + name + "'"));
   }
   /// A rotational actuator between three points acts on a free joint about the normal of their plane.
   ActuatorSpec on_three_points(ActuatorSpec spec, const std::string& who) {

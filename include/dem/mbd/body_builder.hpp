@@ -60,7 +60,8 @@ inline BodySpec cylinder_body(std::string name, double radius, double length, do
 inline BodySpec sphere_body(std::string name, double radius, double density) {
   return {.name = std::move(name), .mass_properties = sphere_mass(radius, density)};
 }
-/// A solid that a closed mesh encloses, in the frame of the mesh (kg/m^3). Throws Error if the mesh encloses no volume.
+/// A solid that a closed mesh encloses, in the frame of the mesh (kg/m^3). Throws Error if the mesh is open or encloses
+/// no volume.
 inline BodySpec mesh_body(std::string name, const IndexedMesh& mesh, double density) {
   return {.name = std::move(name), .mass_properties = mesh_mass(mesh, density)};
 }
@@ -77,7 +78,7 @@ struct BuiltBody {
 };
 
 /// Finds the principal axes and moves the reference frame's motion to the centre of mass. Throws Error if the body has
-/// no mass, an impossible inertia, or a rotation that is not one.
+/// no mass, an impossible inertia, a rotation that is not one, or a number that is not finite.
 inline BuiltBody build_body(const BodySpec& spec) {
   if (!((spec.rotation * spec.rotation.transpose() - Mat3::Identity()).norm() <= 1e-9) ||
       !(spec.rotation.determinant() > 0)) {
@@ -85,6 +86,14 @@ inline BuiltBody build_body(const BodySpec& spec) {
         "the rotation of body '{}' is not a right-handed rotation (its rows are not orthonormal): use "
         "Eigen::AngleAxisd or Quaternion::normalized() to make it",
         spec.name);
+  }
+  for (const Vec3* v : {&spec.position, &spec.velocity, &spec.angular_velocity, &spec.mass_properties.centre_of_mass}) {
+    if (!v->allFinite()) {
+      fail(
+          "body '{}' was given ({:g}, {:g}, {:g}) as its position, velocity, angular velocity or centre of mass, which "
+          "must be finite",
+          spec.name, v->x(), v->y(), v->z());
+    }
   }
   BuiltBody built;
   Body& b = built.body;

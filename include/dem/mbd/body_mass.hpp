@@ -2,6 +2,7 @@
 
 #include <dem/core/error.hpp>
 #include <dem/math/mass_properties.hpp>
+#include <dem/math/mesh_topology.hpp>
 
 #include <array>
 #include <cstdint>
@@ -66,13 +67,23 @@ inline BodyMass sphere_mass(double radius, double density) {
 }
 
 /// A closed triangle mesh (corners counter-clockwise seen from outside), of density in kg/m^3. Throws Error if a corner
-/// index is out of range or the volume is not positive.
+/// index is out of range, the volume is not positive, or the mesh is not closed: what an open one encloses is anything.
+inline BodyMass mesh_mass(const IndexedMesh& mesh, double density) {
+  const BodyMass mass = of_density(mesh_mass_properties(mesh), density);
+  const MeshTopology topology = topology_of(mesh);
+  if (!topology.closed() || !topology.oriented()) {
+    fail(
+        "a mesh of a body is not closed: {} of its edges belong to one triangle only, {} to three or more, and along "
+        "{} "
+        "the two triangles look different ways; merge its vertices and turn its triangles with repaired(), and close "
+        "the holes",
+        topology.boundary_edges, topology.non_manifold_edges, topology.inconsistent_edges);
+  }
+  return mass;
+}
 inline BodyMass mesh_mass(std::span<const Vec3> vertices, std::span<const std::array<std::uint32_t, 3>> triangles,
                           double density) {
-  return of_density(mesh_mass_properties(vertices, triangles), density);
-}
-inline BodyMass mesh_mass(const IndexedMesh& mesh, double density) {
-  return mesh_mass(mesh.vertices, mesh.triangles, density);
+  return mesh_mass(IndexedMesh{{vertices.begin(), vertices.end()}, {triangles.begin(), triangles.end()}}, density);
 }
 
 }  // namespace dem::mbd

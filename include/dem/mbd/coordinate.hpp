@@ -38,6 +38,21 @@ inline Coordinate rotation_of(const Joint& j, const Body& a, const Body& b) {
   return q;
 }
 
+/// The distance of two points (in body frames), with the line between them as its axis.
+inline Coordinate distance_of(const Vector3<double>& point_a, const Vector3<double>& point_b, const Body& a,
+                              const Body& b) {
+  const Matrix3<double>&A = a.motion.rotation, &B = b.motion.rotation;
+  Coordinate q;
+  q.arm_b = B * point_b;
+  q.arm_a = A * point_a;
+  const Vector3<double> d = b.motion.position + q.arm_b - a.motion.position - q.arm_a;
+  q.value = norm(d);
+  q.axis = (1.0 / max(q.value, 1e-300)) * d;
+  q.speed = dot(q.axis, b.motion.velocity + cross(B * b.motion.angular_velocity, q.arm_b) - a.motion.velocity -
+                            cross(A * a.motion.angular_velocity, q.arm_a));
+  return q;
+}
+
 /// Displacement of b's point along an axis (x, y or z) of a's joint frame.
 inline Coordinate displacement_along(const Vector3<double>& axis_in_a, const Joint& j, const Body& a, const Body& b) {
   const Matrix3<double>&A = a.motion.rotation, &B = b.motion.rotation;
@@ -95,11 +110,14 @@ inline Coordinate coordinate_of(const Joint& j, const Body& a, const Body& b, Fr
     case Freedom::slide: return displacement_of(j, a, b);
     case Freedom::slide_x: return displacement_along(j.axes_a.x, j, a, b);
     case Freedom::slide_y: return displacement_along(j.axes_a.y, j, a, b);
+    case Freedom::length: return distance_of(j.point_a, j.point_b, a, b);
     case Freedom::bend: return bend_of(j, a, b);
     case Freedom::bend_x: return bend_x_of(j, a, b);
     case Freedom::bend_y: return bend_y_of(j, a, b);
-    default: return turns(j.kind) ? rotation_of(j, a, b) : displacement_of(j, a, b);
+    case Freedom::own: break;
   }
+  const Freedom own = resolved(j.kind, freedom);
+  return own == Freedom::own ? displacement_of(j, a, b) : coordinate_of(j, a, b, own);
 }
 
 /// How far a joint is from holding what it should: m, and rad for small angles.

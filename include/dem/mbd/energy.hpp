@@ -33,11 +33,14 @@ inline double elastic_energy(const Joint& j, const Body& a, const Body& b) {
   const double bend[3] = {1.0 - dots(x.x, y.x), 1.0 - dots(x.y, y.y), 1.0 - dots(x.z, y.z)};
   switch (align_of(j.kind)) {
     case Align::parallel: energy += j.kr * bend[2]; break;
-    case Align::locked: {
-      const Vector3<double> s = j.kind == JointKind::bushing ? j.kr3 : Vector3<double>{j.kr, j.kr, j.kr};
-      energy += 0.5 * ((s.y + s.z - s.x) * bend[0] + (s.z + s.x - s.y) * bend[1] + (s.x + s.y - s.z) * bend[2]);
+    case Align::locked:
+      if (j.kind == JointKind::bushing) {
+        const Vector3<double> r = rotation_vector(A * x.x, A * x.y, A * x.z, B * y.x, B * y.y, B * y.z);
+        energy += 0.5 * (j.kr3.x * r.x * r.x + j.kr3.y * r.y * r.y + j.kr3.z * r.z * r.z);
+      } else {
+        energy += 0.5 * j.kr * (bend[0] + bend[1] + bend[2]);
+      }
       break;
-    }
     case Align::cross:
     case Align::constant_velocity: energy += 0.5 * j.kr * v.rotation * v.rotation; break;
     case Align::nothing: break;

@@ -16,7 +16,7 @@ inline void sample_sensors(Parts& m, double dt) {
     switch (s.spec.target) {
       case SensorTarget::contacts: w = m.outside[i]; break;
       case SensorTarget::total: w = {m.bodies[i].force, m.bodies[i].torque}; break;
-      case SensorTarget::joint: w = {m.joints[i].force, m.joints[i].torque}; break;
+      case SensorTarget::joint: w = reaction_of(m, i); break;
       case SensorTarget::actuator: w.force.x = m.actuators[i].force; break;
       case SensorTarget::drive: w.force.x = m.motions[i].drive.force; break;
     }
@@ -34,7 +34,7 @@ DEM_FLATTEN inline void add_forces(Parts& m, double time, double dt, bool is_las
     m.spin[i] = b.motion.rotation * b.motion.angular_velocity;
     m.outside[i] = {b.force, b.torque};
   }
-  for (const Load& load : m.loads) apply_load(load, m.bodies, time);
+  for (Load& load : m.loads) apply_load(load, m.bodies, time);
   for (Joint& j : m.joints) apply_penalty(j, m.bodies[j.a], m.bodies[j.b], m.spin[j.a], m.spin[j.b], followed);
   for (JointRubbing& e : m.rubbing) {
     const Joint& j = m.joints[e.joint];

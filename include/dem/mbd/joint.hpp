@@ -5,6 +5,7 @@
 // stiffness k, is exactly Hold::point with k and Align::parallel with k h^2, evaluated in closed form.
 
 #include <dem/core/macros.hpp>
+#include <dem/mbd/bushing.hpp>
 #include <dem/mbd/joint_spec.hpp>
 #include <dem/state/body.hpp>
 
@@ -55,7 +56,7 @@ DEM_HOT void act(Body& a, Body& b, const Vector3<double>& ra, const Vector3<doub
 /// The penalty force of a joint. Springs are the gradient of an energy, so that without damping energy is kept:
 ///   point  k/2 |d|^2   line  k/2 |d - z z.d|^2   plane  k/2 (z.d)^2   length  k/2 (|d| - l)^2, d = x_b - x_a
 ///   parallel  kr (1 - z_a.z_b)   locked  kr/2 sum(1 - e_a.e_b)   cross  kr/2 (x_a.y_b)^2
-///   constant velocity  kr/8 (y_a.x_b - x_a.y_b)^2
+///   constant velocity  kr/8 (y_a.x_b - x_a.y_b)^2   bushing  see bushing.hpp
 /// wa, wb: rad/s, global.
 template <Hold hold, Align align>
 DEM_HOT void penalty(Joint& j, Body& a, Body& b, const Vector3<double>& wa, const Vector3<double>& wb, double dt) {
@@ -93,14 +94,14 @@ DEM_HOT void penalty(Joint& j, Body& a, Body& b, const Vector3<double>& wa, cons
     j.angle_estimate += dt * spin;
   } else if constexpr (align == Align::locked) {
     const V xa = A * j.axes_a.x, ya = A * j.axes_a.y;
-    const V tx = cross(B * j.axes_b.x, xa), ty = cross(B * j.axes_b.y, ya), tz = cross(B * j.axes_b.z, za);
+    const V xb = B * j.axes_b.x, yb = B * j.axes_b.y, zb = B * j.axes_b.z;
     if constexpr (hold == Hold::bushing) {
-      // Weights for which small rotations about x, y, z meet the stiffness asked for.
-      const V s = j.kr3;
-      t = (0.5 * (s.y + s.z - s.x)) * tx + (0.5 * (s.z + s.x - s.y)) * ty + (0.5 * (s.x + s.y - s.z)) * tz -
-          (j.cr3.x * dot(xa, w)) * xa - (j.cr3.y * dot(ya, w)) * ya - (j.cr3.z * dot(za, w)) * za;
+      const V r = rotation_vector(xa, ya, za, xb, yb, zb);
+      const V spring = rotation_vector_torque(r, {j.kr3.x * r.x, j.kr3.y * r.y, j.kr3.z * r.z});
+      t = (spring.x - j.cr3.x * dot(xa, w)) * xa + (spring.y - j.cr3.y * dot(ya, w)) * ya +
+          (spring.z - j.cr3.z * dot(za, w)) * za;
     } else {
-      t = (0.5 * j.kr) * (tx + ty + tz) - j.cr * w;
+      t = (0.5 * j.kr) * (cross(xb, xa) + cross(yb, ya) + cross(zb, za)) - j.cr * w;
     }
   } else if constexpr (align == Align::cross) {
     const V xa = A * j.axes_a.x, yb = B * j.axes_b.y;

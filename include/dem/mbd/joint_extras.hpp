@@ -13,13 +13,14 @@ struct JointStops {
   double lower = 0, upper = 0;        ///< rad or m
   double stiffness = 0, damping = 0;  ///< N/m or N m/rad, N s/m or N m s/rad
   double force = 0;                   ///< N or N m, what the stop pushes with
+  Vector3<double> axis = {0, 0, 0};   ///< global: force times this is the force (N) or torque (N m) on b
 };
 
 /// The friction of a joint, ready to run.
 struct JointRubbing {
   std::uint32_t joint = 0;
   friction::AsperitySpring::Parameters<double> law = {};
-  double radius = 1, preload = 0, lever = 0;  ///< m, N, m
+  double radius = 1, preload = 0, lever = 0;  ///< m, N, m; a joint that only slides needs no radius
   friction::AsperitySpring::History<double> committed = {{0, 0, 0}};
   Vector3<double> force = {0, 0, 0};   ///< N, on b, global; sliding joints
   Vector3<double> torque = {0, 0, 0};  ///< N m, on b, global; joints that turn or bend
@@ -29,13 +30,12 @@ struct JointRubbing {
 DEM_FLATTEN inline void apply_stops(JointStops& e, const Joint& j, Body& a, Body& b) {
   const Coordinate q = coordinate_of(j, a, b, e.freedom);
   e.force = 0.0;
-  if (q.value < e.lower) {
-    e.force = max(0.0, e.stiffness * (e.lower - q.value) + e.damping * max(0.0, -q.speed));
-  } else if (q.value > e.upper) {
-    e.force = -max(0.0, e.stiffness * (q.value - e.upper) + e.damping * max(0.0, q.speed));
-  } else {
-    return;
-  }
+  if (q.value >= e.lower && q.value <= e.upper) return;
+  // Compared such that a NaN stays one and reaches the report.
+  const double side = q.value < e.lower ? 1.0 : -1.0;
+  const double depth = side * ((side > 0.0 ? e.lower : e.upper) - q.value), inward = -side * q.speed;
+  e.force = side * (e.stiffness * depth + (inward < 0.0 ? 0.0 : e.damping * inward));
+  e.axis = q.axis;
   q.apply(e.force, a, b);
 }
 
@@ -52,7 +52,6 @@ DEM_FLATTEN inline void apply_friction(JointRubbing& e, const Joint& j, Body& a,
   const V xa = A * j.axes_a.x, ya = A * j.axes_a.y, za = A * j.axes_a.z;
 
   contact::TangentialState<double> state{};
-  state.area = 1.0;
   state.normal_force = norm(j.force) + e.preload + (e.lever > 0.0 ? norm(j.torque) / e.lever : 0.0);
   state.time_step = slip_time;
   // Sliding velocity at the bearing surface in a's joint frame, so that the stretch turns with the joint.

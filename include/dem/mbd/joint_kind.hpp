@@ -37,23 +37,25 @@ inline const char* name_of(JointKind kind) {
 /// A coordinate of a joint, seen from body a: how far b's point has moved along an axis of a's joint frame, or how b
 /// has turned.
 enum class Freedom {
-  own,      ///< the rotation of joints that turn about z, else the displacement of those that slide along z
+  own,      ///< the rotation of joints that turn about z, the displacement of those that slide along z, or the length
   turn,     ///< rad, about z, over whole turns
   slide,    ///< m, along z
   slide_x,  ///< m
   slide_y,  ///< m
+  length,   ///< m, between the points of a distance joint; it is held, so it can only be read
   bend,     ///< rad, angle between the two z axes, 0 to pi
   bend_x,   ///< rad, of a universal joint: about x of body a, the arm of its cross on a
   bend_y    ///< rad, of a universal joint: about y of body b, the arm of its cross on b
 };
 
 inline const char* name_of(Freedom freedom) {
-  constexpr const char* names[] = {"coordinate", "angle", "slide", "slide_x", "slide_y", "bend", "bend_x", "bend_y"};
+  constexpr const char* names[] = {"coordinate", "angle", "slide",  "slide_x", "slide_y",
+                                   "length",     "bend",  "bend_x", "bend_y"};
   return names[static_cast<int>(freedom)];
 }
 constexpr bool is_rotation(Freedom f) { return f == Freedom::turn || f >= Freedom::bend; }
 
-/// The coordinates that a kind of joint leaves free, its own one first.
+/// The coordinates that a kind of joint has, its own one first.
 inline std::vector<Freedom> freedoms_of(JointKind kind) {
   using enum Freedom;
   switch (kind) {
@@ -68,6 +70,7 @@ inline std::vector<Freedom> freedoms_of(JointKind kind) {
     case JointKind::point_on_plane: return {slide_x, slide_y, bend};
     case JointKind::bushing: return {slide, slide_x, slide_y, bend};
     case JointKind::free: return {turn, slide, slide_x, slide_y, bend};
+    case JointKind::distance: return {length};
     default: return {};
   }
 }
@@ -82,23 +85,37 @@ constexpr bool slides(JointKind kind) {
   using enum JointKind;
   return kind == prismatic || kind == cylindrical || kind == point_on_line || kind == free;
 }
-inline bool has_freedom(JointKind kind, Freedom freedom) {
-  if (freedom == Freedom::own) return turns(kind) || slides(kind);
-  const std::vector<Freedom> list = freedoms_of(kind);
-  return std::find(list.begin(), list.end(), freedom) != list.end();
+/// The same coordinate by the name it has among freedoms_of(kind); `own` stays where a kind has no own one.
+constexpr Freedom resolved(JointKind kind, Freedom freedom) {
+  if (freedom != Freedom::own) return freedom;
+  if (kind == JointKind::distance) return Freedom::length;
+  return turns(kind) ? Freedom::turn : slides(kind) ? Freedom::slide : Freedom::own;
 }
 
-/// Throws Error, with the coordinates that there are, unless joints of this kind have that one.
-inline void require_freedom(JointKind kind, Freedom freedom, const std::string& who) {
-  if (has_freedom(kind, freedom)) return;
+/// The coordinate's resolved name. Throws Error, with the coordinates that there are, unless joints of this kind have
+/// that one.
+inline Freedom known_freedom(JointKind kind, Freedom freedom, const std::string& who) {
+  freedom = resolved(kind, freedom);
+  const std::vector<Freedom> list = freedoms_of(kind);
+  if (std::find(list.begin(), list.end(), freedom) != list.end()) return freedom;
   std::string known;
-  for (const Freedom f : freedoms_of(kind)) known += fmt::format("{}{}", known.empty() ? "" : ", ", name_of(f));
-  if (known.empty()) fail("{} acts on a {}, which leaves no coordinate free", who, name_of(kind));
+  for (const Freedom f : list) known += fmt::format("{}{}", known.empty() ? "" : ", ", name_of(f));
+  if (known.empty()) fail("{} refers to a {}, which leaves no coordinate free", who, name_of(kind));
   if (freedom == Freedom::own) {
-    fail("{} acts on a {}, which has no coordinate of its own; name one of its freedoms: {}", who, name_of(kind),
+    fail("{} refers to a {}, which has no coordinate of its own; name one of its freedoms: {}", who, name_of(kind),
          known);
   }
-  fail("{} acts on '{}' of a {}, which has only: {}", who, name_of(freedom), name_of(kind), known);
+  fail("{} refers to '{}' of a {}, which has only: {}", who, name_of(freedom), name_of(kind), known);
+}
+
+/// The same for what acts on a coordinate, which therefore has to be free.
+inline Freedom require_freedom(JointKind kind, Freedom freedom, const std::string& who) {
+  freedom = known_freedom(kind, freedom, who);
+  if (freedom == Freedom::length) {
+    fail("{} acts on the length of a distance joint, which the joint holds; use a linear_actuator or a spring instead",
+         who);
+  }
+  return freedom;
 }
 
 }  // namespace dem::mbd

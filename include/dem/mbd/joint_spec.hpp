@@ -25,7 +25,7 @@ struct JointLimits {
 /// preload.
 struct JointFriction {
   double coefficient = 0.0;
-  double radius = 1.0;   ///< m, of the bearing: turns sliding into rotation
+  double radius = 0.0;   ///< m, of the bearing: turns sliding into rotation; joints that turn or bend need it
   double preload = 0.0;  ///< N, added to the normal force; a brake is a joint with a preload
   double lever = 0.0;    ///< m, distance of the bearings: adds torque/lever; 0: left out
   double breaking_factor = 0.975;
@@ -41,6 +41,7 @@ struct JointSpec {
   BodyId a = {}, b = {};
   Vec3 at_a = Vec3::Zero(), at_b = Vec3::Zero();        ///< m, global at assembly: the joint's point on a and on b
   Vec3 axis_a = Vec3::UnitZ(), axis_b = Vec3::UnitZ();  ///< global at assembly: z of the joint's frame on a and on b
+  std::optional<Vec3> x_axis = {};                      ///< global at assembly: x of the joint's frame, see with_x
   ConnectionId connection_a = {}, connection_b = {};    ///< instead of a, at_a and b, at_b
   std::optional<double> stiffness = {};                 ///< N/m
   std::optional<double> damping = {};                   ///< N s/m
@@ -48,12 +49,20 @@ struct JointSpec {
   std::optional<double> rotational_damping = {};        ///< N m s/rad
   Vec3 bushing_stiffness = Vec3::Zero(), bushing_damping = Vec3::Zero();                        ///< N/m, N s/m
   Vec3 bushing_rotational_stiffness = Vec3::Zero(), bushing_rotational_damping = Vec3::Zero();  ///< N m/rad, N m s/rad
-  std::optional<double> length = {};     ///< m, of a distance joint; the distance at assembly if not given
+  std::optional<double> length = {};     ///< m, of a distance joint, within `tolerance`; that at assembly if not given
   double start = 0.0;                    ///< rad or m, the coordinate at assembly
   std::vector<JointLimits> limits = {};  ///< one for each coordinate that has stops
   std::optional<JointFriction> friction = {};
   double tolerance = 1e-6;  ///< m, within which the two points have to meet at assembly; rad for the axes
 
+  /// x of the joint's frame lies in the plane of z and this direction (global at assembly): the first direction of a
+  /// planar joint or a bushing, or the arm of a universal joint's cross on body a. Without it x is the global X made
+  /// square to z or, where z is within 26 deg of X, the global Y: for z along Z all three axes are the global ones.
+  JointSpec with_x(const Vec3& direction) const {
+    JointSpec s = *this;
+    s.x_axis = direction;
+    return s;
+  }
   JointSpec with_stiffness(double translation, double rotation) const {
     JointSpec s = *this;
     s.stiffness = translation;
@@ -118,7 +127,8 @@ inline JointSpec prismatic(std::string name, BodyId a, BodyId b, const Vec3& at,
 inline JointSpec planar(std::string name, BodyId a, BodyId b, const Vec3& at, const Vec3& normal) {
   return joint(JointKind::planar, std::move(name), a, b, at, normal);
 }
-/// Shaft a runs along axis_a and shaft b along axis_b, both pointing the way the torque goes.
+/// Shaft a runs along axis_a and shaft b along axis_b, both pointing the way the torque goes. with_x gives the arm of
+/// the cross on shaft a; two joints in a row cancel their ripple if the arms on the shaft between them are parallel.
 inline JointSpec universal(std::string name, BodyId a, BodyId b, const Vec3& at, const Vec3& axis_a,
                            const Vec3& axis_b) {
   JointSpec s = joint(JointKind::universal, std::move(name), a, b, at, axis_a);

@@ -34,14 +34,15 @@ struct Load {
   LoadSpec spec;
   Vector3<double> point = {};      ///< m, body frame
   Vector3<double> direction = {};  ///< global, or body frame if it follows the body
+  double size = 0.0;               ///< N or N m, in the newest force evaluation
 };
 
-inline void apply_load(const Load& load, std::vector<Body>& bodies, double time) {
+inline void apply_load(Load& load, std::vector<Body>& bodies, double time) {
   if (!load.spec.on) return;
   Body& b = bodies[load.spec.body.index()];
   const Matrix3<double>& r = b.motion.rotation;
-  const double size = load.spec.size(time).value;
-  const Vector3<double> f = size * (load.spec.follows_body ? r * load.direction : load.direction);
+  load.size = load.spec.size(time).value;
+  const Vector3<double> f = load.size * (load.spec.follows_body ? r * load.direction : load.direction);
   if (load.spec.is_torque) {
     b.torque += f;
   } else {

@@ -23,28 +23,30 @@ class Machine : public MachinePhases<I> {
 
  public:
   using Base::add_forces, Base::advance, Base::before_forces, Base::clear_forces, Base::design_for, Base::gravity,
-      Base::initialise, Base::prescribe, Base::report, Base::stage_time;
+      Base::initialise, Base::prescribe, Base::report, Base::stage_time, Base::substeps;
 
   // ------------------------------------------------------------------------------------------- without any world
 
-  /// One step of dt (s).
+  /// One step of dt (s), in `substeps` parts. Throws Error if it is above the stable time step.
   MachineReport step(double dt) {
     prepare(dt);
-    raw_step(dt);
+    whole_step(dt);
     return report();
   }
 
-  /// Steps of dt (s) for a duration (s; the number of steps is rounded). Stops at the first body that blows up.
+  /// Steps of dt (s) for a duration (s; the number of steps is rounded). Stops at the first body that blows up. Throws
+  /// Error if dt is above the stable time step.
   MachineReport run(double duration, double dt) {
     return run(duration, dt, [] {});
   }
   /// The same, calling `after_step()` after each step, e.g. to record.
   template <class F>
   MachineReport run(double duration, double dt, F&& after_step) {
+    require_non_negative(duration, "time to run", "s");
     prepare(dt);
-    const long steps = std::lround(duration / dt);
-    for (long s = 0; s < steps && !bad_.valid(); ++s) {
-      raw_step(dt);
+    const long long steps = std::llround(duration / dt);
+    for (long long s = 0; s < steps && !bad_.valid(); ++s) {
+      whole_step(dt);
       after_step();
     }
     return report();
@@ -104,15 +106,32 @@ class Machine : public MachinePhases<I> {
  private:
   void prepare(double dt) {
     require_positive(dt, "time step", "s");
-    if (!this->is_designed_ && (dt != design_dt_ || this->changed_)) {
-      derive_stiffness(parts_, dt);
+    const bool same = this->is_initialised();
+    if (!this->is_designed_ && (dt != design_dt_ || !same)) {
+      derive_stiffness(parts_, dt / this->checked_substeps());
       design_dt_ = dt;
     }
-    if (!this->is_initialised()) {
+    if (!same) {
       if (this->is_designed_) design_for(design_dt_);
       clear_forces();
       initialise(time_, gravity);
     }
+    if (!same) accepted_dt_ = 0.0;
+    if (dt != accepted_dt_) check_time_step(dt);
+    accepted_dt_ = dt;
+  }
+
+  void check_time_step(double dt) const {
+    const StableTimeStep limit = this->stable_time_step();
+    if (dt <= limit.dt || this->allow_unstable_time_step) return;
+    fail(
+        "time step {:g} s of a machine is above the largest stable one, {:.4g} s ({}); lower the time step or the "
+        "stiffness there, raise substeps (now {}), or set allow_unstable_time_step",
+        dt, limit.dt, limit.limited_by, substeps);
+  }
+
+  void whole_step(double dt) {
+    for (int s = 0; s < substeps; ++s) raw_step(dt / substeps);
   }
 
   void raw_step(double dt) {
@@ -158,6 +177,7 @@ class Machine : public MachinePhases<I> {
 
   std::vector<Wrench> corrected_contacts_;
   std::vector<Sensor> no_sensors_;
+  double accepted_dt_ = 0.0;  ///< s, that was compared with the stable time step
   Saved saved_;
 };
 

@@ -24,7 +24,9 @@ class MachinePhases : public Assembly {
  public:
   Vec3 gravity = {0.0, 0.0, -9.81};  ///< m/s^2; the world hands its own to initialise and advance
   double largest_speed = 1e5;        ///< m/s or rad/s; a body that is faster is reported as blown up
-  int substeps = 1;                  ///< machine steps within one step dt of the world, see advance_substeps
+  /// Machine steps within one step dt of the world (see advance_substeps) or of a machine alone.
+  int substeps = 1;
+  bool allow_unstable_time_step = false;  ///< a machine alone accepts a time step above the stable one
 
   double time() const { return time_; }  ///< s
 
@@ -43,9 +45,11 @@ class MachinePhases : public Assembly {
     return limit;
   }
 
-  /// False before initialise, and after a body, a joint or a coupling was added since: design_for and initialise are
-  /// due.
-  bool is_initialised() const { return initialised_ && !changed_; }
+  /// False before initialise, and after a body, a joint or a coupling was added or `substeps` was changed since:
+  /// design_for and initialise are due.
+  bool is_initialised() const { return initialised_ && !changed_ && substeps == initialised_substeps_; }
+  /// Whether what is derived belongs to steps of dt (s), and nothing was added since.
+  bool is_designed_for(double dt) const { return is_initialised() && dt == design_dt_; }
 
   /// Starts at `time`: the integrator's memory is filled from the forces at this state, with what the caller has
   /// already put on the bodies (the grains). Throws Error if a stiffness has to be derived and no time step is known.
@@ -78,6 +82,7 @@ class MachinePhases : public Assembly {
     contacts_ = earlier_contacts_ = parts_.outside;
     for (std::size_t i = 0; i < n; ++i) I::template initialise<double>(memory_[i], acceleration(i, from_eigen(g)));
     assembled_limit_ = stable_time_step();
+    initialised_substeps_ = substeps;
     initialised_ = true;
     changed_ = false;
   }
@@ -115,6 +120,7 @@ class MachinePhases : public Assembly {
     }
     if (tidy) settle_turns();
     gravity = g;
+    step_dt_ = dt * substeps;
     if (last) time_ += dt;
   }
 
@@ -123,6 +129,7 @@ class MachinePhases : public Assembly {
     const Vector3<double> g = from_eigen(gravity);
     for (PrescribedMotion& p : parts_.motions) {
       apply_motion(p, parts_.joints, parts_.bodies, time_at_end_of_step, dt, g);
+      if (p.spec.on) watch(p.spec.body.index());  // also of a fixed body, which nothing else moves
     }
   }
 
@@ -138,13 +145,18 @@ class MachinePhases : public Assembly {
     std::string text =
         fmt::format("body '{}' blew up at t = {:g} s: its speed is not finite or above largest_speed = {:g}. ",
                     parts_.bodies[bad_.index()].name, bad_time_, largest_speed);
-    if (limit.limited_by.empty()) {
-      text += "Check the applied forces and set points, or take a smaller time step.";
+    if (const std::string cause = not_a_number(); !cause.empty()) {
+      text += cause + " is not a number: check the function that gives it.";
+    } else if (limit.dt < step_dt_) {
+      text += fmt::format(
+          "The time step is {:g} s, but the stable one is {:g} s, limited by {}: take a smaller time step, or a lower "
+          "stiffness there.",
+          step_dt_, limit.dt, limit.limited_by);
     } else {
       text += fmt::format(
-          "The stable time step at assembly is {:g} s, limited by {}: take a smaller time step, or a "
-          "lower stiffness there.",
-          limit.dt, limit.limited_by);
+          "The time step, {:g} s, was stable at the start of the run{}: check the applied forces, set points and "
+          "contacts, or take a smaller one.",
+          step_dt_, limit.limited_by.empty() ? "" : fmt::format(" (up to {:g} s, by {})", limit.dt, limit.limited_by));
     }
     return {false, bad_time_, bad_, text};
   }
@@ -158,7 +170,8 @@ class MachinePhases : public Assembly {
   }
 
   std::vector<Memory> memory_;
-  double time_ = 0.0, design_dt_ = 0.0;
+  double time_ = 0.0, design_dt_ = 0.0, step_dt_ = 0.0;  ///< s; the last two with all substeps
+  int initialised_substeps_ = 0;
   bool initialised_ = false, is_designed_ = false;
   BodyId bad_;
   StableTimeStep assembled_limit_;
@@ -185,6 +198,20 @@ class MachinePhases : public Assembly {
   DEM_FLATTEN void move(std::size_t i, int stage, double dt, const Vector3<double>& g) {
     I::template after_forces<double>(stage, dt, parts_.bodies[i].motion, memory_[i],
                                      acceleration(i, g, integrator::gyroscopic_lead<I>(dt)));
+  }
+
+  /// The first signal that gave no number in the newest step, in words; empty if all did.
+  std::string not_a_number() const {
+    for (const Actuator& u : parts_.actuators) {
+      if (std::isnan(u.target.value + u.target.rate)) return fmt::format("The set point of actuator '{}'", u.spec.name);
+    }
+    for (const Load& l : parts_.loads) {
+      if (std::isnan(l.size)) return fmt::format("The size of load '{}'", l.spec.name);
+    }
+    for (const PrescribedMotion& p : parts_.motions) {
+      if (std::isnan(p.drive.value + p.drive.rate)) return fmt::format("The value of motion '{}'", p.spec.name);
+    }
+    return {};
   }
 
   void watch(std::size_t i) {

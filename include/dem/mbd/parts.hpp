@@ -41,6 +41,26 @@ struct Parts {
   std::vector<Wrench> outside;        ///< contact forces that the world added, about the centre of mass
 };
 
+/// What a joint puts on its body b, about the joint's point: its springs and dampers, its stops and its friction.
+inline Wrench reaction_of(const Parts& parts, std::size_t joint) {
+  Wrench w = {parts.joints[joint].force, parts.joints[joint].torque};
+  for (const JointRubbing& e : parts.rubbing) {
+    if (e.joint == joint) w = w + Wrench{e.force, e.torque};
+  }
+  for (const JointStops& e : parts.stops) {
+    if (e.joint == joint) (is_rotation(e.freedom) ? w.torque : w.force) += e.force * e.axis;
+  }
+  return w;
+}
+
+/// The item of an id, or an Error that names the kind of item.
+template <class Items, class Tag>
+auto& known(Items& items, Id<Tag> id, const char* what) {
+  if (id.index() < items.size()) return items[id.index()];
+  fail("{} {} was asked for, but the machine has {} of them; use the id that add_... returned", what,
+       id.valid() ? std::to_string(id.index()) : "(never added)", items.size());
+}
+
 /// The body of an id, or an Error that names who asked for it.
 inline const Body& known_body(const Parts& parts, BodyId id, const std::string& asker) {
   if (!id.valid()) fail("{} names a body that was never added; use the BodyId that add_body returned", asker);

@@ -23,10 +23,12 @@ class Signal {
   };
 
   Signal() = default;
-  Signal(double constant) : sample_{constant, 0.0} {}  // NOLINT: a number is a constant signal
+  /// Throws Error unless the number is finite, as do the functions below; what a function gives is seen by the run.
+  Signal(double constant) : sample_{finite(constant, "value of a constant signal"), 0.0} {}  // NOLINT: see above
 
   /// `from` until time t0 (s), then grows by `rate` per second, until t1 if that is given.
   static Signal ramp(double from, double rate, double t0 = 0.0, double t1 = 1e300) {
+    for (const double x : {from, rate, t0, t1}) finite(x, "value, rate or time of a ramp");
     return Signal([=](double t) -> Sample {
       if (t < t0) return {from, 0.0};
       if (t > t1) return {from + rate * (t1 - t0), 0.0};
@@ -36,6 +38,7 @@ class Signal {
 
   /// offset + amplitude sin(2 pi frequency t + phase); frequency in Hz, phase in rad.
   static Signal sine(double amplitude, double frequency, double phase = 0.0, double offset = 0.0) {
+    for (const double x : {amplitude, frequency, phase, offset}) finite(x, "constant of a sine");
     const double omega = 2.0 * std::numbers::pi * frequency;
     return Signal([=](double t) -> Sample {
       return {offset + amplitude * std::sin(omega * t + phase), amplitude * omega * std::cos(omega * t + phase)};
@@ -44,6 +47,7 @@ class Signal {
 
   /// From one value to another between t0 and t1 (s), without a jump in rate or acceleration: 10 s^3 - 15 s^4 + 6 s^5.
   static Signal smooth_step(double from, double to, double t0, double t1) {
+    for (const double x : {from, to, t0, t1}) finite(x, "value or time of a smooth step");
     if (!(t1 > t0)) fail("smooth_step ends at {:g} s, but must end after its start, {:g} s", t1, t0);
     return Signal([=](double t) -> Sample {
       if (t <= t0) return {from, 0.0};
@@ -56,6 +60,7 @@ class Signal {
 
   /// Straight lines between (time, value) points; the first value before the first time, the last one after the last.
   static Signal table(Curve curve) {
+    if (curve.empty()) fail("a table of a signal has no points, but needs at least 2; give it (time, value) pairs");
     return Signal([curve = curve.held_outside()](double t) -> Sample { return {curve(t), curve.slope(t)}; });
   }
 
@@ -74,13 +79,17 @@ class Signal {
   /// A value that stays, with a rate that is given: for set points that come from outside every step.
   static Signal held(double value, double rate) {
     Signal s(value);
-    s.sample_.rate = rate;
+    s.sample_.rate = finite(rate, "rate of a signal");
     return s;
   }
 
   Sample operator()(double time) const { return function_ ? function_(time) : sample_; }
 
  private:
+  static double finite(double x, const char* what) {
+    if (!std::isfinite(x)) fail("a {} is {:g}, but must be finite", what, x);
+    return x;
+  }
   explicit Signal(std::function<Sample(double)> f) : function_(std::move(f)) {}
 
   Sample sample_;
