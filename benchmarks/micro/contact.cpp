@@ -50,8 +50,7 @@ DEM_FLATTEN void run_law(benchmark::State& state, const typename Law::template P
 
 dem::contact::NormalState<Pack> normal_state(double low, double high) {
   std::mt19937 random(1);
-  return {
-      random_pack(random, low, high), random_pack(random, -0.1, 0.1), Pack(1.0), Pack(1e-3), Pack(1e-5), Pack(1e-5)};
+  return {random_pack(random, low, high), random_pack(random, -0.1, 0.1), Pack(1e-3), Pack(1e-5), Pack(1e-5)};
 }
 Vector3<Pack> random_vector(std::mt19937& random) {
   return {random_pack(random, -0.1, 0.1), random_pack(random, -0.1, 0.1), random_pack(random, -0.1, 0.1)};
@@ -75,7 +74,7 @@ template <class Law>
 void friction_law(benchmark::State& state, const typename Law::template Parameters<double>& p) {
   std::mt19937 random(1);
   const dem::contact::TangentialState<Pack> s{
-      random_vector(random), random_pack(random, 0, 1e-2), Pack(1e-5), Pack(1.0), Pack(1e-3), Pack(1e-5), Pack(1e-5)};
+      random_vector(random), random_pack(random, 0, 1e-2), Pack(1e-5), Pack(1e-3), Pack(1e-5), Pack(1e-5)};
   run_law<Law>(state, p, s, [](const auto& q, const auto& t, auto& h) { return Law::force(q, t, h); });
 }
 template <class Law>

@@ -18,8 +18,8 @@ const JKR::Parameters<double> sticky = {work, modulus};
 
 template <class Law>
 Attraction<double> force(const typename Law::template Parameters<double>& p, double overlap,
-                         typename Law::template History<double>& h, double area = 1.0) {
-  return Law::force(p, NormalState<double>{overlap, 0.0, area, radius, 1e-8, 1e-7}, h);
+                         typename Law::template History<double>& h) {
+  return Law::force(p, NormalState<double>{overlap, 0.0, radius, 1e-8, 1e-7}, h);
 }
 double hertz(double overlap) {
   return overlap > 0.0 ? 4.0 / 3.0 * modulus * std::sqrt(radius * overlap) * overlap : 0.0;
@@ -75,7 +75,7 @@ TEST_CASE("without adhesion JKR is Hertz") {
   for (const double d : {1e-7, 1e-6, 1e-5}) CHECK(std::abs(force<JKR>({0.0, modulus}, d, h).pull) < 1e-9 * hertz(d));
   CHECK(force<JKR>({0.0, modulus}, -1e-9, h).pull == 0.0);
   CHECK(JKR::range({0.0, modulus}, radius) == 0.0);
-  CHECK(JKR::stiffness({0.0, modulus}, {1e-6, 0, 1, radius, 1, 1}) == 0.0);
+  CHECK(JKR::stiffness({0.0, modulus}, {1e-6, 0, radius, 1, 1}) == 0.0);
 }
 
 TEST_CASE("JKR tells how much steeper it is than Hertz") {
@@ -85,7 +85,7 @@ TEST_CASE("JKR tells how much steeper it is than Hertz") {
     // Central differences of second order.
     const double slope = -(force<JKR>(sticky, d + step, h).pull - force<JKR>(sticky, d - step, h).pull) / (2 * step);
     CHECK(slope > 0.0);
-    CHECK(JKR::stiffness(sticky, {d, 0, 1, radius, 1, 1}) == Approx(slope).epsilon(1e-5));
+    CHECK(JKR::stiffness(sticky, {d, 0, radius, 1, 1}) == Approx(slope).epsilon(1e-5));
   }
 }
 
@@ -97,15 +97,14 @@ TEST_CASE("DMT pulls with 2 pi w R in contact") {
   CHECK_FALSE(reaches<DMT>);
 }
 
-TEST_CASE("constant cohesion comes on over its depth and acts per area where there is one") {
+TEST_CASE("constant cohesion comes on over its depth") {
   Constant::History<double> h;
   CHECK(force<Constant>({2.0}, 1e-9, h).pull == 2.0);
   CHECK(force<Constant>({2.0}, 0.0, h).pull == 0.0);
   CHECK(force<Constant>({2.0, 1e-5}, 1e-6, h).pull == Approx(0.2));
   CHECK(force<Constant>({2.0, 1e-5}, 3e-5, h).pull == 2.0);
-  CHECK(force<Constant>({2.0, 1e-5}, 1e-6, h, 0.5).pull == Approx(0.1));
-  CHECK(Constant::stiffness({2.0, 1e-5}, {1, 0, 0.5, 1, 1, 1}) == Approx(1e5));
-  CHECK(Constant::stiffness({2.0}, {1, 0, 1, 1, 1, 1}) == 0.0);
+  CHECK(Constant::stiffness({2.0, 1e-5}, {1, 0, 1, 1, 1}) == Approx(2e5));
+  CHECK(Constant::stiffness({2.0}, {1, 0, 1, 1, 1}) == 0.0);
   CHECK_FALSE(reaches<Constant>);
 }
 
@@ -132,7 +131,7 @@ TEST_CASE("a liquid bridge forms at the touch, weakens with the gap, and breaks"
     steepest =
         std::max(steepest, (force<LiquidBridge>(p, -gap, h).pull - force<LiquidBridge>(p, -gap - 1e-9, h).pull) / 1e-9);
   }
-  const double stiffness = LiquidBridge::stiffness(p, {1e-6, 0, 1, radius, 1, 1});
+  const double stiffness = LiquidBridge::stiffness(p, {1e-6, 0, radius, 1, 1});
   CHECK(steepest <= stiffness);
   CHECK(steepest > 0.99 * stiffness);
 }
@@ -147,7 +146,7 @@ TEMPLATE_TEST_CASE("every lane of a pack gets what a double gets from the cohesi
   check_lanes<TestType::template Parameters, NormalState, TestType::template History>(
       p, [](const auto& q, const auto& s, auto& h) { return TestType::force(q, s, h); },
       [](auto& uniform) {
-        return NormalState<double>{uniform(-0.1e-6, 0.2e-6), 0.0, 1.0, uniform(0.5, 1.0) * radius, 1e-8, 1e-7};
+        return NormalState<double>{uniform(-0.1e-6, 0.2e-6), 0.0, uniform(0.5, 1.0) * radius, 1e-8, 1e-7};
       });
 }
 

@@ -9,7 +9,7 @@ using namespace dem::contact;
 
 namespace {
 double force(Hysteretic::History<double>& h, double overlap, const Hysteretic::Parameters<double>& p = {1000, 4000}) {
-  return Hysteretic::force(p, NormalState<double>{overlap, 0.0, 1.0, 1e-3, 1e-5, 1e-6}, h);
+  return Hysteretic::force(p, NormalState<double>{overlap, 0.0, 1e-3, 1e-5, 1e-6}, h);
 }
 }  // namespace
 
@@ -41,7 +41,9 @@ TEST_CASE("a hysteretic contact rebounds with sqrt(k1/k2) at every speed") {
 TEST_CASE("every lane of a pack gets what a double gets from the hysteretic law") {
   check_lanes<Hysteretic::Parameters, NormalState, Hysteretic::History>(
       {1000.0, 3000.0}, [](const auto& p, const auto& s, auto& h) { return Hysteretic::force(p, s, h); },
-      [](auto& uniform) { return NormalState<double>{uniform(0.0, 1e-5), 0.0, 0.5, 1e-3, 1e-5, 1e-6}; });
+      [](auto& uniform) {
+        return NormalState<double>{uniform(0.0, 1e-5), 0.0, 1e-3, 1e-5, 1e-6};
+      });
 }
 
 TEST_CASE("hysteretic constants that make no sense are refused") {

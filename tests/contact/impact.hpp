@@ -12,7 +12,7 @@ struct Rebound {
 template <class Law>
 Rebound impact(const typename Law::template Parameters<double>& p, double mass, double radius, double speed,
                double depth, double steps = 20000.0) {
-  dem::contact::NormalState<double> s = {depth, 0.0, 1.0, radius, mass, 0.0};
+  dem::contact::NormalState<double> s = {depth, 0.0, radius, mass, 0.0};
   s.time_step = std::sqrt(mass / Law::stiffness(p, s)) / steps;
   s.overlap = 0.0;
   s.approach_speed = speed;

@@ -14,9 +14,9 @@ namespace {
 
 const Penalty::Parameters<double> sand = {2000.0, 0.015, 0.05};  // K, C, Sp of the thesis
 
-double force(double overlap, double approach, const Penalty::Parameters<double>& p = sand, double area = 1.0) {
+double force(double overlap, double approach, const Penalty::Parameters<double>& p = sand) {
   Penalty::History<double> none;
-  return Penalty::force(p, NormalState<double>{overlap, approach, area, 1e-3, 1e-5, 1e-5}, none);
+  return Penalty::force(p, NormalState<double>{overlap, approach, 1e-3, 1e-5, 1e-5}, none);
 }
 
 }  // namespace
@@ -37,10 +37,10 @@ TEST_CASE("the penalty law never pulls") {
   CHECK(force(1e-7, -0.267) == 0.0);
 }
 
-TEST_CASE("the penalty law acts per area where the contact has one") {
-  CHECK(force(1e-5, 0.2, sand, 0.25) == Approx(0.25 * 0.023).epsilon(1e-14));
-  const NormalState<double> state = {1e-5, 0.0, 0.25, 1e-3, 1e-5, 1e-5};
-  CHECK(Penalty::stiffness(sand, state) == Approx(500.0));
+TEST_CASE("the penalty law tells the time step its slopes") {
+  const NormalState<double> state = {1e-5, 0.0, 1e-3, 1e-5, 1e-5};
+  CHECK(Penalty::stiffness(sand, state) == Approx((force(2e-5, 0.0) - force(1e-5, 0.0)) / 1e-5));
+  CHECK(Penalty::damping(sand, state) == Approx(force(1e-5, 1.0) - force(1e-5, 0.0)));
 }
 
 TEST_CASE("every lane of a pack gets what a double gets from the penalty law") {
@@ -51,7 +51,7 @@ TEST_CASE("every lane of a pack gets what a double gets from the penalty law") {
     const Pack v = dem::generate([&](int) { return speed(engine); });
     const Penalty::Parameters<Pack> p = {Pack(2000.0), Pack(0.015), Pack(0.05)};
     Penalty::History<Pack> none;
-    const Pack f = Penalty::force(p, NormalState<Pack>{d, v, Pack(1), Pack(1e-3), Pack(1e-5), Pack(1e-5)}, none);
+    const Pack f = Penalty::force(p, NormalState<Pack>{d, v, Pack(1e-3), Pack(1e-5), Pack(1e-5)}, none);
     for (int k = 0; k < dem::pack_width; ++k) {
       const double x = dem::lane(d, k), u = dem::lane(v, k);
       // The same operations in the same order, but the compiler may fuse a multiply and an add in one of them: one

@@ -47,15 +47,15 @@ __device__ Vector3<double> force(const dem::contact::Geometry<double>& g, const 
                                  const Constants& c, Vector3<double>& slip) {
   const double approach = dot(velocity, g.normal);
   dem::contact::Penalty::History<double> none;
-  const double normal = dem::contact::Penalty::force<double>(
-      c.normal, {g.overlap, approach, g.area, g.effective_radius, 1.0, c.time_step}, none);
+  const double normal =
+      dem::contact::Penalty::force<double>(c.normal, {g.overlap, approach, g.effective_radius, 1.0, c.time_step}, none);
   dem::friction::AsperitySpring::History<double> history = {slip};
   const dem::friction::TangentialState<double> state = {
-      velocity - approach * g.normal, normal, g.overlap, g.area, g.effective_radius, 1.0, c.time_step};
+      velocity - approach * g.normal, normal, g.overlap, g.effective_radius, 1.0, c.time_step};
   const Vector3<double> friction = dem::friction::AsperitySpring::force<double>(c.friction, state, history);
   slip = history.slip;
   dem::friction::None::History<double> nothing;
-  return friction + dem::friction::None::force<double>({}, state, nothing) - normal * g.normal;
+  return g.area * (friction + dem::friction::None::force<double>({}, state, nothing) - normal * g.normal);
 }
 
 __global__ void contact_forces(int n, Contact* contacts, Constants constants, Vector3<double>* forces) {
@@ -94,7 +94,7 @@ __global__ void law_forces(int n, LawContact<Normal, Friction, Rolling, Cohesion
   const auto turn = [](const Vector3<double>& v) { return -v; };
   Friction::carry(c.friction_history, turn);
   Rolling::carry(c.rolling_history, turn);
-  const dem::friction::TangentialState<double> sliding = {c.velocity,         pressing,         s.overlap,  s.area,
+  const dem::friction::TangentialState<double> sliding = {c.velocity,         pressing,         s.overlap,
                                                           s.effective_radius, s.effective_mass, s.time_step};
   const dem::rolling::RollingState<double> rolling = {{0, 0, 1},          c.spin,           c.spin.z,   pressing,
                                                       s.effective_radius, s.effective_mass, s.time_step};

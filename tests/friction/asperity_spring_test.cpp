@@ -18,7 +18,7 @@ namespace {
 using History = AsperitySpring::History<double>;
 using Parameters = AsperitySpring::Parameters<double>;
 
-constexpr double mu = 0.4, kt = 1000.0, cv = 0.5, dt = 1e-5;
+constexpr double mu = 0.4, kt = 1000.0, cv = 0.5, time_step = 1e-5;
 
 Parameters constants(double breaking_factor, double velocity_stiffness = cv) {
   return {mu, kt, velocity_stiffness, breaking_factor};
@@ -26,14 +26,14 @@ Parameters constants(double breaking_factor, double velocity_stiffness = cv) {
 
 Vec3 force(const Parameters& p, const Vec3& velocity, double normal_force, History& h) {
   return to_eigen(AsperitySpring::force(
-      p, TangentialState<double>{dem::from_eigen(velocity), normal_force, 1e-5, 1.0, 1e-3, 1e-5, dt}, h));
+      p, TangentialState<double>{dem::from_eigen(velocity), normal_force, 1e-5, 1e-3, 1e-5, time_step}, h));
 }
 
 }  // namespace
 
 TEST_CASE("below the limit friction is a spring and a velocity ramp") {
   History h = {{0, 0, 0}};
-  // slip = v dt = (3e-7, 4e-7, 0): spring 5e-4 N; ramp 0.5 * 0.05 = 0.025 N; both against the sliding.
+  // slip = v time_step = (3e-7, 4e-7, 0): spring 5e-4 N; ramp 0.5 * 0.05 = 0.025 N; both against the sliding.
   const Vec3 f = force(constants(0.975), {0.03, 0.04, 0}, 1.0, h);
   CHECK((f + 0.0255 * Vec3(0.6, 0.8, 0)).norm() < 1e-15);
   CHECK(h.slip.x == Approx(3e-7).epsilon(1e-14));
@@ -86,7 +86,7 @@ TEST_CASE("without a normal force there is no friction and no memory") {
 }
 
 TEST_CASE("dragged at constant speed, a broken spring saws and a kept one is steady") {
-  const double speed = 0.4, period = mu * 1.0 / (kt * speed) / dt;  // 100 steps from rest to the limit
+  const double speed = 0.4, period = mu * 1.0 / (kt * speed) / time_step;  // 100 steps from rest to the limit
   for (const double keeps : {0.0, 0.975}) {
     History h = {{0, 0, 0}};
     int breaks = 0;
@@ -123,8 +123,8 @@ TEST_CASE("every lane of a pack gets what a double gets from the friction law") 
     const Vector3<Pack> v = {any(speed), any(speed), any(speed)}, s = {any(slip), any(slip), any(slip)};
     const Pack fn = any(press);
     AsperitySpring::History<Pack> h = {s};
-    const Vector3<Pack> f = AsperitySpring::force(
-        p, TangentialState<Pack>{v, fn, Pack(1e-5), Pack(1), Pack(1e-3), Pack(1e-5), Pack(dt)}, h);
+    const Vector3<Pack> f =
+        AsperitySpring::force(p, TangentialState<Pack>{v, fn, Pack(1e-5), Pack(1e-3), Pack(1e-5), Pack(time_step)}, h);
     for (int k = 0; k < dem::pack_width; ++k) {
       const auto one = [&](const Vector3<Pack>& a) {
         return Vec3(dem::lane(a.x, k), dem::lane(a.y, k), dem::lane(a.z, k));
@@ -149,6 +149,6 @@ TEST_CASE("friction constants that make no sense are refused") {
 TEST_CASE("no friction is no force and no memory") {
   STATIC_REQUIRE(dem::contact::field_count<dem::friction::None::History<double>> == 0);
   dem::friction::None::History<double> h;
-  const auto f = dem::friction::None::force({}, TangentialState<double>{{1, 2, 3}, 5.0, 1e-5, 1, 1, 1, dt}, h);
+  const auto f = dem::friction::None::force({}, TangentialState<double>{{1, 2, 3}, 5.0, 1e-5, 1, 1, time_step}, h);
   CHECK(to_eigen(f) == Vec3::Zero());
 }

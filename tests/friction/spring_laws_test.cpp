@@ -16,7 +16,7 @@ namespace {
 constexpr double dt = 1e-6;
 
 TangentialState<double> state(const Vec3& velocity, double normal_force, double overlap = 1e-5) {
-  return {dem::from_eigen(velocity), normal_force, overlap, 1.0, 1e-3, 7e-5, dt};
+  return {dem::from_eigen(velocity), normal_force, overlap, 1e-3, 7e-5, dt};
 }
 template <class Law, class P, class H>
 Vec3 force(const P& p, const Vec3& velocity, double normal_force, H& h, double overlap = 1e-5) {
@@ -38,7 +38,7 @@ TEST_CASE("viscous friction is a ramp up to Coulomb's limit") {
 
 TEST_CASE("the spring of Cundall and Strack stretches, is damped, and slips") {
   const CundallStrack::Parameters<double> p = {0.4, 1000.0, 0.5};
-  const double c = CundallStrack::damping(p, {0, 0, 1, 1e-3, 7e-5, dt});
+  const double c = CundallStrack::damping(p, {0, 0, 1e-3, 7e-5, dt});
   CHECK(c == Approx(2 * 0.5 * std::sqrt(2e-5 * 1000.0)));  // tangential mass 2/7 of 7e-5 kg
   CundallStrack::History<double> h = {};
   const Vec3 v(0.3, 0.4, 0);
@@ -59,7 +59,7 @@ TEST_CASE("Mindlin's spring has the stiffness 8 G* sqrt(R* d)") {
   const Mindlin::Parameters<double> p = {0.4, 1e8, 0.0};
   Mindlin::History<double> h = {};
   const double k = 8e8 * std::sqrt(1e-3 * 1e-5);
-  CHECK(Mindlin::stiffness(p, {1e-5, 0, 1, 1e-3, 7e-5, dt}) == Approx(k));
+  CHECK(Mindlin::stiffness(p, {1e-5, 0, 1e-3, 7e-5, dt}) == Approx(k));
   CHECK((force<Mindlin>(p, {0.01, 0, 0}, 1e3, h) + Vec3(k * dt * 0.01, 0, 0)).norm() < 1e-12 * k * dt);
   // Twice the overlap: what was stretched before stays, what comes is stiffer.
   CHECK(force<Mindlin>(p, {0.01, 0, 0}, 1e3, h, 2e-5).x() ==
@@ -113,13 +113,9 @@ TEST_CASE("varying friction falls with speed and pressure as it says") {
   p.decay_pressure = 2.0;
   CHECK(force<Law>(p, {100, 0, 0}, 2.0, h).norm() == Approx(2 * 0.3 * (0.5 + 0.5 / M_E)));
   CHECK(force<Law>(p, {100, 0, 0}, 200.0, h).norm() == Approx(200 * 0.15));
-  // With an area the pressure is what counts: 4 N on 2 m^2.
-  TangentialState<double> s = state({100, 0, 0}, 4.0);
-  s.area = 2.0;
-  CHECK(norm(Law::force(p, s, h)) == Approx(4 * 0.3 * (0.5 + 0.5 / M_E)));
   // Slopes of the law inside reach the stable time step.
   const Varying<Mindlin>::Parameters<double> q = {{0.4, 1e8, 0.1}};
-  const dem::contact::NormalState<double> deep = {1e-5, 0, 1, 1e-3, 7e-5, dt};
+  const dem::contact::NormalState<double> deep = {1e-5, 0, 1e-3, 7e-5, dt};
   CHECK(Varying<Mindlin>::stiffness(q, deep) == Mindlin::stiffness(q.law, deep));
   CHECK(Varying<Mindlin>::damping(q, deep) == Mindlin::damping(q.law, deep));
   CHECK(Varying<AsperitySpring>::stiffness({{0.4, 7.0, 0, 0}}, deep) == 7.0);
@@ -146,13 +142,8 @@ TEMPLATE_TEST_CASE("every lane of a pack gets what a double gets from the tangen
   check_lanes<TestType::template Parameters, TangentialState, TestType::template History>(
       p, [](const auto& q, const auto& s, auto& h) { return TestType::force(q, s, h); },
       [](auto& uniform) {
-        return TangentialState<double>{{uniform(-1, 1), uniform(-1, 1), uniform(-1, 1)},
-                                       uniform(0, 1),
-                                       uniform(1e-6, 1e-5),
-                                       1.0,
-                                       1e-3,
-                                       1e-5,
-                                       1e-6};
+        return TangentialState<double>{
+            {uniform(-1, 1), uniform(-1, 1), uniform(-1, 1)}, uniform(0, 1), uniform(1e-6, 1e-5), 1e-3, 1e-5, 1e-6};
       });
 }
 

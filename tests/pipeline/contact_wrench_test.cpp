@@ -7,6 +7,7 @@
 #include <dem/contact/hysteretic.hpp>
 #include <dem/contact/linear_spring_dashpot.hpp>
 #include <dem/friction/coulomb_viscous.hpp>
+#include <dem/friction/mindlin.hpp>
 #include <dem/pipeline/contact_wrench.hpp>
 #include <dem/rolling/torsion.hpp>
 #include <dem/world/model.hpp>
@@ -39,7 +40,7 @@ constexpr double radius = 1e-3;
 
 template <class M>
 pipeline::NormalForce<double> at(double overlap, const ContactParameters<M>& p, ContactHistory<M, double>& h) {
-  return pipeline::normal_force<M>(contact::NormalState<double>{overlap, 0.0, 1.0, radius, 1e-5, 1e-6}, p, h);
+  return pipeline::normal_force<M>(contact::NormalState<double>{overlap, 0.0, radius, 1e-5, 1e-6}, p, h);
 }
 
 }  // namespace
@@ -93,12 +94,39 @@ TEST_CASE("a contact's wrench has the torque of rolling and torsion, equal and o
   CHECK(ratio == Approx(0.5 * 1e-6 / (0.5 * radius)));
 }
 
+TEST_CASE("a point of a patch gives its share of what the whole contact gives, by every law") {
+  struct Elastic : Model {
+    using Normal = contact::Hertz;
+    using Friction = friction::Mindlin;
+    using Rolling = rolling::Torsion;
+    using Cohesion = cohesion::JKR;
+  };
+  const ContactParameters<Elastic> p = {{1e7, 0.3}, {0.5, 3e6, 0.2}, {0.2, 1e3, 0.3}, {0.05, 1e7}};
+  const pipeline::Encounter<double> e = {{0, 0, 2 * radius}, {0.02, -0.01, 0.1}, {3, 4, 5}, {-1, 0, 2}, 1e5};
+  const auto of = [&](double share, ContactHistory<Elastic, double>& h) {
+    double overlap_ratio;
+    const contact::PointTouch<double> touch = {{0, 0, 1}, 1e-5, {0, 0, radius}, 0.5 * radius, share};
+    return pipeline::contact_wrench<Elastic, double>(touch, e, p, 1e-6, h, overlap_ratio);
+  };
+  ContactHistory<Elastic, double> whole_history = {}, share_history = {};
+  for (int step = 0; step < 3; ++step) {
+    const auto whole = of(1.0, whole_history), share = of(0.25, share_history);
+    CHECK(norm(whole.force) > 0.0);
+    CHECK(std::abs(whole.torque_i.z) > 0.0);
+    // A quarter is a power of two, so nothing is rounded.
+    CHECK(to_eigen(share.force) == 0.25 * to_eigen(whole.force));
+    CHECK(to_eigen(share.torque_i) == 0.25 * to_eigen(whole.torque_i));
+    CHECK(to_eigen(share.torque_j) == 0.25 * to_eigen(whole.torque_j));
+    CHECK(to_eigen(share_history.friction.spring_force) == to_eigen(whole_history.friction.spring_force));
+  }
+}
+
 TEST_CASE("a normal law that pulls at the end of a contact presses nothing together") {
   // Friction limited by a negative force would push along the sliding.
   const ContactParameters<Pulling> p = {contact::LinearSpringDashpot::with_restitution(1e4, 0.3, true), {}};
   ContactHistory<Pulling, double> h = {};
   const auto parting =
-      pipeline::normal_force<Pulling>(contact::NormalState<double>{1e-8, -1.0, 1.0, radius, 1e-5, 1e-6}, p, h);
+      pipeline::normal_force<Pulling>(contact::NormalState<double>{1e-8, -1.0, radius, 1e-5, 1e-6}, p, h);
   CHECK(parting.repulsion < 0.0);
   CHECK(parting.pressing == 0.0);
 }

@@ -24,7 +24,7 @@ template <class Law, class P, class H>
 Vec3 torque(const P& p, const Vec3& spin, double normal_force, H& h) {
   return to_eigen(Law::torque(p, state(spin, normal_force), h));
 }
-const dem::contact::NormalState<double> contact = {1e-5, 0, 1, radius, mass, dt};
+const dem::contact::NormalState<double> contact = {1e-5, 0, radius, mass, dt};
 
 }  // namespace
 

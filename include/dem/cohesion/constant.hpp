@@ -19,11 +19,11 @@ struct Constant {
   template <class T>
   static DEM_HOT Attraction<T> force(const Parameters<T>& p, const NormalState<T>& s, History<T>&) {
     const T share = min(T(1), max(T(0), s.overlap) / max(p.depth, T(1e-300)));
-    return {s.area * p.force * share, T(0)};
+    return {p.force * share, T(0)};
   }
 
-  static double stiffness(const Parameters<double>& p, const NormalState<double>& s) {
-    return p.depth > 0.0 ? s.area * p.force / p.depth : 0.0;
+  static double stiffness(const Parameters<double>& p, const NormalState<double>&) {
+    return p.depth > 0.0 ? p.force / p.depth : 0.0;
   }
   static void check(const Parameters<double>& p) {
     require_non_negative(p.force, "cohesive force", "N");

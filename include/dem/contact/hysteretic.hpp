@@ -35,12 +35,10 @@ struct Hysteretic {
     // k2 (d - d0), written such that it is k1 d to the last bit where k1 = k2.
     const T f = p.loading_stiffness * s.overlap -
                 (p.unloading_stiffness - p.loading_stiffness) * (h.largest_overlap - s.overlap);
-    return s.area * max(T(0), f);
+    return max(T(0), f);
   }
 
-  static double stiffness(const Parameters<double>& p, const NormalState<double>& s) {
-    return p.unloading_stiffness * s.area;
-  }
+  static double stiffness(const Parameters<double>& p, const NormalState<double>&) { return p.unloading_stiffness; }
 
   static void check(const Parameters<double>& p) {
     require_positive(p.loading_stiffness, "loading stiffness", "N/m");

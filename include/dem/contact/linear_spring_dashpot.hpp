@@ -25,14 +25,14 @@ struct LinearSpringDashpot {
 
   template <class T>
   static DEM_HOT T force(const Parameters<T>& p, const NormalState<T>& s, History<T>&) {
-    const T k = s.area * p.stiffness;
-    const T f = k * s.overlap + T(2) * p.damping_ratio * sqrt(k * s.effective_mass) * s.approach_speed;
+    const T damping = T(2) * p.damping_ratio * sqrt(p.stiffness * s.effective_mass);
+    const T f = p.stiffness * s.overlap + damping * s.approach_speed;
     return select(p.may_pull > T(0), f, max(T(0), f));
   }
 
-  static double stiffness(const Parameters<double>& p, const NormalState<double>& s) { return p.stiffness * s.area; }
+  static double stiffness(const Parameters<double>& p, const NormalState<double>&) { return p.stiffness; }
   static double damping(const Parameters<double>& p, const NormalState<double>& s) {
-    return 2.0 * p.damping_ratio * std::sqrt(p.stiffness * s.area * s.effective_mass);
+    return 2.0 * p.damping_ratio * std::sqrt(p.stiffness * s.effective_mass);
   }
 
   static void check(const Parameters<double>& p) {

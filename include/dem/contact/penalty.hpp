@@ -5,8 +5,8 @@
 
 namespace dem::contact {
 
-/// Penalty spring with an asymmetric damper (thesis eq. 25): F = A (K d + C d') while approaching, A (K d + Sp C d')
-/// while separating, never pulling.
+/// Penalty spring with an asymmetric damper (thesis eq. 25): F = K d + C d' while approaching, K d + Sp C d' while
+/// separating, never pulling; the world multiplies it by the area A.
 struct Penalty {
   template <class T>
   struct Parameters {
@@ -20,10 +20,11 @@ struct Penalty {
   template <class T>
   static DEM_HOT T force(const Parameters<T>& p, const NormalState<T>& s, History<T>&) {
     const T factor = select(s.approach_speed < T(0), p.separation_factor, T(1));
-    return max(T(0), s.area * (p.stiffness * s.overlap + factor * p.damping * s.approach_speed));
+    return max(T(0), p.stiffness * s.overlap + factor * p.damping * s.approach_speed);
   }
 
-  static double stiffness(const Parameters<double>& p, const NormalState<double>& s) { return p.stiffness * s.area; }
+  static double stiffness(const Parameters<double>& p, const NormalState<double>&) { return p.stiffness; }
+  static double damping(const Parameters<double>& p, const NormalState<double>&) { return p.damping; }
 
   static void check(const Parameters<double>& p) {
     require_positive(p.stiffness, "normal stiffness", "N/m");

@@ -6,12 +6,13 @@
 
 namespace dem::contact {
 
-/// What a normal law may read about one contact (T = double) or a pack of contacts (T = Pack).
+/// What a normal law may read about one contact (T = double) or a pack of contacts (T = Pack). Laws are those of whole
+/// contacts. Where a contact is a patch of points, each with an area or a share (Geometry::area), the laws are
+/// evaluated at each point as if it were the whole contact, and what they give is multiplied by that area: eq. 25's A.
 template <class T>
 struct NormalState {
   T overlap;           ///< m, d of eq. 25; not negative where the bodies touch
   T approach_speed;    ///< m/s, d' of eq. 26; positive while the bodies move together
-  T area;              ///< weight of the point: its m^2 (A of eq. 25), or its share of a whole contact; 1 for spheres
   T effective_radius;  ///< m, 1/(1/Ri + 1/Rj)
   T effective_mass;    ///< kg, 1/(1/mi + 1/mj)
   T time_step;         ///< s
@@ -21,9 +22,8 @@ struct NormalState {
 template <class T>
 struct TangentialState {
   Vector3<T> velocity;  ///< m/s, of i relative to j at the contact point, in the tangent plane (eq. 28)
-  T normal_force;       ///< N, not negative
+  T normal_force;       ///< N, not negative; of a whole contact, as in NormalState
   T overlap;            ///< m
-  T area;               ///< as in NormalState
   T effective_radius;   ///< m
   T effective_mass;     ///< kg
   T time_step;          ///< s

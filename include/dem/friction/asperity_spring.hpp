@@ -9,7 +9,8 @@ namespace dem::friction {
 /// asperities break, in parallel with a velocity ramp. `slip` is the vector from the anchor to the contact point.
 ///   spring   f = kt |slip|; where f > mu Fn the anchor moves until the spring keeps breaking_factor * mu Fn
 ///   ramp     min(cv |vt|, mu Fn) against the sliding velocity
-/// and the sum never exceeds mu Fn. kt and cv are those of a whole contact; a point of a patch has its share, s.area.
+/// and the sum never exceeds mu Fn. The ramp does not limit the time step: where it is too steep for it, a grain that
+/// sticks trembles by no more than mu Fn dt/m.
 struct AsperitySpring {
   template <class T>
   struct Parameters {
@@ -27,15 +28,14 @@ struct AsperitySpring {
   static DEM_HOT Vector3<T> force(const Parameters<T>& p, const TangentialState<T>& s, History<T>& h) {
     const T tiny = T(1e-300);  // keeps 0/0 away; far below any length or force that matters
     const T limit = p.coefficient * s.normal_force;
-    const T stiffness = s.area * p.stiffness, velocity_stiffness = s.area * p.velocity_stiffness;
 
     h.slip += s.time_step * s.velocity;
-    const T stretch = stiffness * norm(h.slip);
+    const T stretch = p.stiffness * norm(h.slip);
     h.slip = select(stretch > limit, p.breaking_factor * limit / max(stretch, tiny), T(1)) * h.slip;
 
     const T speed = norm(s.velocity);
-    const T ramp = min(velocity_stiffness * speed, limit) / max(speed, tiny);
-    const Vector3<T> sum = stiffness * h.slip + ramp * s.velocity;
+    const T ramp = min(p.velocity_stiffness * speed, limit) / max(speed, tiny);
+    const Vector3<T> sum = p.stiffness * h.slip + ramp * s.velocity;
     const T size = norm(sum);
     return -(select(size > limit, limit / max(size, tiny), T(1)) * sum);
   }
@@ -45,9 +45,7 @@ struct AsperitySpring {
     h.slip = turn(h.slip);
   }
 
-  static double stiffness(const Parameters<double>& p, const contact::NormalState<double>& s) {
-    return p.stiffness * s.area;
-  }
+  static double stiffness(const Parameters<double>& p) { return p.stiffness; }
 
   static void check(const Parameters<double>& p) {
     require_non_negative(p.coefficient, "friction coefficient", "(no unit)");

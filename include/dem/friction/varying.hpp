@@ -8,8 +8,8 @@ namespace dem::friction {
 /// Another friction law with a coefficient that falls with the sliding speed v and the normal pressure P:
 ///   mu = mu0 (rv + (1 - rv) exp(-v/v0)) (rp + (1 - rp) exp(-P/p0)),
 /// mu0 the law's own coefficient (static, lightly pressed), rv = kinetic/static, rp = heavily/lightly pressed. With the
-/// default ratios of 1 it is the law itself. The pressure is the normal force per area of the contact point; spheres,
-/// whose contacts have no area, count as 1 m^2, so that p0 is a force then, as the normal stiffness is N/m.
+/// default ratios of 1 it is the law itself. The pressure is the normal force per area of the contact point where
+/// it has one in m^2; elsewhere that of the whole contact, so that p0 is a force then, as the normal stiffness is N/m.
 template <class Law>
 struct Varying {
   template <class T>
@@ -36,7 +36,7 @@ struct Varying {
   template <class T>
   static DEM_HOT Vector3<T> force(const Parameters<T>& p, const TangentialState<T>& s, History<T>& h) {
     typename Law::template Parameters<T> law = p.law;
-    law.coefficient = law.coefficient * factor(p, norm(s.velocity), s.normal_force / s.area);
+    law.coefficient = law.coefficient * factor(p, norm(s.velocity), s.normal_force);
     return Law::force(law, s, h);
   }
   template <class H, class Turn>

@@ -78,7 +78,7 @@ DEM_HOT Wrench<T> contact_wrench(const Touch& touch, const Encounter<T>& e,
   const T mass = T(1) / e.inverse_mass;
 
   const NormalForce<T> normal = normal_force<Model>(
-      contact::NormalState<T>{g.overlap, approach, g.area, g.effective_radius, mass, dt}, parameters, history);
+      contact::NormalState<T>{g.overlap, approach, g.effective_radius, mass, dt}, parameters, history);
 
   // The history's vectors follow the contact: they turn with the mean twist of the partners about the normal and stay
   // in the tangent plane.
@@ -87,10 +87,9 @@ DEM_HOT Wrench<T> contact_wrench(const Touch& touch, const Encounter<T>& e,
   Model::Friction::carry(history.friction, turn);
   const Vector3<T> friction = Model::Friction::force(
       parameters.friction,
-      contact::TangentialState<T>{sliding, normal.pressing, g.overlap, g.area, g.effective_radius, mass, dt},
-      history.friction);
+      contact::TangentialState<T>{sliding, normal.pressing, g.overlap, g.effective_radius, mass, dt}, history.friction);
 
-  const Vector3<T> force = friction - normal.repulsion * g.normal;
+  const Vector3<T> force = g.area * (friction - normal.repulsion * g.normal);
   overlap_ratio = T(0.5) * g.overlap / g.effective_radius;
   Wrench<T> wrench = {force, cross(g.arm, force), -cross(arm_j, force)};
   if constexpr (!std::is_same_v<typename Model::Rolling, rolling::None>) {
@@ -98,10 +97,10 @@ DEM_HOT Wrench<T> contact_wrench(const Touch& touch, const Encounter<T>& e,
     const T twisting = dot(spin, g.normal);
     Model::Rolling::carry(history.rolling, turn);
     const Vector3<T> torque =
-        Model::Rolling::torque(parameters.rolling,
-                               rolling::RollingState<T>{g.normal, spin - twisting * g.normal, twisting, normal.pressing,
-                                                        g.effective_radius, mass, dt},
-                               history.rolling);
+        g.area * Model::Rolling::torque(parameters.rolling,
+                                        rolling::RollingState<T>{g.normal, spin - twisting * g.normal, twisting,
+                                                                 normal.pressing, g.effective_radius, mass, dt},
+                                        history.rolling);
     wrench.torque_i += torque;
     wrench.torque_j -= torque;
   }
