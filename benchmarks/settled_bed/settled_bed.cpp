@@ -66,7 +66,9 @@ dem::ContactParameters<Model> contact(double effective_mass) {
 /// A loose lattice of grains with random orientations and velocities, in an open box.
 template <class Model>
 dem::World<Model> loose_bed(const Settings& settings) {
-  dem::World<Model> world({.time_step = 1e-5, .skin = settings.skin});
+  // The step, like all else, is that of the same works in other programs. It is above the bound, which counts the
+  // dampers of more contacts in line than this bed has.
+  dem::World<Model> world({.time_step = 1e-5, .allow_unstable_time_step = true, .skin = settings.skin});
   const auto grain = world.add_species(Model::grain());
   const double mass = world.species(grain).mass, w = Model::width, thick = 0.02, high = 0.3;
   world.set_contact("grain", "grain", contact<Model>(0.5 * mass));
@@ -95,6 +97,11 @@ dem::World<Model> loose_bed(const Settings& settings) {
   return world;
 }
 
+template <class World>
+void run_or_fail(World& world, int steps) {
+  if (const auto report = world.run(static_cast<std::uint64_t>(steps)); !report) dem::fail("{}", report.text);
+}
+
 double median(std::vector<double> values) {
   std::sort(values.begin(), values.end());
   return values[values.size() / 2];
@@ -106,7 +113,7 @@ void run(const char* name, const Settings& settings) {
   const int most_threads = settings.threads > 0 ? settings.threads : world.threads();
   world.set_threads(most_threads);
   fmt::print("{}: settling {} grains for {} steps\n", name, Model::grains, settings.settle);
-  if (const auto report = world.run(static_cast<std::uint64_t>(settings.settle)); !report) dem::fail("{}", report.text);
+  run_or_fail(world, settings.settle);
 
   double energy = 0.0;
   std::size_t contacts = 0, wall_contacts = 0;
@@ -128,14 +135,14 @@ void run(const char* name, const Settings& settings) {
   double one_thread = 0.0;
   for (int threads = 1; threads <= most_threads; ++threads) {
     world.set_threads(threads);
-    world.run(200);
+    run_or_fail(world, 200);
     std::vector<double> rates, per_cpu_second;  // the latter is steadier where other programs run too
     const std::uint64_t lists = world.state().rebuilds;
     world.state().stopwatch.switch_on(true);
     for (int k = 0; k < settings.repeats; ++k) {
       const auto start = std::chrono::steady_clock::now();
       const std::clock_t cpu = std::clock();
-      world.run(static_cast<std::uint64_t>(settings.steps));
+      run_or_fail(world, settings.steps);
       const double seconds = Seconds(std::chrono::steady_clock::now() - start).count();
       rates.push_back(1e-6 * Model::grains * settings.steps / seconds);
       per_cpu_second.push_back(1e-6 * Model::grains * settings.steps * CLOCKS_PER_SEC / double(std::clock() - cpu));

@@ -76,6 +76,15 @@ TEST_CASE("files of other programs: their line ends, their headers, their polygo
   CHECK(volume(parse_obj(quads, "q.obj")) == Approx(1.0));
 }
 
+TEST_CASE("an ascii STL file may be in capitals and begin with a byte order mark") {
+  std::string text = ascii_stl(mesh::box({1, 1, 1}));
+  for (char& c : text) c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
+  CHECK(parse_stl(text, "LOUD.STL").triangles.size() == 12);
+  CHECK(parse_stl("\xEF\xBB\xBF" + ascii_stl(mesh::box({1, 1, 1})), "marked.stl").triangles.size() == 12);
+  IndexedMesh huge = mesh::box({1, 1, 1}).scaled(1e39);
+  CHECK_THAT(error_of([&] { dem::io::write_stl("huge.stl", huge); }), ContainsSubstring("3.4e38"));
+}
+
 TEST_CASE("what is wrong with a file is said with its place and what to change") {
   const IndexedMesh box = mesh::box({1, 1, 1});
   const auto stl = [](const std::string& text) { return error_of([&] { (void)parse_stl(text, "part.stl"); }); };
@@ -97,6 +106,7 @@ TEST_CASE("what is wrong with a file is said with its place and what to change")
   CHECK_THAT(wavefront("v 0 0 0\nv 1 0 0\n\nf 1 2 3\n"),
              ContainsSubstring("line 4") && ContainsSubstring("vertex '3'"));
   CHECK_THAT(wavefront("v 0 0 0\nf 1 0 1\n"), ContainsSubstring("line 2"));
+  CHECK_THAT(wavefront("v 0 0 0\nf 1 \\\n 1 \\\r\n 1\nf 1 0 1\n"), ContainsSubstring("line 5"));
   CHECK_THAT(wavefront("v 0 0 0\nf 1 1\n"), ContainsSubstring("2 corners"));
   CHECK_THAT(wavefront("v 0 0 0\n"), ContainsSubstring("no faces"));
   CHECK_THAT(error_of([] { (void)dem::io::read_stl("/nowhere/part.stl"); }), ContainsSubstring("/nowhere/part.stl"));

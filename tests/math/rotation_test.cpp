@@ -3,6 +3,7 @@
 #include <dem/math/rotation.hpp>
 
 #include <numbers>
+#include <tuple>
 
 using dem::from_eigen;
 using dem::Mat3;
@@ -70,5 +71,21 @@ TEST_CASE("orthonormalising squares the error") {
     // Newton: 3/8 (R^T R - 1)^2; the noise has size 3.6, so R^T R is off by up to 10 times `error`. And rounding.
     CHECK(not_a_rotation(once) < 40 * error * error + 2e-15);
     CHECK((once - r).norm() < 10 * error);  // it stays the same rotation
+  }
+}
+
+TEST_CASE("the turn between two directions takes one into the other by the smallest angle") {
+  // Square, oblique, the same, nearly opposite and opposite; lengths do not count. A few products each: 1e-15, but for
+  // nearly opposite ones, whose half-way direction is their sum of 1e-7, rounded by 2e-16: 2e-9, doubled by reflecting.
+  const Vec3 x = Vec3::UnitX(), nearly = Vec3(-1, 1e-7, 0);
+  for (const auto& [from, to, tolerance] :
+       {std::tuple{x, Vec3(0, 2, 0), 2e-15}, std::tuple{Vec3(1, 2, 3), Vec3(-2, 1, 0.5), 2e-15},
+        std::tuple{axis, axis, 2e-15}, std::tuple{x, nearly, 5e-9}, std::tuple{axis, Vec3(-axis), 2e-15},
+        std::tuple{x, Vec3(-x), 2e-15}}) {
+    const Mat3 r = dem::rotation_between(from, to);
+    CHECK(not_a_rotation(r) < tolerance);
+    CHECK((r * from.normalized() - to.normalized()).norm() < tolerance);
+    // Nothing turns about the normal of both but by the angle between them: cos of it is half of trace - 1.
+    CHECK(std::abs((r.trace() - 1.0) / 2 - from.normalized().dot(to.normalized())) < tolerance);
   }
 }

@@ -30,7 +30,7 @@ double limit(const Shape& shape, double normal, double friction, bool surface = 
   const double density = 2650, mass = density * shape.volume();
   const std::vector<dem::Species<Shape>> species = {
       {shape, material, density, mass, 1 / mass, density * shape.unit_inertia()}};
-  const std::vector<dem::MaterialId> surfaces(surface ? 1 : 0, material);
+  const std::vector<dem::pipeline::SurfaceMatter> surfaces(surface ? 1 : 0, {material});
   return dem::pipeline::stable_time_step<Model>(species, materials, surfaces, 0.1).value;
 }
 

@@ -111,8 +111,9 @@ TEST_CASE("laws that stiffen, and rolling springs, limit the time step too") {
 }
 
 TEMPLATE_TEST_CASE("a bed is stable at the stable time step", "", Sphere, Cube8) {
-  // Grains squeezed between six walls, each with six neighbours, without dampers and friction. They may swing and
-  // buckle, but as long as the step is stable their motion has no more energy than was stored in the springs.
+  // Grains squeezed between six walls, each with six neighbours, without dampers; smooth, or so rough that all stick.
+  // They may swing and buckle, but as long as the step is stable their motion has no more energy than was stored in the
+  // springs.
   using Model = Grains<TestType>;
   const double r = 1e-3, overlap = 1e-5, k = 2000.0, pitch = 2 * r - overlap, edge = 5 * pitch - overlap;
   const auto shape = [&] {
@@ -124,8 +125,8 @@ TEMPLATE_TEST_CASE("a bed is stable at the stable time step", "", Sphere, Cube8)
   }();
   // 144 pairs and 96 contacts with walls, of four spheres each in the case of cubes.
   const double stored = (std::is_same_v<TestType, Sphere> ? 1 : 4) * (144 + 96) * 0.5 * k * overlap * overlap;
-  const auto energy_after = [&](double factor) {
-    const dem::ContactParameters<Model> p = {{k, 0.0, 1.0}, {0.0, 0.0, 0.0, 0.0}};
+  const auto energy_after = [&](double factor, double mu) {
+    const dem::ContactParameters<Model> p = {{k, 0.0, 1.0}, {mu, k, 0.0, 1.0}};
     auto w = make<Model>(shape, p, factor * make<Model>(shape, p).stable_time_step().value);
     add_open_box(w, Vec3::Constant(edge - pitch));
     dem::SurfaceOptions lid;
@@ -147,10 +148,14 @@ TEMPLATE_TEST_CASE("a bed is stable at the stable time step", "", Sphere, Cube8)
     }
     return largest;
   };
-  // Measured: 1e-5 of what is stored up to 1.2 (cubes) and 2 (spheres) times the stable step.
-  CHECK(energy_after(0.2) < 1e-3);
-  CHECK(energy_after(0.2) > 1e-7);  // something moves
-  CHECK(energy_after(0.95) < 1e-3);
-  // The bound is no more than three times too careful.
-  CHECK(energy_after(3.0) > 10.0);
+  // Measured: 1e-5 of what is stored and less, up to 2 times the stable step where nothing sticks, up to 1.1 times it
+  // for cubes that stick: their lattice has the stiffest mode that the bound is made for.
+  for (const double mu : {0.0, 5.0}) {
+    CAPTURE(mu);
+    CHECK(energy_after(0.2, mu) < 1e-3);
+    CHECK(energy_after(0.2, mu) > 1e-9);  // something moves
+    CHECK(energy_after(0.95, mu) < 1e-3);
+  }
+  // The bound is no more than two (cubes) and three times too careful.
+  CHECK(energy_after(std::is_same_v<TestType, Sphere> ? 3.0 : 2.0, 5.0) > 10.0);
 }

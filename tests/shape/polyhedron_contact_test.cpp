@@ -1,9 +1,9 @@
 #include "catch.hpp"
 #include "contacts.hpp"
+#include "random.hpp"
 
+#include <dem/math/rotation.hpp>
 #include <dem/shape/polyhedra.hpp>
-
-#include <random>
 
 using Catch::Approx;
 using dem::Mat3;
@@ -11,16 +11,6 @@ using dem::Vec3;
 using namespace dem::shape;
 
 namespace {
-
-struct Random {
-  std::mt19937 engine{3};
-  double unit() { return std::uniform_real_distribution<double>(-1.0, 1.0)(engine); }
-  Vec3 vector() {
-    const double x = unit(), y = unit();
-    return {x, y, unit()};
-  }
-  Mat3 rotation() { return Eigen::AngleAxisd(3.0 * unit(), Eigen::Vector3d(vector().normalized())).toRotationMatrix(); }
-};
 
 Mat3 about(const Vec3& axis, double angle) {
   return Eigen::AngleAxisd(angle, Eigen::Vector3d(axis.normalized())).toRotationMatrix();
@@ -88,12 +78,12 @@ const std::vector<Polyhedron>& bodies() {
 }  // namespace
 
 TEST_CASE("two polyhedra overlap as much as the hull of their difference says") {
-  Random random;
+  Random random(3);
   int touching = 0, apart = 0;
   for (int trial = 0; trial < 500; ++trial) {
-    const Polyhedron &a = bodies()[random.engine() % bodies().size()], &b = bodies()[random.engine() % bodies().size()];
+    const Polyhedron &a = bodies()[random.below(bodies().size())], &b = bodies()[random.below(bodies().size())];
     const Mat3 ra = random.rotation(), rb = random.rotation();
-    const Vec3 link = (a.radius() + b.radius()) * (1.05 + 0.25 * random.unit()) * random.vector().normalized();
+    const Vec3 link = (a.radius() + b.radius()) * (1.05 + 0.25 * random.unit()) * random.direction();
     const double expected = least_overlap(a, ra, b, rb, link);
     const auto turn_a = dem::from_eigen(ra), turn_b = dem::from_eigen(rb);
     const PolyhedronContact found(a.tables(), turn_a, b.tables(), turn_b, dem::from_eigen(link));
@@ -107,12 +97,12 @@ TEST_CASE("two polyhedra overlap as much as the hull of their difference says") 
 }
 
 TEST_CASE("a contact of polyhedra is the same from both sides, and turns with the bodies") {
-  Random random;
+  Random random(3);
   int points = 0;
   for (int trial = 0; trial < 500; ++trial) {
-    const Polyhedron &a = bodies()[random.engine() % bodies().size()], &b = bodies()[random.engine() % bodies().size()];
+    const Polyhedron &a = bodies()[random.below(bodies().size())], &b = bodies()[random.below(bodies().size())];
     const Mat3 ra = random.rotation(), rb = random.rotation(), turn = random.rotation();
-    const Vec3 link = (a.radius() + b.radius()) * random.vector().normalized();
+    const Vec3 link = (a.radius() + b.radius()) * random.direction();
     const auto here = patch(a, ra, b, rb, link), there = patch(b, rb, a, ra, -link);
     const auto turned = patch(a, turn * ra, b, turn * rb, turn * link);
     REQUIRE(here.size() == there.size());
@@ -141,12 +131,12 @@ TEST_CASE("a contact of polyhedra is the same from both sides, and turns with th
 
 TEST_CASE("the points of a patch lie in both bodies, and their shares add up to one at the most") {
   // Overlaps of a percent, as in beds; corners of 70 degrees and more.
-  Random random;
+  Random random(3);
   int touching = 0;
   for (int trial = 0; trial < 2000; ++trial) {
-    const Polyhedron &a = bodies()[random.engine() % bodies().size()], &b = bodies()[random.engine() % bodies().size()];
+    const Polyhedron &a = bodies()[random.below(bodies().size())], &b = bodies()[random.below(bodies().size())];
     const Mat3 ra = random.rotation(), rb = random.rotation();
-    Vec3 link = random.vector().normalized();
+    Vec3 link = random.direction();
     double scale = 3.0;
     for (int k = 0; k < 8; ++k) {  // pushed together until they just touch
       const double overlap = least_overlap(a, ra, b, rb, scale * link);
@@ -202,8 +192,7 @@ TEST_CASE("an edge on a face has half the stiffness, a corner and crossed edges 
   REQUIRE(edge.size() == 2);
   CHECK(push(edge).force.z() == Approx(0.5 * 0.01));
 
-  const Mat3 on_corner =
-      Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d(1, 1, 1), -Eigen::Vector3d::UnitZ()).toRotationMatrix();
+  const Mat3 on_corner = dem::rotation_between(Vec3(1, 1, 1), -Vec3::UnitZ());
   const auto corner = patch(c, level, c, on_corner, {0.1, 0.2, 1.0 + std::sqrt(3.0) - 0.01});
   REQUIRE(corner.size() == 1);
   CHECK(corner[0].share == Approx(1.0 / 3.0));

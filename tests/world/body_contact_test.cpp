@@ -13,7 +13,6 @@ namespace mesh = dem::mesh;
 
 namespace {
 
-constexpr double g = 9.81;
 const Vec3 edges(0.2, 0.1, 0.08);
 
 /// A block of 1.6 kg on a floor, of which either may be a box, triangles or a plane.

@@ -164,10 +164,10 @@ TEST_CASE("a ball bounces lower by the square of the restitution each time") {
     auto& w = drop.world;
     double height = h0 - r;
     for (int bounce = 1; bounce <= 2; ++bounce) {
-      while (w.velocity(drop.ball).z() <= 0.0) w.run(20);
+      while (w.velocity(drop.ball).z() <= 0.0) REQUIRE(w.run(20));
       double top = 0.0;
       while (w.velocity(drop.ball).z() > 0.0) {
-        w.run(20);
+        REQUIRE(w.run(20));
         top = std::max(top, w.position(drop.ball).z());
       }
       height *= e * e;

@@ -30,7 +30,7 @@ TEST_CASE("options out of range are refused") {
   check_says(options_refused([](auto& o) { o.time_step_safety = 0.0; }), {"time step safety is 0"});
   check_says(options_refused([](auto& o) { o.skin = -1e-4; }), {"skin is -0.0001 m", "not negative"});
   check_says(options_refused([](auto& o) { o.overlap_limit = 0.0; }), {"overlap limit is 0", "greater than zero"});
-  check_says(options_refused([](auto& o) { o.gravity.y() = not_a_number; }), {"gravity", "not a finite number"});
+  check_says(options_refused([](auto& o) { o.gravity.y() = not_a_number; }), {"gravity is (0, nan", "must be finite"});
   check_says(options_refused([](auto& o) { o.threads = -1; }), {"threads is -1", "at least 1"});
   CHECK_NOTHROW(dem::World<Balls>());
 }
@@ -90,14 +90,14 @@ TEST_CASE("missing contact constants are named before the first step") {
   dem::SurfaceOptions steel;
   steel.material = "steel";
   w.add_surface(w.ground(), dem::surface::Plane{}, steel);
-  check_refused([&] { w.step(); }, "no contact constants", "'gravel'", "set_contact");
+  check_refused([&] { (void)w.step(); }, "no contact constants", "'gravel'", "set_contact");
   w.set_contact("gravel", "gravel", sand<Balls>());
-  check_refused([&] { w.step(); }, "no contact constants", "'gravel'", "'steel'");
+  check_refused([&] { (void)w.step(); }, "no contact constants", "'gravel'", "'steel'");
   w.set_contact("steel", "gravel", sand<Balls>());
   CHECK(w.step());
   // And again when something new comes.
   w.add_species(Sphere(1e-3), {"clay", 2000.0});
-  check_refused([&] { w.step(); }, "no contact constants", "'clay'");
+  check_refused([&] { (void)w.step(); }, "no contact constants", "'clay'");
 }
 
 TEST_CASE("a time step above the stable one is refused with the numbers") {
@@ -125,17 +125,66 @@ TEST_CASE("a time step above the stable one is refused with the numbers") {
 
 TEST_CASE("a world that nothing limits asks for a time step") {
   dem::World<Balls> w;
-  check_refused([&] { w.step(); }, "nothing", "time step", "set time_step");
+  check_refused([&] { (void)w.step(); }, "nothing", "time step", "set time_step");
 }
 
 TEST_CASE("a negative time to run is refused") {
   dem::World<Balls> w(options({0, 0, 0}, 1e-3));
-  check_refused([&] { w.run_for(-1.0); }, "time to run is -1 s");
+  check_refused([&] { (void)w.run_for(-1.0); }, "time to run is -1 s");
 }
 
-TEST_CASE("ids of grains and surfaces that are not there are refused") {
+TEST_CASE("a chosen time step keeps its safety when contacts become stiffer") {
+  dem::World<Balls> w(options({0, 0, 0}));
+  w.set_contact(sand<Balls>());
+  w.add_species(Sphere(1e-3));
+  w.prepare();
+  const double before = w.time_step();
+  auto stiff = sand<Balls>();
+  stiff.normal.stiffness *= 3.9;  // the old step would just be stable still
+  w.set_contact(stiff);
+  w.prepare();
+  CHECK(w.time_step() < 0.6 * before);
+  CHECK(w.time_step() == Catch::Approx(0.5 * w.stable_time_step().value));
+  // What does not make contacts stiffer leaves the step alone.
+  const double now = w.time_step();
+  stiff.friction.coefficient = 0.1;
+  w.set_contact(stiff);
+  w.prepare();
+  CHECK(w.time_step() == now);
+}
+
+TEST_CASE("time spans that are no whole steps are run in the long run") {
   dem::World<Balls> w(options({0, 0, 0}, 1e-3));
-  CHECK_THROWS(w.position(ParticleId(0)));
-  CHECK_THROWS(w.surface_force(SurfaceId(0)));
-  CHECK_THROWS(w.set_active(SurfaceId(2), false));
+  for (int k = 0; k < 100; ++k) CHECK(w.run_for(0.4e-3));
+  CHECK(w.steps() == 40);
+}
+
+TEST_CASE("a material that nothing is made of is refused, with those that are there") {
+  dem::World<Balls> w(options({0, 0, 0}, 1e-6));
+  w.set_contact(sand<Balls>());
+  w.add_species(Sphere(1e-3), {"gravel", 2650.0});
+  w.set_contact("gravle", "wall", sand<Balls>());
+  check_refused([&] { (void)w.step(); }, "'gravle'", "there are: 'gravel'", "correct the name");
+}
+
+TEST_CASE("domains, gravity and velocities that make no sense are refused") {
+  check_refused(
+      [] {
+        dem::World<Balls> w(with([](auto& o) { o.domain = dem::surface::Bounds{{0, 0, 0}, {1, NAN, 1}}; }));
+      },
+      "domain's lower corner");
+  dem::World<Balls> w(options({0, 0, 0}, 1e-3));
+  check_refused([&] { w.set_gravity({0, NAN, 0}); }, "gravity is (0, nan, 0)");
+  w.add_species(Sphere(1e-3));
+  w.set_contact(sand<Balls>());
+  const auto grain = w.add_particle({SpeciesId(0)});
+  check_refused([&] { w.set_velocity(grain, {INFINITY, 0, 0}); }, "velocity of a grain is (inf, 0, 0)");
+}
+
+TEST_CASE("ids that are not there are refused") {
+  dem::World<Balls> w(options({0, 0, 0}, 1e-3));
+  check_refused([&] { (void)w.position(ParticleId(0)); }, "grain 0 is asked for", "this world has 0");
+  check_refused([&] { (void)w.surface_force(SurfaceId()); }, "a surface is asked for by an id that was never set");
+  check_refused([&] { w.set_active(SurfaceId(2), false); }, "surface 2");
+  check_refused([&] { (void)w.species(SpeciesId(1)); }, "species 1");
 }

@@ -5,13 +5,13 @@
 
 namespace {
 
-struct Balls : dem::Model {
+struct SmoothBalls : dem::Model {
   using Friction = dem::friction::None;
 };
-struct EulerBalls : Balls {
+struct EulerBalls : SmoothBalls {
   using Integrator = dem::integrator::SymplecticEuler;
 };
-struct VerletBalls : Balls {
+struct VerletBalls : SmoothBalls {
   using Integrator = dem::integrator::VelocityVerlet;
 };
 
@@ -26,7 +26,7 @@ dem::BodyId add_pendulum(Machine& m) {
 }  // namespace
 
 TEST_CASE("a world without grains moves its machine as the machine does alone") {
-  dem::World<Balls> world({.time_step = 1e-4});
+  dem::World<SmoothBalls> world({.time_step = 1e-4});
   const dem::BodyId in_world = add_pendulum(world.machine());
   REQUIRE(world.run(2000));
 
@@ -39,7 +39,7 @@ TEST_CASE("a world without grains moves its machine as the machine does alone") 
   CHECK(alone.body(rod).position().z() < -0.05);  // it did fall
 }
 
-TEMPLATE_TEST_CASE("a ball that bounces off a sprung plate leaves the energy in the plate", "", Balls, EulerBalls,
+TEMPLATE_TEST_CASE("a ball that bounces off a sprung plate leaves the energy in the plate", "", SmoothBalls, EulerBalls,
                    VerletBalls) {
   const int substeps = GENERATE(1, 8);
   // Plate: omega = sqrt(50/2e-5) = 1.6e3/s; contact: sqrt(2000/0.7e-5) = 1.7e4/s. A step of 1e-6 s has omega dt < 0.02.
@@ -66,4 +66,79 @@ TEMPLATE_TEST_CASE("a ball that bounces off a sprung plate leaves the energy in 
   CHECK(in_plate > 0.2 * before);  // something was handed over
   // Schemes of first order are off by omega dt/2 = 1 % of the contact's share; the rest by its square.
   CHECK(after == Catch::Approx(before).epsilon(0.01));
+}
+
+TEST_CASE("sensors tell the walls of one body apart, and average each over its window") {
+  // A tray with a floor and a wall at x = 0, both on one body that is tipped by an angle about Y, so that a ball of 1
+  // mm lies in its corner: the floor carries m g cos(angle), the wall m g sin(angle).
+  const double angle = 0.3, radius = 1e-3;
+  const dem::Vec3 down = 9.81 * dem::Vec3(-std::sin(angle), 0, -std::cos(angle));
+  dem::World<SmoothBalls> world({.gravity = down});
+  world.set_contact({.normal = {.stiffness = 1000, .damping = 0.05, .separation_factor = 1}, .friction = {}});
+  const auto species = world.add_species(dem::shape::Sphere(radius));
+  const double weight = 9.81 * world.species(species).mass;
+  const dem::BodyId tray = world.machine().add_fixed_body("tray");
+  const auto floor = world.add_surface(tray, dem::surface::Box({0.1, 0.1, 0.01}), {.position = {0, 0, -0.005}});
+  const auto wall = world.add_surface(tray, dem::surface::Box({0.01, 0.1, 0.1}), {.position = {-0.055, 0, 0.05}});
+  const double window = 0.05;
+  const auto on_floor = world.add_surface_sensor(floor, window), on_wall = world.add_surface_sensor(wall, window);
+  world.add_particle({.species = species, .position = {-0.05 + radius, 0, radius}});
+  REQUIRE(world.run_for(0.3));
+  // At rest: what the damper has left after 0.25 s is nothing.
+  const dem::Vec3 f = dem::to_eigen(world.surface_sensor(on_floor).mean().force);
+  const dem::Vec3 w = dem::to_eigen(world.surface_sensor(on_wall).mean().force);
+  CHECK((f + weight * std::cos(angle) * dem::Vec3::UnitZ()).norm() < 1e-6 * weight);
+  CHECK((w + weight * std::sin(angle) * dem::Vec3::UnitX()).norm() < 1e-6 * weight);
+  CHECK(world.surface_sensor(on_floor).latest().force.z == world.surface_force(floor).z());
+  CHECK_THROWS_AS(world.add_surface_sensor(dem::SurfaceId(7), window), dem::Error);
+  // A grain that flies away leaves half a window without force.
+  const auto ball = dem::ParticleId(0);
+  world.set_velocity(ball, {1.0, 0, 1.0});
+  REQUIRE(world.run_for(0.5 * window));
+  // The window's oldest edge is one of 64 bins coarse.
+  CHECK(world.surface_sensor(on_floor).mean().force.z == Catch::Approx(0.5 * f.z()).epsilon(0.05));
+}
+
+TEST_CASE("what a machine derived stays while grains come and go, and follows when a part is added") {
+  dem::World<SmoothBalls> world({.time_step = 1e-4});
+  world.set_contact({.normal = {.stiffness = 10, .damping = 0, .separation_factor = 1}, .friction = {}});
+  const auto species = world.add_species(dem::shape::Sphere(1e-3));
+  auto& machine = world.machine();
+  const dem::BodyId rod = add_pendulum(machine);
+  // Two links, so that the mobility at the second hinge depends on the pose.
+  const dem::BodyId second = machine.add_body(dem::mbd::box_body("second", {1.0, 0.1, 0.1}, 100.0).at({1.5, 0.0, 0.0}));
+  const auto hinge = machine.add_joint(dem::mbd::revolute("elbow", rod, second, {1, 0, 0}, {0, 1, 0}));
+  REQUIRE(world.run(3000));
+  const double k = machine.joint(hinge).k;
+  world.add_particle({.species = species, .position = {0, 0, 10}});
+  world.set_gravity({0, 0, -9.0});
+  REQUIRE(world.run(1));
+  CHECK(machine.joint(hinge).k == k);
+  machine.add_spring(dem::mbd::spring("spring", world.ground(), {5, 0, 0}, second, {2, 0, 0}, 1.0));
+  REQUIRE(world.run(1));
+  const double shared = machine.joint(hinge).k;
+  CHECK(shared < 0.9 * k);  // one more part shares the body
+  // Steps of the machine that are four times as short let it be 16 times as stiff; back again, it is as it was. The
+  // pose changes between the two by what moves in a step or two.
+  machine.substeps = 4;
+  REQUIRE(world.run(1));
+  CHECK(machine.joint(hinge).k == Catch::Approx(16.0 * shared).epsilon(1e-2));
+  machine.substeps = 1;
+  REQUIRE(world.run(1));
+  CHECK(machine.joint(hinge).k == Catch::Approx(shared).epsilon(1e-2));
+}
+
+TEST_CASE("bodies that only a measuring joint connects may touch each other") {
+  for (const bool measures : {true, false}) {
+    dem::World<SmoothBalls> world;
+    auto& m = world.machine();
+    dem::BodyId bodies[2];
+    for (int k = 0; k < 2; ++k) {
+      bodies[k] = m.add_body(dem::mbd::box_body(k == 0 ? "a" : "b", {1, 1, 1}, 100.0).at({2.0 * k, 0, 0}));
+      world.add_surface(bodies[k], dem::surface::Box({1, 1, 1}));
+    }
+    const auto kind = measures ? dem::mbd::JointKind::free : dem::mbd::JointKind::point_on_plane;
+    m.add_joint(dem::mbd::joint(kind, "joint", bodies[0], bodies[1], {1, 0, 0}));
+    CHECK(world.add_body_contacts() == (measures ? 1 : 0));
+  }
 }

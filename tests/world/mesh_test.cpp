@@ -9,8 +9,6 @@ namespace mesh = dem::mesh;
 
 namespace {
 
-constexpr double g = 9.81;
-
 /// A single ball of 5 mm on a surface of the ground.
 struct OneBall {
   dem::World<Balls> world;
@@ -156,8 +154,7 @@ TEST_CASE("a corner of a surface holds a grain that none of the grain's own poin
     w.set_contact({{2000.0, 1.0, 1.0}, {0.5, 2000.0, 0.05, 1.0}});
     const auto species = w.add_species(BluntBall(5e-3));
     dem::SurfaceOptions o;
-    o.rotation =
-        Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d(1, 1, 1), Eigen::Vector3d::UnitZ()).toRotationMatrix();
+    o.rotation = dem::rotation_between(Vec3(1, 1, 1), Vec3::UnitZ());
     const auto s = w.add_surface(w.ground(), geometry, o);
     const double tip = 0.01 * std::sqrt(3.0);
     const auto ball = w.add_particle({species, Vec3(0, 0, tip + 5e-3)});

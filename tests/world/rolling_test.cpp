@@ -9,7 +9,7 @@ using SpringModel = Laws<Linear, friction::CundallStrack, Rolling>;
 using MindlinModel = Laws<contact::Hertz, friction::Mindlin, rolling::ElasticPlastic>;
 using TorqueModel = Laws<Linear, friction::CundallStrack, rolling::ConstantTorque>;
 
-constexpr double r = 5e-3, g = 9.81, stiffness = 1e4, mu_r = 0.2, mu_t = 0.1;
+constexpr double r = 5e-3, stiffness = 1e4, mu_r = 0.2, mu_t = 0.1;
 
 template <class Model>
 ContactParameters<Model> constants(double mu) {

@@ -8,8 +8,6 @@ namespace surface = dem::surface;
 
 namespace {
 
-constexpr double g = 9.81;
-
 struct Round : Balls {
   using Surfaces =
       surface::Set<surface::Plane, surface::Sphere, surface::Cylinder, surface::Superquadric, surface::TriangleMesh>;

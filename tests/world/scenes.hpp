@@ -3,15 +3,16 @@
 // What the tests of whole worlds share: models, settings, and sums over all grains.
 
 #include "catch.hpp"
+#include "random.hpp"
 
 #include <dem/broadphase/all_pairs.hpp>
 #include <dem/exec/serial.hpp>
 #include <dem/integrator/symplectic_euler.hpp>
 #include <dem/integrator/velocity_verlet.hpp>
+#include <dem/math/rotation.hpp>
 #include <dem/shape/sphere_cluster.hpp>
 #include <dem/world/world.hpp>
 
-#include <random>
 #include <vector>
 
 using dem::Mat3;
@@ -19,6 +20,8 @@ using dem::ParticleId;
 using dem::SpeciesId;
 using dem::SurfaceId;
 using dem::Vec3;
+
+inline constexpr double g = 9.81;  // m/s^2
 
 template <class S, class I = dem::integrator::SymplecticEuler, class B = dem::broadphase::UniformGrid,
           class E = dem::exec::OpenMP>
@@ -55,8 +58,7 @@ std::vector<SurfaceId> add_open_box(World& world, const Vec3& edges) {
   const auto wall = [&](const Vec3& position, const Vec3& normal) {
     dem::SurfaceOptions o;
     o.position = position;
-    o.rotation =
-        Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), Eigen::Vector3d(normal)).toRotationMatrix();
+    o.rotation = dem::rotation_between(Vec3::UnitZ(), normal);
     walls.push_back(world.add_surface(world.ground(), dem::surface::Plane{}, o));
   };
   wall({0, 0, 0}, {0, 0, 1});
@@ -66,22 +68,6 @@ std::vector<SurfaceId> add_open_box(World& world, const Vec3& edges) {
   wall({0, edges.y(), 0}, {0, -1, 0});
   return walls;
 }
-
-struct Random {
-  std::mt19937 engine;
-  explicit Random(unsigned seed = 1) : engine(seed) {}
-  double between(double low, double high) {
-    return low + (high - low) * (static_cast<double>(engine()) / 4294967296.0);
-  }
-  Vec3 vector(double size = 1.0) {
-    const double x = between(-size, size), y = between(-size, size);
-    return {x, y, between(-size, size)};
-  }
-  Mat3 rotation() {
-    const double angle = between(0.0, 3.0);
-    return Eigen::AngleAxisd(angle, vector().normalized()).toRotationMatrix();
-  }
-};
 
 /// A block of nx x ny x nz grains, `distance` apart, at random orientations and with random velocities up to `speed`.
 template <class World>

@@ -8,7 +8,7 @@ using Catch::Approx;
 TEST_CASE("grains of different size, shape and material share a world") {
   using Cluster = dem::shape::SphereCluster<8>;
   using Model = Grains<Cluster>;
-  dem::World<Model> w(options({0, 0, -9.81}, 5e-6));
+  dem::World<Model> w(options({0, 0, -9.81}, 2e-6));
   w.set_contact({{2000.0, 0.1, 1.0}, {0.4, 2000.0, 0.1, 0.975}});  // well damped, to be at rest soon
   const std::array<dem::Ball, 2> dumbbell = {{{{-1e-3, 0, 0}, 1e-3}, {{1e-3, 0, 0}, 1e-3}}};
   const std::array<dem::Ball, 1> ball = {{{{0, 0, 0}, 2e-3}}};

@@ -44,16 +44,16 @@ void check_swarm(World& w) {
   });
   std::size_t most = 0;
   for (int k = 0; k < 60; ++k) {
-    REQUIRE(w.run(25));
+    REQUIRE(w.run_for(2.5e-4));
     std::size_t touching = 0;
     for_each_grain(w, [&](ParticleId p) { touching += w.force(p).norm() > 0.0; });
     most = std::max(most, touching);
     highest = std::max(highest, kinetic_energy(w));
   }
   CHECK(most > w.particle_count() / 4);
-  CHECK(highest <= e0);
+  CHECK(highest <= (1 + 1e-6) * e0);  // the gyroscopic torque, see below
   CHECK(kinetic_energy(w) < 0.8 * e0);
-  // Each of 1,500 steps rounds by 1e-16 of each of the grains' own share.
+  // Each of up to 3,000 steps rounds by 1e-16 of each of the grains' own share.
   CHECK((momentum(w) - p0).norm() < 1e-12 * p_size);
   // Forces act where the grains are when they are evaluated, and at one point for both partners. Velocity Verlet takes
   // the gyroscopic torque of grains with three inertias to second order: (w dt)^2 = (100 / s * 1e-5 s)^2.
@@ -154,7 +154,7 @@ TEST_CASE("superquadrics keep momentum and lose energy") {
 }
 
 TEST_CASE("superquadrics of points keep momentum and lose energy") {
-  dem::World<Pointed> w(options({0, 0, 0}, 1e-5));
+  dem::World<Pointed> w(options({0, 0, 0}, 5e-6));
   w.set_contact({{500, 0.004, 0.05}, {0.4, 500, 0.004, 0.975}});
   add_swarm(w,
             {w.add_species(SuperquadricPoints({1.2e-3, 1.2e-3, 1.2e-3}, {8, 8, 8}, 4, PointArea::relative)),

@@ -3,7 +3,7 @@
 using Catch::Approx;
 
 namespace {
-constexpr double g = 9.81, half_edge = 1.2e-3;
+constexpr double half_edge = 1.2e-3;
 }
 
 TEMPLATE_TEST_CASE("a cube that came to rest weighs m g", "", dem::integrator::PredictorCorrector,

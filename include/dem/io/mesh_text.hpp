@@ -20,9 +20,21 @@ namespace dem::io::detail {
   return s;
 }
 
+/// `word` in small letters.
+[[nodiscard]] inline std::string lower(std::string_view word) {
+  std::string s(word);
+  for (char& c : s) {
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  }
+  return s;
+}
+
 /// Walks through the words of a text. White space and line ends of all systems part words.
 class Words {
  public:
+  /// White space that parts lines for line() alone: two lines that a reader has joined.
+  static constexpr char joined_line = '\v';
+
   Words(std::string_view text, std::string file) : text_(text), file_(std::move(file)) {}
 
   /// The next word; empty at the end.
@@ -57,7 +69,7 @@ class Words {
     while (end > 0 && is_space(text_[end - 1])) --end;
     for (; counted_ < end; ++counted_) {
       const bool crlf = text_[counted_] == '\n' && counted_ > 0 && text_[counted_ - 1] == '\r';
-      if (is_line_end(text_[counted_]) && !crlf) ++line_;
+      if ((is_line_end(text_[counted_]) && !crlf) || text_[counted_] == joined_line) ++line_;
     }
     return line_;
   }

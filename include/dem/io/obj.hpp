@@ -18,6 +18,7 @@ namespace dem::io {
     if (end < text.size() && text[end] == '\r') ++end;
     if (end < text.size() && text[end] == '\n') ++end;
     for (std::size_t k = at; end > at + 1 && k < end; ++k) text[k] = ' ';
+    if (end > at + 1) text[end - 1] = detail::Words::joined_line;
   }
   detail::Words words(text, file);
   IndexedMesh mesh;

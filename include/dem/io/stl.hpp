@@ -8,6 +8,7 @@
 #include <bit>
 #include <cstdint>
 #include <cstring>
+#include <limits>
 
 namespace dem::io {
 
@@ -57,7 +58,7 @@ inline IndexedMesh read_ascii_stl(std::string_view text, const std::string& file
   IndexedMesh mesh;
   const auto expect = [&](std::string_view wanted) {
     const std::string_view word = words.next();
-    if (word == wanted) return;
+    if (lower(word) == wanted) return;
     if (word.empty()) {
       fail("'{}', line {}: the file ends where '{}' should stand; it was cut off: copy or export it again", file,
            words.line(), wanted);
@@ -67,7 +68,7 @@ inline IndexedMesh read_ascii_stl(std::string_view text, const std::string& file
   while (!words.at_end()) {
     expect("solid");
     words.skip_line();  // the name
-    while (words.peek() == "facet") {
+    while (lower(words.peek()) == "facet") {
       expect("facet");
       expect("normal");
       for (int k = 0; k < 3; ++k) words.next();  // often wrong, and not needed
@@ -101,9 +102,10 @@ inline IndexedMesh read_ascii_stl(std::string_view text, const std::string& file
   const bool has_header = bytes.size() >= detail::stl_header;
   const bool length_fits =
       has_header && bytes.size() == detail::stl_header + detail::stl_record * std::size_t{detail::stl_word(bytes, 80)};
-  const bool says_solid = detail::Words(bytes.substr(0, 4096), file).next() == "solid";
+  const std::string_view text = bytes.substr(bytes.starts_with("\xEF\xBB\xBF") ? 3 : 0);  // after a byte order mark
+  const bool says_solid = detail::lower(detail::Words(text.substr(0, 4096), file).next()) == "solid";
   const bool has_zeros = bytes.find('\0') != std::string_view::npos;
-  if (says_solid && !length_fits && !has_zeros) return detail::read_ascii_stl(bytes, file);
+  if (says_solid && !length_fits && !has_zeros) return detail::read_ascii_stl(text, file);
   if (!has_header) {
     fail(
         "'{}' has {} bytes and does not begin with 'solid': it is neither an ascii nor a binary STL file (84 bytes and "
@@ -118,7 +120,7 @@ inline IndexedMesh read_ascii_stl(std::string_view text, const std::string& file
 }
 
 /// Writes a mesh as a binary STL file: coordinates rounded to 24 bits, as the format has it. Throws Error if an index
-/// is out of range or the file cannot be written.
+/// or a coordinate is out of range or the file cannot be written.
 inline void write_stl(const std::filesystem::path& path, const IndexedMesh& mesh) {
   check_indices(mesh);
   if (mesh.triangles.size() > 0xffffffffu) fail("an STL file takes at most 4,294,967,295 triangles");
@@ -128,6 +130,10 @@ inline void write_stl(const std::filesystem::path& path, const IndexedMesh& mesh
     for (int k = 0; k < 4; ++k) bytes += static_cast<char>(value >> (8 * k) & 0xffu);
   };
   const auto vector = [&](const Vec3& v) {
+    if (!(v.cwiseAbs().maxCoeff() <= double{std::numeric_limits<float>::max()})) {
+      fail("a coordinate of {:g} does not fit into an STL file, whose numbers end at 3.4e38; scale the mesh",
+           v.cwiseAbs().maxCoeff());
+    }
     for (Eigen::Index c = 0; c < 3; ++c) word(std::bit_cast<std::uint32_t>(static_cast<float>(v[c])));
   };
   word(static_cast<std::uint32_t>(mesh.triangles.size()));

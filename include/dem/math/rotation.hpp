@@ -63,4 +63,20 @@ DEM_HOT Matrix3<T> orthonormalised(const Matrix3<T>& r) {
   return correction * r;
 }
 
+/// The smallest turn that takes one direction into another; both of any length above 0. Opposite directions have no
+/// smallest one: half a turn about some axis across them. (In place of Eigen's FromTwoVectors, which solves that case
+/// by a singular value decomposition and costs each user seconds of compiling.)
+inline Mat3 rotation_between(const Vec3& from, const Vec3& to) {
+  const Vec3 a = from.normalized(), b = to.normalized();
+  // Two reflections make a turn by twice the angle between their normals: the first takes a to -b, the second to b.
+  const Vec3 middle = a + b;
+  if (middle.squaredNorm() < 1e-24) {
+    const Vec3 across = a.cross(std::abs(a.x()) < 0.6 ? Vec3::UnitX() : Vec3::UnitY()).normalized();
+    return 2.0 * across * across.transpose() - Mat3::Identity();
+  }
+  const Vec3 n = middle.normalized();
+  const Mat3 to_minus_b = Mat3::Identity() - 2.0 * n * n.transpose();
+  return (Mat3::Identity() - 2.0 * b * b.transpose()) * to_minus_b;
+}
+
 }  // namespace dem

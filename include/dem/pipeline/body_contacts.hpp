@@ -20,7 +20,7 @@ struct BodyPair {
 
 /// Key of a contact between bodies: pair, whose point it is, number of the point, feature of the other surface.
 struct BodyKey {
-  static constexpr std::size_t most_pairs = 1u << 12, most_points = 1u << 23;
+  static constexpr std::size_t most_pairs = 1u << 12;
   static constexpr std::uint64_t make(std::size_t pair, bool back, std::uint32_t point, std::uint32_t feature) {
     return std::uint64_t{pair} << 52 | std::uint64_t{back} << 51 | std::uint64_t{point} << 28 | feature;
   }
@@ -162,12 +162,13 @@ void find_body_contacts(BodyContacts<Model>& c, std::span<const Surface> surface
     return bodies[surface_of(hit, partner).body.index()];
   };
   ContactEvaluator<Model, contact::SurfaceTouch> evaluator(materials.table(), dt);
-  c.worst_overlap = evaluator.run(
+  const Deepest deepest = evaluator.run(
       c.hits, c.memories, c.forces, [&](std::size_t k) { return c.touches[k]; },
       [&](std::size_t k) -> const PartnerView& { return surface_of(k, false).view; },
       [&](std::size_t k) -> const PartnerView& { return surface_of(k, true).view; });
+  c.worst_overlap = deepest.overlap;
+  if (deepest.overlap > 0.0) c.worst_pair = c.hits[deepest.hit].i;
 
-  double deepest = 0.0;
   for (std::size_t k = 0; k < c.hits.size(); ++k) {
     const Vector3<double> force = ContactForces::at(c.forces.force, k);
     const Vector3<double> torque_i = ContactForces::at(c.forces.torque_i, k);
@@ -183,12 +184,27 @@ void find_body_contacts(BodyContacts<Model>& c, std::span<const Surface> surface
     pair.torque_a += back ? torque_j : torque_i;
     pair.torque_b += back ? torque_i : torque_j;
     ++pair.contacts;
-    const double ratio = (c.touches[k].radius - c.touches[k].gap) / c.touches[k].effective_radius;
-    if (ratio > deepest) {
-      deepest = ratio;
-      c.worst_pair = c.hits[k].i;
-    }
   }
+}
+
+/// From the centre of mass of a surface's body to the farthest corner of the surface's box, m.
+template <class Surface>
+double reach_of(const Surface& s) {
+  const surface::Bounds b = std::visit([](const auto& g) { return g.bounds(); }, s.geometry);
+  double farthest = 0.0;
+  for (unsigned k = 0; k < 8; ++k) {
+    const Vec3 corner(k & 1 ? b.high.x() : b.low.x(), k & 2 ? b.high.y() : b.low.y(), k & 4 ? b.high.z() : b.low.z());
+    farthest = std::max(farthest, (s.position + s.rotation * corner).norm());
+  }
+  return farthest;
+}
+/// How little a body resists at the farthest point of its surface, 1/m + R^2/I (1/kg); 0 for a fixed one. An endless
+/// surface is touched at `lever` (m).
+template <class Surface>
+double softness_of(const Surface& s, const Body& body, double lever) {
+  if (body.fixed) return 0.0;
+  if (const double reach = reach_of(s); reach < 1e100) lever = reach;
+  return 1.0 / body.mass + lever * lever / body.inertia.minCoeff();
 }
 
 /// Largest stable time step of the contacts between bodies: all points that may touch a plane at once are taken to act
@@ -199,33 +215,18 @@ StableTimeStep stable_time_step_of_bodies(std::span<const BodyPair> pairs, std::
                                           std::span<const Body> bodies, const Materials<Model>& materials,
                                           double overlap_limit) {
   StableTimeStep result;
-  const auto reach = [&](const Surface& s) {  // from the centre of mass to the farthest corner of the surface's box
-    const surface::Bounds b = std::visit([](const auto& g) { return g.bounds(); }, s.geometry);
-    double farthest = 0.0;
-    for (unsigned k = 0; k < 8; ++k) {
-      const Vec3 corner(k & 1 ? b.high.x() : b.low.x(), k & 2 ? b.high.y() : b.low.y(), k & 4 ? b.high.z() : b.low.z());
-      farthest = std::max(farthest, (s.position + s.rotation * corner).norm());
-    }
-    return farthest;
-  };
   for (const BodyPair& pair : pairs) {
     const Surface &a = surfaces[pair.a.index()], &b = surfaces[pair.b.index()];
     const Body &body_a = bodies[a.body.index()], &body_b = bodies[b.body.index()];
     // An endless surface is touched where its partner is.
-    const double smaller = std::min(reach(a), reach(b));
-    const auto softness = [&](const Surface& s, const Body& body) {
-      if (body.fixed) return 0.0;
-      const double lever = reach(s) < 1e100 ? reach(s) : smaller;
-      return 1.0 / body.mass + lever * lever / body.inertia.minCoeff();
-    };
-    const double soft = softness(a, body_a) + softness(b, body_b);
+    const double smaller = std::min(reach_of(a), reach_of(b));
+    const double soft = softness_of(a, body_a, smaller) + softness_of(b, body_b, smaller);
     if (!(soft > 0.0)) continue;
     const double inverse_mass = (body_a.fixed ? 0.0 : 1.0 / body_a.mass) + (body_b.fixed ? 0.0 : 1.0 / body_b.mass);
     const double n = is_ball(a) || is_ball(b) ? 1.0 : static_cast<double>(points_at_once(a) + points_at_once(b));
     const double radius = std::min(point_radius(a), point_radius(b));
     const auto& parameters = materials.table()[materials.row(a.material, b.material)];
-    const contact::NormalState<double> deepest = {2.0 * overlap_limit * radius, 0.0, 1.0, radius,
-                                                  1.0 / inverse_mass,           0.0};
+    const contact::NormalState<double> deepest = {2.0 * overlap_limit * radius, 0.0, radius, 1.0 / inverse_mass, 0.0};
     const auto limit_by = [&](double k, double c) {
       const double dt = stable_step(Model::Integrator::stability_limit, n * k, n * c, soft);
       if (!(dt < result.value)) return;

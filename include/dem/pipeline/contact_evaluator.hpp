@@ -15,6 +15,12 @@ struct Hit {
   std::uint32_t law;      ///< row of the table of contact parameters
 };
 
+/// The deepest of a list of contacts: its overlap in effective diameters, and its place in the list.
+struct Deepest {
+  double overlap = 0.0;
+  std::size_t hit = 0;
+};
+
 /// Forces of the contacts of a chunk while it is worked on: on i, torques on i and on its partner about their own
 /// centres.
 struct ContactForces {
@@ -43,15 +49,15 @@ class ContactEvaluator {
   ContactEvaluator(const std::vector<Parameters>& table, double dt) : table_(table), dt_(dt) { set_uniform(0); }
 
   /// Fills this step's memories and the forces; touch_of(k) gives the raw numbers of contact k, view_i(k) and view_j(k)
-  /// its partners. Returns the largest overlap in effective diameters.
+  /// its partners. Returns the deepest contact.
   template <class TouchOf, class ViewI, class ViewJ>
-  double run(std::span<const Hit> hits, Memories& memories, ContactForces& forces, TouchOf&& touch_of, ViewI&& view_i,
-             ViewJ&& view_j) {
+  Deepest run(std::span<const Hit> hits, Memories& memories, ContactForces& forces, TouchOf&& touch_of, ViewI&& view_i,
+              ViewJ&& view_j) {
     const int count = static_cast<int>(hits.size());
     memories.now.count = count;
     memories.make_room(count);
     forces.make_room(hits.size());
-    Pack worst(0.0);
+    Deepest deepest;
     int cursor = 0;
     PartnerLanes partners;
     for (int at = 0; at < count; at += pack_width) {
@@ -69,15 +75,23 @@ class ContactEvaluator {
         copy_lane(0, lane);
         partners.set(lane, *partners.i[0], *partners.j[0]);
       }
-      worst = max(worst, evaluate(encounters(partners), memories, forces, static_cast<std::size_t>(at)));
+      const Pack overlap = evaluate(encounters(partners), memories, forces, static_cast<std::size_t>(at));
+      if (any_of(overlap > Pack(deepest.overlap))) [[unlikely]]
+        deepest = deepest_of(overlap, lanes, static_cast<std::size_t>(at));
     }
-    return largest(worst);
+    return deepest;
   }
 
  private:
   static constexpr int touch_size = contact::field_count<Touch<double>>;
 
   using PackParameters = ContactParameters<Model, Pack>;
+
+  static Deepest deepest_of(const Pack& overlap, int lanes, std::size_t at) {
+    int k = 0;
+    for (int other = 1; other < lanes; ++other) k = lane(overlap, other) > lane(overlap, k) ? other : k;
+    return {lane(overlap, k), at + static_cast<std::size_t>(k)};
+  }
 
   /// Field k of `value` goes to lane `lane` of row k.
   template <class Value>

@@ -194,10 +194,13 @@ void find_pair_contacts(std::size_t chunk_index, Chunk<Model>& chunk, const Part
     }
   };
   ContactEvaluator<Model, Shape::template PairTouch, shape::PatchShape<Shape>> evaluator(materials.table(), dt);
-  chunk.worst_overlap = evaluator.run(
+  const Deepest deepest = evaluator.run(
       s.hits, chunk.pair_contacts, s.forces, touch_of,
       [&](std::size_t c) -> const PartnerView& { return p.view[s.hits[c].i]; },
       [&](std::size_t c) -> const PartnerView& { return p.view[s.hits[c].partner]; });
+  chunk.deepest = {deepest.overlap, 0, 0, false};
+  if (deepest.overlap > 0.0)
+    chunk.deepest = {deepest.overlap, s.hits[deepest.hit].i, s.hits[deepest.hit].partner, false};
   share_forces(begin, chunk, s, sums);
 }
 

@@ -12,6 +12,9 @@ namespace dem::pipeline {
 /// How many contacts at once the stable time step allows for. A grain in a bed has about six, but they pull in
 /// different directions: the highest mode of a packed bed of cubes is that of about four contacts in line.
 inline constexpr double contacts_in_line = 4.0;
+/// How many of these have their damper act on that mode: some are pushed, with the damper of the normal law, the others
+/// are sheared, with that of friction.
+inline constexpr double damped_share = 0.5;
 
 struct StableTimeStep {
   double value = 1e300;  ///< s
@@ -29,12 +32,18 @@ inline double stable_step(double limit, double k, double c, double w) {
   return sum > 0.0 ? limit / sum : 1e300;
 }
 
+/// What the stable time step has to know of a surface.
+struct SurfaceMatter {
+  MaterialId material;
+  double softness = 0.0;  ///< 1/kg, of its body: 1/m + R^2/I at the surface's farthest point; 0 for a fixed one
+};
+
 /// Largest stable time step of the grains: the smallest of all laws and pairs of species and surfaces. A shape whose
 /// contacts are points counts with as many as may touch at once. A nonlinear law's stiffness is taken at the overlap
 /// that the world reports as too deep, WorldOptions::overlap_limit.
 template <class Model>
 StableTimeStep stable_time_step(std::span<const Species<typename Model::Shape>> species,
-                                const Materials<Model>& materials, std::span<const MaterialId> surface_materials,
+                                const Materials<Model>& materials, std::span<const SurfaceMatter> surfaces,
                                 double overlap_limit) {
   StableTimeStep result;
   const auto softness = [](const Species<typename Model::Shape>& s) {  // 1/kg
@@ -45,10 +54,9 @@ StableTimeStep stable_time_step(std::span<const Species<typename Model::Shape>> 
   const auto consider = [&](MaterialId a, MaterialId b, double w, double w_turning, double mass, double radius,
                             const contact::Patch& patch) {
     const auto& p = materials.table()[materials.row(a, b)];
-    const contact::NormalState<double> deepest = {
-        2.0 * overlap_limit * radius, 0.0, patch.area / patch.points, radius, mass, 0.0};
+    const contact::NormalState<double> deepest = {2.0 * overlap_limit * radius, 0.0, radius, mass, 0.0};
     const auto limit_by = [&](const char* law, const char* unit, double k, double c, double inverse_inertia) {
-      const double n = contacts_in_line * patch.points;
+      const double n = contacts_in_line * patch.area;
       const double dt = stable_step(Model::Integrator::stability_limit, n * k, n * c, inverse_inertia);
       if (!(dt < result.value)) return;
       const char* damper = c > 0.0 ? " with a damper" : "";
@@ -56,9 +64,9 @@ StableTimeStep stable_time_step(std::span<const Species<typename Model::Shape>> 
                                 materials.name(b), law, k, unit, damper, mass)};
     };
     limit_by("", "N/m", Model::Normal::stiffness(p.normal, deepest) + Model::Cohesion::stiffness(p.cohesion, deepest),
-             contact::damping_of<typename Model::Normal>(p.normal, deepest), w);
+             damped_share * contact::damping_of<typename Model::Normal>(p.normal, deepest), w);
     limit_by("friction ", "N/m", friction::stiffness_of<typename Model::Friction>(p.friction, deepest),
-             contact::damping_of<typename Model::Friction>(p.friction, deepest), w);
+             damped_share * contact::damping_of<typename Model::Friction>(p.friction, deepest), w);
     limit_by("rolling ", "N m", Model::Rolling::stiffness(p.rolling, deepest),
              contact::damping_of<typename Model::Rolling>(p.rolling, deepest), w_turning);
   };
@@ -69,8 +77,9 @@ StableTimeStep stable_time_step(std::span<const Species<typename Model::Shape>> 
       consider(a.material, b.material, softness(a) + softness(b), turning(a) + turning(b), std::min(a.mass, b.mass),
                ra * rb / (ra + rb), shape::patch_of(a.shape));
     }
-    for (const MaterialId m : surface_materials) {
-      consider(a.material, m, softness(a), turning(a), a.mass, ra, shape::surface_patch_of(a.shape));
+    for (const SurfaceMatter& s : surfaces) {
+      consider(a.material, s.material, softness(a) + s.softness, turning(a), a.mass, ra,
+               shape::surface_patch_of(a.shape));
     }
   }
   return result;

@@ -173,11 +173,13 @@ void find_surface_contacts(std::size_t chunk_index, Chunk<Model>& chunk, const P
   }
 
   ContactEvaluator<Model, contact::SurfaceTouch> evaluator(materials.table(), dt);
-  const double worst = evaluator.run(
+  const Deepest deepest = evaluator.run(
       hits, chunk.surface_contacts, scratch.forces, [&](std::size_t c) { return scratch.touches[c]; },
       [&](std::size_t c) -> const PartnerView& { return p.view[hits[c].i]; },
       [&](std::size_t c) -> const PartnerView& { return surfaces[hits[c].partner].view; });
-  chunk.worst_overlap = std::max(chunk.worst_overlap, worst);
+  if (deepest.overlap > chunk.deepest.overlap) {
+    chunk.deepest = {deepest.overlap, hits[deepest.hit].i, hits[deepest.hit].partner, true};
+  }
 
   // In the order of the contacts, surface by surface: the same sum whatever thread does it.
   for (std::size_t c = 0; c < hits.size(); ++c) {

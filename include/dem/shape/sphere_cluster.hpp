@@ -59,6 +59,10 @@ class SphereCluster {
   const Vec3& unit_inertia() const { return unit_inertia_; }
   const Vec3& frame_centre() const { return frame_centre_; }
   const Mat3& frame_rotation() const { return frame_rotation_; }
+  /// For the stable time step: clusters with faces, such as cube8, meet with four spheres each way, twice what grains
+  /// of one sphere are counted with, and larger ones lie on half of their spheres.
+  contact::Patch patch() const { return at_once(count_ < 4 ? 1.0 : 2.0); }
+  contact::Patch surface_patch() const { return at_once(1.0); }
 
   DEM_HOT void orient(const Matrix3<double>& r, double* pose) const {
     for (int k = 0; k < stride; k += pack_width) {
@@ -116,6 +120,11 @@ class SphereCluster {
   }
 
  private:
+  contact::Patch at_once(double least) const {
+    const double points = std::max(least, count_ / 8.0);  // stable_time_step counts each four times
+    return {points, points};
+  }
+
   // One 64-bit word holds the answers for so many spheres of a (rows) against so many of b (lanes).
   static constexpr int lanes_per_word = stride < 64 ? stride : 64;
   static constexpr int rows_per_word = 64 / lanes_per_word < N ? 64 / lanes_per_word : N;

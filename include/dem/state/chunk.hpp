@@ -20,6 +20,14 @@ struct PartnerLoad {
   Vector3<double> torque;  ///< N m, about the centre of j
 };
 
+/// The deepest contact of a chunk's grains in a step.
+struct DeepestContact {
+  double overlap = 0.0;       ///< in effective diameters
+  std::uint32_t i = 0;        ///< row of the grain
+  std::uint32_t partner = 0;  ///< row of the other grain, or number of the surface
+  bool with_surface = false;
+};
+
 /// What belongs to chunk_size consecutive grains: their candidates, contacts and bounds.
 template <class Model>
 struct Chunk {
@@ -34,8 +42,8 @@ struct Chunk {
   std::vector<SurfaceLoad> surface_loads;
 
   Vec3 low = Vec3::Zero(), high = Vec3::Zero();  ///< of the grains' centres
-  double moved2 = 0.0;           ///< m^2, largest squared displacement since the neighbour list was made
-  double worst_overlap = 0.0;    ///< largest overlap / effective diameter in this step
+  double moved2 = 0.0;  ///< m^2, largest squared displacement since the neighbour list was made
+  DeepestContact deepest;
   double surface_seconds = 0.0;  ///< s, spent on contacts with surfaces while the stopwatch was on
   bool finite = true;            ///< no position or velocity is NaN or infinite
 

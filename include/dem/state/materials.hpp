@@ -8,6 +8,7 @@
 #include <dem/rolling/rolling_law.hpp>
 
 #include <algorithm>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -91,6 +92,26 @@ class Materials {
     for (std::size_t a = 0; a < names_.size(); ++a) {
       for (std::size_t b = 0; b <= a; ++b) {
         if (is_grain(a) || is_grain(b)) check_pair(MaterialId(b), MaterialId(a));
+      }
+    }
+  }
+  /// Throws Error if constants were given for a material that nothing is made of: a name that was misspelt. The names
+  /// that grains and walls have by default may wait for them.
+  void check_names(std::span<const MaterialId> used) const {
+    const auto is_used = [&](MaterialId m) {
+      return name(m) == "grain" || name(m) == "wall" || std::find(used.begin(), used.end(), m) != used.end();
+    };
+    for (const Pair& pair : pairs_) {
+      for (const MaterialId m : {pair.a, pair.b}) {
+        if (is_used(m)) continue;
+        std::string known;
+        for (const MaterialId u : used) {
+          if (known.find("'" + name(u) + "'") == std::string::npos) known += fmt::format(" '{}'", name(u));
+        }
+        fail(
+            "contact constants were given for the material '{}', but no grain and no surface is made of it; there "
+            "are:{}; correct the name, or add what it is for first",
+            name(m), known);
       }
     }
   }

@@ -119,9 +119,14 @@ inline void find_vertices(MeshData& m) {
   }
 }
 
-/// Vertices, and points on sharp edges that are longer than the spacing (m; 0: none). Throws Error for too many.
+/// Vertices, and points on sharp edges that are longer than the spacing (m; 0: none). Throws Error for more than the
+/// keys of contacts can tell apart.
 inline void find_points(MeshData& m, double spacing) {
   constexpr double most_points = 1 << 22;
+  if (static_cast<double>(m.mesh.vertices.size()) > most_points) {
+    fail("a mesh has {} vertices, but at most {:g} can be told apart; simplify it, or cut it into several surfaces",
+         m.mesh.vertices.size(), most_points);
+  }
   std::vector<Vec3> on_edges, corners;
   std::vector<bool> sharp(m.mesh.vertices.size(), false);
   for (std::uint32_t t = 0; t < m.faces.size(); ++t) {

@@ -5,21 +5,18 @@
 
 namespace dem {
 
-/// The grain of a chunk with the largest contact force: where the deepest overlap is.
+/// A surface in words: its name, or its number if it has none.
 template <class Model>
-std::size_t most_loaded(const WorldState<Model>& w, std::size_t chunk) {
-  const std::size_t begin = chunk * chunk_size, end = std::min(begin + chunk_size, w.particles.count);
-  std::size_t worst = begin;
-  for (std::size_t i = begin; i < end; ++i) {
-    if (norm(w.particles.force[i]) > norm(w.particles.force[worst])) worst = i;
-  }
-  return worst;
+std::string surface_in_words(const WorldState<Model>& w, std::size_t s) {
+  const std::string& name = w.surfaces[s].name;
+  return name.empty() ? fmt::format("surface {} of body '{}'", s, w.machine.bodies()[w.surfaces[s].body.index()].name)
+                      : fmt::format("surface '{}'", name);
 }
 
 /// Looks for grains that are not finite, lost, or pressed too deep into something. Costs a look at each chunk; only
 /// when something is wrong the grain is searched.
 template <class Model>
-StepReport find_problem(const WorldState<Model>& w) {
+StepReport find_problem(WorldState<Model>& w) {
   const auto& p = w.particles;
   const auto problem = [&](StepReport::Problem kind, std::size_t row, std::string text) {
     return StepReport{kind, w.time, w.step, row < p.count ? ParticleId(p.id[row]) : ParticleId{}, std::move(text)};
@@ -45,6 +42,7 @@ StepReport find_problem(const WorldState<Model>& w) {
       for (std::size_t i = begin; i < end; ++i) {
         const Vec3 x = to_eigen(p.position[i]);
         if ((x.array() >= domain->low.array()).all() && (x.array() <= domain->high.array()).all()) continue;
+        if (!w.known_lost.insert(p.id[i]).second) continue;
         return problem(
             StepReport::Problem::lost, i,
             fmt::format("grain {} left the domain {} and is at ({:.4g}, {:.4g}, {:.4g}) m; close the walls, lower "
@@ -52,14 +50,16 @@ StepReport find_problem(const WorldState<Model>& w) {
                         p.id[i], when(), x.x(), x.y(), x.z(), w.time_step));
       }
     }
-    if (chunk.worst_overlap > w.options.overlap_limit) [[unlikely]] {
-      const std::size_t i = most_loaded(w, c);
+    if (const DeepestContact& deepest = chunk.deepest; deepest.overlap > w.options.overlap_limit) [[unlikely]] {
       return problem(
-          StepReport::Problem::overlap, i,
-          fmt::format("grain {} overlaps its partner by {:.3g} of their effective diameter {}, more than "
-                      "overlap_limit {:g}; raise the normal stiffness, lower time_step (now {:g} s) or the load, "
-                      "or start from a looser packing",
-                      p.id[i], chunk.worst_overlap, when(), w.options.overlap_limit, w.time_step));
+          StepReport::Problem::overlap, deepest.i,
+          fmt::format("grain {} overlaps {} by {:.3g} of their effective diameter {}, more than overlap_limit {:g}; "
+                      "raise the normal stiffness, lower time_step (now {:g} s) or the load, or start from a looser "
+                      "packing",
+                      p.id[deepest.i],
+                      deepest.with_surface ? surface_in_words(w, deepest.partner)
+                                           : fmt::format("grain {}", p.id[deepest.partner]),
+                      deepest.overlap, when(), w.options.overlap_limit, w.time_step));
     }
   }
   if (w.body_contacts.worst_overlap > w.options.overlap_limit) [[unlikely]] {

@@ -9,7 +9,17 @@
 #include <dem/world/options.hpp>
 #include <dem/world/stopwatch.hpp>
 
+#include <set>
+
 namespace dem {
+
+using SurfaceSensorId = Id<struct SurfaceSensorTag>;  ///< measures the grains' force on one surface
+
+/// The grains' force on a surface, averaged.
+struct SurfaceSensor {
+  SurfaceId surface;
+  mbd::WindowAverage average;
+};
 
 /// Everything a world consists of. Only World and the functions of the step see it.
 template <class Model>
@@ -33,12 +43,14 @@ struct WorldState {
   typename Model::BroadPhase broad_phase;
   std::vector<std::uint32_t> incoming_first;
   std::vector<pipeline::Incoming> incoming;
-  double list_skin = 0.0;      ///< m, with which the neighbour list was made
-  bool list_valid = false;     ///< false after grains were added or moved by hand
-  std::uint64_t rebuilds = 0;  ///< neighbour lists made
+  double list_skin = 0.0;              ///< m, with which the neighbour list was made
+  bool list_valid = false;             ///< false after grains were added or moved by hand
+  std::uint64_t rebuilds = 0;          ///< neighbour lists made
+  std::set<std::uint32_t> known_lost;  ///< ids of grains that were reported as lost
 
   mbd::Machine<Integrator> machine;
   std::vector<Surface> surfaces;
+  std::vector<SurfaceSensor> surface_sensors;
   pipeline::BodyContacts<Model> body_contacts;
   typename Model::Executor executor;
   Stopwatch stopwatch;
@@ -91,6 +103,15 @@ void rebuild_neighbours(WorldState<Model>& w) {
 template <class Model>
 void follow_bodies(WorldState<Model>& w) {
   for (auto& s : w.surfaces) s.follow(w.machine.bodies()[s.body.index()]);
+}
+
+/// Hands the surfaces' loads of a step to the sensors.
+template <class Model>
+void sample_surface_sensors(WorldState<Model>& w) {
+  for (SurfaceSensor& s : w.surface_sensors) {
+    const auto& surface = w.surfaces[s.surface.index()];
+    s.average.add({surface.force, surface.torque}, w.time_step);
+  }
 }
 
 /// Sums the chunks' loads on each surface, in the order of the chunks, and hands them to the bodies.

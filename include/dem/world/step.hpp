@@ -95,6 +95,7 @@ void advance(WorldState<Model>& w) {
       if (last) w.chunks[c].commit();
     });
     if (last) w.body_contacts.memories.commit();
+    if (last) sample_surface_sensors(w);
     w.stopwatch.stop(Phase::motion);
   }
   w.time += w.time_step;

@@ -25,7 +25,11 @@ class World {
     require_within(options.time_step_safety, 1e-6, 1.0, "time step safety");
     require_non_negative(options.skin, "skin", "m (0 chooses one)");
     require_positive(options.overlap_limit, "overlap limit", "effective diameters");
-    if (!options.gravity.allFinite()) fail("gravity has a component that is not a finite number");
+    require_finite(options.gravity, "gravity");
+    if (const auto& d = options.domain; d && !(d->low.array() < d->high.array()).all()) {
+      fail("the domain's lower corner ({:g}, {:g}, {:g}) m is not below its upper one, ({:g}, {:g}, {:g}) m",
+           d->low.x(), d->low.y(), d->low.z(), d->high.x(), d->high.y(), d->high.z());
+    }
     state_.options = options;
     if (options.threads != 0) state_.executor.set_threads(options.threads);
   }
@@ -127,13 +131,7 @@ class World {
   /// fixed bodies, or that both have no points.
   BodyContactId add_body_contact(SurfaceId a, SurfaceId b) {
     auto& w = state_;
-    for (const SurfaceId s : {a, b}) {
-      if (s.index() >= w.surfaces.size()) {
-        fail("a body contact names surface {}, but the world has {}; use the SurfaceId that add_surface returned",
-             s.value, w.surfaces.size());
-      }
-    }
-    const auto &sa = w.surfaces[a.index()], &sb = w.surfaces[b.index()];
+    const auto &sa = known(w.surfaces, a, "surface"), &sb = known(w.surfaces, b, "surface");
     const Body &body_a = w.machine.body(sa.body), &body_b = w.machine.body(sb.body);
     if (sa.body == sb.body) {
       fail("surfaces {} and {} both belong to body '{}' and cannot touch each other", a.value, b.value, body_a.name);
@@ -154,7 +152,8 @@ class World {
     return BodyContactId(w.body_contacts.pairs.size() - 1);
   }
   /// Lets all surfaces touch each other that were added so far, but for those of one body, of two fixed bodies, or of
-  /// bodies that a joint connects; pairs that are known already are not added again. Returns how many pairs were added.
+  /// bodies that a joint connects (one of kind `free` only measures); pairs that are known already are not added again.
+  /// Returns how many pairs were added.
   std::size_t add_body_contacts() {
     const auto& w = state_;
     std::size_t added = 0;
@@ -164,6 +163,7 @@ class World {
         bool skip = i == j || (w.machine.body(i).fixed && w.machine.body(j).fixed) ||
                     pipeline::points_at_once(w.surfaces[a]) + pipeline::points_at_once(w.surfaces[b]) == 0;
         for (const auto& joint : w.machine.parts().joints) {
+          if (joint.kind == mbd::JointKind::free) continue;
           skip |= (joint.a == i.value && joint.b == j.value) || (joint.a == j.value && joint.b == i.value);
         }
         for (const auto& pair : w.body_contacts.pairs) {
@@ -177,10 +177,20 @@ class World {
     return added;
   }
   /// Force (N) on the body of the pair's first surface in the last force evaluation; the other body feels the opposite.
-  Vec3 body_contact_force(BodyContactId c) const { return to_eigen(state_.body_contacts.pairs.at(c.index()).force); }
+  Vec3 body_contact_force(BodyContactId c) const {
+    return to_eigen(known(state_.body_contacts.pairs, c, "body contact").force);
+  }
+
+  /// A sensor of the grains' force and torque on one surface, e.g. a wall of a body that has several; the mean is taken
+  /// over `window` (s). The machine's own sensors measure whole bodies. Throws Error for an unknown surface.
+  SurfaceSensorId add_surface_sensor(SurfaceId surface, double window) {
+    known(state_.surfaces, surface, "surface");
+    state_.surface_sensors.push_back({surface, mbd::WindowAverage(window)});
+    return SurfaceSensorId(state_.surface_sensors.size() - 1);
+  }
 
   /// Lets a surface touch grains and bodies, or not.
-  void set_active(SurfaceId s, bool active) { state_.surfaces.at(s.index()).active = active; }
+  void set_active(SurfaceId s, bool active) { known(state_.surfaces, s, "surface").active = active; }
 
   // ---- running ---------------------------------------------------------------------------------------------------
 
@@ -189,24 +199,29 @@ class World {
   void prepare() {
     if (!checked_ || (initialised_ && !state_.machine.is_initialised())) {
       state_.materials.check_complete();
+      state_.materials.check_names(used_materials());
       const double range = state_.materials.range();
       state_.materials.find_range(state_.largest_radius);
       if (state_.materials.range() > range) state_.list_valid = false;
       for (const auto& pair : state_.body_contacts.pairs) {
         state_.materials.check_pair(state_.surfaces[pair.a.index()].material, state_.surfaces[pair.b.index()].material);
       }
+      // A machine that was changed is judged by what is derived for it as it is now.
+      if (time_step() > 0.0 && !state_.machine.is_initialised()) state_.machine.design_for(time_step());
       choose_time_step();
       checked_ = true;
     }
     if (!initialised_ || !state_.machine.is_initialised()) {
-      state_.machine.design_for(time_step());
+      // What is derived depends on the pose: it changes with the machine or the time step, not with the grains.
+      if (!state_.machine.is_designed_for(time_step())) state_.machine.design_for(time_step());
       initialise(state_);
       initialised_ = true;
     }
   }
-  StepReport step() { return run(1); }
-  /// Runs n steps, or fewer if a problem shows.
-  StepReport run(std::uint64_t n) {
+  [[nodiscard]] StepReport step() { return run(1); }
+  /// Runs n steps, or fewer if a problem shows. What the report says was found once is not reported again of the same
+  /// lost grain: a run may go on without it.
+  [[nodiscard]] StepReport run(std::uint64_t n) {
     prepare();
     for (std::uint64_t k = 0; k < n; ++k) {
       advance(state_);
@@ -214,11 +229,13 @@ class World {
     }
     return ok();
   }
-  /// Runs for a time span (s), rounded to whole steps.
-  StepReport run_for(double seconds) {
+  /// Runs for a time span (s) in whole steps; what a span leaves of a step counts in the next one.
+  [[nodiscard]] StepReport run_for(double seconds) {
     prepare();
-    return run(
-        static_cast<std::uint64_t>(std::llround(require_non_negative(seconds, "time to run", "s") / time_step())));
+    owed_steps_ += require_non_negative(seconds, "time to run", "s") / time_step();
+    const double whole = std::max(0.0, std::round(owed_steps_));
+    owed_steps_ -= whole;
+    return run(static_cast<std::uint64_t>(whole));
   }
 
   double time() const { return state_.time; }
@@ -226,8 +243,10 @@ class World {
   double time_step() const { return state_.time_step; }
   /// Largest stable time step of grains and machine, and what limits it.
   pipeline::StableTimeStep stable_time_step() const {
-    std::vector<MaterialId> of_surfaces;
-    for (const auto& s : state_.surfaces) of_surfaces.push_back(s.material);
+    std::vector<pipeline::SurfaceMatter> of_surfaces;
+    for (const auto& s : state_.surfaces) {
+      of_surfaces.push_back({s.material, pipeline::softness_of(s, state_.machine.bodies()[s.body.index()], 0.0)});
+    }
     auto limit =
         pipeline::stable_time_step<Model>(state_.species, state_.materials, of_surfaces, state_.options.overlap_limit);
     const auto bodies = pipeline::stable_time_step_of_bodies<Model>(
@@ -241,6 +260,7 @@ class World {
   void set_threads(int n) { state_.executor.set_threads(n); }
   int threads() const { return state_.executor.threads(); }
   void set_gravity(const Vec3& g) {
+    require_finite(g, "gravity");
     state_.options.gravity = g;
     initialised_ = false;
   }
@@ -256,23 +276,44 @@ class World {
   Vec3 force(ParticleId p) const { return to_eigen(state_.particles.force[row(p)]); }
   Vec3 torque(ParticleId p) const { return to_eigen(state_.particles.torque[row(p)]); }
   SpeciesId species_of(ParticleId p) const { return SpeciesId(state_.particles.species[row(p)]); }
-  const Species<Shape>& species(SpeciesId s) const { return state_.species.at(s.index()); }
+  const Species<Shape>& species(SpeciesId s) const { return known(state_.species, s, "species"); }
 
   void set_velocity(ParticleId p, const Vec3& v) {
+    require_finite(v, "velocity of a grain");
     state_.particles.velocity.set(row(p), from_eigen(v));
     initialised_ = false;
   }
 
   /// Force (N) that the grains exert on a surface, from the last force evaluation.
-  Vec3 surface_force(SurfaceId s) const { return to_eigen(state_.surfaces.at(s.index()).force); }
+  Vec3 surface_force(SurfaceId s) const { return to_eigen(known(state_.surfaces, s, "surface").force); }
   /// Torque (N m) of the grains on a surface about its body's centre of mass.
-  Vec3 surface_torque(SurfaceId s) const { return to_eigen(state_.surfaces.at(s.index()).torque); }
+  Vec3 surface_torque(SurfaceId s) const { return to_eigen(known(state_.surfaces, s, "surface").torque); }
+  /// Force (N) and torque (N m, about its body's centre of mass) of the grains on a sensor's surface, now and averaged.
+  const mbd::WindowAverage& surface_sensor(SurfaceSensorId s) const {
+    return known(state_.surface_sensors, s, "surface sensor").average;
+  }
 
   const WorldState<Model>& state() const { return state_; }
   WorldState<Model>& state() { return state_; }
 
  private:
-  std::size_t row(ParticleId p) const { return state_.particles.row_of.at(p.index()); }
+  std::size_t row(ParticleId p) const { return known(state_.particles.row_of, p, "grain"); }
+  /// What an id names. Throws Error for an id that this world never gave.
+  template <class List, class Id>
+  static auto& known(List& list, Id id, const char* what) {
+    if (id.index() < list.size()) return list[id.index()];
+    if (!id.valid()) fail("a {} is asked for by an id that was never set; use the one that the world returned", what);
+    fail("{} {} is asked for, but this world has {}; use the id that it returned", what, id.value, list.size());
+  }
+  static void require_finite(const Vec3& v, const char* what) {
+    if (!v.allFinite()) fail("{} is ({:g}, {:g}, {:g}), but must be finite", what, v.x(), v.y(), v.z());
+  }
+  std::vector<MaterialId> used_materials() const {
+    std::vector<MaterialId> used;
+    for (const auto& s : state_.species) used.push_back(s.material);
+    for (const auto& s : state_.surfaces) used.push_back(s.material);
+    return used;
+  }
   /// Grains came or were moved by hand.
   void touched() {
     state_.list_valid = false;
@@ -285,9 +326,9 @@ class World {
     const WorldOptions& o = state_.options;
     if (o.time_step == 0.0) {
       if (limit.value >= 1e300) fail("nothing in the world limits the time step; set time_step");
-      // A step that was chosen before is kept while it is stable: a change of friction must not change it.
-      if (state_.time_step == 0.0 || state_.time_step > limit.value)
-        state_.time_step = o.time_step_safety * limit.value;
+      // A step that was chosen before is kept while it is as safe: a change of friction must not change it.
+      const double safe = o.time_step_safety * limit.value;
+      if (state_.time_step == 0.0 || state_.time_step > (1.0 + 1e-12) * safe) state_.time_step = safe;
       return;
     }
     if (o.time_step > limit.value && !o.allow_unstable_time_step) {
@@ -301,6 +342,7 @@ class World {
 
   WorldState<Model> state_;
   bool checked_ = false, initialised_ = false;
+  double owed_steps_ = 0.0;  // by run_for: less than one
 };
 
 }  // namespace dem
