@@ -9,8 +9,6 @@
 
 namespace direct_shear {
 
-inline std::string stress_name(const LoadResult& r) { return fmt::format("load_{:.1f}kPa", 1e-3 * r.normal_stress); }
-
 inline dem::soil::Packing read_packing(const Settings& s) {
   auto packing = dem::soil::load_packing(s.packing_file);
   const auto differs = [](double a, double b) { return std::abs(a - b) > 1e-9; };
@@ -26,12 +24,20 @@ inline dem::soil::Packing read_packing(const Settings& s) {
 }
 
 /// What there is to say of a packing from where its grains are.
-inline void measure(PackingResult& p) {
-  const auto& packing = p.packing;
-  const auto region =
-      dem::soil::inner_region(packing.grains, packing.length_x, packing.length_y, 3.0 * packing.half_edge);
-  p.solid_fraction = dem::soil::solid_fraction(packing.grains, packing.half_edge, region);
-  p.height = dem::soil::height_percentile(packing.grains, 0.95) + packing.half_edge;
+template <class Shape>
+void measure(PackingResult& p, const Settings& s) {
+  p.solid_fraction = inner_fraction(p.packing.grains, Grain<Shape>::make(s.half_edge).volume(), s);
+  p.height = dem::soil::height_percentile(p.packing.grains, 0.95) + s.half_edge;
+}
+
+/// Says so when a packing has not come out as dense as asked for.
+inline void compare_density(const PackingResult& p, dem::io::Progress& progress) {
+  const double reached = relative_density(p.solid_fraction);
+  if (!(std::abs(reached - p.asked_density) > 0.02)) return;  // also if either is not known
+  progress.message(
+      fmt::format("warning: the packing has relative density {:.2f}, but {:g} was asked for; change "
+                  "--relative-density, --densify-time or --seed if that matters",
+                  reached, p.asked_density));
 }
 
 template <class Integrator, class Shape>
@@ -64,7 +70,7 @@ void test_load(const Settings& s, Campaign& campaign, LoadResult& r, dem::io::Pr
 
     progress.begin(fmt::format("shear at {:.1f} kPa", 1e-3 * r.normal_stress), s.travel);
     std::optional<Frames> frames;
-    if (s.vtk) frames.emplace(s, stress_name(r));
+    if (s.vtk) frames.emplace(s, load_name(s, r.load));
     if (frames) frames->show(rig.world, 0.0);
     shear(rig, s, r, progress, [&](const auto& now) {
       if (frames) frames->show(now.world, now.top_displacement());
@@ -78,19 +84,20 @@ void test_load(const Settings& s, Campaign& campaign, LoadResult& r, dem::io::Pr
 
 inline void save_samples(const Settings& s, const LoadResult& r) {
   if (r.samples.empty()) return;
-  dem::io::CsvWriter csv(s.output / (stress_name(r) + ".csv"),
+  dem::io::CsvWriter csv(s.output / (load_name(s, r.load) + ".csv"),
                          {"time_s", "displacement_m", "shear_stress_Pa", "drive_stress_Pa", "lid_rise_m",
                           "lid_stress_Pa", "plane_normal_stress_Pa"},
                          {.digits = 7});
   for (const Sample& x : r.samples) {
     csv.row(x.time, x.displacement, x.stress, x.drive_stress, x.lid_rise, x.lid_stress, x.plane_stress);
   }
+  csv.flush();  // so that a full disk is noticed
 }
 
 template <class Integrator, class Shape>
 void run_campaign(const Settings& s, Campaign& campaign) {
   const bool read = !s.packing_file.empty();
-  const int making = read ? 0 : s.packing == "random" && s.relative_density == 0.0 ? 1 : 2;
+  const int making = read ? 0 : making_stages(s);
   dem::io::InterruptGuard guard;
   const double start = dem::io::steady_seconds();
   dem::io::ProgressOptions options;
@@ -99,8 +106,9 @@ void run_campaign(const Settings& s, Campaign& campaign) {
   try {
     if (read) campaign.packing.packing = read_packing(s);
     else campaign.packing = make_packing<Integrator, Shape>(s, progress);
-    measure(campaign.packing);
+    measure<Shape>(campaign.packing, s);
     if (making > 0) progress.finish(fmt::format("solid fraction {:.3f}", campaign.packing.solid_fraction));
+    compare_density(campaign.packing, progress);
     if (!read) dem::soil::save_packing(campaign.packing.packing, s.save_packing);
     for (const double load : s.loads) {
       LoadResult& r = campaign.loads.emplace_back();
@@ -127,8 +135,8 @@ void run_campaign(const Settings& s, Campaign& campaign) {
     }
   } catch (const Interrupted&) {
     campaign.interrupted = true;
-  } catch (const Stopped& stop) {
-    campaign.problem = stop.what();
+  } catch (const std::exception& error) {
+    campaign.problem = error.what();
   }
   progress.stop(campaign.problem);
   campaign.wall_time = dem::io::steady_seconds() - start;

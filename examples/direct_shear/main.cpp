@@ -36,10 +36,10 @@ int main(int argc, char** argv) {
     else if (settings.integrator == "euler") run_campaign<integrator::SymplecticEuler, Cube8>(settings, campaign);
     else run_campaign<integrator::PredictorCorrector, Cube8>(settings, campaign);
 
-    report(settings, campaign, "direct_shear --config settings.toml");
+    const bool complete = report(settings, campaign, "direct_shear --config settings.toml");
     if (!campaign.problem.empty()) fmt::print(stderr, "direct_shear: {}\n", campaign.problem);
     if (campaign.interrupted) return 130;
-    return campaign.problem.empty() ? 0 : 1;
+    return complete && campaign.problem.empty() ? 0 : 1;
   } catch (const std::exception& error) {
     fmt::print(stderr, "direct_shear: {}\n", error.what());
     return 2;

@@ -2,8 +2,8 @@
 
 #include <dem/io/io.hpp>
 #include <dem/soil/relative_density.hpp>
-#include <dem/terramechanics/mohr_coulomb.hpp>
 
+#include <exception>
 #include <numbers>
 #include <optional>
 
@@ -14,7 +14,6 @@ namespace {
 using dem::io::Plot;
 using dem::io::Series;
 using dem::io::SeriesStyle;
-using dem::terramechanics::Intercept;
 using dem::terramechanics::MohrCoulomb;
 
 constexpr double degrees = 180.0 / std::numbers::pi;
@@ -23,23 +22,9 @@ std::string number(double value, const char* format = "{:.2f}") {
   return std::isfinite(value) ? fmt::format(fmt::runtime(format), value) : "-";
 }
 
-struct Fits {
-  std::optional<MohrCoulomb> free, origin, residual;
-};
-
-Fits fit(const Campaign& c) {
-  std::vector<double> sigma, maximum, residual;
-  for (const LoadResult& r : c.loads) {
-    if (!r.finished) continue;
-    sigma.push_back(r.normal_stress);
-    maximum.push_back(r.maximum);
-    residual.push_back(r.residual);
-  }
-  Fits f;
-  if (sigma.size() > 1) f.free = fit_mohr_coulomb(sigma, maximum, Intercept::free);
-  if (!sigma.empty()) f.origin = fit_mohr_coulomb(sigma, maximum, Intercept::zero);
-  if (!sigma.empty()) f.residual = fit_mohr_coulomb(sigma, residual, Intercept::zero);
-  return f;
+/// Pa, the normal stress that belongs to the maximum; before there is one, the nominal stress.
+double stress_at_maximum(const LoadResult& r) {
+  return std::isfinite(r.normal_at_maximum) ? r.normal_at_maximum : r.normal_stress;
 }
 
 dem::io::Table strength_table(const Settings& s, const Campaign& c) {
@@ -47,12 +32,11 @@ dem::io::Table strength_table(const Settings& s, const Campaign& c) {
                    .header = {"normal [kPa]", "max. shear [kPa]", "thesis [kPa]", "difference [%]", "at [mm]",
                               "residual [kPa]", "bulk density [kg/m³]", "rel. density", "dilation [mm]", "done"}};
   for (const LoadResult& r : c.loads) {
-    const double reference = thesis_maximum(r.normal_stress);
-    const double rd = std::isfinite(r.solid_fraction) ? dem::soil::relative_density(r.solid_fraction) : not_known;
-    t.row(number(1e-3 * r.normal_stress, "{:.3f}"), number(1e-3 * r.maximum), number(1e-3 * reference),
+    const double normal = stress_at_maximum(r), reference = thesis_maximum(normal);
+    t.row(number(1e-3 * normal, "{:.3f}"), number(1e-3 * r.maximum), number(1e-3 * reference),
           number(100.0 * (r.maximum / reference - 1.0), "{:+.1f}"), number(1e3 * r.at_maximum),
-          number(1e-3 * r.residual), number(r.solid_fraction * s.density, "{:.0f}"), number(rd),
-          number(1e3 * r.dilation, "{:+.2f}"), r.finished);
+          number(1e-3 * r.residual), number(r.solid_fraction * s.density, "{:.0f}"),
+          number(relative_density(r.solid_fraction)), number(1e3 * r.dilation, "{:+.2f}"), r.finished);
   }
   return t;
 }
@@ -60,11 +44,11 @@ dem::io::Table strength_table(const Settings& s, const Campaign& c) {
 dem::io::Table check_table(const Campaign& c) {
   dem::io::Table t{.caption = "Checks",
                    .header = {"normal [kPa]", "on the plane of shear [kPa]", "drive against sensor [%]",
-                              "inertial number", "consolidation [s]", "height [mm]"}};
+                              "on the lid [% of its weight]", "inertial number", "consolidation [s]", "height [mm]"}};
   for (const LoadResult& r : c.loads) {
     t.row(number(1e-3 * r.normal_stress, "{:.3f}"), number(1e-3 * r.plane_stress),
-          number(100.0 * r.drive_mismatch, "{:.1f}"), number(r.inertial_number, "{:.1e}"),
-          number(r.consolidation_time, "{:.3f}"), number(1e3 * r.height));
+          number(100.0 * r.drive_mismatch, "{:.1f}"), number(100.0 * r.lid_share, "{:.1f}"),
+          number(r.inertial_number, "{:.1e}"), number(r.consolidation_time, "{:.3f}"), number(1e3 * r.height));
   }
   return t;
 }
@@ -93,11 +77,11 @@ std::string packing_text(const Settings& s, const Campaign& c) {
   if (!std::isfinite(p.solid_fraction)) return "The packing was not finished.";
   const auto& limits = dem::soil::cube8_limits;
   std::string text = fmt::format(
-      "Packing before loading: {} grains, bulk density {:.0f} kg/m³ (solid fraction {:.3f}), relative density {:.2f}, "
-      "height "
-      "{:.1f} mm",
+      "Packing before loading: {} grains, bulk density {:.0f} kg/m³ (solid fraction {:.3f}), relative density {}{}, "
+      "height {:.1f} mm",
       p.packing.grains.size(), s.density * p.solid_fraction, p.solid_fraction,
-      dem::soil::relative_density(p.solid_fraction), 1e3 * p.height);
+      number(relative_density(p.solid_fraction)),
+      std::isfinite(p.asked_density) ? fmt::format(" ({:g} asked for)", p.asked_density) : "", 1e3 * p.height);
   if (std::isfinite(p.coordination)) text += fmt::format(", {:.2f} neighbours a grain", p.coordination);
   return text + fmt::format(". Relative density counts from solid fraction {:.3f} (loosest) to {:.3f} (densest).",
                             limits.loosest, limits.densest);
@@ -134,7 +118,7 @@ Plot stress_plot(const Settings& s, const Campaign& c) {
   plot.y_range.min = 0.0;
   int color = 0;
   for (const LoadResult& r : c.loads) {
-    const double y = 1e-3 * thesis_maximum(r.normal_stress);
+    const double y = 1e-3 * thesis_maximum(stress_at_maximum(r));
     if (std::isfinite(y) && !r.samples.empty()) {
       plot.series.push_back({.name = color == 0 ? "thesis, maximum" : "",
                              .x = {0.0, 1e3 * s.travel},
@@ -157,9 +141,9 @@ Plot mohr_coulomb_plot(const Campaign& c, const Fits& f) {
   Series points{.name = "this run", .style = SeriesStyle::Points, .color = 0};
   for (const LoadResult& r : c.loads) {
     if (!r.finished) continue;
-    points.x.push_back(1e-3 * r.normal_stress);
+    points.x.push_back(1e-3 * r.normal_at_maximum);
     points.y.push_back(1e-3 * r.maximum);
-    end = std::max(end, 1.1e-3 * r.normal_stress);
+    end = std::fmax(end, 1.1e-3 * r.normal_at_maximum);
   }
   const auto line = [&](std::string name, double angle_deg, double c_kPa, SeriesStyle style, int color) {
     plot.series.push_back({.name = std::move(name),
@@ -186,39 +170,41 @@ Plot mohr_coulomb_plot(const Campaign& c, const Fits& f) {
 }
 
 void write_results_csv(const Settings& s, const Campaign& c) {
-  dem::io::CsvWriter csv(
-      s.output / "results.csv",
-      {"load_kg", "normal_stress_Pa", "maximum_shear_Pa", "displacement_at_maximum_m", "residual_shear_Pa",
-       "solid_fraction", "bulk_density_kg_m3", "dilation_m", "plane_normal_stress_Pa", "inertial_number", "finished"});
+  dem::io::CsvWriter csv(s.output / "results.csv",
+                         {"load_kg", "normal_stress_Pa", "maximum_shear_Pa", "displacement_at_maximum_m",
+                          "residual_shear_Pa", "solid_fraction", "bulk_density_kg_m3", "dilation_m",
+                          "plane_normal_stress_Pa", "normal_stress_at_maximum_Pa", "inertial_number", "finished"});
   for (const LoadResult& r : c.loads) {
     csv.row(r.load, r.normal_stress, r.maximum, r.at_maximum, r.residual, r.solid_fraction,
-            s.density * r.solid_fraction, r.dilation, r.plane_stress, r.inertial_number, r.finished);
+            s.density * r.solid_fraction, r.dilation, r.plane_stress, r.normal_at_maximum, r.inertial_number,
+            r.finished);
   }
+  csv.flush();  // so that a full disk is noticed
 }
 
 std::string speed_text(const Campaign& c) {
-  return fmt::format("Time step {:.3g} s{}. {} of wall time.", c.time_step,
+  const std::string wall = dem::io::format_duration(c.wall_time) + " of wall time.";
+  if (!(c.time_step > 0.0)) return wall;
+  return fmt::format("Time step {:.3g} s{}. {}", c.time_step,
                      c.time_step_limit.empty() ? "" : " (the stable one is limited by " + c.time_step_limit + ")",
-                     dem::io::format_duration(c.wall_time));
+                     wall);
 }
 
-}  // namespace
-
-void report(const Settings& s, const Campaign& c, const std::string& command) {
-  const Fits fits = fit(c);
-  const auto strengths = strength_table(s, c);
+void print_report(const Settings& s, const Campaign& c) {
   fmt::print("\n{}\n\n", packing_text(s, c));
-  dem::io::print(strengths);
+  dem::io::print(strength_table(s, c));
   fmt::print("\n");
   dem::io::print(check_table(c));
   fmt::print("\n");
-  dem::io::print(angle_table(fits));
+  dem::io::print(angle_table(fit(c)));
   fmt::print("\n{}\n", speed_text(c));
-  write_results_csv(s, c);
+}
 
+void write_page(const Settings& s, const Campaign& c, const std::string& command) {
+  const Fits fits = fit(c);
   dem::io::HtmlReport page("Direct shear test");
   if (const auto status = status_text(c); !status.empty()) page.paragraph(status);
-  page.paragraph(packing_text(s, c)).table(strengths).table(angle_table(fits));
+  page.paragraph(packing_text(s, c)).table(strength_table(s, c)).table(angle_table(fits));
   const auto add_plot = [&](const Plot& plot, const char* name, const char* caption) {
     const auto drawn = dem::io::render_plot(plot, s.output / name);
     if (drawn) page.picture(drawn.svg, caption);
@@ -232,7 +218,26 @@ void report(const Settings& s, const Campaign& c, const std::string& command) {
   page.heading("Checks").table(check_table(c)).paragraph(speed_text(c));
   page.heading("Settings").settings(list_settings(s)).preformatted(command);
   page.save(s.output / "report.html");
-  fmt::print("Report, plots, tables and ParaView files: {}\n", s.output.string());
+}
+
+}  // namespace
+
+bool report(const Settings& s, const Campaign& c, const std::string& command) {
+  bool complete = true;
+  // What was computed for hours is worth saving in whatever ways still work.
+  const auto part = [&](const char* name, auto&& make) {
+    try {
+      make();
+    } catch (const std::exception& error) {
+      fmt::print(stderr, "direct_shear: {} could not be made: {}\n", name, error.what());
+      complete = false;
+    }
+  };
+  part("results.csv", [&] { write_results_csv(s, c); });
+  part("the printed report", [&] { print_report(s, c); });
+  part("report.html", [&] { write_page(s, c, command); });
+  if (complete) fmt::print("Report, plots, tables and ParaView files: {}\n", s.output.string());
+  return complete;
 }
 
 }  // namespace direct_shear

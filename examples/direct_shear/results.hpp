@@ -3,8 +3,10 @@
 #include "settings.hpp"
 
 #include <dem/soil/packing.hpp>
+#include <dem/terramechanics/mohr_coulomb.hpp>
 
 #include <limits>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -27,7 +29,7 @@ struct Sample {
 /// The test at one load.
 struct LoadResult {
   double load = 0.0;                      ///< kg
-  double normal_stress = 0.0;             ///< Pa, m g/A
+  double normal_stress = 0.0;             ///< Pa, m g/A before shearing
   double solid_fraction = not_known;      ///< before shearing, inside of the specimen
   double height = not_known;              ///< m, of the lid before shearing
   double consolidation_time = not_known;  ///< s, simulated
@@ -42,6 +44,9 @@ struct LoadResult {
   double dilation = not_known;        ///< m, lid rise at the end
   double drive_mismatch = not_known;  ///< largest |drive - sensor| of the smoothed stresses, over the maximum
   double plane_stress = not_known;    ///< Pa, at the maximum
+  double lid_share = not_known;       ///< force of the grains on the lid over its weight, mean while shearing
+  /// Pa, m g over the areas that `maximum` and `residual` are over: normal_stress, unless areas are corrected.
+  double normal_at_maximum = not_known, normal_at_residual = not_known;
 };
 
 /// The specimen before any load.
@@ -49,6 +54,7 @@ struct PackingResult {
   dem::soil::Packing packing = {};
   double solid_fraction = not_known;  ///< inside of the packing, away from walls
   double height = not_known;          ///< m, where 95 % of the grains' centres are below, plus half an edge
+  double asked_density = not_known;   ///< relative, that it was densified towards
   double coordination = not_known;    ///< grains that touch a grain, mean
 };
 
@@ -77,7 +83,16 @@ double thesis_maximum(double normal_stress);
 /// Means of `values` over a window (m) of displacement about each sample.
 std::vector<double> smoothed(std::span<const Sample> samples, double Sample::*values, double window);
 
-/// Finds maximum, residual and dilation in the samples.
+/// Finds maximum, residual and dilation in the samples; what they are too few for stays not known.
 void evaluate(LoadResult& r, const Settings& s);
+
+/// Relative density in the limits of cube8; not known for what is no solid fraction, as of grains pressed together.
+double relative_density(double solid_fraction);
+
+/// Mohr-Coulomb lines of the loads that were sheared to their end; empty where there are too few for one.
+struct Fits {
+  std::optional<dem::terramechanics::MohrCoulomb> free, origin, residual;
+};
+Fits fit(const Campaign& c);
 
 }  // namespace direct_shear

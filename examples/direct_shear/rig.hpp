@@ -101,6 +101,7 @@ class Rig {
   double top_displacement() const { return world.machine().coordinate(top_slide); }                  ///< m
   double lid_weight() const { return 9.81 * shape_.lid_mass; }                                       ///< N
   const RigShape& shape() const { return shape_; }
+  double grain_volume() const { return world.species(species_).shape.volume(); }  ///< m^3
   /// Force (N) of the grains on the lid, upwards, mean over the sensor's window.
   double lid_force() const { return world.machine().sensor(lid_sensor).mean().force.z; }
 

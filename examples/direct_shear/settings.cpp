@@ -8,6 +8,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <memory>
+#include <set>
 #include <sstream>
 #include <thread>
 
@@ -47,7 +50,7 @@ void add_specimen_options(CLI::App& app, Settings& s) {
   add("--box-width", s.box_width, "inner width [m]");
   add("--box-height", s.box_height, "inner height [m]");
   add("--seam-height", s.seam_height, "where the halves meet [m]; 0: half the specimen");
-  add("--wall-thickness", s.wall_thickness, "[m]; 0: 15 mm or twice the travel");
+  add("--wall-thickness", s.wall_thickness, "[m], at least the travel; 0: 15 mm or twice the travel");
   add("--lid-clearance", s.lid_clearance, "lid to wall, in radii of a grain's sphere");
   add("--packing", s.packing, "random or poured")->check(CLI::IsMember({"random", "poured"}));
   add("--relative-density", s.relative_density, "of a random packing, 0 (as it settles) to 1, in the limits of cube8");
@@ -104,11 +107,42 @@ void add_test_options(CLI::App& app, Settings& s) {
   add("--threads", s.threads, "0: all, at least 1000 grains for each");
   group = "Output";
   add("--output", s.output, "folder");
-  app.add_flag("!--no-vtk", s.vtk, "no files for ParaView")->group(group);
+  // The name with the plain meaning comes first: it is the one that settings.toml gets.
+  app.add_flag("--vtk,!--no-vtk", s.vtk, "files for ParaView (--vtk=true) or none (--no-vtk)")
+      ->group(group)
+      ->default_str("true");
   app.add_flag("--vtk-spheres", s.vtk_spheres, "ParaView files also with the eight spheres of each grain")
       ->group(group);
   add("--vtk-interval", s.vtk_interval, "travel between two frames [m]; 0: a twentieth of the travel");
 }
+
+/// TOML that must be understood as a whole: CLI11 alone passes over tables, over names that are no option, and over
+/// what is given a second time.
+class StrictToml : public CLI::ConfigBase {
+ public:
+  explicit StrictToml(const CLI::App& app) : app_(app) {}
+
+  std::vector<CLI::ConfigItem> from_config(std::istream& in) const override {
+    auto lines = ConfigBase::from_config(in);
+    std::set<std::string> given;
+    for (const auto& item : lines) {
+      if (!item.parents.empty()) {
+        dem::fail("the --config file has a table [{}], but must have none; give its options without that header",
+                  fmt::join(item.parents, "."));
+      }
+      if (app_.get_option_no_throw("--" + item.name) == nullptr) {
+        dem::fail("the --config file gives '{}', but there is no such option; --help lists them", item.name);
+      }
+      if (!given.insert(item.name).second) {
+        dem::fail("the --config file gives '{}' twice; leave one out", item.name);
+      }
+    }
+    return lines;
+  }
+
+ private:
+  const CLI::App& app_;
+};
 
 /// CLI11 writes empty texts and lists in a form that it does not read; they are defaults, so they may go.
 std::string without_empty_values(const std::string& toml) {
@@ -121,11 +155,78 @@ std::string without_empty_values(const std::string& toml) {
   return kept;
 }
 
+void check_specimen(const Settings& s) {
+  dem::require_positive(s.box_length, "--box-length", "m");
+  dem::require_positive(s.box_width, "--box-width", "m");
+  dem::require_positive(s.box_height, "--box-height", "m");
+  dem::require_positive(s.half_edge, "--half-edge", "m (0: by size)");
+  dem::require_within(s.half_edge, 0.0, 0.5 * std::min(s.box_length, s.box_width), "--half-edge (m, within the box)");
+  if (!(s.seam_height >= 0.0 && s.seam_height < s.box_height)) {
+    dem::fail("--seam-height is {:g} m, but must be 0 (half the specimen) or between 0 and the box height, {:g} m",
+              s.seam_height, s.box_height);
+  }
+  // Ten samples at the least: one is taken every hundredth of a millimetre.
+  dem::require_within(s.travel, 1e-4, 0.5 * s.box_length, "--travel (m, at most half the box length; 0: by size)");
+  // A thinner rim would let the halves slide open.
+  dem::require_within(s.wall_thickness, s.travel, 10.0, "--wall-thickness (m, from the travel up)");
+  dem::require_within(s.lid_clearance, 0.0, 0.99, "--lid-clearance");
+  dem::require_within(s.relative_density, 0.0, 1.0, "--relative-density");
+  dem::require_within(s.tilt_deg, 0.0, 90.0, "--tilt (deg)");
+  // Beyond the walls the grains would leave the world.
+  dem::require_within(s.shake_amplitude, 0.0, s.wall_thickness, "--shake-amplitude (m, up to the wall thickness)");
+  dem::require_within(s.shake_frequency, 0.1, 1000.0, "--shake-frequency (Hz)");
+  dem::require_non_negative(s.shake_time, "--shake-time", "s");
+  dem::require_positive(s.densify_time, "--densify-time", "s");
+  dem::require_positive(s.settle_limit, "--settle-limit", "s");
+}
+
+void check_contacts(const Settings& s) {
+  dem::require_positive(s.stiffness, "--stiffness", "N/m");
+  dem::require_non_negative(s.damping, "--damping", "N s/m");
+  dem::require_within(s.separation_factor, 0.0, 1.0, "--separation-factor");
+  dem::require_non_negative(s.friction, "--friction", "(no unit)");
+  dem::require_non_negative(s.wall_friction, "--wall-friction", "(no unit)");
+  dem::require_non_negative(s.friction_stiffness, "--friction-stiffness", "N/m");
+  dem::require_non_negative(s.velocity_stiffness, "--velocity-stiffness", "N s/m");
+  dem::require_within(s.breaking_factor, 0.0, 1.0, "--breaking-factor");
+  dem::require_positive(s.density, "--density", "kg/m^3");
+  dem::require_positive(s.constants_for, "--constants-for", "m");
+}
+
+void check_test(const Settings& s) {
+  dem::require_positive(s.shear_speed, "--shear-speed", "m/s (0: by size)");
+  dem::require_within(s.ramp_time, 0.0, s.travel / s.shear_speed, "--ramp-time (s, at most what the travel takes)");
+  dem::require_within(s.smoothing, 0.0, 0.5 * s.travel, "--smoothing (m, at most half the travel)");
+  dem::require_within(s.residual_share, 0.01, 1.0, "--residual-share");
+  dem::require_positive(s.lid_speed, "--lid-speed", "m/s");
+  dem::require_positive(s.rest_speed, "--rest-speed", "m/s");
+  dem::require_positive(s.consolidation_limit, "--consolidation-limit", "s");
+  std::map<std::string, double> names;
+  for (const double load : s.loads) {
+    dem::require_positive(load, "a mass of --loads", "kg");
+    const auto [other, is_new] = names.emplace(load_name(s, load), load);
+    if (!is_new) {
+      dem::fail(
+          "the masses {:g} and {:g} kg of --loads differ by less than 0.1 kPa, and both would be called {}; leave "
+          "one out",
+          other->second, load, other->first);
+    }
+  }
+  if (s.shape != "cube8" && s.integrator != "verlet") {
+    dem::fail("--integrator is '{}', but --shape {} runs with verlet only", s.integrator, s.shape);
+  }
+  dem::require_non_negative(s.time_step, "--time-step", "s (0: 0.8 of the largest stable one)");
+  dem::require_positive(s.overlap_limit, "--overlap-limit", "sphere radii");
+  dem::require_within(s.threads, 0.0, 4096.0, "--threads (0: all)");
+  dem::require_positive(s.vtk_interval, "--vtk-interval", "m (0: a twentieth of the travel)");
+}
+
 }  // namespace
 
 bool read_settings(int argc, char** argv, Settings& s, std::string& config) {
   CLI::App app{"Direct shear test of cubical sand grains: shear strength at several normal stresses"};
   app.set_config("--config", "", "TOML file with any of these options");
+  app.config_formatter(std::make_shared<StrictToml>(app));
   app.add_option("--size", s.size, "smoke (seconds), quick (minutes) or full (14256 grains)")->capture_default_str();
   add_specimen_options(app, s);
   add_contact_options(app, s);
@@ -151,36 +252,30 @@ void resolve(Settings& s) {
   fill(s.half_edge, size.half_edge);
   fill(s.shear_speed, size.shear_speed);
   fill(s.travel, size.travel);
-  if (s.loads.empty()) s.loads = size.loads;
-  dem::require_positive(s.half_edge, "--half-edge", "m");
-  dem::require_positive(s.box_length, "--box-length", "m");
-  dem::require_positive(s.box_width, "--box-width", "m");
-  dem::require_positive(s.travel, "--travel", "m");
-  dem::require_positive(s.shear_speed, "--shear-speed", "m/s");
-  dem::require_positive(s.lid_speed, "--lid-speed", "m/s");
-  dem::require_positive(s.density, "--density", "kg/m^3");
+  fill(s.wall_thickness, std::max(0.015, 2.0 * s.travel));
+  fill(s.vtk_interval, s.travel / 20.0);
+  if (s.wall_friction < 0.0) s.wall_friction = s.friction;
+  if (s.friction_stiffness < 0.0) s.friction_stiffness = s.stiffness;
+  if (s.packing_only) s.loads.clear();
+  else if (s.loads.empty()) s.loads = size.loads;
+  if (s.save_packing.empty()) s.save_packing = (s.output / "packing.txt").string();
+  check_specimen(s);
+  check_contacts(s);
+  check_test(s);
+
   if (s.grains == 0) {
     const double fill_height = 14256.0 * std::pow(0.9e-3, 3) / (0.06 * 0.06);
     s.grains = static_cast<std::uint64_t>(std::llround(fill_height * s.area() / std::pow(s.half_edge, 3)));
   }
-  fill(s.wall_thickness, std::max(0.015, 2.0 * s.travel));
+  dem::require_within(static_cast<double>(s.grains), 1.0, 1e8, "--grains (0: by size)");
   if (s.threads == 0) {
     const auto cores = std::max(1u, std::thread::hardware_concurrency());
     s.threads = static_cast<int>(std::clamp<std::uint64_t>(s.grains / 1000, 1, cores));
   }
-  if (s.wall_friction < 0.0) s.wall_friction = s.friction;
-  if (s.friction_stiffness < 0.0) s.friction_stiffness = s.stiffness;
-  fill(s.vtk_interval, s.travel / 20.0);
-  dem::require_within(s.relative_density, 0.0, 1.0, "--relative-density");
-  dem::require_within(s.lid_clearance, 0.0, 0.99, "--lid-clearance");
-  dem::require_within(s.residual_share, 0.01, 1.0, "--residual-share");
-  dem::require_within(s.travel, 0.0, 0.5 * s.box_length, "--travel (at most half the box length)");
-  if (s.shape != "cube8" && s.integrator != "verlet") {
-    dem::fail("--integrator is '{}', but --shape {} runs with verlet only", s.integrator, s.shape);
-  }
-  if (s.packing_only) s.loads.clear();
-  for (const double load : s.loads) dem::require_positive(load, "a mass of --loads", "kg");
-  if (s.save_packing.empty()) s.save_packing = (s.output / "packing.txt").string();
+}
+
+std::string load_name(const Settings& s, double load) {
+  return fmt::format("load_{:.1f}kPa", 1e-3 * s.normal_stress(load));
 }
 
 double contact_scale(const Settings& s) { return s.scale_contacts ? s.half_edge / s.constants_for : 1.0; }
@@ -213,7 +308,8 @@ std::vector<std::pair<std::string, std::string>> list_settings(const Settings& s
       {"seed", fmt::format("{}", s.seed)},
       {"loads", fmt::format("{} kg", fmt::join(s.loads, ", "))},
       {"shearing", fmt::format("{:g} mm at {:g} mm/s", 1e3 * s.travel, 1e3 * s.shear_speed)},
-      {"stress is force over", s.area_correction ? "the area of contact of the halves" : "the nominal area of the box"},
+      {"stresses are forces over",
+       s.area_correction ? "the area of contact of the halves" : "the nominal area of the box"},
       {"maximum is of the mean over", mm(s.smoothing)},
       {"integrator", s.integrator},
   };

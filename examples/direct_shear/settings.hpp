@@ -14,8 +14,8 @@ namespace direct_shear {
 struct Settings {
   std::string size = "quick";  ///< smoke, quick or full
 
-  std::string shape =
-      "cube8";  ///< of the cubical grains: cube8 (eight spheres), polyhedron (sharp edges), superquadric (rounded)
+  /// Of the cubical grains: cube8 (eight spheres), polyhedron (sharp edges), superquadric (rounded).
+  std::string shape = "cube8";
 
   // Specimen and box (thesis section 3.2: 60 x 60 x 50 mm, 14,256 cubes of half-edge 0.9 mm)
   double half_edge = 0.0;       ///< m; 0: by size
@@ -24,7 +24,7 @@ struct Settings {
   double box_width = 0.06;      ///< m
   double box_height = 0.05;     ///< m
   double seam_height = 0.0;     ///< m, where the halves meet; 0: half the specimen's height
-  double wall_thickness = 0.0;  ///< m; 0: 15 mm or twice the travel, whichever is more
+  double wall_thickness = 0.0;  ///< m, at least the travel; 0: 15 mm or twice the travel, whichever is more
   double lid_clearance = 0.25;  ///< of lid and walls, in radii of a grain's sphere; below 1
 
   // Contacts (thesis table 3.2 and figure 3.6) of a grain of half-edge `constants_for`
@@ -63,7 +63,7 @@ struct Settings {
   double ramp_time = 0.02;           ///< s, of the smooth start
   double smoothing = 1.5e-4;         ///< m of travel, over which the stress is averaged before its maximum is taken
   double residual_share = 0.25;      ///< last share of the travel, over which the residual stress is averaged
-  bool area_correction = false;      ///< stress over the shrinking area of contact of the halves, not the nominal one
+  bool area_correction = false;      ///< stresses over the shrinking area of contact of the halves, not the nominal one
 
   // Numerics
   std::string integrator = "verlet";  ///< the thesis's predictor-corrector takes twice the time
@@ -80,21 +80,29 @@ struct Settings {
   bool vtk_spheres = false;   ///< also the eight spheres of each grain
   double vtk_interval = 0.0;  ///< m of travel between two frames; 0: a twentieth of the travel
 
-  double area() const { return box_length * box_width; }                    ///< m^2, nominal
-  double normal_stress(double load) const { return 9.81 * load / area(); }  ///< Pa
+  /// m^2, that a force on the plane of shear is divided by once the halves are `displacement` (m) apart.
+  double area(double displacement = 0.0) const {
+    return (box_length - (area_correction ? displacement : 0.0)) * box_width;
+  }
+  /// Pa, of a mass (kg) on the lid: over the same area as the shear stress.
+  double normal_stress(double load, double displacement = 0.0) const { return 9.81 * load / area(displacement); }
 };
 
-/// Reads the command line and, with --config, a TOML file. Returns false when only help was asked for; throws
-/// dem::Error when something makes no sense, CLI::ParseError never. `config` becomes a TOML file that repeats the run.
+/// Reads the command line and, with --config, a TOML file, whose every key must be an option. Returns false when only
+/// help was asked for; throws dem::Error when something makes no sense, CLI::ParseError never. `config` becomes a TOML
+/// file that repeats the run.
 bool read_settings(int argc, char** argv, Settings& settings, std::string& config);
 
-/// Fills in what depends on the size and checks everything. Throws dem::Error.
+/// Fills in what depends on the size and checks every option against its range. Throws dem::Error.
 void resolve(Settings& s);
 
 /// What a coarser grain's stiffness is multiplied by (its square: damping). Overlap/size under a stress P is P d/K and
 /// the damping ratio is C/sqrt(K m), so that K ~ d and C ~ d^2 keep both: a coarse specimen deforms as the fine one
 /// does. 1 for the full size.
 double contact_scale(const Settings& s);
+
+/// What the files of a load (kg) are called, by its normal stress.
+std::string load_name(const Settings& s, double load);
 
 /// Names and values for the report.
 std::vector<std::pair<std::string, std::string>> list_settings(const Settings& s);

@@ -12,6 +12,7 @@
 #include <dem/soil/rest.hpp>
 
 #include <algorithm>
+#include <span>
 #include <stdexcept>
 
 namespace direct_shear {
@@ -32,12 +33,16 @@ void run(Rig& rig, double duration) {
   if (dem::io::interrupted()) throw Interrupted{};
 }
 
-/// Solid fraction of the inside of the specimen, one and a half edges away from walls, floor, and top or lid.
+/// Solid fraction of the inside of a specimen of grains of `volume` (m^3), one and a half edges away from walls, floor,
+/// and top or lid. Where the border cuts a grain, its solid is taken as spread evenly over the cube.
+inline double inner_fraction(std::span<const dem::soil::Placement> grains, double volume, const Settings& s,
+                             double lid_low = -1.0) {
+  const auto region = dem::soil::inner_region(grains, s.box_length, s.box_width, 3.0 * s.half_edge, lid_low);
+  return dem::soil::solid_fraction(grains, s.half_edge, region) * volume / dem::soil::cube_volume(s.half_edge);
+}
 template <class Rig>
 double inner_fraction(const Rig& rig, const Settings& s, double lid_low = -1.0) {
-  const auto grains = dem::soil::placements(rig.world);
-  const auto region = dem::soil::inner_region(grains, s.box_length, s.box_width, 3.0 * s.half_edge, lid_low);
-  return dem::soil::solid_fraction(grains, s.half_edge, region);
+  return inner_fraction(dem::soil::placements(rig.world), rig.grain_volume(), s, lid_low);
 }
 
 /// Lets the grains come to rest: their r.m.s. speed stays below the rest speed for 20 ms.
@@ -83,7 +88,9 @@ template <class Rig>
 void densify(Rig& rig, const Settings& s, dem::io::Progress& progress) {
   const double start = rig.world.time(), wanted = dem::soil::solid_fraction_at(s.relative_density);
   shake(rig, shaking(s, start));
-  double fraction = inner_fraction(rig, s), before = fraction, looked = start + s.densify_time;
+  const double first = inner_fraction(rig, s);
+  double fraction = first, before = fraction, looked = start + s.densify_time;
+  progress.begin("densify", 1.0);
   while (fraction < wanted || s.relative_density >= 1.0) {
     const double now = rig.world.time();
     const double share = std::max(0.0, 1.0 - (now - start) / s.densify_time);
@@ -95,7 +102,8 @@ void densify(Rig& rig, const Settings& s, dem::io::Progress& progress) {
       before = fraction;
       looked = now;
     }
-    progress.update(0.0, [&] {
+    // Of the two ways for it to end, the one that is nearer.
+    progress.update(std::clamp(std::max(1.0 - share, (fraction - first) / (wanted - first)), 0.0, 1.0), [&] {
       return fmt::format("solid fraction {:.3f} of {:.3f}, friction {:.2f}", fraction, wanted, share * s.friction);
     });
   }
@@ -103,18 +111,22 @@ void densify(Rig& rig, const Settings& s, dem::io::Progress& progress) {
   end_shaking(rig, s, start);
 }
 
+/// Stages of progress in make_packing: pour; then shake or densify, and settle.
+inline int making_stages(const Settings& s) { return s.packing == "random" && s.relative_density == 0.0 ? 1 : 3; }
+
 /// Pours the grains, makes them as dense as asked for, and takes them out as a packing. The walls are as high as the
 /// grains need while they are poured: a collar.
 template <class Integrator, class Shape>
 PackingResult make_packing(const Settings& s, dem::io::Progress& progress) {
   const bool poured = s.packing == "poured";
+  const auto grain = Grain<Shape>::make(s.half_edge);
   const auto grains = poured ? dem::soil::tilted_block(s.grains, s.half_edge, s.box_length, s.box_width,
                                                        s.tilt_deg * std::numbers::pi / 180.0)
                              : dem::soil::random_lattice(s.grains, s.half_edge, s.box_length, s.box_width, s.seed, 0.05,
-                                                         Grain<Shape>::make(s.half_edge).bounding_radius());
+                                                         grain.bounding_radius());
   double highest = s.box_height;
   for (const auto& g : grains) highest = std::max(highest, g.position.z() + 3.0 * s.half_edge);
-  const double solid_height = static_cast<double>(s.grains) * dem::soil::cube_volume(s.half_edge) / s.area();
+  const double solid_height = static_cast<double>(s.grains) * grain.volume() / s.area();
   const double seam = s.seam_height > 0.0 ? s.seam_height : 0.5 * solid_height / dem::soil::solid_fraction_at(0.5);
   Rig<Integrator, Shape> rig(s, {.seam = seam, .wall_top = highest, .lid_low = highest}, grains);
   rig.hold_lid();
@@ -130,14 +142,16 @@ PackingResult make_packing(const Settings& s, dem::io::Progress& progress) {
       progress.update(rig.world.time() - start);
     }
     end_shaking(rig, s, start);
-    settle(rig, s, progress);
   } else if (s.relative_density > 0.0) {
-    progress.begin("densify");
     densify(rig, s, progress);
+  }
+  if (making_stages(s) > 1) {
+    progress.begin("settle");
     settle(rig, s, progress);
   }
 
   PackingResult result;
+  if (!poured && s.relative_density > 0.0) result.asked_density = s.relative_density;
   result.packing = {s.half_edge, s.box_length, s.box_width,
                     fmt::format("{}, friction {:g}, seed {}", s.packing, s.friction, s.seed),
                     dem::soil::placements(rig.world)};
@@ -195,12 +209,12 @@ void shear(Rig& rig, const Settings& s, LoadResult& result, dem::io::Progress& p
   for (std::size_t i = 0; i < rig.world.particle_count(); ++i) {
     below += rig.world.position(dem::ParticleId(i)).z() < rig.shape().seam ? 1.0 : 0.0;
   }
-  below *= 9.81 * s.density * dem::soil::cube_volume(s.half_edge);
+  below *= 9.81 * s.density * rig.grain_volume();
   machine.set_target(rig.shearing, shearing_motion(s, start));
   while (rig.top_displacement() < s.travel) {
     run(rig, interval);
     const double u = rig.top_displacement();
-    const double area = s.area_correction ? (s.box_length - u) * s.box_width : s.area();
+    const double area = s.area(u);
     const auto& on_bottom = machine.sensor(rig.bottom_sensor).mean().force;
     const double drive = machine.sensor(rig.shearing_sensor).mean().force.x;
     result.samples.push_back({rig.world.time(), u, on_bottom.x / area, drive / area, rig.lid_low() - lid_at_start,
