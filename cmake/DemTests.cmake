@@ -10,12 +10,25 @@ else()
   target_link_libraries(test_main PUBLIC Catch2::Catch2)
 endif()
 
-# dem_add_catch_tests(<name> <label> <source>...): the program test_<name>, and a test per TEST_CASE in it.
+# Tests are compiled several files at a time: names of one may hide another's. Linked after dem_warnings, so it comes last.
+target_compile_options(test_main INTERFACE $<$<COMPILE_LANG_AND_ID:CXX,GNU,Clang,AppleClang>:-Wno-shadow>)
+
+# What nearly every test includes, compiled once for all. Whether a header stands alone is another check's business.
+file(CONFIGURE OUTPUT "${CMAKE_CURRENT_BINARY_DIR}/precompiled.cpp" CONTENT "// Stands for its precompiled headers.\n")
+add_library(test_headers OBJECT "${CMAKE_CURRENT_BINARY_DIR}/precompiled.cpp")
+dem_program(test_headers)
+target_link_libraries(test_headers PRIVATE test_main)
+target_precompile_headers(test_headers PRIVATE "${CMAKE_CURRENT_SOURCE_DIR}/catch.hpp" <dem/world/world.hpp>)
+
+# dem_add_catch_tests(<name> <label> <source>...): the program test_<name>, and a test per TEST_CASE in it. Sources are
+# compiled a few at a time, as most of the work is the worlds that they share.
 function(dem_add_catch_tests name label)
   add_executable(test_${name} ${ARGN})
   target_include_directories(test_${name} PRIVATE "${CMAKE_CURRENT_SOURCE_DIR}")
   dem_program(test_${name})
   target_link_libraries(test_${name} PRIVATE test_main)
+  set_target_properties(test_${name} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 4)
+  target_precompile_headers(test_${name} REUSE_FROM test_headers)
   catch_discover_tests(test_${name} TEST_PREFIX "${name}." PROPERTIES LABELS ${label})
 endfunction()
 

@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# Installs what dem is built and tested with, on Debian and its kin. Does nothing when all of it is there.
+# Installs what dem is built and tested with, on Debian and its kin. Does nothing when all of it is there. Arguments:
+# packages needed besides.
 set -euo pipefail
 
 packages=(
@@ -8,6 +9,7 @@ packages=(
   libcli11-dev gnuplot-nox     # examples: command lines, plots
   catch2 clang-format          # tests
   libbenchmark-dev             # benchmarks
+  "$@"
 )
 
 is_installed() { [ "$(dpkg-query -W -f '${db:Status-Status}' "$1" 2> /dev/null)" = installed ]; }

@@ -5,5 +5,7 @@ set -euo pipefail
 
 cd "$(dirname "$0")/.."
 
-bash cmake/packages.sh
+extra=()
+[ "${1:-}" != tsan ] || extra=(clang libomp-dev)
+bash cmake/packages.sh "${extra[@]}"
 CTEST_PARALLEL_LEVEL=${CTEST_PARALLEL_LEVEL:-$(nproc)} cmake --workflow --preset "${1:-test}"
