@@ -16,13 +16,13 @@ namespace {
 using namespace dem;
 using namespace dem::mbd;
 
-struct Outcome {
+struct PendulumRun {
   double energy, period, opening, seconds;
 };
 
 /// Largest change of energy (J), relative error of the period, largest opening of the pivot (m), run time (s).
 template <class I>
-Outcome swing(double dt, double designed) {
+PendulumRun swing(double dt, double designed) {
   Machine<I> m;
   const double inertia = 0.05;
   const BodyId bob = m.add_body(given_body("bob", 1.0, Vec3::Constant(inertia)).at({1, 0, 0}));
@@ -31,7 +31,7 @@ Outcome swing(double dt, double designed) {
   const auto energy = [&] { return energy_of(m.parts(), m.gravity).sum(); };
   const double start = energy();
   const double exact = 4.0 * std::comp_ellint_1(std::sqrt(0.5)) * std::sqrt((1.0 + inertia) / 9.81);
-  Outcome o{};
+  PendulumRun o{};
   double last = 0.0, turned = 0.0;
   int turns = 0;
   const auto clock = std::chrono::steady_clock::now();
@@ -57,7 +57,7 @@ TEMPLATE_TEST_CASE("pendulum: energy and period over the time step", "", integra
   std::string table = "\n    dt (s)  energy (J)     period  digits  opening (m)  time (s)";
   double last = 0.0;
   for (const double dt : {4e-4, 2e-4, 1e-4, 5e-5, 2.5e-5, 1.25e-5}) {
-    const Outcome o = swing<TestType>(dt, dt);
+    const PendulumRun o = swing<TestType>(dt, dt);
     table += fmt::format("\n{:>10.2e}{:>12.2e}{:>11.2e}{:>8.1f}{:>13.1e}{:>10.2f}", dt, o.energy, o.period,
                          -std::log10(o.period), o.opening, o.seconds);
     if (last > 0.0) CHECK(o.period < last / 3.0);  // second order: the joint gives way as 1/k, that is as dt^2
@@ -75,7 +75,7 @@ TEST_CASE("pendulum: period over the stiffness of the pivot") {
   std::string table = "\nstiffness (1 = derived for the step of 2e-5 s)     period  opening (m)";
   double last = 0.0;
   for (const double factor : {16.0, 8.0, 4.0, 2.0, 1.0}) {
-    const Outcome o = swing<integrator::VelocityVerlet>(2e-5, 2e-5 * factor);
+    const PendulumRun o = swing<integrator::VelocityVerlet>(2e-5, 2e-5 * factor);
     table += fmt::format("\n{:>46.4f}{:>11.2e}{:>13.1e}", 1.0 / (factor * factor), o.period, o.opening);
     if (last > 0.0) CHECK(last / o.period == Approx(4.0).epsilon(0.1));
     last = o.period;

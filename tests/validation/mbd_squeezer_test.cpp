@@ -15,13 +15,13 @@ namespace {
 
 using namespace dem;
 
-struct Outcome {
+struct SqueezerRun {
   double error, seconds, opening;
 };
 
 /// dt: time step; designed: the time step that the joints' stiffness is derived from.
 template <class I>
-Outcome squeeze(double dt, double designed) {
+SqueezerRun squeeze(double dt, double designed) {
   auto s = squeezer::make<I>();
   s.machine.design_for(designed);
   const auto start = std::chrono::steady_clock::now();
@@ -31,7 +31,7 @@ Outcome squeeze(double dt, double designed) {
   return {s.error(), std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(), opening};
 }
 
-std::string line(const char* what, double dt, double designed, const Outcome& o) {
+std::string line(const char* what, double dt, double designed, const SqueezerRun& o) {
   return fmt::format("\n{:<20}{:>8.1e}{:>11.1e}{:>9.1e}{:>7.1f}{:>9.0e}{:>7.2f}", what, dt, std::pow(designed, -2),
                      o.error, -std::log10(o.error), o.opening, o.seconds);
 }
@@ -43,7 +43,7 @@ constexpr const char* header = "\nintegrator            dt/s  stiffness    error
 
 TEST_CASE("squeezer: the seven angles to 1e-4") {
   std::string table = header;
-  const auto check = [&](const char* name, const Outcome& o, double dt) {
+  const auto check = [&](const char* name, const SqueezerRun& o, double dt) {
     table += line(name, dt, dt, o);
     CHECK(o.error < 1e-4);
   };
@@ -57,7 +57,7 @@ TEST_CASE("squeezer: error over time step, stiffness derived from it") {
   std::string table = header;
   double last = 0.0;
   for (const double dt : {8e-7, 4e-7, 2e-7, 1e-7, 5e-8, 2.5e-8}) {
-    const Outcome o = squeeze<integrator::PredictorCorrector>(dt, dt);
+    const SqueezerRun o = squeeze<integrator::PredictorCorrector>(dt, dt);
     table += line("predictor-corrector", dt, dt, o);
     // Both the rule and the give of the joints (1/k, k as 1/dt^2) are of second order.
     if (last > 0.0) CHECK(last / o.error == Approx(4.0).epsilon(0.1));
@@ -70,7 +70,7 @@ TEST_CASE("squeezer: error over the stiffness of the joints, at one time step") 
   std::string table = header;
   double last = 0.0;
   for (const double designed : {1.6e-6, 8e-7, 4e-7, 2e-7, 1e-7}) {
-    const Outcome o = squeeze<integrator::VelocityVerlet>(5e-8, designed);
+    const SqueezerRun o = squeeze<integrator::VelocityVerlet>(5e-8, designed);
     table += line("velocity Verlet", 5e-8, designed, o);
     if (last > 0.0) CHECK(last / o.error == Approx(4.0).epsilon(0.1));
     last = o.error;
