@@ -89,12 +89,13 @@ TEST_CASE("squeezer: error over the time step, at one stiffness") {
     return s.machine.coordinate(s.angles[0]);
   };
   const double fine = beta(2.5e-8);
-  double worst = 0.0;
+  double last = 0.0;
   for (const double dt : {4e-7, 2e-7, 1e-7}) {
     const double change = std::abs(beta(dt) / fine - 1.0);
     table += fmt::format("\n{:.1e}   {:.2e}", dt, change);
-    worst = std::max(worst, change);
+    if (last > 0.0) CHECK(last / change == Approx(4.0).epsilon(0.1));  // second order; "fine" errs by 1/16 of the last
+    last = change;
   }
-  CHECK(worst < 1e-4);
+  CHECK(last < 1e-9);  // measured: 5e-10, five digits below what the joints give
   WARN(table);
 }
