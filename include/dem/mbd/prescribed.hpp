@@ -24,6 +24,12 @@ struct Pose {
 /// A joint's drive acts between its two bodies. If one of them is fixed, or is driven itself by a motion that was added
 /// before, the other one moves and the reaction ends there. If both move freely, each takes its share: the drive gives
 /// them opposite impulses, so momentum is kept.
+///
+/// Where it is no more than an approximation: joints that leave the driven body free to turn (point on line or plane,
+/// planar, free) are driven as if the force acted in its centre of mass; several drives that share a free body meet
+/// their values to the order of the time step only, and the force that one of them reports leaves the others out; and a
+/// body that any motion drives, in whatever direction, takes the reactions of the joint drives that are added after it.
+/// An actuator has none of these limits.
 struct MotionSpec {
   enum class Target {
     position,  ///< displacement of a body's centre of mass along a global axis, from where it was at assembly
