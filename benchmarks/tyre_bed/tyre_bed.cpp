@@ -37,7 +37,7 @@ struct Settings {
 /// A loose lattice of grains in an open box.
 template <class Model>
 dem::World<Model> loose_bed(const Settings& s) {
-  dem::World<Model> world({.time_step = 4e-5, .threads = s.threads});
+  dem::World<Model> world({.time_step = 3.5e-5, .threads = s.threads});
   const auto grain = world.add_species(Model::grain());
   world.set_contact({{1e5, 15.0, 1.0}, {0.5, 4e4, 7.0, 0.975}});
   const double thick = 0.1, high = 1.0;
