@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Builds everything and runs all tests but the validation; installs the packages they need first. An argument names
-# another workflow of CMakePresets.json, e.g. asan or validation.
+# Builds the library, examples and tests, and runs all tests but the validation; installs the packages they need first.
+# An argument names another workflow of CMakePresets.json, e.g. asan or validation.
 set -euo pipefail
 
 cd "$(dirname "$0")/.."

@@ -93,14 +93,14 @@ TEST_CASE("a cluster of one ball and a superquadric ball are spheres among the o
       check_same(contacts(other, ra, cluster, rb, d), expected, 1e-12);
       // The searches stop within 3e-6 of the point, and within its square of the overlap; they may see grains that
       // overlap by less than that differently. The normals err by that step times the curvature, below 5, and the rate
-      // of convergence; points by as much, as flat sides give them little hold. Effective radii of clusters are those
+      // of convergence. Points: measured, 2.1e-5 at the most. Effective radii of clusters are those
       // of their balls.
       const auto found = contacts(other, ra, smooth, rb, d);
       if (!expected.empty() && expected.front().overlap > 1e-9 && other.kind().index() != 1) {
         REQUIRE(found.size() == 1);
         CHECK(found[0].overlap == Approx(expected[0].overlap).margin(1e-9));
         CHECK((found[0].normal - expected[0].normal).norm() < 1e-4);
-        CHECK((found[0].point - expected[0].point).norm() < 1e-4);
+        CHECK((found[0].point - expected[0].point).norm() < 3e-5);
       }
     }
   }

@@ -219,8 +219,7 @@ class World {
     }
   }
   [[nodiscard]] StepReport step() { return run(1); }
-  /// Runs n steps, or fewer if a problem shows. What the report says was found once is not reported again of the same
-  /// lost grain: a run may go on without it.
+  /// Runs n steps, or fewer if a problem shows. A lost grain is reported once: a run may go on without it.
   [[nodiscard]] StepReport run(std::uint64_t n) {
     prepare();
     for (std::uint64_t k = 0; k < n; ++k) {
