@@ -92,6 +92,30 @@ TEST_CASE("bodies and joints can be added while a machine runs") {
   CHECK(m.reaction(second).force.z == Approx(9.81).epsilon(1e-5));
 }
 
+TEST_CASE("a body that is set free or fixed while a machine runs has its joints derived anew") {
+  // The weld of 10 kg to a fixed anvil of 10 g is far too stiff once the anvil is free: kept, it would blow up.
+  Machine<SymplecticEuler> m;
+  const BodyId anvil = m.add_body(given_body("anvil", 0.01, Vec3(1e-5, 1e-5, 1e-5)));
+  const BodyId block = m.add_body(given_body("block", 10.0, Vec3(0.1, 0.1, 0.1)).at({0.1, 0, 0}));
+  m.set_fixed(anvil);
+  m.add_joint(fixed("weld", anvil, block, {0, 0, 0}));
+  REQUIRE(m.run(0.1, 1e-4));
+  const double welded = m.joint(JointId(0)).k;
+  m.set_fixed(anvil, false);
+  CHECK_FALSE(m.is_initialised());
+  REQUIRE(m.run(0.1, 1e-4));
+  CHECK(m.joint(JointId(0)).k < welded / 100.0);
+  CHECK(m.body(block).velocity().z() == Approx(-0.981).epsilon(1e-3));  // they fall together
+  CHECK(m.body(anvil).velocity().z() == Approx(-0.981).epsilon(1e-3));
+  m.set_fixed(anvil);
+  CHECK(m.body(anvil).velocity().norm() == 0.0);
+  REQUIRE(m.run(0.1, 1e-4));
+  const BodyId wall = m.add_fixed_body("wall");
+  m.body(wall).mass = 0.0;
+  check_refused([&] { m.set_fixed(wall, false); }, "mass of body 'wall'");
+  CHECK(m.body(wall).fixed);
+}
+
 TEST_CASE("the stable time step names the part that limits it, and is one") {
   Machine<SymplecticEuler> m;
   m.gravity.setZero();

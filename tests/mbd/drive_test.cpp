@@ -256,8 +256,9 @@ TEMPLATE_TEST_CASE("a joint's drive moves its body a where b is fixed", "", Pred
   // +Y, that is against the coordinate.
   const double s = middle / 0.5, angle = s * s * s * (10 - s * (15 - 6 * s));
   const double acceleration = 60.0 * s * (1 - s) * (1 - 2 * s) / 0.25;
-  CHECK(m.motion(turn).drive.force ==
-        Approx((0.3 + 2.0 * 0.25) * acceleration + 2.0 * 9.81 * 0.5 * std::cos(angle)).epsilon(1e-3));
+  const double inertial = (0.3 + 2.0 * 0.25) * acceleration, weight = 2.0 * 9.81 * 0.5 * std::cos(angle);
+  // The hinge pulls the centre of mass along a few steps late: 1e-5 s of some 500 N m/s, where 9 N m all but cancel.
+  CHECK(m.motion(turn).drive.force == Approx(inertial + weight).margin(1e-3 * std::abs(inertial)));
 }
 
 TEMPLATE_TEST_CASE("a drive between two free bodies pushes both, and keeps momentum", "", PredictorCorrector,
@@ -302,11 +303,118 @@ TEST_CASE("a drive on a driven carrier counts the carrier's acceleration") {
   const JointId rail = m.add_joint(prismatic("rail", m.ground(), carrier, {0, 0, 0}, Z));
   const JointId guide = m.add_joint(prismatic("guide", carrier, cage, {0, 0, 0}, Z));
   const auto fall = [](double t) { return -1.5 * t * t; };
-  m.add_motion(prescribed_joint("fall", rail, Signal::function(fall, [](double t) { return -3.0 * t; })));
+  const MotionId falls =
+      m.add_motion(prescribed_joint("fall", rail, Signal::function(fall, [](double t) { return -3.0 * t; })));
   const MotionId hold = m.add_motion(prescribed_joint("hold", guide, 0.0));
   m.run(0.5, 1e-3);
   CHECK(m.body(cage).position().z() == Approx(-1.5 * 0.25));
   CHECK(m.motion(hold).drive.force == Approx(2.0 * (9.81 - 3.0)).epsilon(1e-9));
+  CHECK(m.motion(falls).drive.force == Approx(7.0 * (9.81 - 3.0)).epsilon(1e-9));  // it carries both
+}
+
+TEMPLATE_TEST_CASE("drives of an arm carry what hangs on them, in whatever order they are added", "",
+                   PredictorCorrector, SymplecticEuler, VelocityVerlet) {
+  // Two links of 1 m, held still at 30 and 75 degrees above the horizontal. Statics: the elbow carries the forearm's
+  // weight at half its length, the shoulder both weights. The joints sag by m g / k, some 1e-6 m.
+  const bool shoulder_first = GENERATE(true, false);
+  const double q1 = pi / 6, q2 = 5 * pi / 12;
+  const Vec3 elbow_at(std::cos(q1), 0, std::sin(q1)), hand = elbow_at + Vec3(std::cos(q2), 0, std::sin(q2));
+  Machine<TestType> m;
+  const BodyId upper = m.add_body(ball("upper", 4.0).at(0.5 * elbow_at));
+  const BodyId fore = m.add_body(ball("fore", 3.0).at(0.5 * (elbow_at + hand)));
+  const JointId shoulder = m.add_joint(revolute("shoulder", m.ground(), upper, {0, 0, 0}, -Y));
+  const JointId elbow = m.add_joint(revolute("elbow", upper, fore, elbow_at, -Y));
+  MotionId up, bend;
+  if (shoulder_first) up = m.add_motion(prescribed_joint("up", shoulder, 0.0));
+  bend = m.add_motion(prescribed_joint("bend", elbow, 0.0));
+  if (!shoulder_first) up = m.add_motion(prescribed_joint("up", shoulder, 0.0));
+  m.run(0.5, 1e-4);
+  const double g = 9.81, at_elbow = 3.0 * g * 0.5 * std::cos(q2);
+  CHECK(m.motion(bend).drive.force == Approx(at_elbow).epsilon(1e-4));
+  CHECK(m.motion(up).drive.force == Approx(at_elbow + (4.0 * 0.5 + 3.0) * g * std::cos(q1)).epsilon(1e-4));
+  CHECK(std::abs(m.coordinate(shoulder)) < 1e-14);
+  CHECK(std::abs(m.coordinate(elbow)) < 1e-14);
+  CHECK(m.reaction(shoulder).force.z == Approx(7.0 * g).epsilon(1e-4));
+  // A drive that is switched off carries nothing: the arm falls, and only the elbow is still held.
+  m.switch_on(up, false);
+  m.run(0.05, 1e-4);
+  CHECK(m.motion(up).drive.force == 0.0);
+  CHECK(m.coordinate(shoulder) < -1e-3);
+  CHECK(std::abs(m.coordinate(elbow)) < 1e-14);
+}
+
+TEMPLATE_TEST_CASE("a drive pulls where the joint is, and leaves the body free to turn", "", PredictorCorrector,
+                   SymplecticEuler, VelocityVerlet) {
+  const double g = 9.81, a = 4.0;
+  const auto speeding_up = Signal::function([=](double t) { return 0.5 * a * t * t; }, [=](double t) { return a * t; });
+  SECTION("a pendulum on a rail hangs at atan(a / g) while the rail drives it with a constant acceleration") {
+    const double tilt = std::atan2(a, g), length = 0.4;
+    Machine<TestType> m;
+    const BodyId bob = m.add_body(ball("bob", 2.0, 0.01).at(length * Vec3(-std::sin(tilt), 0, -std::cos(tilt))));
+    const JointId rail = m.add_joint(joint(JointKind::point_on_line, "rail", m.ground(), bob, {0, 0, 0}, X));
+    const MotionId drive = m.add_motion(prescribed_joint("drive", rail, speeding_up));
+    m.run(1.0, 1e-4);
+    CHECK(m.coordinate(rail) == Approx(0.5 * a).epsilon(1e-12));
+    // It starts with the rail unloaded: the sag, m g / k = 1e-5 m, makes it swing by sqrt(2 g sag) / l / 5 rad/s.
+    CHECK((m.body(bob).rotation() - Mat3::Identity()).norm() < 5e-3);
+    CHECK(m.motion(drive).drive.force == Approx(2.0 * a).epsilon(2e-2));
+  }
+  SECTION("a plate in a plane, pulled beside its centre of mass") {
+    // F (1/m + r^2/I) = a at the start; the plate turns by 1e-3 rad in 0.01 s.
+    const double r = 0.3, inertia = 0.1;
+    Machine<TestType> m;
+    m.gravity.setZero();
+    const BodyId plate = m.add_body(ball("plate", 2.0, inertia));
+    JointSpec in_plane = joint(JointKind::planar, "floor", m.ground(), plate, {0, r, 0}, Z);
+    const JointId floor = m.add_joint(in_plane.with_x(X));
+    const MotionId pull = m.add_motion(prescribed_joint("pull", floor, speeding_up).along(Freedom::slide_x));
+    m.run(0.01, 1e-5);
+    const double force = a / (1.0 / 2.0 + r * r / inertia);
+    CHECK(m.motion(pull).drive.force == Approx(force).epsilon(1e-3));
+    CHECK(m.body(plate).velocity().x() == Approx(force / 2.0 * 0.01).epsilon(1e-3));
+    CHECK(m.body(plate).angular_velocity().z() == Approx(-force * r / inertia * 0.01).epsilon(1e-3));
+    CHECK(m.coordinate(floor, Freedom::slide_x) == Approx(0.5 * a * 1e-4).epsilon(1e-12));
+  }
+}
+
+TEST_CASE("a carriage that is driven in one direction feels the drives of what it carries") {
+  // The carriage goes up with 2 m/s^2 and hangs on a spring beside; its arm is swung about the upright axis, and the
+  // carriage, free to turn, turns back.
+  Machine<VelocityVerlet> m;
+  const BodyId carriage = m.add_body(ball("carriage", 5.0, 0.3)), arm = m.add_body(ball("arm", 1.0, 0.1));
+  const JointId axle = m.add_joint(revolute("axle", carriage, arm, {0, 0, 0}, Z));
+  const MotionId lift =
+      m.add_motion(prescribed_position("lift", carriage, Z, Signal::function([](double t) { return t * t; })));
+  m.add_motion(prescribed_joint("swing", axle, Signal::smooth_step(0.0, 1.0, 0.0, 0.3)));
+  m.run(0.2, 1e-4);
+  const double turned = -0.25 * m.coordinate(axle);  // 0.3 and 0.1 kg m^2 share the swing
+  CHECK(m.body(carriage).rotation()(1, 0) == Approx(std::sin(turned)).epsilon(1e-6));
+  CHECK(m.body(carriage).position().z() == Approx(0.04).epsilon(1e-12));
+  CHECK(m.motion(lift).drive.force == Approx(6.0 * (9.81 + 2.0)).epsilon(1e-3));
+}
+
+TEST_CASE("drives that repeat or contradict each other, and those that start off the mark") {
+  Machine<VelocityVerlet> m;
+  m.gravity = {0, 0, -10.0};
+  const BodyId box = m.add_body(ball("box", 3.0));
+  const JointId guide = m.add_joint(prismatic("guide", m.ground(), box, {0, 0, 0}, Z));
+  const MotionId one = m.add_motion(prescribed_joint("one", guide, 0.0));
+  const MotionId two = m.add_motion(prescribed_position("two", box, Z, 0.0));
+  m.run(0.1, 1e-3);
+  CHECK(m.motion(one).drive.force == Approx(30.0));  // the earlier one carries the weight
+  CHECK(m.motion(two).drive.force == 0.0);
+  m.set_motion(two, 2e-4);
+  m.run(0.01, 1e-3);
+  CHECK(std::abs(m.coordinate(guide)) < 1e-15);
+  Machine<VelocityVerlet> off;
+  const BodyId door = off.add_body(ball("door"));
+  const JointId hinge = off.add_joint(revolute("hinge", off.ground(), door, {0, 0, 0}, Z));
+  off.add_motion(prescribed_joint("opener", hinge, Signal::ramp(0.3, 1.0)));
+  check_refused([&] { off.step(1e-3); }, "motion 'opener' is 0.3", "its coordinate is 0", "starting_at");
+  Machine<VelocityVerlet> still;
+  const BodyId wall = still.add_fixed_body("wall");
+  const JointId gap = still.add_joint(free_joint("gap", still.ground(), wall, {0, 0, 0}, Z));
+  check_refused([&] { still.add_motion(prescribed_joint("push", gap, 0.0)); }, "'ground' and 'wall'", "both fixed");
 }
 
 TEST_CASE("prescribed positions, turns and poses") {

@@ -60,24 +60,6 @@ inline Coupling make_coupling(const Parts& parts, CouplingSpec spec) {
   return g;
 }
 
-/// Whether a body's motion is prescribed, by something other than a joint alone or by a joint too.
-inline bool is_driven(const Parts& parts, std::uint32_t body, bool by_joints) {
-  return std::any_of(parts.motions.begin(), parts.motions.end(), [&](const PrescribedMotion& p) {
-    return p.spec.body.value == body && p.moves != PrescribedMotion::Moves::both &&
-           (by_joints || p.spec.target != MotionSpec::Target::joint);
-  });
-}
-
-/// Which of its bodies the drive of a joint moves: b if a stays where it is or is driven itself, a if that holds for b
-/// alone, and else both.
-inline PrescribedMotion::Moves moves_of(const Parts& parts, const Joint& j) {
-  using enum PrescribedMotion::Moves;
-  if (parts.bodies[j.a].fixed) return b;
-  if (parts.bodies[j.b].fixed) return a;
-  if (is_driven(parts, j.a, true)) return b;
-  return is_driven(parts, j.b, false) ? a : both;
-}
-
 inline PrescribedMotion make_motion(const Parts& parts, MotionSpec spec) {
   const std::string who = fmt::format("prescribed motion '{}'", spec.name);
   PrescribedMotion p;
@@ -90,8 +72,11 @@ inline PrescribedMotion make_motion(const Parts& parts, MotionSpec spec) {
           "of a universal joint, or use an actuator",
           who, name_of(j.kind));
     }
-    p.moves = moves_of(parts, j);
-    spec.body = BodyId(p.moves == PrescribedMotion::Moves::a ? j.a : j.b);
+    if (parts.bodies[j.a].fixed && parts.bodies[j.b].fixed) {
+      fail("{} drives a joint of '{}' and '{}', which are both fixed; free one, or prescribe its position or pose", who,
+           parts.bodies[j.a].name, parts.bodies[j.b].name);
+    }
+    spec.body = BodyId(j.b);
   }
   const Body& b = known_body(parts, spec.body, who);
   if (spec.target == MotionSpec::Target::pose && !spec.pose) fail("{} has no function that gives the pose", who);

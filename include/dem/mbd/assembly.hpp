@@ -2,6 +2,7 @@
 
 #include <dem/mbd/assemble.hpp>
 #include <dem/mbd/derive.hpp>
+#include <dem/mbd/drives.hpp>
 #include <dem/mbd/forces.hpp>
 
 namespace dem::mbd {
@@ -110,7 +111,8 @@ class Assembly {
 
   // ------------------------------------------------------------------------------------------------- looking at it
 
-  /// All bodies, in the order of their ids. Mass, inertia and `fixed` are read when a run starts (initialise).
+  /// All bodies, in the order of their ids. Mass, inertia and `fixed` are read when a run starts (initialise); later,
+  /// set_fixed changes the latter.
   std::vector<Body>& bodies() { return parts_.bodies; }
   const std::vector<Body>& bodies() const { return parts_.bodies; }
   Body& body(BodyId id) { return known(parts_.bodies, id, "body"); }
@@ -192,6 +194,20 @@ class Assembly {
   void switch_on(ActuatorId id, bool on = true) { known(parts_.actuators, id, "actuator").spec.on = on; }
   void switch_on(MotionId id, bool on = true) { known(parts_.motions, id, "prescribed motion").spec.on = on; }
   void switch_on(LoadId id, bool on = true) { known(parts_.loads, id, "load").spec.on = on; }
+  /// Stops and fixes a body where it is, or sets it free; what is derived from masses is derived again.
+  void set_fixed(BodyId id, bool fixed = true) {
+    Body& b = body(id);
+    if (b.fixed == fixed) return;
+    b.fixed = fixed;
+    try {
+      check_body(b);
+    } catch (...) {
+      b.fixed = true;
+      throw;
+    }
+    if (fixed) b.motion.velocity = b.motion.angular_velocity = {0, 0, 0};
+    changed_ = true;
+  }
   void set_load(LoadId id, Signal size) { known(parts_.loads, id, "load").spec.size = std::move(size); }
   void set_motion(MotionId id, Signal motion) {
     known(parts_.motions, id, "prescribed motion").spec.motion = std::move(motion);

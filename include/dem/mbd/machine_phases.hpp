@@ -75,9 +75,9 @@ class MachinePhases : public Assembly {
       check_body(b);
       inverse_[i] = {1.0 / b.mass, from_eigen(b.inertia), from_eigen(Vec3(b.inertia.cwiseInverse()))};
     }
-    for (PrescribedMotion& p : parts_.motions) {
-      apply_motion(p, parts_.joints, parts_.bodies, time, 0.0, from_eigen(g));
-    }
+    check_starts(parts_, time);
+    apply_motions(parts_, time, 0.0);
+    for (PrescribedMotion& p : parts_.motions) p.drive.impulse = 0.0;  // the speeds that it starts with
     mbd::add_forces(parts_, time, 0.0, false);
     contacts_ = earlier_contacts_ = parts_.outside;
     for (std::size_t i = 0; i < n; ++i) I::template initialise<double>(memory_[i], acceleration(i, from_eigen(g)));
@@ -126,9 +126,9 @@ class MachinePhases : public Assembly {
 
   /// Sets prescribed motions (eq. 19) for the end of the step.
   void prescribe(double time_at_end_of_step, double dt) {
-    const Vector3<double> g = from_eigen(gravity);
-    for (PrescribedMotion& p : parts_.motions) {
-      apply_motion(p, parts_.joints, parts_.bodies, time_at_end_of_step, dt, g);
+    if (parts_.motions.empty()) return;
+    apply_motions(parts_, time_at_end_of_step, dt);
+    for (const PrescribedMotion& p : parts_.motions) {
       if (p.spec.on) watch(p.spec.body.index());  // also of a fixed body, which nothing else moves
     }
   }

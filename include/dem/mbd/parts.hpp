@@ -13,6 +13,16 @@
 
 namespace dem::mbd {
 
+/// One coordinate that is prescribed now; a rotation of a body makes three of them, all others one.
+struct DriveRow {
+  static constexpr std::uint32_t no_body = ~std::uint32_t{0};
+  std::uint32_t motion = 0;
+  bool is_reported = true;                 ///< its force is the motion's
+  std::uint32_t a = no_body, b = no_body;  ///< bodies that it moves
+  Coordinate now;
+  double value = 0.0, rate = 0.0;  ///< wanted
+};
+
 /// A named point of a body to which joints are attached (thesis section 2.3).
 struct Connection {
   std::string name;
@@ -39,6 +49,10 @@ struct Parts {
   // Scratch of a force evaluation, one entry per body.
   std::vector<Vector3<double>> spin;  ///< rad/s, global
   std::vector<Wrench> outside;        ///< contact forces that the world added, about the centre of mass
+
+  // Scratch of the prescribed motions.
+  std::vector<DriveRow> drive_rows;
+  std::vector<double> drive_matrix, drive_errors;
 };
 
 /// What a joint puts on its body b, about the joint's point: its springs and dampers, its stops and its friction.

@@ -88,6 +88,7 @@ struct SensorSpec {
 inline SensorSpec contact_sensor(std::string name, BodyId body, double window) {
   return {std::move(name), SensorTarget::contacts, body.index(), window};
 }
+/// All forces on a body but its weight and the forces of prescribed motions (drive_sensor).
 inline SensorSpec total_force_sensor(std::string name, BodyId body, double window) {
   return {std::move(name), SensorTarget::total, body.index(), window};
 }

@@ -48,10 +48,10 @@ inline void check_body(const Body& b) {
     require_positive(b.inertia[k], what("principal inertia").c_str(), "kg m^2 (or set fixed = true)");
   }
   const double largest = b.inertia.maxCoeff();
-  if (largest > (b.inertia.sum() - largest) * (1.0 + 1e-9)) {
+  if (largest > (b.inertia.sum() - largest) * 1.01) {  // data sheets round
     fail(
         "principal inertias {:g}, {:g}, {:g} kg m^2 of body '{}' belong to no mass distribution: the largest must not "
-        "exceed the sum of the other two; check the units and the order",
+        "exceed the sum of the other two by more than 1 %; check the units and the order",
         b.inertia.x(), b.inertia.y(), b.inertia.z(), b.name);
   }
 }
