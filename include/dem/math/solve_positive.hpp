@@ -8,29 +8,32 @@ namespace dem {
 
 /// Solves A x = b in place (b becomes x) by Cholesky's factors, for a small symmetric positive semi-definite A (n x n,
 /// rows one after the other; only its lower triangle is read, and it is overwritten). A row that depends on rows before
-/// it is left out, its x is 0. Scaled by the diagonal, so that rows may have any units.
+/// it, or differs from what they span by an angle of less than 1e-3, is left out, its x is 0. Rows may have any units.
 inline void solve_positive(std::vector<double>& A, std::vector<double>& b) {
   const std::size_t n = b.size();
   const auto at = [&](std::size_t i, std::size_t k) -> double& { return A[i * n + k]; };
-  std::vector<double> size(n);
-  for (std::size_t i = 0; i < n; ++i) size[i] = at(i, i);
   for (std::size_t i = 0; i < n; ++i) {
+    const double size = at(i, i);
     for (std::size_t k = 0; k <= i; ++k) {
       double sum = at(i, k);
       for (std::size_t j = 0; j < k; ++j) sum -= at(i, j) * at(k, j);
       if (i == k) {
-        at(i, i) = sum > 1e-10 * size[i] ? std::sqrt(sum) : 0.0;  // what rounding leaves of a dependent row is 1e-16
+        at(i, i) = sum > 1e-6 * size ? std::sqrt(sum) : 0.0;
       } else {
         at(i, k) = at(k, k) > 0.0 ? sum / at(k, k) : 0.0;
       }
     }
   }
   for (std::size_t i = 0; i < n; ++i) {
-    for (std::size_t k = 0; k < i; ++k) b[i] -= at(i, k) * b[k];
+    for (std::size_t k = 0; k < i; ++k) {
+      if (at(i, k) != 0.0) b[i] -= at(i, k) * b[k];  // what is no number stays with the rows that it belongs to
+    }
     b[i] = at(i, i) > 0.0 ? b[i] / at(i, i) : 0.0;
   }
   for (std::size_t i = n; i-- > 0;) {
-    for (std::size_t k = i + 1; k < n; ++k) b[i] -= at(k, i) * b[k];
+    for (std::size_t k = i + 1; k < n; ++k) {
+      if (at(k, i) != 0.0) b[i] -= at(k, i) * b[k];
+    }
     b[i] = at(i, i) > 0.0 ? b[i] / at(i, i) : 0.0;
   }
 }

@@ -192,7 +192,16 @@ class Assembly {
     known(parts_.actuators, id, "actuator").spec.throttle = require_within(throttle, -1.0, 1.0, "throttle of a motor");
   }
   void switch_on(ActuatorId id, bool on = true) { known(parts_.actuators, id, "actuator").spec.on = on; }
-  void switch_on(MotionId id, bool on = true) { known(parts_.motions, id, "prescribed motion").spec.on = on; }
+  /// A fixed body stops when the motion that moves it is switched off.
+  void switch_on(MotionId id, bool on = true) {
+    PrescribedMotion& p = known(parts_.motions, id, "prescribed motion");
+    Body& b = parts_.bodies[p.spec.body.index()];
+    if (!on && p.spec.on && b.fixed && p.spec.target != MotionSpec::Target::joint) {
+      b.motion.velocity = b.motion.angular_velocity = {0, 0, 0};
+    }
+    p.has_hold &= on && p.spec.on;
+    p.spec.on = on;
+  }
   void switch_on(LoadId id, bool on = true) { known(parts_.loads, id, "load").spec.on = on; }
   /// Stops and fixes a body where it is, or sets it free; what is derived from masses is derived again.
   void set_fixed(BodyId id, bool fixed = true) {
@@ -210,8 +219,12 @@ class Assembly {
   }
   void set_load(LoadId id, Signal size) { known(parts_.loads, id, "load").spec.size = std::move(size); }
   void set_motion(MotionId id, Signal motion) {
-    known(parts_.motions, id, "prescribed motion").spec.motion = std::move(motion);
+    PrescribedMotion& p = known(parts_.motions, id, "prescribed motion");
+    p.spec.motion = p.spec.by_speed ? motion.as_rate() : std::move(motion);
+    p.has_hold = false;
   }
+  /// For values that come from outside every step.
+  void set_motion(MotionId id, double value, double rate) { set_motion(id, Signal::held(value, rate)); }
 
   const Spring& spring(SpringId id) const { return known(parts_.springs, id, "spring"); }
   const Coupling& coupling(CouplingId id) const { return known(parts_.couplings, id, "coupling"); }

@@ -100,10 +100,8 @@ inline BuiltBody build_body(const BodySpec& spec) {
   const PrincipalAxes principal = principal_axes(spec.mass_properties.inertia);
   b.name = spec.name;
   b.fixed = spec.fixed;
-  if (!spec.fixed || spec.mass_properties.mass > 0.0) {
-    b.mass = spec.mass_properties.mass;
-    b.inertia = principal.moments;
-  }
+  b.mass = spec.mass_properties.mass;  // of a fixed body possibly 0: it cannot be set free
+  b.inertia = principal.moments;
   check_body(b);
   const Vec3 arm = spec.rotation * spec.mass_properties.centre_of_mass;
   const Mat3 rotation = spec.rotation * principal.rotation;

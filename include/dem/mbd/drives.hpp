@@ -40,60 +40,98 @@ inline Wrench response_of(const Body& x, const Wrench& impulse) {
           x.motion.rotation * Vector3<double>{t.x / x.inertia[0], t.y / x.inertia[1], t.z / x.inertia[2]}};
 }
 
-/// Sets what is fixed or wholly prescribed, and lists the other driven coordinates with their present state.
-inline void fill_rows(Parts& parts, double time) {
-  using V = Vector3<double>;
-  parts.drive_rows.clear();
-  for (std::size_t i = 0; i < parts.motions.size(); ++i) {
-    PrescribedMotion& p = parts.motions[i];
+/// Sets a body whose pose is prescribed.
+inline void carry(PrescribedMotion& p, integrator::Motion<double>& m, double time) {
+  const Pose pose = p.spec.pose(time);
+  m.position = from_eigen(pose.position);
+  m.velocity = from_eigen(pose.velocity);
+  m.rotation = from_eigen(pose.rotation);
+  m.angular_velocity = transpose_times(m.rotation, from_eigen(pose.angular_velocity));
+  p.drive.value = m.position.x + m.position.y + m.position.z;  // only to tell whether it is a number
+}
+
+/// Angle (rad) and axis of the rotation that is left from what is wanted to what is.
+inline Vector3<double> rotation_off(const PrescribedMotion& p, const integrator::Motion<double>& m) {
+  const Matrix3<double> wanted = rotation_from_vector(p.drive.value * p.axis) * p.start_rotation;
+  const Eigen::AngleAxisd off(to_eigen(m.rotation) * to_eigen(wanted).transpose());
+  return from_eigen(Vec3(off.angle() * off.axis()));
+}
+
+/// Sets the position or the rotation of a fixed body.
+inline void carry_fixed(const PrescribedMotion& p, integrator::Motion<double>& m) {
+  const PrescribedMotion::Drive& d = p.drive;
+  if (p.spec.target == MotionSpec::Target::position) {
+    m.position += (p.start + d.value - dot(m.position, p.axis)) * p.axis;
+    m.velocity += (d.rate - dot(m.velocity, p.axis)) * p.axis;
+  } else {
+    m.rotation = rotation_from_vector(d.value * p.axis) * p.start_rotation;
+    m.angular_velocity = transpose_times(m.rotation, d.rate * p.axis);
+  }
+}
+
+/// Samples the signals, and sets the bodies that give way to nothing.
+inline void sample_motions(Parts& parts, double time) {
+  for (PrescribedMotion& p : parts.motions) {
     if (!p.spec.on) continue;
-    integrator::Motion<double>& m = parts.bodies[p.spec.body.index()].motion;
+    Body& x = parts.bodies[p.spec.body.index()];
     if (p.spec.target == MotionSpec::Target::pose) {
-      const Pose pose = p.spec.pose(time);
-      m.position = from_eigen(pose.position);
-      m.velocity = from_eigen(pose.velocity);
-      m.rotation = from_eigen(pose.rotation);
-      m.angular_velocity = transpose_times(m.rotation, from_eigen(pose.angular_velocity));
+      carry(p, x.motion, time);
       continue;
     }
     const Signal::Sample s = p.spec.motion(time);
     p.drive.value = s.value;
     p.drive.rate = s.rate;
+    if (x.fixed && p.spec.target != MotionSpec::Target::joint) carry_fixed(p, x.motion);
+  }
+}
+
+/// The directions in which a joint holds its points: a correction of its angle must not part them.
+inline void add_held_rows(Parts& parts, DriveRow row, const Joint& j) {
+  const Hold hold = hold_of(j.kind);
+  if (!row.now.rotation || hold == Hold::nothing || hold == Hold::length || hold == Hold::bushing) return;
+  row.is_held = true;
+  const auto add = [&](const Vector3<double>& axis_in_a) {
+    row.now = displacement_along(axis_in_a, j, parts.bodies[j.a], parts.bodies[j.b]);
+    parts.drive_rows.push_back(row);
+  };
+  if (hold != Hold::plane) add(j.axes_a.x);
+  if (hold != Hold::plane) add(j.axes_a.y);
+  if (hold != Hold::line) add(j.axes_a.z);
+}
+
+/// Lists the driven coordinates of bodies that give way, as they are now; those that are driven by speed only if asked,
+/// what their joints hold only if not.
+inline void fill_rows(Parts& parts, bool of_speed) {
+  parts.drive_rows.clear();
+  for (std::size_t i = 0; i < parts.motions.size(); ++i) {
+    const PrescribedMotion& p = parts.motions[i];
+    if (!p.spec.on || p.spec.target == MotionSpec::Target::pose) continue;
+    const Body& x = parts.bodies[p.spec.body.index()];
     DriveRow row;
     row.motion = static_cast<std::uint32_t>(i);
     row.b = p.spec.body.value;
-    row.value = s.value;
-    row.rate = s.rate;
-    const bool fixed = parts.bodies[row.b].fixed;
+    row.value = p.drive.value;
+    row.rate = p.drive.rate;
     if (p.spec.target == MotionSpec::Target::joint) {
       const Joint& j = parts.joints[p.spec.joint.index()];
       row.a = j.a;
       row.now = coordinate_of(j, parts.bodies[j.a], parts.bodies[j.b], p.spec.freedom);
+      if (p.spec.by_speed) row.value = row.now.value;
       parts.drive_rows.push_back(row);
+      if (!of_speed) add_held_rows(parts, row, j);
+    } else if (x.fixed) {
+      continue;
     } else if (p.spec.target == MotionSpec::Target::position) {
       row.now.axis = p.axis;
-      row.now.value = dot(m.position, p.axis) - p.start;
-      row.now.speed = dot(m.velocity, p.axis);
-      if (fixed) {
-        m.position += (s.value - row.now.value) * p.axis;
-        m.velocity += (s.rate - row.now.speed) * p.axis;
-      } else {
-        parts.drive_rows.push_back(row);
-      }
+      row.now.value = dot(x.motion.position, p.axis) - p.start;
+      row.now.speed = dot(x.motion.velocity, p.axis);
+      parts.drive_rows.push_back(row);
     } else {
-      const Matrix3<double> wanted = rotation_from_vector(s.value * p.axis) * p.start_rotation;
-      if (fixed) {
-        m.rotation = wanted;
-        m.angular_velocity = transpose_times(wanted, s.rate * p.axis);
-        continue;
-      }
-      const Eigen::AngleAxisd off(to_eigen(m.rotation) * to_eigen(wanted).transpose());
-      const V rotation = from_eigen(Vec3(off.angle() * off.axis()));
-      const V spin = m.rotation * m.angular_velocity;
+      const Vector3<double> off = rotation_off(p, x.motion), spin = x.motion.rotation * x.motion.angular_velocity;
       const Vec3 axis = to_eigen(p.axis), across = axis.unitOrthogonal();
       for (const Vec3& n : {axis, across, Vec3(axis.cross(across))}) {
         row.now = {.rotation = true, .axis = from_eigen(n)};
-        row.now.value = (row.is_reported ? s.value : 0.0) + dot(rotation, row.now.axis);
+        row.now.value = row.value + dot(off, row.now.axis);
         row.now.speed = dot(spin, row.now.axis);
         parts.drive_rows.push_back(row);
         row.is_reported = false;
@@ -130,15 +168,15 @@ template <class Change>
 void push_bodies(Parts& parts, const std::vector<double>& impulses, Change&& change) {
   for (std::size_t k = 0; k < parts.drive_rows.size(); ++k) {
     const DriveRow& row = parts.drive_rows[k];
-    const double size = impulses[k];
-    if (gives_way(parts, row.b))
-      change(parts.bodies[row.b], size * response_of(parts.bodies[row.b], push_on_b(row.now)));
-    if (gives_way(parts, row.a))
-      change(parts.bodies[row.a], size * response_of(parts.bodies[row.a], push_on_a(row.now)));
+    const auto push = [&](std::uint32_t body, const Wrench& along) {
+      if (gives_way(parts, body)) change(parts.bodies[body], impulses[k] * response_of(parts.bodies[body], along));
+    };
+    push(row.b, push_on_b(row.now));
+    push(row.a, push_on_a(row.now));
   }
 }
 
-/// What the other drives put on a fixed body goes to its own drive; along or about its axis.
+/// What the drives put on a fixed body goes to its own drive; along or about its axis.
 inline double impulse_on(const Parts& parts, const PrescribedMotion& p, const std::vector<double>& impulses) {
   const bool rotation = p.spec.target == MotionSpec::Target::rotation;
   double sum = 0.0;
@@ -170,27 +208,78 @@ inline void report_forces(Parts& parts, const std::vector<double>& impulses, dou
   }
 }
 
-}  // namespace detail
-
-/// Sets the prescribed values and speeds for `time` (s). `dt` (s) is the time since the drives' forces were reported; 0
-/// where the step is not over, and none are.
-inline void apply_motions(Parts& parts, double time, double dt) {
+/// Newton's iteration to the values: one is exact but for rotations, each squares what is left.
+inline void correct_values(Parts& parts) {
   using V = Vector3<double>;
-  std::vector<double>& x = parts.drive_errors;
-  for (int k = 0; k < 5; ++k) {  // Newton's iteration: one is exact but for rotations, each squares what is left
-    detail::fill_rows(parts, time);
+  std::vector<double>&x = parts.drive_errors, &held = parts.drive_held;
+  for (int k = 0; k < 5; ++k) {
+    fill_rows(parts, false);
+    if (k == 0) {
+      held.clear();
+      for (const DriveRow& r : parts.drive_rows) held.push_back(r.now.value);
+    }
     x.clear();
-    for (const DriveRow& r : parts.drive_rows) x.push_back(r.value - r.now.value);
-    if (std::all_of(x.begin(), x.end(), [](double e) { return std::abs(e) < 1e-15; })) break;
-    detail::solve_rows(parts, x);
-    detail::push_bodies(parts, x, [](Body& b, const Wrench& by) {
+    bool met = true;
+    for (std::size_t i = 0; i < parts.drive_rows.size(); ++i) {
+      const DriveRow& r = parts.drive_rows[i];
+      const double off = (r.is_held ? held[i] : r.value) - r.now.value;
+      x.push_back(off);
+      met &= std::abs(off) <= 1e-15 * std::max(1.0, std::abs(r.value));
+    }
+    if (met) break;
+    solve_rows(parts, x);
+    push_bodies(parts, x, [](Body& b, const Wrench& by) {
       b.motion.position += by.force;
       const V spin = b.motion.rotation * b.motion.angular_velocity;  // global, unchanged
       b.motion.rotation = rotation_from_vector(by.torque) * b.motion.rotation;
       b.motion.angular_velocity = transpose_times(b.motion.rotation, spin);
     });
   }
-  detail::fill_rows(parts, time);
+}
+
+}  // namespace detail
+
+/// Throws Error if a motion that is on would have to jump at `time` (s) to take hold of its coordinate, which would
+/// tear the machine apart.
+inline void check_holds(Parts& parts, double time) {
+  constexpr double tolerance = 1e-3;  // m or rad
+  for (PrescribedMotion& p : parts.motions) {
+    if (!p.spec.on || p.has_hold) continue;
+    const integrator::Motion<double>& m = parts.bodies[p.spec.body.index()].motion;
+    double off = 0.0;
+    if (p.spec.target == MotionSpec::Target::pose) {
+      const Pose pose = p.spec.pose(time);
+      off = (pose.position - to_eigen(m.position)).norm() + (pose.rotation - to_eigen(m.rotation)).norm();
+    } else {
+      p.drive.value = p.spec.motion(time).value;
+      if (p.spec.target == MotionSpec::Target::position) {
+        off = p.start + p.drive.value - dot(m.position, p.axis);
+      } else if (p.spec.target == MotionSpec::Target::rotation) {
+        off = norm(detail::rotation_off(p, m));
+      } else if (!p.spec.by_speed) {
+        const Joint& j = parts.joints[p.spec.joint.index()];
+        off = p.drive.value - coordinate_of(j, parts.bodies[j.a], parts.bodies[j.b], p.spec.freedom).value;
+      }
+    }
+    if (std::abs(off) > tolerance) {
+      fail(
+          "prescribed motion '{}' is {:g} m or rad off at t = {:g} s, where it takes hold of its coordinate; allowed "
+          "is "
+          "{:g}: let its signal start there (set_motion), say with starting_at what the joint's coordinate is at "
+          "assembly, or move a body",
+          p.spec.name, std::abs(off), time, tolerance);
+    }
+    p.has_hold = true;
+  }
+}
+
+/// Sets the prescribed values and speeds for `time` (s). `dt` (s) is the time since the drives' forces were reported; 0
+/// where the step is not over, and none are.
+inline void apply_motions(Parts& parts, double time, double dt) {
+  detail::sample_motions(parts, time);
+  detail::correct_values(parts);
+  detail::fill_rows(parts, true);
+  std::vector<double>& x = parts.drive_errors;
   x.clear();
   for (const DriveRow& r : parts.drive_rows) x.push_back(r.rate - r.now.speed);
   detail::solve_rows(parts, x);
@@ -199,20 +288,6 @@ inline void apply_motions(Parts& parts, double time, double dt) {
     b.motion.angular_velocity += transpose_times(b.motion.rotation, by.torque);
   });
   detail::report_forces(parts, x, dt);
-}
-
-/// Throws Error if a motion does not start where its coordinate is: it would tear the machine apart.
-inline void check_starts(Parts& parts, double time) {
-  constexpr double tolerance = 1e-3;  // m or rad
-  detail::fill_rows(parts, time);
-  for (const DriveRow& r : parts.drive_rows) {
-    if (std::abs(r.value - r.now.value) > tolerance) {
-      fail(
-          "prescribed motion '{}' is {:g} at t = {:g} s, but its coordinate is {:g} (m or rad), further than {:g} off: "
-          "let it start there, say with starting_at what the joint's coordinate is at assembly, or move a body",
-          parts.motions[r.motion].spec.name, r.value, time, r.now.value, tolerance);
-    }
-  }
 }
 
 }  // namespace dem::mbd

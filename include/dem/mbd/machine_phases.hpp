@@ -73,9 +73,13 @@ class MachinePhases : public Assembly {
     for (std::size_t i = 0; i < n; ++i) {
       const Body& b = parts_.bodies[i];
       check_body(b);
-      inverse_[i] = {1.0 / b.mass, from_eigen(b.inertia), from_eigen(Vec3(b.inertia.cwiseInverse()))};
+      if (b.fixed) {
+        inverse_[i] = {0.0, {1, 1, 1}, {0, 0, 0}};
+      } else {
+        inverse_[i] = {1.0 / b.mass, from_eigen(b.inertia), from_eigen(Vec3(b.inertia.cwiseInverse()))};
+      }
     }
-    check_starts(parts_, time);
+    check_holds(parts_, time);
     apply_motions(parts_, time, 0.0);
     for (PrescribedMotion& p : parts_.motions) p.drive.impulse = 0.0;  // the speeds that it starts with
     mbd::add_forces(parts_, time, 0.0, false);
@@ -92,6 +96,7 @@ class MachinePhases : public Assembly {
   /// Moves the bodies first, if the integrator predicts.
   void before_forces(int stage, double dt) {
     if constexpr (I::predicts_before_forces) {
+      if (stage == 0) check_holds(parts_, time_);  // of motions that were added or changed since
       for (std::size_t i = 0; i < parts_.bodies.size(); ++i) {
         if (!parts_.bodies[i].fixed) predict(i, stage, dt);
       }
@@ -102,7 +107,8 @@ class MachinePhases : public Assembly {
   void clear_forces() { mbd::clear_forces(parts_); }
 
   /// Adds the machine's own forces; `time` is that of the state they act at (see stage_time).
-  void add_forces(double time, double dt, [[maybe_unused]] int stage, bool is_last_stage) {
+  void add_forces(double time, double dt, int stage, bool is_last_stage) {
+    if (!I::predicts_before_forces && stage == 0) check_holds(parts_, time_);
     mbd::add_forces(parts_, time, dt, is_last_stage);
   }
 

@@ -18,6 +18,7 @@ struct DriveRow {
   static constexpr std::uint32_t no_body = ~std::uint32_t{0};
   std::uint32_t motion = 0;
   bool is_reported = true;                 ///< its force is the motion's
+  bool is_held = false;                    ///< by the driven joint: it stays as it is while values are corrected
   std::uint32_t a = no_body, b = no_body;  ///< bodies that it moves
   Coordinate now;
   double value = 0.0, rate = 0.0;  ///< wanted
@@ -52,7 +53,7 @@ struct Parts {
 
   // Scratch of the prescribed motions.
   std::vector<DriveRow> drive_rows;
-  std::vector<double> drive_matrix, drive_errors;
+  std::vector<double> drive_matrix, drive_errors, drive_held;
 };
 
 /// What a joint puts on its body b, about the joint's point: its springs and dampers, its stops and its friction.

@@ -24,8 +24,9 @@ struct Pose {
 /// A drive acts as a force would: along its axis at the joint's point, or as a torque, on one body and opposite on the
 /// other, so that momentum is kept and joints carry what it leaves to them. All drives are met at once. Where two
 /// repeat or contradict each other the earlier one counts, and a body that is fixed or whose pose is prescribed gives
-/// way to none. A drive that is switched on while its coordinate is off the mark sets it within one step, and its force
-/// of that step is the jolt that this takes.
+/// way to none (of two motions of such a body the later one counts). A drive takes hold of its coordinate where that
+/// is: a value that is more than 1 mm or 1 mrad off when it is added, switched on or given another signal is refused. A
+/// speed is set within one step, and the force of that step is the jolt that this takes.
 struct MotionSpec {
   enum class Target {
     position,  ///< displacement of a body's centre of mass along a global axis, from where it was at assembly
@@ -40,6 +41,7 @@ struct MotionSpec {
   Freedom freedom = Freedom::own;  ///< the joint's coordinate that is prescribed
   Vec3 axis = Vec3::UnitX();       ///< global; made a unit vector
   Signal motion = 0.0;             ///< m or rad
+  bool by_speed = false;           ///< only the signal's rate counts, the coordinate goes where that takes it
   std::function<Pose(double)> pose = {};
   bool on = true;
 
@@ -65,6 +67,12 @@ inline MotionSpec prescribed_joint(std::string name, JointId joint, Signal coord
   return {
       .name = std::move(name), .target = MotionSpec::Target::joint, .joint = joint, .motion = std::move(coordinate)};
 }
+/// Prescribes the speed of a joint's coordinate (m/s or rad/s) and leaves its value as it comes: a driven wheel.
+inline MotionSpec prescribed_speed(std::string name, JointId joint, Signal speed) {
+  MotionSpec s = prescribed_joint(std::move(name), joint, speed.as_rate());
+  s.by_speed = true;
+  return s;
+}
 inline MotionSpec prescribed_pose(std::string name, BodyId body, std::function<Pose(double)> pose) {
   return {.name = std::move(name), .target = MotionSpec::Target::pose, .body = body, .pose = std::move(pose)};
 }
@@ -72,7 +80,8 @@ inline MotionSpec prescribed_pose(std::string name, BodyId body, std::function<P
 struct PrescribedMotion {
   MotionSpec spec;
   Vector3<double> axis = {};
-  double start = 0.0;  ///< m, position along the axis at assembly
+  double start = 0.0;     ///< m, position along the axis at assembly
+  bool has_hold = false;  ///< it has been compared with its coordinate since it was added or changed
   Matrix3<double> start_rotation = Matrix3<double>::identity();
   struct Drive {
     double value = 0.0, rate = 0.0;  ///< what was set last

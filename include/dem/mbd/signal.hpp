@@ -83,6 +83,11 @@ class Signal {
     return s;
   }
 
+  /// A signal whose rate is this one's value; its own value is 0.
+  Signal as_rate() const {
+    return Signal([value = *this](double t) -> Sample { return {0.0, value(t).value}; });
+  }
+
   Sample operator()(double time) const { return function_ ? function_(time) : sample_; }
 
  private:
