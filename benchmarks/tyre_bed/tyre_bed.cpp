@@ -67,7 +67,7 @@ dem::World<Model> loose_bed(const Settings& s) {
 /// Height (m) below which a share of the grains lies.
 double height_of(const auto& world, double share) {
   std::vector<double> z;
-  for (std::size_t k = 0; k < world.particle_count(); ++k) z.push_back(world.position(dem::ParticleId(k)).z());
+  for (const dem::ParticleId p : world.particles()) z.push_back(world.position(p).z());
   std::sort(z.begin(), z.end());
   return z[static_cast<std::size_t>(share * static_cast<double>(z.size() - 1))];
 }

@@ -11,6 +11,12 @@ namespace direct_shear {
 
 inline dem::soil::Packing read_packing(const Settings& s) {
   auto packing = dem::soil::load_packing(s.packing_file);
+  if (packing.shape != s.shape) {
+    dem::fail(
+        "the packing '{}' is one of grains of shape {}, but --shape is {}: other grains in these places would overlap; "
+        "give --shape {}, or leave --packing-file out",
+        s.packing_file, packing.shape, s.shape, packing.shape);
+  }
   const auto differs = [](double a, double b) { return std::abs(a - b) > 1e-9; };
   if (differs(packing.half_edge, s.half_edge) || differs(packing.length_x, s.box_length) ||
       differs(packing.length_y, s.box_width)) {

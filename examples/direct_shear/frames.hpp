@@ -44,8 +44,9 @@ class Frames {
     const std::size_t n = world.particle_count();
     std::vector<dem::Vec3> position(n), velocity(n), spin(n), force(n);
     std::vector<double> quaternion, radius(n);
+    const auto grains = world.particles();
     for (std::size_t i = 0; i < n; ++i) {
-      const dem::ParticleId p(i);
+      const dem::ParticleId p = grains[i];
       const dem::Quaternion q(world.rotation(p));
       position[i] = world.position(p);
       velocity[i] = world.velocity(p);
@@ -74,15 +75,14 @@ class Frames {
     std::vector<dem::Vec3> centre, velocity;
     std::vector<double> radius;
     std::vector<std::int32_t> grain;
-    for (std::size_t i = 0; i < world.particle_count(); ++i) {
-      const dem::ParticleId p(i);
+    for (const dem::ParticleId p : world.particles()) {
       const auto& shape = world.species(world.species_of(p)).shape;
       for (int k = 0; k < shape.count(); ++k) {
         const dem::Vec3 arm = world.rotation(p) * shape.ball(k).centre;
         centre.push_back(world.position(p) + arm);
         velocity.push_back(world.velocity(p) + world.angular_velocity(p).cross(arm));
         radius.push_back(shape.ball(k).radius);
-        grain.push_back(static_cast<std::int32_t>(i));
+        grain.push_back(static_cast<std::int32_t>(p.value));
       }
     }
     const auto path = series_.next_path("spheres");
@@ -99,8 +99,7 @@ class Frames {
     const auto mesh = dem::io::polyhedron_mesh(world.species(dem::SpeciesId(0)).shape);
     std::vector<dem::io::BodyMesh> grains;
     std::vector<dem::Vec3> velocity, force;
-    for (std::size_t i = 0; i < world.particle_count(); ++i) {
-      const dem::ParticleId p(i);
+    for (const dem::ParticleId p : world.particles()) {
       grains.push_back({&mesh, world.position(p), world.rotation(p)});
       velocity.push_back(world.velocity(p));
       force.push_back(world.force(p));

@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <omp.h>
 #include <CLI/CLI.hpp>
 
 #include <algorithm>
@@ -12,7 +13,6 @@
 #include <memory>
 #include <set>
 #include <sstream>
-#include <thread>
 
 namespace direct_shear {
 
@@ -269,8 +269,8 @@ void resolve(Settings& s) {
   }
   dem::require_within(static_cast<double>(s.grains), 1.0, 1e8, "--grains (0: by size)");
   if (s.threads == 0) {
-    const auto cores = std::max(1u, std::thread::hardware_concurrency());
-    s.threads = static_cast<int>(std::clamp<std::uint64_t>(s.grains / 1000, 1, cores));
+    const auto cores = static_cast<std::uint64_t>(omp_get_max_threads());  // OMP_NUM_THREADS counts
+    s.threads = static_cast<int>(std::clamp<std::uint64_t>(s.grains / 1000, 1, std::max<std::uint64_t>(1, cores)));
   }
 }
 
@@ -285,7 +285,7 @@ std::vector<std::pair<std::string, std::string>> list_settings(const Settings& s
   const auto mm = [](double metres) { return fmt::format("{:g} mm", 1e3 * metres); };
   return {
       {"size", s.size},
-      {"grains", fmt::format("{} {}", s.grains,
+      {"grains", fmt::format("{} {}", s.packing_file.empty() ? std::to_string(s.grains) : "the packing file's",
                              s.shape == "cube8"        ? "cubes of 8 spheres"
                              : s.shape == "polyhedron" ? "polyhedral cubes"
                                                        : "superquadric cubes")},
@@ -305,7 +305,7 @@ std::vector<std::pair<std::string, std::string>> list_settings(const Settings& s
       {"packing", !s.packing_file.empty() ? "from " + std::filesystem::path(s.packing_file).filename().string()
                   : s.packing == "poured" ? fmt::format("poured block, tilted by {:g}° about each axis", s.tilt_deg)
                                           : fmt::format("random, relative density {:g} asked for", s.relative_density)},
-      {"seed", fmt::format("{}", s.seed)},
+      {"seed", s.packing_file.empty() ? std::to_string(s.seed) : "that of the packing file"},
       {"loads", fmt::format("{} kg", fmt::join(s.loads, ", "))},
       {"shearing", fmt::format("{:g} mm at {:g} mm/s", 1e3 * s.travel, 1e3 * s.shear_speed)},
       {"stresses are forces over",

@@ -152,9 +152,12 @@ PackingResult make_packing(const Settings& s, dem::io::Progress& progress) {
 
   PackingResult result;
   if (!poured && s.relative_density > 0.0) result.asked_density = s.relative_density;
-  result.packing = {s.half_edge, s.box_length, s.box_width,
+  result.packing = {s.half_edge,
+                    s.box_length,
+                    s.box_width,
                     fmt::format("{}, friction {:g}, seed {}", s.packing, s.friction, s.seed),
-                    dem::soil::placements(rig.world)};
+                    dem::soil::placements(rig.world),
+                    s.shape};
   result.coordination = dem::soil::coordination(rig.world).mean();
   return result;
 }
@@ -206,8 +209,8 @@ void shear(Rig& rig, const Settings& s, LoadResult& result, dem::io::Progress& p
   const double start = rig.world.time(), lid_at_start = rig.lid_low(), interval = 1e-5 / s.shear_speed;
   // Weight of the grains in the bottom box: they hang on it, but not on the plane of shear.
   double below = 0.0;
-  for (std::size_t i = 0; i < rig.world.particle_count(); ++i) {
-    below += rig.world.position(dem::ParticleId(i)).z() < rig.shape().seam ? 1.0 : 0.0;
+  for (const dem::ParticleId p : rig.world.particles()) {
+    below += rig.world.position(p).z() < rig.shape().seam ? 1.0 : 0.0;
   }
   below *= 9.81 * s.density * rig.grain_volume();
   machine.set_target(rig.shearing, shearing_motion(s, start));

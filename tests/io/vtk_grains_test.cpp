@@ -45,7 +45,11 @@ struct FewGrains {
   std::vector<std::size_t> kinds;
 
   const State& state() const { return all; }
-  std::size_t particle_count() const { return kinds.size(); }
+  std::vector<dem::ParticleId> particles() const {
+    std::vector<dem::ParticleId> ids;
+    for (std::size_t k = 0; k < kinds.size(); ++k) ids.push_back(dem::ParticleId(k));
+    return ids;
+  }
   dem::SpeciesId species_of(dem::ParticleId p) const { return dem::SpeciesId(kinds[p.index()]); }
   Vec3 position(dem::ParticleId p) const { return {10.0 * static_cast<double>(p.index()), 0, 0}; }
   Vec3 velocity(dem::ParticleId) const { return {3, 4, 0}; }

@@ -133,9 +133,11 @@ TEST_CASE("relative density goes by void ratios") {
 TEST_CASE("a packing file reads back as the same packing") {
   const Scratch file;
   Packing p{0.9e-3, 0.06, 0.05, "poured,\nfriction 0.4", random_lattice(50, 0.9e-3, 0.06, 0.05, 3)};
+  p.shape = "polyhedron";
   save_packing(p, file.path);
   const Packing back = load_packing(file.path);
   CHECK(back.half_edge == p.half_edge);
+  CHECK(back.shape == "polyhedron");
   CHECK(back.length_x == 0.06);
   CHECK(back.length_y == 0.05);
   CHECK(back.note == "poured, friction 0.4");
@@ -152,6 +154,8 @@ TEST_CASE("what is no packing is refused in words") {
     dem::io::write_file(file.path, text);
     return load_packing(file.path);
   };
+  CHECK(reading("dem-packing 1\nhalf_edge 1\nbox 9 9\nnote n\ngrains 0\n").shape == "cube8");  // older files
+  CHECK_THROWS_WITH(reading("dem-packing 1\nshape egg\nbox 9 9\n"), ContainsSubstring("'half_edge' is missing"));
   const std::string head = "dem-packing 1\nhalf_edge 1\nbox 9 9\nnote n\n";
   CHECK_THROWS_WITH(reading("solid sand\n"), ContainsSubstring("'dem-packing' is missing"));
   CHECK_THROWS_WITH(reading("dem-packing 2\n"), ContainsSubstring("version is 2"));

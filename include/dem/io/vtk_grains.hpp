@@ -56,8 +56,7 @@ void write_vtk_grains(const std::filesystem::path& path, const World& world, int
   std::vector<BodyMesh> grains;
   std::vector<std::int32_t> kinds;
   std::vector<double> speeds;
-  for (std::size_t k = 0; k < world.particle_count(); ++k) {
-    const ParticleId p(k);
+  for (const ParticleId p : world.particles()) {
     const std::size_t species = world.species_of(p).index();
     grains.push_back({&meshes[species], world.position(p), world.rotation(p)});
     kinds.push_back(static_cast<std::int32_t>(species));

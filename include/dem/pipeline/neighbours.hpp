@@ -130,6 +130,14 @@ void list_incoming(std::span<const Chunk<Model>> chunks, std::size_t grains, std
   for_each_foreign([&](std::uint32_t j, const Incoming& entry) { incoming[next[j]++] = entry; });
 }
 
+/// Drops the memories of grains that were removed.
+template <class Particles, class Entries>
+void forget_removed(const Particles& p, Entries& pairs, Entries& surfaces) {
+  const auto is_gone = [&](std::uint32_t id) { return p.row_of[id] == p.gone; };
+  std::erase_if(pairs, [&](const auto& r) { return is_gone(r.i) || is_gone(r.j); });
+  std::erase_if(surfaces, [&](const auto& r) { return is_gone(r.i); });
+}
+
 template <class Memory, class Entry>
 void remember(Memory& memory, std::uint64_t key, const Entry& entry) {
   const auto at = static_cast<std::size_t>(memory.count++);

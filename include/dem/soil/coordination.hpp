@@ -12,7 +12,7 @@
 
 namespace dem::soil {
 
-/// How each grain (by id) is held by the others.
+/// How each grain (in the order of World::particles) is held by the others.
 struct Coordination {
   std::vector<std::int32_t> neighbours;  ///< grains that touch it
   std::vector<std::int32_t> contacts;    ///< points at which they do
@@ -28,22 +28,21 @@ struct Coordination {
 template <class World>
 Coordination coordination(const World& world) {
   using Shape = typename World::Shape;
-  const std::size_t n = world.particle_count();
+  const std::vector<ParticleId> grains = world.particles();
+  const std::size_t n = grains.size();
   Coordination result{std::vector<std::int32_t>(n, 0), std::vector<std::int32_t>(n, 0)};
   std::vector<double> x(n), y(n), z(n);
   AlignedVector<double> pose(n * Shape::pose_size + 1);
   double largest = 0.0;
-  const auto shape_of = [&](std::size_t i) -> const Shape& {
-    return world.species(world.species_of(ParticleId(i))).shape;
-  };
+  const auto shape_of = [&](std::size_t i) -> const Shape& { return world.species(world.species_of(grains[i])).shape; };
   for (std::size_t i = 0; i < n; ++i) {
-    const Vec3 p = world.position(ParticleId(i));
+    const Vec3 p = world.position(grains[i]);
     x[i] = p.x();
     y[i] = p.y();
     z[i] = p.z();
     largest = std::max(largest, shape_of(i).bounding_radius());
     if constexpr (Shape::pose_size > 0) {
-      shape_of(i).orient(from_eigen(world.rotation(ParticleId(i))), &pose[i * Shape::pose_size]);
+      shape_of(i).orient(from_eigen(world.rotation(grains[i])), &pose[i * Shape::pose_size]);
     }
   }
   if (n == 0) return result;

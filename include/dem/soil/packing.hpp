@@ -24,6 +24,7 @@ struct Packing {
   double length_y = 0.0;   ///< m
   std::string note = {};   ///< one line: how it was made
   std::vector<Placement> grains = {};
+  std::string shape = "cube8";  ///< of the grains, in one word
 };
 
 /// Volume (m^3) of a grain: that of the solid cube of edge 2 h, which is also what gives it its mass.
@@ -44,10 +45,8 @@ inline double height_percentile(std::span<const Placement> grains, double share)
 /// Where the grains of a world are, in the order of their ids.
 template <class World>
 std::vector<Placement> placements(const World& world) {
-  std::vector<Placement> grains(world.particle_count());
-  for (std::size_t i = 0; i < grains.size(); ++i) {
-    grains[i] = {world.position(ParticleId(i)), world.rotation(ParticleId(i))};
-  }
+  std::vector<Placement> grains;
+  for (const ParticleId p : world.particles()) grains.push_back({world.position(p), world.rotation(p)});
   return grains;
 }
 

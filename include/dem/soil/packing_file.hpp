@@ -15,6 +15,7 @@
 // Packings as text files, so that they can be read by any program:
 //
 //     dem-packing 1                 format and its version
+//     shape cube8                   one word; may be left out
 //     half_edge 0.0009              m
 //     box 0.06 0.06                 m, inner length along x and y
 //     note random, RD 0.7           to the end of the line
@@ -25,8 +26,11 @@ namespace dem::soil {
 
 /// Writes a packing, complete or not at all. Numbers read back as the very same. Throws Error if it cannot be written.
 inline void save_packing(const Packing& p, const std::filesystem::path& path) {
-  std::string text = fmt::format("dem-packing 1\nhalf_edge {}\nbox {} {}\nnote {}\ngrains {}\n", p.half_edge,
-                                 p.length_x, p.length_y, io::one_line(p.note), p.grains.size());
+  if (p.shape.empty() || p.shape.find_first_of(" \t\r\n") != std::string::npos) {
+    fail("the shape of a packing is '{}', but must be one word", p.shape);
+  }
+  std::string text = fmt::format("dem-packing 1\nshape {}\nhalf_edge {}\nbox {} {}\nnote {}\ngrains {}\n", p.shape,
+                                 p.half_edge, p.length_x, p.length_y, io::one_line(p.note), p.grains.size());
   for (const Placement& g : p.grains) {
     const Quaternion q(g.rotation);
     fmt::format_to(std::back_inserter(text), "{} {} {} {} {} {} {}\n", g.position.x(), g.position.y(), g.position.z(),
@@ -51,7 +55,9 @@ inline Packing load_packing(const std::filesystem::path& path) {
   std::size_t count = 0;
   expect("dem-packing");
   if (!(in >> version) || version != 1) wrong(fmt::format("its version is {}, known is 1", version));
-  expect("half_edge");
+  std::string word;
+  if (in >> word && word == "shape") in >> p.shape >> word;
+  if (word != "half_edge") wrong(fmt::format("'half_edge' is missing, '{}' stands there", word));
   in >> p.half_edge;
   expect("box");
   in >> p.length_x >> p.length_y;

@@ -11,10 +11,10 @@ namespace dem::soil {
 /// Root mean square of the grains' speeds (m/s).
 template <class World>
 double rms_speed(const World& world) {
-  const std::size_t n = world.particle_count();
+  const auto grains = world.particles();
   double sum = 0.0;
-  for (std::size_t i = 0; i < n; ++i) sum += world.velocity(ParticleId(i)).squaredNorm();
-  return n > 0 ? std::sqrt(sum / static_cast<double>(n)) : 0.0;
+  for (const ParticleId p : grains) sum += world.velocity(p).squaredNorm();
+  return grains.empty() ? 0.0 : std::sqrt(sum / static_cast<double>(grains.size()));
 }
 
 /// The speed (m/s) below which grains of size d (m) count as at rest: 1 % of sqrt(g d), the speed of a fall through

@@ -63,7 +63,8 @@ struct Particles {
   AlignedVector<PartnerView> view;                                                  ///< what contacts read
   AlignedVector<double> pose;                                                       ///< Shape::pose_size a grain
   std::vector<std::uint32_t> species, id;
-  std::vector<std::uint32_t> row_of;  ///< by id
+  std::vector<std::uint32_t> row_of;  ///< by id; `gone` for grains that were removed
+  static constexpr std::uint32_t gone = 0xffffffffu;
 
   std::size_t chunks() const { return (count + chunk_size - 1) / chunk_size; }
   const double* pose_of(std::size_t i) const { return pose.data() + i * Shape::pose_size; }
@@ -134,8 +135,20 @@ struct Particles {
     count = n;
   }
 
+  /// Takes grains (ids) out; the others keep their order.
+  void remove(std::span<const std::uint32_t> ids) {
+    for (const std::uint32_t k : ids) row_of[k] = gone;
+    std::vector<std::uint32_t> kept;
+    for (std::size_t i = 0; i < count; ++i) {
+      if (row_of[id[i]] != gone) kept.push_back(static_cast<std::uint32_t>(i));
+    }
+    permute(kept);
+    resize(kept.size());
+  }
+
   /// Puts the padding rows where the last grain is and stops them, so that bounds and displacements stay right.
   void pad() {
+    if (count == 0) return;
     for (std::size_t i = count; i < position.x.size(); ++i) {
       position.set(i, position[count - 1]);
       listed_at.set(i, listed_at[count - 1]);

@@ -43,10 +43,11 @@ struct WorldState {
   typename Model::BroadPhase broad_phase;
   std::vector<std::uint32_t> incoming_first;
   std::vector<pipeline::Incoming> incoming;
-  double list_skin = 0.0;              ///< m, with which the neighbour list was made
-  bool list_valid = false;             ///< false after grains were added or moved by hand
-  std::uint64_t rebuilds = 0;          ///< neighbour lists made
-  std::set<std::uint32_t> known_lost;  ///< ids of grains that were reported as lost
+  double list_skin = 0.0;                ///< m, with which the neighbour list was made
+  bool list_valid = false;               ///< false after grains were added or moved by hand
+  std::uint64_t rebuilds = 0;            ///< neighbour lists made
+  std::set<std::uint32_t> known_lost;    ///< ids of grains that were reported as lost
+  std::vector<std::uint32_t> to_remove;  ///< ids of grains that leave when the next list is made
 
   mbd::Machine<Integrator> machine;
   std::vector<Surface> surfaces;
@@ -73,7 +74,18 @@ void rebuild_neighbours(WorldState<Model>& w) {
   auto& p = w.particles;
   std::vector<pipeline::Remembered<history_size<Model>>> pairs, surfaces;
   pipeline::collect_memories<Model>(std::span<const Chunk<Model>>(w.chunks), p, pairs, surfaces);
+  if (!w.to_remove.empty()) {
+    p.remove(w.to_remove);
+    w.to_remove.clear();
+    pipeline::forget_removed(p, pairs, surfaces);
+  }
 
+  if (p.count == 0) {
+    w.chunks.clear();
+    w.incoming.clear();
+    w.list_valid = true;
+    return;
+  }
   const double reach = 2.0 * w.largest_radius + w.materials.range() + w.skin();
   const auto positions = [&] {
     return broadphase::Positions{p.position.x.data(), p.position.y.data(), p.position.z.data(), p.count};
@@ -97,6 +109,18 @@ void rebuild_neighbours(WorldState<Model>& w) {
   w.list_valid = true;
   w.list_skin = w.skin();
   ++w.rebuilds;
+}
+
+/// Points of grains are found behind a finely cut mesh as deep as the grains may reach.
+template <class Model>
+void find_points_deep_enough(WorldState<Model>& w) {
+  for (auto& s : w.surfaces) {
+    std::visit(
+        [&](auto& geometry) {
+          if constexpr (requires { geometry.find_points_to(1.0); }) geometry.find_points_to(0.25 * w.largest_radius);
+        },
+        s.geometry);
+  }
 }
 
 /// Surfaces go where their bodies are.
