@@ -9,6 +9,7 @@ struct Contact {
   std::uint32_t feature;
   dem::Vec3 normal, point;  ///< the point from the centre of a
   double overlap, effective_radius;
+  double area = 1.0;
 };
 
 /// All contacts of shape a with b, b being `separation` away, in the order in which they are found.
@@ -21,7 +22,7 @@ std::vector<Contact> contacts(const Shape& a, const dem::Mat3& turn_a, const Sha
   std::vector<Contact> found;
   Shape::collide(a, pose_a, b, pose_b, dem::from_eigen(separation), [&](std::uint32_t feature, const auto& touch) {
     const auto g = touch.geometry();
-    found.push_back({feature, to_eigen(g.normal), to_eigen(g.arm), g.overlap, g.effective_radius});
+    found.push_back({feature, to_eigen(g.normal), to_eigen(g.arm), g.overlap, g.effective_radius, g.area});
   });
   return found;
 }

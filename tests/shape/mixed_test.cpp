@@ -2,9 +2,11 @@
 #include "contacts.hpp"
 #include "random.hpp"
 
+#include <dem/math/rotation.hpp>
 #include <dem/shape/mixed.hpp>
 #include <dem/shape/polyhedra.hpp>
 #include <dem/shape/polyhedron_sphere.hpp>
+#include <dem/shape/superquadric_polyhedron.hpp>
 
 using Catch::Approx;
 using dem::Ball;
@@ -20,6 +22,8 @@ using Cube = dem::shape::SphereCluster<8>;
 using Any = Mixed<Sphere, Cube, Superquadric>;
 using WithPoints = Mixed<Sphere, Cube, SuperquadricPoints>;
 using WithPolyhedra = Mixed<Sphere, Polyhedron, Cube>;
+using Sharp = Mixed<Polyhedron, Superquadric>;
+using SharpPoints = Mixed<Polyhedron, SuperquadricPoints>;
 using Clusters = Mixed<Cube, dem::shape::SphereCluster<3>>;
 
 static_assert(dem::shape::RememberingShape<Any> && !dem::shape::RememberingShape<WithPoints>);
@@ -127,13 +131,50 @@ TEST_CASE("a ball on a superquadric touches where the surface is nearest to its 
   }
 }
 
-TEMPLATE_TEST_CASE("pairs of different kinds look the same from either side", "", Any, WithPoints, WithPolyhedra,
+TEMPLATE_TEST_CASE("a superquadric and a polyhedron touch as one contact", "", Superquadric, SuperquadricPoints) {
+  using Both = Mixed<Polyhedron, TestType>;
+  const Polyhedron brick = dem::shape::box({3.0, 2.0, 4.0});  // edges
+  const double depth = 0.004;
+  const Mat3 one = Mat3::Identity();
+  const auto push = [](const Both& a, const Mat3& ra, const Both& b, const Mat3& rb, const Vec3& d) {
+    Vec3 sum = Vec3::Zero();
+    for (const Contact& c : contacts(a, ra, b, rb, d)) sum += c.area * c.overlap * c.normal;
+    return sum;
+  };
+  const Both cube(TestType(Vec3::Ones(), Vec3::Constant(32), 8));
+  // A face on a face; the skin of the rounded cube is flat to 1 % of the depth over most of it.
+  Vec3 force = push(cube, one, brick, one, Vec3(2.5 - depth, 0.1, 0.2));
+  CHECK(force.x() == Approx(depth).epsilon(0.05));
+  CHECK(force.tail<2>().norm() < 5e-3 * depth);  // points near the rim, off the middle on one side
+  // An edge of the brick across a face: the cube shows no point there.
+  const Mat3 on_edge = Eigen::AngleAxisd(-std::atan2(2.0, 3.0), Vec3::UnitZ()).toRotationMatrix();
+  const double reach = 0.5 * std::sqrt(13.0);  // from the brick's centre to its edge along z
+  force = push(cube, one, brick, on_edge, Vec3(1 + reach - depth, 0.1, 0.05));
+  CHECK(force.x() == Approx(depth).epsilon(0.05));
+  // A corner of the brick in a face, and a round ellipsoid's pole on a face of the brick.
+  const Vec3 diagonal = Vec3(1.5, 1.0, 2.0);
+  const Mat3 on_corner = dem::rotation_between(diagonal.normalized(), -Vec3::UnitX());
+  force = push(cube, one, brick, on_corner, Vec3(1 + diagonal.norm() - depth, 0.1, 0.05));
+  CHECK(force.x() == Approx(depth).epsilon(1e-2));
+  CHECK(push(cube, one, brick, on_corner, Vec3(1 + diagonal.norm() + 1e-9, 0.1, 0.05)).norm() == 0.0);
+  const Both egg(TestType({1, 1, 1.5}, {2, 2, 2}, 10));  // its poles are points of the skin
+  CHECK(push(egg, one, brick, one, Vec3(0, 0, 3.5 - depth)).z() == Approx(depth).epsilon(1e-9));
+}
+
+TEMPLATE_TEST_CASE("pairs of different kinds look the same from either side", "", Any, WithPoints, WithPolyhedra, Sharp,
                    Clusters) {
   Random random(3);
-  std::vector<TestType> kinds = {one_ball(0.9), dem::shape::cube8(0.9)};
+  std::vector<TestType> kinds;
+  constexpr bool is_sharp = std::is_same_v<TestType, Sharp> || std::is_same_v<TestType, SharpPoints>;
+  if constexpr (!is_sharp) kinds = {one_ball(0.9), dem::shape::cube8(0.9)};
   if constexpr (std::is_same_v<TestType, Clusters>) {
     const Ball three[] = {{{0, 0, 0}, 0.6}, {{0.5, 0, 0}, 0.5}, {{0, 0.6, 0.2}, 0.4}};
     kinds.push_back(dem::shape::SphereCluster<3>(three));
+  } else if constexpr (is_sharp) {
+    kinds = {dem::shape::box({2.0, 1.6, 2.2})};
+    if constexpr (std::is_same_v<TestType, Sharp>) kinds.push_back(Superquadric({1, 0.8, 1.1}, {3, 4, 8}, 4));
+    if constexpr (std::is_same_v<TestType, SharpPoints>)
+      kinds.push_back(SuperquadricPoints({1, 0.8, 1.1}, {3, 4, 8}, 8));
   } else {
     kinds.push_back(Sphere(1.0));
     if constexpr (std::is_same_v<TestType, Any>) kinds.push_back(Superquadric({1, 0.8, 1.1}, {3, 4, 8}, 1));

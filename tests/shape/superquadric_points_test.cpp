@@ -38,7 +38,8 @@ Vec3 push(const Shape& a, const Mat3& ra, const Shape& b, const Mat3& rb, const 
 
 TEST_CASE("points of spheres reach into each other as spheres do") {
   const double ra = 1.0, rb = 1.5, d = 2.3;
-  const SuperquadricPoints a(Vec3::Constant(ra), {2, 2, 2}, 26), b(Vec3::Constant(rb), {2, 2, 2}, 26);
+  const SuperquadricPoints a(Vec3::Constant(ra), {2, 2, 2}, 26, PointArea::physical);
+  const SuperquadricPoints b(Vec3::Constant(rb), {2, 2, 2}, 26, PointArea::physical);
   Random random(5);
   const Vec3 along = random.direction();
   const auto found = contacts(a, random.rotation(), b, random.rotation(), Vec3(d * along));
@@ -108,7 +109,7 @@ TEST_CASE("points and the common normal agree the better, the finer the points")
 }
 
 TEST_CASE("faces that lie on each other push with the area of the face") {
-  const SuperquadricPoints cube(Vec3::Ones(), Vec3::Constant(8), 24);
+  const SuperquadricPoints cube(Vec3::Ones(), Vec3::Constant(8), 24, PointArea::physical);
   const Mat3 one = Mat3::Identity();
   const double depth = 0.01;
   const Vec3 force = push(cube, one, cube, one, Vec3(2 - depth, 0, 0));
@@ -144,7 +145,39 @@ TEST_CASE("faces that lie on each other push with the area of the face") {
   CHECK(patch.area < 3.51);
   CHECK(patch.area == Approx(3.51).epsilon(0.1));
   CHECK(patch.points == Approx(25 * 25).epsilon(0.15));
-  CHECK(Superquadric(Vec3::Ones(), Vec3::Constant(8), 24).surface_patch().area == Approx(patch.points));
+}
+
+TEST_CASE("points that share a contact are one contact, however many there are") {
+  const Mat3 one = Mat3::Identity();
+  const double depth = 0.01;
+  // A cube of exponent 32 is flat over most of its face: but for those of the rim all points there are `depth` deep,
+  // and their weights sum to 1.
+  for (const int divisions : {4, 12, 24}) {
+    const SuperquadricPoints cube(Vec3::Ones(), Vec3::Constant(32), divisions);
+    CHECK(cube.has_shares());
+    CHECK(push(cube, one, cube, one, Vec3(2 - depth, 0, 0)).x() == Approx(depth).epsilon(0.05));
+    double weights = 0.0;
+    std::size_t points = 0;
+    for (const Contact& c : contacts(cube, one, cube, one, Vec3(2 - depth, 0, 0))) {
+      weights += c.area;
+      points += 1;
+    }
+    CHECK(points >= 2 * 3 * 3);
+    // Points at the rim, which are less deep, count less: the weights sum to a little more than what counts.
+    CHECK(weights == Approx(1.0).epsilon(0.1));
+    CHECK(cube.patch().area == 1.0);
+    CHECK(cube.surface_patch().area == 1.0);
+  }
+  // The force does not jump when points come and go: a corner pressed into a face, in small steps.
+  const SuperquadricPoints cube(Vec3::Ones(), Vec3::Constant(8), 12);
+  const Mat3 tilted = Eigen::AngleAxisd(0.6, Vec3(1, 2, 0.5).normalized()).toRotationMatrix();
+  double last = 0.0;
+  for (double d = 2.7; d > 2.2; d -= 1e-3) {
+    const double force = push(cube, one, cube, tilted, Vec3(d, 0, 0)).x();
+    CHECK(std::abs(force - last) < 3e-3);  // K times the step, and twice that where weights shift to deeper points
+    last = force;
+  }
+  CHECK(last > 0.05);
 }
 
 TEST_CASE("points look the same from either side and in any frame, and contacts keep their numbers") {

@@ -274,9 +274,13 @@ TEST_CASE("points of a mesh: its vertices, points on long sharp edges, and which
   CHECK(corners == 26 - 6 + 24);     // without the middles of the faces
   CHECK(near == 4);                  // the corner and one point on each edge
   CHECK(box.points_at_once() == 9);  // vertices of a face
-  std::size_t smooth = 0;
-  TriangleMesh(mesh::sphere(1.0, 3)).corners({0, 0, 0}, 9.0, [&](auto...) { ++smooth; });
-  CHECK(smooth == 0);
+  // A smooth surface sticks out everywhere, seen from inside nowhere.
+  std::size_t convex = 0, concave = 0;
+  const auto ball = mesh::sphere(1.0, 3);
+  TriangleMesh(ball).corners({0, 0, 0}, 9.0, [&](auto...) { ++convex; });
+  TriangleMesh(ball, {.facing = dem::MeshFacing::inward}).corners({0, 0, 0}, 9.0, [&](auto...) { ++concave; });
+  CHECK(convex == ball.vertices.size());
+  CHECK(concave == 0);
 }
 
 TEST_CASE("a mesh that does not enclose a solid is refused in words, or taken as a sheet") {

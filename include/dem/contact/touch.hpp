@@ -65,6 +65,13 @@ struct Patch {
   double area = 1.0;  ///< m^2, or without unit, as the touches' areas
 };
 
+/// The one contact of a grain with a ball, where they share a normal.
+struct BallTouch {
+  Vector3<double> normal;  ///< out of the grain, into the ball
+  double overlap;          ///< m
+  Vector3<double> point;   ///< m, midway in the overlap, from the grain's centre
+};
+
 /// What a grain shows to surfaces: a sphere, or a point of its skin (radius 0).
 struct Probe {
   Vector3<double> centre;   ///< m, from the grain's centre, global axes

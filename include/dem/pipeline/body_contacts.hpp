@@ -125,7 +125,8 @@ void probe_body(std::size_t pair, bool back, const Surface& from, const Surface&
           geometry.touch(p, point.radius, [&](std::uint32_t feature, const Vector3<double>& normal, double gap) {
             c.hits.push_back({BodyKey::make(pair, back, point.number, feature), static_cast<std::uint32_t>(pair),
                               back ? 1u : 0u, law});
-            c.touches.push_back({point.place, onto.axes * normal, point.radius, gap, point.effective_radius, 1.0});
+            c.touches.push_back({point.place, onto.axes * normal, point.radius, gap,
+                                 surface::radius_on(geometry, point.effective_radius), 1.0});
           });
         }
       },

@@ -141,15 +141,17 @@ class ContactEvaluator {
       cursor += known ? 1 : 0;
     }
   }
-  /// A new point of a patch that was there takes the mean of what the patch's points remember.
+  /// A new point of a patch that was there takes the mean of what the patch's points remember of friction and rolling.
   template <class Memory>
   void inherit(const Memory& last, std::uint64_t key, int cursor, int lane) {
     const auto pair_at = [&](int c) { return last.key[static_cast<std::size_t>(c)] >> 32; };
     int first = cursor, end = cursor;
     while (first > 0 && pair_at(first - 1) == key >> 32) --first;
     while (end < last.count && pair_at(end) == key >> 32) ++end;
+    constexpr std::size_t from = normal_history_size<Model>;
+    constexpr std::size_t to = from + friction_history_size<Model> + rolling_history_size<Model>;
     for (int c = first; c < end; ++c) {
-      for (std::size_t k = 0; k < last.history.size(); ++k) {
+      for (std::size_t k = from; k < to; ++k) {
         history_[k][lane] += last.history[k][static_cast<std::size_t>(c)] / (end - first);
       }
     }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <dem/contact/weights.hpp>
 #include <dem/pipeline/contact_evaluator.hpp>
 #include <dem/pipeline/force_sums.hpp>
 #include <dem/shape/shape.hpp>
@@ -27,18 +28,40 @@ struct SurfaceKey {
 
 /// The probe index under which corners of surfaces in a grain are remembered.
 inline constexpr std::uint32_t corner_probe = 0xfff;
+inline constexpr std::uint32_t first_ball = 1u << 24;  ///< among its features
 
 /// A sharp grain may be entered by corners and edges of surfaces that none of its own points meets. Such a shape tells
 /// how deep a point (from the grain's centre, global axes) lies inside of it and which way out is the shortest.
+/// If its points are shares of one contact, has_shares(), it says how they are fitted: shares_fit.
 template <class Shape>
 concept HasPenetration = requires(const Shape& shape, const double* pose, const Vector3<double>& point, double& depth,
                                   Vector3<double>& outward_normal) {
   { shape.penetration(pose, point, depth, outward_normal) } -> std::same_as<bool>;
 };
-/// A surface with corners: corners(point, radius, sink) calls sink(number, corner) for those within the radius.
+/// A surface with corners: corners(point, radius, sink) calls sink(number, corner) for those within the radius, or
+/// sink(number, corner, weight) with a weight below 1 where they come and go.
 template <class S>
 concept HasCorners = requires(const S& s, const Vector3<double>& point) {
-  s.corners(point, 1.0, [](std::uint32_t, const Vector3<double>&) {});
+  s.corners(point, 1.0, [](std::uint32_t, const Vector3<double>&, double = 1.0) {});
+};
+
+/// A solid ball, or one that may be hollow: is_ball().
+template <class S>
+concept IsBall = requires(const S& s) {
+  { s.is_ball() } -> std::same_as<bool>;
+};
+/// A round surface, as balls that fill it: balls(point, radius, sink) calls sink(number, centre, ball's radius) for
+/// those that a grain may touch, and is_on_ball(point) is true where their skin is the surface's.
+template <class S>
+concept HasBalls = requires(const S& s, const Vector3<double>& point) {
+  s.balls(point, 1.0, [](std::uint32_t, const Vector3<double>&, double) {});
+  { s.is_on_ball(point) } -> std::same_as<bool>;
+};
+/// A sharp grain that tells where a ball touches it.
+template <class Shape>
+concept TouchesBalls = requires(const Shape& s, const double* pose, const Vector3<double>& centre,
+                                contact::BallTouch& touch) {
+  { s.touch_ball(pose, centre, 1.0, touch) } -> std::same_as<bool>;
 };
 
 /// A surface that is much smaller than its bounding box: close(point, radius) is false if no probe in that sphere can
@@ -68,29 +91,94 @@ bool is_close(const Surface& surface, const Vec3& centre, double radius) {
       surface.geometry);
 }
 
-/// Corners of a surface inside of a grain. A corner counts as much as one of the grain's own probes does on average.
-template <class Shape, class Particles, class Surface, class Geometry>
-void probe_grain(std::size_t i, std::size_t local, std::size_t number, const Surface& surface, const Geometry& geometry,
-                 const Particles& p, const Shape& shape, const Vector3<double>& centre, std::uint32_t law,
-                 SurfaceScratch& s) {
-  double probes = 0.0, area = 0.0, radius = 0.0;
-  geometry.corners(centre, shape.bounding_radius(), [&](std::uint32_t corner, const Vector3<double>& at) {
-    double depth = 0.0;
-    Vector3<double> outward{};
-    const Vector3<double> point = surface.axes * (at - centre);
-    if (!shape.penetration(p.pose_of(i), point, depth, outward)) return;
-    if (probes == 0.0) {
-      shape.probe(p.pose_of(i), [&](std::uint32_t, const contact::Probe& probe) {
-        probes += 1.0;
-        area += probe.area;
-        radius += probe.effective_radius;
-      });
-    }
-    s.hits.push_back({SurfaceKey::make(number, local, corner_probe, corner), static_cast<std::uint32_t>(i),
-                      static_cast<std::uint32_t>(number), law});
-    // Seen from the grain, its skin over the corner is the point that is `depth` behind the surface.
-    s.touches.push_back({point + depth * outward, outward, 0.0, -depth, radius / probes, area / probes});
+/// What all contacts of a grain with a surface have in common.
+struct GrainAtSurface {
+  std::uint32_t grain, local, surface, law;
+  const double* pose;
+  Vector3<double> centre;  ///< m, of the grain in the surface's frame
+
+  void add(SurfaceScratch& s, std::uint32_t probe, std::uint32_t feature,
+           const contact::SurfaceTouch<double>& touch) const {
+    s.hits.push_back({SurfaceKey::make(surface, local, probe, feature), grain, surface, law});
+    s.touches.push_back(touch);
+  }
+};
+
+/// The grain's own probes on a surface, up to a gap where cohesion acts at a distance (else NoGap).
+template <class Shape, class Surface, class Geometry, class Gap>
+void touch_with_probes(const GrainAtSurface& at, const Shape& grain, const Surface& surface, const Geometry& geometry,
+                       Gap gap, SurfaceScratch& s) {
+  grain.probe(at.pose, [&](std::uint32_t index, const contact::Probe& probe) {
+    geometry.touch(at.centre + transpose_times(surface.axes, probe.centre), shape::widened(probe.radius, gap),
+                   [&](std::uint32_t feature, const Vector3<double>& normal, double distance) {
+                     at.add(s, index, feature,
+                            {probe.centre, surface.axes * normal, probe.radius, distance,
+                             surface::radius_on(geometry, probe.effective_radius), probe.area});
+                   });
   });
+}
+
+/// Corners and balls of a surface in a grain. A corner weighs as one of the grain's own probes does on average, a ball
+/// as a whole contact.
+template <class Shape, class Surface, class Geometry>
+void touch_with_corners(const GrainAtSurface& at, const Shape& grain, const Surface& surface, const Geometry& geometry,
+                        SurfaceScratch& s) {
+  double probes = 0.0, area = 0.0, radius = 0.0;
+  const auto look_at_probes = [&] {
+    if (probes > 0.0) return;
+    grain.probe(at.pose, [&](std::uint32_t, const contact::Probe& probe) {
+      probes += 1.0;
+      area += probe.area;
+      radius += probe.effective_radius;
+    });
+  };
+  // Seen from the grain, its skin at `point` lies `depth` behind the surface.
+  const auto add = [&](std::uint32_t number, const Vector3<double>& point, const Vector3<double>& normal, double depth,
+                       double weight) {
+    at.add(s, corner_probe, number,
+           {point, normal, 0.0, -depth, surface::radius_on(geometry, radius / probes), weight});
+  };
+  const double reach = grain.bounding_radius();
+  if constexpr (HasCorners<Geometry>) {
+    geometry.corners(at.centre, reach, [&](std::uint32_t corner, const Vector3<double>& place, double weight = 1.0) {
+      double depth = 0.0;
+      Vector3<double> outward{};
+      const Vector3<double> point = surface.axes * (place - at.centre);
+      if (!grain.penetration(at.pose, point, depth, outward)) return;
+      look_at_probes();
+      add(corner, point + depth * outward, outward, depth, weight * area / probes);
+    });
+  }
+  if constexpr (HasBalls<Geometry> && TouchesBalls<Shape>) {
+    if (!shape::has_shares(grain)) return;
+    geometry.balls(at.centre, reach, [&](std::uint32_t ball, const Vector3<double>& centre, double of_ball) {
+      contact::BallTouch t;
+      if (!grain.touch_ball(at.pose, surface.axes * (centre - at.centre), of_ball, t)) return;
+      if (!geometry.is_on_ball(at.centre + transpose_times(surface.axes, t.point))) return;
+      look_at_probes();
+      add(first_ball + ball, t.point + (0.5 * t.overlap) * t.normal, t.normal, t.overlap, 1.0);
+    });
+  }
+}
+
+/// All contacts of a grain of one kind with a surface.
+template <class Shape, class Surface, class Geometry, class Gap>
+void touch_surface(const GrainAtSurface& at, const Shape& grain, const Surface& surface, const Geometry& geometry,
+                   Gap gap, SurfaceScratch& s) {
+  const std::size_t first = s.touches.size();
+  if constexpr (TouchesBalls<Shape> && IsBall<Geometry>) {
+    if (geometry.is_ball() && shape::has_shares(grain)) {  // one contact is all of it
+      touch_with_corners(at, grain, surface, geometry, s);
+      return;
+    }
+  }
+  touch_with_probes(at, grain, surface, geometry, gap, s);
+  if constexpr (HasPenetration<Shape>) touch_with_corners(at, grain, surface, geometry, s);
+  if constexpr (requires { Shape::shares_fit; }) {
+    if (!shape::has_shares(grain)) return;
+    contact::fit_weights(s.touches.size() - first, Shape::shares_fit,
+                         [&](std::size_t k) -> contact::SurfaceTouch<double>& { return s.touches[first + k]; });
+  }
 }
 
 /// Hits of the grains of one chunk on one surface, up to a gap where cohesion acts at a distance (else NoGap).
@@ -103,11 +191,11 @@ void probe_surface(std::size_t begin, std::size_t end, std::size_t number, const
   const Vector3<Pack> origin = {Pack(surface.origin.x), Pack(surface.origin.y), Pack(surface.origin.z)};
   std::visit(
       [&](const auto& geometry) {
-        for (std::size_t at = begin; at < end; at += static_cast<std::size_t>(pack_width)) {
-          const Vector3<Pack> seen = transpose_times(axes, p.position.pack(at) - origin);
+        for (std::size_t pack = begin; pack < end; pack += static_cast<std::size_t>(pack_width)) {
+          const Vector3<Pack> seen = transpose_times(axes, p.position.pack(pack) - origin);
           for (std::uint32_t near = bits(geometry.near(seen, Pack(shape::widened(largest_radius, gap)))); near != 0;
                near &= near - 1) {
-            const std::size_t i = at + static_cast<std::size_t>(std::countr_zero(near));
+            const std::size_t i = pack + static_cast<std::size_t>(std::countr_zero(near));
             if (i >= end) break;
             const Shape& grain = species[p.species[i]].shape;
             const Vector3<double> centre = transpose_times(surface.axes, p.position[i] - surface.origin);
@@ -116,19 +204,13 @@ void probe_surface(std::size_t begin, std::size_t end, std::size_t number, const
             if constexpr (Shape::has_orientation && KnowsClose<std::remove_cvref_t<decltype(geometry)>>) {
               if (!geometry.close(centre, shape::widened(grain.bounding_radius(), gap))) continue;
             }
-            grain.probe(p.pose_of(i), [&](std::uint32_t index, const contact::Probe& probe) {
-              geometry.touch(centre + transpose_times(surface.axes, probe.centre), shape::widened(probe.radius, gap),
-                             [&](std::uint32_t feature, const Vector3<double>& normal, double distance) {
-                               s.hits.push_back({SurfaceKey::make(number, i - begin, index, feature),
-                                                 static_cast<std::uint32_t>(i), static_cast<std::uint32_t>(number),
-                                                 s.law_of[p.species[i]]});
-                               s.touches.push_back({probe.centre, surface.axes * normal, probe.radius, distance,
-                                                    probe.effective_radius, probe.area});
-                             });
-            });
-            if constexpr (HasPenetration<Shape> && HasCorners<std::remove_cvref_t<decltype(geometry)>>) {
-              probe_grain(i, i - begin, number, surface, geometry, p, grain, centre, s.law_of[p.species[i]], s);
-            }
+            const GrainAtSurface at = {static_cast<std::uint32_t>(i),
+                                       static_cast<std::uint32_t>(i - begin),
+                                       static_cast<std::uint32_t>(number),
+                                       s.law_of[p.species[i]],
+                                       p.pose_of(i),
+                                       centre};
+            shape::visit_kind(grain, [&](const auto& kind) { touch_surface(at, kind, surface, geometry, gap, s); });
           }
         }
       },

@@ -76,18 +76,6 @@ class Mixed : public detail::MixedBase<detail::MixedMemories<Kinds...>::any, Kin
   DEM_HOT void probe(const double* pose, Sink&& sink) const {
     visit([&](const auto& s) { s.probe(pose, sink); });
   }
-  /// As the kind says; kinds that do not say show surfaces balls, which need no such test: false for them.
-  DEM_HOT bool penetration(const double* pose, const Vector3<double>& point, double& depth,
-                           Vector3<double>& outward_normal) const {
-    return visit([&](const auto& s) -> bool {
-      if constexpr (requires { s.penetration(pose, point, depth, outward_normal); }) {
-        return s.penetration(pose, point, depth, outward_normal);
-      } else {
-        return false;
-      }
-    });
-  }
-
   /// `memory` only where some pair of kinds has one.
   template <class Memory, class Sink>
   static DEM_HOT void collide(const Mixed& a, const double* pose_a, const Mixed& b, const double* pose_b,

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <dem/contact/weights.hpp>
 #include <dem/shape/polyhedron_contact.hpp>
+#include <dem/shape/polyhedron_nearest.hpp>
 #include <dem/shape/shape.hpp>
 
 #include <memory>
@@ -105,6 +107,23 @@ class Polyhedron {
       sink(static_cast<std::uint32_t>(k), contact::Probe{turn * tables_->corner(k), 0.0, tables_->radius,
                                                          tables_->corner_share[static_cast<std::size_t>(k)]});
     }
+  }
+
+  /// Points of a grain on a surface are shares of one contact.
+  static constexpr bool has_shares() { return true; }
+  static constexpr contact::Fit shares_fit = contact::Fit::if_more;
+
+  /// The contact of a ball (centre in m from the grain's, global axes) with a face, an edge or a corner. False if they
+  /// are apart.
+  bool touch_ball(const double* pose, const Vector3<double>& centre, double radius, contact::BallTouch& touch) const {
+    const Matrix3<double> turn = rotation(pose);
+    NearestPoint nearest;
+    if (!nearest_point(*tables_, transpose_times(turn, centre), radius, nearest)) return false;
+    const double overlap = radius - nearest.height;
+    touch.normal = turn * nearest.outward;
+    touch.overlap = overlap;
+    touch.point = centre - (radius - 0.5 * overlap) * touch.normal;
+    return true;
   }
 
   /// True if a point (m, from the grain's centre, global axes) is inside; then how deep, and which way is out, through

@@ -5,6 +5,7 @@
 
 #include <concepts>
 #include <cstdint>
+#include <variant>
 #include <vector>
 
 namespace dem::shape {
@@ -113,6 +114,26 @@ template <class S>
 concept PatchShape = Shape<S> && requires {
   requires S::has_patches;
 };
+
+/// f(kind) for a grain that is one of several kinds (Mixed), f(shape) for all others.
+template <class S, class F>
+DEM_HOT void visit_kind(const S& shape, F&& f) {
+  if constexpr (requires { shape.kind(); }) {
+    std::visit(f, shape.kind());
+  } else {
+    f(shape);
+  }
+}
+
+/// Whether the points that a grain shows to a surface are shares of one contact, as it tells with has_shares().
+template <class S>
+bool has_shares(const S& shape) {
+  if constexpr (requires { shape.has_shares(); }) {
+    return shape.has_shares();
+  } else {
+    return false;
+  }
+}
 
 /// A shape made of points may touch with many at once: patch() says with how many and of what area, in a pair of
 /// grains, and surface_patch() on a surface. For all others both are one.

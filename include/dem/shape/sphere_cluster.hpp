@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <limits>
 #include <optional>
 #include <span>
 
@@ -40,7 +41,7 @@ class SphereCluster {
     frame_centre_ = mass.centre;
     frame_rotation_ = axes.rotation;
     count_ = static_cast<int>(balls.size());
-    std::fill(x_, x_ + stride, 1e30);
+    std::fill(x_, x_ + stride, std::numeric_limits<double>::quiet_NaN());
     for (int k = 0; k < count_; ++k) {
       const Vec3 c = axes.rotation.transpose() * (balls[static_cast<std::size_t>(k)].centre - mass.centre);
       x_[k] = c.x();
@@ -150,7 +151,7 @@ class SphereCluster {
     return touching;
   }
 
-  // Unused lanes hold points so far away that nothing ever touches them.
+  // Unused lanes hold points that no comparison finds near anything, each other included.
   alignas(64) double x_[stride] = {};
   alignas(64) double y_[stride] = {};
   alignas(64) double z_[stride] = {};

@@ -8,8 +8,7 @@ namespace dem::shape {
 /// A superquadric grain, one contact a pair: where the two surfaces share a normal (the "common normal" of Podlozhnyuk
 /// et al. 2017, doi:10.1007/s40571-016-0131-6, found directly instead of through a midpoint). The overlap is the least
 /// distance by which one grain must move to part from the other, so without dampers and friction the normal force has a
-/// potential, K overlap^2 / 2. Surfaces of machine parts are felt with the points of the skin, each as stiff as a whole
-/// contact.
+/// potential, K overlap^2 / 2. Surfaces of machine parts are felt with the points of the skin, which share one contact.
 class Superquadric : public SuperquadricGrain {
  public:
   static constexpr std::size_t most_contacts = 1;
@@ -18,7 +17,7 @@ class Superquadric : public SuperquadricGrain {
   /// Radii in m, exponents from 2 to 32, and how many cells the points for surfaces have along an edge. Throws Error
   /// for values out of range.
   Superquadric(const Vec3& radii, const Vec3& exponents, int divisions = 4)
-      : SuperquadricGrain(radii, exponents, divisions, PointArea::one) {}
+      : SuperquadricGrain(radii, exponents, divisions, PointArea::share) {}
 
   /// `memory` holds what the last search found for this pair: it makes the search short, and leaves the answer the same
   /// up to the search's tolerance.

@@ -1,19 +1,23 @@
 #pragma once
 
+#include <dem/contact/weights.hpp>
 #include <dem/core/aligned.hpp>
 #include <dem/shape/shape.hpp>
 #include <dem/shape/superquadric_integrals.hpp>
+#include <dem/shape/superquadric_search.hpp>
 #include <dem/shape/superquadric_skin.hpp>
 
 #include <numbers>
 
 namespace dem::shape {
 
-/// What the points of a grain's surface weigh in laws that multiply by an area (eq. 25).
+/// What the points of a grain's surface weigh.
 enum class PointArea {
-  physical,  ///< the point's share of the surface in m^2: stiffness and damping are per area, N/m^3 and N s/m^3
-  relative,  ///< that share over the mean share: stiffness and damping are those of a mean point, N/m and N s/m
-  one,       ///< 1: each point has the stiffness of a whole contact, N/m
+  share,     ///< fitted to each contact (contact::fit_weights): constants are those of a whole contact, for any law
+  physical,  ///< m^2 (A of eq. 25): stiffness and damping are per area, N/m^3 and N s/m^3. Laws that take more than
+             ///< these from a contact (Hertz, Mindlin, DMT, JKR, rolling, damping by restitution) are wrong with it
+  relative,  ///< share of the surface over the mean share: stiffness and damping of a mean point, N/m and N s/m; as
+             ///< above
 };
 
 /// Points of a grain's surface in whole packs; the last ones are padded with points that nothing contains.
@@ -45,9 +49,12 @@ class SuperquadricGrain {
   Vec3 unit_inertia() const { return mass_.inertia.diagonal(); }
   /// m, of the sphere of the same volume: the radius that contact laws see.
   double mean_radius() const { return mean_radius_; }
-  /// The most points that may lie on a surface at once: of the three sides, those no deeper behind the tangent plane
-  /// than a tenth of the mean radius (the default overlap limit), weighted by the square of the cosine of their
-  /// normals.
+  /// Whether contacts are whole ones, of which points have shares.
+  bool has_shares() const { return area_ == PointArea::share; }
+  static constexpr contact::Fit shares_fit = contact::Fit::always;
+  /// The most points that may lie on a surface at once (of area 1 where they share it): of the three sides, those no
+  /// deeper behind the tangent plane than a tenth of the mean radius (the default overlap limit), weighted by the
+  /// square of the cosine of their normals.
   contact::Patch surface_patch() const { return patch_; }
 
   DEM_HOT void orient(const Matrix3<double>& r, double* pose) const {
@@ -75,6 +82,15 @@ class SuperquadricGrain {
     solid_.support(transpose_times(r, direction), local);
     return r * local;
   }
+  /// The contact of a ball (centre in m from the grain's, global axes) along the common normal. False if they are
+  /// apart.
+  bool touch_ball(const double* pose, const Vector3<double>& centre, double radius, contact::BallTouch& touch) const {
+    const Matrix3<double> r = rotation(pose);
+    CommonNormal found;
+    if (!find_ball_contact(solid_, transpose_times(r, centre), radius, found)) return false;
+    touch = {r * found.normal, found.overlap, r * found.point};
+    return true;
+  }
   /// Whether a point (m, from the grain's centre, global axes) lies inside; then its depth and the outward normal
   /// there, as SuperquadricSolid::penetration defines them.
   DEM_HOT bool penetration(const double* pose, const Vector3<double>& point, double& depth,
@@ -88,13 +104,14 @@ class SuperquadricGrain {
 
  protected:
   SuperquadricGrain(const Vec3& radii, const Vec3& exponents, int divisions, PointArea area)
-      : solid_(radii, exponents), divisions_(divisions) {
+      : solid_(radii, exponents), divisions_(divisions), area_(area) {
     mass_ = superquadric_mass_properties(radii, exponents);
     bounding_radius_ = superquadric_bounding_radius(radii, exponents);
     mean_radius_ = std::cbrt(mass_.volume * 0.75 / std::numbers::pi);
     const SuperquadricSkin skin = superquadric_skin(solid_, divisions);
     double total = 0.0;
     for (const double a : skin.areas) total += a;
+    const double unit = area == PointArea::physical ? 1.0 : total / static_cast<double>(skin.areas.size());
 
     points_.count = static_cast<int>(skin.points.size());
     const auto padded = static_cast<std::size_t>(round_up_to_pack(points_.count));
@@ -106,9 +123,7 @@ class SuperquadricGrain {
       points_.x[k] = point.position.x;
       points_.y[k] = point.position.y;
       points_.z[k] = point.position.z;
-      points_.area[k] = area == PointArea::physical   ? skin.areas[k]
-                        : area == PointArea::relative ? skin.areas[k] * points_.count / total
-                                                      : 1.0;
+      points_.area[k] = skin.areas[k] / unit;
       for (int axis = 0; axis < 3; ++axis) {
         if (to_eigen(point.position)[axis] < radii[axis] - 0.1 * mean_radius_) continue;
         const double cosine = to_eigen(point.normal)[axis];
@@ -117,7 +132,7 @@ class SuperquadricGrain {
       }
     }
     patch_ = {std::max(1.0, points_across.maxCoeff()), area_across.maxCoeff()};
-    if (area == PointArea::one) patch_.area = patch_.points;
+    if (area == PointArea::share) patch_.area = 1.0;
   }
 
   DEM_HOT double effective_radius(const SuperquadricGrain& other) const {
@@ -130,6 +145,7 @@ class SuperquadricGrain {
   MassProperties mass_;
   contact::Patch patch_;
   int divisions_;
+  PointArea area_;
   double bounding_radius_, mean_radius_;
 };
 

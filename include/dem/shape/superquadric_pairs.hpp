@@ -42,19 +42,27 @@ struct PairContact<SuperquadricPoints, Balls> {
       if (!(norm(global) < a.bounding_radius() + ball.radius)) continue;
       const Vector3<double> centre = transpose_times(r, global);
       const double radius = a.mean_radius() * ball.radius / (a.mean_radius() + ball.radius);
-      for (int at = 0; at < points.count; at += pack_width) {
-        const auto k = static_cast<std::size_t>(at);
-        const Pack x = load(&points.x[k]) - Pack(centre.x), y = load(&points.y[k]) - Pack(centre.y);
-        const Pack z = load(&points.z[k]) - Pack(centre.z);
-        for (std::uint32_t in = bits(x * x + y * y + z * z < Pack(ball.radius * ball.radius)); in != 0; in &= in - 1) {
-          const int point = at + std::countr_zero(in);
-          const Vector3<double> arm = r * points[point], link = global - arm;
-          const double distance = max(norm(link), 1e-300), depth = ball.radius - distance;
-          const Vector3<double> normal = (1.0 / distance) * link;
-          sink(static_cast<std::uint32_t>(m * 4096 + point),
-               contact::PointTouch<double>{normal, depth, arm - (0.5 * depth) * normal, radius,
-                                           points.area[static_cast<std::size_t>(point)]});
+      const auto find = [&](auto&& found) {
+        for (int at = 0; at < points.count; at += pack_width) {
+          const auto k = static_cast<std::size_t>(at);
+          const Pack x = load(&points.x[k]) - Pack(centre.x), y = load(&points.y[k]) - Pack(centre.y);
+          const Pack z = load(&points.z[k]) - Pack(centre.z);
+          for (std::uint32_t in = bits(x * x + y * y + z * z < Pack(ball.radius * ball.radius)); in != 0;
+               in &= in - 1) {
+            const int point = at + std::countr_zero(in);
+            const Vector3<double> arm = r * points[point], link = global - arm;
+            const double distance = max(norm(link), 1e-300), depth = ball.radius - distance;
+            const Vector3<double> normal = (1.0 / distance) * link;
+            found(static_cast<std::uint32_t>(m * 4096 + point),
+                  contact::PointTouch<double>{normal, depth, arm - (0.5 * depth) * normal, radius,
+                                              points.area[static_cast<std::size_t>(point)]});
+          }
         }
+      };
+      if (a.has_shares()) {
+        share_points(find, sink);
+      } else {
+        find(sink);
       }
     }
   }

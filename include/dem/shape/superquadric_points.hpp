@@ -1,6 +1,7 @@
 #pragma once
 
 #include <dem/shape/box_separation.hpp>
+#include <dem/shape/shared_points.hpp>
 #include <dem/shape/superquadric_grain.hpp>
 
 #include <bit>
@@ -9,22 +10,22 @@ namespace dem::shape {
 
 /// A superquadric grain after the thesis (section 2.2.4): points on the surface of each grain are tried against the
 /// implicit function of the other, both ways round, and every point inside is a contact with the area that belongs to
-/// it (A of eq. 25). Depth and normal are those of SuperquadricSolid::penetration, whose overestimate is of second
-/// order in the depth. Edges and corners that meet between points are felt late: the finer the points, the less so.
+/// it (A of eq. 25), or its share of a whole contact. Depth and normal are those of SuperquadricSolid::penetration,
+/// whose overestimate is of second order in the depth. Edges and corners that meet between points are felt late: the
+/// finer the points, the less so.
 class SuperquadricPoints : public SuperquadricGrain {
  public:
   static constexpr std::size_t most_contacts = 2 * 4096;
 
-  /// Radii in m, exponents from 2 to 32, cells of points along an edge (6 n^2 + 2 points), and what a point's area is:
-  /// `physical` (stiffness per area, as in eq. 25) or `relative` (stiffness of a mean point). Throws Error for values
-  /// out of range.
-  SuperquadricPoints(const Vec3& radii, const Vec3& exponents, int divisions = 6, PointArea area = PointArea::physical)
+  /// Radii in m, exponents from 2 to 32, cells of points along an edge (6 n^2 + 2 points), and what a point weighs.
+  /// Throws Error for values out of range.
+  SuperquadricPoints(const Vec3& radii, const Vec3& exponents, int divisions = 6, PointArea area = PointArea::share)
       : SuperquadricGrain(radii, exponents, divisions, area) {}
 
   /// The most points that a pair of such grains may have in contact at once: a face of each in the other.
   contact::Patch patch() const {
     const contact::Patch one_side = surface_patch();
-    return {2.0 * one_side.points, 2.0 * one_side.area};
+    return {2.0 * one_side.points, has_shares() ? 1.0 : 2.0 * one_side.area};
   }
 
   /// Feature k: point k of a in b. Feature other_way + k: point k of b in a.
@@ -37,6 +38,20 @@ class SuperquadricPoints : public SuperquadricGrain {
     const Matrix3<double> turn = transposed(ra) * rb;
     const Vector3<double> centre = transpose_times(ra, separation);
     if (separate_boxes(a.solid().radius(), b.solid().radius(), turn, centre).overlap < 0.0) return;
+    const auto find = [&](auto&& found) { find_points(a, ra, b, rb, turn, centre, separation, found); };
+    if (a.has_shares() && b.has_shares()) {
+      share_points(find, sink);
+    } else {
+      find(sink);
+    }
+  }
+  static std::uint32_t mirrored(std::uint32_t feature) { return feature ^ other_way; }
+
+ private:
+  template <class Sink>
+  static DEM_HOT void find_points(const SuperquadricPoints& a, const Matrix3<double>& ra, const SuperquadricPoints& b,
+                                  const Matrix3<double>& rb, const Matrix3<double>& turn, const Vector3<double>& centre,
+                                  const Vector3<double>& separation, Sink&& sink) {
     const double radius = a.effective_radius(b);
     points_inside(a.points(), transposed(turn), -transpose_times(rb, separation), b.solid(),
                   [&](int k, double depth, const Vector3<double>& out) {
@@ -52,9 +67,7 @@ class SuperquadricPoints : public SuperquadricGrain {
                              b.points().area[static_cast<std::size_t>(k)]});
     });
   }
-  static std::uint32_t mirrored(std::uint32_t feature) { return feature ^ other_way; }
 
- private:
   /// Calls found(k, depth, outward normal) for each point k, seen from the solid at turn * point + shift, that lies in
   /// it.
   template <class Found>

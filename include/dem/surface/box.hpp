@@ -10,8 +10,8 @@ namespace dem::surface {
 /// A solid box, centred in its own frame. A sphere touches it once: on a face, an edge or a corner.
 class Box {
  public:
-  /// Edge lengths in m. Against sharp grains and other bodies the box shows its corners and, where an edge is cut into
-  /// more pieces than one, the points between. Throws Error unless all edges are positive, for less than 1 piece or
+  /// Edge lengths in m. Other bodies are shown the corners and, where an edge is cut into more pieces than one, the
+  /// points between. Throws Error unless all edges are positive, for less than 1 piece or
   /// more than 1000.
   explicit Box(const Vec3& edges, int pieces = 1)
       : half_{0.5 * edges.x(), 0.5 * edges.y(), 0.5 * edges.z()}, pieces_(pieces) {
@@ -61,12 +61,34 @@ class Box {
   void points(const Bounds&, Sink&& sink) const {
     for_each_point([&](std::uint32_t k, const Vector3<double>& p) { sink(k, p, 0.0); });
   }
-  /// Those within a radius of p, for grains that offer penetration(): sink(number, point).
+  /// For grains that offer penetration(), within a radius of p: corners 0 to 7, and from 8 on points of each edge,
+  /// where it is nearest to p and half a radius on either side, with less weight where the edge ends: sink(number,
+  /// point, weight).
   template <class Sink>
   void corners(const Vector3<double>& p, double radius, Sink&& sink) const {
-    for_each_point([&](std::uint32_t k, const Vector3<double>& c) {
-      if (dot(c - p, c - p) <= radius * radius) sink(k, c);
-    });
+    if (!near(p, radius)) return;
+    const double half[3] = {half_.x, half_.y, half_.z}, at[3] = {p.x, p.y, p.z};
+    const auto show = [&](std::uint32_t number, const double* x, double weight) {
+      const Vector3<double> c = {x[0], x[1], x[2]};
+      if (dot(c - p, c - p) <= radius * radius) sink(number, c, weight);
+    };
+    double x[3];
+    for (std::uint32_t k = 0; k < 8; ++k) {
+      for (std::uint32_t i = 0; i < 3; ++i) x[i] = (k >> i & 1u) != 0 ? half[i] : -half[i];
+      show(k, x, 1.0);
+    }
+    for (std::uint32_t k = 0; k < 12; ++k) {
+      const std::uint32_t axis = k / 4;
+      for (std::uint32_t i = 1; i <= 2; ++i) {
+        const std::uint32_t across = (axis + i) % 3;
+        x[across] = (k >> (i - 1) & 1u) != 0 ? half[across] : -half[across];
+      }
+      for (std::uint32_t place = 0; place < 3; ++place) {
+        x[axis] = at[axis] + (0.5 * place - 0.5) * radius;
+        const double to_end = half[axis] - std::abs(x[axis]);
+        if (to_end > 0.0) show(8 + 3 * k + place, x, min(1.0, 4.0 * to_end / radius));
+      }
+    }
   }
   std::size_t points_at_once() const { return 4 * static_cast<std::size_t>(pieces_); }
 

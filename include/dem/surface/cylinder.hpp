@@ -100,6 +100,20 @@ class Cylinder {
       if (dot(c - p, c - p) <= radius * radius) sink(k, c);
     });
   }
+  /// The outer mantle for grains that offer touch_ball(), within a radius of p: balls that fill the cylinder where it
+  /// is nearest to p and half a radius on either side: sink(number, centre, radius of the ball). None for grains over a
+  /// flat end or in the hole of a tube.
+  template <class Sink>
+  void balls(const Vector3<double>& p, double radius, Sink&& sink) const {
+    if (is_drum_ || !near(p, radius)) return;
+    const double middle = 0.5 * (inner_ + outer_), rho2 = p.x * p.x + p.y * p.y;
+    if (rho2 < (std::abs(p.z) > half_ ? outer_ * outer_ : inner_ > 0.0 ? middle * middle : 0.0)) return;
+    for (std::uint32_t k = 0; k < 3; ++k) {
+      const double z = p.z + (0.5 * k - 0.5) * radius;
+      if (std::abs(z) < half_) sink(k, Vector3<double>{0, 0, z}, outer_);
+    }
+  }
+  bool is_on_ball(const Vector3<double>& p) const { return std::abs(p.z) < half_; }
   std::size_t points_at_once() const { return is_drum_ ? 0 : static_cast<std::size_t>(rim_points_); }
 
   Bounds bounds() const {

@@ -58,7 +58,7 @@ struct MeshData {
   std::vector<char> vertex_flat, vertex_rim;             ///< 1: all its triangles lie in one plane; on an open edge
   std::vector<std::uint32_t> ring_first, ring;           ///< vertices at the other end of each vertex's edges
   PointSet points;                                       ///< vertices, and points on long sharp edges
-  PointSet corners;                                      ///< those of them that are on sharp edges
+  PointSet corners;  ///< those of them that stick out: on sharp edges, or on a convex surface
   Bounds bounds;
   double mean_edge = 0.0;  ///< m
 };
@@ -119,6 +119,17 @@ inline void find_vertices(MeshData& m) {
   }
 }
 
+/// Whether the surface bends away on all in all around a vertex, by more than rounding.
+inline bool is_convex(const MeshData& m, std::uint32_t v) {
+  double height = 0.0, length = 0.0;
+  for (std::uint32_t k = m.ring_first[v]; k < m.ring_first[v + 1]; ++k) {
+    const Vector3<double> along = m.vertices[m.ring[k]] - m.vertices[v];
+    height += dot(along, m.vertex_normal[v]);
+    length += norm(along);
+  }
+  return height < -1e-6 * length;
+}
+
 /// Vertices, and points on sharp edges that are longer than the spacing (m; 0: none). Throws Error for more than the
 /// keys of contacts can tell apart.
 inline void find_points(MeshData& m, double spacing) {
@@ -146,8 +157,8 @@ inline void find_points(MeshData& m, double spacing) {
       for (int p = 1; p < pieces; ++p) on_edges.push_back(from + (double(p) / pieces) * along);
     }
   }
-  for (std::size_t v = 0; v < sharp.size(); ++v) {
-    if (sharp[v]) corners.push_back(m.mesh.vertices[v]);
+  for (std::uint32_t v = 0; v < sharp.size(); ++v) {
+    if (sharp[v] || is_convex(m, v)) corners.push_back(m.mesh.vertices[v]);
   }
   std::vector<Vec3> points = m.mesh.vertices;
   points.insert(points.end(), on_edges.begin(), on_edges.end());

@@ -50,6 +50,17 @@ class Sphere {
   }
   std::size_t points_at_once() const { return side_ == Side::outside ? 1 : 0; }
 
+  /// m, effective radius of a grain's skin of that radius on the ball: 1/(1/r + 1/R). A cavity counts as flat.
+  double radius_on(double radius) const {
+    return side_ == Side::inside ? radius : 1.0 / (1.0 / radius + 1.0 / radius_);
+  }
+  /// For grains that offer touch_ball(): sink(number, centre, radius of the ball).
+  template <class Sink>
+  void balls(const Vector3<double>&, double, Sink&& sink) const {
+    if (is_ball()) sink(0u, Vector3<double>{0, 0, 0}, radius_);
+  }
+  bool is_on_ball(const Vector3<double>&) const { return true; }
+
   Bounds bounds() const {
     const Vec3 half = Vec3::Constant(side_ == Side::inside ? 2.0 * radius_ : radius_);
     return {-half, half};

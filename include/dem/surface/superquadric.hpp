@@ -66,6 +66,15 @@ class Superquadric {
       if ((p.array() >= box.low.array()).all() && (p.array() <= box.high.array()).all()) sink(k, (*points_)[k], 0.0);
     }
   }
+  /// Those within a radius of p, for grains that offer penetration(): sink(number, point).
+  template <class Sink>
+  void corners(const Vector3<double>& p, double radius, Sink&& sink) const {
+    if (side_ == Side::inside) return;
+    for (std::uint32_t k = 0; k < points_->size(); ++k) {
+      const Vector3<double> from = (*points_)[k] - p;
+      if (dot(from, from) <= radius * radius) sink(k, (*points_)[k]);
+    }
+  }
   /// Those of a flat side: a ninth of them a side, at the most.
   std::size_t points_at_once() const { return side_ == Side::inside ? 0 : per_edge * per_edge; }
 

@@ -33,6 +33,17 @@ concept Surface = requires(const S& s, const Vector3<double>& point, double radi
   { s.bounds() } -> std::same_as<Bounds>;
 };
 
+/// m, the effective radius of a skin of a radius on a surface, which tells with radius_on(radius) if it is curved; else
+/// it counts as flat.
+template <class S>
+double radius_on(const S& s, double radius) {
+  if constexpr (requires { s.radius_on(radius); }) {
+    return s.radius_on(radius);
+  } else {
+    return radius;
+  }
+}
+
 template <class S>
 constexpr void check_surface() {
   static_assert(

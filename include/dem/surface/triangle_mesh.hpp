@@ -20,7 +20,8 @@ struct MeshOptions {
   MeshFacing facing = MeshFacing::outward;  ///< inward: the solid is outside (a drum)
   double smooth_angle = 25.0;  ///< degrees; contacts closer than this in direction are one, see TriangleMesh
   double depth = 0.0;          ///< m, how far behind the surface a probe is still found and pushed out; 0: spheres to
-                               ///< their radius, points (radius 0) to a quarter of the mean edge
+                               ///< their radius, points (radius 0) to a quarter of the mean edge, or
+                               ///< of a grain's bounding radius if that is more
   double point_spacing = 0.0;  ///< m, of points on sharp edges (against sharp grains and bodies); 0: only vertices
   double tolerance = 0.0;      ///< m, within which vertices are one; 0: 1e-9 of the mesh's diagonal
 };
@@ -48,17 +49,10 @@ class TriangleMesh {
     if (o.side == MeshSide::one_sided && !data->report.oriented()) {
       fail("a one-sided sheet must have sides. {}Take MeshSide::two_sided", data->report.text());
     }
-    const double thin = (data->bounds.high - data->bounds.low).minCoeff();
-    point_depth_ = o.depth > 0.0 ? o.depth : 0.25 * data->mean_edge;
-    if (o.depth == 0.0 && o.side == MeshSide::solid) point_depth_ = std::min(point_depth_, 0.5 * thin);
-    if (o.side == MeshSide::two_sided) options_.depth = point_depth_ = 0.0;
     merge_cosine_ = std::min(std::cos(angle), 1.0 - 1e-9);
-    // What is behind a cavity or a sheet lies outside of the box of the triangles.
-    const bool box_holds_solid = o.side == MeshSide::solid && data->report.enclosed_volume > 0.0;
-    const double grow = box_holds_solid ? 0.0 : point_depth_;
-    low_ = from_eigen(Vec3(data->bounds.low.array() - grow));
-    high_ = from_eigen(Vec3(data->bounds.high.array() + grow));
     data_ = std::move(data);
+    if (o.side == MeshSide::two_sided) options_.depth = 0.0;
+    set_point_depth(o.side == MeshSide::two_sided ? 0.0 : o.depth > 0.0 ? o.depth : 0.25 * data_->mean_edge);
   }
 
   const MeshReport& report() const { return data_->report; }
@@ -112,7 +106,7 @@ class TriangleMesh {
   void points(const Bounds& box, Sink&& sink) const {
     data_->points.for_each_in(box, [&](std::uint32_t k, const Vector3<double>& p) { sink(k, p, 0.0); });
   }
-  /// Sharp points within a radius of p, for grains that offer penetration(): sink(number, point).
+  /// Points that stick out within a radius of p, for grains that offer penetration(): sink(number, point).
   template <class Sink>
   void corners(const Vector3<double>& p, double radius, Sink&& sink) const {
     data_->corners.for_each_near(p, radius, sink);
@@ -121,6 +115,13 @@ class TriangleMesh {
   std::size_t points_at_once() const { return std::max<std::size_t>(3, data_->groups.most_vertices_in_a_plane); }
 
   Bounds bounds() const { return {to_eigen(low_), to_eigen(high_)}; }
+
+  /// Points of grains are found at least so deep (m) behind the surface, if no `depth` was chosen: for meshes that are
+  /// cut finer than the grains.
+  void find_points_to(double depth) {
+    if (options_.depth > 0.0 || options_.side == MeshSide::two_sided) return;
+    set_point_depth(std::max(point_depth_, depth));
+  }
 
  private:
   static constexpr int slot_bits = 4, most = 1 << slot_bits;  // contacts of one sphere
@@ -263,6 +264,19 @@ class TriangleMesh {
       };
       return a.group != b.group ? a.group < b.group : place(a) < place(b);
     });
+  }
+
+  void set_point_depth(double depth) {
+    const Bounds& box = data_->bounds;
+    if (options_.depth == 0.0 && options_.side == MeshSide::solid) {
+      depth = std::min(depth, 0.5 * (box.high - box.low).minCoeff());
+    }
+    point_depth_ = depth;
+    // What is behind a cavity or a sheet lies outside of the box of the triangles.
+    const bool box_holds_solid = options_.side == MeshSide::solid && data_->report.enclosed_volume > 0.0;
+    const double grow = box_holds_solid ? 0.0 : depth;
+    low_ = from_eigen(Vec3(box.low.array() - grow));
+    high_ = from_eigen(Vec3(box.high.array() + grow));
   }
 
   MeshOptions options_;

@@ -1,0 +1,55 @@
+#pragma once
+
+#include <dem/contact/touch.hpp>
+
+#include <algorithm>
+#include <cstddef>
+#include <vector>
+
+namespace dem::contact {
+
+/// When points are taken as one whole contact.
+enum class Fit {
+  always,   ///< however few there are
+  if_more,  ///< where they are more than one; else they keep their weights
+};
+
+/// Weights points that are one contact, so that together they are as stiff as one. A point with weight w and overlap d
+/// gets w d / sum w d: the weights' sum is 1, and a point that only just touches counts nothing, so no force jumps when
+/// points come and go. Points whose normals are at an angle are different contacts: in a point's sum the others count
+/// with the square of the cosine, those at more than a right angle not at all. With Fit::if_more points count as
+/// N = (sum w d)^2 / sum w d^2, which is n w where n are equally deep; up to N = 1 they stay as they are, and from
+/// there to N = 2 one rule goes over into the other. `point(k)` gives touch k, one of the touch types.
+template <class Point>
+void fit_weights(std::size_t count, Fit fit, Point&& point) {
+  struct Part {
+    Vector3<double> normal;
+    double depth, part;  // m, and m times the weight
+  };
+  static thread_local std::vector<Part> parts;
+  parts.clear();
+  for (std::size_t k = 0; k < count; ++k) {
+    const Geometry<double> g = point(k).geometry();
+    const double depth = std::max(0.0, g.overlap);
+    parts.push_back({g.normal, depth, depth * g.area});
+  }
+  for (std::size_t k = 0; k < count; ++k) {
+    double first = 0.0, second = 0.0;
+    for (const Part& other : parts) {
+      const double cosine = std::max(0.0, dot(parts[k].normal, other.normal)), share = cosine * cosine * other.part;
+      first += share;
+      second += share * other.depth;
+    }
+    if (!(first > 0.0)) continue;
+    double& weight = point(k).area;
+    const double whole = parts[k].part / first;
+    if (fit == Fit::always) {
+      weight = whole;
+    } else if (const double n = first * first / second; n > 1.0) {
+      const double over = std::min(1.0, n - 1.0);
+      weight = (1.0 - over) * weight / n + over * whole;
+    }
+  }
+}
+
+}  // namespace dem::contact

@@ -1,0 +1,75 @@
+#include <dem/contact/weights.hpp>
+
+#include <vector>
+
+#include "catch.hpp"
+
+using dem::Vector3;
+using dem::contact::Fit;
+using dem::contact::PointTouch;
+
+namespace {
+
+struct Point {
+  double overlap, weight;
+  Vector3<double> normal = {1, 0, 0};
+};
+
+/// Touches with these weights, fitted.
+std::vector<PointTouch<double>> fitted(const std::vector<Point>& points, Fit fit) {
+  std::vector<PointTouch<double>> touches;
+  for (const Point& p : points) touches.push_back({p.normal, p.overlap, {0, 0, 0}, 1.0, p.weight});
+  dem::contact::fit_weights(touches.size(), fit, [&](std::size_t k) -> PointTouch<double>& { return touches[k]; });
+  return touches;
+}
+double weight(const std::vector<Point>& points, Fit fit) {
+  double sum = 0.0;
+  for (const auto& t : fitted(points, fit)) sum += t.area;
+  return sum;
+}
+/// Sum of weight times overlap: the force of a contact with K = 1.
+double force(const std::vector<Point>& points, Fit fit = Fit::always) {
+  double sum = 0.0;
+  for (const auto& t : fitted(points, fit)) sum += t.area * std::max(0.0, t.overlap);
+  return sum;
+}
+
+}  // namespace
+
+TEST_CASE("points that share a contact are one whole contact, and none jumps in or out") {
+  CHECK(force({}) == 0.0);
+  CHECK(force({{0.1, 0.3}}) == Approx(0.1));
+  CHECK(force({{0.1, 2.0}, {0.1, 3.0}, {0.1, 1.0}}) == Approx(0.1));
+  CHECK(force({{0.1, 1.0}, {0.1, 1.0}, {1e-9, 1.0}}) == Approx(0.1).epsilon(1e-7));
+  CHECK(force({{0.1, 1.0}, {-0.1, 1.0}}) == Approx(0.1));  // a point across a gap counts nothing
+  CHECK(force({{0.0, 1.0}, {0.0, 1.0}}) == 0.0);
+  // Of unequal ones: sum w d^2 / sum w d. The weights' sum stays 1, so friction and dampers are those of one contact.
+  CHECK(force({{0.1, 1.0}, {0.3, 1.0}}) == Approx((0.01 + 0.09) / 0.4));
+  std::vector<Point> shallow(25, Point{0.01, 1.0});
+  shallow.push_back({1.0, 1.0});
+  CHECK(weight(shallow, Fit::always) == Approx(1.0));
+  CHECK(fitted({{0.1, 1.0}, {1e-12, 1.0}}, Fit::always)[1].area < 1e-10);
+}
+
+TEST_CASE("shares of less than a contact stay what they are, and go over into one without a jump") {
+  const auto four = [](double w) { return std::vector<Point>(4, Point{0.1, w}); };
+  CHECK(force({{0.1, 0.25}, {0.1, 0.25}}, Fit::if_more) == Approx(0.05));
+  CHECK(force(four(0.25), Fit::if_more) == Approx(0.1));
+  CHECK(force(four(0.5), Fit::if_more) == Approx(0.1));
+  double last = 0.0;
+  for (double w = 0.01; w < 1.0; w += 0.01) {
+    const double f = force({{0.1, w}, {0.04, w}, {0.02, 0.5 * w}}, Fit::if_more);
+    CHECK(std::abs(f - last) < 2.5e-3);  // 0.14 a unit of weight at the most
+    CHECK(weight({{0.1, w}, {0.04, w}, {0.02, 0.5 * w}}, Fit::if_more) < 1.5);
+    last = f;
+  }
+}
+
+TEST_CASE("points on different sides are different contacts") {
+  const Vector3<double> x = {1, 0, 0}, y = {0, 1, 0};
+  const auto corner = fitted({{0.1, 1.0, x}, {0.1, 1.0, x}, {0.2, 1.0, y}, {0.2, 1.0, -x}}, Fit::always);
+  CHECK(corner[0].area == Approx(0.5));
+  CHECK(corner[1].area == Approx(0.5));
+  CHECK(corner[2].area == Approx(1.0));
+  CHECK(corner[3].area == Approx(1.0));
+}
