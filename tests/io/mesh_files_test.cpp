@@ -74,6 +74,11 @@ TEST_CASE("files of other programs: their line ends, their headers, their polygo
       "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\nv +1 1e0 1 0.5\nv 0 1 1\n"
       "f 4 3 2 1\nf 5 6 7 8 # top\nf 1 2 6 5\nf 2 3 7 \\\n 6\nf 3 4 8 7\nf -5 -8 -4 -1\n";
   CHECK(volume(parse_obj(quads, "q.obj")) == Approx(1.0));
+  // An arrow head (its third corner points inwards) is refused, a corner in the middle of a side is not.
+  const std::string arrow = "v 0 0 0\nv 1 -1 0\nv 1.5 0 0\nv 1 1 0\nv 2 0 0\nv 1 0 0\n";
+  CHECK_THAT(error_of([&] { (void)parse_obj(arrow + "f 2 5 4 3\n", "a.obj"); }),
+             ContainsSubstring("'a.obj', line 7") && ContainsSubstring("4 corners is not convex"));
+  CHECK(parse_obj(arrow + "f 1 6 5 4\n", "a.obj").triangles.size() == 2);
 }
 
 TEST_CASE("an ascii STL file may be in capitals and begin with a byte order mark") {

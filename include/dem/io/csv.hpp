@@ -6,6 +6,7 @@
 #include <dem/io/file.hpp>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <concepts>

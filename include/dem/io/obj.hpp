@@ -7,10 +7,29 @@
 
 namespace dem::io {
 
+namespace detail {
+
+/// Whether all triangles of a fan from a polygon's first corner look the way that the polygon does (the sum of their
+/// areas as vectors), but for slivers of rounding.
+inline bool is_convex(const std::vector<Vec3>& vertices, const std::vector<std::uint32_t>& corners) {
+  const auto area = [&](std::size_t k) -> Vec3 {
+    const Vec3& from = vertices[corners[0]];
+    return (vertices[corners[k - 1]] - from).cross(vertices[corners[k]] - from);
+  };
+  Vec3 whole = Vec3::Zero();
+  for (std::size_t k = 2; k < corners.size(); ++k) whole += area(k);
+  for (std::size_t k = 2; k < corners.size(); ++k) {
+    if (area(k).dot(whole) < -1e-6 * whole.squaredNorm()) return false;
+  }
+  return true;
+}
+
+}  // namespace detail
+
 /// The mesh in the text of an OBJ file; `file` is its name for messages. Reads `v x y z` and `f a b c ...`, where a
 /// face names vertices from 1 on, or backwards from -1, perhaps with /texture/normal, which is skipped; a face of more
 /// than three corners is cut into a fan. Lines may go on after a backslash. Throws Error with the line for a vertex
-/// that is not three numbers, a face that names a vertex that is not there, and a file without faces.
+/// that is not three numbers, a face that names a vertex that is not there or is not convex, and a file without faces.
 [[nodiscard]] inline IndexedMesh parse_obj(std::string_view given, const std::string& file) {
   std::string text(given);
   for (std::size_t at = text.find('\\'); at != std::string::npos; at = text.find('\\', at + 1)) {
@@ -48,6 +67,12 @@ namespace dem::io {
       if (corners.size() < 3) {
         fail("'{}', line {}: a face has {} corners, but needs at least 3; correct or remove it", file, words.line(),
              corners.size());
+      }
+      if (!detail::is_convex(mesh.vertices, corners)) {
+        fail(
+            "'{}', line {}: a face of {} corners is not convex, so it cannot be cut into triangles from its first "
+            "corner; export the mesh as triangles",
+            file, words.line(), corners.size());
       }
       for (std::size_t k = 2; k < corners.size(); ++k) {
         mesh.triangles.push_back({corners[0], corners[k - 1], corners[k]});
