@@ -1,0 +1,74 @@
+#!/usr/bin/env bash
+# The full-size runs behind RESULTS.md: three packings, and on each of them half the time step and half the shearing
+# speed; a loose and a dense packing; the predictor-corrector. Prints a table. Runs that are there already are not made
+# again, so it may be stopped and called again; two of it share the work if they are given different parts.
+#
+#   study.sh <direct_shear> <folder> [seeds|half_step|half_speed|density|integrator ...]
+#
+# A run of three loads takes about 15 core-minutes on a core of 4 GHz; all of them some four hours.
+set -euo pipefail
+
+rig=$(realpath "$1")
+folder=$2
+shift 2
+[ $# -gt 0 ] || set -- seeds half_step half_speed density integrator
+mkdir -p "$folder"
+cd "$folder"
+
+# run <name> <options>...
+run() {
+  local name=$1
+  shift
+  if [ -s "$name/results.csv" ] && [ "$(grep -c ',1$' "$name/results.csv")" = 3 ]; then return; fi
+  echo "$name: $*"
+  "$rig" --size full --no-vtk --threads "${THREADS:-1}" --output "$name" "$@" >"$name.log" 2>&1 || echo "  ended early, see $folder/$name.log"
+}
+# The step that a finished run took (s), halved.
+half_step_of() { sed -n 's/^Time step \([0-9.e-]*\) s.*/\1/p' "$1.log" | awk '{print $1 / 2}'; }
+
+for part in "$@"; do
+  case $part in
+    seeds) for seed in 1 2 3; do run "seed_$seed" --seed "$seed"; done ;;
+    half_step)
+      for seed in 1 2 3; do
+        run "seed_$seed" --seed "$seed"
+        run "half_step_$seed" --packing-file "seed_$seed/packing.txt" --time-step "$(half_step_of "seed_$seed")"
+      done ;;
+    half_speed)
+      for seed in 1 2 3; do
+        run "seed_$seed" --seed "$seed"
+        run "half_speed_$seed" --packing-file "seed_$seed/packing.txt" --shear-speed 0.01
+      done ;;
+    density)
+      run loose --relative-density 0
+      run dense --relative-density 0.5 ;;
+    integrator)
+      run seed_1 --seed 1
+      run predictor_corrector --packing-file seed_1/packing.txt --integrator predictor-corrector ;;
+    *)
+      echo "no part '$part'; there are seeds, half_step, half_speed, density and integrator" >&2
+      exit 1 ;;
+  esac
+done
+
+# Maxima in kPa, difference to table 3.3 of the thesis in per cent; means over the seeds of each kind.
+awk -F, '
+  FNR == 1 { run = FILENAME; sub("/results.csv", "", run); if (!(run in seen)) order[++runs] = run; seen[run] = 1; next }
+  $12 == 1 {
+    thesis = $2 < 3e4 ? 13.483 : $2 < 6e4 ? 33.794 : 56.129
+    k = $2 < 3e4 ? 1 : $2 < 6e4 ? 2 : 3
+    text[run, k] = sprintf("%6.2f (%+5.1f %%)", $3 / 1e3, 100 * ($3 / 1e3 / thesis - 1))
+    kind = run; sub("_[0-9]+$", "", kind)
+    if (!(kind in known)) { kinds[++n] = kind; known[kind] = 1 }
+    sum[kind, k] += $3 / 1e3; count[kind, k]++
+  }
+  END {
+    printf "%-22s %17s %17s %17s\n", "run", "16.9 kPa", "44.1 kPa", "71.4 kPa"
+    for (i = 1; i <= runs; i++) printf "%-22s %17s %17s %17s\n", order[i], text[order[i], 1], text[order[i], 2], text[order[i], 3]
+    print ""
+    for (i = 1; i <= n; i++) {
+      printf "%-22s", "mean of " kinds[i]
+      for (k = 1; k <= 3; k++) printf " %10.2f of %2d  ", count[kinds[i], k] ? sum[kinds[i], k] / count[kinds[i], k] : 0, count[kinds[i], k]
+      print ""
+    }
+  }' ./*/results.csv | sed 's/\.\///'
