@@ -66,7 +66,7 @@ class Rig {
 
   Rig(const Settings& s, const RigShape& shape, std::span<const dem::soil::Placement> grains)
       : world({.time_step = s.time_step,
-               .time_step_safety = 0.8,
+               .time_step_safety = s.stable_share,
                .overlap_limit = s.overlap_limit,
                .domain = domain(s, shape),
                .threads = s.threads}),

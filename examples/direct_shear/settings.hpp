@@ -67,7 +67,9 @@ struct Settings {
 
   // Numerics
   std::string integrator = "verlet";  ///< the thesis's predictor-corrector takes twice the time
-  double time_step = 0.0;             ///< s; 0: 0.8 of the largest stable one
+  double time_step = 0.0;             ///< s; 0: a share of the largest stable one
+  /// The share; 0: by size. Grains are poured at 0.8, where more than rest is not asked of them.
+  double stable_share = 0.0;
   /// Overlap, in sphere radii, that ends the run. K = 2000 N/m is soft: force chains press spheres half a radius
   /// together.
   double overlap_limit = 1.0;

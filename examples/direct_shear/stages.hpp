@@ -128,7 +128,9 @@ PackingResult make_packing(const Settings& s, dem::io::Progress& progress) {
   for (const auto& g : grains) highest = std::max(highest, g.position.z() + 3.0 * s.half_edge);
   const double solid_height = static_cast<double>(s.grains) * grain.volume() / s.area();
   const double seam = s.seam_height > 0.0 ? s.seam_height : 0.5 * solid_height / dem::soil::solid_fraction_at(0.5);
-  Rig<Integrator, Shape> rig(s, {.seam = seam, .wall_top = highest, .lid_low = highest}, grains);
+  Settings pouring = s;
+  pouring.stable_share = 0.8;
+  Rig<Integrator, Shape> rig(pouring, {.seam = seam, .wall_top = highest, .lid_low = highest}, grains);
   rig.hold_lid();
 
   progress.begin("pour");

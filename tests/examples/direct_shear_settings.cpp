@@ -93,6 +93,10 @@ TEST_CASE("what is left open follows the size") {
   const Settings s = read({"--size", "full"}).settings;
   CHECK(s.half_edge == 0.9e-3);
   CHECK(s.grains == 14256);
+  CHECK(s.stable_share == 0.4);
+  CHECK(read({"--size", "quick"}).settings.stable_share == 0.8);
+  CHECK(read({"--size", "full", "--stable-share", "0.5"}).settings.stable_share == 0.5);
+  CHECK_THROWS_WITH(read({"--stable-share", "1.5"}), ContainsSubstring("--stable-share"));
   CHECK(s.wall_thickness == 0.015);
   CHECK(s.wall_friction == s.friction);
   CHECK(s.loads == std::vector<double>{6.2, 16.2, 26.2});
