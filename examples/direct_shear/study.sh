@@ -5,7 +5,8 @@
 #
 #   study.sh <direct_shear> <folder> [seeds|half_step|half_speed|density|integrator ...]
 #
-# A run of three loads takes about 15 core-minutes on a core of 4 GHz; all of them some four hours.
+# At twice the default time step a run of three loads took half an hour on one core at 2.3 GHz: all of them take the
+# better part of a day there.
 set -euo pipefail
 
 rig=$(realpath "$1")

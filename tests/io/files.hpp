@@ -16,7 +16,7 @@
 class TempFolder {
  public:
   TempFolder() {
-    std::string pattern = (std::filesystem::temp_directory_path() / "dem_io_XXXXXX").string();
+    std::string pattern = (std::filesystem::temp_directory_path() / ("dem_io_" + std::string(6, 'X'))).string();
     REQUIRE(::mkdtemp(pattern.data()) != nullptr);
     path_ = pattern;
   }

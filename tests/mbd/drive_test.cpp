@@ -457,6 +457,22 @@ TEMPLATE_TEST_CASE("a drive takes hold of a hinge beside the centre of mass with
   CHECK(m.body(arm).velocity().norm() < 1e-9);
 }
 
+TEST_CASE("a motion takes values from outside every step, however fast they go") {
+  // 50 rad/s in steps of 1e-3 s: 0.05 rad each, far more than a motion may be off when it takes hold.
+  Machine<VelocityVerlet> m;
+  const BodyId wheel = m.add_body(ball("wheel", 1.0, 0.1).moving(Vec3::Zero(), {0, 0, 50.0}));
+  const JointId axle = m.add_joint(revolute("axle", m.ground(), wheel, {0, 0, 0}, Z));
+  const MotionId drive = m.add_motion(prescribed_joint("drive", axle, Signal::held(0.0, 50.0)));
+  m.design_for(1e-3);
+  m.initialise(0.0, Vec3::Zero());
+  for (int k = 1; k <= 300; ++k) {
+    m.set_motion(drive, 0.05 * k, 50.0);
+    m.step(1e-3);
+    CHECK(m.coordinate(axle) == Approx(0.05 * k).epsilon(1e-12));
+  }
+  CHECK(std::abs(m.motion(drive).drive.force) < 1e-6);  // it keeps its speed
+}
+
 TEST_CASE("drives that repeat or contradict each other, and those that start off the mark") {
   Machine<VelocityVerlet> m;
   m.gravity = {0, 0, -10.0};

@@ -223,8 +223,13 @@ class Assembly {
     p.spec.motion = p.spec.by_speed ? motion.as_rate() : std::move(motion);
     p.has_hold = false;
   }
-  /// For values that come from outside every step.
-  void set_motion(MotionId id, double value, double rate) { set_motion(id, Signal::held(value, rate)); }
+  /// For values that come from outside every step: how far each is from the last is the caller's care, only the first
+  /// one is compared with the coordinate.
+  void set_motion(MotionId id, double value, double rate) {
+    const bool has_hold = motion(id).has_hold;
+    set_motion(id, Signal::held(value, rate));
+    parts_.motions[id.index()].has_hold = has_hold;
+  }
 
   const Spring& spring(SpringId id) const { return known(parts_.springs, id, "spring"); }
   const Coupling& coupling(CouplingId id) const { return known(parts_.couplings, id, "coupling"); }

@@ -99,8 +99,8 @@ inline void add_held_rows(Parts& parts, DriveRow row, const Joint& j) {
   if (hold != Hold::line) add(j.axes_a.z);
 }
 
-/// Lists the driven coordinates of bodies that give way, as they are now; those that are driven by speed only if asked,
-/// what their joints hold only if not.
+/// Lists the driven coordinates of bodies that give way, as they are now. For a correction of values those that are
+/// driven by speed want to stay where they are, and what the driven joints hold is listed too.
 inline void fill_rows(Parts& parts, bool of_speed) {
   parts.drive_rows.clear();
   for (std::size_t i = 0; i < parts.motions.size(); ++i) {
@@ -264,8 +264,7 @@ inline void check_holds(Parts& parts, double time) {
     if (std::abs(off) > tolerance) {
       fail(
           "prescribed motion '{}' is {:g} m or rad off at t = {:g} s, where it takes hold of its coordinate; allowed "
-          "is "
-          "{:g}: let its signal start there (set_motion), say with starting_at what the joint's coordinate is at "
+          "is {:g}: let its signal start there (set_motion), say with starting_at what the joint's coordinate is at "
           "assembly, or move a body",
           p.spec.name, std::abs(off), time, tolerance);
     }

@@ -22,11 +22,12 @@ struct Pose {
 /// of every stage, whatever force it takes; that force is reported.
 ///
 /// A drive acts as a force would: along its axis at the joint's point, or as a torque, on one body and opposite on the
-/// other, so that momentum is kept and joints carry what it leaves to them. All drives are met at once. Where two
-/// repeat or contradict each other the earlier one counts, and a body that is fixed or whose pose is prescribed gives
-/// way to none (of two motions of such a body the later one counts). A drive takes hold of its coordinate where that
-/// is: a value that is more than 1 mm or 1 mrad off when it is added, switched on or given another signal is refused. A
-/// speed is set within one step, and the force of that step is the jolt that this takes.
+/// other, so that momentum is kept (of rotation to the order of the time step) and joints carry what it leaves to them.
+/// All drives are met at once. Where two repeat or contradict each other the earlier one counts, and a body that is
+/// fixed or whose pose is prescribed gives way to none (of two motions of such a body the later one counts). A drive
+/// takes hold of its coordinate where that is: a value that is more than 1 mm or 1 mrad off when it is added, switched
+/// on or given another signal is refused. A speed is set within one step, and the force of that step is the jolt that
+/// this takes.
 struct MotionSpec {
   enum class Target {
     position,  ///< displacement of a body's centre of mass along a global axis, from where it was at assembly
