@@ -1,6 +1,7 @@
 #pragma once
 
 #include <dem/pipeline/encounters.hpp>
+#include <dem/shape/shape.hpp>
 
 #include <span>
 #include <vector>
@@ -39,8 +40,8 @@ struct ContactForces {
 
 /// Evaluates the laws for a list of contacts, a pack at a time, and finds each contact's memory by walking along last
 /// step's in step: both lists ascend in their keys. What a contact gives does not depend on its neighbours in the pack.
-/// `patches`: see shape::PatchShape.
-template <class Model, template <class> class Touch, bool patches = false>
+/// `Shape`: whose pairs these are, if they may be patches.
+template <class Model, template <class> class Touch, class Shape = void>
 class ContactEvaluator {
  public:
   using Memories = ContactMemories<history_size<Model>>;
@@ -135,8 +136,8 @@ class ContactEvaluator {
       for (std::size_t k = 0; k < last.history.size(); ++k) {
         history_[k][lane] = known ? last.history[k][static_cast<std::size_t>(cursor)] : 0.0;
       }
-      if constexpr (patches) {
-        if (!known) inherit(last, keys[lane], cursor, lane);
+      if constexpr (shape::PatchShape<Shape>) {
+        if (!known && Shape::is_patch(static_cast<std::uint32_t>(keys[lane]))) inherit(last, keys[lane], cursor, lane);
       }
       cursor += known ? 1 : 0;
     }

@@ -193,7 +193,7 @@ void find_pair_contacts(std::size_t chunk_index, Chunk<Model>& chunk, const Part
       return s.touches[c];
     }
   };
-  ContactEvaluator<Model, Shape::template PairTouch, shape::PatchShape<Shape>> evaluator(materials.table(), dt);
+  ContactEvaluator<Model, Shape::template PairTouch, Shape> evaluator(materials.table(), dt);
   const Deepest deepest = evaluator.run(
       s.hits, chunk.pair_contacts, s.forces, touch_of,
       [&](std::size_t c) -> const PartnerView& { return p.view[s.hits[c].i]; },

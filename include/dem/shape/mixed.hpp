@@ -3,6 +3,7 @@
 #include <dem/shape/superquadric_pairs.hpp>
 
 #include <tuple>
+#include <type_traits>
 #include <variant>
 
 namespace dem::shape {
@@ -105,16 +106,29 @@ class Mixed : public detail::MixedBase<detail::MixedMemories<Kinds...>::any, Kin
     collide(a, pose_a, b, pose_b, separation, nothing, sink);
   }
 
+  /// Patches are found between grains of one kind only.
+  static bool is_patch(std::uint32_t feature) requires(PatchShape<Kinds> || ...) {
+    bool result = false;
+    std::uint32_t number = 0;
+    const auto ask = [&]<class Kind>(std::type_identity<Kind>) {
+      if constexpr (PatchShape<Kind>) result |= feature >> feature_bits == number + 1 && Kind::is_patch(own(feature));
+      ++number;
+    };
+    (ask(std::type_identity<Kinds>{}), ...);
+    return result;
+  }
   /// Kinds that differ number their contacts the same from either side.
   static std::uint32_t mirrored(std::uint32_t feature) {
-    const std::uint32_t kind = feature >> feature_bits, own = feature & ((1u << feature_bits) - 1u);
+    const std::uint32_t kind = feature >> feature_bits;
     std::uint32_t result = feature, number = 0;
-    ((kind == ++number ? void(result = kind << feature_bits | Kinds::mirrored(own)) : void()), ...);
+    ((kind == ++number ? void(result = kind << feature_bits | Kinds::mirrored(own(feature))) : void()), ...);
     return result;
   }
 
  private:
   static constexpr int feature_bits = 24;
+  /// A feature as the pair's own kind numbers it.
+  static constexpr std::uint32_t own(std::uint32_t feature) { return feature & ((1u << feature_bits) - 1u); }
 
   template <std::size_t I = 0, class F>
   DEM_HOT decltype(auto) visit_indexed(F&& f) const {

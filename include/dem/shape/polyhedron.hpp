@@ -23,7 +23,6 @@ class Polyhedron {
  public:
   static constexpr int pose_size = 9;
   static constexpr bool has_orientation = true;
-  static constexpr bool has_patches = true;
   static constexpr std::size_t most_contacts = PolyhedronContact::most_points;
   template <class T>
   using PairTouch = contact::PointTouch<T>;
@@ -92,6 +91,8 @@ class Polyhedron {
            PairTouch<double>{found.normal(), p.depth, p.point, ra * rb / (ra + rb), p.share});
     }
   }
+  /// All contacts of a pair are one patch.
+  static constexpr bool is_patch(std::uint32_t) { return true; }
   /// A feature names the element (face, edge or corner) of each body.
   static std::uint32_t mirrored(std::uint32_t feature) {
     return (feature & ((1u << element_bits) - 1u)) << element_bits | feature >> element_bits;

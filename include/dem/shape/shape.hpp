@@ -107,12 +107,12 @@ struct PairMemories<S> {
   std::size_t bytes() const { return memory.capacity() * sizeof(typename S::PairMemory); }
 };
 
-/// A shape whose pair contacts are the points of one patch says so with `static constexpr bool has_patches = true`. Its
-/// points slide as one, so a point that turns up in a patch remembers what the others do: when the patch changes its
-/// corners, or the way it is found, friction goes on.
+/// A shape whose pair contacts may be the points of one patch tells by their features, with `static bool
+/// is_patch(std::uint32_t feature)`. Such points slide as one, so a point that turns up in a patch remembers what the
+/// others do: when the patch changes its corners, or the way it is found, friction goes on.
 template <class S>
-concept PatchShape = Shape<S> && requires {
-  requires S::has_patches;
+concept PatchShape = Shape<S> && requires(std::uint32_t feature) {
+  { S::is_patch(feature) } -> std::same_as<bool>;
 };
 
 /// f(kind) for a grain that is one of several kinds (Mixed), f(shape) for all others.
