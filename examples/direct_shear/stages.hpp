@@ -45,9 +45,9 @@ double inner_fraction(const Rig& rig, const Settings& s, double lid_low = -1.0) 
   return inner_fraction(dem::soil::placements(rig.world), rig.grain_volume(), s, lid_low);
 }
 
-/// Lets the grains come to rest: their r.m.s. speed stays below the rest speed for 20 ms.
-template <class Rig>
-void settle(Rig& rig, const Settings& s, dem::io::Progress& progress) {
+/// Lets the grains come to rest: their r.m.s. speed stays below the rest speed for 20 ms. `done()` tells the progress.
+template <class Rig, class Done>
+void settle(Rig& rig, const Settings& s, dem::io::Progress& progress, Done&& done) {
   const double limit = dem::soil::rest_speed(2.0 * s.half_edge), start = rig.world.time();
   dem::soil::StaysBelow at_rest(limit, 0.02);
   for (double speed = 1e300; !at_rest(rig.world.time(), speed);) {
@@ -59,8 +59,24 @@ void settle(Rig& rig, const Settings& s, dem::io::Progress& progress) {
     }
     run(rig, 2e-3);
     speed = dem::soil::rms_speed(rig.world);
-    progress.update(0.0, [&] { return fmt::format("{:.2f} s, grains at {:.2g} mm/s", rig.world.time(), 1e3 * speed); });
+    progress.update(done(),
+                    [&] { return fmt::format("{:.2f} s, grains at {:.2g} mm/s", rig.world.time(), 1e3 * speed); });
   }
+}
+
+/// Lets grains fall until they lie at rest. Progress is how far their middle has come down towards that of a
+/// loose specimen; the last tenth is for coming to rest.
+template <class Rig>
+void pour(Rig& rig, const Settings& s, double solid_height, dem::io::Progress& progress) {
+  const auto mean_height = [&] {
+    double sum = 0.0;
+    for (const auto p : rig.world.particles()) sum += rig.world.position(p).z();
+    return sum / static_cast<double>(rig.world.particle_count());
+  };
+  const double high = mean_height(), low = 0.5 * solid_height / dem::soil::solid_fraction_at(0.0);
+  progress.begin("pour", 1.0);
+  settle(rig, s, progress,
+         [&] { return 0.9 * std::clamp((high - mean_height()) / std::max(high - low, 1e-9), 0.0, 1.0); });
 }
 
 /// Shakes both halves alike along x; `strength` blends in over two periods from t0 (s), or out over one.
@@ -133,8 +149,7 @@ PackingResult make_packing(const Settings& s, dem::io::Progress& progress) {
   Rig<Integrator, Shape> rig(pouring, {.seam = seam, .wall_top = highest, .lid_low = highest}, grains);
   rig.hold_lid();
 
-  progress.begin("pour");
-  settle(rig, s, progress);
+  pour(rig, s, solid_height, progress);
   if (poured) {
     progress.begin("shake", s.shake_time);
     const double start = rig.world.time();
@@ -149,7 +164,7 @@ PackingResult make_packing(const Settings& s, dem::io::Progress& progress) {
   }
   if (making_stages(s) > 1) {
     progress.begin("settle");
-    settle(rig, s, progress);
+    settle(rig, s, progress, [] { return 0.0; });
   }
 
   PackingResult result;
