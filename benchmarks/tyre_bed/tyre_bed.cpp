@@ -14,20 +14,20 @@
 
 namespace {
 
-constexpr double tyre_radius = 0.485, speed = 0.3, sunk = 0.03;
+constexpr double tyre_radius = 0.485, speed = 0.3;
 
 struct Spheres : dem::Model {
   using Integrator = dem::integrator::SymplecticEuler;
   static Shape grain() { return dem::shape::Sphere(8e-3); }
-  static constexpr double pitch = 0.0165, lattice_height = 0.2, settle = 0.35;
+  static constexpr double pitch = 0.0165, lattice_height = 0.2, settle = 0.35, sunk = 0.03;
   static constexpr double stiffer = 1.0;
 };
 struct Cubes : dem::Model {
   using Shape = dem::shape::SphereCluster<8>;
   using Integrator = dem::integrator::SymplecticEuler;
   static Shape grain() { return dem::shape::cube8(8e-3); }
-  static constexpr double pitch = 0.03, lattice_height = 0.6, settle = 1.0;
-  /// Fewer and smaller spheres carry the tyre, so each must bear more before it is pressed in by its radius.
+  static constexpr double pitch = 0.03, lattice_height = 0.6, settle = 1.0, sunk = 0.01;
+  /// Cubes interlock: they carry more at less sinkage, on smaller spheres.
   static constexpr double stiffer = 4.0;
 };
 
@@ -83,7 +83,7 @@ void run(const char* name, const Settings& s) {
   fmt::print("{}: settling {} grains for {:g} s\n", name, world.particle_count(), time);
   if (const auto report = world.run_for(time); !report) dem::fail("{}", report.text);
 
-  const double top = height_of(world, 1.0), way_down = top - height_of(world, 0.95) + sunk + 0.02;
+  const double top = height_of(world, 1.0), way_down = top - height_of(world, 0.95) + Model::sunk + 0.02;
   const dem::Vec3 start(0.4, 0, top + tyre_radius + 0.02);
   const auto tyre = world.machine().add_fixed_body("tyre", start);
   const auto mesh = dem::mesh::tyre(2 * tyre_radius, 0.254, s.triangles);

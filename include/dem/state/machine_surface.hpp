@@ -38,11 +38,12 @@ struct MachineSurface {
     origin = b.motion.position + b.motion.rotation * from_eigen(position);
     axes = b.motion.rotation * from_eigen(rotation);
     const surface::Bounds local = std::visit([](const auto& g) { return g.bounds(); }, geometry);
-    // Half sizes along the global axes: |R| times the local half sizes.
-    const Vec3 centre = to_eigen(origin) + to_eigen(axes) * (0.5 * (local.low + local.high));
+    // Half sizes along the global axes: |R| times the local half sizes. The origin comes last: added to the middle of
+    // a half space, 1e150 m away, it would be lost.
+    const Vec3 middle = to_eigen(axes) * (0.5 * (local.low + local.high));
     const Vec3 half = to_eigen(axes).cwiseAbs() * (0.5 * (local.high - local.low));
-    low = centre - half;
-    high = centre + half;
+    low = to_eigen(origin) + (middle - half);
+    high = to_eigen(origin) + (middle + half);
   }
 };
 
