@@ -21,6 +21,17 @@ function(dem_subfolders out pattern)
   set(${out} ${files} PARENT_SCOPE)
 endfunction()
 
+# dem_includes(<out> <header> <source>...): whether one of the sources includes the header, as in `#include <header>`.
+function(dem_includes out header)
+  set(${out} FALSE PARENT_SCOPE)
+  foreach(source IN LISTS ARGN)
+    file(STRINGS "${source}" lines REGEX "^#include <${header}>")
+    if(lines)
+      set(${out} TRUE PARENT_SCOPE)
+    endif()
+  endforeach()
+endfunction()
+
 # dem_with(<package> <purpose>): an optional package. Afterwards DEM_WITH_<PACKAGE> says whether it is used: the
 # user did not switch it off, and it was found.
 macro(dem_with package purpose)

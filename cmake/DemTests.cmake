@@ -92,17 +92,21 @@ function(dem_add_consumer_test way)
   set_tests_properties(consumer.${way} PROPERTIES LABELS packaging)
 endfunction()
 
-# dem_add_example_test(<example> [ARGS <arg>...] [FILES <file>...] [EXPECT <regex>...]): the example runs with these
-# arguments and `--output <folder>`, leaves these files there, and its output matches every regex.
+# dem_add_example_test(<example> [NAME <name>] [ARGS <arg>...] [FILES <file>...] [EXPECT <regex>...]): the example runs
+# with these arguments and `--output <folder>`, leaves these files there, and its output matches every regex. Test and
+# folder are called as the example, unless it has several tests with names of their own.
 function(dem_add_example_test example)
-  cmake_parse_arguments(arg "" "" "ARGS;FILES;EXPECT" ${ARGN})
+  cmake_parse_arguments(arg "" "NAME" "ARGS;FILES;EXPECT" ${ARGN})
+  if(NOT arg_NAME)
+    set(arg_NAME ${example})
+  endif()
   if(NOT TARGET ${example})
-    message(STATUS "${example} is not built, going without: its test")
+    message(STATUS "${example} is not built, going without: the test example.${arg_NAME}")
     return()
   endif()
   add_test(
-    NAME example.${example}
-    COMMAND ${CMAKE_COMMAND} "-DOUTPUT=${CMAKE_CURRENT_BINARY_DIR}/${example}" "-DFILES=${arg_FILES}"
+    NAME example.${arg_NAME}
+    COMMAND ${CMAKE_COMMAND} "-DOUTPUT=${CMAKE_CURRENT_BINARY_DIR}/${arg_NAME}" "-DFILES=${arg_FILES}"
             "-DEXPECT=${arg_EXPECT}" -P "${DEM_SCRIPTS}/RunExample.cmake" -- $<TARGET_FILE:${example}> ${arg_ARGS})
-  set_tests_properties(example.${example} PROPERTIES LABELS example)
+  set_tests_properties(example.${arg_NAME} PROPERTIES LABELS example)
 endfunction()

@@ -17,7 +17,7 @@ using namespace dem::mbd;
 template <class I>
 void squeezer_step(benchmark::State& state) {
   auto s = squeezer::make<I>();
-  for (auto _ : state) s.machine.step(1e-7);
+  for (auto _ : state) (void)s.machine.step(1e-7);
   state.counters["steps/s"] = benchmark::Counter(static_cast<double>(state.iterations()), benchmark::Counter::kIsRate);
 }
 BENCHMARK(squeezer_step<integrator::SymplecticEuler>);
@@ -27,7 +27,7 @@ BENCHMARK(squeezer_step<integrator::PredictorCorrector>);
 template <class I>
 void chain_step(benchmark::State& state) {
   auto m = bench::make_chain<I>();
-  for (auto _ : state) m.step(1e-4);
+  for (auto _ : state) (void)m.step(1e-4);
   state.counters["steps/s"] = benchmark::Counter(static_cast<double>(state.iterations()), benchmark::Counter::kIsRate);
 }
 BENCHMARK(chain_step<integrator::SymplecticEuler>);

@@ -2,6 +2,9 @@
 // touching as grains in a bed do.
 
 #include <dem/shape/mixed.hpp>
+#include <dem/shape/polyhedra.hpp>
+#include <dem/shape/polyhedron_sphere.hpp>
+#include <dem/shape/superquadric_polyhedron.hpp>
 
 #include <benchmark/benchmark.h>
 
@@ -10,7 +13,7 @@
 namespace {
 
 using dem::Vec3;
-using dem::shape::PointArea;
+using dem::shape::Polyhedron;
 using dem::shape::Sphere;
 using dem::shape::Superquadric;
 using dem::shape::SuperquadricPoints;
@@ -18,11 +21,13 @@ using Cube = dem::shape::SphereCluster<8>;
 
 Sphere sphere() { return Sphere(1e-3); }
 Cube cube8() { return dem::shape::cube8(1e-3); }
+Polyhedron cube() { return dem::shape::cube(1e-3); }
+Polyhedron rock() { return dem::shape::rock({.length = 2.4e-3, .points = 24}); }
 Superquadric rounded() { return {Vec3::Constant(1e-3), Vec3::Constant(8)}; }
 Superquadric odd() { return {{1e-3, 1.2e-3, 0.8e-3}, {3, 4, 8}}; }
 Superquadric fractional() { return {{1e-3, 1.2e-3, 0.8e-3}, {2.5, 3.7, 6.1}}; }
-SuperquadricPoints points98() { return {Vec3::Constant(1e-3), Vec3::Constant(8), 4, PointArea::relative}; }
-SuperquadricPoints points218() { return {Vec3::Constant(1e-3), Vec3::Constant(8), 6, PointArea::relative}; }
+SuperquadricPoints points98() { return {Vec3::Constant(1e-3), Vec3::Constant(8), 4}; }
+SuperquadricPoints points218() { return {Vec3::Constant(1e-3), Vec3::Constant(8), 6}; }
 
 /// Touching pairs of a and b; `known`: each search takes up where the last one stopped. Counts contacts.
 template <class A, class B>
@@ -88,5 +93,12 @@ BENCHMARK_CAPTURE(narrow_phase, superquadric_fractional_new, fractional(), fract
 BENCHMARK_CAPTURE(narrow_phase, points_98, points98(), points98(), true);
 BENCHMARK_CAPTURE(narrow_phase, points_218, points218(), points218(), true);
 BENCHMARK_CAPTURE(narrow_phase, points_98_sphere, points98(), sphere(), true);
+BENCHMARK_CAPTURE(narrow_phase, points_98_cube8, points98(), cube8(), true);
+BENCHMARK_CAPTURE(narrow_phase, polyhedron_cube_cube, cube(), cube(), true);
+BENCHMARK_CAPTURE(narrow_phase, polyhedron_rock_rock, rock(), rock(), true);
+BENCHMARK_CAPTURE(narrow_phase, polyhedron_cube_sphere, cube(), sphere(), true);
+BENCHMARK_CAPTURE(narrow_phase, polyhedron_cube_cube8, cube(), cube8(), true);
+BENCHMARK_CAPTURE(narrow_phase, polyhedron_cube_superquadric, cube(), rounded(), true);
+BENCHMARK_CAPTURE(narrow_phase, polyhedron_cube_points_98, cube(), points98(), true);
 
 }  // namespace

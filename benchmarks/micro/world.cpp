@@ -55,9 +55,13 @@ void rebuild_neighbours(benchmark::State& state) {
 }
 BENCHMARK(rebuild_neighbours)->Arg(10000);
 
+/// Sums of the loads that contacts hold for partners in other chunks.
 void gather_forces(benchmark::State& state) {
   auto world = cloud<Euler>(10000);
   auto& w = world.state();
+  std::size_t loads = 0;
+  for (const auto& chunk : w.chunks) loads += chunk.partner_load_first.back();
+  state.counters["loads a grain"] = static_cast<double>(loads) / 10000;
   for (auto _ : state) {
     for (std::size_t c = 0; c < w.chunks.size(); ++c) {
       dem::pipeline::gather_forces<Euler>(c, w.chunks, w.particles, w.incoming_first, w.incoming);
@@ -75,6 +79,9 @@ void integrator(benchmark::State& state) {
   for (auto _ : state) {
     for (std::size_t c = 0; c < w.chunks.size(); ++c) {
       for (int stage = 0; stage < I::stages; ++stage) {
+        if constexpr (I::predicts_before_forces) {
+          dem::pipeline::predict_chunk<Model>(c, w.chunks[c], w.particles, w.species, stage, 0.0);
+        }
         dem::pipeline::move_chunk<Model>(c, w.chunks[c], w.particles, w.species, w.inertia, w.options.gravity, stage,
                                          0.0, false);
       }

@@ -26,7 +26,7 @@ struct Cubes : dem::Model {
   using Shape = dem::shape::SphereCluster<8>;
   using Integrator = dem::integrator::SymplecticEuler;
   static Shape grain() { return dem::shape::cube8(8e-3); }
-  static constexpr double pitch = 0.03, lattice_height = 0.6, settle = 1.0, sunk = 0.01;
+  static constexpr double pitch = 0.03, lattice_height = 0.6, settle = 1.0, sunk = 0.02;
   /// Cubes interlock: they carry more at less sinkage, on smaller spheres.
   static constexpr double stiffer = 4.0;
 };
@@ -42,8 +42,8 @@ template <class Model>
 dem::World<Model> loose_bed(const Settings& s) {
   dem::World<Model> world({.time_step = 3.5e-5 / std::sqrt(Model::stiffer), .threads = s.threads});
   const auto grain = world.add_species(Model::grain());
-  const double k = Model::stiffer, c = std::sqrt(k);
-  world.set_contact({{1e5 * k, 15.0 * c, 1.0}, {0.5, 4e4 * k, 7.0 * c, 0.975}});
+  const double stiffer = Model::stiffer, c = std::sqrt(stiffer);
+  world.set_contact({{1e5 * stiffer, 15.0 * c, 1.0}, {0.5, 4e4 * stiffer, 7.0 * c, 0.975}});
   const double thick = 0.1, high = 1.0;
   const auto wall = [&](const dem::Vec3& middle, const dem::Vec3& edges) {
     world.add_surface(world.ground(), dem::surface::Box(edges), {.position = middle});
@@ -110,7 +110,8 @@ void run(const char* name, const Settings& s) {
   dem::io::Table table;
   double load = 0.0;
   table.header = {"tyre", "us/step", "surfaces, us/step", "share", "contacts with it"};
-  for (const bool active : {true, false, true}) {
+  // Without the tyre at the end: grains fall to where it was, and would be in it.
+  for (const bool active : {true, true, false}) {
     world.set_active(mesh_surface, active);
     roll(50);
     const auto seconds_on_surfaces = [&] {
@@ -127,7 +128,7 @@ void run(const char* name, const Settings& s) {
     world.state().stopwatch.switch_on(false);
     std::size_t contacts = 0;
     for (const auto& chunk : world.state().chunks) {
-      for (int c = 0; c < chunk.surface_contacts.count(); ++c) {
+      for (int c = 0; c < chunk.surface_contacts.committed(); ++c) {
         const auto key = chunk.surface_contacts.last.key[static_cast<std::size_t>(c)];
         contacts += dem::pipeline::SurfaceKey::surface(key) == mesh_surface.index();
       }

@@ -7,8 +7,7 @@
 
 #include <dem/dem.hpp>
 #include <dem/io/csv.hpp>
-#include <dem/io/vtk.hpp>
-#include <dem/io/vtk_grains.hpp>
+#include <dem/io/vtk_machine.hpp>
 #include <dem/soil/packing.hpp>
 
 #include <CLI/CLI.hpp>
@@ -83,8 +82,6 @@ int main(int argc, char** argv) {
     const SensorId soil = machine.add_sensor(contact_sensor("soil", blade, 0.02));
     const SensorId drive = machine.add_sensor(actuator_sensor("drive", push, 0.02));
 
-    const io::SurfaceMesh blade_mesh = io::box_mesh(blade_edges);
-
     // 4. The run, with a row of numbers every millisecond.
     io::CsvWriter csv(output + "/blade.csv", {"time_s", "travel_m", "push_N", "soil_x_N", "soil_z_N"});
     io::VtkSeries series(output + "/blade.pvd");
@@ -101,13 +98,7 @@ int main(int argc, char** argv) {
       }
       if (vtk && world.time() > next_frame) {
         next_frame += 0.02;
-        const auto grains = series.next_path("grains");
-        io::write_vtk_grains(grains, world, 4, {.single_precision = true, .time_s = world.time()});
-        series.add(world.time(), grains, "grains");
-        const auto parts = series.next_path("blade");
-        const Body& b = machine.body(blade);
-        io::write_vtk_bodies(parts, {{&blade_mesh, b.position(), b.rotation()}}, {}, {.time_s = world.time()});
-        series.add(world.time(), parts, "blade");
+        io::add_vtk_frame(series, world);
       }
     }
     fmt::print("{} grains, blade {:.0f} mm deep and {:.0f} mm wide, {:.0f} mm/s\n", world.particle_count(), 1e3 * depth,

@@ -81,6 +81,7 @@ void test_load(const Settings& s, Campaign& campaign, LoadResult& r, dem::io::Pr
     shear(rig, s, r, progress, [&](const auto& now) {
       if (frames) frames->show(now.world, now.top_displacement());
     });
+    if (frames) frames->finish(rig.world, rig.top_displacement());
   } catch (...) {
     count_steps();
     throw;

@@ -8,6 +8,7 @@
 #include <dem/soil/coordination.hpp>
 #include <dem/surface/box.hpp>
 
+#include <cmath>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -24,7 +25,21 @@ class Frames {
   template <class World>
   void show(const World& world, double displacement) {
     if (displacement < next_) return;
-    next_ = displacement + interval_;
+    // From a multiple of the interval to the next: what a frame comes late must not add up.
+    next_ = interval_ * (std::floor(displacement / interval_) + 1.0);
+    write(world, displacement);
+  }
+
+  /// Writes the last frame, unless there is one of this displacement (m) already.
+  template <class World>
+  void finish(const World& world, double displacement) {
+    if (displacement > written_) write(world, displacement);
+  }
+
+ private:
+  template <class World>
+  void write(const World& world, double displacement) {
+    written_ = displacement;
     write_grains(world);
     write_boxes(world);
     if constexpr (std::is_same_v<typename World::Shape, dem::shape::Superquadric>) {
@@ -38,7 +53,6 @@ class Frames {
     }
   }
 
- private:
   template <class World>
   void write_grains(const World& world) {
     const std::size_t n = world.particle_count();
@@ -138,7 +152,7 @@ class Frames {
   }
 
   bool spheres_;
-  double interval_, next_ = 0.0;
+  double interval_, next_ = 0.0, written_ = -1.0;  // m
   dem::io::VtkSeries series_;
 };
 

@@ -1,7 +1,11 @@
 // Direct shear test of cubical sand grains (chapter 3 of the thesis): packs grains into a box of two halves, loads a
 // lid, shears one half over the other, and fits the angle of friction. See --help.
+//
+// Ends with 0 when all was done; 1 when the run ended early or a part of the report could not be made; 2 when the
+// settings make no sense; 130 after Ctrl-C or SIGTERM. What was found by then is saved and reported.
 
 #include "campaign.hpp"
+#include "old_results.hpp"
 #include "report.hpp"
 
 #include <dem/integrator/predictor_corrector.hpp>
@@ -23,6 +27,7 @@ int main(int argc, char** argv) {
     Settings settings;
     std::string config;
     if (!read_settings(argc, argv, settings, config)) return 0;
+    remove_old_results(settings.output);
     dem::io::write_file(settings.output / "settings.toml", config);
 
     Campaign campaign;
@@ -36,7 +41,7 @@ int main(int argc, char** argv) {
     else if (settings.integrator == "euler") run_campaign<integrator::SymplecticEuler, Cube8>(settings, campaign);
     else run_campaign<integrator::PredictorCorrector, Cube8>(settings, campaign);
 
-    const bool complete = report(settings, campaign, "direct_shear --config settings.toml");
+    const bool complete = report(settings, campaign, config);
     if (!campaign.problem.empty()) fmt::print(stderr, "direct_shear: {}\n", campaign.problem);
     if (campaign.interrupted) return 130;
     return complete && campaign.problem.empty() ? 0 : 1;

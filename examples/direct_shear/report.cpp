@@ -200,7 +200,7 @@ void print_report(const Settings& s, const Campaign& c) {
   fmt::print("\n{}\n", speed_text(c));
 }
 
-void write_page(const Settings& s, const Campaign& c, const std::string& command) {
+void write_page(const Settings& s, const Campaign& c, const std::string& config) {
   const Fits fits = fit(c);
   dem::io::HtmlReport page("Direct shear test");
   if (const auto status = status_text(c); !status.empty()) page.paragraph(status);
@@ -216,13 +216,15 @@ void write_page(const Settings& s, const Campaign& c, const std::string& command
            "Rise of the lid while shearing.");
   add_plot(mohr_coulomb_plot(c, fits), "mohr_coulomb", "Maximum shear stress over normal stress.");
   page.heading("Checks").table(check_table(c)).paragraph(speed_text(c));
-  page.heading("Settings").settings(list_settings(s)).preformatted(command);
+  page.heading("Settings").settings(list_settings(s));
+  page.heading("settings.toml", 3).paragraph("What repeats the run: direct_shear --config settings.toml");
+  page.preformatted(config);
   page.save(s.output / "report.html");
 }
 
 }  // namespace
 
-bool report(const Settings& s, const Campaign& c, const std::string& command) {
+bool report(const Settings& s, const Campaign& c, const std::string& config) {
   bool complete = true;
   // What was computed for hours is worth saving in whatever ways still work.
   const auto part = [&](const char* name, auto&& make) {
@@ -235,7 +237,7 @@ bool report(const Settings& s, const Campaign& c, const std::string& command) {
   };
   part("results.csv", [&] { write_results_csv(s, c); });
   part("the printed report", [&] { print_report(s, c); });
-  part("report.html", [&] { write_page(s, c, command); });
+  part("report.html", [&] { write_page(s, c, config); });
   if (complete) fmt::print("Report, plots, tables and ParaView files: {}\n", s.output.string());
   return complete;
 }

@@ -230,6 +230,9 @@ bool read_settings(int argc, char** argv, Settings& s, std::string& config) {
   CLI::App app{"Direct shear test of cubical sand grains: shear strength at several normal stresses"};
   app.set_config("--config", "", "TOML file with any of these options");
   app.config_formatter(std::make_shared<StrictToml>(app));
+  app.footer(
+      "Ends with 0 when all was done, 1 when the run ended early or a part of the report could not be made, 2 when the "
+      "settings make no sense, 130 after Ctrl-C. What was found by then is saved and reported.");
   app.add_option("--size", s.size, "smoke (seconds), quick (minutes) or full (14256 grains)")->capture_default_str();
   add_specimen_options(app, s);
   add_contact_options(app, s);

@@ -120,7 +120,7 @@ void densify(Rig& rig, const Settings& s, dem::io::Progress& progress) {
     }
     // Of the two ways for it to end, the one that is nearer.
     progress.update(std::clamp(std::max(1.0 - share, (fraction - first) / (wanted - first)), 0.0, 1.0), [&] {
-      return fmt::format("solid fraction {:.3f} of {:.3f}, friction {:.2f}", fraction, wanted, share * s.friction);
+      return fmt::format("solid {:.3f} of {:.3f}, mu {:.2f}", fraction, wanted, share * s.friction);
     });
   }
   rig.set_friction(s.friction, s.wall_friction);
@@ -192,8 +192,7 @@ void consolidate(Rig& rig, const Settings& s, dem::io::Progress& progress) {
     const bool is_loaded = loaded(now, std::abs(force / weight - 1.0));
     done = is_slow && is_loaded;
     progress.update(std::clamp(force / weight, 0.0, 1.0), [&] {
-      return fmt::format("{:.1f} of {:.1f} kPa, lid at {:.3g} mm/s", 1e-3 * force / s.area(), 1e-3 * weight / s.area(),
-                         1e3 * rig.lid_speed());
+      return fmt::format("{:.1f} kPa, lid {:.3g} mm/s", 1e-3 * force / s.area(), 1e3 * rig.lid_speed());
     });
     if (!done && now - start > s.consolidation_limit) {
       throw Stopped(
@@ -240,7 +239,7 @@ void shear(Rig& rig, const Settings& s, LoadResult& result, dem::io::Progress& p
     result.samples.push_back({rig.world.time(), u, on_bottom.x / area, drive / area, rig.lid_low() - lid_at_start,
                               rig.lid_force() / area, (-on_bottom.z - below) / area});
     look(rig);
-    progress.update(u, [&] { return fmt::format("shear stress {:.1f} kPa", 1e-3 * on_bottom.x / area); });
+    progress.update(u, [&] { return fmt::format("{:.1f} kPa", 1e-3 * on_bottom.x / area); });
   }
   result.finished = true;
 }

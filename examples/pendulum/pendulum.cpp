@@ -2,26 +2,31 @@
 //
 //   pendulum --output out/pendulum
 //
-// writes pendulum.csv (time, angle, speed, forces in the pivot), draws it, and prints the errors against closed forms.
+// writes pendulum.csv (time, angle, speed, forces in the pivot), plots and a series for ParaView, and prints the errors
+// against closed forms.
 
-#include <dem/integrator/predictor_corrector.hpp>
+#include <dem/io/columns.hpp>
 #include <dem/io/csv.hpp>
 #include <dem/io/plot.hpp>
+#include <dem/io/vtk_machine.hpp>
 #include <dem/mbd/mbd.hpp>
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
 
 #include <cmath>
+#include <optional>
 #include <string>
 
 int main(int argc, char** argv) {
   double dt = 1e-4, duration = 10.0;
   std::string output = "pendulum";
+  bool vtk = true;
   CLI::App app("A pendulum, released horizontal, against closed forms");
   app.add_option("--dt", dt, "time step in s")->capture_default_str();
   app.add_option("--duration", duration, "in s")->capture_default_str();
   app.add_option("--output", output, "folder for the results")->capture_default_str();
+  app.add_flag("--vtk,!--no-vtk", vtk, "files for ParaView");
   CLI11_PARSE(app, argc, argv);
 
   try {
@@ -34,11 +39,15 @@ int main(int argc, char** argv) {
     const BodyId rod = machine.add_body(given_body("rod", mass, Vec3(1e-4, 1.0 / 12, 1.0 / 12)).at({length / 2, 0, 0}));
     const JointId pivot = machine.add_joint(revolute("pivot", machine.ground(), rod, {0, 0, 0}, Vec3::UnitY()));
 
-    // 2. A recorder turns it into rows of numbers.
+    // 2. A recorder turns it into rows of numbers; a mesh shows the rod.
     Recorder recorder(machine);
     recorder.add("time_s", [&] { return machine.time(); }).add(pivot);
     io::CsvWriter csv(output + "/pendulum.csv", recorder.columns());
-    io::Series angle{.name = "angle of the rod"};
+    io::Columns rows(recorder.columns());
+    const io::SurfaceMesh rod_mesh = io::box_mesh({length, 0.05, 0.05});
+    std::optional<io::VtkSeries> frames;
+    if (vtk) frames.emplace(output + "/pendulum.pvd");
+    long row = 0;
 
     // 3. Run. The joint's stiffness is derived from the masses and the time step.
     const auto energy = [&] { return energy_of(machine.parts(), machine.gravity).sum(); };
@@ -54,11 +63,10 @@ int main(int argc, char** argv) {
         ++half_periods;
       }
       last_speed = speed;
-      if (recorder.is_due(t, 0.01)) {
-        csv.row(recorder.sample());
-        angle.x.push_back(t);
-        angle.y.push_back(machine.coordinate(pivot));
-      }
+      if (!recorder.is_due(t, 0.01)) return;
+      csv.row(recorder.sample());
+      rows.row(recorder.sample());
+      if (vtk && row++ % 5 == 0) io::add_vtk_frame(*frames, t, machine, {{rod, &rod_mesh}}, "rod");
     });
     if (!report) {
       fmt::print(stderr, "{}\n", report.text);
@@ -75,9 +83,18 @@ int main(int argc, char** argv) {
       fmt::print("period                        {:.7f} s, closed form {:.7f} s, error {:.1e}\n", period, exact,
                  std::abs(period / exact - 1.0));
     }
-    io::render_plot(
-        {.title = "Pendulum, released horizontal", .x_label = "time [s]", .y_label = "angle [rad]", .series = {angle}},
-        output + "/pendulum");
+    io::render_plot({.title = "Pendulum, released horizontal",
+                     .x_label = "time [s]",
+                     .y_label = "angle [rad], speed [rad/s]",
+                     .series = {rows.series("time_s", "pivot_turn_rad", {.name = "angle"}),
+                                rows.series("time_s", "pivot_turn_speed_rad_per_s", {.name = "speed"})}},
+                    output + "/pendulum");
+    io::render_plot({.title = "What the pivot carries",
+                     .x_label = "time [s]",
+                     .y_label = "force on the rod [N]",
+                     .series = {rows.series("time_s", "pivot_force_x_N", {.name = "horizontal"}),
+                                rows.series("time_s", "pivot_force_z_N", {.name = "vertical"})}},
+                    output + "/reactions");
     fmt::print("results in {}\n", output);
   } catch (const dem::Error& e) {
     fmt::print(stderr, "{}\n", e.what());

@@ -3,10 +3,11 @@
 //
 //   squeezer --dt 5e-8 --output out/squeezer
 //
-// prints the seven angles at 0.03 s against the reference, writes squeezer.csv, and draws the angles.
+// prints the seven angles at 0.03 s against the reference, writes squeezer.csv, and draws the angles and what the
+// crank's bearing carries.
 
-#include <dem/integrator/predictor_corrector.hpp>
 #include <dem/io/ascii_table.hpp>
+#include <dem/io/columns.hpp>
 #include <dem/io/csv.hpp>
 #include <dem/io/plot.hpp>
 
@@ -17,6 +18,7 @@
 #include <cmath>
 #include <numbers>
 #include <string>
+#include <utility>
 
 #include "squeezer.hpp"
 
@@ -40,19 +42,13 @@ int main(int argc, char** argv) {
     }
     recorder.add(s.angles[0]);  // and the reaction of the crank's bearing
     io::CsvWriter csv(output + "/squeezer.csv", recorder.columns());
-    io::Plot plot{.title = "Andrews' squeezer", .x_label = "time [s]", .y_label = "angle [rad]"};
-    for (const char* name : squeezer::names) plot.series.push_back({.name = name});
+    io::Columns rows(recorder.columns());
 
     const auto clock = std::chrono::steady_clock::now();
     const mbd::MachineReport report = machine.run(0.03, dt, [&] {
       if (!recorder.is_due(machine.time(), 3e-5)) return;
-      const auto row = recorder.sample();
-      csv.row(row);
-      for (std::size_t k = 0; k < 7; ++k) {
-        plot.series[k].x.push_back(row[0]);
-        // Two of the angles make whole turns; the plot shows all of them within one.
-        plot.series[k].y.push_back(std::remainder(row[k + 1], 2.0 * std::numbers::pi));
-      }
+      csv.row(recorder.sample());
+      rows.row(recorder.sample());
     });
     const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - clock).count();
     if (!report) {
@@ -69,7 +65,20 @@ int main(int argc, char** argv) {
     fmt::print("{}", io::to_text(table));
     fmt::print("largest relative error {:.2e} at dt = {:g} s: {:.1f} digits, {:.2f} s of computing, {:.0f} steps/s\n",
                s.error(), dt, -std::log10(s.error()), seconds, 0.03 / dt / seconds);
+    io::Plot plot{.title = "Andrews' squeezer", .x_label = "time [s]", .y_label = "angle [rad]"};
+    for (const char* name : squeezer::names) {
+      io::Series angle = rows.series("time_s", fmt::format("{}_rad", name), {.name = name});
+      // Two of the angles make whole turns; the plot shows all of them within one.
+      for (double& q : angle.y) q = std::remainder(q, 2.0 * std::numbers::pi);
+      plot.series.push_back(std::move(angle));
+    }
     io::render_plot(plot, output + "/squeezer");
+    io::render_plot({.title = "What the crank's bearing carries",
+                     .x_label = "time [s]",
+                     .y_label = "force on the crank [N]",
+                     .series = {rows.series("time_s", "O_force_x_N", {.name = "x"}),
+                                rows.series("time_s", "O_force_y_N", {.name = "y"})}},
+                    output + "/reactions");
     fmt::print("results in {}\n", output);
   } catch (const dem::Error& e) {
     fmt::print(stderr, "{}\n", e.what());

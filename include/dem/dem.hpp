@@ -4,6 +4,7 @@
 
 #include <dem/broadphase/all_pairs.hpp>
 #include <dem/cohesion/constant.hpp>
+#include <dem/cohesion/contact_stress.hpp>
 #include <dem/cohesion/dmt.hpp>
 #include <dem/cohesion/jkr.hpp>
 #include <dem/cohesion/liquid_bridge.hpp>
@@ -19,6 +20,7 @@
 #include <dem/friction/varying.hpp>
 #include <dem/integrator/symplectic_euler.hpp>
 #include <dem/integrator/velocity_verlet.hpp>
+#include <dem/mbd/mbd.hpp>
 #include <dem/rolling/constant_torque.hpp>
 #include <dem/rolling/elastic_plastic.hpp>
 #include <dem/rolling/sum.hpp>
@@ -29,5 +31,6 @@
 #include <dem/shape/sphere_cluster.hpp>
 #include <dem/shape/superquadric.hpp>
 #include <dem/shape/superquadric_points.hpp>
+#include <dem/shape/superquadric_polyhedron.hpp>
 #include <dem/world/memory.hpp>
 #include <dem/world/world.hpp>

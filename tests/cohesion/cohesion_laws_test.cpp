@@ -2,6 +2,7 @@
 #include "core/error_of.hpp"
 
 #include <dem/cohesion/constant.hpp>
+#include <dem/cohesion/contact_stress.hpp>
 #include <dem/cohesion/dmt.hpp>
 #include <dem/cohesion/jkr.hpp>
 #include <dem/cohesion/liquid_bridge.hpp>
@@ -108,6 +109,22 @@ TEST_CASE("constant cohesion comes on over its depth") {
   CHECK_FALSE(reaches<Constant>);
 }
 
+TEST_CASE("a constant stress pulls on the area of Hertz's circle") {
+  ContactStress::History<double> h;
+  // Its radius squared is R* d.
+  for (const double d : {1e-9, 1e-6, 1e-5}) {
+    CHECK(force<ContactStress>({3e4}, d, h).pull == Approx(3e4 * M_PI * radius * d).epsilon(1e-14));
+    CHECK(force<ContactStress>({3e4}, d, h).grip == 0.0);
+  }
+  CHECK(force<ContactStress>({3e4}, 0.0, h).pull == 0.0);
+  CHECK(force<ContactStress>({3e4}, -1e-6, h).pull == 0.0);
+  CHECK(ContactStress::stiffness({3e4}, {1e-6, 0, radius, 1, 1}) == Approx(3e4 * M_PI * radius).epsilon(1e-14));
+  CHECK_FALSE(reaches<ContactStress>);
+  // It balances Hertz's spring where 4/3 E* sqrt(R* d) = pi s R*.
+  const double stress = 1e5, even = std::pow(0.75 * M_PI * stress / modulus, 2) * radius;
+  CHECK(force<ContactStress>({stress}, even, h).pull == Approx(hertz(even)).epsilon(1e-12));
+}
+
 TEST_CASE("a liquid bridge forms at the touch, weakens with the gap, and breaks") {
   const double tension = 0.072, angle = 0.3, volume = 1e-15;
   const auto p = LiquidBridge::of(tension, angle, volume);
@@ -136,10 +153,11 @@ TEST_CASE("a liquid bridge forms at the touch, weakens with the gap, and breaks"
   CHECK(steepest > 0.99 * stiffness);
 }
 
-TEMPLATE_TEST_CASE("every lane of a pack gets what a double gets from the cohesion laws", "", Constant, DMT, JKR,
-                   LiquidBridge) {
+TEMPLATE_TEST_CASE("every lane of a pack gets what a double gets from the cohesion laws", "", Constant, ContactStress,
+                   DMT, JKR, LiquidBridge) {
   typename TestType::template Parameters<double> p;
   if constexpr (std::is_same_v<TestType, Constant>) p = {1e-5, 5e-7};
+  if constexpr (std::is_same_v<TestType, ContactStress>) p = {1e5};
   if constexpr (std::is_same_v<TestType, DMT>) p = {work};
   if constexpr (std::is_same_v<TestType, JKR>) p = sticky;
   if constexpr (std::is_same_v<TestType, LiquidBridge>) p = LiquidBridge::of(0.07, 0.1, 1e-19);
@@ -160,6 +178,7 @@ TEST_CASE("no cohesion is no force and no memory") {
 TEST_CASE("cohesion constants that make no sense are refused") {
   check_refused([] { Constant::check({-1.0}); }, "cohesive force is -1 N");
   check_refused([] { Constant::check({1.0, -1.0}); }, "depth of a cohesive force is -1 m");
+  check_refused([] { ContactStress::check({-1.0}); }, "adhesive stress is -1 Pa");
   check_refused([] { DMT::check({-1.0}); }, "work of adhesion is -1 J/m^2");
   check_refused([] { JKR::check({1.0, 0.0}); }, "effective modulus is 0 Pa");
   check_refused([] { LiquidBridge::check({-1.0, 1.0, 1.0}); }, "wetting tension of a liquid bridge is -1 N/m");

@@ -1,6 +1,7 @@
 // The kernels that device code may call compile for a device. Nothing is run.
 
 #include <dem/cohesion/constant.hpp>
+#include <dem/cohesion/contact_stress.hpp>
 #include <dem/cohesion/dmt.hpp>
 #include <dem/cohesion/jkr.hpp>
 #include <dem/cohesion/liquid_bridge.hpp>
@@ -121,6 +122,9 @@ template void launch(LawContact<contact::Hysteretic, friction::CoulombViscous,
                      Vector3<double>*);
 template void launch(
     LawContact<contact::Penalty, friction::Varying<friction::AsperitySpring>, rolling::None, cohesion::Constant>*,
+    Vector3<double>*);
+template void launch(
+    LawContact<contact::LinearSpringDashpot, friction::CundallStrack, rolling::None, cohesion::ContactStress>*,
     Vector3<double>*);
 
 struct Body {

@@ -1,9 +1,13 @@
 #include "catch.hpp"
 
+#include <dem/io/file.hpp>
+#include <direct_shear/old_results.hpp>
 #include <direct_shear/results.hpp>
 
 #include <cmath>
 #include <numbers>
+
+#include <unistd.h>
 
 using Catch::Approx;
 using namespace direct_shear;
@@ -173,4 +177,37 @@ TEST_CASE("relative density is not known of what is no solid fraction") {
   CHECK(std::isnan(relative_density(1.01)));
   CHECK(std::isnan(relative_density(0.0)));
   CHECK(std::isnan(relative_density(not_known)));
+}
+
+TEST_CASE("what an earlier run left is removed, and nothing else") {
+  namespace fs = std::filesystem;
+  const fs::path folder = fs::temp_directory_path() / ("dem_old_results_test_" + std::to_string(::getpid()));
+  fs::remove_all(folder);
+  CHECK_NOTHROW(remove_old_results(folder));  // there is none yet
+  const std::vector<std::string> old = {"results.csv",
+                                        "report.html",
+                                        "shear_stress.gp",
+                                        "dilation.svg",
+                                        "mohr_coulomb.png",
+                                        "load_16.9kPa.csv",
+                                        "load_16.9kPa.pvd",
+                                        "load_16.9kPa/grains_000000.vtp",
+                                        "load_16.9kPa/polyhedra_1000000.vtp",
+                                        "load_44.1kPa/boxes_000001.vtp"};
+  const std::vector<std::string> others = {"settings.toml",     "packing.txt",         "load_16.9kPa.csv.bak",
+                                           "load_cell.csv",     "my_results.csv",      "load_44.1kPa/notes.txt",
+                                           "load_a/grains.txt", "sub/load_1.0kPa.csv", "shear_stress.txt"};
+  for (const auto& name : old) dem::io::write_file(folder / name, "old");
+  for (const auto& name : others) dem::io::write_file(folder / name, "mine");
+  remove_old_results(folder);
+  for (const auto& name : old) {
+    INFO(name);
+    CHECK_FALSE(fs::exists(folder / name));
+  }
+  CHECK_FALSE(fs::exists(folder / "load_16.9kPa"));
+  for (const auto& name : others) {
+    INFO(name);
+    CHECK(fs::exists(folder / name));
+  }
+  fs::remove_all(folder);
 }

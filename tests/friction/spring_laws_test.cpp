@@ -1,6 +1,7 @@
 #include "contact/lanes.hpp"
 #include "core/error_of.hpp"
 
+#include <dem/contact/hertz.hpp>
 #include <dem/friction/asperity_spring.hpp>
 #include <dem/friction/coulomb_viscous.hpp>
 #include <dem/friction/cundall_strack.hpp>
@@ -89,6 +90,57 @@ TEST_CASE("Mindlin's spring gives back no more than it took when the contact shr
   while (h.spring_force.x > 0.0) go(-0.01, 0.25e-5);
   CHECK(work > 0.0);
   CHECK(work < put_in);
+}
+
+TEST_CASE("the tangential spring of two materials follows from their Poisson ratios") {
+  using namespace dem::contact;
+  for (const double nu : {0.0, 0.2, 0.3, 0.5}) {
+    const ElasticPair pair = elastic_pair({7e10, nu});
+    CHECK(tangential_share(pair) == Approx(2 * (1 - nu) / (2 - nu)).epsilon(1e-14));
+    CHECK(CundallStrack::with(pair, 0.4, 1e5).stiffness == Approx(2 * (1 - nu) / (2 - nu) * 1e5).epsilon(1e-14));
+    // It is Mindlin's stiffness over Hertz's, at any overlap.
+    const NormalState<double> s = {1e-6, 0, 1e-3, 7e-5, dt};
+    CHECK(Mindlin::stiffness(Mindlin::with(pair, 0.4), s) ==
+          Approx(tangential_share(pair) * Hertz::stiffness({pair.modulus, 0.0}, s)).epsilon(1e-14));
+  }
+  // A soft and a hard material: nearly the soft one's own ratio on a rigid wall, (1 - nu^2)/E and (2 - nu)/G of it
+  // only.
+  const ElasticPair on_wall = elastic_pair({1e7, 0.4}, {1e20, 0.3});
+  CHECK(tangential_share(on_wall) == Approx(2 * (1 - 0.4) / (2 - 0.4)).epsilon(1e-10));
+  CHECK(CundallStrack::with(on_wall, 0.4, 1e5).coefficient == 0.4);
+  CHECK(CundallStrack::with(on_wall, 0.4, 1e5).damping_ratio == 0.0);
+  check_refused([] { CundallStrack::with_restitution(elastic_pair({1e7, 0.4}), 0.4, 1e5, 0.0); }, "restitution is 0");
+  check_refused([] { Mindlin::with_restitution(elastic_pair({1e7, 0.4}), 0.4, 1.1); }, "restitution is 1.1");
+}
+
+TEST_CASE("a contact that sticks swings back with the restitution that was asked for") {
+  // The contact point of two solid spheres moves like 2/7 of their effective mass on the spring and dashpot.
+  const auto pair = dem::contact::elastic_pair({7e10, 0.2});
+  const double mass = 2.0 / 7.0 * 7e-5, overlap = 1e-6;
+  const auto swing = [&](auto law, const auto& p, double stiffness) {
+    using Law = decltype(law);
+    TangentialState<double> s = {{0.01, 0, 0}, 1e9, overlap, 1e-3, 7e-5, std::sqrt(mass / stiffness) / 20000.0};
+    typename Law::template History<double> h = {};
+    double stretch = 0.0;
+    do {
+      const double f = Law::force(p, s, h).x;  // the law's own spring is a step ahead of stretch: first order
+      stretch += s.time_step * s.velocity.x;
+      s.velocity.x += f / mass * s.time_step;
+    } while (stretch > 0.0);
+    return -s.velocity.x / 0.01;
+  };
+  for (const double e : {1.0, 0.9, 0.5, 0.1}) {
+    // Some 6e4 steps of first order each: 2e-4 of the speed.
+    const auto linear = CundallStrack::with_restitution(pair, 1.0, 1e5, e);
+    CHECK(swing(CundallStrack{}, linear, linear.stiffness) == Approx(e).margin(2e-4));
+    const auto mindlin = Mindlin::with_restitution(pair, 1.0, e);
+    CHECK(swing(Mindlin{}, mindlin, Mindlin::stiffness(mindlin, {overlap, 0, 1e-3, 7e-5, dt})) ==
+          Approx(e).margin(2e-4));
+    // The dashpot of codes with the whole effective mass, 2 sqrt(5/6) b sqrt(m* kt), for the same b.
+    const dem::contact::NormalState<double> state = {overlap, 0, 1e-3, 7e-5, dt};
+    CHECK(std::sqrt(5.0 / 6.0 * 3.5) * CundallStrack::damping(linear, state) ==
+          Approx(2 * std::sqrt(5.0 / 6.0) * linear.damping_ratio * std::sqrt(7e-5 * linear.stiffness)));
+  }
 }
 
 TEST_CASE("the dashpots of springs never push over the limit") {

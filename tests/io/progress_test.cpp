@@ -137,8 +137,30 @@ TEST_CASE("a bar never takes more cells than the terminal has") {
     INFO(line);
     CHECK(dem::io::display_width(line) - 1 <= width - 1);  // -1: the leading \r takes no cell
     CHECK(line.find('\n') == std::string::npos);
-    CHECK((line.find('[') != std::string::npos) == (width >= 80));
+    CHECK((line.find('[') != std::string::npos) == (width >= 200));  // the remark takes the place of the bar
   }
+}
+
+TEST_CASE("the bar makes room for the status on a terminal of 80 cells") {
+  Bench bench;
+  Progress progress(bench.options(true, 9));
+  for (int k = 0; k < 4; ++k) progress.begin("pour");
+  progress.begin("shear at 44.1 kPa", 3600);
+  bench.out.take();
+  bench.now += 1;
+  progress.update(1, "43.2 kPa");
+  CHECK(bench.out.take() == "\r[5/9] shear at 44.1 kPa  [.............]    0 %  59 min 59 s left  43.2 kPa");
+  bench.now += 1;
+  progress.update(2, "shear 43.2 kPa");  // ten cells are the least
+  CHECK(bench.out.take() == "\r[5/9] shear at 44.1 kPa  [..........]    0 %  59 min 58 s left  shear 43.2 kPa");
+  bench.now += 1;
+  progress.update(3, "shear stress 43.2 kPa");
+  CHECK(bench.out.take() == "\r[5/9] shear at 44.1 kPa    0 %  59 min 57 s left  shear stress 43.2 kPa       ");
+  bench.now += 1;
+  progress.update(4, "43.2 kPa");  // the bar does not come and go
+  CHECK(bench.out.take() == "\r[5/9] shear at 44.1 kPa    0 %  59 min 56 s left  43.2 kPa             ");
+  progress.begin("shear at 71.4 kPa", 3600);
+  CHECK_THAT(bench.out.take(), Catch::Matchers::ContainsSubstring("[.............]"));
 }
 
 TEST_CASE("the status text is made only when it is shown") {

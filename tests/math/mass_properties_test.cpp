@@ -79,6 +79,23 @@ TEST_CASE("balls that do not touch add up") {
   const double across =
       a.inertia(0, 0) + a.volume * std::pow(centre + 1, 2) + b.inertia(0, 0) + b.volume * std::pow(1 - centre, 2);
   CHECK(p.inertia(0, 0) == Approx(across).epsilon(1e-3));
+  // The closed form is the same to rounding.
+  REQUIRE_FALSE(dem::any_overlap(balls));
+  const auto exact = dem::separate_mass_properties(balls);
+  CHECK(exact.volume == Approx(a.volume + b.volume).epsilon(1e-15));
+  CHECK(exact.centre.z() == Approx(centre).epsilon(1e-15));
+  CHECK(exact.inertia(0, 0) == Approx(across).epsilon(1e-14));
+  CHECK(exact.inertia(2, 2) == Approx(a.inertia(2, 2) + b.inertia(2, 2)).epsilon(1e-14));
+}
+
+TEST_CASE("balls overlap when they share more than a touch") {
+  const auto overlap = [](double distance) {
+    return dem::any_overlap(std::array<Ball, 2>{{{{0, 0, 0}, 0.4}, {{0, distance, 0}, 0.2}}});
+  };
+  CHECK_FALSE(overlap(0.6));
+  CHECK_FALSE(overlap(0.6 - 1e-7));  // rounding, less than a millionth of 0.2
+  CHECK(overlap(0.6 - 3e-7));
+  CHECK(overlap(0.0));  // one inside the other
 }
 
 TEST_CASE("principal axes bring an inertia tensor to its diagonal") {

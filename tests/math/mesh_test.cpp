@@ -3,6 +3,7 @@
 #include <dem/math/mass_properties.hpp>
 #include <dem/math/mesh_repair.hpp>
 #include <dem/math/mesh_shapes.hpp>
+#include <dem/math/rotation.hpp>
 
 #include <random>
 
@@ -193,6 +194,45 @@ TEST_CASE("a solid inside out is turned; a hollow inside stays a hollow") {
   IndexedMesh two = mesh::box({2, 2, 2});  // side by side: each has to look outward
   two += mesh::box({1, 1, 1}).flipped().moved({5, 0, 0});
   CHECK(dem::repaired(two).report.enclosed_volume == Approx(9.0));
+}
+
+TEST_CASE("a hub in the hole of a tyre is not inside of the tyre") {
+  // Each has to look outward, whichever of them was given inside out.
+  const IndexedMesh tyre = mesh::tyre(1.0, 0.25, 600), hub = mesh::cylinder(0.2, 0.2, 24),
+                    block = mesh::box({0.2, 0.2, 0.2});
+  for (const IndexedMesh& inner : {hub, block}) {
+    const double volume = dem::repaired(tyre).report.enclosed_volume + dem::repaired(inner).report.enclosed_volume;
+    for (int k = 0; k < 8; ++k) {
+      IndexedMesh ring = k & 1 ? tyre.flipped() : tyre, middle = k & 2 ? inner.flipped() : inner;
+      IndexedMesh both = k & 4 ? middle : ring;
+      both += k & 4 ? ring : middle;
+      const auto r = dem::repaired(both);
+      CHECK(r.report.enclosed_volume == Approx(volume).epsilon(1e-12));
+      CHECK(r.report.flipped_triangles == (k & 1 ? tyre.triangles.size() : 0) + (k & 2 ? inner.triangles.size() : 0));
+      CHECK(dem::repaired(both, MeshFacing::inward).report.enclosed_volume == Approx(-volume).epsilon(1e-12));
+    }
+  }
+  // A hollow in the rubber is inside of it: it keeps its way relative to the tyre's.
+  const IndexedMesh bubble = mesh::sphere(0.05, 1).flipped().moved({0.375, 0, 0});
+  IndexedMesh hollow = tyre;
+  hollow += bubble;
+  const double rubber = dem::repaired(tyre).report.enclosed_volume - dem::mesh_mass_properties(bubble.flipped()).volume;
+  for (const IndexedMesh& given : {hollow, hollow.flipped()}) {
+    CHECK(dem::repaired(given).report.enclosed_volume == Approx(rubber).epsilon(1e-12));
+  }
+}
+
+TEST_CASE("pieces that touch from inside are inside, those that touch from outside are not") {
+  IndexedMesh inside = mesh::box({2, 2, 2}, 2);  // a hollow that touches a wall with its whole face
+  inside += mesh::box({1, 1, 1}).flipped().moved({0.5, 0.1, 0.1});
+  CHECK(dem::repaired(inside.flipped()).report.enclosed_volume == Approx(7.0));
+  IndexedMesh beside = mesh::tyre(1.0, 0.25, 600);  // a ring's bounding box holds a block that touches its flat cells
+  const Vec3 on_skin = (beside.corner(0, 0) + beside.corner(0, 1) + beside.corner(0, 2)) / 3.0;
+  const Vec3 out = beside.area_vector(0).normalized();
+  beside +=
+      mesh::box({0.01, 0.01, 0.01}).flipped().moved(on_skin + 0.005 * out, dem::rotation_between(Vec3::UnitZ(), out));
+  const double volume = dem::repaired(mesh::tyre(1.0, 0.25, 600)).report.enclosed_volume;
+  CHECK(dem::repaired(beside).report.enclosed_volume == Approx(volume + 1e-6).epsilon(1e-12));
 }
 
 TEST_CASE("meshes that make no sense are refused") {

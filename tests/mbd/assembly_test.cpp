@@ -27,7 +27,7 @@ TEST_CASE("wrong assemblies are refused in words") {
              Contains("limits of revolute joint 'big end' are 1 to -1"));
   CHECK_THAT(refused(spherical("ball", a, b, {0.5, 0, 0}).with_limits(0, 1)), Contains("no coordinate of its own"));
   CHECK_THAT(refused(revolute("pin", a, b, {0.5, 0, 0}, Z).with_limits(Freedom::slide, 0, 1)),
-             Contains("'slide' of a revolute joint") && Contains("only: angle"));
+             Contains("'slide' of a revolute joint") && Contains("only: turn"));
   CHECK_THAT(refused(fixed("weld", a, b, X).with_limits(Freedom::turn, 0, 1)), Contains("no coordinate free"));
   CHECK_THAT(refused(revolute("pin", a, b, {0.5, 0, 0}, Z).with_limits(0, 1).with_limits(0, 2)),
              Contains("two pairs of limits"));
@@ -56,13 +56,75 @@ TEST_CASE("wrong assemblies are refused in words") {
              Contains("actuator 'ram'") && Contains("name one of its freedoms: bend"));
   CHECK_THAT(message_of([&] { m.add_coupling({"gear", {{ball, 1.0}}}); }), Contains("needs at least 2"));
   CHECK_THAT(message_of([&] { m.add_sensor(joint_sensor("cell", JointId(4), 0.1)); }),
-             Contains("sensor 'cell' measures number 4"));
+             Contains("sensor 'cell' measures joint 4, but the machine has 1 of them"));
+  CHECK_THAT(message_of([&] { m.add_sensor(contact_sensor("cell", BodyId(), 0.1)); }),
+             Contains("sensor 'cell' measures body (never added)"));
   CHECK_THAT(message_of([&] { m.set_friction_preload(ball, 1.0); }), Contains("has no friction to preload"));
   CHECK_THAT(message_of([&] { m.initialise(0.0, Vec3::Zero()); }),
              Contains("the stiffness of spherical joint 'ball' is to be derived") && Contains("design_for(dt)"));
-  CHECK_THAT(message_of([&] { m.step(0.0); }), Contains("time step is 0 s"));
+  CHECK_THAT(message_of([&] { (void)m.step(0.0); }), Contains("time step is 0 s"));
   m.substeps = 0;
   CHECK_THAT(message_of([&] { m.design_for(1e-3); }), Contains("substeps are 0"));
+}
+
+TEST_CASE("a joint whose points and axes nearly meet starts at rest, in the middle of the gap") {
+  for (const JointKind kind :
+       {JointKind::fixed, JointKind::revolute, JointKind::spherical, JointKind::cylindrical, JointKind::prismatic,
+        JointKind::planar, JointKind::point_on_line, JointKind::point_on_plane, JointKind::universal}) {
+    INFO(name_of(kind));
+    Machine<PredictorCorrector> m;
+    m.gravity.setZero();
+    const BodyId a = m.add_body(brick("a", {0, 0, 0})), b = m.add_body(brick("b", {1, 0, 0}));
+    JointSpec s = joint(kind, "j", a, b, {0.5, 0, 0}, Z);
+    s.at_b = Vec3(0.501, -0.0005, 0.0007);  // 1.3 mm
+    if (kind != JointKind::universal) s.axis_b = Vec3(0, 1e-3, 1.0);
+    s.tolerance = 2e-3;
+    const JointId j = m.add_joint(s);
+    REQUIRE(m.step(1e-5));
+    // Rounding of 1e-16 m times the derived stiffness, which is below 1e10 N/m.
+    CHECK(norm(m.reaction(j).force) < 1e-5);
+    CHECK(norm(m.reaction(j).torque) < 1e-5);
+    CHECK(m.violation(j).displacement < 1e-15);
+    CHECK(m.violation(j).rotation < 1e-15);
+    // What is free keeps its gap.
+    const bool slides_z = hold_of(kind) == Hold::line, slides_xy = hold_of(kind) == Hold::plane;
+    if (slides_z) CHECK(m.coordinate(j, Freedom::slide) == Approx(0.0007).epsilon(2e-3));  // the axis leans by 5e-4
+    if (slides_xy) CHECK(m.coordinate(j, Freedom::slide_x) == Approx(0.001).epsilon(2e-3));
+  }
+}
+
+TEST_CASE("starting_at sets a turn or a slide, and is refused where nothing can start elsewhere") {
+  Machine<PredictorCorrector> m;
+  const BodyId a = m.add_body(brick("a", {0, 0, 0}));
+  const auto at = [&](JointKind kind) { return joint(kind, "j", m.ground(), a, {0, 0, 0}, Z); };
+  const JointId sleeve = m.add_joint(at(JointKind::cylindrical).starting_at(0.3).starting_at(Freedom::slide, 0.02));
+  CHECK(m.coordinate(sleeve) == Approx(0.3));
+  CHECK(m.coordinate(sleeve, Freedom::slide) == Approx(0.02));
+  const JointId wire = m.add_joint(at(JointKind::point_on_line).starting_at(0.05));
+  CHECK(m.coordinate(wire) == Approx(0.05));
+  const auto refused = [&](const JointSpec& s) { return message_of([&] { m.add_joint(s); }); };
+  CHECK_THAT(refused(at(JointKind::spherical).starting_at(0.1)),
+             Contains("spherical joint 'j'") && Contains("no coordinate of its own"));
+  CHECK_THAT(refused(at(JointKind::universal).starting_at(0.1)), Contains("bend_x, bend_y"));
+  CHECK_THAT(refused(at(JointKind::fixed).starting_at(0.1)), Contains("no coordinate free"));
+  CHECK_THAT(refused(at(JointKind::planar).starting_at(Freedom::slide_x, 0.1)),
+             Contains("its slide_x a value") && Contains("move a body"));
+  CHECK_THAT(refused(distance("rod", m.ground(), X, a, Y).starting_at(2.0)), Contains("its length a value"));
+}
+
+TEST_CASE("stops of a bushing or a free joint need a time step, too") {
+  for (const bool rubber : {true, false}) {
+    Machine<PredictorCorrector> m;
+    const BodyId a = m.add_body(brick("a", {0, 0, 0}));
+    const Vec3 k(100, 100, 100), none = Vec3::Zero();
+    const JointSpec s = rubber ? bushing("buffer", m.ground(), a, {0, 0, 0}, Z, k, none, none, none)
+                               : free_joint("buffer", m.ground(), a, {0, 0, 0}, Z);
+    m.add_joint(s.with_limits(Freedom::slide, -0.1, 0.1));
+    check_refused([&] { m.initialise(0.0, m.gravity); }, "stops of 'buffer'", "design_for(dt)");
+    m.design_for(1e-3);
+    m.initialise(0.0, m.gravity);
+    CHECK(m.stops(JointId(0), Freedom::slide)->stiffness > 0.0);
+  }
 }
 
 TEST_CASE("connection points that meet are joined, wherever the bodies are") {
@@ -82,7 +144,7 @@ TEST_CASE("bodies and joints can be added while a machine runs") {
   const BodyId a = m.add_body(brick("a", {0, 0, 0}));
   m.add_joint(fixed("weld", m.ground(), a, {0, 0, 0}));
   CHECK_FALSE(m.is_initialised());
-  m.run(0.1, 1e-4);
+  REQUIRE(m.run(0.1, 1e-4));
   CHECK(m.is_initialised());
   const BodyId b = m.add_body(brick("b", {0.5, 0, 0}));
   const JointId second = m.add_joint(fixed("second", a, b, {0.2, 0, 0}));
@@ -154,7 +216,7 @@ TEST_CASE("a machine that blows up says which body, when, and what to change") {
   Machine<PredictorCorrector> m;
   const BodyId b = m.add_body(brick("pendulum bob", {1, 0, 0}));
   m.add_joint(spherical("pivot", m.ground(), b, {0, 0, 0}).with_stiffness(1e8, 0).with_damping(0, 0));
-  check_refused([&] { m.run(1.0, 1e-2); }, "time step 0.01 s", "largest stable one", "spherical joint 'pivot'",
+  check_refused([&] { (void)m.run(1.0, 1e-2); }, "time step 0.01 s", "largest stable one", "spherical joint 'pivot'",
                 "allow_unstable_time_step");
   m.allow_unstable_time_step = true;
   const MachineReport report = m.run(1.0, 1e-2);
@@ -212,23 +274,23 @@ TEST_CASE("a machine alone takes its substeps, and derives for them") {
   Machine<SymplecticEuler> m;
   const BodyId b = m.add_body(given_body("b", 2.0, Vec3(0.1, 0.1, 0.1)));
   const JointId weld = m.add_joint(fixed("weld", m.ground(), b, {0, 0, 0}));
-  m.run(0.01, 1e-3);
+  REQUIRE(m.run(0.01, 1e-3));
   const double k = m.joint(weld).k;
   m.substeps = 4;
   CHECK_FALSE(m.is_initialised());
-  m.run(0.01, 1e-3);
+  REQUIRE(m.run(0.01, 1e-3));
   CHECK(m.joint(weld).k == Approx(16.0 * k));
   CHECK(m.time() == Approx(0.02));
   const BodyId c = m.add_body(given_body("c", 2.0, Vec3(0.1, 0.1, 0.1)).at({1, 0, 0}));
   m.add_spring(spring("stiff", m.ground(), {0.5, 0, 0}, c, {1, 0, 0}, 2e8));  // 1e4 rad/s: 2e-4 s
   m.substeps = 1;
   for (int again = 0; again < 2; ++again) {
-    check_refused([&] { m.step(1e-3); }, "spring 'stiff'", "raise substeps (now 1)");
+    check_refused([&] { (void)m.step(1e-3); }, "spring 'stiff'", "raise substeps (now 1)");
   }
   m.substeps = 8;
   CHECK(m.step(1e-3));
-  check_refused([&] { m.run(-1.0, 1e-3); }, "time to run is -1 s");
-  check_refused([&] { m.run(std::nan(""), 1e-3); }, "time to run is nan s");
+  check_refused([&] { (void)m.run(-1.0, 1e-3); }, "time to run is -1 s");
+  check_refused([&] { (void)m.run(std::nan(""), 1e-3); }, "time to run is nan s");
 }
 
 TEST_CASE("joints that cannot be meant are refused") {
@@ -238,9 +300,10 @@ TEST_CASE("joints that cannot be meant are refused") {
   const auto refused = [&](const JointSpec& s) { return message_of([&] { m.add_joint(s); }); };
   CHECK_THAT(
       refused(revolute("hinge", m.ground(), a, X, Z).with_limits(0.5, 1.0)),
-      Contains("limits of revolute joint 'hinge' are 0.5 to 1, but its angle starts at 0") && Contains("starting_at"));
+      Contains("limits of revolute joint 'hinge' are 0.5 to 1, but its turn starts at 0") && Contains("starting_at"));
   m.add_joint(revolute("hinge", m.ground(), a, X, Z).starting_at(0.7).with_limits(0.5, 1.0));
-  CHECK_THAT(refused(revolute("nan", m.ground(), a, X, Z).starting_at(std::nan(""))), Contains("starts at nan"));
+  CHECK_THAT(refused(revolute("nan", m.ground(), a, X, Z).starting_at(std::nan(""))),
+             Contains("turn of revolute joint 'nan' starts at nan"));
   JointSpec rod = distance("rod", m.ground(), Vec3::Zero(), a, X);
   rod.length = 1.001;
   CHECK_THAT(refused(rod), Contains("is 1.001 m long, but its points are 1 m apart") && Contains("under load"));
@@ -250,7 +313,7 @@ TEST_CASE("joints that cannot be meant are refused") {
   m.add_joint(free_joint("gauge", m.ground(), wall, X, Z));
   // `own` is another name for a coordinate, not another coordinate.
   CHECK_THAT(refused(revolute("pin", m.ground(), a, X, Z).with_limits(-1, 1).with_limits(Freedom::turn, -1, 2)),
-             Contains("two pairs of limits for its angle"));
+             Contains("two pairs of limits for its turn"));
   const JointId slide = m.add_joint(prismatic("slide", m.ground(), a, X, X).with_limits(-1, 1));
   CHECK(m.stops(slide, Freedom::slide) == m.stops(slide));
   CHECK(m.stops(slide) != nullptr);
@@ -291,18 +354,27 @@ TEST_CASE("a recorder samples joints, bodies and the user's own numbers") {
   const BodyId b = m.add_body(brick("rod", {1, 0, 0}));
   const JointId hinge = m.add_joint(revolute("hinge", m.ground(), b, {0, 0, 0}, Y));
   Recorder recorder(m);
-  recorder.add("time_s", [&] { return m.time(); }).add(hinge).add(b);
-  REQUIRE(recorder.columns().size() == 1 + 8 + 6);
-  CHECK(recorder.columns()[1] == "hinge_angle_rad");
+  const ActuatorId servo = m.add_actuator(joint_actuator("servo", hinge, 10.0, 1.0));
+  recorder.add("time_s", [&] { return m.time(); }).add(hinge).add(b).add(servo);
+  REQUIRE(recorder.columns().size() == 1 + 8 + 6 + 3);
+  CHECK(recorder.columns()[15] == "servo_coordinate");
+  CHECK(recorder.columns()[17] == "servo_force");
+  check_refused([&] { recorder.add(ActuatorId(1)); }, "an actuator that the machine does not have");
+  CHECK(recorder.columns()[1] == "hinge_turn_rad");
   CHECK(recorder.columns()[3] == "hinge_force_x_N");
   int rows = 0;
-  m.run(0.1, 1e-3, [&] {
+  const MachineReport report = m.run(0.1, 1e-3, [&] {
     if (recorder.is_due(m.time(), 0.01)) {
       const auto row = recorder.sample();
       CHECK(row[0] == m.time());
       CHECK(row[1] == m.coordinate(hinge));
+      // The actuator's numbers are those of the last force evaluation, at the predicted end of the step.
+      CHECK(row[15] == Approx(m.coordinate(hinge)).margin(1e-5));
+      CHECK(row[16] == m.actuator(servo).speed);
+      CHECK(row[17] == m.actuator(servo).force);
       rows += 1;
     }
   });
+  REQUIRE(report);
   CHECK(rows == 10);
 }

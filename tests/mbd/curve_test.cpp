@@ -33,5 +33,8 @@ TEST_CASE("signals know their rate") {
   }
   CHECK(Signal::held(1.0, 3.0)(7.0).rate == 3.0);
   CHECK(Signal::ramp(0.0, 2.0, 0.0, 1.0)(5.0).value == 2.0);
+  CHECK_THAT(message_of([] { Signal::ramp(0, 0.5, 1, 0.5); }),
+             Contains("ramp ends at 0.5 s") && Contains("start, 1 s"));
+  CHECK(Signal::ramp(0.3, 0.5, 1, 1)(2.0).value == 0.3);
   CHECK_THAT(message_of([] { Signal::smooth_step(0, 1, 2, 2); }), Contains("must end after its start"));
 }

@@ -88,7 +88,7 @@ TEST_CASE("stops hold the slide of a cylindrical joint, the cone of a ball joint
   m.add_load(applied_force("push", rod, {0, 0, 0}, Z, 4.0));
   m.add_load(applied_torque("tilt", ball, Vec3(1, 1, 0), 3.0));
   m.add_load(applied_torque("twist", shaft, Y, -2.0));
-  m.run(3.0, 1e-3);
+  REQUIRE(m.run(3.0, 1e-3));
   // At rest against its stop each coordinate is at the limit, less what the load presses into the derived spring, and
   // the stop's force balances the load.
   CHECK(m.coordinate(sleeve, Freedom::slide) == Approx(0.2).margin(1e-4));
@@ -114,7 +114,7 @@ TEST_CASE(
   // The nut turns as it slides: its inertia counts as m + J/lead^2 = 2 kg. On 8 N/m with 8 N s/m that is the critically
   // damped oscillator of 2 rad/s, x = 0.05 (1 - (1 + 2 t) exp(-2 t)).
   m.add_actuator(joint_actuator("push", thread, 8.0, 8.0, 0.05).along(Freedom::slide));
-  m.run(1.0, 1e-3);
+  REQUIRE(m.run(1.0, 1e-3));
   const double expected = 0.05 * (1.0 - 3.0 * std::exp(-2.0));
   // Half of the push, at most 0.2 N, goes through the screw's spring, which gives way by that over its stiffness.
   const double give = 0.2 / m.coupling(coupling).k;
@@ -133,9 +133,9 @@ TEST_CASE("friction brakes the bending of a universal joint") {
   const JointId cross = m.add_joint(universal("cross", m.ground(), shaft, {0, 0, 0}, Z, Z)
                                         .with_friction({.coefficient = 0.5, .radius = 0.02, .preload = 100.0}));
   m.body(shaft).motion.angular_velocity = {2.0, 0, 0};
-  m.run(0.1, 1e-4);
+  REQUIRE(m.run(0.1, 1e-4));
   CHECK(m.speed(cross, Freedom::bend_x) == Approx(1.0).epsilon(0.01));  // the spring takes some steps to build up
-  m.run(0.4, 1e-4);
+  REQUIRE(m.run(0.4, 1e-4));
   CHECK(std::abs(m.speed(cross, Freedom::bend_x)) < 0.01);
   CHECK(m.coordinate(cross, Freedom::bend_x) == Approx(0.2).epsilon(0.02));
 }

@@ -31,6 +31,11 @@ TEST_CASE("sensors read contacts, sums, joints and actuators") {
   Machine<PredictorCorrector> m;
   const BodyId lid = m.add_body(given_body("lid", 2.0, Vec3(0.1, 0.1, 0.1)));
   const JointId weld = m.add_joint(fixed("weld", m.ground(), lid, {0, 0, 0}));
+  // A weight that a ram holds up, critically damped with 100/s: at rest long before the window begins.
+  const BodyId weight = m.add_body(given_body("weight", 2.0, Vec3(0.1, 0.1, 0.1)).at({1, 0, 0}));
+  const JointId guide = m.add_joint(prismatic("guide", m.ground(), weight, {1, 0, 0}, Z));
+  const ActuatorId ram = m.add_actuator(joint_actuator("ram", guide, 2e4, 400.0));
+  const SensorId push = m.add_sensor(actuator_sensor("push", ram, 0.05));
   const SensorId contact = m.add_sensor(contact_sensor("grains on the lid", lid, 0.05));
   const SensorId total = m.add_sensor(total_force_sensor("all on the lid", lid, 0.05));
   const SensorId joint = m.add_sensor(joint_sensor("load cell", weld, 0.05));
@@ -53,4 +58,6 @@ TEST_CASE("sensors read contacts, sums, joints and actuators") {
   CHECK(m.sensor(joint).mean().force.z == Approx(5.0 + 2.0 * 9.81).epsilon(1e-6));
   CHECK(m.sensor(joint).mean().torque.y == Approx(-0.5).epsilon(1e-6));
   CHECK(m.sensor(total).mean().force.z == Approx(2.0 * 9.81).epsilon(1e-6));
+  CHECK(m.sensor(push).mean().force.x == Approx(2.0 * 9.81).epsilon(1e-6));
+  CHECK(m.sensor(push).latest().force.x == m.actuator(ram).force);
 }

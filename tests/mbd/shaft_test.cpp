@@ -36,16 +36,16 @@ TEST_CASE("a universal joint at 30 degrees has the known ripple: cos(b) to 1/cos
   const double bend = pi / 6;
   for (const bool in_plane : {true, false}) {
     Shafts s(JointKind::universal, bend, in_plane ? Y : Z);
-    s.m.run(0.2, 1e-4);  // the start is a jolt: shaft b begins at the mean speed
+    REQUIRE(s.m.run(0.2, 1e-4));  // the start is a jolt: shaft b begins at the mean speed
     double lowest = 1e9, highest = 0.0, worst = 0.0;
-    s.m.run(pi / 10.0 * 2, 1e-4, [&] {
+    REQUIRE(s.m.run(pi / 10.0 * 2, 1e-4, [&] {
       const double ratio = s.m.speed(s.out) / 10.0;
       lowest = std::min(lowest, ratio);
       highest = std::max(highest, ratio);
       const double q = 10.0 * s.m.time();
       const double exact = std::cos(bend) / (1 - std::pow(std::sin(bend) * (in_plane ? std::cos(q) : std::sin(q)), 2));
       worst = std::max(worst, std::abs(ratio - exact));
-    });
+    }));
     CHECK(lowest == Approx(std::cos(bend)).epsilon(2e-4));
     CHECK(highest == Approx(1.0 / std::cos(bend)).epsilon(2e-4));
     CHECK(worst < 5e-4);
@@ -71,12 +71,12 @@ TEST_CASE("two universal joints cancel their ripple if the yokes of the shaft be
     m.add_joint(universal("second", b, c, q, along, X).with_x(in_line ? yoke : Z));
     m.add_motion(prescribed_joint("motor", in, Signal::ramp(0.0, 10.0)));
     m.add_actuator(joint_actuator("load", out, 0.0, 0.01));
-    m.run(0.3, 1e-4);  // the start is a jolt, as all shafts begin at the mean speed
+    REQUIRE(m.run(0.3, 1e-4));  // the start is a jolt, as all shafts begin at the mean speed
     double lowest = 1e9, highest = 0.0;
-    m.run(pi / 10.0 * 2, 1e-4, [&] {
+    REQUIRE(m.run(pi / 10.0 * 2, 1e-4, [&] {
       lowest = std::min(lowest, m.speed(out) / 10.0);
       highest = std::max(highest, m.speed(out) / 10.0);
-    });
+    }));
     const double ripple = in_line ? 1.0 : std::cos(bend) * std::cos(bend);
     // The middle shaft's own ripple, some 60 rad/s^2 on 0.01 kg m^2, presses 1e-6 rad into the joints' springs.
     CHECK(lowest == Approx(ripple).epsilon(1e-3));
@@ -86,9 +86,9 @@ TEST_CASE("two universal joints cancel their ripple if the yokes of the shaft be
 
 TEST_CASE("a constant-velocity joint at 30 degrees turns both shafts at the same speed") {
   Shafts s(JointKind::constant_velocity, pi / 6);
-  s.m.run(0.2, 1e-4);
+  REQUIRE(s.m.run(0.2, 1e-4));
   double worst = 0.0;
-  s.m.run(pi / 10.0 * 2, 1e-4, [&] { worst = std::max(worst, std::abs(s.m.speed(s.out) / 10.0 - 1.0)); });
+  REQUIRE(s.m.run(pi / 10.0 * 2, 1e-4, [&] { worst = std::max(worst, std::abs(s.m.speed(s.out) / 10.0 - 1.0)); }));
   CHECK(worst < 1e-6);
   CHECK(s.m.coordinate(s.out) == Approx(s.m.coordinate(s.in)).epsilon(1e-6));
 }
@@ -102,7 +102,7 @@ TEST_CASE("gears turn in their ratio and see each other's inertia") {
   const JointId w = m.add_joint(revolute("wheel axle", m.ground(), wheel, {1, 0, 0}, Z));
   const CouplingId teeth = m.add_coupling(gear("teeth", p, w, -20.0 / 60.0));
   m.add_load(applied_torque("motor", pinion, Z, 6.0));
-  m.run(1.0, 1e-4);
+  REQUIRE(m.run(1.0, 1e-4));
   const double a = 6.0 / (0.02 + 0.9 / 9.0);
   CHECK(m.speed(p) == Approx(a).epsilon(1e-5));
   CHECK(m.speed(w) / m.speed(p) == Approx(-1.0 / 3.0).epsilon(1e-6));
@@ -120,7 +120,7 @@ TEST_CASE("a rack slides by the pinion's radius per radian") {
   const JointId r = m.add_joint(prismatic("slide", m.ground(), rack, {0, 0.1, 0}, X));
   m.add_coupling(rack_and_pinion("teeth", p, r, 0.1));
   m.add_actuator(joint_actuator("hands", p, 500.0, 20.0, Signal::smooth_step(0.0, 0.9, 0.0, 0.5)));
-  m.run(2.0, 1e-4);
+  REQUIRE(m.run(2.0, 1e-4));
   CHECK(m.coordinate(p) == Approx(0.9).epsilon(1e-4));
   CHECK(m.coordinate(r) == Approx(0.1 * m.coordinate(p)).epsilon(1e-9));
 
@@ -132,7 +132,7 @@ TEST_CASE("a rack slides by the pinion's radius per radian") {
   const JointId turning = n.add_joint(revolute("bearing", n.ground(), spindle, {0, 0, 0}, X));
   const JointId sliding = n.add_joint(prismatic("guide", n.ground(), nut, {0, 0, 0}, X));
   n.add_coupling(screw("thread", turning, sliding, 0.004));
-  n.run(4.0 * pi / 5.0, 1e-4);
+  REQUIRE(n.run(4.0 * pi / 5.0, 1e-4));
   CHECK(n.coordinate(sliding) == Approx(2 * 0.004).epsilon(1e-4));
 }
 
@@ -146,7 +146,7 @@ TEST_CASE("a differential splits the torque and shares the speed") {
   const JointId in = wheel("input", 0.01, 0.0), left = wheel("left", 0.8, 1.0), right = wheel("right", 0.2, -1.0);
   m.add_coupling(differential("differential", in, left, right, 4.0));
   m.add_load(applied_torque("engine", m.body_named("input"), Y, 3.0));
-  m.run(1.0, 1e-4);
+  REQUIRE(m.run(1.0, 1e-4));
   // Both wheels get the same torque, so their speeds are as 1 : 4, and the input is 4 times their mean.
   CHECK(m.speed(right) / m.speed(left) == Approx(4.0).epsilon(1e-5));
   CHECK(m.speed(in) == Approx(2.0 * (m.speed(left) + m.speed(right))).epsilon(1e-5));

@@ -106,10 +106,11 @@ TEST_CASE("a cluster of one ball is a sphere") {
   CHECK(cluster.volume() == sphere.volume());
   CHECK(cluster.unit_inertia() == sphere.unit_inertia());
   CHECK(cluster.frame_centre() == ball[0].centre);
-  // Without given mass properties they come from the integration, good to 1e-4.
-  const SphereCluster<1> integrated(ball);
-  CHECK(integrated.volume() == Approx(sphere.volume()).epsilon(1e-4));
-  CHECK((integrated.frame_centre() - ball[0].centre).norm() < 1e-4 * r);
+  // Without given mass properties they are the closed form: as good as rounding.
+  const SphereCluster<1> found(ball);
+  CHECK(found.volume() == Approx(sphere.volume()).epsilon(1e-15));
+  CHECK((found.unit_inertia() - sphere.unit_inertia()).norm() < 1e-15);
+  CHECK((found.frame_centre() - ball[0].centre).norm() < 1e-15 * r);
   Random random(11);
   for (int trial = 0; trial < 100; ++trial) {
     const Vec3 separation = 1.2 * random.vector();
@@ -153,6 +154,38 @@ TEST_CASE("a cluster's frame sits in the centre of mass along the principal axes
     CHECK(c.ball(k).radius == original.radius);
     CHECK(c.ball(k).centre.norm() + c.ball(k).radius <= c.bounding_radius() * (1 + 1e-15));
   }
+}
+
+TEST_CASE("a cluster of balls that do not overlap has exact mass properties") {
+  // Two balls that touch exactly, askew, and a third one apart from both.
+  const Vec3 way = Vec3(1, 2, 2) / 3.0;
+  const double a = 0.3, b = 0.2, c = 0.1;
+  const std::array<Ball, 3> balls = {{{Vec3::Zero(), a}, {(a + b) * way, b}, {Vec3(-1, 0.5, 0), c}}};
+  const SphereCluster<3> cluster(balls);
+  double volume = 0.0;
+  Vec3 first = Vec3::Zero();
+  Mat3 second = Mat3::Zero();  // integral of x x^T about the origin, of each ball r^2/5 of its volume besides
+  for (const Ball& ball : balls) {
+    const double v = Sphere(ball.radius).volume();
+    volume += v;
+    first += v * ball.centre;
+    second += v * (ball.centre * ball.centre.transpose() + ball.radius * ball.radius / 5.0 * Mat3::Identity());
+  }
+  const Vec3 centre = first / volume;
+  second -= volume * centre * centre.transpose();
+  const Mat3 inertia = second.trace() * Mat3::Identity() - second;
+  CHECK(cluster.volume() == Approx(volume).epsilon(1e-15));
+  CHECK((cluster.frame_centre() - centre).norm() < 1e-15);
+  const Mat3 back =
+      cluster.frame_rotation() * cluster.unit_inertia().asDiagonal() * cluster.frame_rotation().transpose();
+  CHECK((back - inertia).cwiseAbs().maxCoeff() < 1e-14 * inertia.trace());
+  // A hair nearer, their common part counts once: within the integration's error it is the same.
+  const std::array<Ball, 2> near = {{{Vec3::Zero(), a}, {0.99 * (a + b) * way, b}}};
+  REQUIRE(dem::any_overlap(near));
+  REQUIRE_FALSE(dem::any_overlap(balls));
+  const SphereCluster<2> integrated(near);
+  CHECK(integrated.volume() < Sphere(a).volume() + Sphere(b).volume());
+  CHECK(integrated.volume() == Approx(Sphere(a).volume() + Sphere(b).volume()).epsilon(1e-3));
 }
 
 TEST_CASE("given mass properties are taken as they are") {

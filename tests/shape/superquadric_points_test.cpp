@@ -74,7 +74,14 @@ TEST_CASE("points of spheres reach into each other as spheres do") {
 
 TEST_CASE("points and the common normal agree the better, the finer the points") {
   Random random(5);
-  for (const double p : {2.0, 4.0, 8.0}) {
+  // What 218 and 4,058 points miss on average of 3,000 pairs (the table in ARCHITECTURE.md). Single pairs scatter by
+  // 0.35 and 0.06: three deviations of the mean of 150 pairs.
+  struct Missed {
+    double exponent, coarse, fine;
+  };
+  const double scatter_coarse = 3 * 0.35 / std::sqrt(150.0), scatter_fine = 3 * 0.06 / std::sqrt(150.0);
+  for (const Missed& missed : {Missed{2.0, 0.55, 0.036}, Missed{4.0, 0.62, 0.044}, Missed{8.0, 0.74, 0.073}}) {
+    const double p = missed.exponent;
     const Vec3 radii(1, 1.2, 0.8), e = Vec3::Constant(p);
     const Superquadric direct(radii, e, 1);
     const SuperquadricPoints coarse(radii, e, 6), fine(radii, e, 26);
@@ -103,8 +110,8 @@ TEST_CASE("points and the common normal agree the better, the finer the points")
     INFO("exponent " << p << ": points miss " << missed_coarse / pairs << " and " << missed_fine / pairs);
     // A point in the other grain is at most as deep as the grains overlap, but for the overestimate of its depth.
     CHECK(above < 1.001);
-    CHECK(missed_fine < 0.5 * missed_coarse);
-    CHECK(missed_fine / pairs < 0.25);
+    CHECK(missed_coarse / pairs == Approx(missed.coarse).margin(scatter_coarse));
+    CHECK(missed_fine / pairs == Approx(missed.fine).margin(scatter_fine));
   }
 }
 

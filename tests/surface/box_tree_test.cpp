@@ -2,6 +2,7 @@
 
 #include <dem/surface/box_tree.hpp>
 
+#include <functional>
 #include <random>
 
 using dem::Vec3;
@@ -19,6 +20,22 @@ TEST_CASE("a tree of boxes finds what a loop over all boxes finds, in the order 
     }
     const BoxTree tree(boxes);
     REQUIRE(tree.order().size() == n);
+    // The boxes of the leaves, which are halves of halves of the places.
+    std::vector<Bounds> leaf(n);
+    const std::function<void(std::size_t, std::size_t)> halve = [&](std::size_t from, std::size_t to) {
+      if (to - from > BoxTree::items_in_a_leaf) {
+        halve(from, from + (to - from) / 2);
+        halve(from + (to - from) / 2, to);
+        return;
+      }
+      Bounds all = boxes[tree.order()[from]];
+      for (std::size_t k = from; k < to; ++k) {
+        const Bounds& b = boxes[tree.order()[k]];
+        all = {all.low.cwiseMin(b.low), all.high.cwiseMax(b.high)};
+      }
+      std::fill(leaf.begin() + static_cast<std::ptrdiff_t>(from), leaf.begin() + static_cast<std::ptrdiff_t>(to), all);
+    };
+    if (n > 0) halve(0, n);
     CHECK(tree.nodes() <= 2 * n);
     for (int trial = 0; trial < 200; ++trial) {
       const Vec3 p(place(engine), place(engine), place(engine));
@@ -30,13 +47,19 @@ TEST_CASE("a tree of boxes finds what a loop over all boxes finds, in the order 
       std::vector<std::uint32_t> in_box;
       tree.for_each_in(dem::from_eigen(p), dem::from_eigen(Vec3(p.array() + radius)),
                        [&](std::uint32_t k) { in_box.push_back(k); });
+      // What is wanted is there; what is there besides lies in a leaf that the question meets.
       for (std::uint32_t k = 0; k < n; ++k) {
+        const auto away = [&](const Bounds& b) { return (p.cwiseMax(b.low).cwiseMin(b.high) - p).norm(); };
+        const auto meets = [&](const Bounds& b) {
+          return (b.low.array() <= p.array() + radius).all() && (b.high.array() >= p.array()).all();
+        };
         const Bounds& b = boxes[tree.order()[k]];
-        const double distance = (p.cwiseMax(b.low).cwiseMin(b.high) - p).norm();
-        if (distance < radius) CHECK(std::binary_search(found.begin(), found.end(), k));
-        if ((b.low.array() <= p.array() + radius).all() && (b.high.array() >= p.array()).all()) {
-          CHECK(std::binary_search(in_box.begin(), in_box.end(), k));
-        }
+        const bool near = std::binary_search(found.begin(), found.end(), k);
+        const bool in = std::binary_search(in_box.begin(), in_box.end(), k);
+        if (away(b) < radius) CHECK(near);
+        if (meets(b)) CHECK(in);
+        CHECK(near == (away(leaf[k]) <= radius));
+        CHECK(in == meets(leaf[k]));
       }
     }
   }

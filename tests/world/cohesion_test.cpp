@@ -1,5 +1,7 @@
 #include "world/laws.hpp"
 
+#include <dem/shape/mixed.hpp>
+
 using Catch::Approx;
 
 namespace {
@@ -12,6 +14,7 @@ struct Wet : Laws<Linear, friction::CundallStrack, rolling::None, cohesion::Liqu
 };
 using WetModel = Wet<Sphere>;
 using Pair = shape::SphereCluster<2>;
+using BallsOrCubes = shape::Mixed<Sphere, Cube8>;
 
 constexpr double r = 1e-3, density = 2500.0, stiffness = 2000.0;
 const double mass = density * Sphere(r).volume();
@@ -184,6 +187,57 @@ TEMPLATE_TEST_CASE("grains find partners as far away as bridges reach, whatever 
     CHECK(w.force(a).norm() == 0.0);
     CHECK((momentum(w) - p).norm() < 1e-12 * p.norm());
     CHECK(w.state().rebuilds > 5);
+  }
+}
+
+TEST_CASE("wet spheres do among wet clusters what they do alone, to the bit") {
+  // Without friction nothing turns, and what does not turn is the same whether the model keeps a rotation or not.
+  const auto run = [](auto& w) {
+    using Model = typename std::remove_reference_t<decltype(w)>::Model;
+    w.set_contact(wet<Model>(0.5));
+    const auto species = w.add_species(Sphere(r), {"grain", density});
+    add_open_box(w, {14e-3, 14e-3, 1});
+    add_block(w, species, Vec3::Constant(1.05e-3), 2.02e-3, 6, 6, 8, 0.3);  // two chunks
+    REQUIRE(w.run(1000));
+    std::vector<Vec3> places;
+    for_each_grain(w, [&](ParticleId p) { places.push_back(w.position(p)); });
+    return places;
+  };
+  World<WetModel> alone(options({0, 0, -9.81}, 5e-6, 1e-4));
+  World<Wet<BallsOrCubes>> among(options({0, 0, -9.81}, 5e-6, 1e-4));
+  CHECK(run(among) == run(alone));
+}
+
+TEST_CASE("a bridge between a sphere and a ball of a cluster pulls as between two spheres") {
+  // The cube shows a corner ball of radius h/2 = r to a sphere of radius r beyond it on the diagonal, and parts from
+  // it.
+  using Model = Wet<BallsOrCubes>;
+  for (const bool cube_first : {true, false}) {
+    World<Model> w(options({0, 0, 0}, 1e-6, 1e-5));
+    w.set_contact(wet<Model>(1.0));
+    const auto ball = w.add_species(Sphere(r), {"grain", density}),
+               cube = w.add_species(shape::cube8(2 * r), {"grain", density});
+    const Vec3 diagonal = Vec3::Ones().normalized();
+    const double apart = std::sqrt(3.0) * r + 2 * r;  // of the centres when they touch
+    NewParticle grains[] = {grain({0, 0, 0}), grain((apart - 1e-6) * diagonal, 0.3 * diagonal)};
+    grains[0].species = cube;
+    grains[1].species = ball;
+    const auto first = w.add_particle(grains[cube_first ? 0 : 1]), second = w.add_particle(grains[cube_first ? 1 : 0]);
+    const auto a = cube_first ? first : second, b = cube_first ? second : first;
+    const Vec3 p = momentum(w);
+    int seen = 0;
+    for (double gap = 0.0; gap < 0.99 * water.rupture; ++seen) {
+      REQUIRE(w.run(10));
+      gap = (w.position(b) - w.position(a)).norm() - apart;
+      // R* = r/2. The other balls of the cube are 2 r farther away.
+      const double s = gap * std::sqrt(r / water.volume);
+      const double pull = 2 * M_PI * r * 0.072 / (1 + 1.05 * s + 2.5 * s * s);
+      if (gap > 0.0 && gap < water.rupture) CHECK((w.force(a) - pull * diagonal).norm() < 1e-9 * pull);
+    }
+    CHECK(seen > 50);
+    REQUIRE(w.run(200));
+    CHECK(w.force(a).norm() == 0.0);
+    CHECK((momentum(w) - p).norm() < 1e-12 * p.norm());
   }
 }
 

@@ -74,7 +74,11 @@ TEMPLATE_TEST_CASE("a block above the angle of friction slides with g (sin - mu 
     const double a = (w.velocity(scene.block).x() - v1) / 0.1;
     // What is left of the vertical swing, which decays in milliseconds, and its change of normal force.
     CHECK(a == Approx(expected).epsilon(1e-4));
-    CHECK(v1 > 0.9 * expected * 0.05 * 0.5);
+    // Until its springs are stretched, friction is less than mu Fn: so it is a little faster than if it had slid at
+    // once, by mu g cos/omega, omega^2 = 4 kt/m, and up to three times that as it rocks meanwhile.
+    const double head_start = 3 * mu * g * std::cos(scene.angle) / std::sqrt(4 * 2000.0 / scene.mass());
+    CHECK(v1 > expected * 0.05);
+    CHECK(v1 < expected * 0.05 + head_start);
     CHECK(w.position(scene.block).z() < half_edge);
     CHECK(w.rotation(scene.block)(2, 2) > 1 - 1e-6);  // it slides and does not topple
   }

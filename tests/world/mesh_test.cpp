@@ -162,6 +162,6 @@ TEST_CASE("a corner of a surface holds a grain that none of the grain's own poin
     const double weight = mass_of(w, ball) * g;
     CHECK(w.position(ball).z() == Approx(tip + 5e-3 - weight / 2000.0).epsilon(1e-6));
     CHECK(w.surface_force(s).z() == Approx(-weight).epsilon(1e-4));  // its swing is damped with exp(-360/s t)
-    CHECK(w.state().chunks[0].surface_contacts.count() == 1);
+    CHECK(w.state().chunks[0].surface_contacts.committed() == 1);
   }
 }

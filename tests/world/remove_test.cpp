@@ -43,6 +43,11 @@ TEST_CASE("a grain that is removed is gone, and nothing else changes") {
   // Ids are not given again, and a world may be emptied and filled.
   const auto fresh = some.w.add_particle({SpeciesId(0), Vec3(0.3, 0, 1.2e-3)});
   CHECK(fresh.index() == 41);
+  // What is refused is named by the id that it would have got, not by how many grains there are.
+  dem::NewParticle wrong = {SpeciesId(0), Vec3(0, std::nan(""), 0)};
+  check_refused([&] { some.w.add_particle(wrong); }, "grain 42 was given a position");
+  wrong = {SpeciesId(0), Vec3::Zero(), Vec3::Zero(), 2 * Mat3::Identity()};
+  check_refused([&] { some.w.add_particle(wrong); }, "grain 42 was given a rotation matrix");
   REQUIRE(some.w.run(10));
   CHECK(some.w.particle_count() == 22);
   for (std::size_t k = 1; k < some.others.size(); k += 2) some.w.remove_particle(some.others[k]);

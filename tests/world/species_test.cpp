@@ -26,7 +26,8 @@ TEST_CASE("grains of different size, shape and material share a world") {
     weight += 9.81 * mass_of(w, p);
   }
   CHECK(w.species(species[0]).mass == Approx(2650 * std::pow(3e-3, 3)));
-  CHECK(w.species(species[2]).mass == Approx(7800 * 4.0 / 3 * M_PI * 8e-9).epsilon(1e-3));
+  CHECK(w.species(species[1]).mass == Approx(1000 * 2 * 4.0 / 3 * M_PI * 1e-9).epsilon(1e-14));  // balls that touch
+  CHECK(w.species(species[2]).mass == Approx(7800 * 4.0 / 3 * M_PI * 8e-9).epsilon(1e-14));
   REQUIRE(w.run_for(0.6));
   // Each lies at its own height, less an overlap of micrometres at the most, and all their weight is on the plate.
   const double height[] = {1.5e-3, 1e-3, 2e-3};

@@ -31,6 +31,14 @@ inline ElasticPair elastic_pair(const Solid& a, const Solid& b) {
 }
 inline ElasticPair elastic_pair(const Solid& both) { return elastic_pair(both, both); }
 
+/// Tangential over normal stiffness of Hertz's contact without slip, 4 G*/E* (Mindlin 1949, doi:10.1115/1.4009973): for
+/// equal materials 2 (1 - nu)/(2 - nu), from 1 at nu = 0 to 2/3 at nu = 1/2.
+inline double tangential_share(const ElasticPair& pair) {
+  require_positive(pair.modulus, "effective modulus", "Pa");
+  require_positive(pair.shear, "effective shear modulus", "Pa");
+  return 4.0 * pair.shear / pair.modulus;
+}
+
 /// The impact for which a linear spring stands in for Hertz's contact.
 struct Impact {
   double effective_radius;  ///< m, 1/(1/Ri + 1/Rj)

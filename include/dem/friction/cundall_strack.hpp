@@ -1,6 +1,7 @@
 #pragma once
 
-#include <dem/core/error.hpp>
+#include <dem/contact/elastic.hpp>
+#include <dem/contact/restitution.hpp>
 #include <dem/friction/friction_law.hpp>
 #include <dem/friction/spring_slider.hpp>
 
@@ -10,7 +11,7 @@ namespace dem::friction {
 
 /// Linear tangential spring with a dashpot, slipping at mu Fn (Cundall and Strack 1979,
 /// doi:10.1680/geot.1979.29.1.47). The dashpot is given as a share of critical damping of the tangential swing of solid
-/// spheres, whose mass is 2/7 of the effective mass.
+/// spheres, whose mass is 2/7 of the effective mass (see spring_slider.hpp).
 struct CundallStrack {
   template <class T>
   struct Parameters {
@@ -22,6 +23,19 @@ struct CundallStrack {
   struct History {
     Vector3<T> spring;  ///< m, stretch
   };
+
+  /// The spring that belongs to a linear normal spring (N/m) by the materials' Poisson ratios: see
+  /// contact::tangential_share.
+  static Parameters<double> with(const contact::ElasticPair& pair, double coefficient, double normal_stiffness,
+                                 double damping_ratio = 0.0) {
+    return {coefficient, contact::tangential_share(pair) * normal_stiffness, damping_ratio};
+  }
+  /// The same with the dashpot that leaves a sticking contact of solid spheres the given share of its tangential speed
+  /// in half a swing. Throws Error unless 0.01 <= restitution <= 1.
+  static Parameters<double> with_restitution(const contact::ElasticPair& pair, double coefficient,
+                                             double normal_stiffness, double restitution) {
+    return with(pair, coefficient, normal_stiffness, contact::damping_ratio_of(restitution, true));
+  }
 
   template <class T>
   static DEM_HOT Vector3<T> force(const Parameters<T>& p, const TangentialState<T>& s, History<T>& h) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <dem/contact/elastic.hpp>
+#include <dem/contact/restitution.hpp>
 #include <dem/friction/friction_law.hpp>
 #include <dem/friction/spring_slider.hpp>
 
@@ -26,8 +27,15 @@ struct Mindlin {
     T contact_radius;         ///< m, sqrt(R* d)
   };
 
+  /// Without a damping ratio there is no dashpot. The ratio refers to 2/7 of the effective mass (see
+  /// spring_slider.hpp).
   static Parameters<double> with(const contact::ElasticPair& pair, double coefficient, double damping_ratio = 0.0) {
     return {coefficient, pair.shear, damping_ratio};
+  }
+  /// The dashpot that leaves a sticking contact of solid spheres, at any overlap that it keeps, the given share of its
+  /// tangential speed in half a swing. Throws Error unless 0.01 <= restitution <= 1.
+  static Parameters<double> with_restitution(const contact::ElasticPair& pair, double coefficient, double restitution) {
+    return with(pair, coefficient, contact::damping_ratio_of(restitution, true));
   }
 
   template <class T>

@@ -19,4 +19,9 @@ DEM_HOT Vector3<T> slide(Vector3<T>& spring_force, const T& damping, const Vecto
 /// Tangential mass of two solid spheres in contact in units of their effective mass: 1/(1 + m r^2/I), I = 2/5 m r^2.
 inline constexpr double tangential_mass_share = 2.0 / 7.0;
 
+// Damping ratios b of the spring laws are those of that swing, c = 2 b sqrt(2/7 m* kt), so a sticking contact of solid
+// spheres swings back with e = exp(-pi b/sqrt(1 - b^2)) of its speed. Codes after Tsuji et al. 1992 take the whole
+// effective mass, many c = 2 sqrt(5/6) b sqrt(m* kt): to have their dashpot, b is sqrt(5/6 7/2) = 1.71 times as large
+// here.
+
 }  // namespace dem::friction

@@ -73,6 +73,7 @@ class Progress {
     total_ = total;
     done_ = done;
     status_.clear();
+    status_width_ = 0;
     start_ = shown_time_ = options_.clock();
     shown_percent_ = percent();
     eta_ = EtaEstimator(start_, done);
@@ -91,6 +92,7 @@ class Progress {
     const double now = options_.clock();
     if (!open_ || !due(now)) return;
     status_ = one_line(make_status());
+    status_width_ = std::max(status_width_, display_width(status_));
     eta_.sample(now, done);
     shown_time_ = now;
     shown_percent_ = percent();
@@ -164,10 +166,12 @@ class Progress {
     // The last cell stays free: writing into it makes some terminals wrap.
     const int width = (options_.width > 0 ? options_.width : terminal_width(options_.out)) - 1;
     std::string line = label();
-    // The bar's length does not depend on the texts behind it, which would make it jump.
+    // Half of the room is left to the text behind the bar; a longer one takes more of it, and at the end all. The
+    // widest text so far counts: with each text's own width the bar would jump.
     const int room = width - display_width(line) - 30;  // 30: brackets, spaces, "100 %" and "59 min 59 s left"
-    if (total_ > 0 && room >= 10) {
-      const int cells = std::clamp(room / 2, 10, 30);
+    const int beside_status = status_width_ > 0 ? room - status_width_ - 2 : room;
+    const int cells = std::min(std::clamp(room / 2, 10, 30), beside_status);
+    if (total_ > 0 && cells >= 10) {
       const int full = static_cast<int>(cells * percent() / 100);
       line += fmt::format("  [{:#<{}}{:.<{}}]", "", full, "", cells - full);
     }
@@ -199,7 +203,8 @@ class Progress {
   double total_ = 0, done_ = 0;
   double start_ = 0, shown_time_ = 0, shown_percent_ = 0;
   EtaEstimator eta_;
-  int bar_width_ = 0;  // cells on the screen, to be overwritten by the next drawing
+  int status_width_ = 0;  // cells, of the stage's widest status
+  int bar_width_ = 0;     // cells on the screen, to be overwritten by the next drawing
 };
 
 }  // namespace dem::io

@@ -18,7 +18,9 @@
 
 namespace dem::io {
 
-/// One body to draw. The mesh stays the caller's and may serve several bodies.
+/// One body to draw. The mesh stays the caller's and may serve several bodies. A mesh in the axes of a machine's
+/// drawing is at machine.reference_position(body) and reference_rotation(body); Body::position and rotation are those
+/// of the centre of mass and the principal axes, which are others for most meshes.
 struct BodyMesh {
   const SurfaceMesh* mesh = nullptr;
   Vec3 position = Vec3::Zero();      ///< of the mesh's origin, in the world [m]

@@ -2,11 +2,13 @@
 
 #include <dem/core/error.hpp>
 #include <dem/math/indexed_mesh.hpp>
+#include <dem/math/rotation.hpp>
 #include <dem/math/vector.hpp>
 
 #include <Eigen/Eigenvalues>
 
 #include <algorithm>
+#include <array>
 #include <numbers>
 #include <span>
 #include <vector>
@@ -26,7 +28,44 @@ struct PrincipalAxes {
   Mat3 rotation;  ///< columns: the axes; a proper rotation
 };
 
-/// Finds the principal axes. A tensor that is diagonal already (to 1e-12) keeps its axes, so that a part that was drawn
+namespace detail {
+
+/// Of all frames along these eigenvectors (ascending eigenvalues) the one that turns the unit axes least. Eigenvectors
+/// of equal eigenvalues may be any in their plane.
+inline Mat3 nearest_axes(const Vec3& values, const Mat3& vectors) {
+  const double equal = 1e-6 * values.cwiseAbs().maxCoeff();
+  const bool low = values[1] - values[0] < equal, high = values[2] - values[1] < equal;
+  if (low && high) return Mat3::Identity();
+  if (low || high) {
+    Vec3 z = vectors.col(low ? 2 : 0);  // of the moment that differs
+    int k;
+    z.cwiseAbs().maxCoeff(&k);
+    if (z[k] < 0.0) z = -z;
+    return rotation_between(Vec3::Unit(k), z);
+  }
+  std::array<int, 3> order = {0, 1, 2};
+  Mat3 best = Mat3::Identity();
+  double least_turned = -4.0;  // the trace is 1 + 2 cos(angle)
+  do {
+    for (int signs = 0; signs < 4; ++signs) {  // the third sign makes it a rotation
+      Mat3 m;
+      m.col(0) = (signs & 1 ? -1.0 : 1.0) * vectors.col(order[0]);
+      m.col(1) = (signs & 2 ? -1.0 : 1.0) * vectors.col(order[1]);
+      m.col(2) = m.col(0).cross(m.col(1));
+      if (m.trace() > least_turned) {
+        least_turned = m.trace();
+        best = m;
+      }
+    }
+  } while (std::next_permutation(order.begin(), order.end()));
+  return best;
+}
+
+}  // namespace detail
+
+/// Finds the principal axes, in the order and with the signs that turn the given axes least. A tensor that is diagonal
+/// already (to 1e-12) keeps its axes. Moments that differ by less than 1e-6 of the largest count as equal, as those of
+/// a wheel of single precision do, and their axes stay as near to the given ones as they can: a part that was drawn
 /// along its axes stays as drawn. Throws Error unless the tensor is symmetric (to 1e-9).
 inline PrincipalAxes principal_axes(const Mat3& inertia) {
   const double scale = inertia.cwiseAbs().maxCoeff();
@@ -40,9 +79,8 @@ inline PrincipalAxes principal_axes(const Mat3& inertia) {
   const Mat3 off = inertia - Mat3(inertia.diagonal().asDiagonal());
   if (off.cwiseAbs().maxCoeff() <= 1e-12 * scale) return {inertia.diagonal(), Mat3::Identity()};
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(inertia);
-  Mat3 axes = solver.eigenvectors();
-  if (axes.determinant() < 0.0) axes.col(2) = -axes.col(2);
-  return {solver.eigenvalues(), axes};
+  const Mat3 axes = detail::nearest_axes(solver.eigenvalues(), solver.eigenvectors());
+  return {(axes.transpose() * inertia * axes).diagonal(), axes};
 }
 
 inline MassProperties sphere_mass_properties(double radius) {
@@ -138,6 +176,35 @@ inline MassProperties union_mass_properties(std::span<const Ball> balls, int col
   p.centre = first / m;
   const Mat3 about_centre = second * cell - p.volume * p.centre * p.centre.transpose();
   p.inertia = about_centre.trace() * Mat3::Identity() - about_centre;
+  return p;
+}
+
+/// Whether two balls share more than a touch: overlaps of less than a millionth of the smaller radius, whose volume is
+/// lost in rounding, are a touch.
+inline bool any_overlap(std::span<const Ball> balls) {
+  for (std::size_t k = 0; k < balls.size(); ++k) {
+    for (std::size_t m = 0; m < k; ++m) {
+      const double r = balls[k].radius, s = balls[m].radius;
+      if ((balls[k].centre - balls[m].centre).norm() < r + s - 1e-6 * std::min(r, s)) return true;
+    }
+  }
+  return false;
+}
+
+/// Volume integrals of balls that do not overlap, by Steiner's theorem: exact.
+inline MassProperties separate_mass_properties(std::span<const Ball> balls) {
+  MassProperties p;
+  for (const Ball& b : balls) {
+    const double volume = sphere_mass_properties(b.radius).volume;
+    p.volume += volume;
+    p.centre += volume * b.centre;
+  }
+  p.centre /= p.volume;
+  for (const Ball& b : balls) {
+    const MassProperties ball = sphere_mass_properties(b.radius);
+    const Vec3 arm = b.centre - p.centre;
+    p.inertia += ball.inertia + ball.volume * (arm.squaredNorm() * Mat3::Identity() - arm * arm.transpose());
+  }
   return p;
 }
 

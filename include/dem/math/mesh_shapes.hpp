@@ -218,8 +218,8 @@ inline IndexedMesh wheel(const Wheel& w) {
   return mesh;
 }
 
-/// A tyre without a rim (a ring): outer diameter and width in m, with a rounded profile; `triangles` is met as closely
-/// as a regular grid can. The hole has `hole` times the diameter.
+/// A tyre without a rim (a ring): outer diameter and width in m, with a rounded profile. It has about as many triangles
+/// as asked for, a grid of nearly square cells (6,650 for 6,662). The hole has `hole` times the diameter.
 inline IndexedMesh tyre(double diameter, double width, int triangles = 6662, double hole = 0.5) {
   const double outer = 0.5 * require_positive(diameter, "diameter of a tyre mesh", "m");
   require_positive(width, "width of a tyre mesh", "m");

@@ -93,9 +93,13 @@ inline void check_sensor(const Parts& parts, const SensorSpec& spec) {
                             : spec.target == SensorTarget::actuator ? parts.actuators.size()
                             : spec.target == SensorTarget::drive    ? parts.motions.size()
                                                                     : parts.bodies.size();
+  const char* what = spec.target == SensorTarget::joint      ? "joint"
+                     : spec.target == SensorTarget::actuator ? "actuator"
+                     : spec.target == SensorTarget::drive    ? "prescribed motion"
+                                                             : "body";
   if (spec.index >= count) {
-    fail("sensor '{}' measures number {}, but the machine has {} of that kind; use the id that add_... returned",
-         spec.name, spec.index, count);
+    fail("sensor '{}' measures {} {}, but the machine has {} of them; use the id that add_... returned", spec.name,
+         what, spec.index == BodyId().index() ? "(never added)" : std::to_string(spec.index), count);
   }
   if (spec.target == SensorTarget::drive && parts.motions[spec.index].spec.target == MotionSpec::Target::pose) {
     fail(

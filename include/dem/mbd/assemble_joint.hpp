@@ -66,6 +66,31 @@ inline void check_penalty(const JointSpec& s, const std::string& who) {
   }
 }
 
+/// The part of the way from one point to the other in the directions that a joint holds: only there they have to meet.
+inline Vec3 held_part(Hold hold, const Vec3& z, const Vec3& gap) {
+  if (hold == Hold::line) return gap - z.dot(gap) * z;
+  if (hold == Hold::plane) return z.dot(gap) * z;
+  return gap;
+}
+
+/// What the coordinates are said to be at assembly. Throws Error for those that are what they are.
+inline void set_starts(Joint& j, const JointSpec& s, const std::string& who) {
+  for (const JointStart& start : s.starts) {
+    const Freedom freedom = known_freedom(s.kind, start.freedom, "starting_at of " + who);
+    if (freedom != Freedom::turn && freedom != Freedom::slide) {
+      fail(
+          "starting_at of {} gives its {} a value, but only a turn about z and a slide along z can count from any "
+          "value "
+          "at assembly; move a body instead",
+          who, name_of(freedom));
+    }
+    if (!std::isfinite(start.value)) {
+      fail("the {} of {} starts at {:g}, but must be finite at assembly", name_of(freedom), who, start.value);
+    }
+    (freedom == Freedom::turn ? j.angle_offset : j.slide_offset) = start.value;
+  }
+}
+
 inline Joint make_joint(const Parts& parts, JointSpec& s) {
   const std::string who = fmt::format("{} '{}'", name_of(s.kind), s.name);
   use_connections(parts, s, who);
@@ -80,16 +105,18 @@ inline Joint make_joint(const Parts& parts, JointSpec& s) {
         "free_joint",
         who, a.name, b.name);
   }
-  if (!std::isfinite(s.start)) fail("{} starts at {:g}, but its coordinate at assembly must be finite", who, s.start);
   check_penalty(s, who);
-  const Vec3 za = unit(s.axis_a, "the axis of " + who), zb = unit(s.axis_b, "the axis of " + who);
+  Vec3 za = unit(s.axis_a, "the axis of " + who), zb = unit(s.axis_b, "the axis of " + who);
   const bool has_own_axes = s.kind == JointKind::universal || s.kind == JointKind::constant_velocity;
+  // Points and axes that nearly meet are put in the middle: the joint starts at rest, not stretched by the gap.
+  const bool has_one_axis = !has_own_axes && align_of(s.kind) != Align::nothing;
+  const double crooked = za.cross(zb).norm() + (za.dot(zb) < 0.0);
+  const double angle = std::acos(std::clamp(za.dot(zb), -1.0, 1.0));
+  if (has_one_axis && crooked <= s.tolerance && zb != za) za = zb = (za + zb).normalized();
   const Vec3 gap = s.at_b - s.at_a;
   const bool may_be_apart = s.kind == JointKind::distance || s.kind == JointKind::free;
-  // Only the directions that the joint holds have to meet.
-  const double apart = hold_of(s.kind) == Hold::line    ? (gap - za.dot(gap) * za).norm()
-                       : hold_of(s.kind) == Hold::plane ? std::abs(za.dot(gap))
-                                                        : gap.norm();
+  const Vec3 held_gap = held_part(hold_of(s.kind), za, gap);
+  const double apart = held_gap.norm();
   if (!may_be_apart && !(apart <= s.tolerance)) {
     fail(
         "the points of {} do not meet: ({:g}, {:g}, {:g}) on body '{}' and ({:g}, {:g}, {:g}) on body '{}' are {:g} m "
@@ -97,15 +124,15 @@ inline Joint make_joint(const Parts& parts, JointSpec& s) {
         who, s.at_a.x(), s.at_a.y(), s.at_a.z(), a.name, s.at_b.x(), s.at_b.y(), s.at_b.z(), b.name, apart,
         s.tolerance);
   }
-  if (!has_own_axes && align_of(s.kind) != Align::nothing && za.cross(zb).norm() + (za.dot(zb) < 0.0) > s.tolerance) {
+  if (has_one_axis && !(crooked <= s.tolerance)) {
     fail(
         "the axes of {} are {:g} rad apart, allowed is {:g}; give both bodies the same axis or raise the joint's "
         "tolerance",
-        who, std::acos(std::clamp(za.dot(zb), -1.0, 1.0)), s.tolerance);
+        who, angle, s.tolerance);
   }
   if (has_own_axes && za.dot(zb) < 0.05) {
     fail("the shafts of {} are bent by {:g} deg, allowed is 87 deg; point both axes the way the torque goes", who,
-         std::acos(std::clamp(za.dot(zb), -1.0, 1.0)) * 180.0 / std::numbers::pi);
+         angle * 180.0 / std::numbers::pi);
   }
 
   Joint j{};
@@ -113,8 +140,9 @@ inline Joint make_joint(const Parts& parts, JointSpec& s) {
   j.b = s.b.value;
   j.kind = s.kind;
   j.turns = turns(s.kind);
-  j.point_a = from_eigen(to_body(a, s.at_a));
-  j.point_b = from_eigen(to_body(b, s.at_b));
+  const Vec3 to_middle = may_be_apart ? Vec3(Vec3::Zero()) : Vec3(0.5 * held_gap);
+  j.point_a = from_eigen(to_body(a, s.at_a + to_middle));
+  j.point_b = from_eigen(to_body(b, s.at_b - to_middle));
   const Vec3 xa = x_of_frame(s, za, who);
   Vec3 xb = xa;
   if (s.kind == JointKind::universal) {
@@ -125,7 +153,7 @@ inline Joint make_joint(const Parts& parts, JointSpec& s) {
   }
   j.axes_a = axes_in_body(a, xa, za);
   j.axes_b = axes_in_body(b, xb, zb);
-  (turns(s.kind) ? j.angle_offset : j.slide_offset) = s.start;
+  set_starts(j, s, who);
   j.length = s.length ? require_positive(*s.length, ("length of " + who).c_str(), "m") : gap.norm();
   if (s.kind == JointKind::distance && !(std::abs(j.length - gap.norm()) <= s.tolerance)) {
     fail(

@@ -129,6 +129,9 @@ class Assembly {
     const BuiltBody& built = known(parts_.built, id, "body");
     return body(id).point(built.reference_origin + built.reference_axes * point);
   }
+  /// Origin of the body's reference frame (m, global): with reference_rotation the pose at which a mesh of the body in
+  /// the axes of its drawing is shown (io::BodyMesh).
+  Vec3 reference_position(BodyId id) const { return reference_point(id, Vec3::Zero()); }
   /// Reference frame -> global.
   Mat3 reference_rotation(BodyId id) const {
     return body(id).rotation() * known(parts_.built, id, "body").reference_axes;
@@ -218,8 +221,12 @@ class Assembly {
     changed_ = true;
   }
   void set_load(LoadId id, Signal size) { known(parts_.loads, id, "load").spec.size = std::move(size); }
+  /// Another signal for a prescribed coordinate, or another function for a pose (set_pose).
   void set_motion(MotionId id, Signal motion) {
     PrescribedMotion& p = known(parts_.motions, id, "prescribed motion");
+    if (p.spec.target == MotionSpec::Target::pose) {
+      fail("prescribed motion '{}' is a whole pose, which no signal gives; use set_pose", p.spec.name);
+    }
     p.spec.motion = p.spec.by_speed ? motion.as_rate() : std::move(motion);
     p.has_hold = false;
   }
@@ -229,6 +236,16 @@ class Assembly {
     const bool has_hold = motion(id).has_hold;
     set_motion(id, Signal::held(value, rate));
     parts_.motions[id.index()].has_hold = has_hold;
+  }
+
+  void set_pose(MotionId id, std::function<Pose(double)> pose) {
+    PrescribedMotion& p = known(parts_.motions, id, "prescribed motion");
+    if (p.spec.target != MotionSpec::Target::pose) {
+      fail("prescribed motion '{}' is that of one coordinate, not of a pose; use set_motion", p.spec.name);
+    }
+    if (!pose) fail("prescribed motion '{}' was given no function that gives the pose", p.spec.name);
+    p.spec.pose = std::move(pose);
+    p.has_hold = false;
   }
 
   const Spring& spring(SpringId id) const { return known(parts_.springs, id, "spring"); }

@@ -6,6 +6,8 @@
 
 namespace dem::mbd {
 
+inline constexpr double endless_step = 1e30;  ///< s
+
 /// The limits that a joint's user gave for a coordinate that has stops.
 inline const JointLimits& limits_of(const JointSpec& s, Freedom freedom) {
   return *std::find_if(s.limits.begin(), s.limits.end(), [&](const JointLimits& l) { return l.freedom == freedom; });
@@ -68,13 +70,21 @@ inline void derive_stiffness(Parts& m, double dt) {
   }
 }
 
+/// The same machine with what its user gave alone: laid out for a step without end, all that is derived vanishes but
+/// for dampers that belong to a given stiffness.
+inline Parts without_derived(Parts m) {
+  derive_stiffness(m, endless_step);
+  return m;
+}
+
 /// What has no stiffness yet: its name, or an empty text. Without a time step nothing can be derived.
 inline std::string first_underived(const Parts& m) {
   using namespace detail;
   for (const JointSpec& s : m.joint_specs) {
-    if (s.kind == JointKind::bushing || s.kind == JointKind::free) continue;
-    const bool displacement = hold_of(s.kind) != Hold::nothing && !(s.stiffness && s.damping);
-    const bool rotation = align_of(s.kind) != Align::nothing && !(s.rotational_stiffness && s.rotational_damping);
+    const bool holds = s.kind != JointKind::bushing && s.kind != JointKind::free;  // with stiffness that is derived
+    const bool displacement = holds && hold_of(s.kind) != Hold::nothing && !(s.stiffness && s.damping);
+    const bool rotation =
+        holds && align_of(s.kind) != Align::nothing && !(s.rotational_stiffness && s.rotational_damping);
     if (displacement || rotation) return fmt::format("{} '{}'", name_of(s.kind), s.name);
     for (const JointLimits& stops : s.limits) {
       if (!(stops.stiffness && stops.damping)) return fmt::format("stops of '{}'", s.name);

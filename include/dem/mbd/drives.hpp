@@ -44,9 +44,19 @@ inline Wrench response_of(const Body& x, const Wrench& impulse) {
 inline void carry(PrescribedMotion& p, integrator::Motion<double>& m, double time) {
   const Pose pose = p.spec.pose(time);
   m.position = from_eigen(pose.position);
-  m.velocity = from_eigen(pose.velocity);
   m.rotation = from_eigen(pose.rotation);
-  m.angular_velocity = transpose_times(m.rotation, from_eigen(pose.angular_velocity));
+  Vec3 velocity = pose.velocity.value_or(Vec3::Zero()), spin = pose.angular_velocity.value_or(Vec3::Zero());
+  if (!pose.velocity || !pose.angular_velocity) {
+    constexpr double h = 1e-6;
+    const Pose before = p.spec.pose(time - h), after = p.spec.pose(time + h);
+    if (!pose.velocity) velocity = (after.position - before.position) / (2.0 * h);
+    if (!pose.angular_velocity) {
+      const Mat3 r = after.rotation * before.rotation.transpose();  // its skew part is the small turn between the two
+      spin = Vec3(r(2, 1) - r(1, 2), r(0, 2) - r(2, 0), r(1, 0) - r(0, 1)) / (4.0 * h);
+    }
+  }
+  m.velocity = from_eigen(velocity);
+  m.angular_velocity = transpose_times(m.rotation, from_eigen(spin));
   p.drive.value = m.position.x + m.position.y + m.position.z;  // only to tell whether it is a number
 }
 
@@ -238,39 +248,6 @@ inline void correct_values(Parts& parts) {
 }
 
 }  // namespace detail
-
-/// Throws Error if a motion that is on would have to jump at `time` (s) to take hold of its coordinate, which would
-/// tear the machine apart.
-inline void check_holds(Parts& parts, double time) {
-  constexpr double tolerance = 1e-3;  // m or rad
-  for (PrescribedMotion& p : parts.motions) {
-    if (!p.spec.on || p.has_hold) continue;
-    const integrator::Motion<double>& m = parts.bodies[p.spec.body.index()].motion;
-    double off = 0.0;
-    if (p.spec.target == MotionSpec::Target::pose) {
-      const Pose pose = p.spec.pose(time);
-      off = (pose.position - to_eigen(m.position)).norm() + (pose.rotation - to_eigen(m.rotation)).norm();
-    } else {
-      p.drive.value = p.spec.motion(time).value;
-      if (p.spec.target == MotionSpec::Target::position) {
-        off = p.start + p.drive.value - dot(m.position, p.axis);
-      } else if (p.spec.target == MotionSpec::Target::rotation) {
-        off = norm(detail::rotation_off(p, m));
-      } else if (!p.spec.by_speed) {
-        const Joint& j = parts.joints[p.spec.joint.index()];
-        off = p.drive.value - coordinate_of(j, parts.bodies[j.a], parts.bodies[j.b], p.spec.freedom).value;
-      }
-    }
-    if (std::abs(off) > tolerance) {
-      fail(
-          "prescribed motion '{}' is {:g} m or rad off at t = {:g} s, where it takes hold of its coordinate; allowed "
-          "is {:g}: let its signal start there (set_motion), say with starting_at what the joint's coordinate is at "
-          "assembly, or move a body",
-          p.spec.name, std::abs(off), time, tolerance);
-    }
-    p.has_hold = true;
-  }
-}
 
 /// Sets the prescribed values and speeds for `time` (s). `dt` (s) is the time since the drives' forces were reported; 0
 /// where the step is not over, and none are.

@@ -49,8 +49,8 @@ enum class Freedom {
 };
 
 inline const char* name_of(Freedom freedom) {
-  constexpr const char* names[] = {"coordinate", "angle", "slide",  "slide_x", "slide_y",
-                                   "length",     "bend",  "bend_x", "bend_y"};
+  constexpr const char* names[] = {"coordinate", "turn", "slide",  "slide_x", "slide_y",
+                                   "length",     "bend", "bend_x", "bend_y"};
   return names[static_cast<int>(freedom)];
 }
 constexpr bool is_rotation(Freedom f) { return f == Freedom::turn || f >= Freedom::bend; }

@@ -21,6 +21,12 @@ struct JointLimits {
   Freedom freedom = Freedom::own;        ///< which coordinate
 };
 
+/// What a coordinate of a joint is at assembly, rad or m.
+struct JointStart {
+  Freedom freedom = Freedom::own;
+  double value = 0.0;
+};
+
 /// Asperity friction in a joint (thesis section 2.2.2). The normal force is that which the joint carries, plus a
 /// preload.
 struct JointFriction {
@@ -50,10 +56,12 @@ struct JointSpec {
   Vec3 bushing_stiffness = Vec3::Zero(), bushing_damping = Vec3::Zero();                        ///< N/m, N s/m
   Vec3 bushing_rotational_stiffness = Vec3::Zero(), bushing_rotational_damping = Vec3::Zero();  ///< N m/rad, N m s/rad
   std::optional<double> length = {};     ///< m, of a distance joint, within `tolerance`; that at assembly if not given
-  double start = 0.0;                    ///< rad or m, the coordinate at assembly
+  std::vector<JointStart> starts = {};   ///< of coordinates that are not 0 at assembly
   std::vector<JointLimits> limits = {};  ///< one for each coordinate that has stops
   std::optional<JointFriction> friction = {};
-  double tolerance = 1e-6;  ///< m, within which the two points have to meet at assembly; rad for the axes
+  /// m, within which the two points have to meet at assembly; rad for the axes. What is within it is made to meet: each
+  /// body's point moves to the middle of the gap and its axis to the mean of both, so that the joint starts at rest.
+  double tolerance = 1e-6;
 
   /// x of the joint's frame lies in the plane of z and this direction (global at assembly): the first direction of a
   /// planar joint or a bushing, or the arm of a universal joint's cross on body a. Without it x is the global X made
@@ -89,10 +97,12 @@ struct JointSpec {
     s.friction = f;
     return s;
   }
-  /// The coordinate counts from this value (rad or m) at assembly.
-  JointSpec starting_at(double coordinate) const {
+  /// The joint's own coordinate, or another one that turns about or slides along z, counts from this value (rad or m)
+  /// at assembly.
+  JointSpec starting_at(double coordinate) const { return starting_at(Freedom::own, coordinate); }
+  JointSpec starting_at(Freedom freedom, double coordinate) const {
     JointSpec s = *this;
-    s.start = coordinate;
+    s.starts.push_back({freedom, coordinate});
     return s;
   }
 };

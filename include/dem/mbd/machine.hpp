@@ -14,7 +14,7 @@ namespace dem::mbd {
 ///     Machine<integrator::PredictorCorrector> m;
 ///     const BodyId rod = m.add_body(box_body("rod", {1, 0.1, 0.1}, 100).at({0.5, 0, 0}));
 ///     m.add_joint(revolute("hinge", m.ground(), rod, {0, 0, 0}, {0, 1, 0}));
-///     m.run(10.0, 1e-4);
+///     if (const MachineReport report = m.run(10.0, 1e-4); !report) fmt::print("{}\n", report.text);
 template <integrator::Integrator I>
 class Machine : public MachinePhases<I> {
   using Base = MachinePhases<I>;
@@ -27,25 +27,27 @@ class Machine : public MachinePhases<I> {
 
   // ------------------------------------------------------------------------------------------- without any world
 
-  /// One step of dt (s), in `substeps` parts. Throws Error if it is above the stable time step.
-  MachineReport step(double dt) {
+  /// One step of dt (s), in `substeps` parts. Throws Error, before anything moves, if it is above the stable time step
+  /// or a prescribed motion would have to jump.
+  [[nodiscard]] MachineReport step(double dt) {
     prepare(dt);
     whole_step(dt);
     return report();
   }
 
   /// Steps of dt (s) for a duration (s; the number of steps is rounded). Stops at the first body that blows up. Throws
-  /// Error if dt is above the stable time step.
-  MachineReport run(double duration, double dt) {
+  /// Error as step does, between two steps.
+  [[nodiscard]] MachineReport run(double duration, double dt) {
     return run(duration, dt, [] {});
   }
   /// The same, calling `after_step()` after each step, e.g. to record.
   template <class F>
-  MachineReport run(double duration, double dt, F&& after_step) {
+  [[nodiscard]] MachineReport run(double duration, double dt, F&& after_step) {
     require_non_negative(duration, "time to run", "s");
     prepare(dt);
     const long long steps = std::llround(duration / dt);
     for (long long s = 0; s < steps && !bad_.valid(); ++s) {
+      if (s > 0) prepare(dt);  // after_step may have changed something
       whole_step(dt);
       after_step();
     }
@@ -76,10 +78,8 @@ class Machine : public MachinePhases<I> {
     const int n = this->checked_substeps();
     const double h = dt / n;
     const bool trial = stage < I::stages - 1;  // done again in the next stage, from the same start
-    if constexpr (I::stages > 1) {
-      stage == 0 ? save() : restore();
-      if (trial) std::swap(parts_.sensors, no_sensors_);
-    }
+    if constexpr (I::stages > 1) stage == 0 ? save() : restore();
+    const SensorsAside aside(trial ? &parts_.sensors : nullptr);
     const std::vector<Wrench>& from = stage == 0 ? earlier_contacts_ : contacts_;
     const std::vector<Wrench>& to = stage == 0 ? contacts_ : corrected_contacts_;
     const double phase = stage == 0 ? 1.0 : 0.0;
@@ -98,12 +98,27 @@ class Machine : public MachinePhases<I> {
         prescribe(start + h, h);
       }
     }
-    if constexpr (I::stages > 1) {
-      if (trial) std::swap(parts_.sensors, no_sensors_);
-    }
   }
 
  private:
+  /// Takes the sensors out of the machine while it lives, also if a user's function throws.
+  class SensorsAside {
+   public:
+    explicit SensorsAside(std::vector<Sensor>* sensors) : sensors_(sensors) {
+      if (sensors_ != nullptr) kept_.swap(*sensors_);
+    }
+    ~SensorsAside() {
+      if (sensors_ != nullptr) kept_.swap(*sensors_);
+    }
+    SensorsAside(const SensorsAside&) = delete;
+    SensorsAside& operator=(const SensorsAside&) = delete;
+
+   private:
+    std::vector<Sensor>* sensors_;
+    std::vector<Sensor> kept_;
+  };
+
+  /// Before each step: what was added or changed since the last one counts, and is refused before anything moves.
   void prepare(double dt) {
     require_positive(dt, "time step", "s");
     const bool same = this->is_initialised();
@@ -119,6 +134,7 @@ class Machine : public MachinePhases<I> {
     if (!same) accepted_dt_ = 0.0;
     if (dt != accepted_dt_) check_time_step(dt);
     accepted_dt_ = dt;
+    this->check_motions();
   }
 
   void check_time_step(double dt) const {
@@ -176,7 +192,6 @@ class Machine : public MachinePhases<I> {
   };
 
   std::vector<Wrench> corrected_contacts_;
-  std::vector<Sensor> no_sensors_;
   double accepted_dt_ = 0.0;  ///< s, that was compared with the stable time step
   Saved saved_;
 };

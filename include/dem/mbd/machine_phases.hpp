@@ -2,6 +2,7 @@
 
 #include <dem/core/macros.hpp>
 #include <dem/mbd/assembly.hpp>
+#include <dem/mbd/check_holds.hpp>
 
 #include <cmath>
 #include <string>
@@ -45,6 +46,20 @@ class MachinePhases : public Assembly {
     return limit;
   }
 
+  /// The same with the stiffness and damping alone that were given: what a step may be chosen by before anything is
+  /// derived for it. 1e300 if none limits it.
+  StableTimeStep stable_time_step_of_given() const {
+    StableTimeStep limit = stable_time_step_of<I>(without_derived(parts_));
+    if (limit.dt > 1e-3 * endless_step) return {};
+    limit.dt *= checked_substeps();
+    return limit;
+  }
+
+  /// Throws Error if a prescribed motion that was added, switched on or given another signal would have to jump to take
+  /// hold of its coordinate. Machine::step, run and a world's prepare call it, so that a step that has begun is never
+  /// refused.
+  void check_motions() { check_holds(parts_, time_); }
+
   /// False before initialise, and after a body, a joint or a coupling was added or `substeps` was changed since:
   /// design_for and initialise are due.
   bool is_initialised() const { return initialised_ && !changed_ && substeps == initialised_substeps_; }
@@ -52,7 +67,8 @@ class MachinePhases : public Assembly {
   bool is_designed_for(double dt) const { return is_initialised() && dt == design_dt_; }
 
   /// Starts at `time`: the integrator's memory is filled from the forces at this state, with what the caller has
-  /// already put on the bodies (the grains). Throws Error if a stiffness has to be derived and no time step is known.
+  /// already put on the bodies (the grains). Throws Error if a stiffness has to be derived and no time step is known,
+  /// or a prescribed motion would have to jump.
   void initialise(double time, const Vec3& g) {
     if (design_dt_ <= 0.0) {
       const std::string open = first_underived(parts_);
@@ -96,7 +112,6 @@ class MachinePhases : public Assembly {
   /// Moves the bodies first, if the integrator predicts.
   void before_forces(int stage, double dt) {
     if constexpr (I::predicts_before_forces) {
-      if (stage == 0) check_holds(parts_, time_);  // of motions that were added or changed since
       for (std::size_t i = 0; i < parts_.bodies.size(); ++i) {
         if (!parts_.bodies[i].fixed) predict(i, stage, dt);
       }
@@ -107,10 +122,7 @@ class MachinePhases : public Assembly {
   void clear_forces() { mbd::clear_forces(parts_); }
 
   /// Adds the machine's own forces; `time` is that of the state they act at (see stage_time).
-  void add_forces(double time, double dt, int stage, bool is_last_stage) {
-    if (!I::predicts_before_forces && stage == 0) check_holds(parts_, time_);
-    mbd::add_forces(parts_, time, dt, is_last_stage);
-  }
+  void add_forces(double time, double dt, int, bool is_last_stage) { mbd::add_forces(parts_, time, dt, is_last_stage); }
 
   /// Lets the forces move the bodies.
   void advance(int stage, double dt, const Vec3& g) {

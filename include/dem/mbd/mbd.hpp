@@ -1,7 +1,10 @@
 #pragma once
 
-/// Everything of the multibody dynamics layer.
+/// Everything of the multibody dynamics layer, with the integrators that a machine names.
 
+#include <dem/integrator/predictor_corrector.hpp>
+#include <dem/integrator/symplectic_euler.hpp>
+#include <dem/integrator/velocity_verlet.hpp>
 #include <dem/mbd/energy.hpp>
 #include <dem/mbd/machine.hpp>
 #include <dem/mbd/recorder.hpp>

@@ -4,18 +4,19 @@
 #include <dem/mbd/signal.hpp>
 
 #include <functional>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 namespace dem::mbd {
 
-/// Where a driven body is, and how it moves.
+/// Where a driven body is, and how it moves. A velocity that is not given is found by central differences over 2e-6 s.
 struct Pose {
-  Vec3 position = Vec3::Zero();          ///< m, centre of mass, global
-  Mat3 rotation = Mat3::Identity();      ///< body frame -> global
-  Vec3 velocity = Vec3::Zero();          ///< m/s
-  Vec3 angular_velocity = Vec3::Zero();  ///< rad/s, global axes
+  Vec3 position = Vec3::Zero();               ///< m, centre of mass, global
+  Mat3 rotation = Mat3::Identity();           ///< body frame (centre of mass, principal axes) -> global
+  std::optional<Vec3> velocity = {};          ///< m/s
+  std::optional<Vec3> angular_velocity = {};  ///< rad/s, global axes
 };
 
 /// A prescribed motion (eq. 19): the value and the speed of one coordinate, or a whole pose, are set exactly at the end
@@ -30,8 +31,9 @@ struct Pose {
 /// this takes.
 struct MotionSpec {
   enum class Target {
-    position,  ///< displacement of a body's centre of mass along a global axis, from where it was at assembly
-    rotation,  ///< turn of a body about a global axis; it turns about no other axis
+    position,  ///< displacement of a body's centre of mass along a global axis, from where it is when the motion is
+               ///< added
+    rotation,  ///< turn of a body about a global axis, likewise; it turns about no other axis
     joint,     ///< coordinate of a joint, but not its bend
     pose       ///< everything
   };
@@ -81,7 +83,7 @@ inline MotionSpec prescribed_pose(std::string name, BodyId body, std::function<P
 struct PrescribedMotion {
   MotionSpec spec;
   Vector3<double> axis = {};
-  double start = 0.0;     ///< m, position along the axis at assembly
+  double start = 0.0;     ///< m, position along the axis when it was added
   bool has_hold = false;  ///< it has been compared with its coordinate since it was added or changed
   Matrix3<double> start_rotation = Matrix3<double>::identity();
   struct Drive {

@@ -10,13 +10,14 @@
 
 namespace dem::mbd {
 
-/// Rows of numbers about a machine, to be written by any table writer:
+/// Rows of numbers about a machine, to be written by any table writer, or kept for plots (io::Columns):
 ///
 ///     Recorder recorder(machine);
 ///     recorder.add("time_s", [&] { return machine.time(); });
 ///     recorder.add(hinge);                                    // coordinate, speed and reaction of a joint
 ///     io::CsvWriter csv("hinge.csv", recorder.columns());
-///     machine.run(10.0, 1e-4, [&] { if (recorder.is_due(machine.time(), 0.01)) csv.row(recorder.sample()); });
+///     const auto report =
+///         machine.run(10.0, 1e-4, [&] { if (recorder.is_due(machine.time(), 0.01)) csv.row(recorder.sample()); });
 ///
 /// It refers to the machine, which has to outlive it and must not be moved.
 class Recorder {

@@ -29,6 +29,7 @@ class Signal {
   /// `from` until time t0 (s), then grows by `rate` per second, until t1 if that is given.
   static Signal ramp(double from, double rate, double t0 = 0.0, double t1 = 1e300) {
     for (const double x : {from, rate, t0, t1}) finite(x, "value, rate or time of a ramp");
+    if (!(t1 >= t0)) fail("a ramp ends at {:g} s, but must not end before its start, {:g} s", t1, t0);
     return Signal([=](double t) -> Sample {
       if (t < t0) return {from, 0.0};
       if (t > t1) return {from + rate * (t1 - t0), 0.0};

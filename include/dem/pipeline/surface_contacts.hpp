@@ -26,8 +26,8 @@ struct SurfaceKey {
   }
 };
 
-/// The probe index under which corners of surfaces in a grain are remembered.
-inline constexpr std::uint32_t corner_probe = 0xfff;
+/// The probe indices under which support points, and corners of surfaces in a grain, are remembered.
+inline constexpr std::uint32_t support_probe = 0xff0, corner_probe = 0xfff;
 inline constexpr std::uint32_t first_ball = 1u << 24;  ///< among its features
 
 /// A sharp grain may be entered by corners and edges of surfaces that none of its own points meets. Such a shape tells
@@ -64,11 +64,23 @@ concept TouchesBalls = requires(const Shape& s, const double* pose, const Vector
   { s.touch_ball(pose, centre, 1.0, touch) } -> std::same_as<bool>;
 };
 
-/// A surface that is much smaller than its bounding box: close(point, radius) is false if no probe in that sphere can
-/// touch.
+/// A round grain that tells which point of its skin meets a plane first, and what its other points weigh beside it.
+template <class Shape>
+concept HasSupport = requires(const Shape& s, const double* pose, const Vector3<double>& v) {
+  { s.even_support(pose, v) } -> std::same_as<Vector3<double>>;
+  { s.beside_support(v, v, v) } -> std::same_as<double>;
+};
+/// Whether a shape shows points to surfaces, not balls.
+template <class Shape>
+inline constexpr bool shows_points = HasPenetration<Shape> || requires(const Shape& s) {
+  s.kind();
+};
+
+/// A surface that is much smaller than its bounding box: close(point, radius, points) is false if no probe in that
+/// sphere can touch; `points`: whether there are probes without a radius among them.
 template <class S>
 concept KnowsClose = requires(const S& s, const Vector3<double>& point) {
-  { s.close(point, 1.0) } -> std::same_as<bool>;
+  { s.close(point, 1.0, true) } -> std::same_as<bool>;
 };
 
 /// Lists that a thread uses again for each chunk.
@@ -79,13 +91,13 @@ struct SurfaceScratch {
   ContactForces forces;
 };
 
-/// False if a surface knows that nothing in a sphere (global axes) touches it.
-template <class Surface>
+/// False if a surface knows that no probe of grains of a shape in a sphere (global axes) touches it.
+template <class Shape, class Surface>
 bool is_close(const Surface& surface, const Vec3& centre, double radius) {
   const Vector3<double> seen = transpose_times(surface.axes, from_eigen(centre) - surface.origin);
   return std::visit(
       [&]<class G>(const G& geometry) {
-        if constexpr (KnowsClose<G>) return geometry.close(seen, radius);
+        if constexpr (KnowsClose<G>) return geometry.close(seen, radius, shows_points<Shape>);
         return true;
       },
       surface.geometry);
@@ -115,6 +127,32 @@ void touch_with_probes(const GrainAtSurface& at, const Shape& grain, const Surfa
                             {probe.centre, surface.axes * normal, probe.radius, distance,
                              surface::radius_on(geometry, probe.effective_radius), probe.area});
                    });
+  });
+}
+
+/// Where the surface is flat, a grain meets it first with its support point, which lies between the points of its skin.
+/// The ways to the surface are those that the grain's bounding sphere finds. `first`: of the touches of the grain's own
+/// points, which lose their weight near a support point.
+template <class Shape, class Surface, class Geometry>
+void touch_with_supports(const GrainAtSurface& at, const Shape& grain, const Surface& surface, const Geometry& geometry,
+                         std::size_t first, SurfaceScratch& s) {
+  const std::size_t end = s.touches.size();
+  std::uint32_t probe = support_probe;
+  geometry.touch(at.centre, grain.bounding_radius(), [&](std::uint32_t, const Vector3<double>& way, double) {
+    if (probe == corner_probe) return;
+    const Vector3<double> normal = surface.axes * way, point = grain.even_support(at.pose, normal);
+    bool touches = false;
+    geometry.touch(
+        at.centre + transpose_times(surface.axes, point), 0.0,
+        [&](std::uint32_t feature, const Vector3<double>& n, double distance) {
+          touches = true;
+          at.add(s, probe, feature,
+                 {point, surface.axes * n, 0.0, distance, surface::radius_on(geometry, grain.mean_radius()), 1.0});
+        });
+    ++probe;
+    if (!touches) return;
+    for (std::size_t k = first; k < end; ++k)
+      s.touches[k].area *= grain.beside_support(s.touches[k].centre, point, normal);
   });
 }
 
@@ -173,6 +211,9 @@ void touch_surface(const GrainAtSurface& at, const Shape& grain, const Surface& 
     }
   }
   touch_with_probes(at, grain, surface, geometry, gap, s);
+  if constexpr (HasSupport<Shape>) {
+    if (shape::has_shares(grain)) touch_with_supports(at, grain, surface, geometry, first, s);
+  }
   if constexpr (HasPenetration<Shape>) touch_with_corners(at, grain, surface, geometry, s);
   if constexpr (requires { Shape::shares_fit; }) {
     if (!shape::has_shares(grain)) return;
@@ -202,7 +243,7 @@ void probe_surface(std::size_t begin, std::size_t end, std::size_t number, const
             if (!geometry.near(centre, shape::widened(grain.bounding_radius(), gap))) continue;
             // A shape of one probe asks the same question by touching.
             if constexpr (Shape::has_orientation && KnowsClose<std::remove_cvref_t<decltype(geometry)>>) {
-              if (!geometry.close(centre, shape::widened(grain.bounding_radius(), gap))) continue;
+              if (!geometry.close(centre, shape::widened(grain.bounding_radius(), gap), shows_points<Shape>)) continue;
             }
             const GrainAtSurface at = {static_cast<std::uint32_t>(i),
                                        static_cast<std::uint32_t>(i - begin),
@@ -247,7 +288,8 @@ void find_surface_contacts(std::size_t chunk_index, Chunk<Model>& chunk, const P
     if (!surface.active || (low.array() > surface.high.array()).any() || (high.array() < surface.low.array()).any()) {
       continue;
     }
-    if (!is_close(surface, 0.5 * (chunk.low + chunk.high), 0.5 * (chunk.high - chunk.low).norm() + reach)) {
+    if (!is_close<typename Model::Shape>(surface, 0.5 * (chunk.low + chunk.high),
+                                         0.5 * (chunk.high - chunk.low).norm() + reach)) {
       continue;
     }
     for (std::size_t k = 0; k < species.size(); ++k) law_of[k] = materials.row(species[k].material, surface.material);

@@ -40,20 +40,20 @@ template <BallShape A, BallShape B>
 inline constexpr bool balls_before = A::most_contacts < B::most_contacts ||
                                      (A::most_contacts == B::most_contacts && A::pose_size < B::pose_size);
 
-/// Every ball of a against every ball of b: a sphere is a cluster of one.
+/// Every ball of a against every ball of b, up to a gap: a sphere is a cluster of one.
 template <BallShape A, BallShape B>
 requires balls_before<A, B>
 struct PairContact<A, B> {
-  template <class Sink>
+  template <class Sink, class Gap = NoGap>
   static DEM_HOT void collide(const A& a, const double* pose_a, const B& b, const double* pose_b,
-                              const Vector3<double>& separation, Sink&& sink) {
+                              const Vector3<double>& separation, Sink&& sink, Gap gap = {}) {
     for (int k = 0; k < ball_count(a); ++k) {
       const PosedBall p = posed_ball(a, pose_a, k);
       const Vector3<double> from = separation - p.centre;
       for (int m = 0; m < ball_count(b); ++m) {
         const PosedBall q = posed_ball(b, pose_b, m);
         const Vector3<double> link = from + q.centre;
-        const double reach = p.radius + q.radius;
+        const double reach = widened(p.radius + q.radius, gap);
         if (dot(link, link) >= reach * reach) continue;
         sink(static_cast<std::uint32_t>(k * 256 + m),
              contact::ClusterTouch<double>{p.centre, link, p.radius, q.radius});

@@ -41,6 +41,9 @@ struct MixedBase<true, Kinds...> {
 template <class... Kinds>
 class Mixed : public detail::MixedBase<detail::MixedMemories<Kinds...>::any, Kinds...> {
   static_assert(sizeof...(Kinds) >= 1 && sizeof...(Kinds) <= 255, "Mixed: name 1 to 255 shapes");
+  using Memory = typename detail::MixedMemories<Kinds...>::Variant;
+  template <class A>
+  static constexpr bool reaches_each = (ReachingPair<A, Kinds> && ...);
 
  public:
   static constexpr int pose_size = std::max({int{Kinds::pose_size}...});
@@ -77,33 +80,25 @@ class Mixed : public detail::MixedBase<detail::MixedMemories<Kinds...>::any, Kin
   DEM_HOT void probe(const double* pose, Sink&& sink) const {
     visit([&](const auto& s) { s.probe(pose, sink); });
   }
-  /// `memory` only where some pair of kinds has one.
-  template <class Memory, class Sink>
+  /// With a memory, for models whose kinds keep their searches; with a gap (m), for cohesion at a distance, where all
+  /// kinds find contacts across it.
+  template <class Sink>
   static DEM_HOT void collide(const Mixed& a, const double* pose_a, const Mixed& b, const double* pose_b,
                               const Vector3<double>& separation, Memory& memory, Sink&& sink) {
-    a.visit_indexed([&]<std::size_t I>(const auto& x, std::integral_constant<std::size_t, I>) {
-      b.visit_indexed([&]<std::size_t J>(const auto& y, std::integral_constant<std::size_t, J>) {
-        using A = std::remove_cvref_t<decltype(x)>;
-        using B = std::remove_cvref_t<decltype(y)>;
-        // Features of a pair of one kind carry its number, so that mirrored() knows whom to ask.
-        constexpr std::uint32_t kind = I == J ? std::uint32_t{I + 1} << feature_bits : 0u;
-        const auto marked = [&](std::uint32_t feature, const auto& touch) { sink(kind | feature, touch); };
-        if constexpr (std::same_as<typename PairMemoryOf<A, B>::type, NoMemory>) {
-          NoMemory none;
-          collide_pair(x, pose_a, y, pose_b, separation, none, marked);
-        } else {
-          constexpr std::size_t place = 1 + I * sizeof...(Kinds) + J;
-          if (memory.index() != place) memory.template emplace<place>();
-          collide_pair(x, pose_a, y, pose_b, separation, *std::get_if<place>(&memory), marked);
-        }
-      });
-    });
+    collide_kinds(a, pose_a, b, pose_b, separation, memory, sink, NoGap{});
   }
   template <class Sink>
   static DEM_HOT void collide(const Mixed& a, const double* pose_a, const Mixed& b, const double* pose_b,
                               const Vector3<double>& separation, Sink&& sink) {
-    typename detail::MixedMemories<Kinds...>::Variant nothing;
-    collide(a, pose_a, b, pose_b, separation, nothing, sink);
+    Memory nothing;
+    collide_kinds(a, pose_a, b, pose_b, separation, nothing, sink, NoGap{});
+  }
+  template <class Sink>
+  static DEM_HOT void collide(const Mixed& a, const double* pose_a, const Mixed& b, const double* pose_b,
+                              const Vector3<double>& separation, Sink&& sink,
+                              double gap) requires(reaches_each<Kinds>&&...) {
+    Memory nothing;
+    collide_kinds(a, pose_a, b, pose_b, separation, nothing, sink, gap);
   }
 
   /// Patches are found between grains of one kind only.
@@ -129,6 +124,28 @@ class Mixed : public detail::MixedBase<detail::MixedMemories<Kinds...>::any, Kin
   static constexpr int feature_bits = 24;
   /// A feature as the pair's own kind numbers it.
   static constexpr std::uint32_t own(std::uint32_t feature) { return feature & ((1u << feature_bits) - 1u); }
+
+  template <class Sink, class Gap>
+  static DEM_HOT void collide_kinds(const Mixed& a, const double* pose_a, const Mixed& b, const double* pose_b,
+                                    const Vector3<double>& separation, Memory& memory, Sink&& sink, Gap gap) {
+    a.visit_indexed([&]<std::size_t I>(const auto& x, std::integral_constant<std::size_t, I>) {
+      b.visit_indexed([&]<std::size_t J>(const auto& y, std::integral_constant<std::size_t, J>) {
+        using A = std::remove_cvref_t<decltype(x)>;
+        using B = std::remove_cvref_t<decltype(y)>;
+        // Features of a pair of one kind carry its number, so that mirrored() knows whom to ask.
+        constexpr std::uint32_t kind = I == J ? std::uint32_t{I + 1} << feature_bits : 0u;
+        const auto marked = [&](std::uint32_t feature, const auto& touch) { sink(kind | feature, touch); };
+        if constexpr (std::same_as<typename PairMemoryOf<A, B>::type, NoMemory>) {
+          NoMemory none;
+          collide_pair(x, pose_a, y, pose_b, separation, none, marked, gap);
+        } else {
+          constexpr std::size_t place = 1 + I * sizeof...(Kinds) + J;
+          if (memory.index() != place) memory.template emplace<place>();
+          collide_pair(x, pose_a, y, pose_b, separation, *std::get_if<place>(&memory), marked, gap);
+        }
+      });
+    });
+  }
 
   template <std::size_t I = 0, class F>
   DEM_HOT decltype(auto) visit_indexed(F&& f) const {

@@ -14,17 +14,19 @@ namespace dem::shape {
 ///   };
 /// collide calls sink(feature, touch) as a Shape's own does: touches seen from a's centre, features ascending and below
 /// 2^24; any touch with geometry() will do. What a search wants to keep for a pair of neighbours goes into a type
-/// Memory (copyable, empty when made), and collide then takes a Memory& before the sink.
+/// Memory (copyable, empty when made), and collide then takes a Memory& before the sink. To meet cohesion at a
+/// distance, collide also takes a gap (m) as a last argument, as that of a ReachingShape does, without a memory.
 template <class A, class B>
 struct PairContact;
 
 /// Two grains of one kind: as the shape itself says.
 template <Shape S>
 struct PairContact<S, S> {
-  template <class Sink>
-  static DEM_HOT void collide(const S& a, const double* pose_a, const S& b, const double* pose_b,
-                              const Vector3<double>& separation, Sink&& sink) {
-    S::collide(a, pose_a, b, pose_b, separation, sink);
+  template <class Sink, class... Gap>
+  requires(sizeof...(Gap) == 0 || ReachingShape<S>) static DEM_HOT
+      void collide(const S& a, const double* pose_a, const S& b, const double* pose_b,
+                   const Vector3<double>& separation, Sink&& sink, Gap... gap) {
+    S::collide(a, pose_a, b, pose_b, separation, sink, gap...);
   }
 };
 template <RememberingShape S>
@@ -42,6 +44,14 @@ template <class A, class B>
 concept HasPairContact = requires {
   sizeof(PairContact<A, B>);
 };
+
+/// The pair, in whichever order it is specialised, also finds contacts across a gap.
+template <class A, class B>
+concept ReachesInOrder = requires(const A& a, const B& b, const double* pose, const Vector3<double>& separation) {
+  PairContact<A, B>::collide(a, pose, b, pose, separation, AnySink{}, 1.0);
+};
+template <class A, class B>
+concept ReachingPair = ReachesInOrder<A, B> || ReachesInOrder<B, A>;
 
 /// What a pair of A and B keeps between searches, in whichever order it is specialised.
 struct NoMemory {};
@@ -66,13 +76,16 @@ DEM_HOT contact::PointTouch<double> turned_round(const contact::Geometry<double>
   return {-g.normal, g.overlap, g.arm + separation, g.effective_radius, g.area};
 }
 
-/// Contacts of any two kinds as point touches, through PairContact<A, B> or PairContact<B, A>.
-template <class A, class B, class Memory, class Sink>
+/// Contacts of any two kinds as point touches, through PairContact<A, B> or PairContact<B, A>; up to a gap (m) where
+/// cohesion acts at a distance (else NoGap).
+template <class A, class B, class Memory, class Sink, class Gap = NoGap>
 DEM_HOT void collide_pair(const A& a, const double* pose_a, const B& b, const double* pose_b,
-                          const Vector3<double>& separation, Memory& memory, Sink&& sink) {
-  const auto call = [&memory](auto pair, const auto&... arguments) {
+                          const Vector3<double>& separation, Memory& memory, Sink&& sink, Gap gap = {}) {
+  const auto call = [&memory, gap](auto pair, const auto&... arguments) {
     using Pair = decltype(pair);
-    if constexpr (requires { typename Pair::Memory; }) {
+    if constexpr (!std::is_same_v<Gap, NoGap>) {
+      Pair::collide(arguments..., gap);
+    } else if constexpr (requires { typename Pair::Memory; }) {
       const auto split = [&](const auto& x, const double* pose_x, const auto& y, const double* pose_y,
                              const Vector3<double>& between,
                              const auto& given) { Pair::collide(x, pose_x, y, pose_y, between, memory, given); };
@@ -87,8 +100,10 @@ DEM_HOT void collide_pair(const A& a, const double* pose_a, const B& b, const do
       sink(feature, contact::PointTouch<double>{g.normal, g.overlap, g.arm, g.effective_radius, g.area});
     });
   } else {
-    static_assert(HasPairContact<B, A>,
-                  "Mixed: nothing says how these two shapes touch; specialise dem::shape::PairContact<A, B> for them");
+    static_assert(
+        HasPairContact<B, A>,
+        "Mixed: nothing says how these two shapes touch; specialise dem::shape::PairContact<A, B> for them, or include "
+        "polyhedron_sphere.hpp / superquadric_polyhedron.hpp");
     call(PairContact<B, A>{}, b, pose_b, a, pose_a, -separation,
          [&](std::uint32_t feature, const auto& touch) { sink(feature, turned_round(touch.geometry(), separation)); });
   }

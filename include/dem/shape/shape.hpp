@@ -30,6 +30,15 @@ struct AnyProbe {
 ///   mirrored(feature)    the feature number of the same contact when a and b change places;
 ///   probe(pose, sink)    calls sink(index, contact::Probe) for each sphere or point that the shape shows to surfaces,
 ///                        indices ascending, below 4095.
+/// It may also have
+///   patch(), surface_patch()   where it touches with many points at once (see patch_of);
+///   has_shares(), shares_fit   true if the points that it shows to a surface are shares of one contact, and a
+///                              contact::Fit that says how these are fitted;
+///   is_patch(feature)          if contacts of a pair are the points of one patch (see PatchShape);
+///   penetration(pose, point, depth, outward_normal)   whether a point (m, from the grain's centre, global axes) lies
+///                        inside, how deep, and which way is out: then corners and edges of surfaces are felt;
+///   touch_ball(pose, centre, radius, touch)   whether a ball touches, and where (contact::BallTouch): then surfaces
+///                        that are balls are felt exactly, and mantles of cylinders through balls.
 template <class S>
 concept Shape = requires(const S& shape, const Matrix3<double>& rotation, double* pose,
                          const Vector3<double>& separation) {

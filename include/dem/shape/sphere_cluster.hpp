@@ -24,17 +24,19 @@ class SphereCluster {
   template <class T>
   using PairTouch = contact::ClusterTouch<T>;
 
-  /// A rigid layout of 1 to N balls in any frame (m). The mass properties are those of the union of the balls, unless
-  /// they are given (density 1, in the same frame). The grain's own frame is then moved to the centre of mass and
-  /// turned to the principal axes; `frame_rotation` and `frame_centre` tell where it went. Throws Error if there are no
-  /// balls, too many, or a radius is not positive.
+  /// A rigid layout of 1 to N balls in any frame (m). The mass properties are those of the union of the balls (exact if
+  /// none overlap, else good to 1e-4), unless they are given (density 1, in the same frame). The grain's own frame is
+  /// then moved to the centre of mass and turned to the principal axes; `frame_rotation` and `frame_centre` tell where
+  /// it went. Throws Error if there are no balls, too many, or a radius is not positive.
   explicit SphereCluster(std::span<const Ball> balls, const std::optional<MassProperties>& given = {}) {
     if (balls.empty() || balls.size() > static_cast<std::size_t>(N)) {
       fail("a SphereCluster<{}> was given {} spheres, but takes 1 to {}; choose a larger N or fewer spheres", N,
            balls.size(), N);
     }
     for (const Ball& b : balls) require_positive(b.radius, "radius of a sphere of a cluster", "m");
-    const MassProperties mass = given ? *given : union_mass_properties(balls);
+    const MassProperties mass = given                ? *given
+                                : any_overlap(balls) ? union_mass_properties(balls)
+                                                     : separate_mass_properties(balls);
     const PrincipalAxes axes = principal_axes(mass.inertia);
     volume_ = require_positive(mass.volume, "volume of a sphere cluster", "m^3");
     unit_inertia_ = axes.moments;

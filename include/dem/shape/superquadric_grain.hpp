@@ -82,6 +82,31 @@ class SuperquadricGrain {
     solid_.support(transpose_times(r, direction), local);
     return r * local;
   }
+  /// As far out as support(), but beside it in the middle of what lies farthest along directions that differ by a few
+  /// milliradians: on a flat side, where rounding decides which point is the farthest, the middle of the side.
+  Vector3<double> even_support(const double* pose, const Vector3<double>& direction) const {
+    const Matrix3<double> r = rotation(pose);
+    const Vector3<double> n = transpose_times(r, direction);
+    const Vector3<double> across = std::abs(n.x) < 0.6 ? Vector3<double>{1, 0, 0} : Vector3<double>{0, 1, 0};
+    const Vector3<double> u = cross(n, across), v = cross(n, u);
+    Vector3<double> farthest, middle = {0, 0, 0}, p;
+    solid_.support(n, farthest);
+    for (const Vector3<double>& aside : {u + v, u - v, v - u, -u - v}) {
+      solid_.support(n + 3e-3 * aside, p);
+      middle += 0.25 * p;
+    }
+    return r * (middle + dot(farthest - middle, n) * n);
+  }
+  /// What a point of the skin weighs beside the support point of a flat surface with that normal (all in m from the
+  /// grain's centre, global axes): almost nothing within a third of the mean radius, so that a round grain, which
+  /// touches over less than that, rests and rolls on its support point alone, and all of it on a flat side's far end.
+  DEM_HOT double beside_support(const Vector3<double>& point, const Vector3<double>& support,
+                                const Vector3<double>& normal) const {
+    const Vector3<double> d = point - support;
+    const double height = dot(d, normal), third = mean_radius_ / 3.0;
+    const double ratio = (dot(d, d) - height * height) / (third * third);
+    return ratio * ratio / (1.0 + ratio * ratio);
+  }
   /// The contact of a ball (centre in m from the grain's, global axes) along the common normal. False if they are
   /// apart.
   bool touch_ball(const double* pose, const Vector3<double>& centre, double radius, contact::BallTouch& touch) const {

@@ -10,10 +10,11 @@
 
 namespace dem::shape {
 
-/// A superquadric of either kind and a polyhedron: points of the superquadric's skin in the polyhedron, corners of the
-/// polyhedron in the superquadric, and points of each edge, where it is nearest to the superquadric's centre and half a
-/// bounding radius on either side. They share one contact, or weigh as the superquadric's points do. What meets between
-/// these points is felt late. Feature: a point of the skin; from 2^13 on a corner, from 2^14 on three times an edge.
+/// A superquadric of either kind and a polyhedron: points of the superquadric's skin, and the one that meets the
+/// nearest face first, in the polyhedron, corners of the polyhedron in the superquadric, and points of each edge, where
+/// it is nearest to the superquadric's centre and half a bounding radius on either side. They share one contact, or
+/// weigh as the superquadric's points do. What meets between these points is felt late. Feature: a point of the skin;
+/// 2^12 for that support point; from 2^13 on a corner, from 2^14 on three times an edge.
 template <std::derived_from<SuperquadricGrain> Rounded>
 struct PairContact<Rounded, Polyhedron> {
   template <class Sink>
@@ -28,7 +29,7 @@ struct PairContact<Rounded, Polyhedron> {
   }
 
  private:
-  static constexpr std::uint32_t corners = 1u << 13, edges = 1u << 14;
+  static constexpr std::uint32_t support_feature = 1u << 12, corners = 1u << 13, edges = 1u << 14;
 
   template <class Sink>
   static void find_points(const Rounded& a, const double* pose_a, const Polyhedron& b, const double* pose_b,
@@ -37,13 +38,30 @@ struct PairContact<Rounded, Polyhedron> {
     const double radius = a.mean_radius() * b.radius() / (a.mean_radius() + b.radius());
     double depth, areas = 0.0;
     Vector3<double> out;
+    // The point that meets the nearest face first, which lies between those of the skin.
+    Vector3<double> support{}, way{};
+    double support_depth = 0.0;
+    Vector3<double> support_out{};
+    bool supported = false;
+    NearestPoint nearest_on_b;
+    if (a.has_shares() &&
+        nearest_point(b.tables(), -transpose_times(rb, separation), a.bounding_radius(), nearest_on_b)) {
+      way = -(rb * nearest_on_b.outward);
+      support = a.even_support(pose_a, way);
+      supported = b.penetration(pose_b, support - separation, support_depth, support_out);
+    }
     for (int k = 0; k < a.points().count; ++k) {
       const double area = a.points().area[static_cast<std::size_t>(k)];
       areas += area;
       const Vector3<double> point = ra * a.points()[k];
       if (!b.penetration(pose_b, point - separation, depth, out)) continue;
+      const double weight = supported ? a.beside_support(point, support, way) : 1.0;
       sink(static_cast<std::uint32_t>(k),
-           contact::PointTouch<double>{-out, depth, point + (0.5 * depth) * out, radius, area});
+           contact::PointTouch<double>{-out, depth, point + (0.5 * depth) * out, radius, weight * area});
+    }
+    if (supported) {
+      sink(support_feature, contact::PointTouch<double>{-support_out, support_depth,
+                                                        support + (0.5 * support_depth) * support_out, radius, 1.0});
     }
     const double mean_area = areas / a.points().count;
     const auto try_point = [&](std::uint32_t feature, const Vector3<double>& in_b, double weight) {

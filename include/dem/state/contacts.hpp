@@ -58,7 +58,8 @@ struct ContactMemories {
   }
   /// This step's memories become the committed ones.
   void commit() { std::swap(now, last); }
-  int count() const { return now.count; }
+  /// How many contacts the last committed step had: those of `last`.
+  int committed() const { return last.count; }
 };
 
 }  // namespace dem

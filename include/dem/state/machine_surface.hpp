@@ -37,7 +37,7 @@ struct MachineSurface {
             b.motion.rotation * b.motion.angular_velocity};
     origin = b.motion.position + b.motion.rotation * from_eigen(position);
     axes = b.motion.rotation * from_eigen(rotation);
-    const surface::Bounds local = std::visit([](const auto& g) { return g.bounds(); }, geometry);
+    const surface::Bounds local = std::visit([](const auto& kind) { return kind.bounds(); }, geometry);
     // Half sizes along the global axes: |R| times the local half sizes. The origin comes last: added to the middle of
     // a half space, 1e150 m away, it would be lost.
     const Vec3 middle = to_eigen(axes) * (0.5 * (local.low + local.high));

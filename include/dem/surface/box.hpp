@@ -90,11 +90,35 @@ class Box {
       }
     }
   }
-  std::size_t points_at_once() const { return 4 * static_cast<std::size_t>(pieces_); }
+  bool has_points() const { return true; }
+  /// The edges, for contact with other bodies: sink(number, one end, other end).
+  template <class Sink>
+  void edges(const Bounds&, Sink&& sink) const {
+    const double half[3] = {half_.x, half_.y, half_.z};
+    for (std::uint32_t k = 0; k < 12; ++k) {
+      const std::uint32_t axis = k / 4;
+      double tail[3], head[3];
+      tail[axis] = -half[axis];
+      head[axis] = half[axis];
+      for (std::uint32_t i = 1; i <= 2; ++i) {
+        const std::uint32_t across = (axis + i) % 3;
+        tail[across] = head[across] = (k >> (i - 1) & 1u) != 0 ? half[across] : -half[across];
+      }
+      sink(first_edge + k, Vector3<double>{tail[0], tail[1], tail[2]}, Vector3<double>{head[0], head[1], head[2]});
+    }
+  }
+  /// Cuts the range of shares of the way from tail to head to what lies in the box; false if nothing is left.
+  bool clip(const Vector3<double>& tail, const Vector3<double>& head, double& from, double& to) const {
+    const Vector3<double> d = head - tail;
+    return clip_between(tail.x, d.x, half_.x, from, to) && clip_between(tail.y, d.y, half_.y, from, to) &&
+           clip_between(tail.z, d.z, half_.z, from, to);
+  }
 
   Bounds bounds() const { return {-to_eigen(half_), to_eigen(half_)}; }
 
  private:
+  static constexpr std::uint32_t first_edge = 12 * 1001;  ///< beyond the numbers of points
+
   /// How far a coordinate lies outside [-limit, limit].
   template <class T>
   static DEM_HOT T outside(const T& value, double limit) {

@@ -114,7 +114,35 @@ class Cylinder {
     }
   }
   bool is_on_ball(const Vector3<double>& p) const { return std::abs(p.z) < half_; }
-  std::size_t points_at_once() const { return is_drum_ ? 0 : static_cast<std::size_t>(rim_points_); }
+  bool has_points() const { return !is_drum_; }
+  /// The points of both rims that lie farthest along a direction, for contact with other bodies: sink(number, point).
+  /// None for a direction along the axis, for which all are as far, and for a drum.
+  template <class Sink>
+  void rims(const Vector3<double>& way, Sink&& sink) const {
+    const double across = std::sqrt(way.x * way.x + way.y * way.y);
+    if (is_drum_ || across < 1e-9) return;
+    const double x = outer_ * way.x / across, y = outer_ * way.y / across;
+    const auto first = static_cast<std::uint32_t>(2 * rim_points_);
+    sink(first, Vector3<double>{x, y, -half_});
+    sink(first + 1, Vector3<double>{x, y, half_});
+  }
+  double bounding_radius() const { return std::sqrt(outer_ * outer_ + half_ * half_); }
+  /// Cuts the range of shares of the way from tail to head to what lies in the cylinder (a tube's hole counts); false
+  /// if nothing is left. A drum has no inside.
+  bool clip(const Vector3<double>& tail, const Vector3<double>& head, double& from, double& to) const {
+    if (is_drum_) return false;
+    const Vector3<double> d = head - tail;
+    if (!clip_between(tail.z, d.z, half_, from, to)) return false;
+    // |tail + share d| = outer radius, seen along the axis.
+    const double a = d.x * d.x + d.y * d.y, b = tail.x * d.x + tail.y * d.y,
+                 c = tail.x * tail.x + tail.y * tail.y - outer_ * outer_;
+    if (a == 0.0) return c < 0.0;
+    const double root2 = b * b - a * c;
+    if (root2 <= 0.0) return false;
+    from = max(from, (-b - std::sqrt(root2)) / a);
+    to = min(to, (-b + std::sqrt(root2)) / a);
+    return from < to;
+  }
 
   Bounds bounds() const {
     const double behind = is_drum_ ? outer_ : 0.0;

@@ -14,10 +14,9 @@ namespace dem::surface {
 /// How the triangles of a mesh belong together, as a contact sees it. The group of a triangle is the name under which a
 /// contact is remembered, so a grain that moves over an edge within a group keeps its friction.
 struct MeshGroups {
-  std::vector<std::uint32_t> group;          ///< of each triangle
-  std::vector<std::array<bool, 3>> sharp;    ///< edge k is boundary, or convex and sharper than the angle
-  std::uint32_t count = 0;                   ///< groups
-  std::size_t most_vertices_in_a_plane = 0;  ///< of connected coplanar triangles
+  std::vector<std::uint32_t> group;        ///< of each triangle
+  std::vector<std::array<bool, 3>> sharp;  ///< edge k is boundary, or convex and sharper than the angle
+  std::uint32_t count = 0;                 ///< groups
 };
 
 namespace detail {
@@ -47,7 +46,7 @@ inline MeshGroups group_triangles(const IndexedMesh& mesh, const MeshTopology& t
   MeshGroups result;
   result.group.resize(n);
   result.sharp.assign(n, {false, false, false});
-  detail::UnionFind smooth(n), flat(n);
+  detail::UnionFind smooth(n);
   std::vector<std::pair<std::uint32_t, std::uint32_t>> convex, concave;
   for (std::uint32_t t = 0; t < n; ++t) {
     const Vec3 normal = mesh.area_vector(t).normalized();
@@ -66,7 +65,6 @@ inline MeshGroups group_triangles(const IndexedMesh& mesh, const MeshTopology& t
       }
       result.sharp[t][k] = turn > smooth_angle && height < 0.0;
       if (other < t) continue;
-      if (turn < 1e-7) flat.join(t, other);
       if (turn <= smooth_angle) {
         smooth.join(t, other);
       } else {
@@ -104,18 +102,10 @@ inline MeshGroups group_triangles(const IndexedMesh& mesh, const MeshTopology& t
   }
 
   std::vector<std::uint32_t> number(n, MeshTopology::none);
-  std::vector<std::pair<std::uint32_t, std::uint32_t>> in_plane;
   for (std::uint32_t t = 0; t < n; ++t) {
     std::uint32_t& known = number[smooth.find(t)];
     if (known == MeshTopology::none) known = result.count++;
     result.group[t] = known;
-    for (const std::uint32_t v : mesh.triangles[t]) in_plane.emplace_back(flat.find(t), v);
-  }
-  std::sort(in_plane.begin(), in_plane.end());
-  in_plane.erase(std::unique(in_plane.begin(), in_plane.end()), in_plane.end());
-  for (std::size_t from = 0, to = 0; from < in_plane.size(); from = to) {
-    while (to < in_plane.size() && in_plane[to].first == in_plane[from].first) ++to;
-    result.most_vertices_in_a_plane = std::max(result.most_vertices_in_a_plane, to - from);
   }
   return result;
 }

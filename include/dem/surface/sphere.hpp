@@ -48,7 +48,7 @@ class Sphere {
   void points(const Bounds&, Sink&& sink) const {
     if (side_ == Side::outside) sink(0u, Vector3<double>{0, 0, 0}, radius_);
   }
-  std::size_t points_at_once() const { return side_ == Side::outside ? 1 : 0; }
+  bool has_points() const { return side_ == Side::outside; }
 
   /// m, effective radius of a grain's skin of that radius on the ball: 1/(1/r + 1/R). A cavity counts as flat.
   double radius_on(double radius) const {

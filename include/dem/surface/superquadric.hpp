@@ -75,8 +75,7 @@ class Superquadric {
       if (dot(from, from) <= radius * radius) sink(k, (*points_)[k]);
     }
   }
-  /// Those of a flat side: a ninth of them a side, at the most.
-  std::size_t points_at_once() const { return side_ == Side::inside ? 0 : per_edge * per_edge; }
+  bool has_points() const { return side_ == Side::outside; }
 
   Bounds bounds() const {
     const Vec3 half = side_ == Side::inside ? Vec3(1.5 * radii()) : radii();

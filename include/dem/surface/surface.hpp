@@ -2,6 +2,8 @@
 
 #include <dem/math/vector.hpp>
 
+#include <algorithm>
+#include <cmath>
 #include <concepts>
 #include <cstdint>
 #include <variant>
@@ -42,6 +44,15 @@ double radius_on(const S& s, double radius) {
   } else {
     return radius;
   }
+}
+
+/// Cuts the range [from, to] of shares of a way to where |x + share step| < half; false if nothing is left.
+inline bool clip_between(double x, double step, double half, double& from, double& to) {
+  if (step == 0.0) return std::abs(x) < half && from < to;
+  const double one = (-half - x) / step, other = (half - x) / step;
+  from = std::max(from, std::min(one, other));
+  to = std::min(to, std::max(one, other));
+  return from < to;
 }
 
 template <class S>

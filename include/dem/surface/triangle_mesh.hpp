@@ -20,8 +20,8 @@ struct MeshOptions {
   MeshFacing facing = MeshFacing::outward;  ///< inward: the solid is outside (a drum)
   double smooth_angle = 25.0;  ///< degrees; contacts closer than this in direction are one, see TriangleMesh
   double depth = 0.0;          ///< m, how far behind the surface a probe is still found and pushed out; 0: spheres to
-                               ///< their radius, points (radius 0) to a quarter of the mean edge, or
-                               ///< of a grain's bounding radius if that is more
+                               ///< their radius, points (radius 0) as deep as their grains or
+                               ///< bodies may go, up to half the solid
   double point_spacing = 0.0;  ///< m, of points on sharp edges (against sharp grains and bodies); 0: only vertices
   double tolerance = 0.0;      ///< m, within which vertices are one; 0: 1e-9 of the mesh's diagonal
 };
@@ -70,9 +70,9 @@ class TriangleMesh {
   }
 
   /// False only if no probe in a sphere of that radius can touch: cheap for grains that are near the mesh's bounding
-  /// box but not near its triangles.
-  bool close(const Vector3<double>& p, double radius) const {
-    const double reach = radius + point_depth_;
+  /// box but not near its triangles. `points`: whether any probe has no radius.
+  bool close(const Vector3<double>& p, double radius, bool points) const {
+    const double reach = radius + (points ? point_depth_ : options_.depth);
     return data_->tree.reaches(p, reach * reach);
   }
 
@@ -111,16 +111,29 @@ class TriangleMesh {
   void corners(const Vector3<double>& p, double radius, Sink&& sink) const {
     data_->corners.for_each_near(p, radius, sink);
   }
-  /// How many points may touch a plane at once.
-  std::size_t points_at_once() const { return std::max<std::size_t>(3, data_->groups.most_vertices_in_a_plane); }
+  bool has_points() const { return true; }
+  /// Sharp edges of triangles that may lie in a box, for contact with other bodies: sink(number, one end, other end).
+  template <class Sink>
+  void edges(const Bounds& box, Sink&& sink) const {
+    constexpr std::uint32_t first = 1u << 22, most_faces = first / 3;  // beyond the numbers of points
+    data_->tree.for_each_in(from_eigen(box.low), from_eigen(box.high), [&](std::uint32_t f) {
+      for (std::size_t k = 0; k < 3; ++k) {
+        const std::uint32_t other = data_->topology.neighbour[f][k];
+        if (!data_->groups.sharp[f][k] || f >= most_faces || (other != MeshTopology::none && other < f)) continue;
+        const auto& corner = data_->mesh.triangles[f];
+        sink(first + 3 * f + static_cast<std::uint32_t>(k), data_->vertices[corner[k]],
+             data_->vertices[corner[(k + 1) % 3]]);
+      }
+    });
+  }
 
   Bounds bounds() const { return {to_eigen(low_), to_eigen(high_)}; }
 
-  /// Points of grains are found at least so deep (m) behind the surface, if no `depth` was chosen: for meshes that are
-  /// cut finer than the grains.
+  /// Points of partners that may be so deep (m) are found behind the surface, if no `depth` was chosen: a solid's to
+  /// that depth, a sheet's to a quarter of it, as there may be others beyond.
   void find_points_to(double depth) {
     if (options_.depth > 0.0 || options_.side == MeshSide::two_sided) return;
-    set_point_depth(std::max(point_depth_, depth));
+    set_point_depth(std::max(point_depth_, options_.side == MeshSide::solid ? depth : 0.25 * depth));
   }
 
  private:

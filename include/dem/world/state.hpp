@@ -2,6 +2,7 @@
 
 #include <dem/mbd/machine.hpp>
 #include <dem/pipeline/body_contacts.hpp>
+#include <dem/pipeline/body_stability.hpp>
 #include <dem/pipeline/neighbours.hpp>
 #include <dem/state/machine_surface.hpp>
 #include <dem/state/materials.hpp>
@@ -111,15 +112,22 @@ void rebuild_neighbours(WorldState<Model>& w) {
   ++w.rebuilds;
 }
 
-/// Points of grains are found behind a finely cut mesh as deep as the grains may reach.
+/// Points of grains and of other bodies are found behind a finely cut mesh until they are so deep that it is reported.
 template <class Model>
 void find_points_deep_enough(WorldState<Model>& w) {
-  for (auto& s : w.surfaces) {
+  const double share = 1.25 * std::min(1.0, 2.0 * w.options.overlap_limit);  // a step may go beyond
+  const auto find_to = [&](auto& surface, double radius) {
     std::visit(
         [&](auto& geometry) {
-          if constexpr (requires { geometry.find_points_to(1.0); }) geometry.find_points_to(0.25 * w.largest_radius);
+          if constexpr (requires { geometry.find_points_to(1.0); }) geometry.find_points_to(share * radius);
         },
-        s.geometry);
+        surface.geometry);
+  };
+  for (auto& s : w.surfaces) find_to(s, w.largest_radius);
+  for (const pipeline::BodyPair& pair : w.body_contacts.pairs) {
+    auto &a = w.surfaces[pair.a.index()], &b = w.surfaces[pair.b.index()];
+    find_to(a, pipeline::point_radius(b));
+    find_to(b, pipeline::point_radius(a));
   }
 }
 

@@ -23,10 +23,10 @@ class World : public WorldSetup<M> {
 
   // ---- running ---------------------------------------------------------------------------------------------------
 
-  /// Checks the set-up and chooses or checks the time step; called by step() and run() when something changed. Throws
-  /// Error if contact constants are missing or the time step is too large.
+  /// Checks the set-up and chooses or checks the time step; called by step() and run(). Throws Error if contact
+  /// constants are missing, the time step is too large, or a prescribed motion would have to jump.
   void prepare() {
-    if (!checked_ || (initialised_ && !state_.machine.is_initialised())) {
+    if (!checked_ || !state_.machine.is_initialised()) {
       state_.materials.check_complete();
       state_.materials.check_names(used_materials());
       const double range = state_.materials.range();
@@ -36,14 +36,12 @@ class World : public WorldSetup<M> {
       for (const auto& pair : state_.body_contacts.pairs) {
         state_.materials.check_pair(state_.surfaces[pair.a.index()].material, state_.surfaces[pair.b.index()].material);
       }
-      // A machine that was changed is judged by what is derived for it as it is now.
-      if (time_step() > 0.0 && !state_.machine.is_initialised()) state_.machine.design_for(time_step());
       choose_time_step();
       checked_ = true;
     }
+    // A step that has begun must not be refused: motions that were added or changed are looked at before it.
+    state_.machine.check_motions();
     if (!initialised_ || !state_.machine.is_initialised()) {
-      // What is derived depends on the pose: it changes with the machine or the time step, not with the grains.
-      if (!state_.machine.is_designed_for(time_step())) state_.machine.design_for(time_step());
       initialise(state_);
       initialised_ = true;
     }
@@ -72,16 +70,7 @@ class World : public WorldSetup<M> {
   double time_step() const { return state_.time_step; }
   /// Largest stable time step of grains and machine, and what limits it.
   pipeline::StableTimeStep stable_time_step() const {
-    std::vector<pipeline::SurfaceMatter> of_surfaces;
-    for (const auto& s : state_.surfaces) {
-      of_surfaces.push_back({s.material, pipeline::softness_of(s, state_.machine.bodies()[s.body.index()], 0.0)});
-    }
-    auto limit =
-        pipeline::stable_time_step<Model>(state_.species, state_.materials, of_surfaces, state_.options.overlap_limit);
-    const auto bodies = pipeline::stable_time_step_of_bodies<Model>(
-        state_.body_contacts.pairs, std::span(state_.surfaces), std::span(state_.machine.bodies()), state_.materials,
-        state_.options.overlap_limit);
-    if (bodies.value < limit.value) limit = bodies;
+    auto limit = stable_time_step_of_contacts();
     const auto machine = state_.machine.stable_time_step();
     if (machine.dt < limit.value) limit = {machine.dt, machine.limited_by};
     return limit;
@@ -154,23 +143,58 @@ class World : public WorldSetup<M> {
   }
   StepReport ok() const { return {StepReport::Problem::none, state_.time, state_.step, {}, {}}; }
 
+  /// Of grains with each other and with surfaces, and of bodies with each other.
+  pipeline::StableTimeStep stable_time_step_of_contacts() const {
+    std::vector<pipeline::SurfaceMatter> of_surfaces;
+    for (const auto& s : state_.surfaces) {
+      of_surfaces.push_back({s.material, pipeline::softness_of(s, state_.machine.bodies()[s.body.index()], 0.0)});
+    }
+    auto limit =
+        pipeline::stable_time_step<Model>(state_.species, state_.materials, of_surfaces, state_.options.overlap_limit);
+    const auto bodies = pipeline::stable_time_step_of_bodies<Model>(
+        state_.body_contacts.pairs, std::span(state_.surfaces), std::span(state_.machine.bodies()), state_.materials,
+        state_.options.overlap_limit);
+    if (bodies.value < limit.value) limit = bodies;
+    return limit;
+  }
+
+  /// Chooses or checks the time step, with the machine laid out for it.
   void choose_time_step() {
-    const pipeline::StableTimeStep limit = stable_time_step();
     const WorldOptions& o = state_.options;
-    if (o.time_step == 0.0) {
-      if (limit.value >= 1e300) fail("nothing in the world limits the time step; set time_step");
-      // A step that was chosen before is kept while it is as safe: a change of friction must not change it.
-      const double safe = o.time_step_safety * limit.value;
-      if (state_.time_step == 0.0 || state_.time_step > (1.0 + 1e-12) * safe) state_.time_step = safe;
-      return;
-    }
-    if (o.time_step > limit.value && !o.allow_unstable_time_step) {
+    o.time_step == 0.0 ? choose_time_step_automatically() : check_time_step(o.time_step);
+  }
+  void choose_time_step_automatically() {
+    auto& machine = state_.machine;
+    // What a machine derives is laid out for whatever step is chosen: only what is given limits it.
+    const double limit = std::min(stable_time_step_of_contacts().value, machine.stable_time_step_of_given().dt);
+    if (limit >= 1e300) fail("nothing in the world limits the time step; set time_step");
+    // A step that was chosen before is kept while it is as safe: a change of friction must not change it.
+    const double safe = state_.options.time_step_safety * limit;
+    if (state_.time_step == 0.0 || state_.time_step > (1.0 + 1e-12) * safe) state_.time_step = safe;
+    design_machine(state_.time_step);
+    // Given and derived parts of the same bodies add up, which a safety factor near 1 leaves no room for.
+    while (machine.stable_time_step().dt < state_.time_step) design_machine(state_.time_step *= 0.9);
+  }
+  void check_time_step(double dt) {
+    design_machine(dt);
+    const pipeline::StableTimeStep limit = stable_time_step();
+    if (dt > limit.value && !state_.options.allow_unstable_time_step) {
+      const auto& machine = state_.machine;
+      const bool by_machine = machine.stable_time_step().dt <= limit.value;
       fail(
-          "time step {:g} s is above the largest stable one, {:.4g} s ({}); lower time_step or the stiffness, or set "
+          "time step {:g} s is above the largest stable one, {:.4g} s ({}); lower time_step or the stiffness, {}or set "
           "allow_unstable_time_step",
-          o.time_step, limit.value, limit.contact);
+          dt, limit.value, limit.contact,
+          by_machine ? fmt::format("raise machine().substeps (now {}), ", machine.substeps) : "");
     }
-    state_.time_step = o.time_step;
+    state_.time_step = dt;
+  }
+  /// What is derived depends on the pose. It changes with the machine or the time step, not with the grains, and where
+  /// another pose has made it too stiff.
+  void design_machine(double dt) {
+    if (state_.machine.is_designed_for(dt) && state_.machine.stable_time_step().dt >= dt) return;
+    state_.machine.design_for(dt);
+    initialised_ = false;
   }
 
   double owed_steps_ = 0.0;  // by run_for: less than one

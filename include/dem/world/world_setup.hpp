@@ -69,17 +69,18 @@ class WorldSetup {
   /// Adds a grain. Throws Error for an unknown species, a position that is not finite, or a rotation that is none.
   ParticleId add_particle(const NewParticle& n) {
     auto& p = state_.particles;
+    const std::size_t id = p.row_of.size();
     if (n.species.index() >= state_.species.size()) {
       fail("a grain was given species {}, but the world has {}; call add_species first", n.species.value,
            state_.species.size());
     }
     if (!n.position.allFinite() || !n.velocity.allFinite() || !n.angular_velocity.allFinite()) {
-      fail("grain {} was given a position or velocity that is not finite", p.count);
+      fail("grain {} was given a position or velocity that is not finite", id);
     }
     // Written such that a NaN fails as well.
     if (!((n.rotation.transpose() * n.rotation - Mat3::Identity()).norm() <= 1e-6) ||
         !(n.rotation.determinant() > 0.0)) {
-      fail("grain {} was given a rotation matrix that is no rotation; normalise it (R^T R = I, det R = 1)", p.count);
+      fail("grain {} was given a rotation matrix that is no rotation; normalise it (R^T R = I, det R = 1)", id);
     }
     const std::size_t row = p.count;
     p.resize(row + 1);
@@ -89,10 +90,10 @@ class WorldSetup {
     p.set_rotation(row, from_eigen(rotation));
     p.spin.set(row, from_eigen(Vec3(rotation.transpose() * n.angular_velocity)));
     p.species[row] = n.species.value;
-    p.id[row] = static_cast<std::uint32_t>(p.row_of.size());
+    p.id[row] = static_cast<std::uint32_t>(id);
     p.row_of.push_back(static_cast<std::uint32_t>(row));
     touched();
-    return ParticleId(p.row_of.size() - 1);
+    return ParticleId(id);
   }
 
   /// Takes a grain out of the world, at the start of the next step; its id is not given again. The ids of others stay.
@@ -108,7 +109,8 @@ class WorldSetup {
   /// The fixed body of the world: carries walls that never move.
   BodyId ground() { return state_.machine.ground(); }
 
-  /// Gives a body a surface that grains feel.
+  /// Gives a body a surface that grains feel. Its place is by default that in the body's reference frame, that of the
+  /// drawing or the mesh that the body was made from.
   SurfaceId add_surface(BodyId body, const typename Model::Surfaces& geometry, const SurfaceOptions& o = {}) {
     if (body.index() >= state_.machine.bodies().size()) {
       fail("surface '{}' was given body {}, but the machine has {}", o.name, body.value,
@@ -123,8 +125,14 @@ class WorldSetup {
           o.name);
     }
     if (state_.surfaces.size() >= 0xffff) fail("a world takes at most 65,535 surfaces");
-    typename WorldState<Model>::Surface s{o.name,   body,       state_.materials.id(o.material),
-                                          geometry, o.position, o.rotation};
+    Vec3 position = o.position;
+    Mat3 rotation = o.rotation;
+    if (o.frame == BodyFrame::reference) {
+      const mbd::BuiltBody& built = state_.machine.parts().built[body.index()];
+      position = built.reference_origin + built.reference_axes * o.position;
+      rotation = built.reference_axes * o.rotation;
+    }
+    typename WorldState<Model>::Surface s{o.name, body, state_.materials.id(o.material), geometry, position, rotation};
     state_.surfaces.push_back(s);
     checked_ = false;
     return SurfaceId(state_.surfaces.size() - 1);
@@ -143,7 +151,7 @@ class WorldSetup {
       fail("body '{}' and body '{}' are both fixed for good, so no force between them would move anything", body_a.name,
            body_b.name);
     }
-    if (pipeline::points_at_once(sa) + pipeline::points_at_once(sb) == 0) {
+    if (!pipeline::has_points(sa) && !pipeline::has_points(sb)) {
       fail("neither surface {} nor surface {} has points that could touch the other (planes have none)", a.value,
            b.value);
     }
@@ -165,7 +173,7 @@ class WorldSetup {
         const BodyId i = w.surfaces[a].body, j = w.surfaces[b].body;
         const Body &body_i = w.machine.body(i), &body_j = w.machine.body(j);
         bool skip = i == j || (body_i.fixed && body_j.fixed && !(body_i.mass + body_j.mass > 0.0)) ||
-                    pipeline::points_at_once(w.surfaces[a]) + pipeline::points_at_once(w.surfaces[b]) == 0;
+                    (!pipeline::has_points(w.surfaces[a]) && !pipeline::has_points(w.surfaces[b]));
         for (const auto& joint : w.machine.parts().joints) {
           if (joint.kind == mbd::JointKind::free) continue;
           skip |= (joint.a == i.value && joint.b == j.value) || (joint.a == j.value && joint.b == i.value);

@@ -1,0 +1,118 @@
+#pragma once
+// Machines for ParaView (.vtp): bodies as meshes, all surfaces of a world, and frames of grains and machine together.
+
+#include <dem/io/drawn_surface.hpp>
+#include <dem/io/vtk_grains.hpp>
+#include <dem/io/vtk_series.hpp>
+#include <dem/mbd/assembly.hpp>
+
+#include <cstdint>
+#include <filesystem>
+#include <span>
+#include <string_view>
+#include <vector>
+
+namespace dem::io {
+
+/// A mesh that shows a body of a machine. It is given in the body's reference frame, that of the drawing or the mesh
+/// that the body was made from, and stays the caller's.
+struct DrawnBody {
+  BodyId body = {};
+  const SurfaceMesh* mesh = nullptr;
+  Vec3 position = Vec3::Zero();      ///< of the mesh's origin, in the reference frame [m]
+  Mat3 rotation = Mat3::Identity();  ///< from the mesh's frame to the reference frame
+};
+
+namespace detail {
+
+/// What ParaView shows of the body that a mesh belongs to.
+struct MachineArrays {
+  std::vector<std::int32_t> part;
+  std::vector<Vec3> velocity, spin, force;
+
+  void add(BodyId id, const Body& b, const Vec3& f) {
+    part.push_back(static_cast<std::int32_t>(id.value));
+    velocity.push_back(b.velocity());
+    spin.push_back(b.angular_velocity());
+    force.push_back(f);
+  }
+  [[nodiscard]] std::vector<BodyData> arrays(const char* name_of_force) const {
+    return {{"machine_part", 1, std::span<const std::int32_t>(part)},
+            {"velocity_m_s", 3, flat(velocity)},
+            {"angular_velocity_rad_s", 3, flat(spin)},
+            {name_of_force, 3, flat(force)}};
+  }
+};
+
+}  // namespace detail
+
+/// Writes bodies of a machine, with or without a world, as meshes where they are now. Cell arrays: "body" (index into
+/// `bodies`), "machine_part" (number of the body), "velocity_m_s" (of the centre of mass), "angular_velocity_rad_s" and
+/// "contact_force_N" (on the body from grains and from other bodies' surfaces; 0 without a world). Throws dem::Error as
+/// write_vtk_bodies does, and for a body that the machine does not have.
+inline void write_vtk_machine(const std::filesystem::path& path, const mbd::Assembly& machine,
+                              const std::vector<DrawnBody>& bodies, const VtkOptions& options = {}) {
+  std::vector<BodyMesh> meshes;
+  detail::MachineArrays data;
+  const auto& contacts = machine.parts().outside;
+  for (const DrawnBody& d : bodies) {
+    meshes.push_back(
+        {d.mesh, machine.reference_point(d.body, d.position), machine.reference_rotation(d.body) * d.rotation});
+    data.add(d.body, machine.body(d.body),
+             d.body.index() < contacts.size() ? to_eigen(contacts[d.body.index()].force) : Vec3(Vec3::Zero()));
+  }
+  write_vtk_bodies(path, meshes, data.arrays("contact_force_N"), options);
+}
+
+/// Writes all active surfaces of a world where their bodies are now, with the cell arrays "body" (index of the drawn
+/// surface), "machine_part", "velocity_m_s" and "angular_velocity_rad_s" as above, and "force_of_grains_N" (on the
+/// surface). A plane has no end: a square of edge `plane_size` (m) is drawn. Throws dem::Error as write_vtk_bodies
+/// does.
+template <class World>
+void write_vtk_surfaces(const std::filesystem::path& path, const World& world, const VtkOptions& options = {},
+                        double plane_size = 1.0) {
+  std::vector<SurfaceMesh> meshes;
+  std::vector<BodyMesh> surfaces;
+  detail::MachineArrays data;
+  for (const auto& s : world.state().surfaces) {
+    if (!s.active) continue;
+    const Body& b = world.machine().body(s.body);
+    meshes.push_back(drawn(s.geometry, plane_size));
+    surfaces.push_back({nullptr, b.point(s.position), b.rotation() * s.rotation});
+    data.add(s.body, b, to_eigen(s.force));
+  }
+  for (std::size_t k = 0; k < meshes.size(); ++k) surfaces[k].mesh = &meshes[k];
+  write_vtk_bodies(path, surfaces, data.arrays("force_of_grains_N"), options);
+}
+
+/// How a frame of a world is drawn.
+struct FrameOptions {
+  int divisions = 4;        ///< of grains, see write_vtk_grains
+  double plane_size = 1.0;  ///< m, edge of the square that shows a plane
+};
+
+/// Adds a world as it is now to a time series: its grains as "grains", its surfaces as "surfaces".
+template <class World>
+void add_vtk_frame(VtkSeries& series, const World& world, const FrameOptions& frame = {}) {
+  const VtkOptions options{.single_precision = true, .time_s = world.time()};
+  if (world.particle_count() > 0) {
+    const auto path = series.next_path("grains");
+    write_vtk_grains(path, world, frame.divisions, options);
+    series.add(world.time(), path, "grains");
+  }
+  if (!world.state().surfaces.empty()) {
+    const auto path = series.next_path("surfaces");
+    write_vtk_surfaces(path, world, options, frame.plane_size);
+    series.add(world.time(), path, "surfaces");
+  }
+}
+
+/// Adds bodies of a machine without a world, as `part`.
+inline void add_vtk_frame(VtkSeries& series, double time, const mbd::Assembly& machine,
+                          const std::vector<DrawnBody>& bodies, std::string_view part = "machine") {
+  const auto path = series.next_path(part);
+  write_vtk_machine(path, machine, bodies, {.single_precision = true, .time_s = time});
+  series.add(time, path, part);
+}
+
+}  // namespace dem::io

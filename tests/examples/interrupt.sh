@@ -1,0 +1,48 @@
+#!/usr/bin/env bash
+# Ctrl-C while the direct shear example shears: it ends with 130, and what was there by then is saved and reported.
+#
+#   interrupt.sh <direct_shear> <output folder> <packing file>
+set -euo pipefail
+
+rig=$1 output=$2 packing=$3
+
+# Whoever started this script in the background has had the signal ignored, and so would the rig.
+if ! env --default-signal=INT true 2> /dev/null; then
+  echo "env cannot give a signal its default action back: not tested"
+  exit 77
+fi
+
+rm -rf "$output"
+mkdir -p "$output"
+log=$output/log.txt
+env --default-signal=INT "$rig" --size smoke --packing-file "$packing" --travel 0.006 --no-vtk --output "$output" \
+  > "$log" 2>&1 &
+run=$!
+trap 'kill -KILL "$run" 2> /dev/null || true' EXIT
+
+refuse() {
+  echo "$1"
+  cat "$log"
+  exit 1
+}
+
+for ((k = 0; k < 1200; ++k)); do
+  ! grep -q 'shear at 44.1 kPa: [1-9][0-9]* %' "$log" || break
+  kill -0 "$run" 2> /dev/null || refuse "The run ended before it sheared"
+  sleep 0.1
+done
+kill -INT "$run"
+status=0
+wait "$run" || status=$?
+[ "$status" = 130 ] || refuse "The run ended with $status, not with 130"
+
+for file in report.html results.csv load_44.1kPa.csv settings.toml; do
+  [ -s "$output/$file" ] || refuse "$file is missing or empty"
+done
+grep -q 'shear at 44.1 kPa: stopped' "$log" || refuse "The run does not say that it was stopped"
+grep -q 'The run was interrupted' "$output/report.html" || refuse "report.html does not say that the run was interrupted"
+grep -q 'breaking-factor=' "$output/report.html" || refuse "report.html does not hold all settings"
+[ "$(grep -c ',0$' "$output/results.csv")" = 1 ] || refuse "results.csv has no row of a load that was not finished"
+rows=$(($(wc -l < "$output/load_44.1kPa.csv") - 1))
+((rows >= 50 && rows < 600)) || refuse "load_44.1kPa.csv has $rows rows, but a tenth of the travel are 60 samples"
+echo "Interrupted after $rows samples"
