@@ -13,6 +13,9 @@
 
 #if !defined(__CUDACC__) && !defined(DEM_NO_SIMD) && __has_include(<experimental/simd>)
 #include <experimental/simd>
+#if defined(__clang__) && defined(__AVX512F__)
+#include <immintrin.h>
+#endif
 #if defined(__cpp_lib_experimental_parallel_simd)
 #define DEM_HAS_SIMD 1
 #endif
@@ -36,7 +39,25 @@ using Pack = stdx::native_simd<double>;
 using PackMask = Pack::mask_type;
 inline constexpr int pack_width = static_cast<int>(Pack::size());
 
+/// The mask as bits, lane 0 lowest.
+DEM_HOT std::uint32_t bits(const PackMask& mask) {
+  if constexpr (requires { mask.__to_bitset(); }) {
+    return static_cast<std::uint32_t>(mask.__to_bitset().to_ulong());
+  } else {
+    std::uint32_t result = 0;
+    for (int k = 0; k < pack_width; ++k) result |= std::uint32_t(mask[static_cast<std::size_t>(k)]) << k;
+    return result;
+  }
+}
+
 DEM_HOT Pack select(const PackMask& condition, const Pack& yes, const Pack& no) {
+#if defined(__clang__) && defined(__AVX512F__)
+  // There where() of libstdc++ 12 takes no lane at all.
+  if constexpr (sizeof(Pack) == sizeof(__m512d)) {
+    return std::bit_cast<Pack>(_mm512_mask_blend_pd(static_cast<__mmask8>(bits(condition)), std::bit_cast<__m512d>(no),
+                                                    std::bit_cast<__m512d>(yes)));
+  }
+#endif
   Pack result = no;
   stdx::where(condition, result) = yes;
   return result;
@@ -64,17 +85,6 @@ DEM_HOT Pack generate(F&& f) {
 DEM_HOT double lane(const Pack& a, int k) { return a[static_cast<std::size_t>(k)]; }
 DEM_HOT double largest(const Pack& a) { return stdx::hmax(a); }
 DEM_HOT double smallest(const Pack& a) { return stdx::hmin(a); }
-
-/// The mask as bits, lane 0 lowest.
-DEM_HOT std::uint32_t bits(const PackMask& mask) {
-  if constexpr (requires { mask.__to_bitset(); }) {
-    return static_cast<std::uint32_t>(mask.__to_bitset().to_ulong());
-  } else {
-    std::uint32_t result = 0;
-    for (int k = 0; k < pack_width; ++k) result |= std::uint32_t(mask[static_cast<std::size_t>(k)]) << k;
-    return result;
-  }
-}
 
 #else
 
