@@ -48,6 +48,16 @@ TEST_CASE("the smallest, the stiffest and the friction spring limit the time ste
   tangential.add_species(Sphere(1e-3));
   CHECK(tangential.stable_time_step().value == Approx(fine / 2));
 
+  // The ramp of AsperitySpring is a damper of what sticks: 1/m of two balls, and R^2/I = 2.5/m each.
+  dem::World<Balls> ramp;
+  ramp.set_contact({{2000.0, 0.0, 1.0}, {0.5, 2000.0, 0.3, 0.0}});
+  ramp.add_species(Sphere(1e-3));
+  const double n = dem::pipeline::contacts_in_line, w = 7.0 / (2650.0 * Sphere(1e-3).volume());
+  CHECK(ramp.stable_time_step().value ==
+        Approx(dem::pipeline::stable_step(Balls::Integrator::stability_limit, n * 2000.0,
+                                          n * dem::pipeline::damped_share * 0.3, w)));
+  CHECK(ramp.stable_time_step().value < 0.8 * fine);
+
   // A stiff wall counts as soon as it is there.
   dem::World<Balls> walled;
   walled.set_contact({{2000.0, 0.0, 1.0}, {0.0, 0.0, 0.0, 0.0}});
@@ -104,10 +114,12 @@ TEST_CASE("laws that stiffen, and rolling springs, limit the time step too") {
   CHECK_THAT(limit_of(0.5, 1.0, 1.0, 0.01).contact, Catch::Matchers::ContainsSubstring("damper"));
   CHECK(limit_of(0.0, 16 * k, 1.0, 0.01).value == Approx(soft / 4));
   CHECK_THAT(limit_of(0.0, 16 * k, 1.0, 0.01).contact, Catch::Matchers::ContainsSubstring("friction stiffness"));
-  // Rolling: kr R*^2 against 2/I, I = 2/5 m r^2.
+  // Rolling: kr R*^2 against 2/I, I = 2/5 m r^2. Where friction is as stiff, both turn the grain: their squares add up.
   const auto rolling = limit_of(0.0, 1.0, 1e6, 0.01);
   CHECK(rolling.value == Approx(dem::pipeline::stable_step(2.0, n * 1e6 * 0.25 * r * r, 0.0, 5 / (m * r * r))));
   CHECK_THAT(rolling.contact, Catch::Matchers::ContainsSubstring("rolling stiffness"));
+  const double friction = limit_of(0.0, 1e6, 1.0, 0.01).value, both = limit_of(0.0, 1e6, 1e6, 0.01).value;
+  CHECK(1 / (both * both) == Approx(1 / (friction * friction) + 1 / (rolling.value * rolling.value)).epsilon(1e-4));
 }
 
 TEMPLATE_TEST_CASE("a bed is stable at the stable time step", "", Sphere, Cube8) {

@@ -9,8 +9,8 @@ namespace dem::friction {
 /// asperities break, in parallel with a velocity ramp. `slip` is the vector from the anchor to the contact point.
 ///   spring   f = kt |slip|; where f > mu Fn the anchor moves until the spring keeps breaking_factor * mu Fn
 ///   ramp     min(cv |vt|, mu Fn) against the sliding velocity
-/// and the sum never exceeds mu Fn. The ramp does not limit the time step: where it is too steep for it, a grain that
-/// sticks trembles by no more than mu Fn dt/m.
+/// and the sum never exceeds mu Fn. A contact that sticks is damped by the whole ramp, so its slope counts in the
+/// stable time step.
 struct AsperitySpring {
   template <class T>
   struct Parameters {
@@ -46,6 +46,9 @@ struct AsperitySpring {
   }
 
   static double stiffness(const Parameters<double>& p) { return p.stiffness; }
+  static double damping(const Parameters<double>& p, const contact::NormalState<double>&) {
+    return p.velocity_stiffness;
+  }
 
   static void check(const Parameters<double>& p) {
     require_non_negative(p.coefficient, "friction coefficient", "(no unit)");

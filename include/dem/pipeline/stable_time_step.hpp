@@ -26,10 +26,30 @@ struct StableTimeStep {
 ///   omega^2 = k W,   B = c W/2,   W = 1/m_i + 1/m_j + R_i^2/I_i + R_j^2/I_j,
 /// explicit integration is stable while dt (sqrt(omega^2 + B^2) + B) stays under the integrator's limit: a force that
 /// is taken from the velocity of a step before makes a damper shorten the step (Belytschko, Liu and Moran 2000).
-/// Rolling resistance has W = 1/I_i + 1/I_j instead.
+/// Rolling resistance acts on W = 1/I_i + 1/I_j instead.
 inline double stable_step(double limit, double k, double c, double w) {
   const double b = 0.5 * c * w, sum = std::sqrt(k * w + b * b) + b;
   return sum > 0.0 ? limit / sum : 1e300;
+}
+
+/// The springs of a pair's laws that swing apart from each other: those along the normal, and those of friction and
+/// rolling resistance, which turn the same grains and so add up. Calls limit(text, k, c, w) for each with stiffness k
+/// (N/m), damping c (N s/m), of which `damped_share` acts, and mobility w (1/kg); w_turning: 1/(kg m^2), of rotations.
+template <class Model, class Parameters, class Limit>
+void for_each_swing(const Parameters& p, const contact::NormalState<double>& deepest, double damped_share, double w,
+                    double w_turning, Limit&& limit) {
+  const double normal = Model::Normal::stiffness(p.normal, deepest) + Model::Cohesion::stiffness(p.cohesion, deepest);
+  limit(fmt::format("stiffness {:g} N/m", normal), normal,
+        damped_share * contact::damping_of<typename Model::Normal>(p.normal, deepest), w);
+
+  const double sliding = friction::stiffness_of<typename Model::Friction>(p.friction, deepest);
+  const double slide_damping = damped_share * contact::damping_of<typename Model::Friction>(p.friction, deepest);
+  const double rolling = Model::Rolling::stiffness(p.rolling, deepest);
+  const double roll_damping = contact::damping_of<typename Model::Rolling>(p.rolling, deepest);
+  std::string text = fmt::format("friction stiffness {:g} N/m", sliding);
+  if (rolling + roll_damping > 0.0) text += fmt::format(" with rolling stiffness {:g} N m", rolling);
+  const double to_slide = w > 0.0 ? w_turning / w : 0.0;
+  limit(text, sliding + to_slide * rolling, slide_damping + to_slide * roll_damping, w);
 }
 
 /// What the stable time step has to know of a surface.
@@ -55,20 +75,15 @@ StableTimeStep stable_time_step(std::span<const Species<typename Model::Shape>> 
                             const contact::Patch& patch) {
     const auto& p = materials.table()[materials.row(a, b)];
     const contact::NormalState<double> deepest = {2.0 * overlap_limit * radius, 0.0, radius, mass, 0.0};
-    const auto limit_by = [&](const char* law, const char* unit, double k, double c, double inverse_inertia) {
-      const double n = contacts_in_line * patch.area;
-      const double dt = stable_step(Model::Integrator::stability_limit, n * k, n * c, inverse_inertia);
-      if (!(dt < result.value)) return;
-      const char* damper = c > 0.0 ? " with a damper" : "";
-      result = {dt, fmt::format("{} on {}: {}stiffness {:g} {}{}, grain of {:.4g} kg", materials.name(a),
-                                materials.name(b), law, k, unit, damper, mass)};
-    };
-    limit_by("", "N/m", Model::Normal::stiffness(p.normal, deepest) + Model::Cohesion::stiffness(p.cohesion, deepest),
-             damped_share * contact::damping_of<typename Model::Normal>(p.normal, deepest), w);
-    limit_by("friction ", "N/m", friction::stiffness_of<typename Model::Friction>(p.friction, deepest),
-             damped_share * contact::damping_of<typename Model::Friction>(p.friction, deepest), w);
-    limit_by("rolling ", "N m", Model::Rolling::stiffness(p.rolling, deepest),
-             contact::damping_of<typename Model::Rolling>(p.rolling, deepest), w_turning);
+    for_each_swing<Model>(p, deepest, damped_share, w, w_turning,
+                          [&](const std::string& text, double k, double c, double mobility) {
+                            const double n = contacts_in_line * patch.area;
+                            const double dt = stable_step(Model::Integrator::stability_limit, n * k, n * c, mobility);
+                            if (!(dt < result.value)) return;
+                            const char* damper = c > 0.0 ? " with a damper" : "";
+                            result = {dt, fmt::format("{} on {}: {}{}, grain of {:.4g} kg", materials.name(a),
+                                                      materials.name(b), text, damper, mass)};
+                          });
   };
   for (const auto& a : species) {
     const double ra = a.shape.bounding_radius();
