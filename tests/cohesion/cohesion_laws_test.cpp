@@ -181,6 +181,12 @@ TEST_CASE("cohesion constants that make no sense are refused") {
   check_refused([] { ContactStress::check({-1.0}); }, "adhesive stress is -1 Pa");
   check_refused([] { DMT::check({-1.0}); }, "work of adhesion is -1 J/m^2");
   check_refused([] { JKR::check({1.0, 0.0}); }, "effective modulus is 0 Pa");
+  check_refused(
+      [] {
+        JKR::check_with({1.0, 1e6}, {2e6, 0.1});
+      },
+      "JKR's effective modulus is 1e+06 Pa", "Hertz's is 2e+06 Pa");
+  CHECK_NOTHROW(JKR::check_with({1.0, 1e6}, {1e6, 0.1}));
   check_refused([] { LiquidBridge::check({-1.0, 1.0, 1.0}); }, "wetting tension of a liquid bridge is -1 N/m");
   check_refused([] { LiquidBridge::check({1.0, 0.0, 1.0}); }, "volume of a liquid bridge is 0 m^3");
   check_refused([] { LiquidBridge::check({1.0, 1.0, -1.0}); }, "rupture distance of a liquid bridge is -1 m");

@@ -24,7 +24,8 @@ struct Attraction {
 ///   stiffness(parameters, state) -> double   the largest slope of the pull against the overlap in N/m;
 ///   range(parameters, radius) -> double      only of a law that acts at a distance: the largest gap in m at which
 ///                  partners of that effective radius (or a smaller one) still attract each other. The search, the
-///                  narrow phase and the memory of contacts then keep pairs up to that gap.
+///                  narrow phase and the memory of contacts then keep pairs up to that gap;
+///   NormalLaw, check_with(parameters, its parameters)   only of a law that is made for one normal law.
 template <class L>
 concept CohesionLaw = requires(const typename L::template Parameters<double>& p, const NormalState<double>& state,
                                typename L::template History<double>& history) {
@@ -39,8 +40,18 @@ inline constexpr bool reaches = requires(const typename L::template Parameters<d
   L::range(p, 1.0);
 };
 
-template <class L>
+/// Throws Error if the constants of a law that is made for one normal law do not fit that law's.
+template <class L, class NormalParameters>
+void check_with_normal_law(const typename L::template Parameters<double>& p, const NormalParameters& normal) {
+  if constexpr (requires { L::check_with(p, normal); }) L::check_with(p, normal);
+}
+
+template <class L, class Normal>
 constexpr void check_cohesion_law() {
+  if constexpr (requires { typename L::NormalLaw; }) {
+    static_assert(std::same_as<Normal, typename L::NormalLaw>,
+                  "CohesionLaw: this one is made for one normal law (its NormalLaw), but the model names another");
+  }
   static_assert(
       requires { typename L::template Parameters<double>; },
       "CohesionLaw: needs 'template <class T> struct Parameters', the constants of a pair of materials");

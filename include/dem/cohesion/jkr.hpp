@@ -2,6 +2,7 @@
 
 #include <dem/cohesion/cohesion_law.hpp>
 #include <dem/contact/elastic.hpp>
+#include <dem/contact/hertz.hpp>
 
 #include <cmath>
 
@@ -10,7 +11,7 @@ namespace dem::cohesion {
 /// Adhesion of soft grains (Johnson, Kendall and Roberts 1971, doi:10.1098/rspa.1971.0141). The contact circle of
 /// radius a carries F = 4 E* a^3/(3 R) - sqrt(8 pi w E* a^3) at the overlap d = a^2/R - sqrt(2 pi w a/E*). It starts
 /// when the partners touch and holds until they are 3/4 (pi^2 w^2 R/E*^2)^(1/3) apart; the largest pull is 3/2 pi w R.
-/// For use with Hertz of the same E*, whose elastic force the pull replaces by JKR's. Friction is limited by
+/// Only with Hertz of the same E*, whose elastic force the pull replaces by JKR's. Friction is limited by
 /// mu (F + 3 pi w R), which is F and twice the pull-off force (Thornton 1991, doi:10.1088/0022-3727/24/11/007). The
 /// springs of friction::Mindlin are those of Hertz's circle: across a gap they hold nothing, CundallStrack's do.
 ///
@@ -18,6 +19,8 @@ namespace dem::cohesion {
 ///   D = x^2 - sqrt(x),   F = pi w R (8/3 x^3 - 4 x^(3/2)),
 /// and with z = sqrt(x), z^4 - z - D = 0 is solved by Ferrari's formula.
 struct JKR {
+  using NormalLaw = contact::Hertz;
+
   template <class T>
   struct Parameters {
     T work_of_adhesion;  ///< w, J/m^2, of both surfaces together
@@ -63,6 +66,13 @@ struct JKR {
   static void check(const Parameters<double>& p) {
     require_non_negative(p.work_of_adhesion, "work of adhesion", "J/m^2");
     require_positive(p.modulus, "effective modulus", "Pa");
+  }
+  static void check_with(const Parameters<double>& p, const NormalLaw::Parameters<double>& normal) {
+    if (std::abs(p.modulus - normal.modulus) <= 1e-6 * normal.modulus) return;
+    fail(
+        "JKR's effective modulus is {:g} Pa, but Hertz's is {:g} Pa; both must be the same: make them of one "
+        "ElasticPair",
+        p.modulus, normal.modulus);
   }
 
  private:

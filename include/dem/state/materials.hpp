@@ -136,6 +136,7 @@ class Materials {
     Model::Friction::check(p.friction);
     Model::Rolling::check(p.rolling);
     Model::Cohesion::check(p.cohesion);
+    cohesion::check_with_normal_law<typename Model::Cohesion>(p.cohesion, p.normal);
   }
   std::uint32_t& entry(MaterialId a, MaterialId b) { return entry_[a.index() * names_.size() + b.index()]; }
 

@@ -47,7 +47,7 @@ constexpr bool check_model() {
   contact::check_normal_law<typename M::Normal>();
   friction::check_friction_law<typename M::Friction>();
   rolling::check_rolling_law<typename M::Rolling>();
-  cohesion::check_cohesion_law<typename M::Cohesion>();
+  cohesion::check_cohesion_law<typename M::Cohesion, typename M::Normal>();
   if constexpr (cohesion::reaches<typename M::Cohesion>) shape::check_reaching_shape<typename M::Shape>();
   broadphase::check_broad_phase<typename M::BroadPhase>();
   integrator::check_integrator<typename M::Integrator>();
