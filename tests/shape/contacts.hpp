@@ -12,17 +12,19 @@ struct Contact {
   double area = 1.0;
 };
 
-/// All contacts of shape a with b, b being `separation` away, in the order in which they are found.
-template <class Shape>
+/// All contacts of shape a with b, b being `separation` away, in the order in which they are found; with a gap (m) for
+/// shapes that find contacts across it.
+template <class Shape, class... Gap>
 std::vector<Contact> contacts(const Shape& a, const dem::Mat3& turn_a, const Shape& b, const dem::Mat3& turn_b,
-                              const dem::Vec3& separation) {
+                              const dem::Vec3& separation, Gap... gap) {
   alignas(64) double pose_a[Shape::pose_size + 1] = {}, pose_b[Shape::pose_size + 1] = {};
   a.orient(dem::from_eigen(turn_a), pose_a);
   b.orient(dem::from_eigen(turn_b), pose_b);
   std::vector<Contact> found;
-  Shape::collide(a, pose_a, b, pose_b, dem::from_eigen(separation), [&](std::uint32_t feature, const auto& touch) {
+  const auto sink = [&](std::uint32_t feature, const auto& touch) {
     const auto g = touch.geometry();
     found.push_back({feature, to_eigen(g.normal), to_eigen(g.arm), g.overlap, g.effective_radius, g.area});
-  });
+  };
+  Shape::collide(a, pose_a, b, pose_b, dem::from_eigen(separation), sink, gap...);
   return found;
 }

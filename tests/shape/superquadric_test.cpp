@@ -80,6 +80,27 @@ TEST_CASE("the contact of two superquadrics is their common normal") {
   }
 }
 
+TEST_CASE("superquadrics find each other across a gap, at the distance of their surfaces") {
+  Random random(11);
+  for (const Vec3& e : exponents) {
+    for (int k = 0; k < 100; ++k) {
+      const Superquadric a(random.radii(), e, 1), b(random.radii(), {e.z(), e.x(), e.y()}, 1);
+      const Mat3 ra = random.rotation(), rb = random.rotation();
+      const Vec3 n = random.direction();
+      const double distance = random.between(0.0, 0.1), gap = 0.05;
+      const Vec3 d = separation_for(a, ra, b, rb, n, -distance);
+      INFO("exponents " << e.transpose() << ", pair " << k << ", distance " << distance);
+      CHECK(contacts(a, ra, b, rb, d).empty());
+      const auto found = contacts(a, ra, b, rb, d, gap);
+      REQUIRE(found.size() == (distance < gap ? 1u : 0u));
+      if (found.empty()) continue;
+      // Convex solids that share a normal across a gap are nowhere nearer. The search's tolerance is 3e-6 of a radius.
+      CHECK(found[0].overlap == Approx(-distance).margin(1e-9));
+      CHECK((found[0].normal - n).norm() < 1e-6 * e.maxCoeff());
+    }
+  }
+}
+
 TEST_CASE("ellipsoids tip to tip and side to side") {
   const Superquadric a({2, 1, 0.5}, {2, 2, 2}, 1);
   const Mat3 one = Mat3::Identity();

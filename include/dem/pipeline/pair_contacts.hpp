@@ -135,12 +135,16 @@ void find_hits_one_by_one(const Pairs& pairs, std::size_t close_count,
       s.hits.push_back(pairs.hit(k, feature));
       s.touches.push_back(touch);
     };
-    if constexpr (cohesion::reaches<typename Model::Cohesion>) {
-      Shape::collide(a, pairs.p.pose_of(i), b, pairs.p.pose_of(j), pairs.separation(i, j), sink, pairs.gap());
-    } else if constexpr (shape::RememberingShape<Shape>) {
-      Shape::collide(a, pairs.p.pose_of(i), b, pairs.p.pose_of(j), pairs.separation(i, j), searches.memory[k], sink);
+    const auto collide = [&](auto&&... more) {
+      Shape::collide(a, pairs.p.pose_of(i), b, pairs.p.pose_of(j), pairs.separation(i, j), more...);
+    };
+    constexpr bool reaches = cohesion::reaches<typename Model::Cohesion>;
+    if constexpr (shape::RememberingShape<Shape>) {
+      if constexpr (reaches) collide(searches.memory[k], sink, pairs.gap());
+      else collide(searches.memory[k], sink);
     } else {
-      Shape::collide(a, pairs.p.pose_of(i), b, pairs.p.pose_of(j), pairs.separation(i, j), sink);
+      if constexpr (reaches) collide(sink, pairs.gap());
+      else collide(sink);
     }
   }
 }

@@ -13,10 +13,10 @@ struct BoxSeparation {
 };
 
 /// Of the 15 directions that can separate two boxes (3 + 3 face normals, 9 products of edges) the one along which they
-/// overlap least, in the frame of a; the first that parts them ends the search. `turn` takes b's frame to a's, `centre`
-/// is b's centre, `a` and `b` are half edge lengths (m).
+/// overlap least, in the frame of a; the first that parts them by more than `gap` (m) ends the search. `turn` takes b's
+/// frame to a's, `centre` is b's centre, `a` and `b` are half edge lengths (m).
 DEM_FN BoxSeparation separate_boxes(const Vector3<double>& a, const Vector3<double>& b, const Matrix3<double>& turn,
-                                    const Vector3<double>& centre) {
+                                    const Vector3<double>& centre, double gap = 0.0) {
   using std::abs;
   const Vector3<double> rows[3] = {turn.row0, turn.row1, turn.row2};
   const double c[3] = {centre.x, centre.y, centre.z};
@@ -34,7 +34,7 @@ DEM_FN BoxSeparation separate_boxes(const Vector3<double>& a, const Vector3<doub
   const auto consider = [&](const Vector3<double>& axis, double distance, double reach, double bonus) {
     const double overlap = reach - abs(distance);
     if (overlap + bonus < best.overlap) best = {distance < 0.0 ? -axis : axis, overlap};
-    return overlap < 0.0;
+    return overlap < -gap;
   };
   for (int i = 0; i < 3; ++i) {
     const Vector3<double> axis = {i == 0 ? 1.0 : 0.0, i == 1 ? 1.0 : 0.0, i == 2 ? 1.0 : 0.0};

@@ -100,6 +100,12 @@ class Mixed : public detail::MixedBase<detail::MixedMemories<Kinds...>::any, Kin
     Memory nothing;
     collide_kinds(a, pose_a, b, pose_b, separation, nothing, sink, gap);
   }
+  template <class Sink>
+  static DEM_HOT void collide(const Mixed& a, const double* pose_a, const Mixed& b, const double* pose_b,
+                              const Vector3<double>& separation, Memory& memory, Sink&& sink,
+                              double gap) requires(reaches_each<Kinds>&&...) {
+    collide_kinds(a, pose_a, b, pose_b, separation, memory, sink, gap);
+  }
 
   /// Patches are found between grains of one kind only.
   static bool is_patch(std::uint32_t feature) requires(PatchShape<Kinds> || ...) {

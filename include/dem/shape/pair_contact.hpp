@@ -15,7 +15,7 @@ namespace dem::shape {
 /// collide calls sink(feature, touch) as a Shape's own does: touches seen from a's centre, features ascending and below
 /// 2^24; any touch with geometry() will do. What a search wants to keep for a pair of neighbours goes into a type
 /// Memory (copyable, empty when made), and collide then takes a Memory& before the sink. To meet cohesion at a
-/// distance, collide also takes a gap (m) as a last argument, as that of a ReachingShape does, without a memory.
+/// distance, collide also takes a gap (m) as a last argument, as that of a ReachingShape does.
 template <class A, class B>
 struct PairContact;
 
@@ -32,10 +32,11 @@ struct PairContact<S, S> {
 template <RememberingShape S>
 struct PairContact<S, S> {
   using Memory = typename S::PairMemory;
-  template <class Sink>
-  static DEM_HOT void collide(const S& a, const double* pose_a, const S& b, const double* pose_b,
-                              const Vector3<double>& separation, Memory& memory, Sink&& sink) {
-    S::collide(a, pose_a, b, pose_b, separation, memory, sink);
+  template <class Sink, class... Gap>
+  requires(sizeof...(Gap) == 0 || ReachingShape<S>) static DEM_HOT
+      void collide(const S& a, const double* pose_a, const S& b, const double* pose_b,
+                   const Vector3<double>& separation, Memory& memory, Sink&& sink, Gap... gap) {
+    S::collide(a, pose_a, b, pose_b, separation, memory, sink, gap...);
   }
 };
 
@@ -49,6 +50,10 @@ concept HasPairContact = requires {
 template <class A, class B>
 concept ReachesInOrder = requires(const A& a, const B& b, const double* pose, const Vector3<double>& separation) {
   PairContact<A, B>::collide(a, pose, b, pose, separation, AnySink{}, 1.0);
+}
+|| requires(const A& a, const B& b, const double* pose, const Vector3<double>& separation,
+            typename PairContact<A, B>::Memory& memory) {
+  PairContact<A, B>::collide(a, pose, b, pose, separation, memory, AnySink{}, 1.0);
 };
 template <class A, class B>
 concept ReachingPair = ReachesInOrder<A, B> || ReachesInOrder<B, A>;
@@ -83,16 +88,19 @@ DEM_HOT void collide_pair(const A& a, const double* pose_a, const B& b, const do
                           const Vector3<double>& separation, Memory& memory, Sink&& sink, Gap gap = {}) {
   const auto call = [&memory, gap](auto pair, const auto&... arguments) {
     using Pair = decltype(pair);
-    if constexpr (!std::is_same_v<Gap, NoGap>) {
-      Pair::collide(arguments..., gap);
-    } else if constexpr (requires { typename Pair::Memory; }) {
-      const auto split = [&](const auto& x, const double* pose_x, const auto& y, const double* pose_y,
-                             const Vector3<double>& between,
-                             const auto& given) { Pair::collide(x, pose_x, y, pose_y, between, memory, given); };
-      split(arguments...);
-    } else {
-      Pair::collide(arguments...);
-    }
+    const auto with = [&](const auto&... reach) {
+      if constexpr (requires { typename Pair::Memory; }) {
+        const auto split = [&](const auto& x, const double* pose_x, const auto& y, const double* pose_y,
+                               const Vector3<double>& between, const auto& given) {
+          Pair::collide(x, pose_x, y, pose_y, between, memory, given, reach...);
+        };
+        split(arguments...);
+      } else {
+        Pair::collide(arguments..., reach...);
+      }
+    };
+    if constexpr (std::is_same_v<Gap, NoGap>) with();
+    else with(gap);
   };
   if constexpr (HasPairContact<A, B>) {
     call(PairContact<A, B>{}, a, pose_a, b, pose_b, separation, [&](std::uint32_t feature, const auto& touch) {

@@ -66,15 +66,29 @@ concept BitShape = Shape<S> && requires(const S& shape, const double* pose, cons
   { S::touch(shape, pose, shape, pose, separation, 0u) } -> std::same_as<typename S::template PairTouch<double>>;
 };
 
+/// A shape whose search for contacts takes up where it stopped a step ago: PairMemory is what it keeps for each pair of
+/// neighbours (empty when they are listed anew), and collide(a, pose_a, b, pose_b, separation, memory, sink) uses it.
+/// The memory belongs to the pair, not to a thread: results stay the same for any number of threads.
+template <class S>
+concept RememberingShape = Shape<S> &&
+    requires(const S& shape, const double* pose, const Vector3<double>& separation, typename S::PairMemory& memory) {
+  S::collide(shape, pose, shape, pose, separation, memory, AnySink{});
+};
+
 /// A shape that may meet cohesion at a distance also finds contacts across a gap: collide takes the gap (m) as a last
 /// argument and then hands over pairs of points up to that far apart, with a negative overlap; touching of a BitShape
-/// likewise.
+/// likewise. A RememberingShape takes both its memory and the gap.
 template <class S>
 concept ReachingShape = Shape<S> && requires(const S& shape, const double* pose, const Vector3<double>& separation) {
   S::collide(shape, pose, shape, pose, separation, AnySink{}, 1.0);
-} &&(!BitShape<S> || requires(const S& shape, const double* pose, const Vector3<double>& separation) {
-  { S::touching(shape, pose, shape, pose, separation, 1.0) } -> std::same_as<std::uint64_t>;
-});
+} &&(!BitShape<S> ||
+     requires(const S& shape, const double* pose, const Vector3<double>& separation) {
+       { S::touching(shape, pose, shape, pose, separation, 1.0) } -> std::same_as<std::uint64_t>;
+     }) &&
+    (!RememberingShape<S> ||
+     requires(const S& shape, const double* pose, const Vector3<double>& separation, typename S::PairMemory& memory) {
+       S::collide(shape, pose, shape, pose, separation, memory, AnySink{}, 1.0);
+     });
 
 /// The gap of models without cohesion at a distance: none. Widening by it is no instruction.
 struct NoGap {};
@@ -93,15 +107,6 @@ constexpr void check_reaching_shape() {
                 "Shape: the model's cohesion acts at a distance, so collide (and touching, if there) must take a gap "
                 "in m as a last argument and find pairs up to that far apart; or choose a cohesion without range()");
 }
-
-/// A shape whose search for contacts takes up where it stopped a step ago: PairMemory is what it keeps for each pair of
-/// neighbours (empty when they are listed anew), and collide(a, pose_a, b, pose_b, separation, memory, sink) uses it.
-/// The memory belongs to the pair, not to a thread: results stay the same for any number of threads.
-template <class S>
-concept RememberingShape = Shape<S> &&
-    requires(const S& shape, const double* pose, const Vector3<double>& separation, typename S::PairMemory& memory) {
-  S::collide(shape, pose, shape, pose, separation, memory, AnySink{});
-};
 
 /// The memories of a list of pairs; nothing for shapes that keep none.
 template <class S>

@@ -19,6 +19,7 @@ struct SolidPair {
   const SuperquadricSolid& b;
   Matrix3<double> turn;    ///< b's frame -> a's
   Vector3<double> centre;  ///< m, of b
+  double gap = 0.0;        ///< m, up to which they count as touching: that of cohesion at a distance
 
   /// Overlap of the slabs that the two solids fill along n, from a to b, and the surface points that bound them. Its
   /// least value over all unit vectors is the depth of penetration; a negative value proves that they are apart.
@@ -40,7 +41,7 @@ struct SolidPair {
 struct NewtonStep {
   double along, across;  ///< m, along the normal and in the tangent plane
   double mismatch;       ///< of the two normals before the step, rad
-  bool apart;            ///< the tangent planes before the step prove that nothing touches
+  bool apart;            ///< the tangent planes before the step prove that the solids are farther apart than the gap
   Vector3<double> turn;  ///< by how much the normal of a turns on the way, to first order
 };
 
@@ -68,11 +69,13 @@ DEM_FN NewtonStep newton_step(const SolidPair& s, double longest, CommonNormal& 
   };
 
   // By the convexity of F each solid lies behind the plane through its point, shifted by (1 - F)/|grad F|. A common
-  // point would lie behind both, no farther than `far` from x.
+  // point would lie behind both, no farther than `far` from x; of two points a gap apart one lies before its plane by
+  // no more than that.
   const double at = dot(normal_a, t), aq = dot(normal_a, q), bt = dot(normal_b, t), bq = dot(normal_b, q);
   const double mismatch = std::sqrt((at + bt) * (at + bt) + (aq + bq) * (aq + bq));
   const double far = norm(c.point) + norm(s.a.radius());
-  const bool apart = (1.0 - a.value) * per_a + (1.0 - b.value) * per_b + dot(difference, half) + mismatch * far < 0.0;
+  const bool apart =
+      (1.0 - a.value) * per_a + (1.0 - b.value) * per_b + dot(difference, half) + mismatch * far < -s.gap;
 
   // Each point goes along n to its surface: distances from ln F, which is closer to linear than F.
   const double to_a = 1.0 / dot(normal_a, n), to_b = 1.0 / dot(normal_b, n);

@@ -108,11 +108,12 @@ class SuperquadricGrain {
     return ratio * ratio / (1.0 + ratio * ratio);
   }
   /// The contact of a ball (centre in m from the grain's, global axes) along the common normal. False if they are
-  /// apart.
-  bool touch_ball(const double* pose, const Vector3<double>& centre, double radius, contact::BallTouch& touch) const {
+  /// farther apart than the gap (m).
+  bool touch_ball(const double* pose, const Vector3<double>& centre, double radius, contact::BallTouch& touch,
+                  double gap = 0.0) const {
     const Matrix3<double> r = rotation(pose);
     CommonNormal found;
-    if (!find_ball_contact(solid_, transpose_times(r, centre), radius, found)) return false;
+    if (!find_ball_contact(solid_, transpose_times(r, centre), radius, found, gap)) return false;
     touch = {r * found.normal, found.overlap, r * found.point};
     return true;
   }

@@ -7,19 +7,20 @@
 namespace dem::shape {
 
 /// Superquadric and sphere or cluster: the common normal with each ball, which passes through the ball's centre.
-/// Feature: the ball. Grains of one ball keep their search.
+/// Feature: the ball. Grains of one ball keep their search. Found up to a gap (m).
 template <BallShape Balls>
 struct PairContact<Superquadric, Balls> {
   using Memory = CommonNormal;
 
   template <class Sink>
   static DEM_HOT void collide(const Superquadric& a, const double* pose_a, const Balls& b, const double* pose_b,
-                              const Vector3<double>& separation, Memory& memory, Sink&& sink) {
+                              const Vector3<double>& separation, Memory& memory, Sink&& sink, double gap = 0.0) {
     const Matrix3<double> r = Superquadric::rotation(pose_a);
     for (int k = 0; k < ball_count(b); ++k) {
       const PosedBall ball = posed_ball(b, pose_b, k);
       if (k > 0) memory = {};
-      if (!find_ball_contact(a.solid(), transpose_times(r, separation + ball.centre), ball.radius, memory)) continue;
+      const Vector3<double> centre = transpose_times(r, separation + ball.centre);
+      if (!find_ball_contact(a.solid(), centre, ball.radius, memory, gap)) continue;
       const double radius = a.mean_radius() * ball.radius / (a.mean_radius() + ball.radius);
       sink(static_cast<std::uint32_t>(k),
            contact::PointTouch<double>{r * memory.normal, memory.overlap, r * memory.point, radius, 1.0});

@@ -32,7 +32,7 @@ inline Search approach_by_exponents(const SolidPair& s, CommonNormal& c) {
   for (const double cap : {2.0, 3.0, 4.0, 6.0, 8.0, 12.0, 16.0, 24.0}) {
     if (cap >= top) break;
     const SuperquadricSolid a = capped(s.a, cap), b = capped(s.b, cap);
-    const SolidPair softer = {a, b, s.turn, s.centre};
+    const SolidPair softer = {a, b, s.turn, s.centre, s.gap};
     if (!started) c = guess_common_normal(softer, s.centre);
     started = true;
     const double length = s.length();
@@ -67,27 +67,29 @@ inline void descend_overlap(const SolidPair& s, const Vector3<double>& start, Co
   }
 }
 
-/// Newton's iteration from a guess, and the sure ways where it fails. Returns whether the solids overlap.
+/// Newton's iteration from a guess, and the sure ways where it fails. Returns whether the solids overlap or come within
+/// the gap.
 inline bool search_from(const SolidPair& s, const CommonNormal& guess, CommonNormal& c) {
   c = guess;
   Search search = follow_common_normal(s, 40, c);
   if (search == Search::lost) search = approach_by_exponents(s, c);
   if (search == Search::lost) descend_overlap(s, guess.normal, c);
-  return search != Search::apart && c.overlap > 0.0;
+  return search != Search::apart && c.overlap > -s.gap;
 }
 
-/// Common normal of two solids, from what an earlier search left in `c` or from nothing. Returns whether they overlap.
-/// With overlapping solids `c.overlap` is the least distance by which one must move for them to part; the answer is
-/// exact up to the tolerance of follow_common_normal while the overlap is smaller than the radii of curvature.
+/// Common normal of two solids, from what an earlier search left in `c` or from nothing. Returns whether they overlap
+/// or come within the gap. With overlapping solids `c.overlap` is the least distance by which one must move for them to
+/// part; the answer is exact up to the tolerance of follow_common_normal while the overlap is smaller than the radii of
+/// curvature.
 DEM_FN bool find_common_normal(const SolidPair& s, CommonNormal& c) {
-  if (c.has_normal && s.box_overlap_along(c.normal) < 0.0) return false;
+  if (c.has_normal && s.box_overlap_along(c.normal) < -s.gap) return false;
   if (c.has_point) {
     const Search search = follow_common_normal(s, 12, c);
-    if (search != Search::lost) return search == Search::found && c.overlap > 0.0;
+    if (search != Search::lost) return search == Search::found && c.overlap > -s.gap;
   }
   c = {};
-  const BoxSeparation boxes = separate_boxes(s.a.radius(), s.b.radius(), s.turn, s.centre);
-  if (boxes.overlap < 0.0) {
+  const BoxSeparation boxes = separate_boxes(s.a.radius(), s.b.radius(), s.turn, s.centre, s.gap);
+  if (boxes.overlap < -s.gap) {
     c.normal = boxes.axis;
     c.has_normal = true;
     return false;
@@ -97,23 +99,23 @@ DEM_FN bool find_common_normal(const SolidPair& s, CommonNormal& c) {
 
 /// The same for a solid and a ball (m), whose centre is seen from the solid: the normal where the ray to the centre
 /// leaves the solid is near enough to start with.
-DEM_FN bool find_ball_contact(const SuperquadricSolid& a, const Vector3<double>& centre, double radius,
-                              CommonNormal& c) {
+DEM_FN bool find_ball_contact(const SuperquadricSolid& a, const Vector3<double>& centre, double radius, CommonNormal& c,
+                              double gap = 0.0) {
   const Vector3<double>& box = a.radius();
   const auto outside = [](double x, double limit) { return max(std::abs(x) - limit, 0.0); };
   const Vector3<double> out = {outside(centre.x, box.x), outside(centre.y, box.y), outside(centre.z, box.z)};
-  if (!(dot(out, out) < radius * radius)) return false;
+  if (!(dot(out, out) < (radius + gap) * (radius + gap))) return false;
   const SuperquadricSolid ball(radius);
-  const SolidPair s = {a, ball, Matrix3<double>::identity(), centre};
+  const SolidPair s = {a, ball, Matrix3<double>::identity(), centre, gap};
   if (c.has_point) {
     const Search search = follow_common_normal(s, 12, c);
-    if (search != Search::lost) return search == Search::found && c.overlap > 0.0;
+    if (search != Search::lost) return search == Search::found && c.overlap > -s.gap;
   }
   const SurfacePoint foot = a.radial(centre);
   const Vector3<double> of_ball = centre - radius * foot.normal;
   c = {foot.normal, 0.5 * (foot.position + of_ball), dot(foot.normal, foot.position - of_ball), true, true};
   const Search search = follow_common_normal(s, 20, c);
-  if (search != Search::lost) return search == Search::found && c.overlap > 0.0;
+  if (search != Search::lost) return search == Search::found && c.overlap > -s.gap;
   return search_from(s, guess_common_normal(s, foot.normal, centre), c);
 }
 
