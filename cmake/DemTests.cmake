@@ -80,6 +80,27 @@ function(dem_add_cuda_compile_test source)
   set_tests_properties(cuda_compile.${name} PROPERTIES LABELS static)
 endfunction()
 
+# dem_add_clang_test(<source>...): these unit tests pass when clang has compiled them for this machine as well. Without
+# OpenMP, whose library clang may lack.
+function(dem_add_clang_test)
+  find_program(DEM_CLANG NAMES clang++ clang++-14 DOC "Compiler that some tests are compiled with besides, if found")
+  if(NOT DEM_CLANG OR NOT CMAKE_CXX_COMPILER_ID STREQUAL "GNU" OR TARGET Catch2::Catch2WithMain)
+    message(STATUS "No clang++ besides g++, or Catch2 3: going without the test clang")
+    return()
+  endif()
+  set(program "${CMAKE_CURRENT_BINARY_DIR}/test_clang")
+  list(TRANSFORM ARGN PREPEND "${CMAKE_CURRENT_SOURCE_DIR}/")
+  add_test(
+    NAME clang.build
+    COMMAND ${DEM_CLANG} -std=c++20 -O1 -march=native -fno-math-errno -fno-trapping-math -w ${DEM_INCLUDES}
+            "-I${CMAKE_CURRENT_SOURCE_DIR}" ${ARGN}
+            "${CMAKE_CURRENT_SOURCE_DIR}/main.cpp" -o ${program} $<TARGET_FILE:fmt::fmt>
+    COMMAND_EXPAND_LISTS)
+  add_test(NAME clang.run COMMAND ${program})
+  set_tests_properties(clang.build PROPERTIES FIXTURES_SETUP clang LABELS static)
+  set_tests_properties(clang.run PROPERTIES FIXTURES_REQUIRED clang LABELS static)
+endfunction()
+
 # dem_add_consumer_test(<way> <option>...): configures, builds and runs the project consumers/<way>.
 function(dem_add_consumer_test way)
   add_test(
