@@ -173,9 +173,11 @@ int main(int argc, char** argv) {
       ->check(CLI::IsMember({"cube8", "polyhedron", "superquadric", "points"}));
   app.add_option("--steps", settings.steps, "steps that are timed")->check(CLI::PositiveNumber);
   app.add_option("--settle", settings.settle, "steps to settle first")->check(CLI::NonNegativeNumber);
-  app.add_option("--repeats", settings.repeats, "how often the steps are timed; the median counts");
+  app.add_option("--repeats", settings.repeats, "how often the steps are timed; the median counts")
+      ->check(CLI::PositiveNumber);
   app.add_option("--threads", settings.threads, "most threads (0: all)")->check(CLI::NonNegativeNumber);
-  app.add_option("--skin", settings.skin, "reach of the neighbour list in m (0: automatic)");
+  app.add_option("--skin", settings.skin, "reach of the neighbour list in m (0: automatic)")
+      ->check(CLI::NonNegativeNumber);
   CLI11_PARSE(app, argc, argv);
   try {
     const bool cubes = settings.work != "spheres";

@@ -2,38 +2,25 @@
 
 #include "campaign.hpp"
 #include "frames.hpp"
-#include "stages.hpp"
+#include "start.hpp"
 
 #include <dem/io/csv.hpp>
-#include <dem/soil/packing_file.hpp>
 
 namespace direct_shear {
 
-inline dem::soil::Packing read_packing(const Settings& s) {
-  auto packing = dem::soil::load_packing(s.packing_file);
-  if (packing.shape != s.shape) {
-    dem::fail(
-        "the packing '{}' is one of grains of shape {}, but --shape is {}: other grains in these places would overlap; "
-        "give --shape {}, or leave --packing-file out",
-        s.packing_file, packing.shape, s.shape, packing.shape);
-  }
-  const auto differs = [](double a, double b) { return std::abs(a - b) > 1e-9; };
-  if (differs(packing.half_edge, s.half_edge) || differs(packing.length_x, s.box_length) ||
-      differs(packing.length_y, s.box_width)) {
-    dem::fail(
-        "the packing '{}' has grains of half-edge {:g} m in a box of {:g} x {:g} m, but the settings say {:g} m in "
-        "{:g} x {:g} m; give --half-edge {:g} --box-length {:g} --box-width {:g}",
-        s.packing_file, packing.half_edge, packing.length_x, packing.length_y, s.half_edge, s.box_length, s.box_width,
-        packing.half_edge, packing.length_x, packing.length_y);
-  }
-  return packing;
+inline void warn_of_no_density(const char* where, const Settings& s, dem::io::Progress& progress) {
+  progress.message(
+      fmt::format("warning: the density {} is not known: the specimen is too small to measure it {:g} mm away from "
+                  "walls, floor and top; take more --grains or a smaller --half-edge if that matters",
+                  where, 1e3 * measuring_margin(s)));
 }
 
 /// What there is to say of a packing from where its grains are.
 template <class Shape>
-void measure(PackingResult& p, const Settings& s) {
-  p.solid_fraction = inner_fraction(p.packing.grains, Grain<Shape>::make(s.half_edge).volume(), s);
+void measure(PackingResult& p, const Settings& s, dem::io::Progress& progress) {
   p.height = dem::soil::height_percentile(p.packing.grains, 0.95) + s.half_edge;
+  p.solid_fraction = inner_fraction(p.packing.grains, Grain<Shape>::make(s.half_edge).volume(), s);
+  if (!std::isfinite(p.solid_fraction)) warn_of_no_density("of the packing", s, progress);
 }
 
 /// Says so when a packing has not come out as dense as asked for.
@@ -49,15 +36,7 @@ inline void compare_density(const PackingResult& p, dem::io::Progress& progress)
 template <class Integrator, class Shape>
 void test_load(const Settings& s, Campaign& campaign, LoadResult& r, dem::io::Progress& progress) {
   const auto& grains = campaign.packing.packing.grains;
-  double highest = 0.0;
-  for (const auto& g : grains) highest = std::max(highest, g.position.z());
-  highest += Grain<Shape>::make(s.half_edge).bounding_radius();
-  if (highest > s.box_height) {
-    throw Stopped(
-        fmt::format("the specimen is {:.1f} mm tall, but the box {:.1f} mm; take fewer grains, a denser packing, "
-                    "or a higher --box-height",
-                    1e3 * highest, 1e3 * s.box_height));
-  }
+  const double highest = require_in_box<Shape>(grains, s);
   const double seam = s.seam_height > 0.0 ? s.seam_height : 0.5 * campaign.packing.height;
   Rig<Integrator, Shape> rig(s, {.seam = seam, .wall_top = s.box_height, .lid_mass = r.load, .lid_low = highest},
                              grains);
@@ -73,15 +52,16 @@ void test_load(const Settings& s, Campaign& campaign, LoadResult& r, dem::io::Pr
     r.consolidation_time = rig.world.time();
     r.height = rig.lid_low();
     r.solid_fraction = inner_fraction(rig, s, r.height);
+    if (!std::isfinite(r.solid_fraction)) warn_of_no_density("under the lid", s, progress);
 
     progress.begin(fmt::format("shear at {:.1f} kPa", 1e-3 * r.normal_stress), s.travel);
-    std::optional<Frames> frames;
-    if (s.vtk) frames.emplace(s, load_name(s, r.load));
-    if (frames) frames->show(rig.world, 0.0);
-    shear(rig, s, r, progress, [&](const auto& now) {
-      if (frames) frames->show(now.world, now.top_displacement());
+    Frames frames(s, load_name(s, r.load), [&](const std::string& why) {
+      campaign.frames_problem = why;
+      progress.message("warning: no more files for ParaView of this load: " + why);
     });
-    if (frames) frames->finish(rig.world, rig.top_displacement());
+    frames.show(rig.world, 0.0);
+    shear(rig, s, r, progress, [&](const auto& now) { frames.show(now.world, now.top_displacement()); });
+    frames.finish(rig.world, rig.top_displacement());
   } catch (...) {
     count_steps();
     throw;
@@ -102,21 +82,33 @@ inline void save_samples(const Settings& s, const LoadResult& r) {
 }
 
 template <class Integrator, class Shape>
-void run_campaign(const Settings& s, Campaign& campaign) {
+void run_campaign(const Settings& s, Campaign& campaign, const std::function<void()>& begin) {
   const bool read = !s.packing_file.empty();
+  dem::soil::Packing first;
+  try {
+    first = start<Integrator, Shape>(s);
+  } catch (const dem::Error& error) {
+    throw dem::Error(in_options(error.what()));
+  }
+  begin();
   const int making = read ? 0 : making_stages(s);
   dem::io::InterruptGuard guard;
-  const double start = dem::io::steady_seconds();
+  const double start_time = dem::io::steady_seconds();
   dem::io::ProgressOptions options;
   options.stages = making + 2 * static_cast<int>(s.loads.size());
   dem::io::Progress progress(options);
   try {
-    if (read) campaign.packing.packing = read_packing(s);
-    else campaign.packing = make_packing<Integrator, Shape>(s, progress);
-    measure<Shape>(campaign.packing, s);
-    if (making > 0) progress.finish(fmt::format("solid fraction {:.3f}", campaign.packing.solid_fraction));
+    if (read) campaign.packing.packing = std::move(first);
+    else {
+      campaign.packing = make_packing<Integrator, Shape>(s, first.grains, progress);
+      dem::soil::save_packing(campaign.packing.packing, s.save_packing);  // before anything else can go wrong
+    }
+    measure<Shape>(campaign.packing, s, progress);
+    if (making > 0) {
+      const double fraction = campaign.packing.solid_fraction;
+      progress.finish(std::isfinite(fraction) ? fmt::format("solid fraction {:.3f}", fraction) : "");
+    }
     compare_density(campaign.packing, progress);
-    if (!read) dem::soil::save_packing(campaign.packing.packing, s.save_packing);
     for (const double load : s.loads) {
       LoadResult& r = campaign.loads.emplace_back();
       r.load = load;
@@ -143,10 +135,10 @@ void run_campaign(const Settings& s, Campaign& campaign) {
   } catch (const Interrupted&) {
     campaign.interrupted = true;
   } catch (const std::exception& error) {
-    campaign.problem = error.what();
+    campaign.problem = in_options(error.what());
   }
   progress.stop(campaign.problem);
-  campaign.wall_time = dem::io::steady_seconds() - start;
+  campaign.wall_time = dem::io::steady_seconds() - start_time;
 }
 
 }  // namespace direct_shear

@@ -4,22 +4,30 @@
 
 #include <dem/io/polyhedron_mesh.hpp>
 #include <dem/io/vtk.hpp>
-#include <dem/io/vtk_grains.hpp>
+#include <dem/io/vtk_machine.hpp>
 #include <dem/soil/coordination.hpp>
-#include <dem/surface/box.hpp>
 
 #include <cmath>
+#include <exception>
 #include <filesystem>
+#include <functional>
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace direct_shear {
 
-/// The ParaView series of one load: grains and boxes every so many metres of travel.
+/// The ParaView series of one load, if there is to be one: grains and boxes every so many metres of travel. One that
+/// cannot be written goes no further and says why, for it is not worth the test.
 class Frames {
  public:
-  Frames(const Settings& s, const std::string& name)
-      : spheres_(s.vtk_spheres), interval_(s.vtk_interval), series_(s.output / (name + ".pvd")) {}
+  using Failed = std::function<void(const std::string& why)>;
+
+  Frames(const Settings& s, const std::string& name, Failed failed)
+      : spheres_(s.vtk_spheres), interval_(s.vtk_interval), failed_(std::move(failed)) {
+    if (s.vtk) attempt([&] { series_.emplace(s.output / (name + ".pvd")); });
+  }
 
   /// Writes a frame if one is due at this displacement (m).
   template <class World>
@@ -39,22 +47,45 @@ class Frames {
  private:
   template <class World>
   void write(const World& world, double displacement) {
+    if (!series_) return;
     written_ = displacement;
-    write_grains(world);
-    write_boxes(world);
-    if constexpr (std::is_same_v<typename World::Shape, dem::shape::Superquadric>) {
-      const auto path = series_.next_path("superquadrics");
-      dem::io::write_vtk_grains(path, world, 4, {.single_precision = true, .time_s = world.time()});
-      series_.add(world.time(), path, "superquadrics");
-    } else if constexpr (std::is_same_v<typename World::Shape, dem::shape::Polyhedron>) {
-      write_polyhedra(world);
-    } else if (spheres_) {
-      write_spheres(world);
+    attempt([&] { write_parts(world); });
+  }
+
+  template <class Write>
+  void attempt(Write&& write) {
+    try {
+      write();
+    } catch (const std::exception& error) {
+      series_.reset();
+      failed_(error.what());
     }
   }
 
   template <class World>
-  void write_grains(const World& world) {
+  void write_parts(const World& world) {
+    using Shape = typename World::Shape;
+    const dem::io::VtkOptions options{.single_precision = true, .time_s = world.time()};
+    add(world, "grains", [&](const auto& path) { write_grains(path, world, options); });
+    add(world, "boxes", [&](const auto& path) { dem::io::write_vtk_surfaces(path, world, options); });
+    const auto add_meshes = [&](const char* part) {
+      add(world, part, [&](const auto& path) { dem::io::write_vtk_grains(path, world, 4, options); });
+    };
+    if constexpr (std::is_same_v<Shape, dem::shape::Superquadric>) add_meshes("superquadrics");
+    else if constexpr (std::is_same_v<Shape, dem::shape::Polyhedron>) add_meshes("polyhedra");
+    else if (spheres_) add(world, "spheres", [&](const auto& path) { write_spheres(path, world, options); });
+  }
+
+  template <class World, class Write>
+  void add(const World& world, const char* part, Write&& write) {
+    const auto path = series_->next_path(part);
+    write(path);
+    series_->add(world.time(), path, part);
+  }
+
+  /// Every grain as a point that knows how it moves and touches others.
+  template <class World>
+  static void write_grains(const std::filesystem::path& path, const World& world, const dem::io::VtkOptions& options) {
     const std::size_t n = world.particle_count();
     std::vector<dem::Vec3> position(n), velocity(n), spin(n), force(n);
     std::vector<double> quaternion, radius(n);
@@ -70,7 +101,6 @@ class Frames {
       quaternion.insert(quaternion.end(), {q.w(), q.x(), q.y(), q.z()});
     }
     const auto contacts = dem::soil::coordination(world);
-    const auto path = series_.next_path("grains");
     dem::io::write_vtk_points(path, dem::io::flat(position),
                               {{"radius_m", 1, radius},
                                {"velocity_m_s", 3, dem::io::flat(velocity)},
@@ -79,13 +109,12 @@ class Frames {
                                {"net_contact_force_N", 3, dem::io::flat(force)},
                                {"contact_points", 1, contacts.contacts},
                                {"coordination", 1, contacts.neighbours}},
-                              {.single_precision = true, .time_s = world.time()});
-    series_.add(world.time(), path, "grains");
+                              options);
   }
 
   /// Every grain as its spheres: Point Gaussian, scaled by radius_m, shows the true shape.
   template <class World>
-  void write_spheres(const World& world) {
+  static void write_spheres(const std::filesystem::path& path, const World& world, const dem::io::VtkOptions& options) {
     std::vector<dem::Vec3> centre, velocity;
     std::vector<double> radius;
     std::vector<std::int32_t> grain;
@@ -99,61 +128,15 @@ class Frames {
         grain.push_back(static_cast<std::int32_t>(p.value));
       }
     }
-    const auto path = series_.next_path("spheres");
     dem::io::write_vtk_points(
         path, dem::io::flat(centre),
-        {{"radius_m", 1, radius}, {"velocity_m_s", 3, dem::io::flat(velocity)}, {"grain", 1, grain}},
-        {.single_precision = true, .time_s = world.time()});
-    series_.add(world.time(), path, "spheres");
-  }
-
-  /// Every grain as what it is.
-  template <class World>
-  void write_polyhedra(const World& world) {
-    const auto mesh = dem::io::polyhedron_mesh(world.species(dem::SpeciesId(0)).shape);
-    std::vector<dem::io::BodyMesh> grains;
-    std::vector<dem::Vec3> velocity, force;
-    for (const dem::ParticleId p : world.particles()) {
-      grains.push_back({&mesh, world.position(p), world.rotation(p)});
-      velocity.push_back(world.velocity(p));
-      force.push_back(world.force(p));
-    }
-    const auto path = series_.next_path("polyhedra");
-    dem::io::write_vtk_bodies(
-        path, grains, {{"velocity_m_s", 3, dem::io::flat(velocity)}, {"net_contact_force_N", 3, dem::io::flat(force)}},
-        {.single_precision = true, .time_s = world.time()});
-    series_.add(world.time(), path, "polyhedra");
-  }
-
-  template <class World>
-  void write_boxes(const World& world) {
-    const auto& surfaces = world.state().surfaces;
-    std::vector<dem::io::SurfaceMesh> meshes;
-    std::vector<dem::io::BodyMesh> bodies;
-    std::vector<dem::Vec3> velocity, force;
-    std::vector<std::int32_t> body;
-    for (const auto& s : surfaces) {
-      meshes.push_back(dem::io::box_mesh(std::get<dem::surface::Box>(s.geometry).edges()));
-      velocity.push_back(world.machine().body(s.body).velocity());
-      force.push_back(dem::to_eigen(s.force));
-      body.push_back(static_cast<std::int32_t>(s.body.value));
-    }
-    for (std::size_t i = 0; i < surfaces.size(); ++i) {
-      const auto& b = world.machine().body(surfaces[i].body);
-      bodies.push_back({&meshes[i], b.point(surfaces[i].position), b.rotation() * surfaces[i].rotation});
-    }
-    const auto path = series_.next_path("boxes");
-    dem::io::write_vtk_bodies(path, bodies,
-                              {{"machine_part", 1, body},
-                               {"velocity_m_s", 3, dem::io::flat(velocity)},
-                               {"force_of_grains_N", 3, dem::io::flat(force)}},
-                              {.single_precision = true, .time_s = world.time()});
-    series_.add(world.time(), path, "boxes");
+        {{"radius_m", 1, radius}, {"velocity_m_s", 3, dem::io::flat(velocity)}, {"grain", 1, grain}}, options);
   }
 
   bool spheres_;
   double interval_, next_ = 0.0, written_ = -1.0;  // m
-  dem::io::VtkSeries series_;
+  Failed failed_;
+  std::optional<dem::io::VtkSeries> series_;  // none: nothing is written, or no more
 };
 
 }  // namespace direct_shear

@@ -2,7 +2,8 @@
 // lid, shears one half over the other, and fits the angle of friction. See --help.
 //
 // Ends with 0 when all was done; 1 when the run ended early or a part of the report could not be made; 2 when the
-// settings make no sense; 130 after Ctrl-C or SIGTERM. What was found by then is saved and reported.
+// settings make no sense, before the results of an earlier run are touched; 130 after Ctrl-C or SIGTERM. What was found
+// by then is saved and reported.
 
 #include "campaign.hpp"
 #include "old_results.hpp"
@@ -19,6 +20,29 @@
 #include <fmt/format.h>
 
 #include <cstdio>
+#include <filesystem>
+#include <string>
+
+namespace {
+
+/// Makes the output folder this run's own: says which results of an earlier one go, and takes them away.
+void replace_old_results(const direct_shear::Settings& s, const std::string& config) {
+  const auto settings = s.output / "settings.toml";
+  if (const auto old = direct_shear::find_old_results(s.output); !old.empty()) {
+    const bool same = std::filesystem::exists(settings) && dem::io::read_file(settings) == config;
+    std::string names;
+    for (const auto& path : old) names += (names.empty() ? "" : ", ") + path.filename().string();
+    if (s.packing_file.empty() && std::filesystem::exists(s.save_packing)) {
+      names += ", and " + s.save_packing + " once there is a new packing";
+    }
+    fmt::print(stderr, "Replacing what an earlier run with {} settings left in '{}': {}. Another --output keeps it.\n",
+               same ? "the same" : "other", s.output.string(), names);
+  }
+  dem::io::write_file(settings, config);
+  direct_shear::remove_old_results(s.output);
+}
+
+}  // namespace
 
 int main(int argc, char** argv) {
   using namespace direct_shear;
@@ -27,19 +51,20 @@ int main(int argc, char** argv) {
     Settings settings;
     std::string config;
     if (!read_settings(argc, argv, settings, config)) return 0;
-    remove_old_results(settings.output);
-    dem::io::write_file(settings.output / "settings.toml", config);
 
     Campaign campaign;
+    const auto begin = [&] { replace_old_results(settings, config); };
     using Cube8 = dem::shape::SphereCluster<8>;
     using Polyhedron = dem::shape::Polyhedron;
     using Superquadric = dem::shape::Superquadric;
-    if (settings.shape == "polyhedron") run_campaign<integrator::VelocityVerlet, Polyhedron>(settings, campaign);
+    if (settings.shape == "polyhedron") run_campaign<integrator::VelocityVerlet, Polyhedron>(settings, campaign, begin);
     else if (settings.shape == "superquadric")
-      run_campaign<integrator::VelocityVerlet, Superquadric>(settings, campaign);
-    else if (settings.integrator == "verlet") run_campaign<integrator::VelocityVerlet, Cube8>(settings, campaign);
-    else if (settings.integrator == "euler") run_campaign<integrator::SymplecticEuler, Cube8>(settings, campaign);
-    else run_campaign<integrator::PredictorCorrector, Cube8>(settings, campaign);
+      run_campaign<integrator::VelocityVerlet, Superquadric>(settings, campaign, begin);
+    else if (settings.integrator == "verlet")
+      run_campaign<integrator::VelocityVerlet, Cube8>(settings, campaign, begin);
+    else if (settings.integrator == "euler")
+      run_campaign<integrator::SymplecticEuler, Cube8>(settings, campaign, begin);
+    else run_campaign<integrator::PredictorCorrector, Cube8>(settings, campaign, begin);
 
     const bool complete = report(settings, campaign, config);
     if (!campaign.problem.empty()) fmt::print(stderr, "direct_shear: {}\n", campaign.problem);

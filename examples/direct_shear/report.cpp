@@ -74,12 +74,12 @@ dem::io::Table angle_table(const Fits& f) {
 
 std::string packing_text(const Settings& s, const Campaign& c) {
   const PackingResult& p = c.packing;
-  if (!std::isfinite(p.solid_fraction)) return "The packing was not finished.";
+  if (!std::isfinite(p.height)) return "The packing was not finished.";
   const auto& limits = dem::soil::cube8_limits;
   std::string text = fmt::format(
-      "Packing before loading: {} grains, bulk density {:.0f} kg/m³ (solid fraction {:.3f}), relative density {}{}, "
+      "Packing before loading: {} grains, bulk density {} kg/m³ (solid fraction {}), relative density {}{}, "
       "height {:.1f} mm",
-      p.packing.grains.size(), s.density * p.solid_fraction, p.solid_fraction,
+      p.packing.grains.size(), number(s.density * p.solid_fraction, "{:.0f}"), number(p.solid_fraction, "{:.3f}"),
       number(relative_density(p.solid_fraction)),
       std::isfinite(p.asked_density) ? fmt::format(" ({:g} asked for)", p.asked_density) : "", 1e3 * p.height);
   if (std::isfinite(p.coordination)) text += fmt::format(", {:.2f} neighbours a grain", p.coordination);
@@ -87,9 +87,12 @@ std::string packing_text(const Settings& s, const Campaign& c) {
                             limits.loosest, limits.densest);
 }
 
+std::string frames_text(const Campaign& c) { return "Files for ParaView are missing: " + c.frames_problem; }
+
 std::string status_text(const Campaign& c) {
   if (!c.problem.empty()) return "The run ended early: " + c.problem;
   if (c.interrupted) return "The run was interrupted; this is what was there by then.";
+  if (!c.frames_problem.empty()) return frames_text(c);
   return {};
 }
 
@@ -174,10 +177,11 @@ void write_results_csv(const Settings& s, const Campaign& c) {
                          {"load_kg", "normal_stress_Pa", "maximum_shear_Pa", "displacement_at_maximum_m",
                           "residual_shear_Pa", "solid_fraction", "bulk_density_kg_m3", "dilation_m",
                           "plane_normal_stress_Pa", "normal_stress_at_maximum_Pa", "inertial_number", "finished"});
+  const auto cell = [](double value) { return std::isfinite(value) ? fmt::format("{}", value) : ""; };
   for (const LoadResult& r : c.loads) {
-    csv.row(r.load, r.normal_stress, r.maximum, r.at_maximum, r.residual, r.solid_fraction,
-            s.density * r.solid_fraction, r.dilation, r.plane_stress, r.normal_at_maximum, r.inertial_number,
-            r.finished);
+    csv.row(r.load, r.normal_stress, cell(r.maximum), cell(r.at_maximum), cell(r.residual), cell(r.solid_fraction),
+            cell(s.density * r.solid_fraction), cell(r.dilation), cell(r.plane_stress), cell(r.normal_at_maximum),
+            cell(r.inertial_number), r.finished);
   }
   csv.flush();  // so that a full disk is noticed
 }
@@ -238,7 +242,11 @@ bool report(const Settings& s, const Campaign& c, const std::string& config) {
   part("results.csv", [&] { write_results_csv(s, c); });
   part("the printed report", [&] { print_report(s, c); });
   part("report.html", [&] { write_page(s, c, config); });
-  if (complete) fmt::print("Report, plots, tables and ParaView files: {}\n", s.output.string());
+  if (!c.frames_problem.empty()) {
+    fmt::print(stderr, "direct_shear: {}\n", frames_text(c));
+    complete = false;
+  }
+  if (complete) fmt::print("Report, plots, tables{}: {}\n", s.vtk ? " and ParaView files" : "", s.output.string());
   return complete;
 }
 

@@ -67,7 +67,8 @@ struct Campaign {
   double wall_time = 0.0;  ///< s
   double grain_steps = 0.0;
   bool interrupted = false;
-  std::string problem = {};  ///< why it ended early; empty if it did not
+  std::string problem = {};         ///< why it ended early; empty if it did not
+  std::string frames_problem = {};  ///< why files for ParaView are missing; empty if none are
 };
 
 /// Table 3.3 of the thesis: normal and maximum shear stress (Pa), and the angle (deg); and the experiment's range.

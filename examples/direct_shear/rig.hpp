@@ -67,6 +67,7 @@ class Rig {
   Rig(const Settings& s, const RigShape& shape, std::span<const dem::soil::Placement> grains)
       : world({.time_step = s.time_step,
                .time_step_safety = s.stable_share,
+               .allow_unstable_time_step = s.allow_unstable_time_step,
                .overlap_limit = s.overlap_limit,
                .domain = domain(s, shape),
                .threads = s.threads}),

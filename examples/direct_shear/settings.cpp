@@ -1,5 +1,8 @@
 #include "settings.hpp"
 
+#include "config_file.hpp"
+#include "options.hpp"
+
 #include <dem/core/error.hpp>
 
 #include <fmt/format.h>
@@ -11,8 +14,6 @@
 #include <cmath>
 #include <map>
 #include <memory>
-#include <set>
-#include <sstream>
 
 namespace direct_shear {
 
@@ -34,127 +35,6 @@ const Size& size_named(const std::string& name) {
     if (name == size.name) return size;
   }
   dem::fail("--size is '{}', but must be smoke, quick or full", name);
-}
-
-void add_specimen_options(CLI::App& app, Settings& s) {
-  const std::string group = "Specimen and box";
-  const auto add = [&](const char* name, auto& value, const char* text) {
-    return app.add_option(name, value, text)->group(group)->capture_default_str();
-  };
-  add("--shape", s.shape,
-      "of the cubes: cube8 (eight spheres), polyhedron (sharp edges) or superquadric (rounded); the last two with "
-      "--integrator verlet")
-      ->check(CLI::IsMember({"cube8", "polyhedron", "superquadric"}));
-  add("--half-edge", s.half_edge, "half edge of a cube [m]; 0: by size (full: 0.0009)");
-  add("--grains", s.grains, "number of grains; 0: the fill of 14256 of half-edge 0.0009");
-  add("--box-length", s.box_length, "inner length along the shearing direction [m]");
-  add("--box-width", s.box_width, "inner width [m]");
-  add("--box-height", s.box_height, "inner height [m]");
-  add("--seam-height", s.seam_height, "where the halves meet [m]; 0: half the specimen");
-  add("--wall-thickness", s.wall_thickness, "[m], at least the travel; 0: 15 mm or twice the travel");
-  add("--lid-clearance", s.lid_clearance, "lid to wall, in radii of a grain's sphere");
-  add("--packing", s.packing, "random or poured")->check(CLI::IsMember({"random", "poured"}));
-  add("--relative-density", s.relative_density, "of a random packing, 0 (as it settles) to 1, in the limits of cube8");
-  add("--tilt", s.tilt_deg, "of the poured block about each axis [deg]");
-  add("--shake-amplitude", s.shake_amplitude, "[m]");
-  add("--shake-frequency", s.shake_frequency, "[Hz]");
-  add("--shake-time", s.shake_time, "for a poured packing [s]");
-  add("--densify-time", s.densify_time, "for a random packing: friction goes to zero in this time [s]");
-  add("--settle-limit", s.settle_limit, "a packing must be at rest by then [s]");
-  add("--packing-file", s.packing_file, "read the packing from this file instead of making one");
-  add("--save-packing", s.save_packing, "file for the packing; empty: packing.txt in the output folder");
-  app.add_flag("--packing-only", s.packing_only, "make, measure and save the packing; no test")->group(group);
-}
-
-void add_contact_options(CLI::App& app, Settings& s) {
-  const std::string group = "Contacts";
-  const auto add = [&](const char* name, auto& value, const char* text) {
-    app.add_option(name, value, text)->group(group)->capture_default_str();
-  };
-  add("--stiffness", s.stiffness, "K [N/m]");
-  add("--damping", s.damping, "C [N s/m]");
-  add("--separation-factor", s.separation_factor, "Sp, share of C while separating");
-  add("--friction", s.friction, "mu, grain on grain");
-  add("--wall-friction", s.wall_friction, "mu, grain on wall; negative: as grain on grain");
-  add("--friction-stiffness", s.friction_stiffness, "kt [N/m]; negative: as K");
-  add("--velocity-stiffness", s.velocity_stiffness, "cv [N s/m]");
-  add("--breaking-factor", s.breaking_factor, "friction kept by a broken asperity");
-  add("--density", s.density, "of a grain [kg/m^3]");
-  add("--constants-for", s.constants_for, "half-edge that K, kt, C and cv are given for [m]");
-  add("--scale-contacts", s.scale_contacts, "scale them to other sizes: K, kt ~ size, C, cv ~ size^2");
-}
-
-void add_test_options(CLI::App& app, Settings& s) {
-  std::string group = "Test";
-  const auto add = [&](const char* name, auto& value, const char* text) {
-    return app.add_option(name, value, text)->group(group)->capture_default_str();
-  };
-  add("--loads", s.loads, "masses on the lid [kg], e.g. 6.2,16.2,26.2")->delimiter(',');
-  add("--lid-speed", s.lid_speed, "[m/s]");
-  add("--rest-speed", s.rest_speed, "the lid is at rest below it [m/s]");
-  add("--consolidation-limit", s.consolidation_limit, "[s]");
-  add("--shear-speed", s.shear_speed, "[m/s]; 0: by size");
-  add("--travel", s.travel, "[m]; 0: by size");
-  add("--ramp-time", s.ramp_time, "smooth start of the shearing [s]");
-  add("--smoothing", s.smoothing, "the maximum is that of the stress averaged over this travel [m]");
-  add("--residual-share", s.residual_share, "last share of the travel that the residual is the mean of");
-  add("--area-correction", s.area_correction, "divide by the area that shrinks as the halves slide apart");
-  group = "Numerics";
-  add("--integrator", s.integrator, "predictor-corrector, verlet or euler")
-      ->check(CLI::IsMember({"predictor-corrector", "verlet", "euler"}));
-  add("--time-step", s.time_step, "[s]; 0: a share of the largest stable one");
-  add("--stable-share", s.stable_share, "that share; 0: by size (full: 0.4); grains are poured at 0.8");
-  add("--overlap-limit", s.overlap_limit, "overlap that ends the run, in sphere radii");
-  add("--seed", s.seed, "of the random packing");
-  add("--threads", s.threads, "0: all, at least 1000 grains for each");
-  group = "Output";
-  add("--output", s.output, "folder");
-  // The name with the plain meaning comes first: it is the one that settings.toml gets.
-  app.add_flag("--vtk,!--no-vtk", s.vtk, "files for ParaView (--vtk=true) or none (--no-vtk)")
-      ->group(group)
-      ->default_str("true");
-  app.add_flag("--vtk-spheres", s.vtk_spheres, "ParaView files also with the eight spheres of each grain")
-      ->group(group);
-  add("--vtk-interval", s.vtk_interval, "travel between two frames [m]; 0: a twentieth of the travel");
-}
-
-/// TOML that must be understood as a whole: CLI11 alone passes over tables, over names that are no option, and over
-/// what is given a second time.
-class StrictToml : public CLI::ConfigBase {
- public:
-  explicit StrictToml(const CLI::App& app) : app_(app) {}
-
-  std::vector<CLI::ConfigItem> from_config(std::istream& in) const override {
-    auto lines = ConfigBase::from_config(in);
-    std::set<std::string> given;
-    for (const auto& item : lines) {
-      if (!item.parents.empty()) {
-        dem::fail("the --config file has a table [{}], but must have none; give its options without that header",
-                  fmt::join(item.parents, "."));
-      }
-      if (app_.get_option_no_throw("--" + item.name) == nullptr) {
-        dem::fail("the --config file gives '{}', but there is no such option; --help lists them", item.name);
-      }
-      if (!given.insert(item.name).second) {
-        dem::fail("the --config file gives '{}' twice; leave one out", item.name);
-      }
-    }
-    return lines;
-  }
-
- private:
-  const CLI::App& app_;
-};
-
-/// CLI11 writes empty texts and lists in a form that it does not read; they are defaults, so they may go.
-std::string without_empty_values(const std::string& toml) {
-  std::istringstream in(toml);
-  std::string kept;
-  for (std::string line; std::getline(in, line);) {
-    const bool empty = line.ends_with("=\"\"") || line.ends_with("=\"[]\"") || line.ends_with("=[]");
-    if (!empty) kept += line + '\n';
-  }
-  return kept;
 }
 
 void check_specimen(const Settings& s) {
@@ -219,7 +99,7 @@ void check_test(const Settings& s) {
   }
   dem::require_non_negative(s.time_step, "--time-step", "s (0: a share of the largest stable one)");
   dem::require_within(s.stable_share, 1e-3, 1.0, "--stable-share (0: by size)");
-  dem::require_positive(s.overlap_limit, "--overlap-limit", "sphere radii");
+  dem::require_positive(s.overlap_limit, "--overlap-limit", "effective diameters");
   dem::require_within(s.threads, 0.0, 4096.0, "--threads (0: all)");
   dem::require_positive(s.vtk_interval, "--vtk-interval", "m (0: a twentieth of the travel)");
 }
@@ -229,10 +109,13 @@ void check_test(const Settings& s) {
 bool read_settings(int argc, char** argv, Settings& s, std::string& config) {
   CLI::App app{"Direct shear test of cubical sand grains: shear strength at several normal stresses"};
   app.set_config("--config", "", "TOML file with any of these options");
-  app.config_formatter(std::make_shared<StrictToml>(app));
+  const auto toml = std::make_shared<StrictToml>(app);
+  app.config_formatter(toml);
   app.footer(
       "Ends with 0 when all was done, 1 when the run ended early or a part of the report could not be made, 2 when the "
-      "settings make no sense, 130 after Ctrl-C. What was found by then is saved and reported.");
+      "settings make no sense (results of an earlier run are then still there), 130 after Ctrl-C. What was found by "
+      "then "
+      "is saved and reported.");
   app.add_option("--size", s.size, "smoke (seconds), quick (minutes) or full (14256 grains)")->capture_default_str();
   add_specimen_options(app, s);
   add_contact_options(app, s);
@@ -245,7 +128,9 @@ bool read_settings(int argc, char** argv, Settings& s, std::string& config) {
   } catch (const CLI::ParseError& e) {
     dem::fail("{} (--help lists the options)", e.what());
   }
-  config = without_empty_values(app.config_to_str(true, false));
+  const auto idle = idle_options(s);
+  refuse_idle(idle, app, *toml);
+  config = all_that_counts(app, idle);
   resolve(s);
   return true;
 }
@@ -310,9 +195,9 @@ std::vector<std::pair<std::string, std::string>> list_settings(const Settings& s
        fmt::format("{:g} N s/m (given {:g})", k * k * s.velocity_stiffness, s.velocity_stiffness)},
       {"asperity breaking factor", fmt::format("{:g}", s.breaking_factor)},
       {"packing", !s.packing_file.empty() ? "from " + std::filesystem::path(s.packing_file).filename().string()
-                  : s.packing == "poured" ? fmt::format("poured block, tilted by {:g}° about each axis", s.tilt_deg)
-                                          : fmt::format("random, relative density {:g} asked for", s.relative_density)},
-      {"seed", s.packing_file.empty() ? std::to_string(s.seed) : "that of the packing file"},
+                  : s.packing == "poured"
+                      ? fmt::format("poured block, tilted by {:g}° about each axis", s.tilt_deg)
+                      : fmt::format("random, seed {}, relative density {:g} asked for", s.seed, s.relative_density)},
       {"loads", fmt::format("{} kg", fmt::join(s.loads, ", "))},
       {"shearing", fmt::format("{:g} mm at {:g} mm/s", 1e3 * s.travel, 1e3 * s.shear_speed)},
       {"stresses are forces over",

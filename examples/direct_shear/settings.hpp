@@ -70,11 +70,12 @@ struct Settings {
   double time_step = 0.0;             ///< s; 0: a share of the largest stable one
   /// The share; 0: by size. Grains are poured at 0.8, where more than rest is not asked of them.
   double stable_share = 0.0;
-  /// Overlap, in sphere radii, that ends the run. K = 2000 N/m is soft: force chains press spheres half a radius
-  /// together.
+  bool allow_unstable_time_step = false;  ///< accept a `time_step` above the largest stable one
+  /// Overlap that ends the run, in effective diameters 2 Ri Rj/(Ri + Rj): in radii where two equal spheres touch, in
+  /// diameters where a sphere touches a wall. K = 2000 N/m is soft: force chains press spheres half a radius together.
   double overlap_limit = 1.0;
-  std::uint64_t seed = 1;
-  int threads = 0;  ///< 0: all, but not more than one for each 1000 grains
+  std::uint64_t seed = 1;  ///< of a random packing
+  int threads = 0;         ///< 0: all, but not more than one for each 1000 grains
 
   // Output
   std::filesystem::path output = "direct_shear_output";
@@ -91,8 +92,8 @@ struct Settings {
 };
 
 /// Reads the command line and, with --config, a TOML file, whose every key must be an option. Returns false when only
-/// help was asked for; throws dem::Error when something makes no sense, CLI::ParseError never. `config` becomes a TOML
-/// file that repeats the run.
+/// help was asked for; throws dem::Error when something makes no sense or an option is given that would do nothing,
+/// CLI::ParseError never. `config` becomes a TOML file that repeats the run: every option that counts in it.
 bool read_settings(int argc, char** argv, Settings& settings, std::string& config);
 
 /// Fills in what depends on the size and checks every option against its range. Throws dem::Error.

@@ -2,5 +2,5 @@
 
 #include <dem/integrator/velocity_verlet.hpp>
 
-template void direct_shear::run_campaign<dem::integrator::VelocityVerlet, dem::shape::Polyhedron>(const Settings&,
-                                                                                                  Campaign&);
+template void direct_shear::run_campaign<dem::integrator::VelocityVerlet, dem::shape::Polyhedron>(
+    const Settings&, Campaign&, const std::function<void()>&);

@@ -184,6 +184,7 @@ TEST_CASE("what an earlier run left is removed, and nothing else") {
   const fs::path folder = fs::temp_directory_path() / ("dem_old_results_test_" + std::to_string(::getpid()));
   fs::remove_all(folder);
   CHECK_NOTHROW(remove_old_results(folder));  // there is none yet
+  CHECK(find_old_results(folder).empty());
   const std::vector<std::string> old = {"results.csv",
                                         "report.html",
                                         "shear_stress.gp",
@@ -199,7 +200,12 @@ TEST_CASE("what an earlier run left is removed, and nothing else") {
                                            "load_a/grains.txt", "sub/load_1.0kPa.csv", "shear_stress.txt"};
   for (const auto& name : old) dem::io::write_file(folder / name, "old");
   for (const auto& name : others) dem::io::write_file(folder / name, "mine");
+  std::vector<std::string> found;
+  for (const auto& path : find_old_results(folder)) found.push_back(path.filename().string());
+  CHECK(found == std::vector<std::string>{"dilation.svg", "load_16.9kPa.csv", "load_16.9kPa.pvd", "mohr_coulomb.png",
+                                          "report.html", "results.csv", "shear_stress.gp"});
   remove_old_results(folder);
+  CHECK(find_old_results(folder).empty());
   for (const auto& name : old) {
     INFO(name);
     CHECK_FALSE(fs::exists(folder / name));

@@ -118,6 +118,10 @@ TEST_CASE("percentiles and the inner region") {
   CHECK(free.low == Vec3(-9, -4, 1));
   CHECK(free.high == Vec3(9, 4, 8));
   CHECK(under_lid.high.z() == 11.0);
+  CHECK_FALSE(free.is_empty());
+  CHECK(inner_region(grains, 20.0, 10.0, 4.5).is_empty());        // 9 high
+  CHECK(inner_region(grains, 20.0, 10.0, 5.0, 99.0).is_empty());  // 10 wide
+  CHECK(inner_region(grains, 2.0, 2.0, 3.0, 99.0).is_empty());    // though the product of its edges is positive
 }
 
 TEST_CASE("relative density goes by void ratios") {

@@ -11,13 +11,15 @@ namespace dem::soil {
 struct Region {
   Vec3 low = Vec3::Zero(), high = Vec3::Zero();
   double volume() const { return (high - low).prod(); }
+  /// Whether there is anything of it: a packing that is small beside the margin of inner_region has none.
+  bool is_empty() const { return !((high - low).minCoeff() > 0.0); }
 };
 
 /// Share of the region's volume that cubes of half-edge h (m) fill; grains that the region's border cuts count with
 /// what lies inside: each cube is cut into `cuts`^3 parts, and a part counts where its middle is. Times the density of
 /// the grains it is the bulk density. Throws Error for a region without volume.
 inline double solid_fraction(std::span<const Placement> grains, double half_edge, const Region& region, int cuts = 4) {
-  if (!((region.high - region.low).minCoeff() > 0.0)) {
+  if (region.is_empty()) {
     fail(
         "the region to measure in has edges {:g}, {:g}, {:g} m, but all must be greater than zero; the packing is too "
         "small for it, so use more or smaller grains",

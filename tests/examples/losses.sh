@@ -1,0 +1,48 @@
+#!/usr/bin/env bash
+# What goes wrong beside the test costs no results of the direct shear example: files for ParaView that cannot be
+# written, and a density that cannot be measured. What ends a run early is told in its options' names.
+#
+#   losses.sh <direct_shear> <output folder> <packing file>
+set -euo pipefail
+
+rig=$1 output=$2 packing=$3
+log=$output/log.txt
+
+fail() {
+  echo "$1"
+  cat "$log"
+  exit 1
+}
+
+# run <status> <folder> <option>...
+run() {
+  local expected=$1 folder=$2 status=0
+  shift 2
+  "$rig" --size smoke --travel 5e-4 --output "$folder" "$@" > "$log" 2>&1 || status=$?
+  [ "$status" = "$expected" ] || fail "The run ended with $status, not with $expected"
+  [ "$(grep -c ',1$' "$folder/results.csv")" = 1 ] || fail "results.csv has no finished load"
+  [ -s "$folder/report.html" ] || fail "There is no report"
+}
+
+rm -rf "$output"
+mkdir -p "$output/frames"
+echo "a file" > "$output/frames/load_44.1kPa"  # where the folder of the frames should be: no one can write into it
+run 1 "$output/frames" --packing-file "$packing"
+[ "$(grep -c 'warning: no more files for ParaView' "$log")" = 1 ] || fail "It does not warn once"
+grep -q 'Files for ParaView are missing' "$output/frames/report.html" || fail "report.html does not say what is missing"
+
+run 0 "$output/thin" --grains 60 --box-length 0.04 --box-width 0.04 --relative-density 0 --loads 7.2 --no-vtk
+[ "$(grep -c 'warning: the density .* is not known' "$log")" = 2 ] || fail "It does not warn of packing and specimen"
+grep -q 'solid fraction -' "$log" || fail "It prints a density"
+! grep -qi 'nan' "$log" "$output/thin/results.csv" || fail "Something is called nan"
+grep -q ',,,' "$output/thin/results.csv" || fail "results.csv has a density"
+[ "$(grep -c '^' "$output/thin/packing.txt")" = 66 ] || fail "The packing of 60 grains was not saved"
+
+# What ends a run early is told in the names of the options, and all that is known by then is reported.
+status=0
+"$rig" --size smoke --packing-file "$packing" --overlap-limit 1e-3 --no-vtk --output "$output/deep" \
+  > "$log" 2>&1 || status=$?
+[ "$status" = 1 ] || fail "A run that is stopped by an overlap ends with $status, not with 1"
+grep -q 'more than --overlap-limit 0.001; raise --stiffness, lower --time-step' "$log" || fail "It names no options"
+! grep -q 'overlap_limit\|time_step' "$log" "$output/deep/report.html" || fail "It names what is no option"
+[ "$(grep -c ',0$' "$output/deep/results.csv")" = 1 ] || fail "results.csv has no row of the load that was not finished"
