@@ -1,5 +1,7 @@
 #include "scenes.hpp"
+#include "surface/fillet.hpp"
 
+#include <dem/contact/hysteretic.hpp>
 #include <dem/math/mesh_shapes.hpp>
 #include <dem/surface/superquadric.hpp>
 
@@ -102,4 +104,39 @@ TEST_CASE("a body that is a ball moves on a mesh as a grain that is a ball does"
   CHECK(grain.position(p).z() < 0.0);
   CHECK(apart < 1e-9);
   CHECK(spin_apart < 1e-6);
+}
+
+TEST_CASE("a ball in a fillet that leaves the floor or the wall remembers the other one") {
+  // One group of triangles: both contacts share their name but for the direction. The ball is so heavy that it moves as
+  // it was started, out of one contact at 10 times the speed than out of the other; Hysteretic remembers the largest
+  // overlaps, 4e-5 m and 2e-5 m.
+  struct Plastic : Round {
+    using Normal = dem::contact::Hysteretic;
+  };
+  const double r = 5e-3, k1 = 2000.0, k2 = 3000.0, deep = 4e-5, shallow = 2e-5, v = 1e-2;
+  for (const bool leaves_floor : {true, false}) {
+    for (const bool deeper_leaves : {true, false}) {
+      CAPTURE(leaves_floor, deeper_leaves);
+      dem::World<Plastic> w(options({0, 0, 0}, 1e-6));
+      w.set_contact({{k1, k2}, {0.0, 1.0, 0.0, 1.0}});
+      const auto s = w.add_surface(
+          w.ground(), surface::TriangleMesh(fillet(2e-3, 6, 0.05), {.side = surface::MeshSide::one_sided}));
+      dem::SpeciesOptions o;
+      o.density = 1e12;
+      const double leaving = deeper_leaves ? deep : shallow, staying = deeper_leaves ? shallow : deep;
+      const Vec3 out = leaves_floor ? Vec3::UnitZ() : Vec3::UnitX(), on = leaves_floor ? Vec3::UnitX() : Vec3::UnitZ();
+      w.add_particle({w.add_species(Sphere(r), o), (r - leaving) * out + (r - staying) * on, v * out + 0.1 * v * on});
+      double last = -1.0;
+      for (int step = 0; step < 500; ++step) {
+        REQUIRE(w.run(10));
+        const double moved = v * w.time(), overlap = staying - 0.1 * moved;
+        if (moved < 1.01 * leaving || overlap <= 0.0) continue;
+        const double force = std::max(0.0, k1 * overlap - (k2 - k1) * (staying - overlap));
+        // The first step's overlap is the largest that is remembered: 1e-9 m less, times k2 - k1.
+        CHECK(-w.surface_force(s).dot(on) == Approx(force).margin(2e-9 * k2));
+        last = force;
+      }
+      CHECK(last >= 0.0);
+    }
+  }
 }

@@ -86,23 +86,52 @@ TEMPLATE_TEST_CASE("a face is pushed by parts that are smaller than it, where ne
       CHECK(std::abs(w.torque(dem::ParticleId(0)).x()) < 0.01 * K * depth * h);
     }
   }
-  SECTION("the edge of a box") {
+  SECTION("the edge of a box, or of a mesh, of triangles that are far larger or a little smaller than the cube") {
     // Standing on an edge along y that is far longer than the cube.
-    const Mat3 tilted = Eigen::AngleAxisd(std::numbers::pi / 4, Vec3::UnitY()).toRotationMatrix();
-    dem::World<OnParts<TestType>> w(options(Vec3::Zero(), 1e-8));
-    w.set_contact({{K, 0.0, 1.0}, {0.0, K, 0.0, 0.0}});
-    dem::NewParticle n;
-    n.species = w.add_species(cube<TestType>());
-    n.position = Vec3(0.2 * h, 0.3 * h, h + 2 * h * std::sqrt(2.0) - depth);
-    dem::SurfaceOptions o;
-    o.rotation = tilted;
-    const SurfaceId part = w.add_surface(w.ground(), Box({4 * h, 40 * h, 4 * h}), o);
-    w.add_particle(n);
-    w.prepare();
-    const double force = -w.surface_force(part).z() / K;
-    // Points of the edge weigh as the cube's own points do: three quarters of a contact with a cube of sharp corners.
-    const double weight = std::is_same_v<TestType, Polyhedron> ? 0.75 : 1.0;
-    CHECK(force == Approx(weight * depth).epsilon(tolerance));
+    const Vec3 edges(4 * h, 40 * h, 4 * h);
+    for (const typename OnParts<TestType>::Surfaces& blade : {typename OnParts<TestType>::Surfaces(Box(edges)),
+                                                              {TriangleMesh(dem::mesh::box(edges))},
+                                                              {TriangleMesh(dem::mesh::box(edges, 31))}}) {
+      CAPTURE(blade.index());
+      dem::World<OnParts<TestType>> w(options(Vec3::Zero(), 1e-8));
+      w.set_contact({{K, 0.0, 1.0}, {0.0, K, 0.0, 0.0}});
+      dem::NewParticle n;
+      n.species = w.add_species(cube<TestType>());
+      n.position = Vec3(0.2 * h, 0.3 * h, h + 2 * h * std::sqrt(2.0) - depth);
+      dem::SurfaceOptions o;
+      o.rotation = Eigen::AngleAxisd(std::numbers::pi / 4, Vec3::UnitY()).toRotationMatrix();
+      const SurfaceId part = w.add_surface(w.ground(), blade, o);
+      w.add_particle(n);
+      w.prepare();
+      const double force = -w.surface_force(part).z() / K;
+      // Points of the edge weigh as the cube's own points do: three quarters of a contact with a cube of sharp corners,
+      // up to a whole one where vertices come to them. Towards its ends, 0.95 h from the middle, the face of the
+      // superquadric is bent by h/32 0.95^32 = 6e-6 m.
+      const double least = std::is_same_v<TestType, Polyhedron> ? 0.75 : 0.9;
+      CHECK(force > (1.0 - tolerance) * least * depth);
+      CHECK(force < (1.0 + tolerance) * depth);
+    }
+  }
+  SECTION("long edges that no point of a face comes near to") {
+    // Flat on a roof whose sides fall away by 10 degrees, along a ridge that ends far outside.
+    const double ten = std::tan(10 * std::numbers::pi / 180);
+    const dem::IndexedMesh roof = {{{0, -50 * h, 0},
+                                    {0, 50 * h, 0},
+                                    {50 * h, 50 * h, -50 * h * ten},
+                                    {50 * h, -50 * h, -50 * h * ten},
+                                    {-50 * h, 50 * h, -50 * h * ten},
+                                    {-50 * h, -50 * h, -50 * h * ten}},
+                                   {{0, 2, 1}, {0, 3, 2}, {0, 1, 4}, {0, 4, 5}}};
+    const TriangleMesh ridge(roof, {.side = dem::surface::MeshSide::one_sided, .facing = dem::MeshFacing::as_given});
+    const double on_ridge = push<TestType>(ridge, Vec3(0.3 * h, 3.7 * h, h - depth)).z();
+    CHECK(on_ridge > (1.0 - tolerance) * 0.75 * depth);
+    CHECK(on_ridge < (1.0 + tolerance) * depth);
+    // Half over the edge of a slab: the same as on a box, and never more than one contact.
+    const Vec3 slab(40 * h, 40 * h, 4 * h), over(20.2 * h, 0.3 * h, 3 * h - depth);
+    const Vec3 force = push<TestType>(TriangleMesh(dem::mesh::box(slab)), over);
+    CHECK((force - push<TestType>(Box(slab), over)).norm() < 1e-9 * depth);
+    CHECK(force.z() > 0.45 * depth);
+    CHECK(force.z() < (1.0 + tolerance) * depth);
   }
   SECTION("a corner of a mesh, a fine ball of triangles, a superquadric") {
     // Points of a round skin share the contact by their depths d, evenly spread over a cap of depth D: sum d^2/sum d is
@@ -116,7 +145,11 @@ TEMPLATE_TEST_CASE("a face is pushed by parts that are smaller than it, where ne
 
 TEMPLATE_TEST_CASE("a cube lies on a plane as one contact, and on a finely cut mesh as deep as on a coarse one", "",
                    Polyhedron, Superquadric, SuperquadricPoints) {
-  CHECK(push<TestType>(dem::surface::Plane{}, Vec3(0, 0, h - depth)).z() == Approx(depth).epsilon(0.02));
+  const double on_plane = push<TestType>(dem::surface::Plane{}, Vec3(0, 0, h - depth)).z();
+  CHECK(on_plane == Approx(depth).epsilon(0.02));
+  // A flat mesh has no edges but its rim: it is the plane.
+  const TriangleMesh flat(dem::mesh::rectangle(9 * h, 9 * h, 7, 5), {.side = dem::surface::MeshSide::one_sided});
+  CHECK(push<TestType>(flat, Vec3(0.3 * h, 0.2 * h, h - depth)).z() == Approx(on_plane).epsilon(1e-12));
   // Triangles of a tenth of the cube; pressed in by a fifth of its half-edge, far more than a triangle's edge.
   const TriangleMesh fine(dem::mesh::box({6 * h, 6 * h, 6 * h}, 60)), coarse(dem::mesh::box({6 * h, 6 * h, 6 * h}, 1));
   const Vec3 at(0.01 * h, 0.02 * h, 3 * h + 0.8 * h);
@@ -140,6 +173,22 @@ TEMPLATE_TEST_CASE("sharp grains in and around a tube, and over the ends of a cy
   w.add_particle({plate, Vec3(0, 0, 20.1 * h - depth)});
   w.prepare();
   CHECK(-w.surface_force(part).z() / K == Approx(depth).epsilon(1e-6));
+}
+
+TEMPLATE_TEST_CASE("a face is pushed by the inner edge of an outlet", "", Polyhedron, Superquadric) {
+  // A face that looks down and outward at 45 degrees, over the hole's edge, by which alone it is touched. Half the
+  // grain's bounding radius aside, 0.87 h, the edge has come nearer by 0.75 h^2/(2 R) sqrt(1/2): 2.7e-3 of the depth.
+  const double R = 1000 * h, deep = 0.1 * h;
+  const Cylinder outlet = Cylinder::tube(R, 2 * R, R);
+  const Mat3 tilted = Eigen::AngleAxisd(std::numbers::pi / 4, Vec3::UnitY()).toRotationMatrix();
+  const Vec3 out = Vec3(1, 0, -1).normalized();
+  const Vec3 force = push<TestType>(outlet, Vec3(R, 0, 0.5 * R) - (h - deep) * out, tilted);
+  // Three points and a fixed one. The superquadric's support point lies in the edge too, and is pushed out through one
+  // of its sides, at 45 degrees.
+  const bool exact = std::is_same_v<TestType, Polyhedron>;
+  CHECK(force.norm() == Approx(deep).epsilon(exact ? 0.02 : 0.15));
+  CHECK((force.normalized() + out).norm() < (exact ? 0.01 : 0.15));
+  CHECK(push<TestType>(outlet, Vec3(R, 0, 0.5 * R) - 1.01 * h * out, tilted).norm() == 0.0);
 }
 
 TEST_CASE("a superquadric in a corner of a mesh is carried by each wall as by a plane of its own") {

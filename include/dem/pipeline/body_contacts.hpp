@@ -2,7 +2,7 @@
 
 #include <dem/contact/weights.hpp>
 #include <dem/pipeline/body_points.hpp>
-#include <dem/pipeline/contact_evaluator.hpp>
+#include <dem/pipeline/follow_turns.hpp>
 #include <dem/state/materials.hpp>
 
 #include <span>
@@ -41,25 +41,47 @@ struct BodyContacts {
   ContactForces forces;
 };
 
-/// Contacts of the points of one surface of a pair with the other surface.
-template <class Model, class Surface>
-void probe_body(std::size_t pair, bool back, const Surface& from, const Surface& onto, const Body& carrier,
-                std::uint32_t law, BodyContacts<Model>& c) {
+/// The gap (m) up to which a ball of a pair of surfaces is held by cohesion at a distance, as a grain is; NoGap if the
+/// model has no such law. Points are not: check_body_cohesion() refuses pairs without a ball.
+template <class Model>
+auto body_gap(const ContactParameters<Model>& parameters, double radius) {
+  if constexpr (cohesion::reaches<typename Model::Cohesion>) {
+    return Model::Cohesion::range(parameters.cohesion, radius);
+  } else {
+    return shape::NoGap{};
+  }
+}
+
+/// What the contacts of a pair have in common.
+struct PairContact {
+  std::size_t pair;
+  std::uint32_t law;
+  double radius;  ///< m, effective
+};
+
+/// Contacts of the points of one surface of a pair with the other surface, up to a gap where cohesion acts at a
+/// distance (else NoGap).
+template <class Model, class Surface, class Gap>
+void probe_body(const PairContact& at, bool back, const Surface& from, const Surface& onto, const Body& carrier,
+                Gap gap, BodyContacts<Model>& c) {
   list_points(from, onto, c.points);
   const Vector3<double> offset = from.origin - carrier.motion.position, start = from.origin - onto.origin;
-  const double round = point_radius(from);
+  const std::size_t first = c.hits.size();
   std::visit(
-      [&](const auto& geometry) {
+      [&]<class G>(const G& geometry) {
         for (const BodyPoint& point : c.points) {
           const Vector3<double> place = from.axes * point.place, p = transpose_times(onto.axes, start + place);
-          if (!geometry.near(p, point.radius)) continue;
-          const double radius = point.radius > 0.0 ? point.radius : round;
-          geometry.touch(p, point.radius, [&](std::uint32_t feature, const Vector3<double>& normal, double gap) {
-            c.hits.push_back({BodyKey::make(pair, back, point.number, feature), static_cast<std::uint32_t>(pair),
-                              back ? 1u : 0u, law});
-            c.touches.push_back({offset + place, onto.axes * normal, point.radius, gap,
-                                 surface::radius_on(geometry, radius), point.weight});
+          const double reach = shape::widened(point.radius, gap);
+          if (!geometry.near(p, reach)) continue;
+          geometry.touch(p, reach, [&](std::uint32_t feature, const Vector3<double>& normal, double distance) {
+            c.hits.push_back({BodyKey::make(at.pair, back, point.number, feature), static_cast<std::uint32_t>(at.pair),
+                              back ? 1u : 0u, at.law});
+            c.touches.push_back({offset + place, onto.axes * normal, point.radius, distance, at.radius, point.weight});
           });
+        }
+        if constexpr (history_size < Model >> 0 && surface::NamesDirections<G>) {
+          follow_turns(std::span<const Hit>(c.hits).subspan(first), c.memories.last,
+                       [](std::uint64_t) { return true; });
         }
       },
       onto.geometry);
@@ -96,11 +118,13 @@ void find_body_contacts(BodyContacts<Model>& c, std::span<const Surface> surface
     const Surface &a = surfaces[pair.a.index()], &b = surfaces[pair.b.index()];
     const Body &body_a = bodies[a.body.index()], &body_b = bodies[b.body.index()];
     if (!a.active || !b.active || (body_a.fixed && body_b.fixed)) continue;
-    if ((a.low.array() > b.high.array()).any() || (b.low.array() > a.high.array()).any()) continue;
-    const std::uint32_t law = materials.row(a.material, b.material);
+    const PairContact at = {k, materials.row(a.material, b.material), pair_radius(a, b)};
+    const auto gap = body_gap<Model>(materials.table()[at.law], at.radius);
+    const double wide = shape::widened(0.0, gap);
+    if ((a.low.array() > b.high.array() + wide).any() || (b.low.array() > a.high.array() + wide).any()) continue;
     const std::size_t first = c.touches.size();
-    if (!is_ball(b)) probe_body(k, false, a, b, body_a, law, c);
-    if (is_ball(b) || !is_ball(a)) probe_body(k, true, b, a, body_b, law, c);
+    if (!is_ball(b)) probe_body(at, false, a, b, body_a, gap, c);
+    if (is_ball(b) || !is_ball(a)) probe_body(at, true, b, a, body_b, gap, c);
     if (!is_ball(a) && !is_ball(b)) fit_pair(first, c);  // each touch of a ball is a contact
   }
 

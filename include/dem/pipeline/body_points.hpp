@@ -1,75 +1,11 @@
 #pragma once
 
-#include <dem/state/body.hpp>
-#include <dem/state/machine_surface.hpp>
+#include <dem/pipeline/body_shapes.hpp>
 
-#include <algorithm>
-#include <cmath>
+#include <array>
 #include <vector>
 
 namespace dem::pipeline {
-
-/// A surface whose points cover it: two such surfaces (or one and a plane) find each other by their points.
-template <class S>
-concept HasPoints = requires(const S& s, const surface::Bounds& box) {
-  s.points(box, [](std::uint32_t, const Vector3<double>&, double) {});
-  { s.has_points() } -> std::same_as<bool>;
-};
-/// A surface with straight sharp edges: edges(box, sink) calls sink(number, one end, other end) for those that may lie
-/// in a box of its frame. Numbers are other than those of its points.
-template <class S>
-concept HasEdges = requires(const S& s, const surface::Bounds& box) {
-  s.edges(box, [](std::uint32_t, const Vector3<double>&, const Vector3<double>&) {});
-};
-/// A solid that tells which part of a line from `tail` to `head` lies in it: clip(tail, head, from, to) cuts the range
-/// [from, to] of shares of the way down, and is false if nothing is left.
-template <class S>
-concept ClipsLines = requires(const S& s, const Vector3<double>& p, double& share) {
-  { s.clip(p, p, share, share) } -> std::same_as<bool>;
-};
-/// A surface with round edges: rims(way, sink) calls sink(number, point) with the point of each that lies farthest
-/// along a direction.
-template <class S>
-concept HasRims = requires(const S& s, const Vector3<double>& way) {
-  s.rims(way, [](std::uint32_t, const Vector3<double>&) {});
-  { s.bounding_radius() } -> std::same_as<double>;
-};
-/// A surface that may be one ball: its probe finds every contact, so the partner's points are not needed.
-template <class S>
-concept MayBeBall = requires(const S& s) {
-  { s.is_ball() } -> std::same_as<bool>;
-};
-
-template <class Surface>
-bool is_ball(const Surface& s) {
-  return std::visit(
-      []<class G>(const G& geometry) {
-        if constexpr (MayBeBall<G>) return geometry.is_ball();
-        return false;
-      },
-      s.geometry);
-}
-/// Whether a surface shows points to others.
-template <class Surface>
-bool has_points(const Surface& s) {
-  return std::visit(
-      []<class G>(const G& geometry) {
-        if constexpr (HasPoints<G>) return geometry.has_points();
-        return false;
-      },
-      s.geometry);
-}
-/// The scale on which a surface is round, for laws that ask for a radius (m): half its smaller extent.
-template <class Surface>
-double point_radius(const Surface& s) {
-  const surface::Bounds b = std::visit([](const auto& geometry) { return geometry.bounds(); }, s.geometry);
-  const Vec3 extent = b.high - b.low;
-  double smallest = extent.maxCoeff();
-  for (int k = 0; k < 3; ++k) {
-    if (extent[k] > 1e-6 * extent.maxCoeff()) smallest = std::min(smallest, extent[k]);
-  }
-  return 0.5 * smallest;
-}
 
 /// A point of one surface that may touch another.
 struct BodyPoint {
@@ -90,64 +26,193 @@ surface::Bounds shared_box(const Surface& from, const Surface& onto) {
   return {centre.array() - half.array() - slack, centre.array() + half.array() + slack};
 }
 
-/// Where edges of one surface pass through another: the middle of the part inside. Two bodies that meet edge across
-/// edge have no corner in each other.
+/// Finds the points of one surface (`From`, a geometry) that may touch another one (`Onto`): those that the surface is
+/// made of, and those that come nearest to the other.
 template <class From, class Onto, class Surface>
-void list_edge_points(const From& from, const Onto& onto, const Surface& a, const Surface& b,
-                      const surface::Bounds& box, std::vector<BodyPoint>& points) {
-  from.edges(box, [&](std::uint32_t number, const Vector3<double>& tail, const Vector3<double>& head) {
-    const auto seen = [&](const Vector3<double>& p) {
-      return transpose_times(b.axes, a.origin + a.axes * p - b.origin);
-    };
-    double first = 0.0, last = 1.0;
-    if (!onto.clip(seen(tail), seen(head), first, last)) return;
-    // Where a corner is inside it is the point; as it comes out, the edge takes over.
-    const double outside = min(first, 1.0 - last);
-    if (outside <= 0.0) return;
-    points.push_back(
-        {number, tail + 0.5 * (first + last) * (head - tail), 0.0, min(1.0, 4.0 * outside / (last - first))});
-  });
-}
+class PointsTowards {
+ public:
+  PointsTowards(const From& from, const Onto& onto, const Surface& a, const Surface& b, std::vector<BodyPoint>& points)
+      : from_(from), onto_(onto), a_(a), b_(b), points_(points) {}
 
-/// Where round edges come nearest to another surface, along the ways in which a ball around them finds it. Points that
-/// are spread over a rim (all those listed so far) fade out near it, so that a wheel rolls evenly.
-template <class From, class Onto, class Surface>
-void list_rim_points(const From& from, const Onto& onto, const Surface& a, const Surface& b,
-                     std::vector<BodyPoint>& points) {
-  const std::size_t spread = points.size();
-  const double third = from.bounding_radius() / 3.0;
-  std::uint32_t place = 0;
-  onto.touch(transpose_times(b.axes, a.origin - b.origin), from.bounding_radius(),
-             [&](std::uint32_t, const Vector3<double>& normal, double) {
-               const Vector3<double> way = transpose_times(a.axes, b.axes * normal);
-               from.rims(way, [&](std::uint32_t number, const Vector3<double>& p) {
-                 for (std::size_t k = 0; k < spread; ++k) {
-                   const Vector3<double> d = points[k].place - p;
-                   const double height = dot(d, way), ratio = (dot(d, d) - height * height) / (third * third);
-                   points[k].weight *= ratio * ratio / (1.0 + ratio * ratio);
-                 }
-                 points.push_back({number + 2 * place, p, 0.0, 1.0});
-               });
-               ++place;
-             });
-}
+  void list() {
+    points_.clear();
+    const surface::Bounds box = shared_box(a_, b_);
+    if constexpr (HasPoints<From>) {
+      from_.points(box, [&](std::uint32_t number, const Vector3<double>& p, double radius) {
+        points_.push_back({number, p, radius, 1.0});
+      });
+    }
+    const std::size_t spread = points_.size();
+    if constexpr (HasRims<From>) list_rims(spread);
+    if constexpr (IsSuperquadric<From>) list_deepest(spread);
+    if constexpr (HasMantle<From> && ClipsLines<Onto>) list_mantle();
+    if constexpr (HasEdges<From> && ClipsLines<Onto>) list_edges(box);
+  }
+
+ private:
+  /// Beyond the numbers of a surface's own points, ascending.
+  static constexpr std::uint32_t first_near = 1u << 20, first_of_mantle = 1u << 21;
+  static constexpr int most_ways = 16;
+
+  struct Place {
+    double gap;              ///< m, to the other surface; 1e300: out of reach
+    Vector3<double> normal;  ///< into the other surface, own frame
+  };
+
+  Vector3<double> seen(const Vector3<double>& p) const {
+    return transpose_times(b_.axes, a_.origin + a_.axes * p - b_.origin);
+  }
+  /// sink(normal, gap) for all contacts of a ball at p, in the own frame.
+  template <class Sink>
+  void touch(const Vector3<double>& p, double radius, Sink&& sink) const {
+    onto_.touch(seen(p), radius, [&](std::uint32_t, const Vector3<double>& normal, double gap) {
+      sink(transpose_times(a_.axes, b_.axes * normal), gap);
+    });
+  }
+  Place nearest(const Vector3<double>& p, double radius) const {
+    Place best = {1e300, {0, 0, 0}};
+    touch(p, radius, [&](const Vector3<double>& normal, double gap) {
+      if (gap < best.gap) best = {gap, normal};
+    });
+    return best;
+  }
+  void add(std::uint32_t number, const Vector3<double>& p, double weight = 1.0) {
+    points_.push_back({number, p, 0.0, weight});
+  }
+  /// Points that are spread over a round skin (the first ones listed) fade out near the one that is nearest to the
+  /// other surface, so that a body rolls evenly on that alone: within `third`, a third of the radius (m).
+  void fade(std::size_t spread, const Vector3<double>& p, const Vector3<double>& way, double third) {
+    for (std::size_t k = 0; k < spread; ++k) {
+      const Vector3<double> d = points_[k].place - p;
+      const double height = dot(d, way), ratio = (dot(d, d) - height * height) / (third * third);
+      points_[k].weight *= ratio * ratio / (1.0 + ratio * ratio);
+    }
+  }
+
+  /// The points of round edges that lie farthest in the ways in which a ball in the middle finds the other surface.
+  void list_rims(std::size_t spread) {
+    from_.rims([&](std::uint32_t rim, const Vector3<double>& middle, double radius) {
+      std::uint32_t number = first_near + most_ways * rim;
+      touch(middle, radius, [&](const Vector3<double>& way, double) {
+        const double across = std::sqrt(way.x * way.x + way.y * way.y);
+        if (across < 1e-9 || number == first_near + most_ways * (rim + 1)) return;
+        const Vector3<double> p = middle + (radius / across) * Vector3<double>{way.x, way.y, 0.0};
+        fade(spread, p, way, radius / 3.0);
+        add(number++, p);
+      });
+    });
+  }
+
+  /// The line of a mantle that faces the other surface where the axis comes nearest to it: the middle of what of the
+  /// line lies inside, which is the deepest point of mantles that cross, and points near the ends of that part, which
+  /// count where it is as deep there: of mantles side by side.
+  void list_mantle() {
+    if (!from_.has_points()) return;
+    const double half = 0.5 * from_.length();
+    const auto on_axis = [&](double share) { return nearest({0, 0, share * half}, 1e100); };
+    double first = -1.0, last = 1.0;  // between them the distance, convex along the axis, is least
+    for (int k = 0; k < 40; ++k) {
+      const double one = (2.0 * first + last) / 3.0, other = (first + 2.0 * last) / 3.0;
+      on_axis(one).gap < on_axis(other).gap ? last = other : first = one;
+    }
+    Vector3<double> low, high;
+    if (!from_.mantle_line(on_axis(0.5 * (first + last)).normal, low, high)) return;
+    first = 0.0, last = 1.0;
+    if (!onto_.clip(seen(low), seen(high), first, last)) return;
+    const auto place = [&](double t) {
+      return low + (0.5 * (first + last) + 0.45 * t * (last - first)) * (high - low);
+    };
+    const auto depth = [&](double t) { return -nearest(place(t), 0.0).gap; };
+    add(first_of_mantle, place(0.0));
+    const double middle = max(1e-300, depth(0.0));
+    std::uint32_t number = first_of_mantle;
+    for (const double t : {-1.0, 1.0}) {
+      const double share = max(0.0, min(1.0, depth(t) / middle)), square = share * share, fourth = square * square;
+      add(++number, place(t), fourth * fourth);
+    }
+  }
+
+  /// Where straight edges pass through the other surface: the middle of the part inside. Two bodies that meet edge
+  /// across edge have no corner in each other.
+  void list_edges(const surface::Bounds& box) {
+    from_.edges(box, [&](std::uint32_t number, const Vector3<double>& tail, const Vector3<double>& head) {
+      double first = 0.0, last = 1.0;
+      if (!onto_.clip(seen(tail), seen(head), first, last)) return;
+      // Where a corner is inside it is the point; as it comes out, the edge takes over.
+      const double outside = min(first, 1.0 - last);
+      if (outside <= 0.0) return;
+      add(number, tail + 0.5 * (first + last) * (head - tail), min(1.0, 4.0 * outside / (last - first)));
+    });
+  }
+
+  /// The point of a superquadric that lies deepest in the other surface: where it shares the normal of another
+  /// superquadric, else where descend() ends. A surface that is met in several ways (a corner of a mesh) has one for
+  /// each, the point farthest along it.
+  void list_deepest(std::size_t spread) {
+    if (!from_.grain()) return;
+    const shape::Superquadric& grain = *from_.grain();
+    const double third = grain.mean_radius() / 3.0;
+    if constexpr (IsSuperquadric<Onto>) {
+      if (onto_.grain()) {
+        const shape::SolidPair pair = {grain.solid(), onto_.grain()->solid(), transposed(a_.axes) * b_.axes,
+                                       transpose_times(a_.axes, b_.origin - a_.origin)};
+        shape::CommonNormal found;
+        if (!shape::find_common_normal(pair, found)) return;
+        const Vector3<double> p = found.point + (0.5 * found.overlap) * found.normal;
+        fade(spread, p, found.normal, third);
+        add(first_near, p);
+        return;
+      }
+    }
+    std::array<Vector3<double>, most_ways> ways;
+    std::size_t count = 0;
+    touch({0, 0, 0}, grain.bounding_radius(), [&](const Vector3<double>& way, double) {
+      if (count < ways.size()) ways[count++] = way;
+    });
+    for (std::size_t k = 0; k < count; ++k) {
+      Vector3<double> p = grain.even_support(upright, ways[k]);
+      if (count == 1) p = descend(grain, p);
+      fade(spread, p, ways[k], third);
+      add(first_near + static_cast<std::uint32_t>(k), p);
+    }
+  }
+  static constexpr double upright[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
+
+  /// From a point of a convex skin to the one that lies deepest in the other surface, or comes nearest to it, by the
+  /// method of Frank and Wolfe (1956, doi:10.1002/nav.3800030109): over and over along the chord to the point that lies
+  /// farthest along the other's normal, to where the gap is least as its slopes at both ends tell. On a plane the first
+  /// point is the last; between round bodies the gap's error falls by a factor a step.
+  Vector3<double> descend(const shape::Superquadric& grain, Vector3<double> p) const {
+    const double reach = 2.0 * grain.bounding_radius(), near = 1e-10 * grain.mean_radius();
+    Place here = nearest(p, reach);
+    for (int k = 0; k < 30 && here.gap < reach; ++k) {
+      const Vector3<double> end = grain.support(upright, here.normal), chord = end - p;
+      const double fall = dot(here.normal, chord);
+      if (!(fall > near)) break;
+      const Place there = nearest(end, reach);
+      if (!(there.gap < reach)) break;
+      const double rise = -dot(there.normal, chord);
+      const Vector3<double> next = rise <= 0.0 ? end : p + (fall / (fall + rise)) * chord;
+      const Place at_next = rise <= 0.0 ? there : nearest(next, reach);
+      if (!(at_next.gap < here.gap)) break;
+      p = next;
+      here = at_next;
+    }
+    return p;
+  }
+
+  const From& from_;
+  const Onto& onto_;
+  const Surface &a_, &b_;
+  std::vector<BodyPoint>& points_;
+};
 
 /// The points of `from` that may touch `onto`.
 template <class Surface>
 void list_points(const Surface& from, const Surface& onto, std::vector<BodyPoint>& points) {
-  points.clear();
-  const surface::Bounds box = shared_box(from, onto);
-  std::visit(
-      [&]<class From, class Onto>(const From& a, const Onto& b) {
-        if constexpr (HasPoints<From>) {
-          a.points(box, [&](std::uint32_t number, const Vector3<double>& p, double radius) {
-            points.push_back({number, p, radius, 1.0});
-          });
-        }
-        if constexpr (HasRims<From>) list_rim_points(a, b, from, onto, points);
-        if constexpr (HasEdges<From> && ClipsLines<Onto>) list_edge_points(a, b, from, onto, box, points);
-      },
-      from.geometry, onto.geometry);
+  std::visit([&]<class From, class Onto>(
+                 const From& a, const Onto& b) { PointsTowards<From, Onto, Surface>(a, b, from, onto, points).list(); },
+             from.geometry, onto.geometry);
 }
 
 }  // namespace dem::pipeline

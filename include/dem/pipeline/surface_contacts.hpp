@@ -1,9 +1,8 @@
 #pragma once
 
-#include <dem/contact/weights.hpp>
-#include <dem/pipeline/contact_evaluator.hpp>
+#include <dem/pipeline/follow_turns.hpp>
 #include <dem/pipeline/force_sums.hpp>
-#include <dem/shape/shape.hpp>
+#include <dem/pipeline/grain_on_surface.hpp>
 #include <dem/state/chunk.hpp>
 #include <dem/state/machine_surface.hpp>
 #include <dem/state/species.hpp>
@@ -12,64 +11,6 @@
 
 namespace dem::pipeline {
 
-/// Key of a surface contact: surface, grain in the chunk, probe of the grain, feature of the surface; contacts are
-/// found in this order.
-struct SurfaceKey {
-  static constexpr std::uint64_t make(std::size_t surface, std::size_t local, std::uint32_t probe,
-                                      std::uint32_t feature) {
-    return std::uint64_t{surface} << 48 | std::uint64_t{local} << 40 | std::uint64_t{probe} << 28 | feature;
-  }
-  static constexpr std::size_t surface(std::uint64_t key) { return key >> 48; }
-  static constexpr std::size_t local(std::uint64_t key) { return key >> 40 & 0xff; }
-  static constexpr std::uint64_t with_local(std::uint64_t key, std::size_t local) {
-    return (key & ~(std::uint64_t{0xff} << 40)) | std::uint64_t{local} << 40;
-  }
-};
-
-/// The probe indices under which support points, and corners of surfaces in a grain, are remembered.
-inline constexpr std::uint32_t support_probe = 0xff0, corner_probe = 0xfff;
-inline constexpr std::uint32_t first_ball = 1u << 24;  ///< among its features
-
-/// A sharp grain may be entered by corners and edges of surfaces that none of its own points meets. Such a shape tells
-/// how deep a point (from the grain's centre, global axes) lies inside of it and which way out is the shortest.
-/// If its points are shares of one contact, has_shares(), it says how they are fitted: shares_fit.
-template <class Shape>
-concept HasPenetration = requires(const Shape& shape, const double* pose, const Vector3<double>& point, double& depth,
-                                  Vector3<double>& outward_normal) {
-  { shape.penetration(pose, point, depth, outward_normal) } -> std::same_as<bool>;
-};
-/// A surface with corners: corners(point, radius, sink) calls sink(number, corner) for those within the radius, or
-/// sink(number, corner, weight) with a weight below 1 where they come and go.
-template <class S>
-concept HasCorners = requires(const S& s, const Vector3<double>& point) {
-  s.corners(point, 1.0, [](std::uint32_t, const Vector3<double>&, double = 1.0) {});
-};
-
-/// A solid ball, or one that may be hollow: is_ball().
-template <class S>
-concept IsBall = requires(const S& s) {
-  { s.is_ball() } -> std::same_as<bool>;
-};
-/// A round surface, as balls that fill it: balls(point, radius, sink) calls sink(number, centre, ball's radius) for
-/// those that a grain may touch, and is_on_ball(point) is true where their skin is the surface's.
-template <class S>
-concept HasBalls = requires(const S& s, const Vector3<double>& point) {
-  s.balls(point, 1.0, [](std::uint32_t, const Vector3<double>&, double) {});
-  { s.is_on_ball(point) } -> std::same_as<bool>;
-};
-/// A sharp grain that tells where a ball touches it.
-template <class Shape>
-concept TouchesBalls = requires(const Shape& s, const double* pose, const Vector3<double>& centre,
-                                contact::BallTouch& touch) {
-  { s.touch_ball(pose, centre, 1.0, touch) } -> std::same_as<bool>;
-};
-
-/// A round grain that tells which point of its skin meets a plane first, and what its other points weigh beside it.
-template <class Shape>
-concept HasSupport = requires(const Shape& s, const double* pose, const Vector3<double>& v) {
-  { s.even_support(pose, v) } -> std::same_as<Vector3<double>>;
-  { s.beside_support(v, v, v) } -> std::same_as<double>;
-};
 /// Whether a shape shows points to surfaces, not balls.
 template <class Shape>
 inline constexpr bool shows_points = HasPenetration<Shape> || requires(const Shape& s) {
@@ -83,14 +24,6 @@ concept KnowsClose = requires(const S& s, const Vector3<double>& point) {
   { s.close(point, 1.0, true) } -> std::same_as<bool>;
 };
 
-/// Lists that a thread uses again for each chunk.
-struct SurfaceScratch {
-  std::vector<std::uint32_t> law_of;
-  std::vector<Hit> hits;
-  std::vector<contact::SurfaceTouch<double>> touches;
-  ContactForces forces;
-};
-
 /// False if a surface knows that no probe of grains of a shape in a sphere (global axes) touches it.
 template <class Shape, class Surface>
 bool is_close(const Surface& surface, const Vec3& centre, double radius) {
@@ -101,125 +34,6 @@ bool is_close(const Surface& surface, const Vec3& centre, double radius) {
         return true;
       },
       surface.geometry);
-}
-
-/// What all contacts of a grain with a surface have in common.
-struct GrainAtSurface {
-  std::uint32_t grain, local, surface, law;
-  const double* pose;
-  Vector3<double> centre;  ///< m, of the grain in the surface's frame
-
-  void add(SurfaceScratch& s, std::uint32_t probe, std::uint32_t feature,
-           const contact::SurfaceTouch<double>& touch) const {
-    s.hits.push_back({SurfaceKey::make(surface, local, probe, feature), grain, surface, law});
-    s.touches.push_back(touch);
-  }
-};
-
-/// The grain's own probes on a surface, up to a gap where cohesion acts at a distance (else NoGap).
-template <class Shape, class Surface, class Geometry, class Gap>
-void touch_with_probes(const GrainAtSurface& at, const Shape& grain, const Surface& surface, const Geometry& geometry,
-                       Gap gap, SurfaceScratch& s) {
-  grain.probe(at.pose, [&](std::uint32_t index, const contact::Probe& probe) {
-    geometry.touch(at.centre + transpose_times(surface.axes, probe.centre), shape::widened(probe.radius, gap),
-                   [&](std::uint32_t feature, const Vector3<double>& normal, double distance) {
-                     at.add(s, index, feature,
-                            {probe.centre, surface.axes * normal, probe.radius, distance,
-                             surface::radius_on(geometry, probe.effective_radius), probe.area});
-                   });
-  });
-}
-
-/// Where the surface is flat, a grain meets it first with its support point, which lies between the points of its skin.
-/// The ways to the surface are those that the grain's bounding sphere finds. `first`: of the touches of the grain's own
-/// points, which lose their weight near a support point.
-template <class Shape, class Surface, class Geometry>
-void touch_with_supports(const GrainAtSurface& at, const Shape& grain, const Surface& surface, const Geometry& geometry,
-                         std::size_t first, SurfaceScratch& s) {
-  const std::size_t end = s.touches.size();
-  std::uint32_t probe = support_probe;
-  geometry.touch(at.centre, grain.bounding_radius(), [&](std::uint32_t, const Vector3<double>& way, double) {
-    if (probe == corner_probe) return;
-    const Vector3<double> normal = surface.axes * way, point = grain.even_support(at.pose, normal);
-    bool touches = false;
-    geometry.touch(
-        at.centre + transpose_times(surface.axes, point), 0.0,
-        [&](std::uint32_t feature, const Vector3<double>& n, double distance) {
-          touches = true;
-          at.add(s, probe, feature,
-                 {point, surface.axes * n, 0.0, distance, surface::radius_on(geometry, grain.mean_radius()), 1.0});
-        });
-    ++probe;
-    if (!touches) return;
-    for (std::size_t k = first; k < end; ++k)
-      s.touches[k].area *= grain.beside_support(s.touches[k].centre, point, normal);
-  });
-}
-
-/// Corners and balls of a surface in a grain. A corner weighs as one of the grain's own probes does on average, a ball
-/// as a whole contact.
-template <class Shape, class Surface, class Geometry>
-void touch_with_corners(const GrainAtSurface& at, const Shape& grain, const Surface& surface, const Geometry& geometry,
-                        SurfaceScratch& s) {
-  double probes = 0.0, area = 0.0, radius = 0.0;
-  const auto look_at_probes = [&] {
-    if (probes > 0.0) return;
-    grain.probe(at.pose, [&](std::uint32_t, const contact::Probe& probe) {
-      probes += 1.0;
-      area += probe.area;
-      radius += probe.effective_radius;
-    });
-  };
-  // Seen from the grain, its skin at `point` lies `depth` behind the surface.
-  const auto add = [&](std::uint32_t number, const Vector3<double>& point, const Vector3<double>& normal, double depth,
-                       double weight) {
-    at.add(s, corner_probe, number,
-           {point, normal, 0.0, -depth, surface::radius_on(geometry, radius / probes), weight});
-  };
-  const double reach = grain.bounding_radius();
-  if constexpr (HasCorners<Geometry>) {
-    geometry.corners(at.centre, reach, [&](std::uint32_t corner, const Vector3<double>& place, double weight = 1.0) {
-      double depth = 0.0;
-      Vector3<double> outward{};
-      const Vector3<double> point = surface.axes * (place - at.centre);
-      if (!grain.penetration(at.pose, point, depth, outward)) return;
-      look_at_probes();
-      add(corner, point + depth * outward, outward, depth, weight * area / probes);
-    });
-  }
-  if constexpr (HasBalls<Geometry> && TouchesBalls<Shape>) {
-    if (!shape::has_shares(grain)) return;
-    geometry.balls(at.centre, reach, [&](std::uint32_t ball, const Vector3<double>& centre, double of_ball) {
-      contact::BallTouch t;
-      if (!grain.touch_ball(at.pose, surface.axes * (centre - at.centre), of_ball, t)) return;
-      if (!geometry.is_on_ball(at.centre + transpose_times(surface.axes, t.point))) return;
-      look_at_probes();
-      add(first_ball + ball, t.point + (0.5 * t.overlap) * t.normal, t.normal, t.overlap, 1.0);
-    });
-  }
-}
-
-/// All contacts of a grain of one kind with a surface.
-template <class Shape, class Surface, class Geometry, class Gap>
-void touch_surface(const GrainAtSurface& at, const Shape& grain, const Surface& surface, const Geometry& geometry,
-                   Gap gap, SurfaceScratch& s) {
-  const std::size_t first = s.touches.size();
-  if constexpr (TouchesBalls<Shape> && IsBall<Geometry>) {
-    if (geometry.is_ball() && shape::has_shares(grain)) {  // one contact is all of it
-      touch_with_corners(at, grain, surface, geometry, s);
-      return;
-    }
-  }
-  touch_with_probes(at, grain, surface, geometry, gap, s);
-  if constexpr (HasSupport<Shape>) {
-    if (shape::has_shares(grain)) touch_with_supports(at, grain, surface, geometry, first, s);
-  }
-  if constexpr (HasPenetration<Shape>) touch_with_corners(at, grain, surface, geometry, s);
-  if constexpr (requires { Shape::shares_fit; }) {
-    if (!shape::has_shares(grain)) return;
-    contact::fit_weights(s.touches.size() - first, Shape::shares_fit,
-                         [&](std::size_t k) -> contact::SurfaceTouch<double>& { return s.touches[first + k]; });
-  }
 }
 
 /// Hits of the grains of one chunk on one surface, up to a gap where cohesion acts at a distance (else NoGap).
@@ -293,7 +107,18 @@ void find_surface_contacts(std::size_t chunk_index, Chunk<Model>& chunk, const P
       continue;
     }
     for (std::size_t k = 0; k < species.size(); ++k) law_of[k] = materials.row(species[k].material, surface.material);
+    const std::size_t first = hits.size();
     probe_surface(begin, end, s, surface, p, species, largest_radius, gap, scratch);
+    if constexpr (history_size < Model >> 0) {
+      std::visit(
+          [&]<class G>(const G&) {
+            if constexpr (surface::NamesDirections<G>) {
+              follow_turns(std::span<const Hit>(hits).subspan(first), chunk.surface_contacts.last,
+                           [](std::uint64_t key) { return SurfaceKey::probe(key) != corner_probe; });
+            }
+          },
+          surface.geometry);
+    }
   }
 
   ContactEvaluator<Model, contact::SurfaceTouch> evaluator(materials.table(), dt);

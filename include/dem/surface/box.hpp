@@ -1,7 +1,7 @@
 #pragma once
 
 #include <dem/core/error.hpp>
-#include <dem/surface/surface.hpp>
+#include <dem/surface/edge_set.hpp>
 
 #include <cmath>
 
@@ -61,34 +61,20 @@ class Box {
   void points(const Bounds&, Sink&& sink) const {
     for_each_point([&](std::uint32_t k, const Vector3<double>& p) { sink(k, p, 0.0); });
   }
-  /// For grains that offer penetration(), within a radius of p: corners 0 to 7, and from 8 on points of each edge,
-  /// where it is nearest to p and half a radius on either side, with less weight where the edge ends: sink(number,
-  /// point, weight).
+  /// For grains that offer penetration(), within a radius of p: corners 0 to 7, and from 8 on points of the edges near
+  /// p (points_of_edge): sink(number, point, weight).
   template <class Sink>
   void corners(const Vector3<double>& p, double radius, Sink&& sink) const {
     if (!near(p, radius)) return;
-    const double half[3] = {half_.x, half_.y, half_.z}, at[3] = {p.x, p.y, p.z};
-    const auto show = [&](std::uint32_t number, const double* x, double weight) {
-      const Vector3<double> c = {x[0], x[1], x[2]};
-      if (dot(c - p, c - p) <= radius * radius) sink(number, c, weight);
-    };
-    double x[3];
     for (std::uint32_t k = 0; k < 8; ++k) {
-      for (std::uint32_t i = 0; i < 3; ++i) x[i] = (k >> i & 1u) != 0 ? half[i] : -half[i];
-      show(k, x, 1.0);
+      const Vector3<double> c = {k & 1u ? half_.x : -half_.x, k & 2u ? half_.y : -half_.y, k & 4u ? half_.z : -half_.z};
+      if (dot(c - p, c - p) <= radius * radius) sink(k, c, 1.0);
     }
-    for (std::uint32_t k = 0; k < 12; ++k) {
-      const std::uint32_t axis = k / 4;
-      for (std::uint32_t i = 1; i <= 2; ++i) {
-        const std::uint32_t across = (axis + i) % 3;
-        x[across] = (k >> (i - 1) & 1u) != 0 ? half[across] : -half[across];
-      }
-      for (std::uint32_t place = 0; place < 3; ++place) {
-        x[axis] = at[axis] + (0.5 * place - 0.5) * radius;
-        const double to_end = half[axis] - std::abs(x[axis]);
-        if (to_end > 0.0) show(8 + 3 * k + place, x, min(1.0, 4.0 * to_end / radius));
-      }
-    }
+    edges({}, [&](std::uint32_t edge, const Vector3<double>& tail, const Vector3<double>& head) {
+      points_of_edge(tail, head, p, radius, [&](std::uint32_t place, const Vector3<double>& c, double weight) {
+        sink(8 + 3 * (edge - first_edge) + place, c, weight);
+      });
+    });
   }
   bool has_points() const { return true; }
   /// The edges, for contact with other bodies: sink(number, one end, other end).

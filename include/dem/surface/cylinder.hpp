@@ -32,7 +32,8 @@ class Cylinder {
     c.inner_ = inner_radius;
     return c;
   }
-  /// The same with n points on each rim, which it shows to other bodies and to sharp grains. Throws Error for n < 3.
+  /// The same with n fixed points on each rim, which it shows to other bodies and to sharp grains beside those that lie
+  /// nearest to them. Throws Error for n < 3.
   Cylinder with_rim_points(int n) const {
     require_within(n, 3, 4096, "points on a rim of a cylinder");
     Cylinder c = *this;
@@ -87,17 +88,29 @@ class Cylinder {
     }
   }
 
-  /// Points of the rims, for contact with other bodies: sink(number, point, radius), numbers ascending. A drum has
-  /// none.
+  /// Fixed points of the rims, for contact with other bodies: sink(number, point, radius), numbers ascending.
   template <class Sink>
   void points(const Bounds&, Sink&& sink) const {
-    for_each_rim_point([&](std::uint32_t k, const Vector3<double>& p) { sink(k, p, 0.0); });
+    rims([&](std::uint32_t rim, const Vector3<double>& middle, double r) {
+      for_each_point_of_rim(rim, middle, r, [&](std::uint32_t k, const Vector3<double>& p) { sink(k, p, 0.0); });
+    });
   }
-  /// Those within a radius of p, for grains that offer penetration(): sink(number, point).
+  /// Points of the rims within a radius of p, for grains that offer penetration(): sink(number, point). Fixed ones, and
+  /// where they are too few for a grain of that radius also the nearest point and those half a radius to either side.
   template <class Sink>
   void corners(const Vector3<double>& p, double radius, Sink&& sink) const {
-    for_each_rim_point([&](std::uint32_t k, const Vector3<double>& c) {
-      if (dot(c - p, c - p) <= radius * radius) sink(k, c);
+    const auto show = [&](std::uint32_t number, const Vector3<double>& c) {
+      if (dot(c - p, c - p) <= radius * radius) sink(number, c);
+    };
+    rims([&](std::uint32_t rim, const Vector3<double>& middle, double r) {
+      for_each_point_of_rim(rim, middle, r, show);
+    });
+    rims([&](std::uint32_t rim, const Vector3<double>& middle, double r) {
+      if (2.0 * std::numbers::pi * r < 0.25 * radius * rim_points_) return;
+      for (std::uint32_t place = 0; place < 3; ++place) {
+        const double angle = std::atan2(p.y, p.x) + (0.5 * place - 0.5) * radius / r;
+        show(first_near_point + 3 * rim + place, middle + r * around(angle));
+      }
     });
   }
   /// The outer mantle for grains that offer touch_ball(), within a radius of p: balls that fill the cylinder where it
@@ -115,16 +128,26 @@ class Cylinder {
   }
   bool is_on_ball(const Vector3<double>& p) const { return std::abs(p.z) < half_; }
   bool has_points() const { return !is_drum_; }
-  /// The points of both rims that lie farthest along a direction, for contact with other bodies: sink(number, point).
-  /// None for a direction along the axis, for which all are as far, and for a drum.
+  /// The rims, circles about the axis: sink(number, middle, radius); those of the hole of a tube come last. A drum
+  /// shows none.
   template <class Sink>
-  void rims(const Vector3<double>& way, Sink&& sink) const {
+  void rims(Sink&& sink) const {
+    if (is_drum_) return;
+    const Vector3<double> low = {0, 0, -half_}, high = {0, 0, half_};
+    sink(0u, low, outer_);
+    sink(1u, high, outer_);
+    if (inner_ == 0.0) return;
+    sink(2u, low, inner_);
+    sink(3u, high, inner_);
+  }
+  /// The line of the mantle on the side of a direction, for contact with other bodies: false for a direction along the
+  /// axis, and for a drum.
+  bool mantle_line(const Vector3<double>& way, Vector3<double>& low, Vector3<double>& high) const {
     const double across = std::sqrt(way.x * way.x + way.y * way.y);
-    if (is_drum_ || across < 1e-9) return;
-    const double x = outer_ * way.x / across, y = outer_ * way.y / across;
-    const auto first = static_cast<std::uint32_t>(2 * rim_points_);
-    sink(first, Vector3<double>{x, y, -half_});
-    sink(first + 1, Vector3<double>{x, y, half_});
+    if (is_drum_ || across < 1e-9) return false;
+    low = {outer_ * way.x / across, outer_ * way.y / across, -half_};
+    high = {low.x, low.y, half_};
+    return true;
   }
   double bounding_radius() const { return std::sqrt(outer_ * outer_ + half_ * half_); }
   /// Cuts the range of shares of the way from tail to head to what lies in the cylinder (a tube's hole counts); false
@@ -151,13 +174,14 @@ class Cylinder {
   }
 
  private:
+  static constexpr std::uint32_t first_near_point = 4 * 4096;  ///< beyond the numbers of fixed points
+
+  static Vector3<double> around(double angle) { return {std::cos(angle), std::sin(angle), 0.0}; }
   template <class F>
-  void for_each_rim_point(F&& f) const {
-    if (is_drum_) return;
-    for (int k = 0; k < 2 * rim_points_; ++k) {
-      const double angle = 2.0 * std::numbers::pi * (k % rim_points_) / rim_points_;
-      f(static_cast<std::uint32_t>(k),
-        Vector3<double>{outer_ * std::cos(angle), outer_ * std::sin(angle), k < rim_points_ ? -half_ : half_});
+  void for_each_point_of_rim(std::uint32_t rim, const Vector3<double>& middle, double r, F&& f) const {
+    for (int k = 0; k < rim_points_; ++k) {
+      f(rim * static_cast<std::uint32_t>(rim_points_) + static_cast<std::uint32_t>(k),
+        middle + r * around(2.0 * std::numbers::pi * k / rim_points_));
     }
   }
 

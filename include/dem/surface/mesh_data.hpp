@@ -1,6 +1,7 @@
 #pragma once
 
 #include <dem/math/mesh_repair.hpp>
+#include <dem/surface/edge_set.hpp>
 #include <dem/surface/mesh_groups.hpp>
 #include <dem/surface/point_set.hpp>
 
@@ -59,6 +60,7 @@ struct MeshData {
   std::vector<std::uint32_t> ring_first, ring;           ///< vertices at the other end of each vertex's edges
   PointSet points;                                       ///< vertices, and points on long sharp edges
   PointSet corners;  ///< those of them that stick out: on sharp edges, or on a convex surface
+  EdgeSet edges;     ///< that stick out, see is_ridge
   Bounds bounds;
   double mean_edge = 0.0;  ///< m
 };
@@ -128,6 +130,29 @@ inline bool is_convex(const MeshData& m, std::uint32_t v) {
     length += norm(along);
   }
   return height < -1e-6 * length;
+}
+
+/// Whether the surface ends at edge k of triangle t, or bends away there by more than 0.02 rad. A flat side of a grain
+/// that lies on an edge of a smaller turn meets the faces beside it before it has sunk by a hundredth of its half size.
+inline bool is_ridge(const MeshData& m, std::uint32_t t, std::size_t k) {
+  const std::uint32_t other = m.topology.neighbour[t][k];
+  if (other == MeshTopology::none) return true;
+  const Vector3<double>&n = m.faces[t].normal, &across = m.faces[other].normal;
+  double height = 0.0;  // of the other triangle over this one's plane
+  for (const std::uint32_t v : m.mesh.triangles[other]) height += dot(n, m.vertices[v] - m.faces[t].a);
+  return height < 0.0 && (dot(n, across) < 0.0 || norm(cross(n, across)) > 0.02);
+}
+inline void find_edges(MeshData& m) {
+  std::vector<std::array<Vec3, 2>> edges;
+  for (std::uint32_t t = 0; t < m.faces.size(); ++t) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::uint32_t other = m.topology.neighbour[t][k];
+      if ((other != MeshTopology::none && other < t) || !is_ridge(m, t, k)) continue;
+      const auto& corner = m.mesh.triangles[t];
+      edges.push_back({m.mesh.vertices[corner[k]], m.mesh.vertices[corner[(k + 1) % 3]]});
+    }
+  }
+  m.edges = EdgeSet(edges);
 }
 
 /// Vertices, and points on sharp edges that are longer than the spacing (m; 0: none). Throws Error for more than the
@@ -202,6 +227,7 @@ inline MeshData build_mesh(const IndexedMesh& given, MeshFacing facing, double s
   m.groups = group_triangles(m.mesh, m.topology, smooth_angle);
   detail::find_vertices(m);
   detail::find_points(m, point_spacing);
+  detail::find_edges(m);
   return m;
 }
 

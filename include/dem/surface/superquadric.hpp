@@ -1,30 +1,29 @@
 #pragma once
 
 #include <dem/math/nearest_on_superquadric.hpp>
+#include <dem/shape/superquadric.hpp>
 #include <dem/surface/sphere.hpp>
 
 #include <algorithm>
-#include <array>
 #include <memory>
-#include <numbers>
-#include <vector>
 
 namespace dem::surface {
 
 /// A superquadric (thesis eq. 31) |x/r1|^p1 + |y/r2|^p2 + |z/r3|^p3 = 1 about its own axes, solid or a cavity. A grain
 /// touches it once, at the nearest place. In a cavity that holds for grains that are rounder than the wall anywhere:
 /// one that is stuck in a corner narrower than itself gets one of the contacts only. Behind the wall of a cavity grains
-/// are found up to half its size deep.
+/// are found up to half its size deep. To other bodies and to sharp grains it shows the skin of the grain of that
+/// shape: fixed points, and the one that lies deepest in another body.
 class Superquadric {
  public:
-  /// Half sizes (m) and exponents, each from 2 (round) to 40 (a box for all purposes). Throws Error otherwise.
+  /// Half sizes (m) and exponents, each from 2 (round) to 32 (a box for all purposes). Throws Error otherwise.
   explicit Superquadric(const Vec3& radii, const Vec3& exponents = Vec3::Constant(2.0), Side side = Side::outside)
       : side_(side) {
     for (int k = 0; k < 3; ++k) {
       function_.radius[k] = require_positive(radii[k], "half size of a superquadric", "m");
-      function_.exponent[k] = require_within(exponents[k], 2.0, 40.0, "exponent of a superquadric");
+      function_.exponent[k] = require_within(exponents[k], 2.0, 32.0, "exponent of a superquadric");
     }
-    points_ = std::make_shared<std::vector<Vector3<double>>>(make_points());
+    if (side == Side::outside) grain_ = std::make_shared<shape::Superquadric>(radii, exponents, pieces);
   }
 
   Vec3 radii() const { return {function_.radius[0], function_.radius[1], function_.radius[2]}; }
@@ -60,21 +59,21 @@ class Superquadric {
   /// Points spread over the skin, for contact with other bodies: sink(number, point, radius), numbers ascending.
   template <class Sink>
   void points(const Bounds& box, Sink&& sink) const {
-    if (side_ == Side::inside) return;
-    for (std::uint32_t k = 0; k < points_->size(); ++k) {
-      const Vec3 p = to_eigen((*points_)[k]);
-      if ((p.array() >= box.low.array()).all() && (p.array() <= box.high.array()).all()) sink(k, (*points_)[k], 0.0);
-    }
+    const Vector3<double> low = from_eigen(box.low), high = from_eigen(box.high);
+    for_each_point([&](std::uint32_t k, const Vector3<double>& p) {
+      if (p.x >= low.x && p.y >= low.y && p.z >= low.z && p.x <= high.x && p.y <= high.y && p.z <= high.z)
+        sink(k, p, 0.0);
+    });
   }
   /// Those within a radius of p, for grains that offer penetration(): sink(number, point).
   template <class Sink>
   void corners(const Vector3<double>& p, double radius, Sink&& sink) const {
-    if (side_ == Side::inside) return;
-    for (std::uint32_t k = 0; k < points_->size(); ++k) {
-      const Vector3<double> from = (*points_)[k] - p;
-      if (dot(from, from) <= radius * radius) sink(k, (*points_)[k]);
-    }
+    for_each_point([&](std::uint32_t k, const Vector3<double>& c) {
+      if (dot(c - p, c - p) <= radius * radius) sink(k, c);
+    });
   }
+  /// The same shape as a grain; nothing for a cavity.
+  const shape::Superquadric* grain() const { return grain_.get(); }
   bool has_points() const { return side_ == Side::outside; }
 
   Bounds bounds() const {
@@ -83,34 +82,17 @@ class Superquadric {
   }
 
  private:
-  static constexpr std::size_t per_edge = 9;  // points of a side of the cube that is blown up to the surface
+  static constexpr int pieces = 8;  ///< of an edge, between points
 
-  std::vector<Vector3<double>> make_points() const {
-    std::vector<Vector3<double>> points;
-    const int n = static_cast<int>(per_edge);
-    for (int i = 0; i < n; ++i) {
-      for (int j = 0; j < n; ++j) {
-        for (int k = 0; k < n; ++k) {
-          const bool skin = i == 0 || j == 0 || k == 0 || i == n - 1 || j == n - 1 || k == n - 1;
-          if (!skin) continue;
-          const auto place = [&](int c) { return std::tan(0.25 * std::numbers::pi * (2.0 * c / (n - 1) - 1.0)); };
-          const Vec3 direction = Vec3(place(i), place(j), place(k)).cwiseProduct(radii());
-          double low = 0.0, high = 1.0;  // the factor at which the ray leaves, by halving
-          for (int step = 0; step < 60; ++step) {
-            const double middle = 0.5 * (low + high);
-            const Vec3 x = middle * direction;
-            (function_.value(x.data()) > 0.0 ? high : low) = middle;
-          }
-          points.push_back(from_eigen(Vec3(low * direction)));
-        }
-      }
-    }
-    return points;
+  template <class F>
+  void for_each_point(F&& f) const {
+    if (!grain_) return;
+    for (int k = 0; k < grain_->points().count; ++k) f(static_cast<std::uint32_t>(k), grain_->points()[k]);
   }
 
   SuperquadricFunction function_;
   Side side_;
-  std::shared_ptr<const std::vector<Vector3<double>>> points_;
+  std::shared_ptr<const shape::Superquadric> grain_;
 };
 
 }  // namespace dem::surface

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <dem/surface/direction_code.hpp>
 #include <dem/surface/mesh_data.hpp>
 
 #include <array>
@@ -22,7 +23,8 @@ struct MeshOptions {
   double depth = 0.0;          ///< m, how far behind the surface a probe is still found and pushed out; 0: spheres to
                                ///< their radius, points (radius 0) as deep as their grains or
                                ///< bodies may go, up to half the solid
-  double point_spacing = 0.0;  ///< m, of points on sharp edges (against sharp grains and bodies); 0: only vertices
+  double point_spacing = 0.0;  ///< m, of fixed points on sharp edges, where other meshes may pass between the vertices;
+                               ///< 0: none. Sharp grains, boxes and cylinders find edges without
   double tolerance = 0.0;      ///< m, within which vertices are one; 0: 1e-9 of the mesh's diagonal
 };
 
@@ -30,9 +32,12 @@ struct MeshOptions {
 /// surface: a flat mesh gives one contact as a plane does, an edge or a corner pushes once, a concave edge once from
 /// each side. On a finely cut concave surface several facets may be such minima; of contacts whose normals differ by
 /// less than `smooth_angle` the deepest counts. Its overlap is a steady function of the sphere's place, so no energy
-/// comes from the edges. Contacts are remembered by groups of triangles (MeshGroups), not by triangles.
+/// comes from the edges. Contacts are remembered by groups of triangles (MeshGroups), not by triangles, and within a
+/// group by their direction: a feature is the group's number, then the direction_code of the normal.
 class TriangleMesh {
  public:
+  static constexpr bool names_directions = true;
+
   /// Repairs the mesh (math/mesh_repair.hpp). Throws Error if an option is out of range, and if a solid is not closed.
   explicit TriangleMesh(const IndexedMesh& mesh, const MeshOptions& o = {}) : options_(o) {
     require_within(o.smooth_angle, 0.0, 60.0, "smooth angle of a mesh in degrees");
@@ -48,6 +53,12 @@ class TriangleMesh {
     }
     if (o.side == MeshSide::one_sided && !data->report.oriented()) {
       fail("a one-sided sheet must have sides. {}Take MeshSide::two_sided", data->report.text());
+    }
+    if (data->groups.count > most_groups) {
+      fail(
+          "a mesh has {} regions that concave edges part from each other, but at most {} can be told apart; raise "
+          "smooth_angle (now {:g} degrees), simplify it, or cut it into several surfaces",
+          data->groups.count, most_groups, o.smooth_angle);
     }
     merge_cosine_ = std::min(std::cos(angle), 1.0 - 1e-9);
     data_ = std::move(data);
@@ -83,21 +94,22 @@ class TriangleMesh {
     const double depth = radius > 0.0 ? options_.depth : point_depth_;
     if (found.count == 0 && depth > radius) {
       Minimum nearest;
-      if (find_nearest(p, depth, nearest) && nearest.behind) {
-        sink(nearest.group << slot_bits, nearest.normal, -nearest.distance);
-      }
+      if (find_nearest(p, depth, nearest) && nearest.behind) sink(nearest.name(), nearest.normal, -nearest.distance);
       return;
     }
     if (found.count == 0) return;
     sort(found, [](const Minimum& a, const Minimum& b) { return a.distance < b.distance; });
     if (found[0].behind) {  // the centre is inside: out the shortest way
-      sink(found[0].group << slot_bits, found[0].normal, -found[0].distance);
+      sink(found[0].name(), found[0].normal, -found[0].distance);
       return;
     }
     reduce(found);
-    for (int k = 0, slot = 0; k < found.count; ++k) {
-      slot = k > 0 && found[k - 1].group == found[k].group ? slot + 1 : 0;
-      sink(found[k].group << slot_bits | static_cast<std::uint32_t>(slot), found[k].normal, found[k].distance);
+    sort(found, [](const Minimum& a, const Minimum& b) { return a.name() < b.name(); });
+    std::uint32_t next = 0;
+    for (int k = 0; k < found.count; ++k) {
+      const std::uint32_t name = std::max(next, found[k].name());
+      sink(name, found[k].normal, found[k].distance);
+      next = name + 1;
     }
   }
 
@@ -106,24 +118,20 @@ class TriangleMesh {
   void points(const Bounds& box, Sink&& sink) const {
     data_->points.for_each_in(box, [&](std::uint32_t k, const Vector3<double>& p) { sink(k, p, 0.0); });
   }
-  /// Points that stick out within a radius of p, for grains that offer penetration(): sink(number, point).
+  /// What sticks out within a radius of p, for grains that offer penetration(): vertices, and points of the edges near
+  /// p (points_of_edge): sink(number, point, weight).
   template <class Sink>
   void corners(const Vector3<double>& p, double radius, Sink&& sink) const {
-    data_->corners.for_each_near(p, radius, sink);
+    data_->corners.for_each_near(p, radius, [&](std::uint32_t k, const Vector3<double>& c) { sink(k, c, 1.0); });
+    data_->edges.for_each_point_near(
+        p, radius, [&](std::uint32_t k, const Vector3<double>& c, double weight) { sink(first_edge + k, c, weight); });
   }
   bool has_points() const { return true; }
-  /// Sharp edges of triangles that may lie in a box, for contact with other bodies: sink(number, one end, other end).
+  /// Edges that stick out and may lie in a box, for contact with other bodies: sink(number, one end, other end).
   template <class Sink>
   void edges(const Bounds& box, Sink&& sink) const {
-    constexpr std::uint32_t first = 1u << 22, most_faces = first / 3;  // beyond the numbers of points
-    data_->tree.for_each_in(from_eigen(box.low), from_eigen(box.high), [&](std::uint32_t f) {
-      for (std::size_t k = 0; k < 3; ++k) {
-        const std::uint32_t other = data_->topology.neighbour[f][k];
-        if (!data_->groups.sharp[f][k] || f >= most_faces || (other != MeshTopology::none && other < f)) continue;
-        const auto& corner = data_->mesh.triangles[f];
-        sink(first + 3 * f + static_cast<std::uint32_t>(k), data_->vertices[corner[k]],
-             data_->vertices[corner[(k + 1) % 3]]);
-      }
+    data_->edges.for_each_in(box, [&](std::uint32_t k, const Vector3<double>& tail, const Vector3<double>& head) {
+      if (k < first_edge) sink(first_edge + k, tail, head);  // as many as the keys of contacts can tell apart
     });
   }
 
@@ -137,7 +145,9 @@ class TriangleMesh {
   }
 
  private:
-  static constexpr int slot_bits = 4, most = 1 << slot_bits;  // contacts of one sphere
+  static constexpr int most = 16;                         // contacts of one sphere
+  static constexpr std::uint32_t most_groups = 1u << 20;  // a feature has 28 bits
+  static constexpr std::uint32_t first_edge = 1u << 22;   // beyond the numbers of points
   using Part = NearestOnFace::Part;
 
   struct Minimum {
@@ -145,6 +155,8 @@ class TriangleMesh {
     Vector3<double> normal;  ///< into the surface as seen from the probe
     std::uint32_t group;
     bool behind;
+
+    std::uint32_t name() const { return group << direction_bits | direction_code(normal); }
   };
   struct Found {
     int count = 0;
@@ -260,8 +272,7 @@ class TriangleMesh {
       for (int at = k; at > 0 && before(found[at], found[at - 1]); --at) std::swap(found[at], found[at - 1]);
     }
   }
-  /// Of contacts with nearly the same normal the deepest stays; what is seen from behind lies beyond the solid. Those
-  /// of one group are numbered along a fixed direction, so that they keep their numbers from step to step.
+  /// Of contacts with nearly the same normal the deepest stays; what is seen from behind lies beyond the solid.
   void reduce(Found& found) const {
     int kept = 0;
     for (int k = 0; k < found.count; ++k) {
@@ -271,12 +282,6 @@ class TriangleMesh {
       if (is_new) found[kept++] = m;
     }
     found.count = kept;
-    sort(found, [](const Minimum& a, const Minimum& b) {
-      const auto place = [](const Minimum& m) {
-        return 0.5377 * m.normal.x + 0.8012 * m.normal.y + 0.2625 * m.normal.z;
-      };
-      return a.group != b.group ? a.group < b.group : place(a) < place(b);
-    });
   }
 
   void set_point_depth(double depth) {

@@ -1,0 +1,91 @@
+#include "fillet.hpp"
+#include "random.hpp"
+#include "touches.hpp"
+
+#include <dem/math/mesh_shapes.hpp>
+#include <dem/surface/triangle_mesh.hpp>
+
+#include <set>
+
+using Catch::Approx;
+using dem::IndexedMesh;
+using dem::Vec3;
+using dem::surface::MeshSide;
+using dem::surface::TriangleMesh;
+namespace mesh = dem::mesh;
+
+TEST_CASE("edges of a mesh are shown to sharp grains where they stick out, near the grain") {
+  struct Shown {
+    Vec3 point;
+    double weight;
+  };
+  const auto shown = [](const TriangleMesh& m, const Vec3& at, double radius) {
+    std::vector<Shown> points;
+    std::uint32_t last = 0;
+    m.corners(dem::from_eigen(at), radius, [&](std::uint32_t k, const dem::Vector3<double>& p, double weight) {
+      CHECK((points.empty() || k > last));  // ascending, as the keys of contacts have to
+      last = k;
+      points.push_back({to_eigen(p), weight});
+    });
+    std::sort(points.begin(), points.end(), [](const Shown& a, const Shown& b) { return a.point.y() < b.point.y(); });
+    return points;
+  };
+  // Over the middle of a long edge: three points half a radius apart; a face's diagonal is no edge.
+  const TriangleMesh box(mesh::box({2, 20, 2}));
+  const auto over = shown(box, {1.1, 3.0, 1.2}, 0.8);
+  REQUIRE(over.size() == 3);
+  for (int k = 0; k < 3; ++k) {
+    const Shown& point = over[static_cast<std::size_t>(k)];
+    CHECK((point.point - Vec3(1, 2.6 + 0.4 * k, 1)).norm() < 1e-14);
+    CHECK(point.weight == 1.0);
+  }
+  CHECK(shown(box, {0.2, 3.0, 1.2}, 0.8).empty());
+  // Where the edge ends its points fade out before the corner, by 4 x/r; the corner's other edges have a point each.
+  const auto end = shown(box, {1.1, 9.95, 1.1}, 0.8);
+  REQUIRE(end.size() == 5);
+  CHECK(end[0].point.y() == Approx(9.55));
+  CHECK(end[1].point.y() == Approx(9.95));
+  CHECK(end[1].weight == Approx(4 * 0.05 / 0.8));
+
+  // A ridge of 10 degrees sticks out, a valley and a fold of a hundredth of a degree do not; the rim of a sheet does.
+  const auto roof = [](double slope) {
+    IndexedMesh m = {{{0, -5, 0}, {0, 5, 0}, {5, 5, -5 * slope}, {5, -5, -5 * slope}, {-5, 5, 0}, {-5, -5, 0}},
+                     {{0, 2, 1}, {0, 3, 2}, {0, 1, 4}, {0, 4, 5}}};
+    return TriangleMesh(m, {.side = MeshSide::one_sided, .facing = dem::MeshFacing::as_given});
+  };
+  const double ten = std::tan(10 * std::numbers::pi / 180);
+  CHECK(roof(ten).mesh().area_vector(0).z() > 0.0);
+  CHECK(shown(roof(ten), {0.1, 1, 0.3}, 0.8).size() == 3);
+  CHECK(shown(roof(-ten), {0.1, 1, 0.3}, 0.8).empty());
+  CHECK(shown(roof(1e-4), {0.1, 1, 0.3}, 0.8).empty());
+  CHECK(shown(roof(1e-4), {0.1, 5.1, 0.3}, 0.8).size() > 3);
+}
+
+TEST_CASE("contacts on one smooth group of triangles have names of their own, by their directions") {
+  // A floor and a wall joined by a fillet of radius 1; a ball of radius 2 touches both, on one group.
+  const TriangleMesh surface(fillet(1.0, 6, 4.0), {.side = MeshSide::one_sided});
+  CHECK(surface.data().groups.count == 1);
+  const auto both = touches(surface, {1.9, 0, 1.95}, 2.0), floor = touches(surface, {2.1, 0, 1.95}, 2.0),
+             wall = touches(surface, {1.9, 0, 2.1}, 2.0);
+  REQUIRE(both.size() == 2);
+  REQUIRE(floor.size() == 1);
+  REQUIRE(wall.size() == 1);
+  CHECK(floor[0].feature != wall[0].feature);
+  std::set<std::uint32_t> names = {both[0].feature, both[1].feature};
+  CHECK(names == std::set<std::uint32_t>{floor[0].feature, wall[0].feature});
+}
+
+TEST_CASE("a direction is named by a square of the cube, less than 26 degrees across") {
+  Random random(3);
+  std::set<std::uint32_t> codes;
+  for (int trial = 0; trial < 20000; ++trial) {
+    const Vec3 n = random.in({1, 1, 1}).normalized();
+    const std::uint32_t code = dem::surface::direction_code(dem::from_eigen(n));
+    REQUIRE(code < dem::surface::directions);
+    codes.insert(code);
+    const Vec3 middle = to_eigen(dem::surface::direction_of(code));
+    CHECK(middle.dot(n) > std::cos(13.0 * std::numbers::pi / 180));
+    CHECK(dem::surface::direction_code(dem::from_eigen(middle)) == code);
+  }
+  CHECK(codes.size() == dem::surface::directions);
+}
