@@ -38,6 +38,11 @@ double force(const std::vector<Point>& points, Fit fit = Fit::always) {
 
 TEST_CASE("points that share a contact are one whole contact, and none jumps in or out") {
   CHECK(force({}) == 0.0);
+  // Across a gap the nearest is the whole of it; a point that faces another way is a contact of its own.
+  const auto apart = fitted({{-2e-4, 0.5}, {-1e-4, 0.3}, {-3e-4, 0.7, {-1, 0, 0}}}, Fit::always);
+  CHECK(apart[0].area == 0.0);
+  CHECK(apart[1].area == 1.0);
+  CHECK(apart[2].area == 1.0);
   CHECK(force({{0.1, 0.3}}) == Approx(0.1));
   CHECK(force({{0.1, 2.0}, {0.1, 3.0}, {0.1, 1.0}}) == Approx(0.1));
   CHECK(force({{0.1, 1.0}, {0.1, 1.0}, {1e-9, 1.0}}) == Approx(0.1).epsilon(1e-7));

@@ -247,6 +247,27 @@ TEST_CASE("a bridge between a sphere and a ball of a cluster pulls as between tw
   }
 }
 
+TEST_CASE("a bridge between an ellipsoid and a floor is one contact") {
+  using Model = Wet<Superquadric>;
+  const Superquadric egg({1.2 * r, r, 0.9 * r}, {2, 2, 2});
+  World<Model> w(options({0, 0, 0}, 1e-6));
+  w.set_contact(wet<Model>(1.0));
+  w.add_species(egg, {"grain", density});
+  w.add_surface(w.ground(), surface::Plane{});
+  const auto id = w.add_particle(grain({0, 0, 0.9 * r - 1e-6}, {0, 0, 0.2}));
+  int seen = 0;
+  for (double gap = 0.0; gap < 0.9 * water.rupture; ++seen) {
+    REQUIRE(w.run(10));
+    gap = w.position(id).z() - 0.9 * r;
+    const double s = gap * std::sqrt(2 * egg.mean_radius() / water.volume);
+    const double pull = 4 * M_PI * egg.mean_radius() * water.wetting_tension / (1 + 1.05 * s + 2.5 * s * s);
+    if (gap > 0.0) CHECK(-w.force(id).z() == Approx(pull).epsilon(1e-9));
+  }
+  CHECK(seen > 20);
+  REQUIRE(w.run_for(water.rupture / 0.1));
+  CHECK(w.force(id).norm() == 0.0);
+}
+
 TEST_CASE("wet grains go the same way, to the bit, on any number of threads") {
   const auto run = [](int threads) {
     WorldOptions o = options({0, 0, -9.81}, 5e-6, 1e-4);

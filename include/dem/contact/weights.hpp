@@ -19,19 +19,20 @@ enum class Fit {
 /// points come and go. Points whose normals are at an angle are different contacts: in a point's sum the others count
 /// with the square of the cosine, those at more than a right angle not at all. With Fit::if_more points count as
 /// N = (sum w d)^2 / sum w d^2, which is n w where n are equally deep; up to N = 1 they stay as they are, and from
-/// there to N = 2 one rule goes over into the other. `point(k)` gives touch k, one of the touch types.
+/// there to N = 2 one rule goes over into the other. `point(k)` gives touch k, one of the touch types. Across a gap
+/// (cohesion at a distance) the nearest point, which was the last to part, is the whole contact.
 template <class Point>
 void fit_weights(std::size_t count, Fit fit, Point&& point) {
   struct Part {
     Vector3<double> normal;
-    double depth, part;  // m, and m times the weight
+    double depth, part, overlap;  // m, the second times the weight
   };
   static thread_local std::vector<Part> parts;
   parts.clear();
   for (std::size_t k = 0; k < count; ++k) {
     const Geometry<double> g = point(k).geometry();
     const double depth = std::max(0.0, g.overlap);
-    parts.push_back({g.normal, depth, depth * g.area});
+    parts.push_back({g.normal, depth, depth * g.area, g.overlap});
   }
   for (std::size_t k = 0; k < count; ++k) {
     double first = 0.0, second = 0.0;
@@ -40,8 +41,16 @@ void fit_weights(std::size_t count, Fit fit, Point&& point) {
       first += share;
       second += share * other.depth;
     }
-    if (!(first > 0.0)) continue;
     double& weight = point(k).area;
+    if (!(first > 0.0)) {
+      bool nearest = true;
+      for (std::size_t m = 0; m < count; ++m) {
+        const bool nearer = parts[m].overlap > parts[k].overlap || (parts[m].overlap == parts[k].overlap && m < k);
+        nearest &= !(nearer && dot(parts[k].normal, parts[m].normal) > 0.0);
+      }
+      weight = nearest ? 1.0 : 0.0;
+      continue;
+    }
     const double whole = parts[k].part / first;
     if (fit == Fit::always) {
       weight = whole;

@@ -49,6 +49,11 @@ class SuperquadricGrain {
   Vec3 unit_inertia() const { return mass_.inertia.diagonal(); }
   /// m, of the sphere of the same volume: the radius that contact laws see.
   double mean_radius() const { return mean_radius_; }
+  /// Whether it is a ball, with exponents of 2 and equal radii.
+  bool is_ball() const {
+    const Vector3<double>&e = solid_.exponent(), &r = solid_.radius();
+    return e.x == 2.0 && e.y == 2.0 && e.z == 2.0 && r.x == r.y && r.y == r.z;
+  }
   /// Whether contacts are whole ones, of which points have shares.
   bool has_shares() const { return area_ == PointArea::share; }
   static constexpr contact::Fit shares_fit = contact::Fit::always;
