@@ -34,16 +34,17 @@ inline double stable_step(double limit, double k, double c, double w) {
 
 /// The springs of a pair's laws that swing apart from each other: those along the normal, and those of friction and
 /// rolling resistance, which turn the same grains and so add up. Calls limit(text, k, c, w) for each with stiffness k
-/// (N/m), damping c (N s/m), of which `damped_share` acts, and mobility w (1/kg); w_turning: 1/(kg m^2), of rotations.
+/// (N/m), damping c (N s/m), of which `acting` (a share) acts, and mobility w (1/kg); w_turning: 1/(kg m^2), of
+/// rotations.
 template <class Model, class Parameters, class Limit>
-void for_each_swing(const Parameters& p, const contact::NormalState<double>& deepest, double damped_share, double w,
+void for_each_swing(const Parameters& p, const contact::NormalState<double>& deepest, double acting, double w,
                     double w_turning, Limit&& limit) {
   const double normal = Model::Normal::stiffness(p.normal, deepest) + Model::Cohesion::stiffness(p.cohesion, deepest);
   limit(fmt::format("stiffness {:g} N/m", normal), normal,
-        damped_share * contact::damping_of<typename Model::Normal>(p.normal, deepest), w);
+        acting * contact::damping_of<typename Model::Normal>(p.normal, deepest), w);
 
   const double sliding = friction::stiffness_of<typename Model::Friction>(p.friction, deepest);
-  const double slide_damping = damped_share * contact::damping_of<typename Model::Friction>(p.friction, deepest);
+  const double slide_damping = acting * contact::damping_of<typename Model::Friction>(p.friction, deepest);
   const double rolling = Model::Rolling::stiffness(p.rolling, deepest);
   const double roll_damping = contact::damping_of<typename Model::Rolling>(p.rolling, deepest);
   std::string text = fmt::format("friction stiffness {:g} N/m", sliding);
