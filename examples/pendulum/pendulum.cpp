@@ -76,7 +76,7 @@ int main(int argc, char** argv) {
     // 4. Compare: the period of a rod that swings through 180 degrees is 4 K(sin 45 deg) sqrt(2 l / 3 g).
     const double exact = 4.0 * std::comp_ellint_1(std::sqrt(0.5)) * std::sqrt(2.0 * length / (3.0 * 9.81));
     fmt::print("time step                     {:.1e} s (stable up to {:.1e} s)\n", dt, machine.stable_time_step().dt);
-    fmt::print("largest change of the energy  {:.1e} J\n", drift);
+    fmt::print("largest change of the energy  {:.1e} J (of motion, of height, and in the pivot's springs)\n", drift);
     fmt::print("largest opening of the pivot  {:.1e} m\n", opening);
     if (half_periods > 0) {
       const double period = 2.0 * last_turn / half_periods;

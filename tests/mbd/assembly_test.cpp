@@ -36,6 +36,11 @@ TEST_CASE("wrong assemblies are refused in words") {
   CHECK_THAT(refused(fixed("weld", a, b, X).with_stiffness(-1.0, 1.0)),
              Contains("stiffness of fixed joint 'weld' is -1 N/m"));
   CHECK_THAT(refused(fixed("weld", a, b, X).with_friction({.coefficient = 0.1})), Contains("nothing in it slides"));
+  CHECK_THAT(refused(bushing("rubber", a, b, X, Z, X, X, X, X).with_stiffness(1e5, 1e3)),
+             Contains("bushing 'rubber' was given a stiffness or damping") && Contains("give them to bushing(...)"));
+  CHECK_THAT(refused(free_joint("gauge", a, b, X, Z).with_damping(1.0, 1.0)),
+             Contains("free joint 'gauge' was given") && Contains("it holds nothing"));
+  CHECK_THAT(refused(free_joint("gauge", a, b, Vec3(0, HUGE_VAL, 0), Z)), Contains("must be finite"));
   CHECK_THAT(refused(bushing("rubber", a, b, X, Z, Vec3::Zero(), Vec3::Zero(), Vec3::Zero(), Vec3::Zero())),
              Contains("has no stiffness at all"));
 
@@ -96,7 +101,7 @@ TEST_CASE("a joint whose points and axes nearly meet starts at rest, in the midd
 TEST_CASE("starting_at sets a turn or a slide, and is refused where nothing can start elsewhere") {
   Machine<PredictorCorrector> m;
   const BodyId a = m.add_body(brick("a", {0, 0, 0}));
-  const auto at = [&](JointKind kind) { return joint(kind, "j", m.ground(), a, {0, 0, 0}, Z); };
+  const auto at = [&](JointKind kind) { return joint(kind, name_of(kind), m.ground(), a, {0, 0, 0}, Z); };
   const JointId sleeve = m.add_joint(at(JointKind::cylindrical).starting_at(0.3).starting_at(Freedom::slide, 0.02));
   CHECK(m.coordinate(sleeve) == Approx(0.3));
   CHECK(m.coordinate(sleeve, Freedom::slide) == Approx(0.02));
@@ -104,7 +109,7 @@ TEST_CASE("starting_at sets a turn or a slide, and is refused where nothing can 
   CHECK(m.coordinate(wire) == Approx(0.05));
   const auto refused = [&](const JointSpec& s) { return message_of([&] { m.add_joint(s); }); };
   CHECK_THAT(refused(at(JointKind::spherical).starting_at(0.1)),
-             Contains("spherical joint 'j'") && Contains("no coordinate of its own"));
+             Contains("spherical joint 'spherical joint'") && Contains("no coordinate of its own"));
   CHECK_THAT(refused(at(JointKind::universal).starting_at(0.1)), Contains("bend_x, bend_y"));
   CHECK_THAT(refused(at(JointKind::fixed).starting_at(0.1)), Contains("no coordinate free"));
   CHECK_THAT(refused(at(JointKind::planar).starting_at(Freedom::slide_x, 0.1)),
@@ -178,84 +183,6 @@ TEST_CASE("a body that is set free or fixed while a machine runs has its joints 
   CHECK(m.body(wall).fixed);
 }
 
-TEST_CASE("the stable time step names the part that limits it, and is one") {
-  Machine<SymplecticEuler> m;
-  m.gravity.setZero();
-  const BodyId a = m.add_body(given_body("a", 2.0, Vec3(1, 1, 1)));
-  const BodyId b = m.add_body(given_body("b", 2.0, Vec3(1, 1, 1)).at({1, 0, 0}).moving({0, 1e-3, 0}));
-  m.add_spring(spring("soft", a, {0, 0, 0}, b, {1, 0, 0}, 10.0));
-  m.add_joint(point_on_plane("stiff", a, b, {0.5, 0, 0}, X).with_stiffness(1e6, 0).with_damping(0, 0));
-  const StableTimeStep limit = m.stable_time_step();
-  CHECK(limit.limited_by == "point-on-plane joint 'stiff'");
-  // Two masses of 2 kg and one spring of 1e6 N/m along their line: omega = 1000 rad/s, limit 2/omega. The bound that
-  // sums over a body's parts knows the soft spring too, which takes 5e-6 off.
-  CHECK(limit.dt == Approx(2e-3).epsilon(1e-3));
-  CHECK(limit.dt < 2e-3 * (1 + 1e-4));
-}
-
-TEST_CASE("derived stiffness is stable with room to spare, for every integrator") {
-  const auto room = [](auto machine) {
-    const BodyId ground = machine.ground();
-    BodyId last = ground;
-    for (int k = 0; k < 5; ++k) {
-      const BodyId link =
-          machine.add_body(box_body("link " + std::to_string(k), {0.3, 0.05, 0.05}, 7800).at({0.3 * k + 0.15, 0, 0}));
-      machine.add_joint(revolute("hinge " + std::to_string(k), last, link, {0.3 * k, 0, 0}, k % 2 ? Y : Z));
-      last = link;
-    }
-    const MachineReport report = machine.run(0.5, 1e-4);
-    CHECK(report.ok);
-    return machine.stable_time_step().dt / 1e-4;
-  };
-  CHECK(room(Machine<SymplecticEuler>{}) > 1.5);
-  CHECK(room(Machine<VelocityVerlet>{}) > 1.5);
-  CHECK(room(Machine<PredictorCorrector>{}) > 1.5);
-}
-
-TEST_CASE("a machine that blows up says which body, when, and what to change") {
-  Machine<PredictorCorrector> m;
-  const BodyId b = m.add_body(brick("pendulum bob", {1, 0, 0}));
-  m.add_joint(spherical("pivot", m.ground(), b, {0, 0, 0}).with_stiffness(1e8, 0).with_damping(0, 0));
-  check_refused([&] { (void)m.run(1.0, 1e-2); }, "time step 0.01 s", "largest stable one", "spherical joint 'pivot'",
-                "allow_unstable_time_step");
-  m.allow_unstable_time_step = true;
-  const MachineReport report = m.run(1.0, 1e-2);
-  CHECK_FALSE(report.ok);
-  CHECK(report.body == b);
-  CHECK(report.time < 1.0);
-  CHECK_THAT(report.text, Contains("body 'pendulum bob' blew up at t = ") && Contains("spherical joint 'pivot'") &&
-                              Contains("smaller time step"));
-}
-
-TEST_CASE("a blow-up at a stable time step is not blamed on it, and a NaN is named") {
-  const auto report_of = [](auto&& build) {
-    Machine<PredictorCorrector> m;
-    const BodyId cart = m.add_body(brick("cart", {0, 0, 0}));
-    const JointId guide = m.add_joint(prismatic("guide", m.ground(), cart, {0, 0, 0}, X));
-    build(m, cart, guide);
-    const MachineReport report = m.run(0.1, 1e-4);
-    CHECK_FALSE(report.ok);
-    return report.text;
-  };
-  const auto nan = Signal::function([](double t) { return t > 0.05 ? std::sqrt(-t) : 0.0; });
-  CHECK_THAT(report_of([](auto& m, BodyId b, JointId) {
-               m.add_load(applied_force("push", b, {0, 0, 0}, X, 1e12));
-             }),
-             Contains("The time step, 0.0001 s, was stable at the start of the run (up to ") &&
-                 Contains("check the applied forces"));
-  CHECK_THAT(report_of([&](auto& m, BodyId, JointId j) {
-               m.add_actuator(joint_actuator("ram", j, 1e3, 10.0, nan).with_max_force(5.0));
-             }),
-             Contains("body 'cart' blew up at t = 0.0") &&
-                 Contains("set point of actuator 'ram' is not a number: check the function"));
-  CHECK_THAT(report_of([&](auto& m, BodyId b, JointId) { m.add_load(applied_torque("twist", b, X, nan)); }),
-             Contains("size of load 'twist' is not a number"));
-  CHECK_THAT(report_of([&](auto& m, BodyId, JointId) {
-               m.add_motion(prescribed_position("lift", m.add_fixed_body("wall"), Z, nan));
-             }),
-             Contains("body 'wall' blew up") && Contains("value of motion 'lift' is not a number"));
-}
-
 TEST_CASE("a machine alone takes its substeps, and derives for them") {
   // A weight that hangs on a derived joint: k = 0.5 (0.7/h)^2 of one mass, so four substeps make it 16 times as stiff.
   const auto hang = [](int substeps) {
@@ -324,9 +251,31 @@ TEST_CASE("joints that cannot be meant are refused") {
       "same coordinate twice");
   CHECK_THAT(refused(revolute("dry", m.ground(), a, X, Z).with_friction({.coefficient = 0.1})),
              Contains("JointFriction::radius") && Contains("'dry' is 0 m"));
-  CouplingSpec teeth = gear("teeth", slide, JointId(0), 2.0);
+  CouplingSpec teeth = rack_and_pinion("teeth", JointId(0), slide, 2.0);
   teeth.stiffness = -1.0;
   check_refused([&] { m.add_coupling(teeth); }, "stiffness of coupling 'teeth' is -1");
+}
+
+TEST_CASE("parts without a name get one, and no two of a kind have the same") {
+  Machine<PredictorCorrector> m;
+  const BodyId a = m.add_body(brick("a", {0, 0, 0})), b = m.add_body(brick("b", {1, 0, 0}));
+  const JointId slide = m.add_joint(prismatic("", m.ground(), a, {0, 0, 0}, X));
+  const JointId other = m.add_joint(prismatic("same", m.ground(), b, {1, 0, 0}, X));
+  CHECK(m.parts().joint_specs[0].name == "joint 0");
+  CHECK(m.actuator(m.add_actuator(joint_actuator("", slide, 1, 1))).spec.name == "actuator 0");
+  CHECK(m.load(m.add_load(applied_force("", a, {0, 0, 0}, X, 1.0))).spec.name == "load 0");
+  CHECK(m.spring(m.add_spring(spring("", a, {0, 0, 0}, b, {1, 0, 0}, 1.0))).spec.name == "spring 0");
+  CHECK(m.coupling(m.add_coupling({"", {{slide, 1.0}, {other, 1.0}}})).spec.name == "coupling 0");
+  // A name may be had once by each kind.
+  m.add_actuator(joint_actuator("same", slide, 1, 1));
+  m.add_load(applied_force("same", a, {0, 0, 0}, X, 1.0));
+  m.add_spring(spring("same", a, {0, 0, 0}, b, {1, 0, 0}, 1.0));
+  m.add_coupling({"same", {{slide, 1.0}, {other, 1.0}}});
+  check_refused([&] { m.add_joint(fixed("same", a, b, X)); }, "two joints are named 'same'", "rename one");
+  check_refused([&] { m.add_actuator(joint_actuator("same", slide, 1, 1)); }, "two actuators are named 'same'");
+  check_refused([&] { m.add_load(applied_force("same", a, {0, 0, 0}, X, 1.0)); }, "two loads are named 'same'");
+  check_refused([&] { m.add_spring(spring("same", a, {0, 0, 0}, b, {1, 0, 0}, 1.0)); }, "two springs are named");
+  check_refused([&] { m.add_coupling({"same", {{slide, 1.0}, {other, 1.0}}}); }, "two couplings are named");
 }
 
 TEST_CASE("an id of another machine is refused by every accessor") {
@@ -343,38 +292,9 @@ TEST_CASE("an id of another machine is refused by every accessor") {
   check_refused([&] { m.set_throttle(ActuatorId(0), 1.0); }, "actuator 0");
   check_refused([&] { m.switch_on(MotionId(3)); }, "prescribed motion 3");
   check_refused([&] { m.set_load(LoadId(1), 1.0); }, "load 1");
+  check_refused([&] { m.load(LoadId(1)); }, "load 1");
   check_refused([&] { m.spring(SpringId(0)); }, "spring 0");
   check_refused([&] { m.coupling(CouplingId(0)); }, "coupling 0");
   check_refused([&] { m.sensor(SensorId(0)); }, "sensor 0");
   check_refused([&] { m.connection_position(ConnectionId(0)); }, "connection point 0");
-}
-
-TEST_CASE("a recorder samples joints, bodies and the user's own numbers") {
-  Machine<PredictorCorrector> m;
-  const BodyId b = m.add_body(brick("rod", {1, 0, 0}));
-  const JointId hinge = m.add_joint(revolute("hinge", m.ground(), b, {0, 0, 0}, Y));
-  Recorder recorder(m);
-  const ActuatorId servo = m.add_actuator(joint_actuator("servo", hinge, 10.0, 1.0));
-  recorder.add("time_s", [&] { return m.time(); }).add(hinge).add(b).add(servo);
-  REQUIRE(recorder.columns().size() == 1 + 8 + 6 + 3);
-  CHECK(recorder.columns()[15] == "servo_coordinate");
-  CHECK(recorder.columns()[17] == "servo_force");
-  check_refused([&] { recorder.add(ActuatorId(1)); }, "an actuator that the machine does not have");
-  CHECK(recorder.columns()[1] == "hinge_turn_rad");
-  CHECK(recorder.columns()[3] == "hinge_force_x_N");
-  int rows = 0;
-  const MachineReport report = m.run(0.1, 1e-3, [&] {
-    if (recorder.is_due(m.time(), 0.01)) {
-      const auto row = recorder.sample();
-      CHECK(row[0] == m.time());
-      CHECK(row[1] == m.coordinate(hinge));
-      // The actuator's numbers are those of the last force evaluation, at the predicted end of the step.
-      CHECK(row[15] == Approx(m.coordinate(hinge)).margin(1e-5));
-      CHECK(row[16] == m.actuator(servo).speed);
-      CHECK(row[17] == m.actuator(servo).force);
-      rows += 1;
-    }
-  });
-  REQUIRE(report);
-  CHECK(rows == 10);
 }

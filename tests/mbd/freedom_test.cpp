@@ -107,10 +107,7 @@ TEST_CASE(
   const BodyId nut = m.add_body(given_body("nut", 1.0, Vec3(0.01, 0.01, 0.01)));
   const JointId thread = m.add_joint(cylindrical("thread", m.ground(), nut, {0, 0, 0}, Z));
   const double lead = 0.1;  // m per rad
-  CouplingSpec screw_thread;
-  screw_thread.name = "screw thread";
-  screw_thread.terms = {{thread, lead, Freedom::turn}, {thread, -1.0, Freedom::slide}};
-  const CouplingId coupling = m.add_coupling(screw_thread);
+  const CouplingId coupling = m.add_coupling(screw("screw thread", thread, thread, 2.0 * pi * lead));
   // The nut turns as it slides: its inertia counts as m + J/lead^2 = 2 kg. On 8 N/m with 8 N s/m that is the critically
   // damped oscillator of 2 rad/s, x = 0.05 (1 - (1 + 2 t) exp(-2 t)).
   m.add_actuator(joint_actuator("push", thread, 8.0, 8.0, 0.05).along(Freedom::slide));

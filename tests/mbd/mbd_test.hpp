@@ -26,4 +26,8 @@ inline BodySpec brick(const std::string& name, const Vec3& at, double mass = 1.0
   return given_body(name, mass, Vec3(mass * Vec3(0.02, 0.03, 0.04))).at(at);
 }
 
+inline BodySpec ball(const std::string& name, double mass = 1.0, double inertia = 0.1) {
+  return given_body(name, mass, Vec3(inertia, inertia, inertia));
+}
+
 }  // namespace dem::mbd::test

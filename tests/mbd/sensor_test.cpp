@@ -59,5 +59,7 @@ TEST_CASE("sensors read contacts, sums, joints and actuators") {
   CHECK(m.sensor(joint).mean().torque.y == Approx(-0.5).epsilon(1e-6));
   CHECK(m.sensor(total).mean().force.z == Approx(2.0 * 9.81).epsilon(1e-6));
   CHECK(m.sensor(push).mean().force.x == Approx(2.0 * 9.81).epsilon(1e-6));
-  CHECK(m.sensor(push).latest().force.x == m.actuator(ram).force);
+  // What the ram's law gives for where its guide is; the state has moved on by a step since, by less than 1e-9 m.
+  const double law = -2e4 * m.coordinate(guide) - 400.0 * m.speed(guide);
+  CHECK(m.sensor(push).latest().force.x == Approx(law).epsilon(1e-6));
 }

@@ -154,3 +154,39 @@ TEST_CASE("a differential splits the torque and shares the speed") {
   const double tau = 2.0 * 3.0 / (1.0 + 2.0 * 0.01 * 2.0 * (1.0 / 0.8 + 1.0 / 0.2));
   CHECK(m.speed(left) == Approx(tau / 0.8).epsilon(1e-4));
 }
+
+TEST_CASE("a coupling takes the coordinates that it needs, and refuses joints that have none such") {
+  Machine<PredictorCorrector> m;
+  const auto body = [&](const char* name) { return m.add_body(ball(name)); };
+  const JointId axle = m.add_joint(revolute("axle", m.ground(), body("a"), {0, 0, 0}, Z));
+  const JointId second = m.add_joint(revolute("second", m.ground(), body("b"), {0, 0, 0}, Z));
+  const JointId slide = m.add_joint(prismatic("slide", m.ground(), body("c"), {0, 0, 0}, X));
+  const JointId sleeve = m.add_joint(cylindrical("sleeve", m.ground(), body("d"), {0, 0, 0}, X));
+  const JointId table = m.add_joint(planar("table", m.ground(), body("e"), {0, 0, 0}, Z));
+  const JointId socket = m.add_joint(universal("socket", m.ground(), body("f"), {0, 0, 0}, Z, Z));
+  const auto refused = [&](const CouplingSpec& s) { return message_of([&] { m.add_coupling(s); }); };
+
+  CHECK_THAT(refused(rack_and_pinion("teeth", slide, axle, 0.1)),
+             Contains("coupling 'teeth' needs as joint 1 one that turns, but 'slide' is a prismatic joint") &&
+                 Contains("exchange the joints"));
+  CHECK_THAT(refused(rack_and_pinion("teeth", axle, second, 0.1)),
+             Contains("needs as joint 2 one that slides, but 'second' is a revolute joint"));
+  CHECK_THAT(refused(rack_and_pinion("teeth", axle, table, 0.1)), Contains("joint 2 one that slides, but 'table'"));
+  CHECK_THAT(refused(gear("pair", slide, axle, 2.0)), Contains("joint 1 one that turns, but 'slide'"));
+  CHECK_THAT(refused(gear("pair", axle, socket, 2.0)), Contains("joint 2 one that turns, but 'socket'"));
+  CHECK_THAT(refused(screw("thread", axle, second, 0.01)), Contains("joint 2 one that slides"));
+  CHECK_THAT(refused(differential("diff", axle, second, slide, 3.0)), Contains("joint 3 one that turns"));
+  CouplingSpec wrong = rack_and_pinion("teeth", axle, sleeve, 0.1);
+  wrong.terms[1].freedom = Freedom::turn;
+  CHECK_THAT(refused(wrong), Contains("'sleeve' is a cylindrical joint and its turn does not"));
+
+  // A cylindrical joint turns as a pinion and slides as a rack; other coordinates are named.
+  const CouplingSpec& rack = m.coupling(m.add_coupling(rack_and_pinion("rack", axle, sleeve, 0.1))).spec;
+  CHECK(rack.terms[1].freedom == Freedom::slide);
+  const CouplingSpec& thread = m.coupling(m.add_coupling(screw("one thread", sleeve, sleeve, 0.1))).spec;
+  CHECK(thread.terms[0].freedom == Freedom::turn);
+  CHECK(thread.terms[1].freedom == Freedom::slide);
+  CouplingSpec bevel = gear("bevel", axle, socket, 1.0);
+  bevel.terms[1].freedom = Freedom::bend_x;
+  CHECK(m.coupling(m.add_coupling(bevel)).spec.terms[1].freedom == Freedom::bend_x);
+}

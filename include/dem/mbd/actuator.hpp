@@ -4,6 +4,7 @@
 #include <dem/mbd/coordinate.hpp>
 #include <dem/mbd/signal.hpp>
 
+#include <cmath>
 #include <limits>
 #include <string>
 #include <utility>
@@ -47,9 +48,9 @@ struct ActuatorSpec {
   }
 };
 
-/// Between two points (eqs. 34-37): the coordinate is their distance, which must not become zero.
+/// Between two points (eqs. 34-37): the coordinate is their distance (m), which must not become zero.
 inline ActuatorSpec linear_actuator(std::string name, BodyId a, const Vec3& at_a, BodyId b, const Vec3& at_b,
-                                    double position_gain, double speed_gain, Signal set_point = 0.0) {
+                                    double position_gain, double speed_gain, Signal set_point) {
   return {.name = std::move(name),
           .a = a,
           .b = b,
@@ -58,6 +59,11 @@ inline ActuatorSpec linear_actuator(std::string name, BodyId a, const Vec3& at_a
           .position_gain = position_gain,
           .speed_gain = speed_gain,
           .set_point = std::move(set_point)};
+}
+/// The same, that holds the length at assembly until it is told otherwise.
+inline ActuatorSpec linear_actuator(std::string name, BodyId a, const Vec3& at_a, BodyId b, const Vec3& at_b,
+                                    double position_gain, double speed_gain) {
+  return linear_actuator(std::move(name), a, at_a, b, at_b, position_gain, speed_gain, (at_b - at_a).norm());
 }
 /// On the coordinate of a joint: force on one that slides, torque on one that turns (eq. 38, over whole turns).
 inline ActuatorSpec joint_actuator(std::string name, JointId joint, double position_gain, double speed_gain,
@@ -72,7 +78,7 @@ inline ActuatorSpec joint_actuator(std::string name, JointId joint, double posit
 /// positive about a x b at assembly.
 inline ActuatorSpec rotational_actuator(std::string name, BodyId a, const Vec3& corner, const Vec3& toward_a, BodyId b,
                                         const Vec3& toward_b, double position_gain, double speed_gain,
-                                        Signal set_point = 0.0) {
+                                        Signal set_point) {
   return {.name = std::move(name),
           .a = a,
           .b = b,
@@ -84,6 +90,13 @@ inline ActuatorSpec rotational_actuator(std::string name, BodyId a, const Vec3& 
           .position_gain = position_gain,
           .speed_gain = speed_gain,
           .set_point = std::move(set_point)};
+}
+/// The same, that holds the angle at assembly until it is told otherwise.
+inline ActuatorSpec rotational_actuator(std::string name, BodyId a, const Vec3& corner, const Vec3& toward_a, BodyId b,
+                                        const Vec3& toward_b, double position_gain, double speed_gain) {
+  const Vec3 to_a = toward_a - corner, to_b = toward_b - corner;
+  return rotational_actuator(std::move(name), a, corner, toward_a, b, toward_b, position_gain, speed_gain,
+                             std::atan2(to_a.cross(to_b).norm(), to_a.dot(to_b)));
 }
 /// A motor on a joint: torque (N m) over speed (rad/s), times a throttle between -1 and 1 that is set while running.
 /// In reverse it is the same motor the other way round: torque = throttle curve(-speed).
@@ -106,7 +119,7 @@ struct Actuator {
 };
 
 DEM_FLATTEN inline void apply_actuator(Actuator& u, const std::vector<Joint>& joints, std::vector<Body>& bodies,
-                                       double time) {
+                                       double time, double dt) {
   Body &a = bodies[u.a], &b = bodies[u.b];
   const Coordinate q = u.spec.joint.valid() ? coordinate_of(joints[u.spec.joint.index()], a, b, u.spec.freedom)
                                             : distance_of(u.point_a, u.point_b, a, b);
@@ -115,7 +128,7 @@ DEM_FLATTEN inline void apply_actuator(Actuator& u, const std::vector<Joint>& jo
   u.force = 0.0;
   if (!u.spec.on) return;
   if (u.spec.torque_curve.empty()) {
-    u.target = u.spec.set_point(time);
+    u.target = u.spec.set_point(time, dt);
     u.force = -u.spec.position_gain * (q.value - u.target.value) - u.spec.speed_gain * (q.speed - u.target.rate);
   } else {
     // Reverse is the mirror image of forward: the curve is read at the speed in the direction of the torque.

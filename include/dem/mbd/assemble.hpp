@@ -21,8 +21,8 @@ void attach_points(const Parts& parts, Part& part, const Spec& s, const std::str
         "coordinate instead",
         who, (s.at_b - s.at_a).norm());
   }
-  part.point_a = from_eigen(to_body(a, s.at_a));
-  part.point_b = from_eigen(to_body(b, s.at_b));
+  part.point_a = from_eigen(to_body(a, finite_point(s.at_a, "the first point of " + who)));
+  part.point_b = from_eigen(to_body(b, finite_point(s.at_b, "the second point of " + who)));
 }
 
 inline void check_actuator(const ActuatorSpec& spec, const std::string& who) {
@@ -35,12 +35,36 @@ inline void check_actuator(const ActuatorSpec& spec, const std::string& who) {
   }
 }
 
+/// The freedom that a term of a coupling names, or the one of the kind that the term needs.
+inline Freedom freedom_of(const CouplingSpec::Term& term, const Parts& parts, std::size_t number,
+                          const std::string& who) {
+  using enum CouplingSpec::Moves;
+  const Joint& j = known_joint(parts, term.joint, who);
+  Freedom freedom = resolved(j.kind, term.freedom);
+  if (term.needs != any) {
+    const std::vector<Freedom> all = freedoms_of(j.kind);
+    const auto has = [&](Freedom f) { return std::find(all.begin(), all.end(), f) != all.end(); };
+    const bool turns = term.needs == rotation;
+    if (term.freedom == Freedom::own && has(turns ? Freedom::turn : Freedom::slide)) {
+      freedom = turns ? Freedom::turn : Freedom::slide;
+    }
+    if (freedom == Freedom::own || !has(freedom) || is_rotation(freedom) != turns) {
+      fail(
+          "{} needs as joint {} one that {}, but '{}' is a {}{}; exchange the joints, or name a freedom that {} in the "
+          "coupling's terms",
+          who, number, turns ? "turns" : "slides", parts.joint_specs[term.joint.index()].name, name_of(j.kind),
+          term.freedom == Freedom::own ? "" : fmt::format(" and its {} does not", name_of(freedom)),
+          turns ? "turns" : "slides");
+    }
+  }
+  return require_freedom(j.kind, freedom, who);
+}
+
 inline Coupling make_coupling(const Parts& parts, CouplingSpec spec) {
   const std::string who = fmt::format("coupling '{}'", spec.name);
   if (spec.terms.size() < 2) fail("{} joins {} coordinates, but needs at least 2", who, spec.terms.size());
   for (std::size_t i = 0; i < spec.terms.size(); ++i) {
-    const Joint& j = known_joint(parts, spec.terms[i].joint, who);
-    spec.terms[i].freedom = require_freedom(j.kind, spec.terms[i].freedom, who);
+    spec.terms[i].freedom = freedom_of(spec.terms[i], parts, i + 1, who);
     if (!std::isfinite(spec.terms[i].ratio) || spec.terms[i].ratio == 0.0) {
       fail("ratio {} of {} is {:g}, but must be finite and not zero", i + 1, who, spec.terms[i].ratio);
     }
@@ -65,12 +89,19 @@ inline PrescribedMotion make_motion(const Parts& parts, MotionSpec spec) {
   PrescribedMotion p;
   if (spec.target == MotionSpec::Target::joint) {
     const Joint& j = known_joint(parts, spec.joint, who);
-    spec.freedom = require_freedom(j.kind, spec.freedom, who);
+    spec.freedom = known_freedom(j.kind, spec.freedom, who);
     if (spec.freedom == Freedom::bend) {
       fail(
           "{} drives the bend of a {}, which has no direction where the joint is straight; drive bend_x and bend_y "
           "of a universal joint, or use an actuator",
           who, name_of(j.kind));
+    }
+    if (spec.freedom == Freedom::length) {
+      fail(
+          "{} drives the length of a distance joint, which the joint holds; leave the joint out and use a "
+          "linear_actuator, or put a cylinder of two bodies between the points and drive the slide of its prismatic "
+          "joint",
+          who);
     }
     if (parts.bodies[j.a].fixed && parts.bodies[j.b].fixed) {
       fail("{} drives a joint of '{}' and '{}', which are both fixed; free one, or prescribe its position or pose", who,
@@ -83,6 +114,11 @@ inline PrescribedMotion make_motion(const Parts& parts, MotionSpec spec) {
   p.axis = from_eigen(unit(spec.axis, who));
   p.start = dot(b.motion.position, p.axis);
   p.start_rotation = b.motion.rotation;
+  if (!spec.principal_frame) {
+    const BuiltBody& built = parts.built[spec.body.index()];
+    p.axes = built.reference_axes.transpose();
+    p.centre = -(p.axes * built.reference_origin);
+  }
   p.spec = std::move(spec);
   return p;
 }

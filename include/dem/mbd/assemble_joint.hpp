@@ -55,6 +55,12 @@ inline void check_penalty(const JointSpec& s, const std::string& who) {
   check(s.damping, "damping", "N s/m");
   check(s.rotational_stiffness, "rotational stiffness", "N m/rad");
   check(s.rotational_damping, "rotational damping", "N m s/rad");
+  if ((s.kind == JointKind::bushing || s.kind == JointKind::free) &&
+      (s.stiffness || s.damping || s.rotational_stiffness || s.rotational_damping)) {
+    fail("{} was given a stiffness or damping with with_stiffness or with_damping, which it does not use: {}", who,
+         s.kind == JointKind::bushing ? "a bushing has its own constants for each direction; give them to bushing(...)"
+                                      : "it holds nothing; use a bushing or another kind of joint");
+  }
   if (s.kind == JointKind::bushing) {
     for (const Vec3* v :
          {&s.bushing_stiffness, &s.bushing_damping, &s.bushing_rotational_stiffness, &s.bushing_rotational_damping}) {
@@ -80,8 +86,7 @@ inline void set_starts(Joint& j, const JointSpec& s, const std::string& who) {
     if (freedom != Freedom::turn && freedom != Freedom::slide) {
       fail(
           "starting_at of {} gives its {} a value, but only a turn about z and a slide along z can count from any "
-          "value "
-          "at assembly; move a body instead",
+          "value at assembly; move a body instead",
           who, name_of(freedom));
     }
     if (!std::isfinite(start.value)) {
@@ -106,6 +111,8 @@ inline Joint make_joint(const Parts& parts, JointSpec& s) {
         who, a.name, b.name);
   }
   check_penalty(s, who);
+  finite_point(s.at_a, "the point on body a of " + who);
+  finite_point(s.at_b, "the point on body b of " + who);
   Vec3 za = unit(s.axis_a, "the axis of " + who), zb = unit(s.axis_b, "the axis of " + who);
   const bool has_own_axes = s.kind == JointKind::universal || s.kind == JointKind::constant_velocity;
   // Points and axes that nearly meet are put in the middle: the joint starts at rest, not stretched by the gap.
@@ -158,8 +165,7 @@ inline Joint make_joint(const Parts& parts, JointSpec& s) {
   if (s.kind == JointKind::distance && !(std::abs(j.length - gap.norm()) <= s.tolerance)) {
     fail(
         "{} is {:g} m long, but its points are {:g} m apart, allowed is a difference of {:g} m; move a point, leave "
-        "the "
-        "length out, or raise the joint's tolerance for a rod that starts under load",
+        "the length out, or raise the joint's tolerance for a rod that starts under load",
         who, j.length, gap.norm(), s.tolerance);
   }
   if (s.kind == JointKind::distance && !(gap.norm() > 1e-9)) {

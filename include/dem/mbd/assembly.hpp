@@ -1,7 +1,6 @@
 #pragma once
 
 #include <dem/mbd/assemble.hpp>
-#include <dem/mbd/derive.hpp>
 #include <dem/mbd/drives.hpp>
 #include <dem/mbd/forces.hpp>
 
@@ -22,15 +21,16 @@ class Assembly {
   BodyId add_fixed_body(std::string name, const Vec3& position = Vec3::Zero()) {
     return add_body(fixed_body(std::move(name), position));
   }
-  /// The fixed body "ground" at the origin; made when first asked for.
+  /// The fixed body "ground" at the origin; made when first asked for, which adds a body.
   BodyId ground() {
     if (!ground_.valid()) ground_ = add_fixed_body("ground");
     return ground_;
   }
   /// A connection point (section 2.3) at a global point.
   ConnectionId add_connection(std::string name, BodyId body, const Vec3& at) {
-    const Body& b = known_body(parts_, body, fmt::format("connection point '{}'", name));
-    parts_.connections.push_back({std::move(name), body, detail::to_body(b, at)});
+    const std::string who = fmt::format("connection point '{}'", name);
+    const Body& b = known_body(parts_, body, who);
+    parts_.connections.push_back({std::move(name), body, detail::to_body(b, finite_point(at, who))});
     return ConnectionId(parts_.connections.size() - 1);
   }
   /// A connection point at a point of the body's reference frame.
@@ -39,6 +39,7 @@ class Assembly {
     return add_connection(std::move(name), body, reference_point(body, point));
   }
   JointId add_joint(JointSpec spec) {
+    settle_name(spec.name, parts_.joint_specs, "joint", "joints", [](const JointSpec& s) { return s.name; });
     const Joint j = detail::make_joint(parts_, spec);
     const auto number = static_cast<std::uint32_t>(parts_.joints.size());
     const std::size_t stops = parts_.stops.size();
@@ -55,6 +56,7 @@ class Assembly {
     return JointId(parts_.joints.size() - 1);
   }
   ActuatorId add_actuator(ActuatorSpec spec) {
+    settle_name(spec.name, parts_.actuators, "actuator", "actuators", name_in_spec);
     const std::string who = fmt::format("actuator '{}'", spec.name);
     detail::check_actuator(spec, who);
     Actuator u;
@@ -75,6 +77,7 @@ class Assembly {
     return ActuatorId(parts_.actuators.size() - 1);
   }
   SpringId add_spring(SpringSpec spec) {
+    settle_name(spec.name, parts_.springs, "spring", "springs", name_in_spec);
     Spring s;
     detail::attach_points(parts_, s, spec, fmt::format("spring '{}'", spec.name), true);
     s.spec = std::move(spec);
@@ -83,16 +86,18 @@ class Assembly {
     return SpringId(parts_.springs.size() - 1);
   }
   CouplingId add_coupling(CouplingSpec spec) {
+    settle_name(spec.name, parts_.couplings, "coupling", "couplings", name_in_spec);
     parts_.couplings.push_back(detail::make_coupling(parts_, std::move(spec)));
     changed_ = true;
     return CouplingId(parts_.couplings.size() - 1);
   }
   LoadId add_load(LoadSpec spec) {
+    settle_name(spec.name, parts_.loads, "load", "loads", name_in_spec);
     const std::string who = fmt::format("load '{}'", spec.name);
     const Body& b = known_body(parts_, spec.body, who);
     const Vec3 n = unit(spec.direction, who);
     Load load;
-    load.point = from_eigen(detail::to_body(b, spec.at));
+    load.point = from_eigen(detail::to_body(b, finite_point(spec.at, "the point of " + who)));
     load.direction = from_eigen(spec.follows_body ? Vec3(b.rotation().transpose() * n) : n);
     load.spec = std::move(spec);
     parts_.loads.push_back(std::move(load));
@@ -112,7 +117,7 @@ class Assembly {
   // ------------------------------------------------------------------------------------------------- looking at it
 
   /// All bodies, in the order of their ids. Mass, inertia and `fixed` are read when a run starts (initialise); later,
-  /// set_fixed changes the latter.
+  /// set_fixed changes the latter. References to bodies are good until the next one is added, as ground() may do.
   std::vector<Body>& bodies() { return parts_.bodies; }
   const std::vector<Body>& bodies() const { return parts_.bodies; }
   Body& body(BodyId id) { return known(parts_.bodies, id, "body"); }
@@ -186,13 +191,18 @@ class Assembly {
   }
 
   const Actuator& actuator(ActuatorId id) const { return known(parts_.actuators, id, "actuator"); }
-  /// Sets the set point (m or rad) and its rate from outside, for instance every step. Throws Error unless finite.
+  /// Sets the set point (m or rad) and its rate from outside, for instance every step. Throws Error unless finite, and
+  /// for a motor, which has a throttle instead.
   void set_target(ActuatorId id, double value, double rate = 0.0) { set_target(id, Signal::held(value, rate)); }
   void set_target(ActuatorId id, Signal signal) {
-    known(parts_.actuators, id, "actuator").spec.set_point = std::move(signal);
+    ActuatorSpec& s = known(parts_.actuators, id, "actuator").spec;
+    if (!s.torque_curve.empty()) fail("actuator '{}' is a motor, which has no set point; use set_throttle", s.name);
+    s.set_point = std::move(signal);
   }
   void set_throttle(ActuatorId id, double throttle) {
-    known(parts_.actuators, id, "actuator").spec.throttle = require_within(throttle, -1.0, 1.0, "throttle of a motor");
+    ActuatorSpec& s = known(parts_.actuators, id, "actuator").spec;
+    if (s.torque_curve.empty()) fail("actuator '{}' is no motor, so it has no throttle; use set_target", s.name);
+    s.throttle = require_within(throttle, -1.0, 1.0, "throttle of a motor");
   }
   void switch_on(ActuatorId id, bool on = true) { known(parts_.actuators, id, "actuator").spec.on = on; }
   /// A fixed body stops when the motion that moves it is switched off.
@@ -220,7 +230,12 @@ class Assembly {
     if (fixed) b.motion.velocity = b.motion.angular_velocity = {0, 0, 0};
     changed_ = true;
   }
-  void set_load(LoadId id, Signal size) { known(parts_.loads, id, "load").spec.size = std::move(size); }
+  void set_load(LoadId id, Signal size) {
+    LoadSpec& s = known(parts_.loads, id, "load").spec;
+    if (s.law)
+      fail("load '{}' has a law of its own and no size; let the law give other forces, or switch it off", s.name);
+    s.size = std::move(size);
+  }
   /// Another signal for a prescribed coordinate, or another function for a pose (set_pose).
   void set_motion(MotionId id, Signal motion) {
     PrescribedMotion& p = known(parts_.motions, id, "prescribed motion");
@@ -248,6 +263,7 @@ class Assembly {
     p.has_hold = false;
   }
 
+  const Load& load(LoadId id) const { return known(parts_.loads, id, "load"); }
   const Spring& spring(SpringId id) const { return known(parts_.springs, id, "spring"); }
   const Coupling& coupling(CouplingId id) const { return known(parts_.couplings, id, "coupling"); }
   const PrescribedMotion& motion(MotionId id) const { return known(parts_.motions, id, "prescribed motion"); }
@@ -256,11 +272,10 @@ class Assembly {
   Parts& parts() { return parts_; }
 
  private:
+  static constexpr auto name_in_spec = [](const auto& part) -> const std::string& { return part.spec.name; };
+
   BodyId keep_body(BuiltBody built) {
-    if (built.body.name.empty()) built.body.name = fmt::format("body {}", parts_.bodies.size());
-    for (const Body& b : parts_.bodies) {
-      if (b.name == built.body.name) fail("two bodies are named '{}'; rename one, so that reports are clear", b.name);
-    }
+    settle_name(built.body.name, parts_.bodies, "body", "bodies", [](const Body& b) { return b.name; });
     parts_.bodies.push_back(built.body);
     parts_.built.push_back(std::move(built));
     changed_ = true;
@@ -280,7 +295,7 @@ class Assembly {
       fail("the three points of {} lie on a line, so its axis is not known; use joint_actuator on a revolute joint",
            who);
     }
-    spec.joint = add_joint(free_joint(spec.name, spec.a, spec.b, spec.at_a, normal)
+    spec.joint = add_joint(free_joint("angle of " + who, spec.a, spec.b, spec.at_a, normal)
                                .starting_at(std::atan2(normal.norm(), to_a.dot(to_b))));
     return spec;
   }

@@ -16,7 +16,8 @@ inline void check_holds(Parts& parts, double time) {
     double off = 0.0;
     if (p.spec.target == MotionSpec::Target::pose) {
       const Pose pose = p.spec.pose(time);
-      off = (pose.position - to_eigen(m.position)).norm() + (pose.rotation - to_eigen(m.rotation)).norm();
+      off = (detail::centre_at(p, pose) - to_eigen(m.position)).norm() +
+            (detail::rotation_at(p, pose) - to_eigen(m.rotation)).norm();
     } else {
       p.drive.value = p.spec.motion(time).value;
       if (p.spec.target == MotionSpec::Target::position) {
@@ -31,9 +32,12 @@ inline void check_holds(Parts& parts, double time) {
     if (std::abs(off) > tolerance) {
       fail(
           "prescribed motion '{}' is {:g} m or rad off at t = {:g} s, where it takes hold of its coordinate; allowed "
-          "is {:g}: let its signal start there (set_motion), say with starting_at what the joint's coordinate is at "
-          "assembly, or move a body",
-          p.spec.name, std::abs(off), time, tolerance);
+          "is {:g}: {}, or move a body",
+          p.spec.name, std::abs(off), time, tolerance,
+          p.spec.target == MotionSpec::Target::pose
+              ? "let the pose of the body's reference frame (see of_principal_frame) start there (set_pose)"
+              : "let its signal start there (set_motion), say with starting_at what the joint's coordinate is at "
+                "assembly");
     }
     p.has_hold = true;
   }

@@ -17,10 +17,12 @@ namespace dem::mbd {
 /// carries the joint. So momentum is kept and housings feel the torque that they hold. Teeth are not modelled: nothing
 /// presses gears apart or loads their bearings across the axis, there is no backlash and no loss.
 struct CouplingSpec {
+  enum class Moves { any, rotation, displacement };
   struct Term {
     JointId joint;
     double ratio;
     Freedom freedom = Freedom::own;
+    Moves needs = Moves::any;  ///< what the coordinate has to be; `own` is then the joint's turn or its slide
   };
   std::string name;
   std::vector<Term> terms;
@@ -28,22 +30,29 @@ struct CouplingSpec {
   std::optional<double> damping = {};
 };
 
-/// Gears: joint `out` turns `ratio` times as fast as joint `in`; negative where it turns the other way, as outer gears
-/// do (ratio = -teeth of `in` / teeth of `out`).
+/// Gears, between joints that turn: joint `out` turns `ratio` times as fast as joint `in`; negative where it turns the
+/// other way, as outer gears do (ratio = -teeth of `in` / teeth of `out`).
 inline CouplingSpec gear(std::string name, JointId in, JointId out, double ratio) {
-  return {std::move(name), {{in, ratio}, {out, -1.0}}};
+  using enum CouplingSpec::Moves;
+  return {std::move(name), {{in, ratio, Freedom::own, rotation}, {out, -1.0, Freedom::own, rotation}}};
 }
-/// Rack and pinion: the rack slides by pinion_radius (m) times the pinion's angle.
+/// Rack and pinion: the rack slides by pinion_radius (m) times the pinion's angle. The pinion's joint has to turn, the
+/// rack's to slide; of a cylindrical joint the coordinate that fits is taken.
 inline CouplingSpec rack_and_pinion(std::string name, JointId pinion, JointId rack, double pinion_radius) {
-  return {std::move(name), {{pinion, pinion_radius}, {rack, -1.0}}};
+  using enum CouplingSpec::Moves;
+  return {std::move(name), {{pinion, pinion_radius, Freedom::own, rotation}, {rack, -1.0, Freedom::own, displacement}}};
 }
-/// Screw: the nut slides by `lead` (m) for each turn.
+/// Screw: the nut slides by `lead` (m) for each turn. One cylindrical joint may be both.
 inline CouplingSpec screw(std::string name, JointId turning, JointId sliding, double lead) {
   return rack_and_pinion(std::move(name), turning, sliding, lead / (2.0 * std::numbers::pi));
 }
 /// Differential: the input turns `final_ratio` times as fast as the mean of the two outputs.
 inline CouplingSpec differential(std::string name, JointId in, JointId left, JointId right, double final_ratio) {
-  return {std::move(name), {{in, 1.0}, {left, -0.5 * final_ratio}, {right, -0.5 * final_ratio}}};
+  using enum CouplingSpec::Moves;
+  return {std::move(name),
+          {{in, 1.0, Freedom::own, rotation},
+           {left, -0.5 * final_ratio, Freedom::own, rotation},
+           {right, -0.5 * final_ratio, Freedom::own, rotation}}};
 }
 
 struct Coupling {

@@ -25,8 +25,8 @@ inline void sample_sensors(Parts& m, double dt) {
 }
 
 /// All forces of the machine itself, added to what the bodies already carry (the grains' contact forces). `time` (s) is
-/// that of the state the forces are evaluated at. Joint friction is evaluated from the committed history, and
-/// committed, like turns and sensors, in the last stage only.
+/// that of the state the forces are evaluated at, `dt` (s) the machine's time step. Joint friction is evaluated from
+/// the committed history, and committed, like turns and sensors, in the last stage only.
 DEM_FLATTEN inline void add_forces(Parts& m, double time, double dt, bool is_last_stage) {
   const double followed = is_last_stage ? dt : 0.0;
   for (std::size_t i = 0; i < m.bodies.size(); ++i) {
@@ -34,7 +34,7 @@ DEM_FLATTEN inline void add_forces(Parts& m, double time, double dt, bool is_las
     m.spin[i] = b.motion.rotation * b.motion.angular_velocity;
     m.outside[i] = {b.force, b.torque};
   }
-  for (Load& load : m.loads) apply_load(load, m.bodies, time);
+  for (Load& load : m.loads) apply_load(load, m.bodies, time, dt);
   for (Joint& j : m.joints) apply_penalty(j, m.bodies[j.a], m.bodies[j.b], m.spin[j.a], m.spin[j.b], followed);
   for (JointRubbing& e : m.rubbing) {
     const Joint& j = m.joints[e.joint];
@@ -44,7 +44,7 @@ DEM_FLATTEN inline void add_forces(Parts& m, double time, double dt, bool is_las
     apply_stops(e, m.joints[e.joint], m.bodies[m.joints[e.joint].a], m.bodies[m.joints[e.joint].b]);
   for (Coupling& g : m.couplings) apply_coupling(g, m.joints, m.bodies);
   for (Spring& s : m.springs) apply_spring(s, m.bodies);
-  for (Actuator& u : m.actuators) apply_actuator(u, m.joints, m.bodies, time);
+  for (Actuator& u : m.actuators) apply_actuator(u, m.joints, m.bodies, time, dt);
   if (is_last_stage) sample_sensors(m, dt);
 }
 

@@ -122,10 +122,7 @@ class Machine : public MachinePhases<I> {
   void prepare(double dt) {
     require_positive(dt, "time step", "s");
     const bool same = this->is_initialised();
-    if (!this->is_designed_ && (dt != design_dt_ || !same)) {
-      derive_stiffness(parts_, dt / this->checked_substeps());
-      design_dt_ = dt;
-    }
+    if (!this->is_designed_ && (dt != design_dt_ || !same)) this->derive(dt);
     if (!same) {
       if (this->is_designed_) design_for(design_dt_);
       clear_forces();

@@ -2,10 +2,13 @@
 
 #include <dem/core/macros.hpp>
 #include <dem/mbd/assembly.hpp>
+#include <dem/mbd/blow_up.hpp>
 #include <dem/mbd/check_holds.hpp>
+#include <dem/mbd/softening.hpp>
 
 #include <cmath>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace dem::mbd {
@@ -34,8 +37,7 @@ class MachinePhases : public Assembly {
   /// Derives what was left open (stiffness, damping) for a step of dt (s). Call it before initialise. Without it, step
   /// and run derive for the dt that they are given; after it, they keep what was derived, also for a smaller dt.
   void design_for(double dt) {
-    derive_stiffness(parts_, dt / checked_substeps());
-    design_dt_ = dt;
+    derive(dt);
     is_designed_ = true;
   }
 
@@ -96,12 +98,14 @@ class MachinePhases : public Assembly {
       }
     }
     check_holds(parts_, time);
-    apply_motions(parts_, time, 0.0);
+    const double step = design_dt_ / checked_substeps();  // 0 if none is known
+    apply_motions(parts_, time, step, false);
     for (PrescribedMotion& p : parts_.motions) p.drive.impulse = 0.0;  // the speeds that it starts with
-    mbd::add_forces(parts_, time, 0.0, false);
+    mbd::add_forces(parts_, time, step, false);
     contacts_ = earlier_contacts_ = parts_.outside;
     for (std::size_t i = 0; i < n; ++i) I::template initialise<double>(memory_[i], acceleration(i, from_eigen(g)));
     assembled_limit_ = stable_time_step();
+    watch_ = StepWatch<I>(parts_);
     initialised_substeps_ = substeps;
     initialised_ = true;
     changed_ = false;
@@ -115,7 +119,7 @@ class MachinePhases : public Assembly {
       for (std::size_t i = 0; i < parts_.bodies.size(); ++i) {
         if (!parts_.bodies[i].fixed) predict(i, stage, dt);
       }
-      prescribe(time_ + dt, 0.0);  // forces see driven bodies where they are at the end of the step
+      apply_motions(parts_, time_ + dt, dt, false);  // forces see driven bodies where they are at the end of the step
     }
   }
 
@@ -126,26 +130,16 @@ class MachinePhases : public Assembly {
 
   /// Lets the forces move the bodies.
   void advance(int stage, double dt, const Vec3& g) {
-    const Vector3<double> g3 = from_eigen(g);
-    const bool last = stage == I::stages - 1;
-    const bool tidy = last && ++steps_ % 256 == 0;
-    for (std::size_t i = 0; i < parts_.bodies.size(); ++i) {
-      Body& b = parts_.bodies[i];
-      if (b.fixed) continue;
-      move(i, stage, dt, g3);
-      if (tidy) b.motion.rotation = orthonormalised(b.motion.rotation);
-      if (last) watch(i);
-    }
-    if (tidy) settle_turns();
+    move(stage, dt, from_eigen(g));
     gravity = g;
     step_dt_ = dt * substeps;
-    if (last) time_ += dt;
+    if (stage == I::stages - 1) end_step(dt);
   }
 
   /// Sets prescribed motions (eq. 19) for the end of the step.
   void prescribe(double time_at_end_of_step, double dt) {
     if (parts_.motions.empty()) return;
-    apply_motions(parts_, time_at_end_of_step, dt);
+    apply_motions(parts_, time_at_end_of_step, dt, true);
     for (const PrescribedMotion& p : parts_.motions) {
       if (p.spec.on) watch(p.spec.body.index());  // also of a fixed body, which nothing else moves
     }
@@ -159,23 +153,10 @@ class MachinePhases : public Assembly {
   /// All is well, or which body blew up, when, and what to change.
   MachineReport report() const {
     if (!bad_.valid()) return {true, time_, {}, {}};
-    const StableTimeStep& limit = assembled_limit_;
-    std::string text =
-        fmt::format("body '{}' blew up at t = {:g} s: its speed is not finite or above largest_speed = {:g}. ",
-                    parts_.bodies[bad_.index()].name, bad_time_, largest_speed);
-    if (const std::string cause = not_a_number(); !cause.empty()) {
-      text += cause + " is not a number: check the function that gives it.";
-    } else if (limit.dt < step_dt_) {
-      text += fmt::format(
-          "The time step is {:g} s, but the stable one is {:g} s, limited by {}: take a smaller time step, or a lower "
-          "stiffness there.",
-          step_dt_, limit.dt, limit.limited_by);
-    } else {
-      text += fmt::format(
-          "The time step, {:g} s, was stable at the start of the run{}: check the applied forces, set points and "
-          "contacts, or take a smaller one.",
-          step_dt_, limit.limited_by.empty() ? "" : fmt::format(" (up to {:g} s, by {})", limit.dt, limit.limited_by));
-    }
+    const std::string text =
+        fmt::format("body '{}' blew up at t = {:g} s: its speed is not finite or above largest_speed = {:g}. {}",
+                    parts_.bodies[bad_.index()].name, bad_time_, largest_speed,
+                    cause_of_blow_up<I>(parts_, assembled_limit_, watch_, step_dt_, substeps));
     return {false, bad_time_, bad_, text};
   }
 
@@ -185,6 +166,13 @@ class MachinePhases : public Assembly {
   int checked_substeps() const {
     if (substeps < 1) fail("the machine's substeps are {}, but must be at least 1", substeps);
     return substeps;
+  }
+
+  /// Derives what is open for a step of dt (s) in the present pose.
+  void derive(double dt) {
+    derive_stiffness(parts_, dt / checked_substeps());
+    softening_ = Softening(parts_, dt / substeps);
+    design_dt_ = dt;
   }
 
   std::vector<Memory> memory_;
@@ -213,23 +201,27 @@ class MachinePhases : public Assembly {
   DEM_FLATTEN void predict(std::size_t i, int stage, double dt) {
     I::template before_forces<double>(stage, dt, parts_.bodies[i].motion, memory_[i]);
   }
-  DEM_FLATTEN void move(std::size_t i, int stage, double dt, const Vector3<double>& g) {
-    I::template after_forces<double>(stage, dt, parts_.bodies[i].motion, memory_[i],
-                                     acceleration(i, g, integrator::gyroscopic_lead<I>(dt)));
+  DEM_FLATTEN void move(int stage, double dt, const Vector3<double>& g) {
+    for (std::size_t i = 0; i < parts_.bodies.size(); ++i) {
+      if (parts_.bodies[i].fixed) continue;
+      I::template after_forces<double>(stage, dt, parts_.bodies[i].motion, memory_[i],
+                                       acceleration(i, g, integrator::gyroscopic_lead<I>(dt)));
+    }
   }
 
-  /// The first signal that gave no number in the newest step, in words; empty if all did.
-  std::string not_a_number() const {
-    for (const Actuator& u : parts_.actuators) {
-      if (std::isnan(u.target.value + u.target.rate)) return fmt::format("The set point of actuator '{}'", u.spec.name);
+  /// Looks after what drifts or changes slowly: rotations and turns, the stiffness of joints, the stable time step.
+  void end_step(double dt) {
+    const bool tidy = ++steps_ % 256 == 0;
+    for (std::size_t i = 0; i < parts_.bodies.size(); ++i) {
+      Body& b = parts_.bodies[i];
+      if (b.fixed) continue;
+      if (tidy) b.motion.rotation = orthonormalised(b.motion.rotation);
+      watch(i);
     }
-    for (const Load& l : parts_.loads) {
-      if (std::isnan(l.size)) return fmt::format("The size of load '{}'", l.spec.name);
-    }
-    for (const PrescribedMotion& p : parts_.motions) {
-      if (std::isnan(p.drive.value + p.drive.rate)) return fmt::format("The value of motion '{}'", p.spec.name);
-    }
-    return {};
+    if (tidy) settle_turns();
+    time_ += dt;
+    softening_.follow(parts_);
+    if (!bad_.valid()) watch_.follow(parts_, dt, time_);
   }
 
   void watch(std::size_t i) {
@@ -252,6 +244,8 @@ class MachinePhases : public Assembly {
   }
 
   std::vector<Inverse> inverse_;
+  Softening softening_;
+  StepWatch<I> watch_;
   double bad_time_ = 0.0;
   long steps_ = 0;
 };

@@ -53,7 +53,7 @@ struct Parts {
 
   // Scratch of the prescribed motions.
   std::vector<DriveRow> drive_rows;
-  std::vector<double> drive_matrix, drive_errors, drive_held;
+  std::vector<double> drive_matrix, drive_directions, drive_errors, drive_held;
 };
 
 /// What a joint puts on its body b, about the joint's point: its springs and dampers, its stops and its friction.
@@ -66,6 +66,16 @@ inline Wrench reaction_of(const Parts& parts, std::size_t joint) {
     if (e.joint == joint) (is_rotation(e.freedom) ? w.torque : w.force) += e.force * e.axis;
   }
   return w;
+}
+
+/// Reports and recorders tell parts by their names: one that has none gets that of its kind (`one`) and its number, one
+/// that another of its kind has is refused. `name_of(item)` is the name of an item.
+template <class Items, class NameOf>
+void settle_name(std::string& name, const Items& items, const char* one, const char* several, NameOf&& name_of) {
+  if (name.empty()) name = fmt::format("{} {}", one, items.size());
+  for (const auto& item : items) {
+    if (name_of(item) == name) fail("two {} are named '{}'; rename one, so that reports are clear", several, name);
+  }
 }
 
 /// The item of an id, or an Error that names the kind of item.
@@ -92,6 +102,12 @@ inline const Joint& known_joint(const Parts& parts, JointId id, const std::strin
          parts.joints.size());
   }
   return parts.joints[id.index()];
+}
+
+/// A point (m) that was given as `what`, or an Error if it is nowhere.
+inline const Vec3& finite_point(const Vec3& p, const std::string& what) {
+  if (!p.allFinite()) fail("{} is ({:g}, {:g}, {:g}), but must be finite", what, p.x(), p.y(), p.z());
+  return p;
 }
 
 inline Vec3 unit(const Vec3& v, const std::string& asker) {

@@ -11,11 +11,12 @@
 
 namespace dem::mbd {
 
-/// Where a driven body is, and how it moves. A velocity that is not given is found by central differences over 2e-6 s.
+/// Where a driven body is, and how it moves: its reference frame, in which it was drawn (that of BodySpec::at), or its
+/// own one (MotionSpec::of_principal_frame). A velocity that is not given is found by central differences over 2e-6 s.
 struct Pose {
-  Vec3 position = Vec3::Zero();               ///< m, centre of mass, global
-  Mat3 rotation = Mat3::Identity();           ///< body frame (centre of mass, principal axes) -> global
-  std::optional<Vec3> velocity = {};          ///< m/s
+  Vec3 position = Vec3::Zero();               ///< m, origin of the frame, global
+  Mat3 rotation = Mat3::Identity();           ///< frame -> global
+  std::optional<Vec3> velocity = {};          ///< m/s, of the origin of the frame
   std::optional<Vec3> angular_velocity = {};  ///< rad/s, global axes
 };
 
@@ -29,12 +30,16 @@ struct Pose {
 /// takes hold of its coordinate where that is: a value that is more than 1 mm or 1 mrad off when it is added, switched
 /// on or given another signal is refused. A speed is set within one step, and the force of that step is the jolt that
 /// this takes.
+///
+/// Two coordinates of joints cannot be prescribed: a bend, which has no direction where the joint is straight (a
+/// universal joint's bend_x and bend_y can), and the length of a distance joint, which the joint itself holds (drive
+/// the slide of a prismatic joint between two bodies, or use a linear_actuator without the joint).
 struct MotionSpec {
   enum class Target {
     position,  ///< displacement of a body's centre of mass along a global axis, from where it is when the motion is
                ///< added
     rotation,  ///< turn of a body about a global axis, likewise; it turns about no other axis
-    joint,     ///< coordinate of a joint, but not its bend
+    joint,     ///< coordinate of a joint, but no bend or length
     pose       ///< everything
   };
   std::string name;
@@ -46,12 +51,19 @@ struct MotionSpec {
   Signal motion = 0.0;             ///< m or rad
   bool by_speed = false;           ///< only the signal's rate counts, the coordinate goes where that takes it
   std::function<Pose(double)> pose = {};
+  bool principal_frame = false;  ///< the pose is that of the body's own frame, not of its reference frame
   bool on = true;
 
   /// Prescribes one of freedoms_of(the joint's kind) instead of the joint's own coordinate.
   MotionSpec along(Freedom f) const {
     MotionSpec s = *this;
     s.freedom = f;
+    return s;
+  }
+  /// The pose is that of the frame in the centre of mass, along the principal axes.
+  MotionSpec of_principal_frame() const {
+    MotionSpec s = *this;
+    s.principal_frame = true;
     return s;
   }
 };
@@ -76,6 +88,7 @@ inline MotionSpec prescribed_speed(std::string name, JointId joint, Signal speed
   s.by_speed = true;
   return s;
 }
+/// Prescribes where the body's reference frame is, as BodySpec::at does.
 inline MotionSpec prescribed_pose(std::string name, BodyId body, std::function<Pose(double)> pose) {
   return {.name = std::move(name), .target = MotionSpec::Target::pose, .body = body, .pose = std::move(pose)};
 }
@@ -86,6 +99,8 @@ struct PrescribedMotion {
   double start = 0.0;     ///< m, position along the axis when it was added
   bool has_hold = false;  ///< it has been compared with its coordinate since it was added or changed
   Matrix3<double> start_rotation = Matrix3<double>::identity();
+  Vec3 centre = Vec3::Zero();    ///< m, of mass, in the frame of the poses
+  Mat3 axes = Mat3::Identity();  ///< body frame -> frame of the poses
   struct Drive {
     double value = 0.0, rate = 0.0;  ///< what was set last
     double impulse = 0.0;            ///< N s or N m s, given since the force was reported

@@ -16,9 +16,12 @@ namespace dem::mbd {
 ///     recorder.add("time_s", [&] { return machine.time(); });
 ///     recorder.add(hinge);                                    // coordinate, speed and reaction of a joint
 ///     io::CsvWriter csv("hinge.csv", recorder.columns());
-///     const auto report =
-///         machine.run(10.0, 1e-4, [&] { if (recorder.is_due(machine.time(), 0.01)) csv.row(recorder.sample()); });
+///     const auto write = [&] { if (recorder.is_due(machine.time(), 0.01)) csv.row(recorder.sample()); };
+///     write();                                                // the start, t = 0
+///     const auto report = machine.run(10.0, 1e-4, write);     // calls it after each step: 0.01 s, 0.02 s ...
 ///
+/// Before the first step no force has been evaluated, so the reactions in the row of the start are 0 (after design_for
+/// and initialise they are those of the start). Without that row the intervals count from the end of the first step.
 /// It refers to the machine, which has to outlive it and must not be moved.
 class Recorder {
  public:
@@ -83,7 +86,7 @@ class Recorder {
     return row_;
   }
 
-  /// True once for each `interval` (s) of time that passes, from the first call on.
+  /// True once for each `interval` (s) of time that passes, from the first call on, which is true.
   bool is_due(double time, double interval) {
     if (time < next_ - 1e-9 * interval) return false;
     next_ = (started_ ? next_ : time) + interval;

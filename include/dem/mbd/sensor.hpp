@@ -1,24 +1,14 @@
 #pragma once
 
-#include <dem/math/vector.hpp>
-#include <dem/mbd/ids.hpp>
-
 #include <dem/core/error.hpp>
+#include <dem/mbd/ids.hpp>
+#include <dem/mbd/wrench.hpp>
 
 #include <array>
 #include <string>
 #include <utility>
 
 namespace dem::mbd {
-
-/// A force (N) and a torque (N m) in global axes.
-struct Wrench {
-  Vector3<double> force = {0, 0, 0};
-  Vector3<double> torque = {0, 0, 0};
-
-  friend Wrench operator+(const Wrench& a, const Wrench& b) { return {a.force + b.force, a.torque + b.torque}; }
-  friend Wrench operator*(double s, const Wrench& a) { return {s * a.force, s * a.torque}; }
-};
 
 /// The mean of a force and torque over the last `window` seconds, weighted by time. Samples are summed in 64 bins of a
 /// ring, so that it needs no memory that grows, and no sum ever runs away: the newest part of the window is exact, its

@@ -31,11 +31,14 @@ struct Body {
   /// Global velocity of a point given in the body frame (eq. 20).
   Vec3 point_velocity(const Vec3& local) const { return velocity() + angular_velocity().cross(rotation() * local); }
 
-  /// Adds a force (N, global axes) that acts at a global point (eqs. 22-24).
+  /// Adds a force (N, global axes) that acts at a global point (eqs. 22-24) to this stage's sum. A machine clears the
+  /// sums before each evaluation, so what is added between two steps is lost: a force that lasts is a load
+  /// (mbd::applied_force, mbd::custom_load); this is for code that calls a machine's phases itself, after clear_forces.
   void apply(const Vec3& f, const Vec3& at) {
     force += from_eigen(f);
     torque += from_eigen((at - position()).cross(f));
   }
+  /// Adds a torque (N m, global axes) likewise.
   void apply_torque(const Vec3& t) { torque += from_eigen(t); }
 };
 
