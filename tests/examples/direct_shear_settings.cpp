@@ -58,7 +58,7 @@ TEST_CASE("settings.toml repeats the run") {
   CHECK(again.settings.stiffness == 2000.0);
   CHECK(again.settings.area_correction);
   CHECK(again.settings.packing == "random");
-  CHECK(again.settings.relative_density == 0.17);
+  CHECK(again.settings.relative_density == 0.2);
   CHECK(again.settings.seed == 7);
   CHECK(again.settings.output == "some where");
 }
@@ -152,7 +152,7 @@ TEST_CASE("the report lists a seed only of a packing that has one") {
     }
     return std::string();
   };
-  CHECK(packing({"--seed=7"}) == "random, seed 7, relative density 0.17 asked for");
+  CHECK(packing({"--seed=7"}) == "random, seed 7, relative density 0.2 asked for");
   CHECK_THAT(packing({"--packing=poured"}), !ContainsSubstring("seed"));
   CHECK(packing({"--packing-file=a/p.txt"}) == "from p.txt");
 }

@@ -39,7 +39,7 @@ TEST_CASE("each pair of materials has its own friction") {
   // Grains slide on a level plate: ice on steel far, rubber not.
   dem::World<Balls> w(options({0, 0, -9.81}, 5e-6));
   const auto pair = [](double mu) {
-    return dem::ContactParameters<Balls>{{2000.0, 0.015, 1.0}, {mu, 2000.0, 1.0, 1.0}};
+    return dem::ContactParameters<Balls>{{2000.0, 0.015, 1.0}, {mu, 2000.0, 0.1, 1.0}};
   };
   w.set_contact("ice", "steel", pair(0.02));
   w.set_contact("rubber", "steel", pair(0.8));
