@@ -56,10 +56,11 @@ TEST_CASE("the memory that is told is what a world takes from the heap") {
   const auto [machine, nothing] = taken(0);
   const auto [all, told] = taken(10);
   CHECK(nothing == 0.0);
-  // The allocator's own book-keeping is 0.1 % of it, and the smallest part, an index for each grain, 0.3 %.
+  // The allocator's own book-keeping, up to 64 bytes for each of some 200 aligned blocks, is up to 1 %; partner
+  // records, candidates, memories and state are several per cent each.
   const double of_grains = all - machine;
   CAPTURE(machine, of_grains, told);
-  CHECK(told > 0.997 * of_grains);
+  CHECK(told > 0.99 * of_grains);
   CHECK(told < of_grains);
 }
 #endif
