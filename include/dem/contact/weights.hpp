@@ -43,6 +43,7 @@ void fit_weights(std::size_t count, Fit fit, Point&& point) {
     }
     double& weight = point(k).area;
     if (!(first > 0.0)) {
+      if (!(parts[k].overlap < 0.0)) continue;
       bool nearest = true;
       for (std::size_t m = 0; m < count; ++m) {
         const bool nearer = parts[m].overlap > parts[k].overlap || (parts[m].overlap == parts[k].overlap && m < k);

@@ -68,10 +68,10 @@ StableTimeStep stable_time_step_of_bodies(std::span<const BodyPair> pairs, std::
     const auto& parameters = materials.table()[materials.row(a.material, b.material)];
     const contact::NormalState<double> deepest = {2.0 * overlap_limit * radius, 0.0, radius, 1.0 / inverse_mass, 0.0};
     for_each_swing<Model>(
-        parameters, deepest, 1.0, soft, turning, [&](const std::string& text, double k, double c, double mobility) {
+        parameters, deepest, 1.0, soft, turning, [&](double k, double c, double mobility, const auto& text) {
           const double dt = stable_step(Model::Integrator::stability_limit, n * k, n * c, mobility);
           if (!(dt < result.value)) return;
-          result = {dt, fmt::format("body '{}' on body '{}': {}, {:g} times", body_a.name, body_b.name, text, n)};
+          result = {dt, fmt::format("body '{}' on body '{}': {}, {:g} times", body_a.name, body_b.name, text(), n)};
         });
   }
   return result;

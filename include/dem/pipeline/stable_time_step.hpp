@@ -33,24 +33,26 @@ inline double stable_step(double limit, double k, double c, double w) {
 }
 
 /// The springs of a pair's laws that swing apart from each other: those along the normal, and those of friction and
-/// rolling resistance, which turn the same grains and so add up. Calls limit(text, k, c, w) for each with stiffness k
+/// rolling resistance, which turn the same grains and so add up. Calls limit(k, c, w, text) for each with stiffness k
 /// (N/m), damping c (N s/m), of which `acting` (a share) acts, and mobility w (1/kg); w_turning: 1/(kg m^2), of
-/// rotations.
+/// rotations; text() says which it is.
 template <class Model, class Parameters, class Limit>
 void for_each_swing(const Parameters& p, const contact::NormalState<double>& deepest, double acting, double w,
                     double w_turning, Limit&& limit) {
   const double normal = Model::Normal::stiffness(p.normal, deepest) + Model::Cohesion::stiffness(p.cohesion, deepest);
-  limit(fmt::format("stiffness {:g} N/m", normal), normal,
-        acting * contact::damping_of<typename Model::Normal>(p.normal, deepest), w);
+  limit(normal, acting * contact::damping_of<typename Model::Normal>(p.normal, deepest), w,
+        [&] { return fmt::format("stiffness {:g} N/m", normal); });
 
   const double sliding = friction::stiffness_of<typename Model::Friction>(p.friction, deepest);
   const double slide_damping = acting * contact::damping_of<typename Model::Friction>(p.friction, deepest);
   const double rolling = Model::Rolling::stiffness(p.rolling, deepest);
   const double roll_damping = contact::damping_of<typename Model::Rolling>(p.rolling, deepest);
-  std::string text = fmt::format("friction stiffness {:g} N/m", sliding);
-  if (rolling + roll_damping > 0.0) text += fmt::format(" with rolling stiffness {:g} N m", rolling);
   const double to_slide = w > 0.0 ? w_turning / w : 0.0;
-  limit(text, sliding + to_slide * rolling, slide_damping + to_slide * roll_damping, w);
+  limit(sliding + to_slide * rolling, slide_damping + to_slide * roll_damping, w, [&] {
+    const std::string friction = fmt::format("friction stiffness {:g} N/m", sliding);
+    return rolling + roll_damping > 0.0 ? friction + fmt::format(" with rolling stiffness {:g} N m", rolling)
+                                        : friction;
+  });
 }
 
 /// What the stable time step has to know of a surface.
@@ -77,13 +79,13 @@ StableTimeStep stable_time_step(std::span<const Species<typename Model::Shape>> 
     const auto& p = materials.table()[materials.row(a, b)];
     const contact::NormalState<double> deepest = {2.0 * overlap_limit * radius, 0.0, radius, mass, 0.0};
     for_each_swing<Model>(p, deepest, damped_share, w, w_turning,
-                          [&](const std::string& text, double k, double c, double mobility) {
+                          [&](double k, double c, double mobility, const auto& text) {
                             const double n = contacts_in_line * patch.area;
                             const double dt = stable_step(Model::Integrator::stability_limit, n * k, n * c, mobility);
                             if (!(dt < result.value)) return;
                             const char* damper = c > 0.0 ? " with a damper" : "";
                             result = {dt, fmt::format("{} on {}: {}{}, grain of {:.4g} kg", materials.name(a),
-                                                      materials.name(b), text, damper, mass)};
+                                                      materials.name(b), text(), damper, mass)};
                           });
   };
   for (const auto& a : species) {
