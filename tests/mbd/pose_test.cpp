@@ -94,7 +94,7 @@ TEMPLATE_TEST_CASE("a pose is that of the frame in which a body was drawn, or of
     const Pose pose = drawing(t);
     return Pose{.position = pose.position + pose.rotation * centre, .rotation = pose.rotation * axes};
   };
-  m.add_motion(prescribed_pose("fly too", other, principal).of_principal_frame());
+  m.add_motion(prescribed_pose("fly too", other, principal, dem::BodyFrame::principal));
   REQUIRE(m.run(0.3, 1e-3));
   const double t = m.time();
   for (const BodyId b : {bracket, other}) {
@@ -112,5 +112,5 @@ TEST_CASE("a pose in the wrong frame is refused with both frames named") {
   const BodyId b = m.add_body(given_body("b", 1.0, Vec3(0.1, 0.1, 0.1), {0.2, 0, 0}).at({1, 0, 0}));
   m.add_motion(prescribed_pose("fly", b, [](double) { return Pose{.position = Vec3(1.2, 0, 0)}; }));
   check_refused([&] { (void)m.step(1e-3); }, "'fly' is 0.2 m or rad off", "pose of the body's reference frame",
-                "of_principal_frame");
+                "MotionSpec::frame");
 }

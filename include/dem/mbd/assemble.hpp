@@ -114,7 +114,7 @@ inline PrescribedMotion make_motion(const Parts& parts, MotionSpec spec) {
   p.axis = from_eigen(unit(spec.axis, who));
   p.start = dot(b.motion.position, p.axis);
   p.start_rotation = b.motion.rotation;
-  if (!spec.principal_frame) {
+  if (spec.frame == BodyFrame::reference) {
     const BuiltBody& built = parts.built[spec.body.index()];
     p.axes = built.reference_axes.transpose();
     p.centre = -(p.axes * built.reference_origin);

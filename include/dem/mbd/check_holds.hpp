@@ -35,7 +35,7 @@ inline void check_holds(Parts& parts, double time) {
           "is {:g}: {}, or move a body",
           p.spec.name, std::abs(off), time, tolerance,
           p.spec.target == MotionSpec::Target::pose
-              ? "let the pose of the body's reference frame (see of_principal_frame) start there (set_pose)"
+              ? "let the pose of the body's reference frame, or of that in MotionSpec::frame, start there (set_pose)"
               : "let its signal start there (set_motion), say with starting_at what the joint's coordinate is at "
                 "assembly");
     }

@@ -11,8 +11,8 @@
 
 namespace dem::mbd {
 
-/// Where a driven body is, and how it moves: its reference frame, in which it was drawn (that of BodySpec::at), or its
-/// own one (MotionSpec::of_principal_frame). A velocity that is not given is found by central differences over 2e-6 s.
+/// Where one of the two frames of a driven body is (MotionSpec::frame), and how it moves. A velocity that is not given is
+/// found by central differences over 2e-6 s.
 struct Pose {
   Vec3 position = Vec3::Zero();               ///< m, origin of the frame, global
   Mat3 rotation = Mat3::Identity();           ///< frame -> global
@@ -51,19 +51,13 @@ struct MotionSpec {
   Signal motion = 0.0;             ///< m or rad
   bool by_speed = false;           ///< only the signal's rate counts, the coordinate goes where that takes it
   std::function<Pose(double)> pose = {};
-  bool principal_frame = false;  ///< the pose is that of the body's own frame, not of its reference frame
+  BodyFrame frame = BodyFrame::reference;  ///< of the body, which the pose is that of
   bool on = true;
 
   /// Prescribes one of freedoms_of(the joint's kind) instead of the joint's own coordinate.
   MotionSpec along(Freedom f) const {
     MotionSpec s = *this;
     s.freedom = f;
-    return s;
-  }
-  /// The pose is that of the frame in the centre of mass, along the principal axes.
-  MotionSpec of_principal_frame() const {
-    MotionSpec s = *this;
-    s.principal_frame = true;
     return s;
   }
 };
@@ -88,9 +82,14 @@ inline MotionSpec prescribed_speed(std::string name, JointId joint, Signal speed
   s.by_speed = true;
   return s;
 }
-/// Prescribes where the body's reference frame is, as BodySpec::at does.
-inline MotionSpec prescribed_pose(std::string name, BodyId body, std::function<Pose(double)> pose) {
-  return {.name = std::move(name), .target = MotionSpec::Target::pose, .body = body, .pose = std::move(pose)};
+/// Prescribes where one of the body's frames is: by default the reference frame, as BodySpec::at does.
+inline MotionSpec prescribed_pose(std::string name, BodyId body, std::function<Pose(double)> pose,
+                                  BodyFrame frame = BodyFrame::reference) {
+  return {.name = std::move(name),
+          .target = MotionSpec::Target::pose,
+          .body = body,
+          .pose = std::move(pose),
+          .frame = frame};
 }
 
 struct PrescribedMotion {

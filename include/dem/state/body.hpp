@@ -8,6 +8,12 @@
 
 namespace dem {
 
+/// The two frames of a body.
+enum class BodyFrame {
+  reference,  ///< in which it was made: that of BodySpec, of the drawing, of its mesh
+  principal   ///< the origin in the centre of mass, axes along the principal axes: that of Body
+};
+
 /// A rigid body of a machine (thesis section 2.1). The body frame sits in the centre of mass, its axes are the
 /// principal axes of inertia. Forces and torques are gathered in the global frame, torques about the centre of mass.
 struct Body {

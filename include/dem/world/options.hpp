@@ -36,12 +36,6 @@ struct SpeciesOptions {
   double density = 2650.0;  ///< kg/m^3; the default is quartz
 };
 
-/// The two frames of a body.
-enum class BodyFrame {
-  reference,  ///< in which it was made: that of BodySpec, of the drawing, of its mesh
-  principal   ///< the origin in the centre of mass, axes along the principal axes: that of Body
-};
-
 /// Where a surface sits on its body: by default where it was drawn. The two frames are one for boxes, cylinders,
 /// spheres and bodies that are given by their principal moments about the origin; not for meshes, sums of parts, and
 /// bodies with a centre of mass or a tensor of their own.
