@@ -4,7 +4,7 @@
 #include <dem/io/drawn_surface.hpp>
 #include <dem/io/vtk_grains.hpp>
 #include <dem/io/vtk_series.hpp>
-#include <dem/mbd/assembly.hpp>
+#include <dem/mbd/mechanism.hpp>
 
 #include <cstdint>
 #include <filesystem>
@@ -50,7 +50,7 @@ struct MachineArrays {
 /// `bodies`), "machine_part" (number of the body), "velocity_m_s" (of the centre of mass), "angular_velocity_rad_s" and
 /// "contact_force_N" (on the body from grains and from other bodies' surfaces; 0 without a world). Throws dem::Error as
 /// write_vtk_bodies does, and for a body that the machine does not have.
-inline void write_vtk_machine(const std::filesystem::path& path, const mbd::Assembly& machine,
+inline void write_vtk_machine(const std::filesystem::path& path, const mbd::Mechanism& machine,
                               const std::vector<DrawnBody>& bodies, const VtkOptions& options = {}) {
   std::vector<BodyMesh> meshes;
   detail::MachineArrays data;
@@ -108,7 +108,7 @@ void add_vtk_frame(VtkSeries& series, const World& world, const FrameOptions& fr
 }
 
 /// Adds bodies of a machine without a world, as `part`.
-inline void add_vtk_frame(VtkSeries& series, double time, const mbd::Assembly& machine,
+inline void add_vtk_frame(VtkSeries& series, double time, const mbd::Mechanism& machine,
                           const std::vector<DrawnBody>& bodies, std::string_view part = "machine") {
   const auto path = series.next_path(part);
   write_vtk_machine(path, machine, bodies, {.single_precision = true, .time_s = time});

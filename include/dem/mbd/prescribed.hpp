@@ -11,8 +11,8 @@
 
 namespace dem::mbd {
 
-/// Where one of the two frames of a driven body is (MotionSpec::frame), and how it moves. A velocity that is not given is
-/// found by central differences over 2e-6 s.
+/// Where one of the two frames of a driven body is (MotionSpec::frame), and how it moves. A velocity that is not given
+/// is found by central differences over 2e-6 s.
 struct Pose {
   Vec3 position = Vec3::Zero();               ///< m, origin of the frame, global
   Mat3 rotation = Mat3::Identity();           ///< frame -> global

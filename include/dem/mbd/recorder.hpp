@@ -1,6 +1,6 @@
 #pragma once
 
-#include <dem/mbd/assembly.hpp>
+#include <dem/mbd/mechanism.hpp>
 
 #include <functional>
 #include <span>
@@ -25,7 +25,7 @@ namespace dem::mbd {
 /// It refers to the machine, which has to outlive it and must not be moved.
 class Recorder {
  public:
-  explicit Recorder(const Assembly& machine) : machine_(&machine) {}
+  explicit Recorder(const Mechanism& machine) : machine_(&machine) {}
 
   /// A column of the user's own.
   Recorder& add(std::string column, std::function<double()> value) {
@@ -36,7 +36,7 @@ class Recorder {
   }
   /// All free coordinates and their speeds, reaction force and torque on its body b in global axes.
   Recorder& add(JointId id) {
-    const Assembly* m = machine_;
+    const Mechanism* m = machine_;
     known_joint(m->parts(), id, "a recorder");
     const std::string name = m->parts().joint_specs[id.index()].name;
     const JointKind kind = m->joint(id).kind;
@@ -57,7 +57,7 @@ class Recorder {
   }
   /// Position and velocity of a body's centre of mass.
   Recorder& add(BodyId id) {
-    const Assembly* m = machine_;
+    const Mechanism* m = machine_;
     const std::string name = known_body(m->parts(), id, "a recorder").name;
     for (int k = 0; k < 3; ++k) {
       add(fmt::format("{}_{}_m", name, "xyz"[k]), [m, id, k] { return m->body(id).position()[k]; });
@@ -69,7 +69,7 @@ class Recorder {
   }
   /// Coordinate, speed and force of an actuator.
   Recorder& add(ActuatorId id) {
-    const Assembly* m = machine_;
+    const Mechanism* m = machine_;
     if (id.index() >= m->parts().actuators.size()) fail("a recorder names an actuator that the machine does not have");
     const std::string name = m->actuator(id).spec.name;
     add(name + "_coordinate", [m, id] { return m->actuator(id).coordinate; });
@@ -95,7 +95,7 @@ class Recorder {
   }
 
  private:
-  const Assembly* machine_;
+  const Mechanism* machine_;
   std::vector<std::string> columns_;
   std::vector<std::function<double()>> values_;
   std::vector<double> row_;
