@@ -65,9 +65,11 @@ class Machine : public MachinePhases<I> {
   }
 
   /// Takes `substeps` machine steps in place of add_forces, advance and prescribe, for machines that are stiffer than
-  /// the grains. The grains' forces (hold_contacts) run linearly in time: in the first stage on from their values at
-  /// the start of this and of the last step, in the second between the start and the predicted end of the step. In a
-  /// world's step:
+  /// the grains. With an integrator of one stage the grains' forces (hold_contacts) are held over the step, and half of
+  /// what they changed by since the last one is made up for by an impulse (catch_up): a free body then moves exactly as
+  /// without sub-steps, so that energy is kept at any stable step. With two stages they run linearly in time: in the
+  /// first on from their values at the start of the last step and of this one, in the second between the start and the
+  /// predicted end of the step. In a world's step:
   ///
   ///     clear_forces(); (grains) hold_contacts(stage); advance_substeps(stage, dt, gravity);
   ///
@@ -83,13 +85,14 @@ class Machine : public MachinePhases<I> {
     const std::vector<Wrench>& from = stage == 0 ? earlier_contacts_ : contacts_;
     const std::vector<Wrench>& to = stage == 0 ? contacts_ : corrected_contacts_;
     const double phase = stage == 0 ? 1.0 : 0.0;
+    if constexpr (I::stages == 1) catch_up(dt, h);
     for (int s = 0; s < n; ++s) {
       const double start = time_;
       for (int k = 0; k < I::stages; ++k) {
         before_forces(k, h);
         const double x = phase + (stage_time(s * h, h, k)) / dt;
         for (std::size_t i = 0; i < parts_.bodies.size(); ++i) {
-          const Wrench w = (1.0 - x) * from[i] + x * to[i];
+          const Wrench w = I::stages == 1 ? contacts_[i] : (1.0 - x) * from[i] + x * to[i];
           parts_.bodies[i].force = w.force;
           parts_.bodies[i].torque = w.torque;
         }
@@ -117,6 +120,16 @@ class Machine : public MachinePhases<I> {
     std::vector<Sensor>* sensors_;
     std::vector<Sensor> kept_;
   };
+
+  /// Gives the bodies half of the impulse by which the grains' forces changed since the last step, dt ago: what the kick
+  /// at the end of a step is to velocity Verlet. The machine's own step h is in it because its first half kick was with
+  /// the earlier force (Verlet), or its kicks come before its drifts (symplectic Euler).
+  void catch_up(double dt, double h) {
+    const double time = 0.5 * (I::predicts_before_forces ? dt + h : dt - h);
+    for (std::size_t i = 0; i < parts_.bodies.size(); ++i) {
+      if (!parts_.bodies[i].fixed) this->push(i, time * contacts_[i] + -time * earlier_contacts_[i]);
+    }
+  }
 
   /// Before each step: what was added or changed since the last one counts, and is refused before anything moves.
   void prepare(double dt) {

@@ -175,6 +175,16 @@ class MachinePhases : public Assembly {
     design_dt_ = dt;
   }
 
+  /// Adds an impulse (N s, and N m s about the centre of mass) to a free body's velocities.
+  void push(std::size_t i, const Wrench& impulse) {
+    integrator::Motion<double>& m = parts_.bodies[i].motion;
+    const Inverse& inv = inverse_[i];
+    const Vector3<double> turn = transpose_times(m.rotation, impulse.torque);
+    m.velocity += inv.mass * impulse.force;
+    m.angular_velocity +=
+        {inv.inverse_inertia.x * turn.x, inv.inverse_inertia.y * turn.y, inv.inverse_inertia.z * turn.z};
+  }
+
   std::vector<Memory> memory_;
   double time_ = 0.0, design_dt_ = 0.0, step_dt_ = 0.0;  ///< s; the last two with all substeps
   int initialised_substeps_ = 0;
