@@ -275,6 +275,12 @@ TEST_CASE("parts without a name get one, and no two of a kind have the same") {
   check_refused([&] { m.add_actuator(joint_actuator("same", slide, 1, 1)); }, "two actuators are named 'same'");
   check_refused([&] { m.add_load(applied_force("same", a, {0, 0, 0}, X, 1.0)); }, "two loads are named 'same'");
   check_refused([&] { m.add_spring(spring("same", a, {0, 0, 0}, b, {1, 0, 0}, 1.0)); }, "two springs are named");
+  m.add_connection("same", a, X);
+  check_refused([&] { m.add_connection("same", b, X); }, "two connection points are named 'same'");
+  m.add_motion(prescribed_joint("same", slide, 0.0));
+  check_refused([&] { m.add_motion(prescribed_joint("same", other, 0.0)); }, "two prescribed motions are named");
+  m.add_sensor(joint_sensor("same", slide, 0.1));
+  check_refused([&] { m.add_sensor(joint_sensor("same", other, 0.1)); }, "two sensors are named");
   check_refused([&] { m.add_coupling({"same", {{slide, 1.0}, {other, 1.0}}}); }, "two couplings are named");
 }
 

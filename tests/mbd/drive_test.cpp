@@ -65,19 +65,21 @@ TEST_CASE("a PD actuator's step response is that of a damped oscillator") {
   }
 }
 
-TEST_CASE("an actuator between points that is given no set point holds what is at assembly") {
+TEST_CASE("an actuator that is given no set point holds what is at assembly") {
   Machine<PredictorCorrector> m;
   m.gravity.setZero();
   const BodyId cart = m.add_body(ball("cart").at({0.7, 0, 0})), disc = m.add_body(ball("disc").at({0, 3, 0}));
   m.add_joint(prismatic("rail", m.ground(), cart, {0.7, 0, 0}, X));
-  const JointId hinge = m.add_joint(revolute("hinge", m.ground(), disc, {0, 3, 0}, Z));
+  const JointId hinge = m.add_joint(revolute("hinge", m.ground(), disc, {0, 3, 0}, Z).starting_at(0.7));
+  const ActuatorId brake = m.add_actuator(joint_actuator("brake", hinge, 1e3, 20.0));
   const ActuatorId ram = m.add_actuator(linear_actuator("ram", m.ground(), {0, 0, 0}, cart, {0.7, 0, 0}, 1e4, 200.0));
   const ActuatorId servo =
       m.add_actuator(rotational_actuator("servo", m.ground(), {0, 3, 0}, {1, 3, 0}, disc, {0, 4, 0}, 1e3, 20.0));
   REQUIRE(m.run(0.1, 1e-3));
   CHECK(m.actuator(ram).force == Approx(0.0).margin(1e-9));  // 1e4 N/m times rounding of the length
   CHECK(m.actuator(servo).coordinate == Approx(pi / 2).epsilon(1e-12));
-  CHECK(std::abs(m.coordinate(hinge)) < 1e-12);
+  CHECK(m.coordinate(hinge) == Approx(0.7).epsilon(1e-12));
+  CHECK(m.actuator(brake).force == Approx(0.0).margin(1e-9));
   CHECK(m.body(cart).position().x() == Approx(0.7).epsilon(1e-12));
 }
 

@@ -161,3 +161,37 @@ TEST_CASE("friction is stable in each of its directions, and a bushing's damper 
              }),
              Contains("is -1"));
 }
+
+TEST_CASE("the turn of a bent free joint has the speed at which it changes") {
+  // A wheel that spins, steers and nods: the turn's rate by central differences over 2e-5 s, with an error of
+  // (w dt)^2/6 = 3e-8 of w.
+  for (const double bend : {0.0, 10.0, 30.0, 60.0, 120.0}) {
+    INFO(bend << " degrees");
+    Machine<PredictorCorrector> m;
+    m.gravity.setZero();
+    const Mat3 steered = Eigen::AngleAxisd(bend * pi / 180, X).toRotationMatrix();
+    const Vec3 spin = steered * Vec3(0, 0, 20) + Vec3(0, 3, 0) + Vec3(2, 0, 0);
+    const BodyId wheel = m.add_body(ball("wheel").at({0, 0, 0}, steered).moving({0, 0, 0}, spin));
+    // The joint's axis on the wheel is the wheel's own: assembled straight in the reference pose.
+    const JointId gauge = m.add_joint(free_joint("gauge", m.ground(), wheel, {0, 0, 0}, Z));
+    m.parts().joints[gauge.index()].axes_b = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+    REQUIRE(m.step(1e-5));
+    const double before = m.coordinate(gauge);
+    REQUIRE(m.step(1e-5));
+    const double speed = m.speed(gauge);
+    REQUIRE(m.step(1e-5));
+    CHECK(speed == Approx((m.coordinate(gauge) - before) / 2e-5).epsilon(1e-6));
+    if (bend > 0.0 && bend < 90.0) {
+      Machine<PredictorCorrector> steady;
+      steady.gravity.setZero();
+      const BodyId disc =
+          steady.add_body(ball("disc").at({0, 0, 0}, steered).moving({0, 0, 0}, steered * Vec3(0, 0, 100)));
+      const JointId count = steady.add_joint(free_joint("count", steady.ground(), disc, {0, 0, 0}, Z));
+      steady.parts().joints[count.index()].axes_b = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+      const double start = steady.coordinate(count);
+      REQUIRE(steady.run(10.0, 1e-3));
+      // About its own axis, at a steady bend: the turn is its spin, and no whole turn is lost.
+      CHECK(steady.coordinate(count) - start == Approx(1000.0).epsilon(1e-6));
+    }
+  }
+}

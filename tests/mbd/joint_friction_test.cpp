@@ -49,8 +49,8 @@ TEST_CASE("friction stops what slides on a plane or along a line, and what turns
     const Vec3 along = on_line ? X : Vec3(0.6, 0.8, 0.0);
     Machine<PredictorCorrector> m;
     const BodyId puck = m.add_body(given_body("puck", 2.0, Vec3(0.1, 0.1, 0.1)).moving(speed * along));
-    const JointId table = m.add_joint(joint(kind, "table", m.ground(), puck, {0, 0, 0}, on_line ? X : Z)
-                                          .with_friction({.coefficient = mu, .radius = 0.01}));
+    const JointId table = m.add_joint(
+        joint(kind, "table", m.ground(), puck, {0, 0, 0}, on_line ? X : Z).with_friction({.coefficient = mu}));
     REQUIRE(m.run(0.2, 1e-4));
     // The start, while the springs of friction and of the joint build up, is not Coulomb's.
     CHECK((m.body(puck).velocity() - (speed - 0.2 * mu * 9.81) * along).norm() < 5e-3 * speed);
@@ -70,6 +70,29 @@ TEST_CASE("friction stops what slides on a plane or along a line, and what turns
   CHECK((m.body(rod).angular_velocity() - axis).norm() < 0.01);  // as above
   REQUIRE(m.run(0.4, 1e-4));
   CHECK(m.body(rod).angular_velocity().norm() < 0.01);
+}
+
+TEST_CASE("a planar joint with a bearing radius rubs its rotation too, and a guide refuses one") {
+  // mu m g on a ring of 0.05 m brakes 0.1 kg m^2 by 0.3 2 9.81 0.05 / 0.1 = 2.943 rad/s^2.
+  const double mu = 0.3, brake = mu * 2.0 * 9.81 * 0.05 / 0.1;
+  for (const double radius : {0.0, 0.05}) {
+    Machine<PredictorCorrector> m;
+    const BodyId top = m.add_body(given_body("top", 2.0, Vec3(0.1, 0.1, 0.1)).moving({0, 0, 0}, {0, 0, 2}));
+    const JointId table = m.add_joint(
+        planar("table", m.ground(), top, {0, 0, 0}, Z).with_friction({.coefficient = mu, .radius = radius}));
+    REQUIRE(m.run(0.5, 1e-4));
+    // The start, while the springs of friction and of the joint build up, is not Coulomb's.
+    CHECK(m.speed(table) == Approx(radius > 0.0 ? 2.0 - 0.5 * brake : 2.0).margin(5e-3 * 2.0));
+    REQUIRE(m.run(0.5, 1e-4));
+    CHECK(m.speed(table) == Approx(radius > 0.0 ? 0.0 : 2.0).margin(0.01));
+  }
+  Machine<PredictorCorrector> m;
+  const BodyId cart = m.add_body(ball("cart"));
+  check_refused(
+      [&] {
+        m.add_joint(prismatic("guide", m.ground(), cart, {0, 0, 0}, X).with_friction({.coefficient = mu, .radius = 1}));
+      },
+      "JointFriction::radius", "'guide'", "only the sliding", "leave the radius out");
 }
 
 TEST_CASE("the lever of a joint's friction turns the torque that it carries into bearing forces") {

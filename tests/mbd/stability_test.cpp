@@ -19,6 +19,21 @@ TEST_CASE("the stable time step names the part that limits it, and is one") {
   CHECK(limit.dt < 2e-3 * (1 + 1e-4));
 }
 
+TEST_CASE("the bound of a bent universal joint follows the shaft that its cross turns") {
+  // Bent about the cross's arm on the ground, the joint holds the rotation about the shaft of b, which is easy to turn:
+  // omega^2 = kr/I_z, limit 2/omega. The bound adds the soft spring in the point, 1e-4 of it.
+  const double kr = 1e4, axial = 1e-3;
+  for (const double bend : {0.0, 60.0, 80.0}) {
+    Machine<SymplecticEuler> m;
+    m.gravity.setZero();
+    const Vec3 shaft(0, -std::sin(bend * pi / 180), std::cos(bend * pi / 180));
+    const Mat3 pose = Eigen::AngleAxisd(bend * pi / 180, X).toRotationMatrix();
+    const BodyId b = m.add_body(given_body("b", 1.0, Vec3(0.1, 0.1, axial)).at({0, 0, 0}, pose));
+    m.add_joint(universal("cross", m.ground(), b, {0, 0, 0}, Z, shaft).with_stiffness(1.0, kr).with_damping(0, 0));
+    CHECK(m.stable_time_step().dt == Approx(2.0 * std::sqrt(axial / kr)).epsilon(2e-4));
+  }
+}
+
 TEST_CASE("derived stiffness is stable with room to spare, for every integrator") {
   const auto room = [](auto machine) {
     const BodyId ground = machine.ground();

@@ -6,6 +6,7 @@
 
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -22,9 +23,9 @@ struct ActuatorSpec {
   Vec3 at_a = Vec3::Zero(), at_b = Vec3::Zero();          ///< m, global at assembly
   Vec3 toward_a = Vec3::Zero(), toward_b = Vec3::Zero();  ///< m, global; arms of a rotational actuator on three points
   bool three_points = false;
-  double position_gain = 0.0;                                  ///< K, N/m or N m/rad
-  double speed_gain = 0.0;                                     ///< c, N s/m or N m s/rad
-  Signal set_point = 0.0;                                      ///< m or rad, with its rate
+  double position_gain = 0.0;            ///< K, N/m or N m/rad
+  double speed_gain = 0.0;               ///< c, N s/m or N m s/rad
+  std::optional<Signal> set_point = {};  ///< m or rad, with its rate; if none is given, the coordinate when it is added
   double max_force = std::numeric_limits<double>::infinity();  ///< N or N m; the force is cut at +- this
   Curve torque_curve = {};  ///< a motor: N m over rad/s (or N over m/s) at full throttle
   double throttle = 0.0;    ///< -1 .. 1; below 0 the motor runs the other way, with the mirrored curve
@@ -50,7 +51,7 @@ struct ActuatorSpec {
 
 /// Between two points (eqs. 34-37): the coordinate is their distance (m), which must not become zero.
 inline ActuatorSpec linear_actuator(std::string name, BodyId a, const Vec3& at_a, BodyId b, const Vec3& at_b,
-                                    double position_gain, double speed_gain, Signal set_point) {
+                                    double position_gain, double speed_gain, std::optional<Signal> set_point = {}) {
   return {.name = std::move(name),
           .a = a,
           .b = b,
@@ -60,14 +61,9 @@ inline ActuatorSpec linear_actuator(std::string name, BodyId a, const Vec3& at_a
           .speed_gain = speed_gain,
           .set_point = std::move(set_point)};
 }
-/// The same, that holds the length at assembly until it is told otherwise.
-inline ActuatorSpec linear_actuator(std::string name, BodyId a, const Vec3& at_a, BodyId b, const Vec3& at_b,
-                                    double position_gain, double speed_gain) {
-  return linear_actuator(std::move(name), a, at_a, b, at_b, position_gain, speed_gain, (at_b - at_a).norm());
-}
 /// On the coordinate of a joint: force on one that slides, torque on one that turns (eq. 38, over whole turns).
 inline ActuatorSpec joint_actuator(std::string name, JointId joint, double position_gain, double speed_gain,
-                                   Signal set_point = 0.0) {
+                                   std::optional<Signal> set_point = {}) {
   return {.name = std::move(name),
           .joint = joint,
           .position_gain = position_gain,
@@ -75,10 +71,12 @@ inline ActuatorSpec joint_actuator(std::string name, JointId joint, double posit
           .set_point = std::move(set_point)};
 }
 /// On three points (section 2.4.2): the angle at `corner` from `toward_a` on body a to `toward_b` on body b, counted
-/// positive about a x b at assembly.
+/// positive about a x b at assembly. It is the turn of a free joint about that normal: give the bodies a joint that
+/// lets them turn about it, as a hinge does. Where they bend away from it, only the turn that is left is measured and
+/// driven.
 inline ActuatorSpec rotational_actuator(std::string name, BodyId a, const Vec3& corner, const Vec3& toward_a, BodyId b,
                                         const Vec3& toward_b, double position_gain, double speed_gain,
-                                        Signal set_point) {
+                                        std::optional<Signal> set_point = {}) {
   return {.name = std::move(name),
           .a = a,
           .b = b,
@@ -90,13 +88,6 @@ inline ActuatorSpec rotational_actuator(std::string name, BodyId a, const Vec3& 
           .position_gain = position_gain,
           .speed_gain = speed_gain,
           .set_point = std::move(set_point)};
-}
-/// The same, that holds the angle at assembly until it is told otherwise.
-inline ActuatorSpec rotational_actuator(std::string name, BodyId a, const Vec3& corner, const Vec3& toward_a, BodyId b,
-                                        const Vec3& toward_b, double position_gain, double speed_gain) {
-  const Vec3 to_a = toward_a - corner, to_b = toward_b - corner;
-  return rotational_actuator(std::move(name), a, corner, toward_a, b, toward_b, position_gain, speed_gain,
-                             std::atan2(to_a.cross(to_b).norm(), to_a.dot(to_b)));
 }
 /// A motor on a joint: torque (N m) over speed (rad/s), times a throttle between -1 and 1 that is set while running.
 /// In reverse it is the same motor the other way round: torque = throttle curve(-speed).
@@ -118,17 +109,22 @@ struct Actuator {
   double power() const { return force * speed; }  ///< W, delivered to the bodies
 };
 
+/// The coordinate that an actuator acts on.
+inline Coordinate coordinate_of(const Actuator& u, const std::vector<Joint>& joints, const Body& a, const Body& b) {
+  return u.spec.joint.valid() ? coordinate_of(joints[u.spec.joint.index()], a, b, u.spec.freedom)
+                              : distance_of(u.point_a, u.point_b, a, b);
+}
+
 DEM_FLATTEN inline void apply_actuator(Actuator& u, const std::vector<Joint>& joints, std::vector<Body>& bodies,
                                        double time, double dt) {
   Body &a = bodies[u.a], &b = bodies[u.b];
-  const Coordinate q = u.spec.joint.valid() ? coordinate_of(joints[u.spec.joint.index()], a, b, u.spec.freedom)
-                                            : distance_of(u.point_a, u.point_b, a, b);
+  const Coordinate q = coordinate_of(u, joints, a, b);
   u.coordinate = q.value;
   u.speed = q.speed;
   u.force = 0.0;
   if (!u.spec.on) return;
   if (u.spec.torque_curve.empty()) {
-    u.target = u.spec.set_point(time, dt);
+    u.target = (*u.spec.set_point)(time, dt);
     u.force = -u.spec.position_gain * (q.value - u.target.value) - u.spec.speed_gain * (q.speed - u.target.rate);
   } else {
     // Reverse is the mirror image of forward: the curve is read at the speed in the direction of the torque.

@@ -223,10 +223,16 @@ inline void add_rubbing(Parts& parts, const JointSpec& s, std::uint32_t joint) {
   }
   JointRubbing e;
   e.joint = joint;
-  const bool only_slides =
-      s.kind == prismatic || s.kind == planar || s.kind == point_on_line || s.kind == point_on_plane;
-  if (!only_slides) {
-    e.radius = require_positive(s.friction->radius, ("JointFriction::radius, of the bearing of " + who).c_str(), "m");
+  const std::string radius = "JointFriction::radius, of the bearing of " + who;
+  if (s.kind == prismatic || s.kind == point_on_line || s.kind == point_on_plane) {
+    if (s.friction->radius != 0.0) {
+      fail("{} is {:g} m, but only the sliding of a {} rubs; leave the radius out", radius, s.friction->radius,
+           name_of(s.kind));
+    }
+  } else if (s.kind == planar) {
+    e.radius = require_non_negative(s.friction->radius, radius.c_str(), "m");
+  } else {
+    e.radius = require_positive(s.friction->radius, radius.c_str(), "m");
   }
   e.preload = require_non_negative(s.friction->preload, ("preload of " + who).c_str(), "N");
   e.lever = require_non_negative(s.friction->lever, ("lever of " + who).c_str(), "m");

@@ -28,6 +28,8 @@ class Assembly : public Mechanism {
   ConnectionId add_connection(std::string name, BodyId body, const Vec3& at) {
     const std::string who = fmt::format("connection point '{}'", name);
     const Body& b = known_body(parts_, body, who);
+    settle_name(name, parts_.connections, "connection point", "connection points",
+                [](const Connection& c) { return c.name; });
     parts_.connections.push_back({std::move(name), body, detail::to_body(b, finite_point(at, who))});
     return ConnectionId(parts_.connections.size() - 1);
   }
@@ -70,6 +72,9 @@ class Assembly : public Mechanism {
       u.b = spec.b.value;
     }
     u.spec = std::move(spec);
+    if (!u.spec.set_point) {
+      u.spec.set_point = coordinate_of(u, parts_.joints, parts_.bodies[u.a], parts_.bodies[u.b]).value;
+    }
     parts_.actuators.push_back(std::move(u));
     changed_ = true;
     return ActuatorId(parts_.actuators.size() - 1);
@@ -102,10 +107,12 @@ class Assembly : public Mechanism {
     return LoadId(parts_.loads.size() - 1);
   }
   MotionId add_motion(MotionSpec spec) {
+    settle_name(spec.name, parts_.motions, "prescribed motion", "prescribed motions", name_in_spec);
     parts_.motions.push_back(detail::make_motion(parts_, std::move(spec)));
     return MotionId(parts_.motions.size() - 1);
   }
   SensorId add_sensor(SensorSpec spec) {
+    settle_name(spec.name, parts_.sensors, "sensor", "sensors", name_in_spec);
     detail::check_sensor(parts_, spec);
     WindowAverage average(spec.window);
     parts_.sensors.push_back({std::move(spec), average});

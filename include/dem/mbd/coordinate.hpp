@@ -9,7 +9,7 @@ struct Coordinate {
   bool rotation = false;                   ///< rad and N m, else m and N
   double value = 0.0;                      ///< rad (over whole turns) or m
   double speed = 0.0;                      ///< rad/s or m/s
-  Vector3<double> axis = {};               ///< global direction
+  Vector3<double> axis = {};               ///< global; a unit vector, but of the turn of a bent free joint longer
   Vector3<double> arm_a = {}, arm_b = {};  ///< m, from the centres of mass to the joint's point on b
 
   /// Adds a generalised force (N or N m) that drives the coordinate up to b, and the opposite to a.
@@ -23,14 +23,15 @@ struct Coordinate {
   }
 };
 
-/// Rotation of b about z of a's joint frame, counted over whole turns. Exact to rounding: the arc tangent gives the
-/// angle and the estimate only says which turn it belongs to.
+/// Rotation of b about z of a's joint frame, counted over whole turns; of a free joint that is bent, what is left when
+/// the shortest rotation has undone the bend. Exact to rounding: the arc tangent gives the angle and the estimate only
+/// says which turn it belongs to.
 inline Coordinate rotation_of(const Joint& j, const Body& a, const Body& b) {
   const Matrix3<double>&A = a.motion.rotation, &B = b.motion.rotation;
   const Vector3<double> xa = A * j.axes_a.x, ya = A * j.axes_a.y, xb = B * j.axes_b.x, yb = B * j.axes_b.y;
   Coordinate q;
   q.rotation = true;
-  q.axis = A * j.axes_a.z;
+  q.axis = detail::turn_gradient(A * j.axes_a.z, B * j.axes_b.z);
   q.speed = dot(q.axis, B * b.motion.angular_velocity - A * a.motion.angular_velocity);
   const double angle = std::atan2(dot(ya, xb) - dot(xa, yb), dot(xa, xb) + dot(ya, yb));
   constexpr double turn = 2.0 * std::numbers::pi;

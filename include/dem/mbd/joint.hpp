@@ -53,6 +53,12 @@ DEM_HOT void act(Body& a, Body& b, const Vector3<double>& ra, const Vector3<doub
   a.torque -= cross(ra, f) + t;
 }
 
+/// The gradient of a joint's turn: the rate of the turn is this times the relative angular velocity. Where the z axes
+/// agree it is theirs; where they are bent (a free joint) it lies between them, of length 1/cos(bend/2).
+DEM_HOT Vector3<double> turn_gradient(const Vector3<double>& za, const Vector3<double>& zb) {
+  return (1.0 / max(1.0 + dot(za, zb), 1e-6)) * (za + zb);
+}
+
 /// The penalty force of a joint. Springs are the gradient of an energy, so that without damping energy is kept:
 ///   point  k/2 |d|^2   line  k/2 |d - z z.d|^2   plane  k/2 (z.d)^2   length  k/2 (|d| - l)^2, d = x_b - x_a
 ///   parallel  kr (1 - z_a.z_b)   locked  kr/2 sum(1 - e_a.e_b)   cross  kr/2 (x_a.y_b)^2
@@ -170,7 +176,8 @@ DEM_FLATTEN inline void apply_penalty(Joint& j, Body& a, Body& b, const Vector3<
     DEM_MBD_JOINT(distance);
     DEM_MBD_JOINT(bushing);
     case free:  // only its turns are followed
-      j.angle_estimate += dt * dot(a.motion.rotation * j.axes_a.z, wb - wa);
+      j.angle_estimate +=
+          dt * dot(detail::turn_gradient(a.motion.rotation * j.axes_a.z, b.motion.rotation * j.axes_b.z), wb - wa);
       return;
   }
 #undef DEM_MBD_JOINT

@@ -20,7 +20,7 @@ struct JointStops {
 struct JointRubbing {
   std::uint32_t joint = 0;
   friction::AsperitySpring::Parameters<double> law = {};
-  double radius = 1, preload = 0, lever = 0;  ///< m, N, m; a joint that only slides needs no radius
+  double radius = 0, preload = 0, lever = 0;  ///< m, N, m
   friction::AsperitySpring::History<double> committed = {{0, 0, 0}};
   Vector3<double> force = {0, 0, 0};   ///< N, on b, global; sliding joints
   Vector3<double> torque = {0, 0, 0};  ///< N m, on b, global; joints that turn or bend
@@ -61,7 +61,7 @@ DEM_FLATTEN inline void apply_friction(JointRubbing& e, const Joint& j, Body& a,
     case prismatic:
     case point_on_line: state.velocity = {0, 0, dot(za, v)}; break;
     case cylindrical: state.velocity = {e.radius * dot(za, w), 0, dot(za, v)}; break;
-    case planar:
+    case planar: state.velocity = {dot(xa, v), dot(ya, v), e.radius * dot(za, w)}; break;
     case point_on_plane: state.velocity = {dot(xa, v), dot(ya, v), 0}; break;
     default: state.velocity = {e.radius * dot(xa, w), e.radius * dot(ya, w), e.radius * dot(za, w)}; break;
   }
@@ -79,6 +79,9 @@ DEM_FLATTEN inline void apply_friction(JointRubbing& e, const Joint& j, Body& a,
       torque = (e.radius * f.x) * za;
       break;
     case planar:
+      force = f.x * xa + f.y * ya;
+      torque = (e.radius * f.z) * za;
+      break;
     case point_on_plane: force = f.x * xa + f.y * ya; break;
     default: torque = e.radius * (f.x * xa + f.y * ya + f.z * za); break;
   }

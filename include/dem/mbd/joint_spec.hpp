@@ -31,7 +31,10 @@ struct JointStart {
 /// preload.
 struct JointFriction {
   double coefficient = 0.0;
-  double radius = 0.0;   ///< m, of the bearing: turns sliding into rotation; joints that turn or bend need it
+  /// m, of the bearing, where rotation rubs. Joints with a held point (revolute, cylindrical, spherical, universal, CV)
+  /// need it; a planar joint with a radius rubs its rotation too, without one its sliding alone; guides (prismatic,
+  /// point on line or plane) rub their sliding alone and have none.
+  double radius = 0.0;
   double preload = 0.0;  ///< N, added to the normal force; a brake is a joint with a preload
   double lever = 0.0;    ///< m, distance of the bearings: adds torque/lever; 0: left out
   double breaking_factor = 0.975;

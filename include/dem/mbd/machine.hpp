@@ -121,9 +121,9 @@ class Machine : public MachinePhases<I> {
     std::vector<Sensor> kept_;
   };
 
-  /// Gives the bodies half of the impulse by which the grains' forces changed since the last step, dt ago: what the kick
-  /// at the end of a step is to velocity Verlet. The machine's own step h is in it because its first half kick was with
-  /// the earlier force (Verlet), or its kicks come before its drifts (symplectic Euler).
+  /// Gives the bodies half of the impulse by which the grains' forces changed since the last step, dt ago: what the
+  /// kick at the end of a step is to velocity Verlet. The machine's own step h is in it because its first half kick was
+  /// with the earlier force (Verlet), or its kicks come before its drifts (symplectic Euler).
   void catch_up(double dt, double h) {
     const double time = 0.5 * (I::predicts_before_forces ? dt + h : dt - h);
     for (std::size_t i = 0; i < parts_.bodies.size(); ++i) {

@@ -85,10 +85,14 @@ inline HeldDirections held_directions(const Joint& j, const Body& a, const Body&
   switch (align_of(j.kind)) {
     case Align::parallel: held.rotation = Mat3::Identity() - z * z.transpose(); break;
     case Align::locked: held.rotation = j.kind == JointKind::bushing ? roots(j.kr3) : Mat3(Mat3::Identity()); break;
-    case Align::cross:
+    case Align::cross: {
+      const Vec3 g = Vec3(b.rotation() * to_eigen(j.axes_b.y)).cross(axes.col(0)).normalized();  // square to the cross
+      held.rotation = g * g.transpose();
+      break;
+    }
     case Align::constant_velocity: {
-      const Vec3 g = z + b.rotation() * to_eigen(j.axes_b.z);  // between the shafts: close to both gradients
-      held.rotation = g.normalized() * g.normalized().transpose();
+      const Vec3 g = Vec3(z + b.rotation() * to_eigen(j.axes_b.z)).normalized();  // half way between the shafts
+      held.rotation = g * g.transpose();
       break;
     }
     case Align::nothing: break;
@@ -137,7 +141,7 @@ inline std::pair<double, double> rubbing_mobility(const Joint& j, const Body& a,
     most = {std::max(most.first, share * wa), std::max(most.second, share * wb)};
   };
   switch (j.kind) {
-    case JointKind::planar:
+    case JointKind::planar: consider(Freedom::turn); [[fallthrough]];
     case JointKind::point_on_plane:
       consider(Freedom::slide_x);
       consider(Freedom::slide_y);
