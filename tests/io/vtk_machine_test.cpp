@@ -102,11 +102,16 @@ TEST_CASE("a frame of a world shows its grains, and its surfaces of every kind w
   CHECK(force[2] < 0.0);
   CHECK(array_of<double>(file, "velocity_m_s")[5] == Approx(0.01));
 
-  // A machine without a world, in a series of its own.
+  // A body as a mesh of its own, at the same time of the same series.
   const dem::io::SurfaceMesh mesh = dem::io::box_mesh({1, 1, 1});
-  dem::io::VtkSeries alone(folder / "alone.pvd");
-  dem::io::add_vtk_frame(alone, 0.5, world.machine(), {{.body = lift, .mesh = &mesh}}, "lift");
-  CHECK_THAT(text_of(folder / "alone.pvd"), Contains("timestep=\"0.5\"") && Contains("alone/lift_000000.vtp"));
+  dem::io::add_vtk_frame(series, world.time(), world.machine(), {{.body = lift, .mesh = &mesh}}, "lift");
+  const std::string both = text_of(folder / "run.pvd");
+  CHECK_THAT(both, Contains("run/lift_000000.vtp") && Contains("run/grains_000000.vtp"));
+  const auto time_of = [&](const std::string& part) {
+    const std::size_t at = both.rfind("timestep=", both.find(part));
+    return both.substr(at, both.find('"', at + 10) - at);
+  };
+  CHECK(time_of("lift_000000") == time_of("grains_000000"));
 }
 
 TEST_CASE("rows under named columns become curves") {

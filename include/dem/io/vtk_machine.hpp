@@ -91,7 +91,8 @@ struct FrameOptions {
   double plane_size = 1.0;  ///< m, edge of the square that shows a plane
 };
 
-/// Adds a world as it is now to a time series: its grains as "grains", its surfaces as "surfaces".
+/// Adds a world as it is now to a time series: its grains as "grains", its surfaces as "surfaces". Bodies without
+/// surfaces are added to the same series by the other add_vtk_frame, with world.time() and world.machine().
 template <class World>
 void add_vtk_frame(VtkSeries& series, const World& world, const FrameOptions& frame = {}) {
   const VtkOptions options{.single_precision = true, .time_s = world.time()};
@@ -107,7 +108,7 @@ void add_vtk_frame(VtkSeries& series, const World& world, const FrameOptions& fr
   }
 }
 
-/// Adds bodies of a machine without a world, as `part`.
+/// Adds bodies of a machine, with or without a world, as `part`.
 inline void add_vtk_frame(VtkSeries& series, double time, const mbd::Mechanism& machine,
                           const std::vector<DrawnBody>& bodies, std::string_view part = "machine") {
   const auto path = series.next_path(part);

@@ -137,12 +137,17 @@ void follow_bodies(WorldState<Model>& w) {
   for (auto& s : w.surfaces) s.follow(w.machine.bodies()[s.body.index()]);
 }
 
-/// Hands the surfaces' loads of a step to the sensors.
+/// Hands the surfaces' loads of a step, by grains and by surfaces of other bodies, to the sensors.
 template <class Model>
 void sample_surface_sensors(WorldState<Model>& w) {
   for (SurfaceSensor& s : w.surface_sensors) {
     const auto& surface = w.surfaces[s.surface.index()];
-    s.average.add({surface.force, surface.torque}, w.time_step);
+    mbd::Wrench load = {surface.force, surface.torque};
+    for (const pipeline::BodyPair& pair : w.body_contacts.pairs) {
+      if (pair.a == s.surface) load = load + mbd::Wrench{pair.force, pair.torque_a};
+      if (pair.b == s.surface) load = load + mbd::Wrench{-pair.force, pair.torque_b};
+    }
+    s.average.add(load, w.time_step);
   }
 }
 

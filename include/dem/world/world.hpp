@@ -122,11 +122,13 @@ class World : public WorldSetup<M> {
     touched();
   }
 
-  /// Force (N) that the grains exert on a surface, from the last force evaluation.
+  /// Force (N) that the grains exert on a surface, from the last force evaluation; body_contact_force tells what
+  /// another body's surface does.
   Vec3 surface_force(SurfaceId s) const { return to_eigen(known(state_.surfaces, s, "surface").force); }
   /// Torque (N m) of the grains on a surface about its body's centre of mass.
   Vec3 surface_torque(SurfaceId s) const { return to_eigen(known(state_.surfaces, s, "surface").torque); }
-  /// Force (N) and torque (N m, about its body's centre of mass) of the grains on a sensor's surface, now and averaged.
+  /// Force (N) and torque (N m, about its body's centre of mass) of the grains and of other bodies' surfaces on a
+  /// sensor's surface, now and averaged.
   const mbd::WindowAverage& surface_sensor(SurfaceSensorId s) const {
     return known(state_.surface_sensors, s, "surface sensor").average;
   }
