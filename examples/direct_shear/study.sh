@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # The full-size runs behind RESULTS.md: three packings, and on each of them half the time step and half the shearing
 # speed; a loose and a dense packing; the predictor-corrector. Prints a table. Runs that are there already are not made
-# again, so it may be stopped and called again; two of it share the work if they are given different parts.
+# again, so it may be stopped (Ctrl-C) and called again. Several of it may share a folder and so the work, best with
+# different parts: a run that another one is at is waited for.
 #
 #   study.sh <direct_shear> <folder> [seeds|half_step|half_speed|density|integrator ...]
 #
@@ -15,14 +16,33 @@ shift 2
 [ $# -gt 0 ] || set -- seeds half_step half_speed density integrator
 mkdir -p "$folder"
 cd "$folder"
+[ -w . ] || { echo "cannot write in $folder" >&2 && exit 1; }
 
-# run <name> <options>...
+is_done() { [ -s "$1/results.csv" ] && [ "$(grep -c ',1$' "$1/results.csv")" = 3 ]; }
+
+# run <name> <options>...: unless it is done. One script at a time makes a run: the others wait for its lock, a folder,
+# which only one of them can make.
+lock=
+trap '[ -z "$lock" ] || rmdir "$lock"' EXIT
+trap 'exit 130' INT TERM # when the rig has ended, so that its lock lasts as long as it does
 run() {
-  local name=$1
+  local name=$1 told= status=0
   shift
-  if [ -s "$name/results.csv" ] && [ "$(grep -c ',1$' "$name/results.csv")" = 3 ]; then return; fi
-  echo "$name: $*"
-  "$rig" --size full --no-vtk --threads "${THREADS:-1}" --output "$name" "$@" >"$name.log" 2>&1 || echo "  ended early, see $folder/$name.log"
+  until mkdir "$name.lock" 2> /dev/null; do
+    ! is_done "$name" || return 0
+    [ -n "$told" ] || echo "$name: waiting, another study is at it; if none is, remove the folder $folder/$name.lock"
+    told=1
+    sleep 5
+  done
+  lock=$name.lock
+  if ! is_done "$name"; then
+    echo "$name: $*"
+    "$rig" --size full --no-vtk --threads "${THREADS:-1}" --output "$name" "$@" > "$name.log" 2>&1 || status=$?
+    [ $status != 130 ] || { echo "  interrupted, see $folder/$name.log" && exit 130; }
+    [ $status = 0 ] || echo "  ended early, see $folder/$name.log"
+  fi
+  rmdir "$lock"
+  lock=
 }
 # The step that a finished run took (s), halved.
 half_step_of() { sed -n 's/^Time step \([0-9.e-]*\) s.*/\1/p' "$1.log" | awk '{print $1 / 2}'; }
