@@ -64,6 +64,34 @@ function(dem_add_compile_fail_test source)
   set_tests_properties(compile_fail.${name} PROPERTIES LABELS static)
 endfunction()
 
+# dem_add_benchmark_compile_test(<benchmark>): its sources are valid C++, where benchmarks are not built. Without the code
+# behind it that takes a third of the time that building takes.
+function(dem_add_benchmark_compile_test benchmark)
+  find_package(benchmark QUIET)
+  find_package(CLI11 QUIET)
+  if(DEM_BUILD_BENCHMARKS)
+    return()
+  elseif(NOT benchmark_FOUND OR NOT CLI11_FOUND)
+    message(STATUS "Google Benchmark or CLI11 not found, going without: the tests benchmark_compile.${benchmark}.*")
+    return()
+  endif()
+  set(includes "$<TARGET_PROPERTY:benchmark::benchmark,INTERFACE_INCLUDE_DIRECTORIES>$<SEMICOLON>"
+               "$<TARGET_PROPERTY:CLI11::CLI11,INTERFACE_INCLUDE_DIRECTORIES>")
+  string(CONCAT includes ${includes})
+  set(includes "$<FILTER:${includes},EXCLUDE,^/usr/include$>")
+  file(GLOB sources CONFIGURE_DEPENDS "${PROJECT_SOURCE_DIR}/benchmarks/${benchmark}/*.cpp")
+  foreach(source IN LISTS sources)
+    cmake_path(GET source STEM name)
+    add_test(
+      NAME benchmark_compile.${benchmark}.${name}
+      COMMAND ${CMAKE_CXX_COMPILER} -std=c++20 -fopenmp -fsyntax-only ${DEM_INCLUDES}
+              "$<$<BOOL:${includes}>:${system}$<JOIN:${includes},$<SEMICOLON>${system}>>"
+              "-I${PROJECT_SOURCE_DIR}/benchmarks" "${source}"
+      COMMAND_EXPAND_LISTS)
+    set_tests_properties(benchmark_compile.${benchmark}.${name} PROPERTIES LABELS static)
+  endforeach()
+endfunction()
+
 # dem_add_cuda_compile_test(<source>): nvcc accepts the source, and no kernel calls a function of the host. Compiling is
 # all: it needs no GPU. Warning 20012 is Eigen's own.
 function(dem_add_cuda_compile_test source)
