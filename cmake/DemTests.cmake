@@ -100,6 +100,11 @@ function(dem_add_cuda_compile_test source)
     message(STATUS "nvcc not found, going without: the test cuda_compile.${name}")
     return()
   endif()
+  execute_process(COMMAND ${DEM_NVCC} --version OUTPUT_VARIABLE version ERROR_QUIET)
+  if(NOT version MATCHES "release ([0-9]+)" OR CMAKE_MATCH_1 LESS 12)
+    message(STATUS "${DEM_NVCC} is older than CUDA 12, the first with C++20, going without: the test cuda_compile.${name}")
+    return()
+  endif()
   add_test(
     NAME cuda_compile.${name}
     COMMAND ${DEM_NVCC} -std=c++20 -arch=sm_75 --expt-relaxed-constexpr -Werror cross-execution-space-call -diag-suppress
