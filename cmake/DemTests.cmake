@@ -2,7 +2,7 @@
 
 set(DEM_SCRIPTS "${CMAKE_CURRENT_LIST_DIR}")
 
-if(TARGET Catch2::Catch2WithMain) # Catch2 version 3
+if(TARGET Catch2::Catch2WithMain) # Catch2 version 3, and version 2 as Debian has it
   add_library(test_main INTERFACE)
   target_link_libraries(test_main INTERFACE Catch2::Catch2WithMain)
 else()
@@ -113,12 +113,31 @@ function(dem_add_cuda_compile_test source)
   set_tests_properties(cuda_compile.${name} PROPERTIES LABELS static)
 endfunction()
 
-# dem_add_clang_test(<source>...): these unit tests pass when clang has compiled them for this machine as well. Without
-# OpenMP, whose library clang may lack.
+# dem_add_clang_test(<source>...): these unit tests pass when clang has compiled them for this machine as well, without
+# OpenMP, whose library clang may lack; and clang accepts a whole world, with OpenMP where it is there.
 function(dem_add_clang_test)
   find_program(DEM_CLANG NAMES clang++ clang++-14 DOC "Compiler that some tests are compiled with besides, if found")
-  if(NOT DEM_CLANG OR NOT CMAKE_CXX_COMPILER_ID STREQUAL "GNU" OR TARGET Catch2::Catch2WithMain)
-    message(STATUS "No clang++ besides g++, or Catch2 3: going without the test clang")
+  if(NOT DEM_CLANG OR NOT CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+    message(STATUS "No clang++ besides g++: going without the tests clang.*")
+    return()
+  endif()
+  execute_process(COMMAND ${DEM_CLANG} -fopenmp -include omp.h -fsyntax-only -x c++ /dev/null
+                  RESULT_VARIABLE status OUTPUT_QUIET ERROR_QUIET)
+  set(openmp)
+  if(status EQUAL 0)
+    set(openmp -fopenmp)
+  else()
+    message(STATUS "${DEM_CLANG} has no omp.h: the test clang.world goes without OpenMP")
+  endif()
+  add_test(
+    NAME clang.world
+    COMMAND ${DEM_CLANG} -std=c++20 -march=native ${openmp} -fsyntax-only -w ${DEM_INCLUDES}
+            "${CMAKE_CURRENT_SOURCE_DIR}/consumers/main.cpp"
+    COMMAND_EXPAND_LISTS)
+  set_tests_properties(clang.world PROPERTIES LABELS static)
+
+  if(Catch2_VERSION VERSION_GREATER_EQUAL 3)  # has no main function that a compiler's command line could name
+    message(STATUS "Catch2 3: going without the tests clang.build and clang.run")
     return()
   endif()
   set(program "${CMAKE_CURRENT_BINARY_DIR}/test_clang")
