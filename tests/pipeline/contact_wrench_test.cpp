@@ -8,6 +8,7 @@
 #include <dem/contact/linear_spring_dashpot.hpp>
 #include <dem/friction/coulomb_viscous.hpp>
 #include <dem/friction/mindlin.hpp>
+#include <dem/friction/none.hpp>
 #include <dem/pipeline/contact_wrench.hpp>
 #include <dem/rolling/torsion.hpp>
 #include <dem/world/model.hpp>
@@ -119,6 +120,23 @@ TEST_CASE("a point of a patch gives its share of what the whole contact gives, b
     CHECK(to_eigen(share.torque_j) == 0.25 * to_eigen(whole.torque_j));
     CHECK(to_eigen(share_history.friction.spring_force) == to_eigen(whole_history.friction.spring_force));
   }
+}
+
+TEST_CASE("points that are less than a whole contact together keep its damping ratio") {
+  // A share S of the spring K with the damper 2 b sqrt(S K m) is as damped as K with 2 b sqrt(K m): sqrt(S) of
+  // a whole contact's damper, and no more than the stable time step, which takes each contact as a whole one, allows.
+  struct Damped : Model {
+    using Normal = contact::LinearSpringDashpot;
+    using Friction = friction::None;
+  };
+  const double k = 1000.0, b = 0.3, inverse_mass = 1e5, speed = 0.1, d = 1e-5, share = 0.25;
+  const ContactParameters<Damped> p = {{k, b}, {}};
+  const pipeline::Encounter<double> e = {{0, 0, 2 * radius}, {0, 0, speed}, {0, 0, 0}, {0, 0, 0}, inverse_mass};
+  const contact::PointTouch<double> touch = {{0, 0, 1}, d, {0, 0, radius}, 0.5 * radius, share, share};
+  ContactHistory<Damped, double> h = {};
+  double overlap_ratio;
+  const double force = -pipeline::contact_wrench<Damped, double>(touch, e, p, 1e-6, h, overlap_ratio).force.z;
+  CHECK(force == Approx(share * k * d + 2.0 * b * std::sqrt(share * k / inverse_mass) * speed).epsilon(1e-14));
 }
 
 TEST_CASE("a normal law that pulls at the end of a contact presses nothing together") {

@@ -10,6 +10,10 @@ namespace dem::contact {
 // restitution at every impact speed. Hertz's contact does so too when its damper grows with the fourth root of the
 // overlap: with u = d^(5/4) its equation is that of the linear spring, with 5/4 m in place of m (Antypov and Elliott
 // 2011, doi:10.1209/0295-5075/94/50004). One function of b therefore serves both.
+//
+// That is the restitution of one contact, whole or a share of one (an edge or a corner of a polyhedron, see
+// NormalState). A body that lands on n whole contacts at once, as a cluster flat on its spheres, has n springs and n
+// dampers, so its damping ratio is b sqrt(n), and it rebounds lower than asked.
 
 /// Coefficient of restitution of a contact with the damping ratio b >= 0. If the contact may pull, it ends where the
 /// overlap is zero: e = exp(-pi b/sqrt(1 - b^2)), zero from critical damping on. If it never pulls, it ends where the

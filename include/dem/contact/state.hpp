@@ -9,12 +9,15 @@ namespace dem::contact {
 /// What a normal law may read about one contact (T = double) or a pack of contacts (T = Pack). Laws are those of whole
 /// contacts. Where a contact is a patch of points, each with an area or a share (Geometry::area), the laws are
 /// evaluated at each point as if it were the whole contact, and what they give is multiplied by that area: eq. 25's A.
+/// Points whose shares add up to S < 1 are together a spring S K. Laws that make their damper from a damping ratio and
+/// the effective mass are then handed m/S, the mass that swings on the whole spring K as m does on S K: S c(m/S) is
+/// that share of the critical damping of S K and m, so the restitution is the one that was asked for.
 template <class T>
 struct NormalState {
   T overlap;           ///< m, d of eq. 25; not negative where the bodies touch
   T approach_speed;    ///< m/s, d' of eq. 26; positive while the bodies move together
   T effective_radius;  ///< m, 1/(1/Ri + 1/Rj)
-  T effective_mass;    ///< kg, 1/(1/mi + 1/mj)
+  T effective_mass;    ///< kg, 1/(1/mi + 1/mj); over S for points whose shares add up to S < 1
   T time_step;         ///< s
 };
 

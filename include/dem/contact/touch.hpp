@@ -16,6 +16,9 @@ struct Geometry {
   Vector3<T> arm;      ///< m, from the centre of i to the contact point
   T effective_radius;  ///< m
   T area;              ///< m^2; 1 for spheres
+  /// What the areas of all points of the same patch add up to, where they are shares that may be less than one whole
+  /// contact together; else 1. See contact::NormalState::effective_mass.
+  T total_share = T(1);
 };
 
 /// Two free spheres whose centres are the particles' centres.
@@ -49,13 +52,14 @@ struct ClusterTouch {
 /// A contact that the narrow phase knows already as the laws need it: what shapes of any kind can hand over.
 template <class T>
 struct PointTouch {
-  Vector3<T> normal;   ///< unit vector from i towards j
-  T overlap;           ///< m
-  Vector3<T> arm;      ///< m, from the centre of i to the contact point
-  T effective_radius;  ///< m
-  T area;              ///< m^2; 1 where the laws' stiffness is that of a whole contact, less for a point of a patch
+  Vector3<T> normal;     ///< unit vector from i towards j
+  T overlap;             ///< m
+  Vector3<T> arm;        ///< m, from the centre of i to the contact point
+  T effective_radius;    ///< m
+  T area;                ///< m^2; 1 where the laws' stiffness is that of a whole contact, less for a point of a patch
+  T total_share = T(1);  ///< as Geometry's
 
-  DEM_HOT Geometry<T> geometry() const { return {normal, overlap, arm, effective_radius, area}; }
+  DEM_HOT Geometry<T> geometry() const { return {normal, overlap, arm, effective_radius, area, total_share}; }
 };
 
 /// How many contacts a shape may have at once where others have one, and their area in all: the face of a grain whose
@@ -93,6 +97,19 @@ struct SurfaceTouch {
   DEM_HOT Geometry<T> geometry() const {
     const T overlap = radius - gap;
     return {normal, overlap, centre + (radius - T(0.5) * overlap) * normal, effective_radius, area};
+  }
+};
+
+/// A point of a patch on a surface.
+template <class T>
+struct PatchTouch {
+  SurfaceTouch<T> point;
+  T total_share;  ///< as Geometry's
+
+  DEM_HOT Geometry<T> geometry() const {
+    Geometry<T> g = point.geometry();
+    g.total_share = total_share;
+    return g;
   }
 };
 

@@ -62,4 +62,18 @@ void fit_weights(std::size_t count, Fit fit, Point&& point) {
   }
 }
 
+/// What points that are shares of one contact add up to along the normal of point k (Geometry::total_share): their
+/// springs push along it with the square of the cosine. A tiny number is added, so that nothing is divided by zero.
+inline constexpr double least_total_share = 1e-12;
+template <class Point>
+double total_share(std::size_t count, std::size_t k, Point&& point) {
+  const Vector3<double> normal = point(k).normal;
+  double sum = least_total_share;
+  for (std::size_t m = 0; m < count; ++m) {
+    const double cosine = std::max(0.0, dot(normal, point(m).normal));
+    sum += cosine * cosine * point(m).area;
+  }
+  return sum;
+}
+
 }  // namespace dem::contact

@@ -75,7 +75,7 @@ DEM_HOT Wrench<T> contact_wrench(const Touch& touch, const Encounter<T>& e,
   const Vector3<T> velocity = e.velocity + cross(e.spin_i, g.arm) - cross(e.spin_j, arm_j);
   const T approach = dot(velocity, g.normal);
   const Vector3<T> sliding = velocity - approach * g.normal;
-  const T mass = T(1) / e.inverse_mass;
+  const T mass = T(1) / (e.inverse_mass * g.total_share);
 
   const NormalForce<T> normal = normal_force<Model>(
       contact::NormalState<T>{g.overlap, approach, g.effective_radius, mass, dt}, parameters, history);

@@ -73,6 +73,7 @@ struct SurfaceScratch {
   std::vector<std::uint32_t> law_of;
   std::vector<Hit> hits;
   std::vector<contact::SurfaceTouch<double>> touches;
+  std::vector<double> total_share;  ///< of the touches of patches (contact::PatchTouch); 1 from where it ends
   ContactForces forces;
 };
 
@@ -202,8 +203,13 @@ void touch_surface(const GrainAtSurface& at, const Shape& grain, const Surface& 
   if constexpr (HasPenetration<Shape>) touch_with_corners(at, grain, surface, geometry, gap, s);
   if constexpr (requires { Shape::shares_fit; }) {
     if (!shape::has_shares(grain)) return;
-    contact::fit_weights(s.touches.size() - first, Shape::shares_fit,
-                         [&](std::size_t k) -> contact::SurfaceTouch<double>& { return s.touches[first + k]; });
+    const auto point = [&](std::size_t k) -> contact::SurfaceTouch<double>& { return s.touches[first + k]; };
+    const std::size_t count = s.touches.size() - first;
+    contact::fit_weights(count, Shape::shares_fit, point);
+    if constexpr (shape::PatchShape<Shape>) {
+      s.total_share.resize(first, 1.0);
+      for (std::size_t k = 0; k < count; ++k) s.total_share.push_back(contact::total_share(count, k, point));
+    }
   }
 }
 

@@ -72,6 +72,13 @@ void probe_surface(std::size_t begin, std::size_t end, std::size_t number, const
       surface.geometry);
 }
 
+/// The touch of a grain's point on a surface: of shapes whose contacts may be patches it knows the others' shares.
+template <class Shape>
+struct OnSurface {
+  template <class T>
+  using Touch = std::conditional_t<shape::PatchShape<Shape>, contact::PatchTouch<T>, contact::SurfaceTouch<T>>;
+};
+
 /// Contacts of the grains of one chunk with the surfaces of machine parts, and the load that the chunk puts on each
 /// surface. The chunk's bounding box selects the surfaces, anew each time, so fast parts need no neighbour list. Writes
 /// to the chunk and its own grains' sums only.
@@ -95,6 +102,7 @@ void find_surface_contacts(std::size_t chunk_index, Chunk<Model>& chunk, const P
   std::vector<std::uint32_t>& law_of = scratch.law_of;
   hits.clear();
   scratch.touches.clear();
+  scratch.total_share.clear();
   chunk.surface_loads.clear();
   law_of.resize(species.size());
   for (std::size_t s = 0; s < surfaces.size(); ++s) {
@@ -121,9 +129,18 @@ void find_surface_contacts(std::size_t chunk_index, Chunk<Model>& chunk, const P
     }
   }
 
-  ContactEvaluator<Model, contact::SurfaceTouch> evaluator(materials.table(), dt);
+  using Shape = typename Model::Shape;
+  if constexpr (shape::PatchShape<Shape>) scratch.total_share.resize(scratch.touches.size(), 1.0);
+  const auto touch_of = [&](std::size_t c) {
+    if constexpr (shape::PatchShape<Shape>) {
+      return contact::PatchTouch<double>{scratch.touches[c], scratch.total_share[c]};
+    } else {
+      return scratch.touches[c];
+    }
+  };
+  ContactEvaluator<Model, OnSurface<Shape>::template Touch> evaluator(materials.table(), dt);
   const Deepest deepest = evaluator.run(
-      hits, chunk.surface_contacts, scratch.forces, [&](std::size_t c) { return scratch.touches[c]; },
+      hits, chunk.surface_contacts, scratch.forces, touch_of,
       [&](std::size_t c) -> const PartnerView& { return p.view[hits[c].i]; },
       [&](std::size_t c) -> const PartnerView& { return surfaces[hits[c].partner].view; });
   if (deepest.overlap > chunk.deepest.overlap) {

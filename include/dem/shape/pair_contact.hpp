@@ -78,7 +78,7 @@ struct PairMemoryOf<A, B> {
 /// A contact that was found from b's side, seen from a's.
 DEM_HOT contact::PointTouch<double> turned_round(const contact::Geometry<double>& g,
                                                  const Vector3<double>& separation) {
-  return {-g.normal, g.overlap, g.arm + separation, g.effective_radius, g.area};
+  return {-g.normal, g.overlap, g.arm + separation, g.effective_radius, g.area, g.total_share};
 }
 
 /// Contacts of any two kinds as point touches, through PairContact<A, B> or PairContact<B, A>; up to a gap (m) where
@@ -105,7 +105,7 @@ DEM_HOT void collide_pair(const A& a, const double* pose_a, const B& b, const do
   if constexpr (HasPairContact<A, B>) {
     call(PairContact<A, B>{}, a, pose_a, b, pose_b, separation, [&](std::uint32_t feature, const auto& touch) {
       const contact::Geometry<double> g = touch.geometry();
-      sink(feature, contact::PointTouch<double>{g.normal, g.overlap, g.arm, g.effective_radius, g.area});
+      sink(feature, contact::PointTouch<double>{g.normal, g.overlap, g.arm, g.effective_radius, g.area, g.total_share});
     });
   } else {
     static_assert(

@@ -85,10 +85,12 @@ class Polyhedron {
     const Matrix3<double> turn_a = rotation(pose_a), turn_b = rotation(pose_b);
     const PolyhedronContact found(*a.tables_, turn_a, *b.tables_, turn_b, separation);
     const double ra = a.radius(), rb = b.radius();
+    double total_share = contact::least_total_share;
+    for (int k = 0; k < found.count(); ++k) total_share += found[k].share;
     for (int k = 0; k < found.count(); ++k) {
       const PatchPoint& p = found[k];
       sink(p.of_first << element_bits | p.of_second,
-           PairTouch<double>{found.normal(), p.depth, p.point, ra * rb / (ra + rb), p.share});
+           PairTouch<double>{found.normal(), p.depth, p.point, ra * rb / (ra + rb), p.share, total_share});
     }
   }
   /// All contacts of a pair are one patch.
