@@ -11,7 +11,8 @@ namespace dem::contact {
 /// out than on the way in. With the largest overlap D so far,
 ///   F = min(k1 d, k2 (d - d0)), never pulling,   d0 = D (1 - k1/k2):
 /// loading along k1, unloading and reloading along k2. Independent of rates; restitution sqrt(k1/k2). What a contact
-/// remembers ends when the grains part.
+/// remembers ends when the grains part. A point that is new in a patch takes over how far the others have come out of
+/// their imprint, D - d: so a patch that renames its points, as a body slides over an edge, gives nothing back.
 struct Hysteretic {
   template <class T>
   struct Parameters {
@@ -21,6 +22,7 @@ struct Hysteretic {
   template <class T>
   struct History {
     T largest_overlap;  ///< D, m
+    T overlap;          ///< d, m, of the last step
   };
 
   /// Constants with the given coefficient of restitution e in [0.01, 1]: k2 = k1/e^2. Throws Error for another e.
@@ -35,7 +37,12 @@ struct Hysteretic {
     // k2 (d - d0), written such that it is k1 d to the last bit where k1 = k2.
     const T f = p.loading_stiffness * s.overlap -
                 (p.unloading_stiffness - p.loading_stiffness) * (h.largest_overlap - s.overlap);
+    h.overlap = s.overlap;
     return max(T(0), f);
+  }
+
+  static History<double> inherited(const History<double>& mean, double overlap) {
+    return {overlap + mean.largest_overlap - mean.overlap, overlap};
   }
 
   static double stiffness(const Parameters<double>& p, const NormalState<double>&) { return p.unloading_stiffness; }

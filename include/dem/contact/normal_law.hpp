@@ -16,7 +16,9 @@ namespace dem::contact {
 ///                  follows;
 ///   check(parameters)   throws dem::Error, in words, if a constant makes no sense;
 ///   damping(parameters, state) -> double   optional: the largest slope dF/d(approach speed) in N s/m, which shortens
-///                  the stable time step as well.
+///                  the stable time step as well;
+///   inherited(history, overlap) -> History<double>   optional: what a point that turns up in a patch (of polyhedra)
+///                  with this overlap remembers, from the mean of what the patch's points did; else it is new.
 /// The state for stiffness and damping is the deepest that a world allows (WorldOptions::overlap_limit).
 template <class L>
 concept NormalLaw = requires(const typename L::template Parameters<double>& p, const NormalState<double>& state,
@@ -33,6 +35,17 @@ double damping_of(const typename L::template Parameters<double>& p, const Normal
     return L::damping(p, state);
   } else {
     return 0.0;
+  }
+}
+
+/// What a new point of a patch remembers of the normal law, from the mean of what the patch's points did.
+template <class L>
+typename L::template History<double> inherited_by_point(const typename L::template History<double>& mean,
+                                                        double overlap) {
+  if constexpr (requires { L::inherited(mean, overlap); }) {
+    return L::inherited(mean, overlap);
+  } else {
+    return {};
   }
 }
 

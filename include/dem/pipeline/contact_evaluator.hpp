@@ -71,7 +71,12 @@ class ContactEvaluator {
         partners.set(lane, view_i(k), view_j(k));
         law_[lane] = hit.law;
       }
-      if constexpr (history_size < Model >> 0) recall(memories, at, lanes, cursor);
+      if constexpr (history_size < Model >> 0) {
+        const auto overlap_of = [&](int lane) {
+          return touch_of(static_cast<std::size_t>(at + lane)).geometry().overlap;
+        };
+        recall(memories, at, lanes, cursor, overlap_of);
+      }
       for (int lane = lanes; lane < pack_width; ++lane) {
         copy_lane(0, lane);
         partners.set(lane, *partners.i[0], *partners.j[0]);
@@ -115,7 +120,8 @@ class ContactEvaluator {
 
   /// The histories of the contacts from `at` on go to the lanes; zero where a contact is new. Mostly the contacts of
   /// last step are there again, in the same order: then whole packs are copied.
-  DEM_HOT void recall(const Memories& memories, int at, int lanes, int& cursor) {
+  template <class OverlapOf>
+  DEM_HOT void recall(const Memories& memories, int at, int lanes, int& cursor, const OverlapOf& overlap_of) {
     const auto& last = memories.last;
     const std::uint64_t* keys = memories.now.key.data() + at;
     if (lanes == pack_width && cursor + pack_width <= last.count) {
@@ -137,24 +143,35 @@ class ContactEvaluator {
         history_[k][lane] = known ? last.history[k][static_cast<std::size_t>(cursor)] : 0.0;
       }
       if constexpr (shape::PatchShape<Shape>) {
-        if (!known && Shape::is_patch(static_cast<std::uint32_t>(keys[lane]))) inherit(last, keys[lane], cursor, lane);
+        if (!known && Shape::is_patch(static_cast<std::uint32_t>(keys[lane]))) {
+          inherit(last, keys[lane], cursor, lane, overlap_of(lane));
+        }
       }
       cursor += known ? 1 : 0;
     }
   }
-  /// A new point of a patch that was there takes the mean of what the patch's points remember of friction and rolling.
+  /// A new point of a patch that was there takes the mean of what the patch's points remember of friction and rolling,
+  /// and of the normal law's what that law says.
   template <class Memory>
-  void inherit(const Memory& last, std::uint64_t key, int cursor, int lane) {
+  void inherit(const Memory& last, std::uint64_t key, int cursor, int lane, double overlap) {
     const auto pair_at = [&](int c) { return last.key[static_cast<std::size_t>(c)] >> 32; };
     int first = cursor, end = cursor;
     while (first > 0 && pair_at(first - 1) == key >> 32) --first;
     while (end < last.count && pair_at(end) == key >> 32) ++end;
-    constexpr std::size_t from = normal_history_size<Model>;
-    constexpr std::size_t to = from + friction_history_size<Model> + rolling_history_size<Model>;
+    if (first == end) return;
+    constexpr std::size_t normal = normal_history_size<Model>;
+    constexpr std::size_t to = normal + friction_history_size<Model> + rolling_history_size<Model>;
     for (int c = first; c < end; ++c) {
-      for (std::size_t k = from; k < to; ++k) {
+      for (std::size_t k = 0; k < to; ++k) {
         history_[k][lane] += last.history[k][static_cast<std::size_t>(c)] / (end - first);
       }
+    }
+    if constexpr (normal > 0) {
+      using History = typename Model::Normal::template History<double>;
+      std::array<double, normal> fields;
+      for (std::size_t k = 0; k < normal; ++k) fields[k] = history_[k][lane];
+      const auto own = contact::inherited_by_point<typename Model::Normal>(std::bit_cast<History>(fields), overlap);
+      scatter(own, &history_[0][0], lane);
     }
   }
   /// Lanes that no contact fills repeat another, so that they hold ordinary numbers and change nothing.
