@@ -6,7 +6,9 @@
 namespace dem::cohesion {
 
 /// Adhesion of small, hard grains (Derjaguin, Muller and Toporov 1975, doi:10.1016/0021-9797(75)90018-1): while the
-/// partners touch, a pull of 2 pi w R*, which is the pull-off force. For use with Hertz.
+/// partners touch, a pull of 2 pi w R*, which is the pull-off force. For use with Hertz. Like
+/// Hertz it knows round contacts only: on flat faces it is the pull of round grains of their radii, as
+/// ContactStress says.
 struct DMT {
   template <class T>
   struct Parameters {
