@@ -151,7 +151,7 @@ TEST_CASE("the dashpots of springs never push over the limit") {
   CHECK(force<Mindlin>(Mindlin::Parameters<double>{0.4, 1e8, 5.0}, {100, 0, 0}, 1.0, m).norm() == Approx(0.4));
 }
 
-TEST_CASE("varying friction falls with speed and pressure as it says") {
+TEST_CASE("varying friction falls or rises with speed and pressure as it says") {
   using Law = Varying<CoulombViscous>;
   Law::Parameters<double> p = {{0.5, 1e9}};  // always at the limit
   Law::History<double> h;
@@ -165,6 +165,15 @@ TEST_CASE("varying friction falls with speed and pressure as it says") {
   p.decay_pressure = 2.0;
   CHECK(force<Law>(p, {100, 0, 0}, 2.0, h).norm() == Approx(2 * 0.3 * (0.5 + 0.5 / M_E)));
   CHECK(force<Law>(p, {100, 0, 0}, 200.0, h).norm() == Approx(200 * 0.15));
+  p.kinetic_ratio = 2.0;
+  p.pressed_ratio = 1.5;  // and rises
+  CHECK(force<Law>(p, {0.1, 0, 0}, 2.0, h).norm() == Approx(2 * 0.5 * (2 - 1 / M_E) * (1.5 - 0.5 / M_E)));
+  CHECK(force<Law>(p, {100, 0, 0}, 200.0, h).norm() == Approx(200 * 1.5));
+  // The mean pressure on Hertz's circle: 3 N on pi R d.
+  const TangentialState<double> s = {{100, 0, 0}, 3.0, 2e-5, 1e-3, 1e-5, dt};
+  p.mean_pressure = 1.0;
+  p.decay_pressure = 3.0 / (M_PI * 1e-3 * 2e-5);
+  CHECK(norm(Law::force(p, s, h)) == Approx(3 * 0.5 * 2 * (1.5 - 0.5 / M_E)));
   // Slopes of the law inside reach the stable time step.
   const Varying<Mindlin>::Parameters<double> q = {{0.4, 1e8, 0.1}};
   const dem::contact::NormalState<double> deep = {1e-5, 0, 1e-3, 7e-5, dt};
@@ -190,7 +199,7 @@ TEMPLATE_TEST_CASE("every lane of a pack gets what a double gets from the tangen
   if constexpr (std::is_same_v<TestType, CoulombViscous>) p = {0.4, 1.0};
   if constexpr (std::is_same_v<TestType, CundallStrack>) p = {0.4, 1e6, 0.1};
   if constexpr (std::is_same_v<TestType, Mindlin>) p = {0.4, 1e9, 0.1};
-  if constexpr (std::is_same_v<TestType, Varying<CundallStrack>>) p = {{0.4, 1e6, 0.1}, 0.5, 0.3, 0.5, 0.7};
+  if constexpr (std::is_same_v<TestType, Varying<CundallStrack>>) p = {{0.4, 1e6, 0.1}, 0.5, 0.3, 1.5, 1e7, 1.0};
   check_lanes<TestType::template Parameters, TangentialState, TestType::template History>(
       p, [](const auto& q, const auto& s, auto& h) { return TestType::force(q, s, h); },
       [](auto& uniform) {
@@ -207,8 +216,9 @@ TEST_CASE("constants of tangential laws that make no sense are refused") {
   check_refused([] { Mindlin::check({0.1, 0.0, 0}); }, "effective shear modulus is 0 Pa");
   using Law = Varying<CundallStrack>;
   check_refused([] { Law::check({{-1, 1, 0}}); }, "friction coefficient is -1");
-  check_refused([] { Law::check({{1, 1, 0}, 1.5}); }, "ratio of kinetic to static friction is 1.5");
+  check_refused([] { Law::check({{1, 1, 0}, -0.5}); }, "ratio of kinetic to static friction is -0.5");
   check_refused([] { Law::check({{1, 1, 0}, 0.5, 0.0}); }, "decay speed of friction is 0 m/s");
   check_refused([] { Law::check({{1, 1, 0}, 0.5, 1.0, -1}); }, "heavily to lightly pressed friction is -1");
+  check_refused([] { Law::check({{1, 1, 0}, 1.5, 1.0, 2.0, 1.0, 3.0}); }, "mean_pressure");
   CHECK_NOTHROW(Law::check({{0.4, 1, 0}}));
 }

@@ -3,22 +3,29 @@
 #include <dem/core/error.hpp>
 #include <dem/friction/friction_law.hpp>
 
+#include <algorithm>
+
 namespace dem::friction {
 
-/// Another friction law with a coefficient that falls with the sliding speed v and the normal pressure P:
+/// Another friction law with a coefficient that falls or rises with the sliding speed v and the normal pressure P:
 ///   mu = mu0 (rv + (1 - rv) exp(-v/v0)) (rp + (1 - rp) exp(-P/p0)),
-/// mu0 the law's own coefficient (static, lightly pressed), rv = kinetic/static, rp = heavily/lightly pressed. With the
-/// default ratios of 1 it is the law itself. The pressure is the normal force per area of the contact point where
-/// it has one in m^2; elsewhere that of the whole contact, so that p0 is a force then, as the normal stiffness is N/m.
+/// mu0 the law's own coefficient (static, lightly pressed), rv = fast/static, rp = heavily/lightly pressed: below 1
+/// friction falls, above it rises; with the default ratios of 1 it is the law itself. P is, as mean_pressure says,
+///   0: the normal force in N, that of the whole contact where the contact is a patch of shares (so p0 is a force); per
+///      area of the point, in Pa, where points have areas in m^2;
+///   1: in Pa, that force over the area pi R* d of Hertz's circle: for contacts of curved bodies.
+/// Friction that rises steeply is a damper of its own, mu0 (rv - 1) F/v0, which the stable time step does not know:
+/// take v0 well above mu F dt/m, the speed that friction takes off in a step.
 template <class Law>
 struct Varying {
   template <class T>
   struct Parameters {
     typename Law::template Parameters<T> law;
-    T kinetic_ratio = T(1.0);   ///< rv in [0, 1]
+    T kinetic_ratio = T(1.0);   ///< rv >= 0
     T decay_speed = T(1.0);     ///< v0 > 0, m/s
-    T pressed_ratio = T(1.0);   ///< rp in [0, 1]
-    T decay_pressure = T(1.0);  ///< p0 > 0, Pa (N for spheres)
+    T pressed_ratio = T(1.0);   ///< rp >= 0
+    T decay_pressure = T(1.0);  ///< p0 > 0, N or Pa as P
+    T mean_pressure = T(0.0);   ///< 1: P is the mean pressure on Hertz's circle; 0: the force
   };
   template <class T>
   using History = typename Law::template History<T>;
@@ -36,7 +43,9 @@ struct Varying {
   template <class T>
   static DEM_HOT Vector3<T> force(const Parameters<T>& p, const TangentialState<T>& s, History<T>& h) {
     typename Law::template Parameters<T> law = p.law;
-    law.coefficient = law.coefficient * factor(p, norm(s.velocity), s.normal_force);
+    const T circle = T(3.14159265358979323846) * s.effective_radius * max(s.overlap, T(0));
+    const T area = select(p.mean_pressure > T(0), max(circle, T(1e-30)), T(1));  // across a gap: pressed to the utmost
+    law.coefficient = law.coefficient * factor(p, norm(s.velocity), s.normal_force / area);
     return Law::force(law, s, h);
   }
   template <class H, class Turn>
@@ -45,18 +54,27 @@ struct Varying {
   }
 
   static double stiffness(const Parameters<double>& p, const contact::NormalState<double>& s) {
-    return stiffness_of<Law>(p.law, s);
+    return stiffness_of<Law>(roughest(p), s);
   }
   static double damping(const Parameters<double>& p, const contact::NormalState<double>& s) {
-    return contact::damping_of<Law>(p.law, s);
+    return contact::damping_of<Law>(roughest(p), s);
   }
 
   static void check(const Parameters<double>& p) {
     Law::check(p.law);
-    require_within(p.kinetic_ratio, 0.0, 1.0, "ratio of kinetic to static friction");
+    require_non_negative(p.kinetic_ratio, "ratio of kinetic to static friction", "(no unit)");
     require_positive(p.decay_speed, "decay speed of friction", "m/s");
-    require_within(p.pressed_ratio, 0.0, 1.0, "ratio of heavily to lightly pressed friction");
-    require_positive(p.decay_pressure, "decay pressure of friction", "Pa");
+    require_non_negative(p.pressed_ratio, "ratio of heavily to lightly pressed friction", "(no unit)");
+    require_positive(p.decay_pressure, "decay pressure of friction", "N or Pa");
+    require_within(p.mean_pressure, 0.0, 1.0, "mean_pressure (0: force, 1: pressure on Hertz's circle)");
+  }
+
+ private:
+  /// The law with the largest coefficient that it can have, for laws whose slopes depend on it.
+  static typename Law::template Parameters<double> roughest(const Parameters<double>& p) {
+    auto law = p.law;
+    law.coefficient *= std::max(1.0, p.kinetic_ratio) * std::max(1.0, p.pressed_ratio);
+    return law;
   }
 };
 
