@@ -7,11 +7,12 @@ struct Rebound {
   double restitution = 0.0, peak_force = 0.0, lowest_force = 0.0, peak_overlap = 0.0, duration = 0.0;
 };
 
-/// Integrates m d'' = -F from the first touch until the overlap is gone, with a time step that resolves sqrt(m/k) in
-/// `steps` steps, k the law's stiffness at the overlap `depth`. The error of a step is 1/steps of what happens in it.
+/// Integrates m d'' = m gravity - F from the first touch until the overlap is gone, with a time step that resolves
+/// sqrt(m/k) in `steps` steps, k the law's stiffness at the overlap `depth`. The error of a step is 1/steps of what
+/// happens in it.
 template <class Law>
 Rebound impact(const typename Law::template Parameters<double>& p, double mass, double radius, double speed,
-               double depth, double steps = 20000.0) {
+               double depth, double steps = 20000.0, double gravity = 0.0) {
   dem::contact::NormalState<double> s = {depth, 0.0, radius, mass, 0.0};
   s.time_step = std::sqrt(mass / Law::stiffness(p, s)) / steps;
   s.overlap = 0.0;
@@ -20,7 +21,7 @@ Rebound impact(const typename Law::template Parameters<double>& p, double mass, 
   Rebound result;
   while (s.overlap >= 0.0) {
     const double f = Law::force(p, s, h);
-    s.approach_speed -= f / mass * s.time_step;
+    s.approach_speed += (gravity - f / mass) * s.time_step;
     s.overlap += s.approach_speed * s.time_step;
     result.peak_force = std::max(result.peak_force, f);
     result.lowest_force = std::min(result.lowest_force, f);
