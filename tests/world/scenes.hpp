@@ -130,5 +130,50 @@ double kinetic_energy(const World& w) {
   });
   return sum;
 }
+/// Calls f(geometry) for every contact of two grains, which it finds by asking all pairs.
+template <class Model, class F>
+void for_each_pair_contact(const dem::World<Model>& w, F&& f) {
+  const auto& p = w.state().particles;
+  for (std::size_t i = 0; i < p.count; ++i) {
+    const auto& a = w.state().species[p.species[i]].shape;
+    for (std::size_t j = i + 1; j < p.count; ++j) {
+      const auto& b = w.state().species[p.species[j]].shape;
+      const dem::Vector3<double> separation = p.position[j] - p.position[i];
+      if (norm(separation) > a.bounding_radius() + b.bounding_radius()) continue;
+      Model::Shape::collide(a, p.pose_of(i), b, p.pose_of(j), separation,
+                            [&](std::uint32_t, const auto& touch) { f(touch.geometry()); });
+    }
+  }
+}
+
+/// The most energy (J) that the springs of a contact hold. The normal one: half its slope times the overlap squared,
+/// as no law is softer deeper in. Those of friction and rolling resistance, which mu F = mu K d limits, hold mu^2 K/kt
+/// of that, in all of these tests less than half.
+template <class Model>
+double spring_energy(const dem::World<Model>& w, const dem::contact::Geometry<double>& g) {
+  const auto& p = w.state().materials.table()[0];
+  const double d = std::max(0.0, g.overlap);
+  return 1.5 * 0.5 * g.area * Model::Normal::stiffness(p.normal, {d, 0.0, g.effective_radius, 1.0, 0.0}) * d * d;
+}
+
+/// Watches that a world in which nothing but dampers and friction acts besides springs never gains energy, at any time
+/// of the run: it may not move with more than it moved with, and had in springs, at any moment before. Springs of
+/// friction may also be stretched by what dampers press, c v with c = 2 b sqrt(K m): mu^2 c^2 v^2/(2 kt), for b < 0.25
+/// less than two hundredths of m v^2/2.
+class EnergyWatch {
+ public:
+  /// `held`: J, the most that springs hold now; `fallen`: J, what an attraction may have given since the grains were
+  /// apart.
+  void look(double kinetic, double held, double fallen = 0.0) {
+    if (kinetic > most_ * (1 + 1e-9) + fallen) ++gains_;
+    most_ = std::min(most_, 1.02 * kinetic + held);
+  }
+  int gains() const { return gains_; }
+
+ private:
+  double most_ = 1e300;
+  int gains_ = 0;
+};
+
 /// Largest deviation of a matrix from a rotation.
 inline double not_a_rotation(const Mat3& r) { return (r.transpose() * r - Mat3::Identity()).cwiseAbs().maxCoeff(); }
