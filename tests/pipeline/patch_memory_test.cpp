@@ -55,21 +55,23 @@ struct Forgetful {
   static void check(const Parameters<double>&) {}
 };
 
+template <class Law>
+struct PressedCubes : Model {
+  using Shape = shape::Polyhedron;
+  using Normal = Law;
+  using Friction = friction::None;
+  using Integrator = integrator::VelocityVerlet;
+  using Executor = exec::Serial;
+};
+
 /// A cube is pressed flat on another by 10 micrometres, drawn back by 2, and slid over its edges, at rest at each
 /// place. Returns the least and the largest force on the way over what the law gives there, k1 d - (k2 - k1)(D - d).
 template <class Law>
 std::array<double, 2> slide_over_edge() {
-  struct Plastic : Model {
-    using Shape = shape::Polyhedron;
-    using Normal = Law;
-    using Friction = friction::None;
-    using Integrator = integrator::VelocityVerlet;
-    using Executor = exec::Serial;
-  };
   WorldOptions options;
   options.gravity = {0, 0, 0};
   options.time_step = 1e-10;
-  World<Plastic> w(options);
+  World<PressedCubes<Law>> w(options);
   const double k1 = 1e4, k2 = 2e4, half = 1e-3;
   w.set_contact({{k1, k2}, {}});
   NewParticle n;

@@ -13,6 +13,11 @@ using dem::shape::Polyhedron;
 namespace {
 
 using Sharp = Grains<Polyhedron, dem::integrator::VelocityVerlet>;
+template <class Law>
+struct Rebounding : Sharp {
+  using Normal = Law;
+  using Friction = dem::friction::None;
+};
 constexpr double half_edge = 1.2e-3, mu = 0.4;
 
 Mat3 about(const Vec3& axis, double angle) {
@@ -89,10 +94,7 @@ TEMPLATE_TEST_CASE("cubes rebound as asked, whichever of their faces, edges and 
   // of the law's (1, 1/2 of an edge, 1/3 of a corner, 1/4 of a cube's corner on a plane), and the damping ratio is to
   // be that which was asked for. Were the damper S times that of a whole contact, 0.5 would come out as 0.60 to 0.71. A
   // contact has 500 steps or more, and the damper is of first order: 2e-3.
-  struct Elastic : Sharp {
-    using Normal = TestType;
-    using Friction = dem::friction::None;
-  };
+  using Elastic = Rebounding<TestType>;
   const Mat3 flat = Mat3::Identity(), on_edge = about(Vec3::UnitX(), 0.25 * std::numbers::pi),
              across = about(Vec3::UnitY(), 0.25 * std::numbers::pi),
              on_corner = dem::rotation_between(Vec3(1, 1, 1).normalized(), Vec3::UnitZ());
