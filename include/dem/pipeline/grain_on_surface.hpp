@@ -176,7 +176,17 @@ void touch_with_corners(const GrainAtSurface& at, const Shape& grain, const Surf
   }
 }
 
-/// All contacts of a grain of one kind with a surface. One whose radii and exponents make it a ball touches as a ball.
+/// Whether a grain's radii and exponents make it a ball, which meets surfaces as one.
+template <class Shape>
+bool touches_as_ball(const Shape& grain) {
+  if constexpr (requires { grain.is_ball(); }) {
+    return grain.is_ball() && shape::has_shares(grain);
+  } else {
+    return false;
+  }
+}
+
+/// All contacts of a grain of one kind with a surface.
 template <class Shape, class Surface, class Geometry, class Gap>
 void touch_surface(const GrainAtSurface& at, const Shape& grain, const Surface& surface, const Geometry& geometry,
                    Gap gap, SurfaceScratch& s) {
@@ -187,8 +197,8 @@ void touch_surface(const GrainAtSurface& at, const Shape& grain, const Surface& 
       return;
     }
   }
-  if constexpr (requires { grain.is_ball(); }) {
-    if (grain.is_ball() && shape::has_shares(grain)) {
+  if constexpr (requires { grain.mean_radius(); }) {
+    if (touches_as_ball(grain)) {
       const double radius = grain.mean_radius();
       touch_with_probe(at, 0, {{0, 0, 0}, radius, radius, 1.0}, surface, geometry, gap, s);
       return;

@@ -13,7 +13,8 @@ namespace dem::surface {
 enum class MeshSide {
   solid,      ///< closed; what comes behind the surface is inside and is pushed out
   one_sided,  ///< a sheet that is touched from the side its triangles look to; what comes behind is pushed back
-  two_sided   ///< a sheet without thickness that spheres touch from both sides; points (radius 0) pass it
+  two_sided   ///< a sheet without thickness that balls touch from both sides; points (radius 0) would pass it, so World
+              ///< refuses polyhedra, superquadrics and sharp bodies on it
 };
 
 struct MeshOptions {
@@ -127,6 +128,7 @@ class TriangleMesh {
         p, radius, [&](std::uint32_t k, const Vector3<double>& c, double weight) { sink(first_edge + k, c, weight); });
   }
   bool has_points() const { return true; }
+  bool lets_points_through() const { return options_.side == MeshSide::two_sided; }
   /// Edges that stick out and may lie in a box, for contact with other bodies: sink(number, one end, other end).
   template <class Sink>
   void edges(const Bounds& box, Sink&& sink) const {

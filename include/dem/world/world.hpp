@@ -4,6 +4,7 @@
 #include <dem/world/check.hpp>
 #include <dem/world/report.hpp>
 #include <dem/world/step.hpp>
+#include <dem/world/thin_sheets.hpp>
 #include <dem/world/world_setup.hpp>
 
 namespace dem {
@@ -24,11 +25,13 @@ class World : public WorldSetup<M> {
   // ---- running ---------------------------------------------------------------------------------------------------
 
   /// Checks the set-up and chooses or checks the time step; called by step() and run(). Throws Error if contact
-  /// constants are missing, the time step is too large, or a prescribed motion would have to jump.
+  /// constants are missing, the time step is too large, points would pass a two-sided sheet, or a prescribed motion
+  /// would have to jump.
   void prepare() {
     if (!checked_ || !state_.machine.is_initialised()) {
       state_.materials.check_complete();
       state_.materials.check_names(used_materials());
+      check_thin_sheets(state_);
       const double range = state_.materials.range();
       state_.materials.find_range(state_.largest_radius);
       find_points_deep_enough(state_);
