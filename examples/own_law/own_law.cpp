@@ -2,61 +2,12 @@
 // slipped, as that of faults does. A stool of four balls on a slope holds up to the static angle; once it slides, less
 // than that holds it.
 
+#include "slip_weakening.hpp"
+#include "stiffening_spring.hpp"
+
 #include <dem/dem.hpp>
 
 #include <array>
-
-struct StiffeningSpring {  // F = K d (1 + (d/depth)^2) + C d', never pulling
-  template <class T>
-  struct Parameters {
-    T stiffness, depth, damping;
-  };
-  template <class T>
-  struct History {};
-
-  template <class T>
-  static DEM_HOT T force(const Parameters<T>& p, const dem::contact::NormalState<T>& s, History<T>&) {
-    const T x = s.overlap / p.depth;
-    return dem::max(T(0), p.stiffness * s.overlap * (T(1) + x * x) + p.damping * s.approach_speed);
-  }
-  static double stiffness(const Parameters<double>& p, const dem::contact::NormalState<double>& s) {
-    const double x = s.overlap / p.depth;
-    return p.stiffness * (1 + 3 * x * x);
-  }
-  static void check(const Parameters<double>& p) { dem::require_positive(p.stiffness, "normal stiffness", "N/m"); }
-};
-
-struct SlipWeakening {  // a spring that slips at mu Fn, mu falling from `coefficient` to `residual` over `distance`
-  template <class T>
-  struct Parameters {
-    T coefficient, residual, distance, stiffness, damping;
-  };
-  template <class T>
-  struct History {
-    dem::Vector3<T> spring;
-    T slipped;
-  };
-
-  template <class T>
-  static DEM_HOT dem::Vector3<T> force(const Parameters<T>& p, const dem::contact::TangentialState<T>& s,
-                                       History<T>& h) {
-    const T mu = p.coefficient - (p.coefficient - p.residual) * dem::min(T(1), h.slipped / p.distance);
-    dem::Vector3<T> spring = p.stiffness * (h.spring + s.time_step * s.velocity);
-    const T trial = norm(spring);
-    const dem::Vector3<T> f = dem::friction::slide(spring, p.damping, s.velocity, mu * s.normal_force);
-    h.slipped += (trial - norm(spring)) / p.stiffness;
-    h.spring = T(1) / p.stiffness * spring;
-    return -f;
-  }
-  template <class T, class Turn>
-  static DEM_HOT void carry(History<T>& h, Turn&& turn) {  // vectors turn with the contact
-    h.spring = turn(h.spring);
-  }
-  static double stiffness(const Parameters<double>& p) { return p.stiffness; }
-  static void check(const Parameters<double>& p) {
-    dem::require_within(p.residual, 0.0, p.coefficient, "residual friction");
-  }
-};
 
 struct Rock : dem::Model {
   using Shape = dem::shape::SphereCluster<4>;

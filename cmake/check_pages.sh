@@ -1,0 +1,30 @@
+#!/usr/bin/env bash
+# The programs that the pages show are those that are compiled and tested: each block of C++ in a part of a page stands,
+# letter by letter, in a source of its example.
+set -euo pipefail
+
+cd "$(dirname "$0")/.."
+
+# check <page> <first line of the part> <line after it> <example>
+check() {
+  local page=$1 first=$2 last=$3 example=$4 block="" inside=false count=0 line sources
+  sources=$(cat "examples/$example"/*.hpp "examples/$example"/*.cpp 2> /dev/null || true)$'\n'  # which the shell cut off
+  while IFS= read -r line; do
+    if [ "$line" = '```cpp' ]; then
+      inside=true block=""
+    elif [ "$line" = '```' ] && $inside; then
+      inside=false count=$((count + 1))
+      [[ $sources == *"$block"* ]] && continue
+      echo "$page: this block is not in examples/$example; make them the same:"
+      printf '%s' "$block"
+      exit 1
+    elif $inside; then
+      block+=$line$'\n'
+    fi
+  done < <(awk -v first="$first" -v last="$last" 'index($0, first) == 1 { on = 1 } index($0, last) == 1 { on = 0 } on' "$page")
+  [ "$count" -gt 0 ] || { echo "$page: no block of C++ from '$first' to '$last'"; exit 1; }
+}
+
+check README.md "# dem" "## Use it" first_steps
+check ARCHITECTURE.md "**Your own law**" "**Your own shape**" own_law
+check ARCHITECTURE.md "**Your own shape**" "## The step" own_shape
