@@ -21,6 +21,11 @@ enum class Fit {
 /// N = (sum w d)^2 / sum w d^2, which is n w where n are equally deep; up to N = 1 they stay as they are, and from
 /// there to N = 2 one rule goes over into the other. `point(k)` gives touch k, one of the touch types. Across a gap
 /// (cohesion at a distance) the nearest point, which was the last to part, is the whole contact.
+///
+/// Such shares have no potential, and none could have one: n equal points are as stiff as one, so a second point that
+/// sinks to the depth of a first must do no work on the way, and yet push when it is there. Turning a body on its
+/// points therefore gains or loses energy, in a cycle a share of what the contact stores, whatever the stiffness.
+/// Dampers have to take more than that: see "Bodies against bodies" in ARCHITECTURE.md for how much.
 template <class Point>
 void fit_weights(std::size_t count, Fit fit, Point&& point) {
   struct Part {
