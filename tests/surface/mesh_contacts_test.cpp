@@ -89,3 +89,47 @@ TEST_CASE("a direction is named by a square of the cube, less than 26 degrees ac
   }
   CHECK(codes.size() == dem::surface::directions);
 }
+
+TEST_CASE("a polygon's corner below smooth_angle turns the force at once; above it both sides push steadily") {
+  // A drum of 16 sides, 22.5 degrees from one to the next, and a ball that is moved round in it, K = 1, with overlaps
+  // below r (1 - cos(22.5 degrees)): deeper, it would overlap the corner's edge itself, where a side's foot point ends.
+  const double radius = 0.3, step = 1e-4;
+  const auto round = [&](double smooth_angle) {
+    const TriangleMesh drum(mesh::cylinder(1.0, 4.0, 16),
+                            {.facing = dem::MeshFacing::inward, .smooth_angle = smooth_angle});
+    struct {
+      std::size_t most_contacts = 0;
+      double turn = 0.0, deepening = 0.0;  // largest change of the force, and of its deepest overlap, in a step
+      double at_turn = 0.0;                // overlap there
+    } result;
+    Vec3 last_force = Vec3::Zero();
+    double last_depth = 0.0;
+    for (double way = 0.0; way < 1.0; way += step) {  // over three corners
+      const auto found = touches(drum, 0.7 * Vec3(std::cos(way), std::sin(way), 0.5), radius);
+      Vec3 force = Vec3::Zero();
+      double depth = 0.0;
+      for (const Touch& t : found) {
+        force -= (radius - t.gap) * t.normal;
+        depth = std::max(depth, radius - t.gap);
+      }
+      if (way > 0.0) {
+        if ((force - last_force).norm() > result.turn) {
+          result.turn = (force - last_force).norm();
+          result.at_turn = depth;
+        }
+        result.deepening = std::max(result.deepening, std::abs(depth - last_depth));
+      }
+      result.most_contacts = std::max(result.most_contacts, found.size());
+      last_force = force;
+      last_depth = depth;
+    }
+    return result;
+  };
+  const auto merged = round(TriangleMesh(mesh::box({1, 1, 1})).options().smooth_angle), apart = round(20.0);
+  CHECK(merged.most_contacts == 1);
+  CHECK(merged.deepening < step);  // by which the ball moves at the most: the energy of the contact does not jump
+  CHECK(merged.turn == Approx(2.0 * merged.at_turn * std::sin(std::numbers::pi / 16)).epsilon(0.02));
+  CHECK(merged.turn > 10.0 * step);
+  CHECK(apart.most_contacts == 2);
+  CHECK(apart.turn < 2.0 * step);  // two contacts of K = 1
+}

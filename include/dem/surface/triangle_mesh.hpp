@@ -20,7 +20,11 @@ enum class MeshSide {
 struct MeshOptions {
   MeshSide side = MeshSide::solid;
   MeshFacing facing = MeshFacing::outward;  ///< inward: the solid is outside (a drum)
-  double smooth_angle = 25.0;  ///< degrees; contacts closer than this in direction are one, see TriangleMesh
+  /// degrees; contacts closer than this in direction are one, the deepest, as on the facets of a round surface: there
+  /// the force turns at once by the angle between two facets. For true polygons, as a drum of 16 sides (22.5 degrees),
+  /// choose less: both sides then push in a corner, up to twice as stiff, and the force is steady for overlaps up to
+  /// r (1 - cos(angle)).
+  double smooth_angle = 25.0;
   double depth = 0.0;          ///< m, how far behind the surface a probe is still found and pushed out; 0: spheres to
                                ///< their radius, points (radius 0) as deep as their grains or
                                ///< bodies may go, up to half the solid
@@ -33,8 +37,10 @@ struct MeshOptions {
 /// surface: a flat mesh gives one contact as a plane does, an edge or a corner pushes once, a concave edge once from
 /// each side. On a finely cut concave surface several facets may be such minima; of contacts whose normals differ by
 /// less than `smooth_angle` the deepest counts. Its overlap is a steady function of the sphere's place, so no energy
-/// comes from the edges. Contacts are remembered by groups of triangles (MeshGroups), not by triangles, and within a
-/// group by their direction: a feature is the group's number, then the direction_code of the normal.
+/// comes from the edges, though the force F turns there by F times the angle: sharing it out between the facets would
+/// make that steady at the price of the potential. Contacts are remembered by groups of triangles (MeshGroups), not by
+/// triangles, and within a group by their direction: a feature is the group's number, then the direction_code of the
+/// normal.
 class TriangleMesh {
  public:
   static constexpr bool names_directions = true;
