@@ -54,7 +54,8 @@ inline bool encloses(const IndexedMesh& mesh, const std::vector<std::uint32_t>& 
 
 /// Makes neighbours look the same way, piece by piece: the smaller part of a piece is turned round; then a closed piece
 /// that lies in no other one is made to look as asked, and pieces inside it are turned with it. Returns how many
-/// triangles were turned, and how many pieces there are.
+/// triangles were turned, and how many pieces there are. A piece whose box lies in another's costs a sum over that
+/// one's triangles, of 0.1 us each (8 s for 1,000 pieces in a hull of 80,000); MeshFacing::as_given asks for none.
 inline std::pair<std::size_t, std::size_t> orient(IndexedMesh& mesh, MeshFacing facing) {
   const MeshTopology topology = topology_of(mesh);
   const std::size_t n = mesh.triangles.size();
