@@ -18,7 +18,7 @@ struct With : L {
 };
 
 template <class L>
-ContactParameters<L> constants() {
+ContactParameters<L> laws_of() {
   if constexpr (std::is_same_v<typename L::Normal, Linear>) {
     return {.normal = Linear::with_restitution(2000.0, 0.6),
             .friction = {0.4, 1500.0, 0.1},
@@ -30,10 +30,10 @@ ContactParameters<L> constants() {
   }
 }
 
-constexpr double half = 5e-3;  // m, of all grains
+constexpr double grain_half = 5e-3;  // m, of all grains
 
 /// Somewhere, turned somehow, so that no coordinate of a vertex is a round number.
-const Vec3 place(0.17, -0.31, 0.43);
+const Vec3 mesh_place(0.17, -0.31, 0.43);
 Mat3 tilt() { return (Eigen::AngleAxisd(0.7, Vec3(1, 2, -1).normalized())).toRotationMatrix(); }
 
 /// One grain on a flat surface, thrown so that it tumbles or rolls, or laid down to slide and tip over.
@@ -44,12 +44,12 @@ struct OneGrain {
 
   OneGrain(const typename M::Shape& shape, bool thrown, const typename M::Surfaces& geometry, const SurfaceOptions& at)
       : world(options(tilt() * Vec3(1.5, 0.5, -9.6))) {
-    world.set_contact(constants<M>());
+    world.set_contact(laws_of<M>());
     surface = world.add_surface(world.ground(), geometry, at);
     NewParticle n;
     n.species = world.add_species(shape);
-    const double height = thrown ? 1.02 * shape.bounding_radius() : half;
-    n.position = place + tilt() * Vec3(-0.11, -0.07, height);
+    const double height = thrown ? 1.02 * shape.bounding_radius() : grain_half;
+    n.position = mesh_place + tilt() * Vec3(-0.11, -0.07, height);
     n.velocity = tilt() * Vec3(0.9, 0.5, thrown ? -0.2 : 0.0);
     n.rotation = tilt();
     if (thrown) {
@@ -63,7 +63,7 @@ struct OneGrain {
 /// A flat mesh of triangles of about a centimetre, with the tilt in its vertices.
 TriangleMesh tilted_mesh() {
   IndexedMesh flat = mesh::rectangle(0.6, 0.6, 61, 47);
-  for (Vec3& v : flat.vertices) v = place + tilt() * v;
+  for (Vec3& v : flat.vertices) v = mesh_place + tilt() * v;
   return TriangleMesh(flat, {.side = surface::MeshSide::one_sided, .facing = MeshFacing::as_given});
 }
 
@@ -75,7 +75,7 @@ void compare(const S& shape) {
   for (const bool thrown : {true, false}) {
     CAPTURE(thrown);
     OneGrain<M> on_mesh(shape, thrown, tilted_mesh(), {});
-    OneGrain<M> on_plane(shape, thrown, surface::Plane{}, {.position = place, .rotation = tilt()});
+    OneGrain<M> on_plane(shape, thrown, surface::Plane{}, {.position = mesh_place, .rotation = tilt()});
     const World<M>&m = on_mesh.world, &p = on_plane.world;
     const ParticleId it(0);
     double apart = 0.0, spin_apart = 0.0, force_apart = 0.0, spin = 0.0, force = 0.0;
@@ -90,8 +90,9 @@ void compare(const S& shape) {
       force = std::max(force, push.norm());
     }
     CHECK(force > 0.0);
-    CHECK((p.position(it) - place - tilt() * Vec3(-0.11, -0.07, 0)).norm() > 0.04);  // over four rectangles and more
-    CHECK(apart < 1e-9 * half);
+    CHECK((p.position(it) - mesh_place - tilt() * Vec3(-0.11, -0.07, 0)).norm() >
+          0.04);  // over four rectangles and more
+    CHECK(apart < 1e-9 * grain_half);
     CHECK(spin_apart < 1e-9 * spin);
     CHECK(force_apart < 1e-9 * force);
   }
@@ -101,10 +102,10 @@ void compare(const S& shape) {
 
 TEMPLATE_TEST_CASE("grains slide, tip and roll over a tilted flat mesh as over a plane, whatever shape and laws", "",
                    Springs, Moduli) {
-  compare<TestType>(Sphere(half));
-  compare<TestType>(shape::cube8(half));
-  compare<TestType>(shape::cube(half));
-  compare<TestType>(shape::Superquadric(Vec3::Constant(half), Vec3::Constant(8)));
-  compare<TestType>(shape::Superquadric(Vec3::Constant(half), Vec3::Constant(2)));
-  compare<TestType>(shape::SuperquadricPoints(Vec3::Constant(half), Vec3::Constant(8)));
+  compare<TestType>(Sphere(grain_half));
+  compare<TestType>(shape::cube8(grain_half));
+  compare<TestType>(shape::cube(grain_half));
+  compare<TestType>(shape::Superquadric(Vec3::Constant(grain_half), Vec3::Constant(8)));
+  compare<TestType>(shape::Superquadric(Vec3::Constant(grain_half), Vec3::Constant(2)));
+  compare<TestType>(shape::SuperquadricPoints(Vec3::Constant(grain_half), Vec3::Constant(8)));
 }
