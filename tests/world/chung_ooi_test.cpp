@@ -187,7 +187,7 @@ TEMPLATE_TEST_CASE("a ball bounces lower by the square of the restitution each t
         top = std::max(top, w.position(drop.ball).z());
       }
       const double rebound = impact<Law>(law, mass, r, std::sqrt(2 * g * height), 4e-5, 20000, g).restitution;
-      CHECK(rebound == Approx(e).epsilon(0.15));
+      CHECK(rebound == Approx(e).epsilon(0.15));  // weight keeps more of slow bounces: least 0.62 where 0.7 is asked
       height *= rebound * rebound;
       CHECK(top - r == Approx(height).epsilon(std::is_same_v<Law, Linear> ? 3e-3 : 1e-3));
     }
