@@ -16,7 +16,7 @@ using dem::surface::TriangleMesh;
 
 namespace {
 
-constexpr double half_edge = 1e-3;
+constexpr double sheet_half_edge = 1e-3;
 
 TriangleMesh sheet(MeshSide side) { return TriangleMesh(dem::mesh::rectangle(0.1, 0.1, 3, 3), {.side = side}); }
 
@@ -26,7 +26,7 @@ dem::World<Grains<S>> on_surface(const S& shape, const dem::Model::Surfaces& sur
   dem::World<Grains<S>> w(options({0, 0, -g}, 1e-5));
   w.set_contact(sand<Grains<S>>());
   w.add_surface(w.ground(), surface, {.name = "chute"});
-  w.add_particle({w.add_species(shape), Vec3(1e-3, 2e-3, top + half_edge)});
+  w.add_particle({w.add_species(shape), Vec3(1e-3, 2e-3, top + sheet_half_edge)});
   return w;
 }
 
@@ -41,25 +41,25 @@ TEST_CASE("grains with points are refused on two-sided sheets, and held on what 
       auto w = plate ? on_surface(shape, TriangleMesh(dem::mesh::box({0.1, 0.1, 2 * top}, 3)), top)
                      : on_surface(shape, sheet(MeshSide::one_sided));
       REQUIRE(w.run_for(0.02));  // free fall: 2 mm
-      CHECK(std::abs(w.position(ParticleId(0)).z() - (plate ? top : 0.0) - half_edge) < 0.01 * half_edge);
+      CHECK(std::abs(w.position(ParticleId(0)).z() - (plate ? top : 0.0) - sheet_half_edge) < 0.01 * sheet_half_edge);
     }
   };
-  check(dem::shape::cube(half_edge));
-  check(Superquadric(Vec3::Constant(half_edge), Vec3::Constant(8)));
-  check(SuperquadricPoints(Vec3::Constant(half_edge), Vec3::Constant(8)));
-  check(Mixed<Sphere, Polyhedron>(dem::shape::cube(half_edge)));
+  check(dem::shape::cube(sheet_half_edge));
+  check(Superquadric(Vec3::Constant(sheet_half_edge), Vec3::Constant(8)));
+  check(SuperquadricPoints(Vec3::Constant(sheet_half_edge), Vec3::Constant(8)));
+  check(Mixed<Sphere, Polyhedron>(dem::shape::cube(sheet_half_edge)));
 }
 
 TEST_CASE("balls of any kind lie on two-sided sheets") {
   const auto check = [](const auto& shape) {
     auto w = on_surface(shape, sheet(MeshSide::two_sided));
     REQUIRE(w.run_for(0.02));
-    CHECK(std::abs(w.position(ParticleId(0)).z() - half_edge) < 0.01 * half_edge);
+    CHECK(std::abs(w.position(ParticleId(0)).z() - sheet_half_edge) < 0.01 * sheet_half_edge);
   };
-  check(Sphere(half_edge));
-  check(dem::shape::cube8(half_edge));
-  check(Superquadric(Vec3::Constant(half_edge), Vec3::Constant(2)));
-  check(Mixed<Sphere, Polyhedron>(Sphere(half_edge)));
+  check(Sphere(sheet_half_edge));
+  check(dem::shape::cube8(sheet_half_edge));
+  check(Superquadric(Vec3::Constant(sheet_half_edge), Vec3::Constant(2)));
+  check(Mixed<Sphere, Polyhedron>(Sphere(sheet_half_edge)));
 }
 
 TEST_CASE("bodies with points are refused on two-sided sheets; balls are held, and sheets lie on planes") {
