@@ -2,6 +2,7 @@
 
 #include <dem/core/ids.hpp>
 #include <dem/math/vector.hpp>
+#include <dem/state/body.hpp>
 #include <dem/surface/surface.hpp>
 
 #include <optional>
