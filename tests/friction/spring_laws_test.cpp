@@ -220,5 +220,6 @@ TEST_CASE("constants of tangential laws that make no sense are refused") {
   check_refused([] { Law::check({{1, 1, 0}, 0.5, 0.0}); }, "decay speed of friction is 0 m/s");
   check_refused([] { Law::check({{1, 1, 0}, 0.5, 1.0, -1}); }, "heavily to lightly pressed friction is -1");
   check_refused([] { Law::check({{1, 1, 0}, 1.5, 1.0, 2.0, 1.0, 3.0}); }, "mean_pressure");
+  check_refused([] { Law::check({{1, 1, 0}, 1.5, 1.0, 2.0, 1.0, 0.5}); }, "mean_pressure is 0.5");
   CHECK_NOTHROW(Law::check({{0.4, 1, 0}}));
 }

@@ -66,7 +66,10 @@ struct Varying {
     require_positive(p.decay_speed, "decay speed of friction", "m/s");
     require_non_negative(p.pressed_ratio, "ratio of heavily to lightly pressed friction", "(no unit)");
     require_positive(p.decay_pressure, "decay pressure of friction", "N or Pa");
-    require_within(p.mean_pressure, 0.0, 1.0, "mean_pressure (0: force, 1: pressure on Hertz's circle)");
+    if (p.mean_pressure != 0.0 && p.mean_pressure != 1.0) {
+      fail("mean_pressure is {:g}, but must be 0 (the normal force counts) or 1 (the pressure on Hertz's circle)",
+           p.mean_pressure);
+    }
   }
 
  private:
