@@ -12,6 +12,8 @@ TEST_CASE("a curve runs straight between its points and goes on outside") {
   CHECK(c(5.0) == Approx(1.0));
   CHECK(c.held_outside()(5.0) == Approx(2.0));
   CHECK(c.held_outside().slope(5.0) == 0.0);
+  CHECK(c.held_outside().is_held_outside());
+  CHECK_FALSE(c.is_held_outside());
   CHECK(c.slope(2.0) == Approx(-0.5));
   CHECK(c.steepest() == Approx(2.0));
   CHECK_THAT(message_of([] { Curve({{0, 1}}); }), Contains("has 1 points, but needs at least 2"));

@@ -185,6 +185,20 @@ TEST_CASE("springs with a stiffness and with a table carry a weight at the right
   CHECK(m.spring(s).force == Approx(98.1).epsilon(1e-6));
 }
 
+TEST_CASE("the table of a spring goes on outside its range as its curve does") {
+  Machine<PredictorCorrector> m;
+  const BodyId cart = m.add_body(ball("cart"));
+  const Curve buffer = {{0, 0}, {0.020, 1000}};  // N over m of compression, from 0.30 m on
+  const SpringSpec on = spring_table("goes on", cart, X, m.ground(), Y, 0.30, buffer);
+  const SpringSpec held = spring_table("held", cart, X, m.ground(), Y, 0.30, buffer.held_outside());
+  CHECK(on.force_over_length(0.29) == Approx(500.0));
+  CHECK(held.force_over_length(0.29) == Approx(500.0));
+  CHECK(on.force_over_length(0.35) == Approx(-2500.0));  // it pulls
+  CHECK(held.force_over_length(0.35) == 0.0);
+  CHECK(on.force_over_length(0.27) == Approx(1500.0));
+  CHECK(held.force_over_length(0.27) == Approx(1000.0));
+}
+
 TEST_CASE("a slider-crank follows its kinematics") {
   const double r = 0.1, l = 0.3, w = 10.0;
   Machine<PredictorCorrector> m;

@@ -159,19 +159,22 @@ inline SpringSpec spring(std::string name, BodyId a, const Vec3& at_a, BodyId b,
           .force_over_length = Curve::line(stiffness * l0, -stiffness),
           .force_over_speed = damping > 0.0 ? Curve::line(0.0, -damping) : Curve{}};
 }
-/// A spring of free length (m) whose force (N) over its compression (m, positive when shorter) is a table.
+/// A spring of free length (m) whose force (N) over its compression (m, positive when shorter) is a table. Beyond the
+/// table it goes on with the slope of its last piece, or keeps its last value if the curve is `held_outside`, as that of
+/// a bump stop does, which does not pull.
 inline SpringSpec spring_table(std::string name, BodyId a, const Vec3& at_a, BodyId b, const Vec3& at_b,
                                double free_length, const Curve& force_over_compression, double damping = 0.0) {
   require_positive(free_length, "free length of a spring", "m");
   require_non_negative(damping, "damping of a spring", "N s/m");
   std::vector<std::pair<double, double>> points;
   for (const auto& [x, f] : force_over_compression.points()) points.emplace_back(free_length - x, f);
+  const Curve over_length({points.rbegin(), points.rend()});
   return {.name = std::move(name),
           .a = a,
           .b = b,
           .at_a = at_a,
           .at_b = at_b,
-          .force_over_length = Curve({points.rbegin(), points.rend()}),
+          .force_over_length = force_over_compression.is_held_outside() ? over_length.held_outside() : over_length,
           .force_over_speed = damping > 0.0 ? Curve::line(0.0, -damping) : Curve{}};
 }
 

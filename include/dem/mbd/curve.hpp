@@ -41,6 +41,8 @@ class Curve {
     return c;
   }
 
+  bool is_held_outside() const { return held_; }
+
   double operator()(double x) const {
     const auto& [p, q] = piece(x);
     if (held_) x = std::clamp(x, points_.front().first, points_.back().first);
