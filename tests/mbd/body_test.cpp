@@ -137,10 +137,19 @@ TEST_CASE("a free body keeps energy and angular momentum, and turns over about i
   const double period = 4.0 * std::comp_ellint_1(std::sqrt(k2)) / rate;
   const Vec3 momentum = angular_momentum(m.body(id));
   const double energy = kinetic_energy(m.body(id));
-  double lowest = 3.0;
+  double lowest = 3.0, before = 3.0;
+  std::vector<double> crossings;  // s, where w2 changes its sign: half a period apart
   const double dt = period / 50000.0;
-  REQUIRE(m.run(period, dt, [&] { lowest = std::min(lowest, m.body(id).motion.angular_velocity.y); }));
+  REQUIRE(m.run(period, dt, [&] {
+    const double now = m.body(id).motion.angular_velocity.y;
+    lowest = std::min(lowest, now);
+    if ((now > 0.0) != (before > 0.0)) crossings.push_back(m.time() - dt * now / (now - before));
+    before = now;
+  }));
   CHECK(lowest < -2.99);  // it turned over
+  REQUIRE(crossings.size() == 2);
+  // The turn over is exponentially sensitive to w1 and w3: an error of 1e-5 in them shifts it by 1e-5 of 1/1.3 s.
+  CHECK(crossings[1] - crossings[0] == Approx(0.5 * period).epsilon(1e-5));
   // Second order in dt; w dt is about 1e-3, so 1e-6 relative a turn and less than 1e-5 over the period.
   CHECK(kinetic_energy(m.body(id)) == Approx(energy).epsilon(1e-5));
   CHECK((angular_momentum(m.body(id)) - momentum).norm() < 1e-5 * momentum.norm());

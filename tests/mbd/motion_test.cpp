@@ -164,6 +164,36 @@ SubstepEnergy substep_energy(int substeps, double omega_dt) {
 
 }  // namespace
 
+TEST_CASE("a function of the user reads a sensor in every substep, and trials are not sampled") {
+  // A push that follows what a load cell feels. The world calls the machine twice a step, with two stages in a substep.
+  Machine<PredictorCorrector> m;
+  m.gravity.setZero();
+  m.substeps = 2;
+  const BodyId block = m.add_body(given_body("block", 2.0, Vec3(0.1, 0.1, 0.1)));
+  const JointId weld = m.add_joint(fixed("weld", m.ground(), block, {0, 0, 0}));
+  const double dt = 1e-4, window = 20 * dt;
+  const SensorId cell = m.add_sensor(joint_sensor("cell", weld, window));
+  const SensorId felt = m.add_sensor(contact_sensor("felt", block, window));
+  m.add_load(applied_force("push", block, {0, 0, 0}, X, Signal::function([&](double) {
+                             return 10.0 + 0.5 * (6.0 - std::abs(m.sensor(cell).mean().force.x));
+                           })));
+  m.design_for(dt);
+  m.initialise(0.0, Vec3::Zero());
+  double latest = 0.0;
+  for (int s = 0; s < 5000; ++s) {
+    for (int stage = 0; stage < 2; ++stage) {
+      m.clear_forces();
+      m.body(block).apply({0, 0.01 * s, 0}, {0, 0, 0});
+      m.hold_contacts(stage);
+      m.advance_substeps(stage, dt, Vec3::Zero());
+      if (stage == 0) CHECK(m.sensor(felt).latest().force.y == latest);  // a trial adds nothing
+    }
+    latest = m.sensor(felt).latest().force.y;
+  }
+  // f = 10 + (6 - f) / 2: a mean of 20 steps fed back with half of it settles at a rate of some 1/window.
+  CHECK(std::abs(m.sensor(cell).mean().force.x) == Approx(13.0 / 1.5).epsilon(1e-6));
+}
+
 TEMPLATE_TEST_CASE("substeps keep the energy that goes to and fro between grains and machine", "", PredictorCorrector,
                    SymplecticEuler, VelocityVerlet) {
   // Forces that are merely held over a step would feed in (omega dt)^2/2 a step: at omega dt = 0.02 and 31416 steps

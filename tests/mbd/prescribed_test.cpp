@@ -93,6 +93,7 @@ TEMPLATE_TEST_CASE("a wheel driven by its speed takes hold at any angle, and a s
   m.set_motion(drive, 10.0);
   REQUIRE(m.step(1e-3));
   CHECK(m.speed(axle) == Approx(10.0).epsilon(1e-12));
+  check_refused([&] { m.set_motion(drive, 0.0, 20.0); }, "'drive' is one of speed", "use set_motion(id, speed)");
 }
 
 TEMPLATE_TEST_CASE("a drive takes hold of a hinge beside the centre of mass without pulling it apart", "",

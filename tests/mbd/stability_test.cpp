@@ -179,6 +179,20 @@ TEST_CASE("stops, friction and couplings of a guide are lowered with it, and giv
   CHECK(m.stops(plane, Freedom::slide_y)->stiffness == Approx(stop / 3.5).epsilon(0.02));
 }
 
+TEST_CASE("the report of a blow-up knows the step that joints were derived for last") {
+  Machine<SymplecticEuler> m;
+  m.gravity.setZero();
+  const BodyId wheel = m.add_body(ball("wheel"));
+  m.add_joint(revolute("hinge", m.ground(), wheel, {0, 0, 0}, Z));
+  m.add_load(custom_load("push", wheel, [](double t, const Body&) {
+    return Wrench{{t < 0.1 ? 0.0 : 1e300, 0, 0}, {}};
+  }));
+  REQUIRE(m.run(0.05, 1e-4));
+  const MachineReport report = m.run(1.0, 1e-3);  // ten times as long, and stable: the hinge is derived anew
+  CHECK_FALSE(report.ok);
+  CHECK_THAT(report.text, Contains("was stable at the start of the run") && Contains("check the applied forces"));
+}
+
 TEMPLATE_TEST_CASE("a given stiffness that gets too stiff in another pose is named, with the time", "", SymplecticEuler,
                    VelocityVerlet, PredictorCorrector) {
   // omega^2 = k (1/m + L^2/I) + kr/I = 1e6 (1 + 600 L^2) + 6e6: at 1e-4 s more than 4/dt^2 = 4e8 from L = 0.8 m on.

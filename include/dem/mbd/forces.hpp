@@ -26,7 +26,8 @@ inline void sample_sensors(Parts& m, double dt) {
 
 /// All forces of the machine itself, added to what the bodies already carry (the grains' contact forces). `time` (s) is
 /// that of the state the forces are evaluated at, `dt` (s) the machine's time step. Joint friction is evaluated from
-/// the committed history, and committed, like turns and sensors, in the last stage only.
+/// the committed history, and committed, like turns, in the last stage only; sensors are sampled after it
+/// (sample_sensors).
 DEM_FLATTEN inline void add_forces(Parts& m, double time, double dt, bool is_last_stage) {
   const double followed = is_last_stage ? dt : 0.0;
   for (std::size_t i = 0; i < m.bodies.size(); ++i) {
@@ -45,7 +46,6 @@ DEM_FLATTEN inline void add_forces(Parts& m, double time, double dt, bool is_las
   for (Coupling& g : m.couplings) apply_coupling(g, m.joints, m.bodies);
   for (Spring& s : m.springs) apply_spring(s, m.bodies);
   for (Actuator& u : m.actuators) apply_actuator(u, m.joints, m.bodies, time, dt);
-  if (is_last_stage) sample_sensors(m, dt);
 }
 
 }  // namespace dem::mbd

@@ -19,7 +19,7 @@ template <integrator::Integrator I>
 class Machine : public MachinePhases<I> {
   using Base = MachinePhases<I>;
   using Base::bad_, Base::contacts_, Base::design_dt_, Base::earlier_contacts_, Base::memory_, Base::parts_,
-      Base::time_;
+      Base::sampling_, Base::time_;
 
  public:
   using Base::add_forces, Base::advance, Base::before_forces, Base::clear_forces, Base::design_for, Base::gravity,
@@ -28,7 +28,8 @@ class Machine : public MachinePhases<I> {
   // ------------------------------------------------------------------------------------------- without any world
 
   /// One step of dt (s), in `substeps` parts. Throws Error, before anything moves, if it is above the stable time step
-  /// or a prescribed motion would have to jump.
+  /// or a prescribed motion would have to jump. What is derived from the step is derived anew when dt changes: a smaller
+  /// one makes joints stiffer at once, a jolt where they are strained. design_for with one dt for all keeps them as they are.
   [[nodiscard]] MachineReport step(double dt) {
     prepare(dt);
     whole_step(dt);
@@ -81,7 +82,7 @@ class Machine : public MachinePhases<I> {
     const double h = dt / n;
     const bool trial = stage < I::stages - 1;  // done again in the next stage, from the same start
     if constexpr (I::stages > 1) stage == 0 ? save() : restore();
-    const SensorsAside aside(trial ? &parts_.sensors : nullptr);
+    sampling_ = !trial;
     const std::vector<Wrench>& from = stage == 0 ? earlier_contacts_ : contacts_;
     const std::vector<Wrench>& to = stage == 0 ? contacts_ : corrected_contacts_;
     const double phase = stage == 0 ? 1.0 : 0.0;
@@ -104,23 +105,6 @@ class Machine : public MachinePhases<I> {
   }
 
  private:
-  /// Takes the sensors out of the machine while it lives, also if a user's function throws.
-  class SensorsAside {
-   public:
-    explicit SensorsAside(std::vector<Sensor>* sensors) : sensors_(sensors) {
-      if (sensors_ != nullptr) kept_.swap(*sensors_);
-    }
-    ~SensorsAside() {
-      if (sensors_ != nullptr) kept_.swap(*sensors_);
-    }
-    SensorsAside(const SensorsAside&) = delete;
-    SensorsAside& operator=(const SensorsAside&) = delete;
-
-   private:
-    std::vector<Sensor>* sensors_;
-    std::vector<Sensor> kept_;
-  };
-
   /// Gives the bodies half of the impulse by which the grains' forces changed since the last step, dt ago: what the
   /// kick at the end of a step is to velocity Verlet. The machine's own step h is in it because its first half kick was
   /// with the earlier force (Verlet), or its kicks come before its drifts (symplectic Euler).
@@ -142,7 +126,10 @@ class Machine : public MachinePhases<I> {
       initialise(time_, gravity);
     }
     if (!same) accepted_dt_ = 0.0;
-    if (dt != accepted_dt_) check_time_step(dt);
+    if (dt != accepted_dt_) {
+      check_time_step(dt);
+      this->note_stable_step();  // what is derived is another one
+    }
     accepted_dt_ = dt;
     this->check_motions();
   }

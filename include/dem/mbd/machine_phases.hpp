@@ -104,8 +104,7 @@ class MachinePhases : public Assembly {
     mbd::add_forces(parts_, time, step, false);
     contacts_ = earlier_contacts_ = parts_.outside;
     for (std::size_t i = 0; i < n; ++i) I::template initialise<double>(memory_[i], acceleration(i, from_eigen(g)));
-    assembled_limit_ = stable_time_step();
-    watch_ = StepWatch<I>(parts_);
+    note_stable_step();
     initialised_substeps_ = substeps;
     initialised_ = true;
     changed_ = false;
@@ -126,7 +125,10 @@ class MachinePhases : public Assembly {
   void clear_forces() { mbd::clear_forces(parts_); }
 
   /// Adds the machine's own forces; `time` is that of the state they act at (see stage_time).
-  void add_forces(double time, double dt, int, bool is_last_stage) { mbd::add_forces(parts_, time, dt, is_last_stage); }
+  void add_forces(double time, double dt, int, bool is_last_stage) {
+    mbd::add_forces(parts_, time, dt, is_last_stage);
+    if (is_last_stage && sampling_) sample_sensors(parts_, dt);
+  }
 
   /// Lets the forces move the bodies.
   void advance(int stage, double dt, const Vec3& g) {
@@ -175,6 +177,12 @@ class MachinePhases : public Assembly {
     design_dt_ = dt;
   }
 
+  /// Remembers the largest stable step of this pose, for the report of a blow-up.
+  void note_stable_step() {
+    assembled_limit_ = stable_time_step();
+    watch_ = StepWatch<I>(parts_);
+  }
+
   /// Adds an impulse (N s, and N m s about the centre of mass) to a free body's velocities.
   void push(std::size_t i, const Wrench& impulse) {
     integrator::Motion<double>& m = parts_.bodies[i].motion;
@@ -189,6 +197,7 @@ class MachinePhases : public Assembly {
   double time_ = 0.0, design_dt_ = 0.0, step_dt_ = 0.0;  ///< s; the last two with all substeps
   int initialised_substeps_ = 0;
   bool initialised_ = false, is_designed_ = false;
+  bool sampling_ = true;  ///< whether forces are felt by the sensors: not those of a trial
   BodyId bad_;
   StableTimeStep assembled_limit_;
   std::vector<Wrench> contacts_, earlier_contacts_;  ///< the grains' forces at the start of this step and of the last

@@ -140,9 +140,14 @@ class Mechanism {
     p.has_hold = false;
   }
   /// For values that come from outside every step: how far each is from the last is the caller's care, only the first
-  /// one is compared with the coordinate.
+  /// one is compared with the coordinate. A motion prescribed by its speed takes that alone, set_motion(id, speed).
   void set_motion(MotionId id, double value, double rate) {
-    const bool has_hold = motion(id).has_hold;
+    const PrescribedMotion& p = motion(id);
+    if (p.spec.by_speed) {
+      fail("prescribed motion '{}' is one of speed and takes no value with a rate; use set_motion(id, speed)",
+           p.spec.name);
+    }
+    const bool has_hold = p.has_hold;
     set_motion(id, Signal::held(value, rate));
     parts_.motions[id.index()].has_hold = has_hold;
   }
