@@ -1,8 +1,9 @@
 // expect: BroadPhase: needs finder\(\) const with for_each_candidate\(i, f\), which calls f\(j\) for each j > i
+#include <dem/broadphase/all_pairs.hpp>
 #include <dem/world/model.hpp>
 
-struct Nothing {
-  void build(const dem::broadphase::Positions&, double) {}
+struct Nothing : dem::broadphase::AllPairs {
+  void finder() const = delete;
 };
 struct Grain : dem::Model {
   using BroadPhase = Nothing;

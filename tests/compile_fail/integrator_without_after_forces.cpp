@@ -1,12 +1,8 @@
 // expect: Integrator: needs static initialise<T>\(Memory<T>&, const Acceleration<T>&\), before_forces<T>
-#include <dem/integrator/motion.hpp>
+#include <dem/integrator/symplectic_euler.hpp>
 
-struct Still {
-  static constexpr int stages = 1;
-  static constexpr bool predicts_before_forces = false;
-  static constexpr double stability_limit = 2.0;
-  template <class T>
-  struct Memory {};
+struct Still : dem::integrator::SymplecticEuler {
+  void after_forces() = delete;
 };
 
 int main() { dem::integrator::check_integrator<Still>(); }
