@@ -152,6 +152,15 @@ TEST_CASE("a packing file reads back as the same packing") {
   }
 }
 
+TEST_CASE("the note of a packing may be empty, and lines may end as on other systems") {
+  const Scratch file;
+  save_packing({0.9e-3, 0.06, 0.05, "", random_lattice(3, 0.9e-3, 0.06, 0.05, 3)}, file.path);
+  CHECK(load_packing(file.path).note.empty());
+  CHECK(load_packing(file.path).grains.size() == 3);
+  dem::io::write_file(file.path, "dem-packing 1\r\nhalf_edge 1\r\nbox 9 9\r\nnote a b\r\ngrains 0\r\n");
+  CHECK(load_packing(file.path).note == "a b");
+}
+
 TEST_CASE("what is no packing is refused in words") {
   const Scratch file;
   const auto reading = [&](const std::string& text) {

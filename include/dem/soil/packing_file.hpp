@@ -62,7 +62,9 @@ inline Packing load_packing(const std::filesystem::path& path) {
   expect("box");
   in >> p.length_x >> p.length_y;
   expect("note");
-  std::getline(in >> std::ws, p.note);
+  std::getline(in, p.note);  // which may be empty
+  p.note.erase(0, p.note.find_first_not_of(" \t"));
+  if (p.note.ends_with('\r')) p.note.pop_back();
   expect("grains");
   if (!(in >> count) || count > 100'000'000) wrong("the number of grains is missing or above 100 million");
   if (!(p.half_edge > 0.0 && p.length_x > 0.0 && p.length_y > 0.0)) wrong("half_edge or box is not positive");
