@@ -34,7 +34,7 @@ inline std::vector<IdleOption> idle_options(const Settings& s) {
            {"--densify-time", "--shake-amplitude", "--shake-frequency"});
   }
   unless(!s.packing_only, "without --packing-only, for it is of the test",
-         {"--loads", "--lid-speed", "--rest-speed", "--consolidation-limit", "--shear-speed", "--travel", "--ramp-time",
+         {"--stable-share", "--loads", "--lid-speed", "--rest-speed", "--consolidation-limit", "--shear-speed", "--travel", "--ramp-time",
           "--smoothing", "--residual-share", "--area-correction", "--vtk-spheres", "--vtk-interval"});
   unless(s.scale_contacts, "with --scale-contacts true", {"--constants-for"});
   unless(s.time_step == 0.0, "without --time-step, which sets the step", {"--stable-share"});

@@ -3,7 +3,7 @@
 //
 // Ends with 0 when all was done; 1 when the run ended early or a part of the report could not be made; 2 when the
 // settings make no sense, before the results of an earlier run are touched; 130 after Ctrl-C or SIGTERM. What was found
-// by then is saved and reported.
+// by then is saved and reported. Plots are drawn if gnuplot is there: a run without is as complete, and says so.
 
 #include "campaign.hpp"
 #include "old_results.hpp"

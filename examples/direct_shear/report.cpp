@@ -204,15 +204,21 @@ void print_report(const Settings& s, const Campaign& c) {
   fmt::print("\n{}\n", speed_text(c));
 }
 
-void write_page(const Settings& s, const Campaign& c, const std::string& config) {
+/// Writes report.html. Returns why plots could not be drawn, or nothing.
+std::string write_page(const Settings& s, const Campaign& c, const std::string& config) {
+  std::string not_drawn;
   const Fits fits = fit(c);
   dem::io::HtmlReport page("Direct shear test");
   if (const auto status = status_text(c); !status.empty()) page.paragraph(status);
   page.paragraph(packing_text(s, c)).table(strength_table(s, c)).table(angle_table(fits));
   const auto add_plot = [&](const Plot& plot, const char* name, const char* caption) {
     const auto drawn = dem::io::render_plot(plot, s.output / name);
-    if (drawn) page.picture(drawn.svg, caption);
-    else page.paragraph(fmt::format("{}: not drawn ({})", caption, drawn.reason));
+    if (drawn) {
+      page.picture(drawn.svg, caption);
+    } else {
+      not_drawn = drawn.reason;
+      page.paragraph(fmt::format("{}: not drawn ({})", caption, drawn.reason));
+    }
   };
   page.heading("Plots");
   add_plot(stress_plot(s, c), "shear_stress", "Shear stress on the bottom box over the displacement of the top box.");
@@ -224,6 +230,7 @@ void write_page(const Settings& s, const Campaign& c, const std::string& config)
   page.heading("settings.toml", 3).paragraph("What repeats the run: direct_shear --config settings.toml");
   page.preformatted(config);
   page.save(s.output / "report.html");
+  return not_drawn;
 }
 
 }  // namespace
@@ -241,12 +248,19 @@ bool report(const Settings& s, const Campaign& c, const std::string& config) {
   };
   part("results.csv", [&] { write_results_csv(s, c); });
   part("the printed report", [&] { print_report(s, c); });
-  part("report.html", [&] { write_page(s, c, config); });
+  std::string not_drawn;
+  part("report.html", [&] { not_drawn = write_page(s, c, config); });
+  if (!not_drawn.empty()) {
+    fmt::print(stderr, "direct_shear: the plots were not drawn ({}); their data and gnuplot scripts are there\n", not_drawn);
+  }
   if (!c.frames_problem.empty()) {
     fmt::print(stderr, "direct_shear: {}\n", frames_text(c));
     complete = false;
   }
-  if (complete) fmt::print("Report, plots, tables{}: {}\n", s.vtk ? " and ParaView files" : "", s.output.string());
+  if (complete) {
+    fmt::print("Report, {}tables{}: {}\n", not_drawn.empty() ? "plots, " : "", s.vtk ? " and ParaView files" : "",
+               s.output.string());
+  }
   return complete;
 }
 

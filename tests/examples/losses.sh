@@ -38,6 +38,15 @@ grep -q 'solid fraction -' "$log" || fail "It prints a density"
 grep -q ',,,' "$output/thin/results.csv" || fail "results.csv has a density"
 [ "$(grep -c '^' "$output/thin/packing.txt")" = 66 ] || fail "The packing of 60 grains was not saved"
 
+# Without gnuplot, which is not in this PATH, all but the pictures is there, and it says so.
+status=0
+env PATH=/nonexistent "$rig" --size smoke --travel 5e-4 --packing-file "$packing" --no-vtk --output "$output/plain" \
+  > "$log" 2>&1 || status=$?
+[ "$status" = 0 ] || fail "Without gnuplot it ends with $status, not with 0"
+grep -q 'the plots were not drawn' "$log" || fail "It does not say that plots are missing"
+grep -q '^Report, tables: ' "$log" || fail "It promises plots, or ParaView files, that are not there"
+[ -s "$output/plain/shear_stress.gp" ] || fail "The scripts of the plots are missing"
+
 # What ends a run early is told in the names of the options, and all that is known by then is reported.
 status=0
 "$rig" --size smoke --packing-file "$packing" --overlap-limit 1e-3 --no-vtk --output "$output/deep" \
