@@ -251,7 +251,8 @@ bool report(const Settings& s, const Campaign& c, const std::string& config) {
   std::string not_drawn;
   part("report.html", [&] { not_drawn = write_page(s, c, config); });
   if (!not_drawn.empty()) {
-    fmt::print(stderr, "direct_shear: the plots were not drawn ({}); their data and gnuplot scripts are there\n", not_drawn);
+    fmt::print(stderr, "direct_shear: the plots were not drawn ({}); their data and gnuplot scripts are there\n",
+               not_drawn);
   }
   if (!c.frames_problem.empty()) {
     fmt::print(stderr, "direct_shear: {}\n", frames_text(c));

@@ -28,8 +28,9 @@ class Machine : public MachinePhases<I> {
   // ------------------------------------------------------------------------------------------- without any world
 
   /// One step of dt (s), in `substeps` parts. Throws Error, before anything moves, if it is above the stable time step
-  /// or a prescribed motion would have to jump. What is derived from the step is derived anew when dt changes: a smaller
-  /// one makes joints stiffer at once, a jolt where they are strained. design_for with one dt for all keeps them as they are.
+  /// or a prescribed motion would have to jump. What is derived from the step is derived anew when dt changes: a
+  /// smaller one makes joints stiffer at once, a jolt where they are strained. design_for with one dt for all keeps
+  /// them as they are.
   [[nodiscard]] MachineReport step(double dt) {
     prepare(dt);
     whole_step(dt);
