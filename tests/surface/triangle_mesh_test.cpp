@@ -244,6 +244,35 @@ TEST_CASE("points see how deep they are in a solid, by the normals of faces, edg
   }
 }
 
+TEST_CASE("a point that is held at a gap before a solid is pushed out from as deep as any other point") {
+  // Far less gap than depth, as where cohesion reaches less far than the grain is pressed in.
+  const TriangleMesh box(mesh::box({2, 2, 2}, 3), {.depth = 0.4}), chosen(mesh::box({2, 2, 2}, 3));
+  const double gap = 0.01;
+  const auto held = [&](const TriangleMesh& m, const Vec3& p) {
+    std::vector<Touch> found;
+    m.touch_point(dem::from_eigen(p), gap, [&](std::uint32_t feature, const dem::Vector3<double>& normal, double d) {
+      found.push_back({feature, to_eigen(normal), d});
+    });
+    return found;
+  };
+  check_one(held(box, {0.1, 0.2, 1.009}), {0, 0, -1}, 0.009);
+  CHECK(held(box, {0.1, 0.2, 1.011}).empty());
+  check_one(held(chosen, {0.1, 0.2, 0.9}), {0, 0, -1}, -0.1);  // without a depth of the user's
+  Random random(5);
+  for (int trial = 0; trial < 2000; ++trial) {
+    const Vec3 p = random.in({1.2, 1.2, 1.2});
+    const auto found = held(box, p), alone = touches(box, p, 0.0);
+    if (alone.empty()) {
+      CHECK(std::all_of(found.begin(), found.end(), [](const Touch& t) { return t.gap >= 0.0; }));
+    } else {
+      REQUIRE(found.size() == 1);
+      CHECK(found[0].feature == alone[0].feature);
+      CHECK(found[0].gap == alone[0].gap);
+      CHECK(found[0].normal == alone[0].normal);
+    }
+  }
+}
+
 TEST_CASE("sheets are touched from one side, or from both") {
   const IndexedMesh square = mesh::rectangle(2, 2, 2, 2);
   const TriangleMesh one(square, {.side = MeshSide::one_sided}), two(square, {.side = MeshSide::two_sided});

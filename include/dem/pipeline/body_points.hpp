@@ -1,8 +1,11 @@
 #pragma once
 
 #include <dem/pipeline/body_shapes.hpp>
+#include <dem/surface/direction_code.hpp>
 
+#include <algorithm>
 #include <array>
+#include <span>
 #include <vector>
 
 namespace dem::pipeline {
@@ -50,9 +53,21 @@ class PointsTowards {
   }
 
  private:
-  /// Beyond the numbers of a surface's own points, ascending.
-  static constexpr std::uint32_t first_near = 1u << 20, first_of_mantle = 1u << 21;
-  static constexpr int most_ways = 16;
+  /// Beyond the numbers of a surface's own points, ascending; of each rim as many as walls of the other surface can be
+  /// told apart.
+  static constexpr std::uint32_t first_near = 1u << 20, of_a_rim = 1u << 18,
+                                 first_of_mantle = first_near + 4 * of_a_rim;
+  static constexpr std::uint32_t most_ways = 16;
+
+  struct Way {
+    std::uint32_t number;   ///< from 0 on, ascending: of the wall that it leads to, whichever others are near
+    Vector3<double> along;  ///< into the other surface, own frame
+  };
+  struct Ways {
+    std::array<Way, most_ways> way;
+    std::uint32_t count = 0;
+    std::span<const Way> all() const { return {way.data(), count}; }
+  };
 
   struct Place {
     double gap;              ///< m, to the other surface; 1e300: out of reach
@@ -68,6 +83,18 @@ class PointsTowards {
     onto_.touch(seen(p), radius, [&](std::uint32_t, const Vector3<double>& normal, double gap) {
       sink(transpose_times(a_.axes, b_.axes * normal), gap);
     });
+  }
+  /// The ways in which a ball at p meets the other surface.
+  Ways find_ways(const Vector3<double>& p, double radius) const {
+    Ways ways;
+    std::uint32_t next = 0;
+    onto_.touch(seen(p), radius, [&](std::uint32_t feature, const Vector3<double>& normal, double) {
+      if (ways.count == most_ways) return;
+      const std::uint32_t wall = std::min(surface::family_of<Onto>(feature), of_a_rim - most_ways);
+      ways.way[ways.count++] = {std::max(next, wall), transpose_times(a_.axes, b_.axes * normal)};
+      next = ways.way[ways.count - 1].number + 1;
+    });
+    return ways;
   }
   Place nearest(const Vector3<double>& p, double radius) const {
     Place best = {1e300, {0, 0, 0}};
@@ -92,14 +119,14 @@ class PointsTowards {
   /// The points of round edges that lie farthest in the ways in which a ball in the middle finds the other surface.
   void list_rims(std::size_t spread) {
     from_.rims([&](std::uint32_t rim, const Vector3<double>& middle, double radius) {
-      std::uint32_t number = first_near + most_ways * rim;
-      touch(middle, radius, [&](const Vector3<double>& way, double) {
-        const double across = std::sqrt(way.x * way.x + way.y * way.y);
-        if (across < 1e-9 || number == first_near + most_ways * (rim + 1)) return;
-        const Vector3<double> p = middle + (radius / across) * Vector3<double>{way.x, way.y, 0.0};
-        fade(spread, p, way, radius / 3.0);
-        add(number++, p);
-      });
+      const Ways ways = find_ways(middle, radius);
+      for (const Way& way : ways.all()) {
+        const double across = std::sqrt(way.along.x * way.along.x + way.along.y * way.along.y);
+        if (across < 1e-9) continue;
+        const Vector3<double> p = middle + (radius / across) * Vector3<double>{way.along.x, way.along.y, 0.0};
+        fade(spread, p, way.along, radius / 3.0);
+        add(first_near + of_a_rim * rim + way.number, p);
+      }
     });
   }
 
@@ -164,16 +191,12 @@ class PointsTowards {
         return;
       }
     }
-    std::array<Vector3<double>, most_ways> ways;
-    std::size_t count = 0;
-    touch({0, 0, 0}, grain.bounding_radius(), [&](const Vector3<double>& way, double) {
-      if (count < ways.size()) ways[count++] = way;
-    });
-    for (std::size_t k = 0; k < count; ++k) {
-      Vector3<double> p = grain.even_support(upright, ways[k]);
-      if (count == 1) p = descend(grain, p);
-      fade(spread, p, ways[k], third);
-      add(first_near + static_cast<std::uint32_t>(k), p);
+    const Ways ways = find_ways({0, 0, 0}, grain.bounding_radius());
+    for (const Way& way : ways.all()) {
+      Vector3<double> p = grain.even_support(upright, way.along);
+      if (ways.count == 1) p = descend(grain, p);
+      fade(spread, p, way.along, third);
+      add(first_near + way.number, p);
     }
   }
   static constexpr double upright[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};

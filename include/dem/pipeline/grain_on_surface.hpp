@@ -2,7 +2,9 @@
 
 #include <dem/contact/weights.hpp>
 #include <dem/pipeline/contact_evaluator.hpp>
+#include <dem/pipeline/support_touches.hpp>
 #include <dem/shape/shape.hpp>
+#include <dem/surface/direction_code.hpp>
 #include <dem/surface/surface.hpp>
 
 #include <vector>
@@ -74,6 +76,7 @@ struct SurfaceScratch {
   std::vector<Hit> hits;
   std::vector<contact::SurfaceTouch<double>> touches;
   std::vector<double> total_share;  ///< of the touches of patches (contact::PatchTouch); 1 from where it ends
+  SupportTouches supports;          ///< of one grain on one surface
   ContactForces forces;
 };
 
@@ -94,12 +97,19 @@ struct GrainAtSurface {
 template <class Surface, class Geometry, class Gap>
 void touch_with_probe(const GrainAtSurface& at, std::uint32_t index, const contact::Probe& probe,
                       const Surface& surface, const Geometry& geometry, Gap gap, SurfaceScratch& s) {
-  geometry.touch(at.centre + transpose_times(surface.axes, probe.centre), shape::widened(probe.radius, gap),
-                 [&](std::uint32_t feature, const Vector3<double>& normal, double distance) {
-                   at.add(s, index, feature,
-                          {probe.centre, surface.axes * normal, probe.radius, distance,
-                           surface::radius_on(geometry, probe.effective_radius), probe.area});
-                 });
+  const Vector3<double> seen = at.centre + transpose_times(surface.axes, probe.centre);
+  const auto add = [&](std::uint32_t feature, const Vector3<double>& normal, double distance) {
+    at.add(s, index, feature,
+           {probe.centre, surface.axes * normal, probe.radius, distance,
+            surface::radius_on(geometry, probe.effective_radius), probe.area});
+  };
+  if constexpr (!std::is_same_v<Gap, shape::NoGap>) {
+    if (probe.radius == 0.0) {
+      surface::touch_point(geometry, seen, gap, add);
+      return;
+    }
+  }
+  geometry.touch(seen, shape::widened(probe.radius, gap), add);
 }
 
 /// Where the surface is flat, a grain meets it first with its support point, which lies between the points of its skin.
@@ -108,25 +118,30 @@ void touch_with_probe(const GrainAtSurface& at, std::uint32_t index, const conta
 template <class Shape, class Surface, class Geometry, class Gap>
 void touch_with_supports(const GrainAtSurface& at, const Shape& grain, const Surface& surface, const Geometry& geometry,
                          std::size_t first, Gap gap, SurfaceScratch& s) {
+  s.supports.clear();
+  const auto add_way = [&](std::uint32_t feature, const Vector3<double>& seen, double) {
+    const Vector3<double> way = surface.axes * seen;
+    s.supports.add_way({surface::family_of<Geometry>(feature), way, grain.even_support(at.pose, way)});
+  };
+  geometry.touch(at.centre, shape::widened(grain.bounding_radius(), gap), add_way);
+  const double radius = surface::radius_on(geometry, grain.mean_radius());
+  for (std::size_t k = 0; k < s.supports.way_count(); ++k) {
+    const Vector3<double> point = s.supports.way(k).point;
+    const auto add = [&](std::uint32_t feature, const Vector3<double>& normal, double distance) {
+      s.supports.add_touch(k, surface::family_of<Geometry>(feature), feature,
+                           {point, surface.axes * normal, 0.0, distance, radius, 1.0});
+    };
+    surface::touch_point(geometry, at.centre + transpose_times(surface.axes, point), shape::widened(0.0, gap), add);
+  }
   const std::size_t end = s.touches.size();
-  std::uint32_t probe = support_probe;
-  const double reach = shape::widened(grain.bounding_radius(), gap);
-  geometry.touch(at.centre, reach, [&](std::uint32_t, const Vector3<double>& way, double) {
-    if (probe == corner_probe) return;
-    const Vector3<double> normal = surface.axes * way, point = grain.even_support(at.pose, normal);
-    bool touches = false;
-    geometry.touch(
-        at.centre + transpose_times(surface.axes, point), shape::widened(0.0, gap),
-        [&](std::uint32_t feature, const Vector3<double>& n, double distance) {
-          touches = true;
-          at.add(s, probe, feature,
-                 {point, surface.axes * n, 0.0, distance, surface::radius_on(geometry, grain.mean_radius()), 1.0});
-        });
-    ++probe;
-    if (!touches) return;
-    for (std::size_t k = first; k < end; ++k)
-      s.touches[k].area *= grain.beside_support(s.touches[k].centre, point, normal);
-  });
+  for (const auto& t : s.supports.sorted()) at.add(s, support_probe, t.feature, t.touch);
+  for (std::size_t way = 0; way < s.supports.way_count(); ++way) {
+    if (!s.supports.is_used(way)) continue;
+    for (std::size_t k = first; k < end; ++k) {
+      s.touches[k].area *=
+          grain.beside_support(s.touches[k].centre, s.supports.way(way).point, s.supports.way(way).along);
+    }
+  }
 }
 
 /// Corners and balls of a surface in a grain. A corner weighs as one of the grain's own probes does on average, a ball

@@ -38,4 +38,14 @@ inline Vector3<double> direction_of(std::uint32_t code) {
 template <class S>
 concept NamesDirections = S::names_directions;
 
+/// The name that contacts share, without the direction; of other surfaces the whole feature.
+template <class S>
+constexpr std::uint32_t family_of(std::uint32_t feature) {
+  if constexpr (NamesDirections<S>) {
+    return feature >> direction_bits;
+  } else {
+    return feature;
+  }
+}
+
 }  // namespace dem::surface

@@ -46,6 +46,17 @@ double radius_on(const S& s, double radius) {
   }
 }
 
+/// Contacts of a point (a probe of radius 0) up to a gap (m) before a surface, as of a sphere of that radius; a surface
+/// that finds points behind it in another way than spheres has touch_point(point, gap, sink).
+template <class S, class Sink>
+DEM_HOT void touch_point(const S& s, const Vector3<double>& point, double gap, Sink&& sink) {
+  if constexpr (requires { s.touch_point(point, gap, sink); }) {
+    s.touch_point(point, gap, sink);
+  } else {
+    s.touch(point, gap, sink);
+  }
+}
+
 /// Cuts the range [from, to] of shares of a way to where |x + share step| < half; false if nothing is left.
 inline bool clip_between(double x, double step, double half, double& from, double& to) {
   if (step == 0.0) return std::abs(x) < half && from < to;

@@ -96,28 +96,13 @@ class TriangleMesh {
 
   template <class Sink>
   void touch(const Vector3<double>& p, double radius, Sink&& sink) const {
-    Found found;
-    if (radius > 0.0) find_minima(p, radius, found);
-    const double depth = radius > 0.0 ? options_.depth : point_depth_;
-    if (found.count == 0 && depth > radius) {
-      Minimum nearest;
-      if (find_nearest(p, depth, nearest) && nearest.behind) sink(nearest.name(), nearest.normal, -nearest.distance);
-      return;
-    }
-    if (found.count == 0) return;
-    sort(found, [](const Minimum& a, const Minimum& b) { return a.distance < b.distance; });
-    if (found[0].behind) {  // the centre is inside: out the shortest way
-      sink(found[0].name(), found[0].normal, -found[0].distance);
-      return;
-    }
-    reduce(found);
-    sort(found, [](const Minimum& a, const Minimum& b) { return a.name() < b.name(); });
-    std::uint32_t next = 0;
-    for (int k = 0; k < found.count; ++k) {
-      const std::uint32_t name = std::max(next, found[k].name());
-      sink(name, found[k].normal, found[k].distance);
-      next = name + 1;
-    }
+    touch_to(p, radius, radius > 0.0 ? options_.depth : point_depth_, sink);
+  }
+  /// Of a point that is also held at a gap (m) before the surface: the gap is no radius, and may be less than how deep
+  /// the point lies behind it.
+  template <class Sink>
+  void touch_point(const Vector3<double>& p, double gap, Sink&& sink) const {
+    touch_to(p, gap, point_depth_, sink);
   }
 
   /// Points for contact with other surfaces: sink(number, point, radius), numbers ascending.
@@ -271,6 +256,32 @@ class TriangleMesh {
     });
     if (any) nearest = minimum_at(face, at, p - at.point, std::sqrt(reach2));
     return any;
+  }
+
+  /// Contacts up to a reach before the surface, and if there are none, of a centre up to a depth behind it.
+  template <class Sink>
+  void touch_to(const Vector3<double>& p, double radius, double depth, Sink&& sink) const {
+    Found found;
+    if (radius > 0.0) find_minima(p, radius, found);
+    if (found.count == 0 && depth > radius) {
+      Minimum nearest;
+      if (find_nearest(p, depth, nearest) && nearest.behind) sink(nearest.name(), nearest.normal, -nearest.distance);
+      return;
+    }
+    if (found.count == 0) return;
+    sort(found, [](const Minimum& a, const Minimum& b) { return a.distance < b.distance; });
+    if (found[0].behind) {  // the centre is inside: out the shortest way
+      sink(found[0].name(), found[0].normal, -found[0].distance);
+      return;
+    }
+    reduce(found);
+    sort(found, [](const Minimum& a, const Minimum& b) { return a.name() < b.name(); });
+    std::uint32_t next = 0;
+    for (int k = 0; k < found.count; ++k) {
+      const std::uint32_t name = std::max(next, found[k].name());
+      sink(name, found[k].normal, found[k].distance);
+      next = name + 1;
+    }
   }
 
   /// Insertion sort: there are few. Equal ones keep their order.
