@@ -1,6 +1,8 @@
 #include "catch.hpp"
 #include "core/error_of.hpp"
+#include "random.hpp"
 
+#include <dem/math/mesh_repair.hpp>
 #include <dem/shape/polyhedra.hpp>
 
 using Catch::Approx;
@@ -21,6 +23,34 @@ const std::vector<Vec3> cube_corners = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 
                                         {0, 0, 1}, {1, 0, 1}, {0, 1, 1}, {1, 1, 1}};
 const std::vector<std::vector<int>> cube_faces = {{0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4},
                                                   {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}};
+
+/// By how much the faces of a hull differ from its triangles and from flat convex polygons.
+struct Flaws {
+  double volume = 0.0;  ///< m^3, gained or lost
+  double above = 0.0;   ///< m, of any corner above the plane of a face
+  double beyond = 0.0;  ///< m, of a corner of a face beyond the line of one of its sides
+  double bent = 0.0;    ///< m, of a corner of a face from its plane
+};
+Flaws flaws(const std::vector<Vec3>& points, const ConvexMesh& mesh) {
+  std::vector<std::vector<int>> triangles;
+  for (const auto& t : dem::convex_hull(points)) triangles.emplace_back(t.begin(), t.end());
+  Flaws found = {std::abs(mesh.mass_properties().volume - dem::polyhedron_mass_properties(points, triangles).volume)};
+  for (std::size_t f = 0; f < mesh.faces.size(); ++f) {
+    const auto& face = mesh.faces[f];
+    const Vec3& normal = mesh.normals[f];
+    for (const Vec3& p : mesh.corners) found.above = std::max(found.above, normal.dot(p) - mesh.offsets[f]);
+    for (std::size_t k = 0; k < face.size(); ++k) {
+      const Vec3 &tail = mesh.corners[std::size_t(face[k])],
+                 &head = mesh.corners[std::size_t(face[(k + 1) % face.size()])];
+      found.bent = std::max(found.bent, std::abs(normal.dot(tail) - mesh.offsets[f]));
+      const Vec3 outward = (head - tail).cross(normal).normalized();
+      for (const int other : face) {
+        found.beyond = std::max(found.beyond, outward.dot(mesh.corners[std::size_t(other)] - tail));
+      }
+    }
+  }
+  return found;
+}
 
 }  // namespace
 
@@ -115,6 +145,91 @@ TEST_CASE("faces in one plane become one, and inward ones are turned round") {
   CHECK(counts(Polyhedron(cube_corners, triangles)) == Counts{8, 6, 12});
   for (auto& f : inward) std::reverse(f.begin(), f.end());
   CHECK(Polyhedron(cube_corners, inward).volume() == Approx(1.0).epsilon(1e-14));
+}
+
+TEST_CASE("corners that lie in a plane but for rounding make one face") {
+  // A pyramid upside down on a pentagon of which a corner hangs a little low: it is near the planes of some triangles
+  // of the pentagon, and not of others. Pentagon of 2.55 by the shoelace, height 1.
+  const std::vector<Vec3> points = {{1, 0, 0},     {0.9, 0.25, 0},       {-1, 0.8, 0},
+                                    {-1, -0.8, 0}, {0.6, -0.9, -4.2e-8}, {0, 0, -1}};
+  const std::vector<std::vector<int>> faces = {{0, 1, 2, 3, 4}, {1, 0, 5}, {2, 1, 5}, {3, 2, 5}, {4, 3, 5}, {0, 4, 5}};
+  for (const Polyhedron& p : {Polyhedron(points), Polyhedron(points, faces)}) {
+    CHECK(counts(p) == Counts{6, 6, 10});
+    CHECK(p.volume() == Approx(0.85).epsilon(1e-7));
+    std::vector<std::size_t> sizes;
+    for (const auto& face : p.mesh().faces) sizes.push_back(face.size());
+    std::sort(sizes.begin(), sizes.end());
+    CHECK(sizes == std::vector<std::size_t>{3, 3, 3, 3, 3, 5});
+  }
+  // However low it hangs, the faces close: what is cut off or added is a sheet of the tolerance at the most.
+  for (double depth = 1e-8; depth < 1e-3; depth *= 1.7) {
+    auto lower = points;
+    lower[4].z() = -depth;
+    CAPTURE(depth);
+    const ConvexMesh mesh = hull_mesh(lower);
+    const double size = detail::size_of(lower);
+    CHECK(mesh.corners.size() + mesh.faces.size() == mesh.edges.size() + 2);
+    CHECK(mesh.faces.size() == (depth < 1e-6 * size ? 6 : 7));
+    const Flaws found = flaws(lower, mesh);
+    CHECK(found.volume < 1e-6 * size * 2.55);
+    CHECK(std::max({found.above, found.bent, found.beyond}) < 1e-6 * size);
+  }
+}
+
+TEST_CASE("cubes whose corners were rounded to single precision keep their six faces") {
+  Random random(2);
+  for (int trial = 0; trial < 100; ++trial) {
+    CAPTURE(trial);
+    const Mat3 turn = random.rotation();
+    const Vec3 shift = random.vector(trial % 2 == 0 ? 0.0 : 3.0);
+    std::vector<Vec3> corners;
+    for (const Vec3& p : cube_corners) corners.push_back((turn * p + shift).cast<float>().cast<double>());
+    // Three vertices for each triangle, as an STL file has them.
+    dem::IndexedMesh file;
+    for (const auto& f : cube_faces) {
+      for (const std::size_t k : {0, 1, 2, 0, 2, 3}) file.vertices.push_back(corners[std::size_t(f[k])]);
+    }
+    for (std::uint32_t k = 0; k < file.vertices.size(); k += 3) file.triangles.push_back({k, k + 1, k + 2});
+    const dem::IndexedMesh shared = dem::repaired(file).mesh;
+    std::vector<std::vector<int>> triangles;
+    for (const auto& t : shared.triangles) triangles.emplace_back(t.begin(), t.end());
+    for (const Polyhedron& p :
+         {Polyhedron(corners), Polyhedron(file.vertices), Polyhedron(shared.vertices, triangles)}) {
+      CHECK(counts(p) == Counts{8, 6, 12});
+      CHECK(p.volume() == Approx(1.0).epsilon(3e-6));
+      for (const auto& face : p.mesh().faces) CHECK(face.size() == 4);
+      for (const double share : p.tables().corner_share) CHECK(share == 0.25);  // lies flat with all of its stiffness
+    }
+  }
+}
+
+TEST_CASE("the faces of a body with a gently domed top close, whether they count as flat or not") {
+  // Rings of corners on a paraboloid: slopes below, about and above what the tolerance takes for flat.
+  Random random(7);
+  std::vector<std::size_t> faces;
+  for (double rise = 2e-7; rise < 1e-3; rise *= 1.4) {
+    CAPTURE(rise);
+    const Mat3 turn = random.rotation();
+    std::vector<Vec3> points;
+    for (const int ring : {1, 2, 3}) {
+      for (int k = 0; k < 6; ++k) {
+        const double angle = std::numbers::pi / 3.0 * k + 0.3 * ring;
+        points.push_back(turn * Vec3(ring * std::cos(angle), ring * std::sin(angle), -rise * ring * ring));
+      }
+    }
+    points.push_back(turn * Vec3(0, 0, -1));
+    const ConvexMesh mesh = hull_mesh(points);
+    const double size = detail::size_of(points);
+    CHECK(mesh.corners.size() + mesh.faces.size() == mesh.edges.size() + 2);
+    const Flaws found = flaws(points, mesh);
+    CHECK(found.volume < 1e-6 * size * 9.0 * std::numbers::pi);
+    // The plane of a face is the mean of its corners, which are within the tolerance of the first triangle's.
+    CHECK(std::max(found.above, found.bent) < 2e-6 * size);
+    CHECK(found.beyond < 1e-6 * size);
+    faces.push_back(mesh.faces.size());
+  }
+  CHECK(faces.front() == 7);      // a pyramid on a hexagon
+  CHECK(faces.back() == 6 + 25);  // a hexagon, and two belts of twelve triangles
 }
 
 TEST_CASE("what is no convex body is refused in words") {

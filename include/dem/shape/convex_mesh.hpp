@@ -11,7 +11,7 @@
 
 namespace dem::shape {
 
-/// The skin of a convex body: corners, flat faces (as large as they can be: no two in one plane), and each edge once.
+/// The skin of a convex body: corners, flat faces (as large as they can be), and each edge once.
 struct ConvexMesh {
   struct Edge {
     int tail, head;   ///< corners
@@ -60,41 +60,6 @@ inline void set_planes(ConvexMesh& mesh) {
   }
 }
 
-/// Faces from the triangles of a hull: all corners in the plane of a triangle, in order around their middle. Large
-/// triangles first: their planes are the surest.
-inline void merge_triangles(ConvexMesh& mesh, const std::vector<Triangle>& triangles, double tolerance) {
-  const auto at = [&](int k) -> const Vec3& { return mesh.corners[static_cast<std::size_t>(k)]; };
-  const auto area = [&](const Triangle& t) -> Vec3 { return (at(t[1]) - at(t[0])).cross(Vec3(at(t[2]) - at(t[0]))); };
-  // Sizes and angles are taken once and then sorted by: taken again, they might round differently.
-  std::vector<std::pair<double, Triangle>> by_size;
-  for (const Triangle& t : triangles) by_size.emplace_back(-area(t).norm(), t);
-  std::sort(by_size.begin(), by_size.end());
-  std::vector<std::vector<int>> sorted_faces;
-  for (const auto& entry : by_size) {
-    const Triangle& t = entry.second;
-    const bool known = std::any_of(sorted_faces.begin(), sorted_faces.end(), [&](const std::vector<int>& f) {
-      return std::all_of(t.begin(), t.end(), [&](int k) { return std::binary_search(f.begin(), f.end(), k); });
-    });
-    if (known) continue;
-    const Vec3 normal = area(t).normalized();
-    std::vector<int> face;
-    Vec3 middle = Vec3::Zero();
-    for (int k = 0; k < static_cast<int>(mesh.corners.size()); ++k) {
-      if (std::abs(normal.dot(at(k) - at(t[0]))) > tolerance) continue;
-      face.push_back(k);
-      middle += at(k);
-    }
-    sorted_faces.push_back(face);
-    middle /= static_cast<double>(face.size());
-    const Vec3 x = (at(t[0]) - middle).normalized(), y = normal.cross(x);
-    std::vector<std::pair<double, int>> around;
-    for (const int k : face) around.emplace_back(std::atan2(y.dot(at(k) - middle), x.dot(at(k) - middle)), k);
-    std::sort(around.begin(), around.end());
-    for (std::size_t k = 0; k < face.size(); ++k) face[k] = around[k].second;
-    mesh.faces.push_back(face);
-  }
-}
-
 /// Who runs along each edge in which direction. Throws Error when two faces run along one in the same direction.
 inline DirectedEdges directed_edges(const std::vector<std::vector<int>>& faces) {
   DirectedEdges runs;
@@ -116,6 +81,103 @@ inline DirectedEdges directed_edges(const std::vector<std::vector<int>>& faces) 
   }
   return runs;
 }
+
+/// Joins the triangles of a hull to flat faces. A face starts as the largest triangle that is left, whose plane is the
+/// surest, and takes in one neighbour after the other. It asks its neighbours, not all corners near its plane, so every
+/// triangle ends up in one face, and the faces close since the triangles do, whatever rounding says about planes.
+class FaceGrower {
+ public:
+  /// `tolerance`: how far (m) a corner may be from a plane and still lie in it.
+  FaceGrower(std::span<const Vec3> points, const std::vector<std::vector<int>>& triangles, double tolerance)
+      : points_(points),
+        triangles_(triangles),
+        triangle_along_(directed_edges(triangles)),
+        taken_(triangles.size(), false),
+        tolerance_(tolerance) {}
+
+  /// Corners are points of the cloud, counter-clockwise.
+  std::vector<std::vector<int>> faces() {
+    std::vector<std::pair<double, std::size_t>> by_size;
+    for (std::size_t t = 0; t < triangles_.size(); ++t) by_size.emplace_back(-area(t).norm(), t);
+    std::sort(by_size.begin(), by_size.end());
+    std::vector<std::vector<int>> result;
+    for (const auto& [minus_area, seed] : by_size) {
+      if (taken_[seed]) continue;
+      // Where slopes are so gentle that the plane runs out amid a neighbour, a face may get a notch. It is grown again
+      // within less, and stays a triangle at last, which has none.
+      Face face;
+      for (const double tolerance : {tolerance_, 0.1 * tolerance_, 0.01 * tolerance_, -1.0}) {
+        face = grown(seed, tolerance);
+        if (is_convex(face.ring, area(seed))) break;
+      }
+      for (const std::size_t t : face.triangles) taken_[t] = true;
+      result.push_back(face.ring);
+    }
+    return result;
+  }
+
+ private:
+  struct Face {
+    std::vector<int> ring;  ///< its corners
+    std::vector<std::size_t> triangles;
+  };
+
+  const Vec3& at(int k) const { return points_[static_cast<std::size_t>(k)]; }
+  Vec3 area(std::size_t t) const { return area_vector(points_, triangles_[t]); }
+
+  /// Whether a triangle looks the way a plane does, or is too thin to look anywhere. What lies behind a knife's edge
+  /// does not, even where it is within the tolerance.
+  bool faces_along(const Vec3& normal, std::size_t t) const {
+    const std::vector<int>& c = triangles_[t];
+    const double longest =
+        std::max({(at(c[1]) - at(c[0])).norm(), (at(c[2]) - at(c[1])).norm(), (at(c[0]) - at(c[2])).norm()});
+    return 2.0 * normal.dot(area(t)) > -tolerance_ * longest;
+  }
+
+  /// A triangle and, through its sides and theirs, those that lie within the tolerance of its plane. The ring never
+  /// touches itself. Corners inside of it are no more corners of the body: they stand out by less than the tolerance.
+  Face grown(std::size_t seed, double tolerance) const {
+    const Vec3 normal = area(seed).normalized(), origin = at(triangles_[seed][0]);
+    Face face = {triangles_[seed], {seed}};
+    std::vector<int>& ring = face.ring;
+    for (std::size_t k = 0; k < ring.size();) {
+      const std::size_t n = ring.size(), next = (k + 1) % n;
+      const auto t = static_cast<std::size_t>(triangle_along_.at({ring[next], ring[k]}));
+      const int tip = triangles_[t][0] + triangles_[t][1] + triangles_[t][2] - ring[k] - ring[next];
+      const bool fits = !taken_[t] && std::abs(normal.dot(at(tip) - origin)) <= tolerance && faces_along(normal, t);
+      const bool closes_before = n > 3 && tip == ring[(k + n - 1) % n],
+                 closes_after = n > 3 && tip == ring[(k + 2) % n];
+      const bool is_new = std::find(ring.begin(), ring.end(), tip) == ring.end();
+      if (!fits || !(is_new || closes_before || closes_after)) {
+        ++k;
+        continue;
+      }
+      if (is_new) ring.insert(ring.begin() + static_cast<std::ptrdiff_t>(k + 1), tip);
+      else ring.erase(ring.begin() + static_cast<std::ptrdiff_t>(closes_before ? k : next));
+      face.triangles.push_back(t);
+      k = 0;  // what did not fit the ring before may do so now
+    }
+    return face;
+  }
+
+  /// Whether no corner lies beyond the line of a side.
+  bool is_convex(const std::vector<int>& ring, const Vec3& normal) const {
+    for (std::size_t k = 0; k < ring.size(); ++k) {
+      const Vec3 &from = at(ring[k]), &to = at(ring[(k + 1) % ring.size()]);
+      const Vec3 outward = (to - from).cross(normal).normalized();
+      for (const int other : ring) {
+        if (outward.dot(at(other) - from) > tolerance_) return false;
+      }
+    }
+    return true;
+  }
+
+  std::span<const Vec3> points_;
+  const std::vector<std::vector<int>>& triangles_;
+  DirectedEdges triangle_along_;
+  std::vector<bool> taken_;
+  double tolerance_;
+};
 
 inline void set_edges(ConvexMesh& mesh) {
   const DirectedEdges runs = directed_edges(mesh.faces);
@@ -170,20 +232,24 @@ inline void check_faces(std::span<const Vec3> corners, std::vector<std::vector<i
 
 }  // namespace detail
 
-/// The convex hull of a cloud of points (m). Throws Error if there are fewer than four, one is not finite, or all lie
-/// in one plane.
+/// The convex hull of a cloud of points (m). What lies in one plane to within 1e-6 of the body's size is one face, so
+/// that a body whose corners were rounded, as in a file of single precision, has the faces it was drawn with. Throws
+/// Error if there are fewer than four points, one is not finite, or all lie in one plane.
 inline ConvexMesh hull_mesh(std::span<const Vec3> points) {
-  std::vector<Triangle> triangles = convex_hull(points);
+  std::vector<std::vector<int>> triangles;
+  for (const Triangle& t : convex_hull(points)) triangles.emplace_back(t.begin(), t.end());
+  const double size = detail::size_of(points);
   ConvexMesh mesh;
+  mesh.faces = detail::FaceGrower(points, triangles, 1e-6 * size).faces();
+  if (mesh.faces.size() < 4) fail("the points of a convex hull lie in one plane: of {:g} m, to within 1e-6", size);
   std::map<int, int> number;
-  for (Triangle& t : triangles) {
-    for (int& k : t) {
+  for (auto& face : mesh.faces) {
+    for (int& k : face) {
       const auto [known, is_new] = number.emplace(k, static_cast<int>(mesh.corners.size()));
       if (is_new) mesh.corners.push_back(points[static_cast<std::size_t>(k)]);
       k = known->second;
     }
   }
-  detail::merge_triangles(mesh, triangles, 1e-8 * detail::size_of(points));
   detail::set_planes(mesh);
   detail::set_edges(mesh);
   return mesh;
