@@ -125,7 +125,7 @@ PackingResult make_packing(const Settings& s, std::span<const dem::soil::Placeme
   const double solid = solid_height<Shape>(s);
   const double seam = s.seam_height > 0.0 ? s.seam_height : 0.5 * solid / dem::soil::solid_fraction_at(0.5);
   Settings pouring = s;
-  pouring.stable_share = 0.8;
+  pouring.stable_share = 0.8;  // a smaller share is for the test: nothing but rest is asked of a packing
   Rig<Integrator, Shape> rig(pouring, {.seam = seam, .wall_top = highest, .lid_low = highest}, grains);
   rig.hold_lid();
 

@@ -79,7 +79,7 @@ inline void add_test_options(CLI::App& app, Settings& s) {
   add("--integrator", s.integrator, "predictor-corrector, verlet or euler")
       ->check(CLI::IsMember({"predictor-corrector", "verlet", "euler"}));
   add("--time-step", s.time_step, "[s], at most the largest stable one; 0: a share of that");
-  add("--stable-share", s.stable_share, "the share; 0: by size (full: 0.4); grains are poured at 0.8");
+  add("--stable-share", s.stable_share, "the share; grains are poured at 0.8 in any case");
   app.add_flag("--allow-unstable-time-step", s.allow_unstable_time_step, "take a --time-step above the stable one")
       ->group(group)
       ->default_str("false");

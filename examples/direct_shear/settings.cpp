@@ -21,16 +21,15 @@ namespace {
 
 struct Size {
   const char* name;
-  double half_edge, shear_speed, travel, stable_share;
+  double half_edge, shear_speed, travel;
   std::vector<double> loads;
 };
 
 const Size& size_named(const std::string& name) {
-  // Speeds keep the inertial number at the lightest load below 1e-3. The full size is the one whose numbers are quoted:
-  // it stays well below the largest stable step.
-  static const std::vector<Size> sizes = {{"smoke", 3.0e-3, 0.020, 2e-3, 0.8, {16.2}},
-                                          {"quick", 1.6e-3, 0.020, 6e-3, 0.8, {6.2, 16.2, 26.2}},
-                                          {"full", 0.9e-3, 0.020, 6e-3, 0.4, {6.2, 16.2, 26.2}}};
+  // Speeds keep the inertial number at the lightest load below 1e-3.
+  static const std::vector<Size> sizes = {{"smoke", 3.0e-3, 0.020, 2e-3, {16.2}},
+                                          {"quick", 1.6e-3, 0.020, 6e-3, {6.2, 16.2, 26.2}},
+                                          {"full", 0.9e-3, 0.020, 6e-3, {6.2, 16.2, 26.2}}};
   for (const Size& size : sizes) {
     if (name == size.name) return size;
   }
@@ -98,7 +97,7 @@ void check_test(const Settings& s) {
     dem::fail("--integrator is '{}', but --shape {} runs with verlet only", s.integrator, s.shape);
   }
   dem::require_non_negative(s.time_step, "--time-step", "s (0: a share of the largest stable one)");
-  dem::require_within(s.stable_share, 1e-3, 1.0, "--stable-share (0: by size)");
+  dem::require_within(s.stable_share, 1e-3, 1.0, "--stable-share");
   dem::require_positive(s.overlap_limit, "--overlap-limit", "effective diameters");
   dem::require_within(s.threads, 0.0, 4096.0, "--threads (0: all)");
   dem::require_positive(s.vtk_interval, "--vtk-interval", "m (0: a twentieth of the travel)");
@@ -143,7 +142,6 @@ void resolve(Settings& s) {
   fill(s.half_edge, size.half_edge);
   fill(s.shear_speed, size.shear_speed);
   fill(s.travel, size.travel);
-  fill(s.stable_share, size.stable_share);
   fill(s.wall_thickness, std::max(0.015, 2.0 * s.travel));
   fill(s.vtk_interval, s.travel / 20.0);
   if (s.wall_friction < 0.0) s.wall_friction = s.friction;

@@ -42,7 +42,7 @@ struct Settings {
 
   // Packing
   std::string packing = "random";  ///< random or poured
-  double relative_density = 0.2;   ///< of a random packing; 0: as it settles
+  double relative_density = 0.18;  ///< of a random packing; 0: as it settles
   double tilt_deg = 10.0;          ///< of a poured block, about each axis
   double shake_amplitude = 2e-4;   ///< m
   double shake_frequency = 25.0;   ///< Hz
@@ -66,10 +66,9 @@ struct Settings {
   bool area_correction = false;      ///< stresses over the shrinking area of contact of the halves, not the nominal one
 
   // Numerics
-  std::string integrator = "verlet";  ///< the thesis's predictor-corrector takes twice the time
-  double time_step = 0.0;             ///< s; 0: a share of the largest stable one
-  /// The share; 0: by size. Grains are poured at 0.8, where more than rest is not asked of them.
-  double stable_share = 0.0;
+  std::string integrator = "verlet";      ///< the thesis's predictor-corrector takes twice the time
+  double time_step = 0.0;                 ///< s; 0: a share of the largest stable one
+  double stable_share = 0.8;              ///< the share; grains are poured at 0.8 in any case
   bool allow_unstable_time_step = false;  ///< accept a `time_step` above the largest stable one
   /// Overlap that ends the run, in effective diameters 2 Ri Rj/(Ri + Rj): in radii where two equal spheres touch, in
   /// diameters where a sphere touches a wall. K = 2000 N/m is soft: force chains press spheres half a radius together.
