@@ -203,6 +203,27 @@ TEST_CASE("cubes whose corners were rounded to single precision keep their six f
   }
 }
 
+TEST_CASE("cubes of a finer mesh, rounded or shaken by less than the tolerance, keep eight corners") {
+  Random random(5);
+  for (int trial = 0; trial < 60; ++trial) {
+    const int n = 2 + trial % 5;  // parts of an edge
+    CAPTURE(trial, n);
+    const Mat3 turn = random.rotation();
+    std::vector<Vec3> points;
+    for (int k = 0; k < (n + 1) * (n + 1) * (n + 1); ++k) {
+      const Vec3 cell(k % (n + 1), k / (n + 1) % (n + 1), k / (n + 1) / (n + 1));
+      const bool inside = cell.minCoeff() > 0 && cell.maxCoeff() < n;
+      if (inside) continue;
+      const Vec3 p = turn * cell / n;
+      points.push_back(trial % 2 == 0 ? Vec3(p.cast<float>().cast<double>()) : Vec3(p + random.vector(1e-8)));
+    }
+    const ConvexMesh mesh = hull_mesh(points);
+    CHECK(mesh.corners.size() == 8);
+    CHECK(mesh.faces.size() == 6);
+    CHECK(mesh.mass_properties().volume == Approx(1.0).epsilon(1e-6));
+  }
+}
+
 TEST_CASE("the faces of a body with a gently domed top close, whether they count as flat or not") {
   // Rings of corners on a paraboloid: slopes below, about and above what the tolerance takes for flat.
   Random random(7);

@@ -3,7 +3,10 @@
 #include <dem/core/error.hpp>
 #include <dem/math/vector.hpp>
 
+#include <algorithm>
 #include <array>
+#include <random>
+#include <set>
 #include <span>
 #include <vector>
 
@@ -15,10 +18,15 @@ using Triangle = std::array<int, 3>;
 /// Quickhull (Barber, Dobkin and Huhdanpaa 1996, DOI 10.1145/235815.235821) without its lists of outside points: each
 /// round takes the point that stands out furthest and replaces the triangles that see it. Points within 1e-9 of the
 /// cloud's size of the hull so far are left out, so doubled points do no harm.
+///
+/// Where points are off a common plane by about as much, rounding may say that a point sees triangles which do not hang
+/// together, and the hull would not close. It is then made again of points that are shifted at random by 1e-7 of the
+/// size, which leaves nothing to rounding (as Qhull's option QJ does), until it closes; points amid faces and edges may
+/// then be corners.
 class HullBuilder {
  public:
   /// Throws Error unless there are four finite points that do not lie in one plane.
-  explicit HullBuilder(std::span<const Vec3> points) : points_(points) {
+  explicit HullBuilder(std::span<const Vec3> points) : points_(points.begin(), points.end()) {
     if (points.size() < 4) fail("a convex hull was given {} points, but needs at least 4", points.size());
     Vec3 low = points[0], high = points[0];
     for (std::size_t k = 0; k < points.size(); ++k) {
@@ -28,8 +36,11 @@ class HullBuilder {
     }
     size_ = (high - low).norm();
     middle_ = 0.5 * (low + high);
-    first_tetrahedron();
-    while (grow()) continue;
+    for (unsigned attempt = 0; attempt < most_attempts; ++attempt) {
+      if (attempt > 0) shift(points, attempt);
+      if (build()) return;
+    }
+    fail("no convex hull of {} points was found that closes; they lie too nearly in planes and lines", points.size());
   }
 
   std::vector<Triangle> triangles() const {
@@ -45,6 +56,51 @@ class HullBuilder {
     double offset;
   };
 
+  static constexpr unsigned most_attempts = 20;
+  static constexpr double least_rise = 1e-9;  ///< of the size, of a point that is taken in
+
+  void shift(std::span<const Vec3> points, unsigned seed) {
+    std::minstd_rand random(seed);
+    const auto number = [&] { return static_cast<double>(random()) / std::minstd_rand::max() - 0.5; };
+    for (std::size_t k = 0; k < points.size(); ++k) {
+      for (int axis = 0; axis < 3; ++axis) points_[k][axis] = points[k][axis] + 2e-7 * size_ * number();
+    }
+    slack_ = tilt_ = 0.0;
+  }
+
+  /// Whether it came out closed, with no point outside.
+  bool build() {
+    first_tetrahedron();
+    std::vector<bool> taken(points_.size(), false);
+    for (const Facet& f : facets_) {
+      for (const int k : f.corner) taken[static_cast<std::size_t>(k)] = true;
+    }
+    for (;;) {
+      const int next = furthest([&](const Vec3& p) { return outermost(p); });
+      if (outermost(at(next)) <= least_rise * size_) break;
+      if (taken[static_cast<std::size_t>(next)]) return false;  // its own triangles do not hold it
+      taken[static_cast<std::size_t>(next)] = true;
+      take(next);
+    }
+    return is_closed();
+  }
+
+  bool is_closed() const {
+    std::set<std::array<int, 2>> runs;
+    for (const Facet& f : facets_) {
+      for (std::size_t k = 0; k < 3; ++k) {
+        if (!runs.insert({f.corner[k], f.corner[(k + 1) % 3]}).second) return false;
+      }
+    }
+    std::set<int> corners;
+    for (const auto& [from, to] : runs) {
+      if (!runs.contains({to, from})) return false;
+      corners.insert(from);
+    }
+    if (facets_.size() != 2 * corners.size() - 4) return false;  // Euler, for triangles
+    return std::all_of(points_.begin(), points_.end(), [&](const Vec3& p) { return outermost(p) < 1e-6 * size_; });
+  }
+
   Facet facet(int a, int b, int c) const {
     const Vec3 normal = (at(b) - at(a)).cross(at(c) - at(a)).normalized();
     return {{a, b, c}, normal, normal.dot(at(a))};
@@ -58,7 +114,7 @@ class HullBuilder {
     int best = 0;
     double most = -1e300;
     for (int k = 0; k < static_cast<int>(points_.size()); ++k) {
-      const double value = f(at(k)) + 1e-7 * (at(k) - middle_).squaredNorm() / size_;
+      const double value = f(at(k)) + tilt_ * (at(k) - middle_).squaredNorm() / size_;
       if (value > most) {
         most = value;
         best = k;
@@ -86,19 +142,19 @@ class HullBuilder {
     }
   }
 
-  /// Takes one more corner in; false when no point stands out any more.
-  bool grow() {
-    const auto outermost = [&](const Vec3& p) {
-      double most = -1e300;
-      for (const Facet& f : facets_) most = std::max(most, f.normal.dot(p) - f.offset);
-      return most;
-    };
-    const int next = furthest(outermost);
-    if (outermost(at(next)) <= 1e-9 * size_) return false;
+  /// How far a point is above the plane of the triangle that it is highest above.
+  double outermost(const Vec3& p) const {
+    double most = -1e300;
+    for (const Facet& f : facets_) most = std::max(most, f.normal.dot(p) - f.offset);
+    return most;
+  }
+
+  /// Takes one more corner in.
+  void take(int next) {
     std::vector<Facet> kept;
     std::vector<std::array<int, 2>> rim;  // directed edges of the facets that go
     for (const Facet& f : facets_) {
-      if (f.normal.dot(at(next)) - f.offset <= 1e-9 * size_) {
+      if (f.normal.dot(at(next)) - f.offset <= slack_ * size_) {
         kept.push_back(f);
         continue;
       }
@@ -109,12 +165,13 @@ class HullBuilder {
       if (!inner) kept.push_back(facet(edge[0], edge[1], next));
     }
     facets_ = kept;
-    return true;
   }
 
-  std::span<const Vec3> points_;
+  std::vector<Vec3> points_;
   std::vector<Facet> facets_;
   double size_ = 0.0;
+  double slack_ = least_rise;  ///< of the size, by which a point must be above a plane to see it
+  double tilt_ = 1e-7;         ///< share of the strictly convex function
   Vec3 middle_ = Vec3::Zero();
 };
 

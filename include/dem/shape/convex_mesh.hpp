@@ -179,6 +179,18 @@ class FaceGrower {
   double tolerance_;
 };
 
+/// Takes out corners that only two faces have: points amid the edge of the two, which stand out by rounding alone.
+inline void drop_points_of_edges(std::vector<std::vector<int>>& faces) {
+  std::map<int, std::vector<std::vector<int>*>> faces_of;
+  for (auto& face : faces) {
+    for (const int k : face) faces_of[k].push_back(&face);
+  }
+  for (const auto& [corner, at] : faces_of) {
+    if (at.size() != 2 || at[0]->size() < 4 || at[1]->size() < 4) continue;
+    for (std::vector<int>* face : at) std::erase(*face, corner);
+  }
+}
+
 inline void set_edges(ConvexMesh& mesh) {
   const DirectedEdges runs = directed_edges(mesh.faces);
   for (const auto& [edge, left] : runs) {
@@ -241,6 +253,7 @@ inline ConvexMesh hull_mesh(std::span<const Vec3> points) {
   const double size = detail::size_of(points);
   ConvexMesh mesh;
   mesh.faces = detail::FaceGrower(points, triangles, 1e-6 * size).faces();
+  detail::drop_points_of_edges(mesh.faces);
   if (mesh.faces.size() < 4) fail("the points of a convex hull lie in one plane: of {:g} m, to within 1e-6", size);
   std::map<int, int> number;
   for (auto& face : mesh.faces) {
