@@ -6,8 +6,7 @@
 #
 #   study.sh <direct_shear> <folder> [seeds|half_step|half_speed|density|integrator ...]
 #
-# At twice the default time step a run of three loads took half an hour on one core at 2.3 GHz: all of them take the
-# better part of a day there.
+# A packing and its three loads take 35 to 40 minutes on one core at 2.3 GHz; all of them some ten hours.
 set -euo pipefail
 
 rig=$(realpath "$1")
