@@ -47,6 +47,11 @@ TEST_CASE("a tree of boxes finds what a loop over all boxes finds, in the order 
       std::vector<std::uint32_t> in_box;
       tree.for_each_in(dem::from_eigen(p), dem::from_eigen(Vec3(p.array() + radius)),
                        [&](std::uint32_t k) { in_box.push_back(k); });
+      const Vec3 tip(place(engine), place(engine), place(engine));
+      std::vector<std::uint32_t> on_way;
+      tree.for_each_along(dem::from_eigen(p), dem::from_eigen(tip), [&](std::uint32_t k) { on_way.push_back(k); });
+      CHECK(std::is_sorted(on_way.begin(), on_way.end()));
+      CHECK(std::adjacent_find(on_way.begin(), on_way.end()) == on_way.end());
       // What is wanted is there; what is there besides lies in a leaf that the question meets.
       for (std::uint32_t k = 0; k < n; ++k) {
         const auto away = [&](const Bounds& b) { return (p.cwiseMax(b.low).cwiseMin(b.high) - p).norm(); };
@@ -58,6 +63,11 @@ TEST_CASE("a tree of boxes finds what a loop over all boxes finds, in the order 
         const bool in = std::binary_search(in_box.begin(), in_box.end(), k);
         if (away(b) < radius) CHECK(near);
         if (meets(b)) CHECK(in);
+        const auto on = [&](const Bounds& wanted) {  // some of the way in all three slabs at once
+          const Vec3 d = tip - p, one = (wanted.low - p).cwiseQuotient(d), other = (wanted.high - p).cwiseQuotient(d);
+          return std::max(0.0, one.cwiseMin(other).maxCoeff()) < std::min(1.0, one.cwiseMax(other).minCoeff());
+        };
+        CHECK(on(leaf[k]) == std::binary_search(on_way.begin(), on_way.end(), k));
         CHECK(near == (away(leaf[k]) <= radius));
         CHECK(in == meets(leaf[k]));
       }

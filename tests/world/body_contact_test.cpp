@@ -108,8 +108,8 @@ TEST_CASE("planks laid across each other touch where their edges cross") {
   const Vec3 plank(1.0, 0.06, 0.03);
   for (const double roll : {0.0, 0.25 * std::numbers::pi}) {
     for (const double yaw : {0.5 * std::numbers::pi, 1.0}) {
-      for (const bool cut : {false, true}) {
-        CAPTURE(roll, yaw, cut);
+      for (const auto& [upper_cut, lower_cut] : {std::pair(false, false), {true, false}, {false, true}, {true, true}}) {
+        CAPTURE(roll, yaw, upper_cut, lower_cut);
         dem::World<Balls> w(options({0, 0, -g}, 1e-5));
         w.set_contact({{1e4, 60.0, 1.0}, {0.5, 1e4, 60.0, 0.975}});
         const auto turned = [&](double about_z) -> Mat3 {
@@ -123,11 +123,13 @@ TEST_CASE("planks laid across each other touch where their edges cross") {
         // On its edge it would fall over: it slides down a rail.
         if (roll > 0.0)
           w.machine().add_joint(dem::mbd::prismatic("rail", upper, w.ground(), {0, 0, 2.0 * half}, {0, 0, 1}));
-        const Balls::Surfaces one =
-            cut ? Balls::Surfaces(TriangleMesh(mesh::box(plank, 1))) : Balls::Surfaces(Box(plank));
+        const auto surface = [&](bool cut) {
+          return cut ? Balls::Surfaces(TriangleMesh(mesh::box(plank, 1))) : Balls::Surfaces(Box(plank));
+        };
         dem::SurfaceOptions rolled;
         rolled.rotation = turned(0.0);
-        const auto contact = w.add_body_contact(w.add_surface(upper, one), w.add_surface(lower, Box(plank), rolled));
+        const auto contact = w.add_body_contact(w.add_surface(upper, surface(upper_cut)),
+                                                w.add_surface(lower, surface(lower_cut), rolled));
         REQUIRE(w.run_for(0.8));
         const double weight = 0.9 * g;
         // Edge on edge, two faces are as near, and the normal changes between them.
@@ -140,6 +142,40 @@ TEST_CASE("planks laid across each other touch where their edges cross") {
       }
     }
   }
+}
+
+TEST_CASE(
+    "a blade of triangles lies across the prongs of a fork of triangles, and slides along them as friction lets it") {
+  // Edges cross edges in three places; no vertex of either is in the other.
+  dem::IndexedMesh fork;
+  for (const double x : {-0.3, 0.05, 0.3}) fork += mesh::box({0.05, 2.0, 0.05}, 1).moved({x, 0, 0});
+  dem::World<Balls> w(options({0, 0, -g}, 1e-5));
+  w.set_contact({{1e4, 60.0, 1.0}, {0.3, 1e4, 60.0, 1.0}});
+  const Vec3 blade(1.0, 0.1, 0.03);
+  const auto body =
+      w.machine().add_body(box_body("blade", blade, 300.0).at({0, -0.5, 0.04 + 1e-4}).moving({0, 1.0, 0}));
+  const auto contact = w.add_body_contact(w.add_surface(body, TriangleMesh(mesh::box(blade, 1))),
+                                          w.add_surface(w.ground(), TriangleMesh(fork)));
+  const double weight = 0.9 * g;
+  double pushed = 0.0, braked = 0.0;
+  int samples = 0;
+  REQUIRE(w.run_for(0.05));
+  const double start = w.machine().body(body).velocity().y(), from = w.time();
+  while (w.time() < 0.25) {
+    REQUIRE(w.run_for(0.005));
+    pushed += w.body_contact_force(contact).z();
+    braked -= w.body_contact_force(contact).y();
+    ++samples;
+  }
+  const dem::Body& b = w.machine().body(body);
+  // Bounces of the landing are damped with exp(-C/(2 m) t) = exp(-33/s t); their mean counts.
+  CHECK(pushed / samples == Approx(weight).epsilon(0.05));
+  CHECK((b.velocity().y() - start) / (w.time() - from) == Approx(-0.3 * g).epsilon(0.05));
+  CHECK(braked / samples == Approx(0.3 * weight).epsilon(0.05));
+  REQUIRE(w.run_for(1.0));
+  CHECK(w.body_contact_force(contact).z() == Approx(weight).epsilon(1e-6));
+  CHECK(b.velocity().norm() < 1e-6);
+  CHECK((b.rotation() - Mat3::Identity()).norm() < 0.01);  // all three prongs bear it: no turn but what friction did
 }
 
 TEST_CASE("a wheel rolls evenly on a plane, a slab, and on a rail narrower than itself") {

@@ -49,7 +49,7 @@ class PointsTowards {
     if constexpr (HasRims<From>) list_rims(spread);
     if constexpr (IsSuperquadric<From>) list_deepest(spread);
     if constexpr (HasMantle<From> && ClipsLines<Onto>) list_mantle();
-    if constexpr (HasEdges<From> && ClipsLines<Onto>) list_edges(box);
+    if constexpr (HasEdges<From> && (ClipsLines<Onto> || PartsLines<Onto>)) list_edges(box);
   }
 
  private:
@@ -159,16 +159,27 @@ class PointsTowards {
     }
   }
 
-  /// Where straight edges pass through the other surface: the middle of the part inside. Two bodies that meet edge
+  /// Where straight edges pass through the other surface: the middle of each part inside. Two bodies that meet edge
   /// across edge have no corner in each other.
   void list_edges(const surface::Bounds& box) {
     from_.edges(box, [&](std::uint32_t number, const Vector3<double>& tail, const Vector3<double>& head) {
-      double first = 0.0, last = 1.0;
-      if (!onto_.clip(seen(tail), seen(head), first, last)) return;
-      // Where a corner is inside it is the point; as it comes out, the edge takes over.
-      const double outside = min(first, 1.0 - last);
-      if (outside <= 0.0) return;
-      add(number, tail + 0.5 * (first + last) * (head - tail), min(1.0, 4.0 * outside / (last - first)));
+      const auto add_part = [&](double first, double last) {
+        // Where a corner is inside it is the point; as it comes out, the edge takes over.
+        const double outside = min(first, 1.0 - last);
+        if (outside <= 0.0) return;
+        add(number, tail + 0.5 * (first + last) * (head - tail), min(1.0, 4.0 * outside / (last - first)));
+      };
+      if constexpr (ClipsLines<Onto>) {
+        double first = 0.0, last = 1.0;
+        if (onto_.clip(seen(tail), seen(head), first, last)) add_part(first, last);
+      } else {
+        const std::uint32_t end = number + surface::most_parts;
+        onto_.parts_inside(seen(tail), seen(head), [&](double first, double last) {
+          if (number == end) return;
+          add_part(first, last);
+          ++number;
+        });
+      }
     });
   }
 

@@ -16,7 +16,7 @@ concept HasPoints = requires(const S& s, const surface::Bounds& box) {
   { s.has_points() } -> std::same_as<bool>;
 };
 /// A surface with straight sharp edges: edges(box, sink) calls sink(number, one end, other end) for those that may lie
-/// in a box of its frame. Numbers are other than those of its points.
+/// in a box of its frame. Numbers are other than those of its points, each with most_parts - 1 free ones behind it.
 template <class S>
 concept HasEdges = requires(const S& s, const surface::Bounds& box) {
   s.edges(box, [](std::uint32_t, const Vector3<double>&, const Vector3<double>&) {});
@@ -26,6 +26,12 @@ concept HasEdges = requires(const S& s, const surface::Bounds& box) {
 template <class S>
 concept ClipsLines = requires(const S& s, const Vector3<double>& p, double& share) {
   { s.clip(p, p, share, share) } -> std::same_as<bool>;
+};
+/// A solid of any form that does: parts_inside(tail, head, sink) calls sink(from, to) for each part of the line that
+/// lies in it, ascending.
+template <class S>
+concept PartsLines = requires(const S& s, const Vector3<double>& p) {
+  s.parts_inside(p, p, [](double, double) {});
 };
 /// A surface with round edges about its z axis: rims(sink) calls sink(number, middle, radius).
 template <class S>

@@ -72,12 +72,12 @@ class Box {
     }
     edges({}, [&](std::uint32_t edge, const Vector3<double>& tail, const Vector3<double>& head) {
       points_of_edge(tail, head, p, radius, [&](std::uint32_t place, const Vector3<double>& c, double weight) {
-        sink(8 + 3 * (edge - first_edge) + place, c, weight);
+        sink(8 + 3 * ((edge - first_edge) / most_parts) + place, c, weight);
       });
     });
   }
   bool has_points() const { return true; }
-  /// The edges, for contact with other bodies: sink(number, one end, other end).
+  /// The edges, for contact with other bodies: sink(number, one end, other end), most_parts numbers an edge.
   template <class Sink>
   void edges(const Bounds&, Sink&& sink) const {
     const double half[3] = {half_.x, half_.y, half_.z};
@@ -90,7 +90,8 @@ class Box {
         const std::uint32_t across = (axis + i) % 3;
         tail[across] = head[across] = (k >> (i - 1) & 1u) != 0 ? half[across] : -half[across];
       }
-      sink(first_edge + k, Vector3<double>{tail[0], tail[1], tail[2]}, Vector3<double>{head[0], head[1], head[2]});
+      sink(first_edge + most_parts * k, Vector3<double>{tail[0], tail[1], tail[2]},
+           Vector3<double>{head[0], head[1], head[2]});
     }
   }
   /// Cuts the range of shares of the way from tail to head to what lies in the box; false if nothing is left.

@@ -60,6 +60,17 @@ class BoxTree {
       n = hit ? n + 1 : node.skip;
     }
   }
+  /// Calls f(place) for every place whose leaf the way from tail to head meets, places ascending.
+  template <class F>
+  void for_each_along(const Vector3<double>& tail, const Vector3<double>& head, F&& f) const {
+    const Vector3<double> d = head - tail;
+    for (std::uint32_t n = 0; n < nodes_.size();) {
+      const Node& node = nodes_[n];
+      const bool hit = meets(node, tail, d);
+      if (hit) visit(node, f);
+      n = hit ? n + 1 : node.skip;
+    }
+  }
 
  private:
   struct Node {
@@ -73,6 +84,16 @@ class BoxTree {
     const double y = max(max(node.low.y - p.y, p.y - node.high.y), 0.0);
     const double z = max(max(node.low.z - p.z, p.z - node.high.z), 0.0);
     return x * x + y * y + z * z;
+  }
+
+  /// Whether the way from p by d meets a node's box, or passes it by no more than rounding.
+  static bool meets(const Node& node, const Vector3<double>& p, const Vector3<double>& d) {
+    const Vector3<double> middle = 0.5 * (node.low + node.high), half = 0.5 * (node.high - node.low);
+    const double slack = 1e-9 * (half.x + half.y + half.z);
+    double from = 0.0, to = 1.0;
+    return clip_between(p.x - middle.x, d.x, half.x + slack, from, to) &&
+           clip_between(p.y - middle.y, d.y, half.y + slack, from, to) &&
+           clip_between(p.z - middle.z, d.z, half.z + slack, from, to);
   }
 
   template <class F>

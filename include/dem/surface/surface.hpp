@@ -66,6 +66,10 @@ inline bool clip_between(double x, double step, double half, double& from, doubl
   return from < to;
 }
 
+/// Parts of one edge in a solid that contacts of bodies can tell apart: the prongs of a fork, across a blade. Beyond
+/// them the prongs' own edges still feel the blade.
+inline constexpr std::uint32_t most_parts = 4;
+
 template <class S>
 constexpr void check_surface() {
   static_assert(

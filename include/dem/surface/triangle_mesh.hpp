@@ -1,7 +1,7 @@
 #pragma once
 
 #include <dem/surface/direction_code.hpp>
-#include <dem/surface/mesh_data.hpp>
+#include <dem/surface/mesh_parts.hpp>
 
 #include <array>
 #include <memory>
@@ -28,8 +28,8 @@ struct MeshOptions {
   double depth = 0.0;          ///< m, how far behind the surface a probe is still found and pushed out; 0: spheres to
                                ///< their radius, points (radius 0) as deep as their grains or
                                ///< bodies may go, up to half the solid
-  double point_spacing = 0.0;  ///< m, of fixed points on sharp edges, where other meshes may pass between the vertices;
-                               ///< 0: none. Sharp grains, boxes and cylinders find edges without
+  double point_spacing = 0.0;  ///< m, of fixed points on sharp edges, where sheets may pass between the vertices; 0:
+                               ///< none. Sharp grains and solids find edges without
   double tolerance = 0.0;      ///< m, within which vertices are one; 0: 1e-9 of the mesh's diagonal
 };
 
@@ -120,12 +120,20 @@ class TriangleMesh {
   }
   bool has_points() const { return true; }
   bool lets_points_through() const { return options_.side == MeshSide::two_sided; }
-  /// Edges that stick out and may lie in a box, for contact with other bodies: sink(number, one end, other end).
+  /// Edges that stick out and may lie in a box, for contact with other bodies: sink(number, one end, other end),
+  /// most_parts numbers an edge.
   template <class Sink>
   void edges(const Bounds& box, Sink&& sink) const {
     data_->edges.for_each_in(box, [&](std::uint32_t k, const Vector3<double>& tail, const Vector3<double>& head) {
-      if (k < first_edge) sink(first_edge + k, tail, head);  // as many as the keys of contacts can tell apart
+      const std::uint32_t number = first_edge + most_parts * k;
+      if (k < first_edge / most_parts) sink(number, tail, head);  // as many as the keys of contacts can tell apart
     });
+  }
+  /// The parts of the way from tail to head that lie in the solid: sink(from, to), shares of the way, ascending. A
+  /// sheet has none.
+  template <class Sink>
+  void parts_inside(const Vector3<double>& tail, const Vector3<double>& head, Sink&& sink) const {
+    if (options_.side == MeshSide::solid) surface::parts_inside(*data_, tail, head, sink);
   }
 
   Bounds bounds() const { return {to_eigen(low_), to_eigen(high_)}; }
