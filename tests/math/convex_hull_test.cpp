@@ -71,13 +71,18 @@ TEST_CASE("a hull holds all its points, and is closed") {
 TEST_CASE("a hull of points that are off a plane by any small distance is found, and closes") {
   // A pyramid on a pentagon of which one corner hangs low: by as much as rounding decides, it is in the planes of some
   // triangles of the pentagon and not of others.
-  for (double depth = 1e-12; depth < 1e-4; depth *= 1.13) {
-    CAPTURE(depth);
-    const std::vector<Vec3> points = {{1, 0, 0},     {0.9, 0.25, 0},      {-1, 0.8, 0},
-                                      {-1, -0.8, 0}, {0.6, -0.9, -depth}, {0, 0, -1}};
-    const auto hull = dem::convex_hull(points);
-    CHECK(hull.size() == 2 * corners_of(hull).size() - 4);
-    CHECK(dem::polyhedron_mass_properties(points, as_faces(hull)).volume == Approx(0.85).margin(2e-6 + depth));
+  for (const int copies : {1, 3}) {
+    for (double depth = 1e-12; depth < 1e-4; depth *= 1.13) {
+      CAPTURE(depth, copies);
+      const std::vector<Vec3> pyramid = {{1, 0, 0},     {0.9, 0.25, 0},      {-1, 0.8, 0},
+                                         {-1, -0.8, 0}, {0.6, -0.9, -depth}, {0, 0, -1}};
+      std::vector<Vec3> points;
+      for (int k = 0; k < copies; ++k) points.insert(points.end(), pyramid.begin(), pyramid.end());
+      const auto hull = dem::convex_hull(points);
+      CHECK(corners_of(hull).size() <= pyramid.size());  // copies are one corner, also when points are shifted
+      CHECK(hull.size() == 2 * corners_of(hull).size() - 4);
+      CHECK(dem::polyhedron_mass_properties(points, as_faces(hull)).volume == Approx(0.85).margin(2e-6 + depth));
+    }
   }
 }
 

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <numeric>
 #include <random>
 #include <set>
 #include <span>
@@ -16,8 +17,8 @@ using Triangle = std::array<int, 3>;
 
 /// Convex hull of a cloud of points as triangles, counter-clockwise from outside, that name points of the cloud.
 /// Quickhull (Barber, Dobkin and Huhdanpaa 1996, DOI 10.1145/235815.235821) without its lists of outside points: each
-/// round takes the point that stands out furthest and replaces the triangles that see it. Points within 1e-9 of the
-/// cloud's size of the hull so far are left out, so doubled points do no harm.
+/// round takes the point that stands out furthest and replaces the triangles that see it. Points that stand out by less
+/// than some 1e-8 of the cloud's size are left out, and points within 1e-9 of each other are one.
 ///
 /// Where points are off a common plane by about as much, rounding may say that a point sees triangles which do not hang
 /// together, and the hull would not close. It is then made again of points that are shifted at random by 1e-7 of the
@@ -36,16 +37,22 @@ class HullBuilder {
     }
     size_ = (high - low).norm();
     middle_ = 0.5 * (low + high);
+    merge_points();
+    const std::vector<Vec3> given = points_;
     for (unsigned attempt = 0; attempt < most_attempts; ++attempt) {
-      if (attempt > 0) shift(points, attempt);
+      if (attempt > 0) shift(given, attempt);
       if (build()) return;
     }
-    fail("no convex hull of {} points was found that closes; they lie too nearly in planes and lines", points.size());
+    fail(
+        "no convex hull of {} points was found that closes, not even with the points shifted by {:.2g} m; points that "
+        "are nearly in a plane or a line, by less than that, should be left out",
+        points.size(), 1e-7 * size_);
   }
 
   std::vector<Triangle> triangles() const {
     std::vector<Triangle> result;
-    for (const Facet& f : facets_) result.push_back(f.corner);
+    const auto named = [&](int k) { return name_[static_cast<std::size_t>(k)]; };
+    for (const Facet& f : facets_) result.push_back({named(f.corner[0]), named(f.corner[1]), named(f.corner[2])});
     return result;
   }
 
@@ -58,6 +65,29 @@ class HullBuilder {
 
   static constexpr unsigned most_attempts = 20;
   static constexpr double least_rise = 1e-9;  ///< of the size, of a point that is taken in
+
+  /// Keeps one of points that are the same but for rounding: shifted apart, they would be corners of slivers.
+  void merge_points() {
+    std::vector<int> by_x(points_.size());
+    std::iota(by_x.begin(), by_x.end(), 0);
+    std::sort(by_x.begin(), by_x.end(),
+              [&](int a, int b) { return std::pair(at(a).x(), a) < std::pair(at(b).x(), b); });
+    const double near = 1e-9 * size_;
+    std::vector<char> gone(points_.size(), 0);
+    for (std::size_t k = 0; k < by_x.size(); ++k) {
+      if (gone[static_cast<std::size_t>(by_x[k])]) continue;
+      for (std::size_t m = k + 1; m < by_x.size() && at(by_x[m]).x() - at(by_x[k]).x() <= near; ++m) {
+        if ((at(by_x[m]) - at(by_x[k])).norm() <= near) gone[static_cast<std::size_t>(by_x[m])] = 1;
+      }
+    }
+    std::vector<Vec3> kept;
+    for (std::size_t k = 0; k < points_.size(); ++k) {
+      if (gone[k]) continue;
+      kept.push_back(points_[k]);
+      name_.push_back(static_cast<int>(k));
+    }
+    points_ = std::move(kept);
+  }
 
   void shift(std::span<const Vec3> points, unsigned seed) {
     std::minstd_rand random(seed);
@@ -168,6 +198,7 @@ class HullBuilder {
   }
 
   std::vector<Vec3> points_;
+  std::vector<int> name_;  ///< place of each in the cloud
   std::vector<Facet> facets_;
   double size_ = 0.0;
   double slack_ = least_rise;  ///< of the size, by which a point must be above a plane to see it

@@ -131,7 +131,7 @@ class FaceGrower {
     const std::vector<int>& c = triangles_[t];
     const double longest =
         std::max({(at(c[1]) - at(c[0])).norm(), (at(c[2]) - at(c[1])).norm(), (at(c[0]) - at(c[2])).norm()});
-    return 2.0 * normal.dot(area(t)) > -tolerance_ * longest;
+    return 2.0 * normal.dot(area(t)) >= -tolerance_ * longest;
   }
 
   /// A triangle and, through its sides and theirs, those that lie within the tolerance of its plane. The ring never
@@ -254,7 +254,9 @@ inline ConvexMesh hull_mesh(std::span<const Vec3> points) {
   ConvexMesh mesh;
   mesh.faces = detail::FaceGrower(points, triangles, 1e-6 * size).faces();
   detail::drop_points_of_edges(mesh.faces);
-  if (mesh.faces.size() < 4) fail("the points of a convex hull lie in one plane: of {:g} m, to within 1e-6", size);
+  if (mesh.faces.size() < 4)
+    fail("the points of a convex hull lie in one plane: they are {:g} m across, but less than {:.3g} m thick", size,
+         1e-6 * size);
   std::map<int, int> number;
   for (auto& face : mesh.faces) {
     for (int& k : face) {
