@@ -45,7 +45,8 @@ class Curve {
 
   double operator()(double x) const {
     const auto& [p, q] = piece(x);
-    if (held_) x = std::clamp(x, points_.front().first, points_.back().first);
+    if (held_ && x <= points_.front().first) return points_.front().second;
+    if (held_ && x >= points_.back().first) return points_.back().second;
     return p.second + (q.second - p.second) / (q.first - p.first) * (x - p.first);
   }
   double slope(double x) const {
