@@ -83,7 +83,11 @@ class Machine : public MachinePhases<I> {
     const double h = dt / n;
     const bool trial = stage < I::stages - 1;  // done again in the next stage, from the same start
     if constexpr (I::stages > 1) stage == 0 ? save() : restore();
-    sampling_ = !trial;
+    struct Sampling {  // goes on after the sub-steps, also if a function of the user throws in one
+      bool& flag;
+      ~Sampling() { flag = true; }
+    } sampling{Base::sampling_};
+    sampling.flag = !trial;
     const std::vector<Wrench>& from = stage == 0 ? earlier_contacts_ : contacts_;
     const std::vector<Wrench>& to = stage == 0 ? contacts_ : corrected_contacts_;
     const double phase = stage == 0 ? 1.0 : 0.0;
