@@ -159,6 +159,21 @@ TEST_CASE("a pin in a tube touches the wall, whichever of them is the longer one
   CHECK(p.torque.y() < -0.5 * depth * 0.5);
 }
 
+TEST_CASE("an egg in a drum is pushed by the mantle alike, whether or not an end is near") {
+  // Tilted, so that the point farthest along the way to the mantle is not the deepest one.
+  const double R = 0.05, length = 0.1, depth = 1e-5;
+  const surface::Superquadric egg({4e-3, 2e-3, 1e-3}, {2, 2, 2});
+  const double to_side = std::sqrt(0.5 * (4e-3 * 4e-3 + 2e-3 * 2e-3));
+  const Cylinder drum(R, length, dem::surface::Side::inside);
+  const auto push_at = [&](double z) {
+    return push({egg, Vec3(R - to_side + depth, 0, z), about({0, 0, 1}, 0.25 * M_PI)}, {drum});
+  };
+  const Push amid = push_at(0.0), near_end = push_at(0.5 * length - 3e-3);  // in the bounding sphere, 2 mm off the egg
+  CHECK(amid.force.x() < -depth);                                           // the tip beside that point is deeper
+  CHECK((near_end.force - amid.force).norm() < 1e-6 * depth);
+  CHECK((near_end.torque - amid.torque).norm() < 1e-6 * depth * 4e-3);
+}
+
 TEST_CASE("superquadrics with curved sides touch as deep as their common normal says") {
   const double depth = 1e-4;
   // Ellipsoids: x = r^2 n/|r n| is the point with the normal n; put them there, one against the other.

@@ -62,11 +62,15 @@ class PointsTowards {
   struct Way {
     std::uint32_t number;   ///< from 0 on, ascending: of the wall that it leads to, whichever others are near
     Vector3<double> along;  ///< into the other surface, own frame
+    std::uint32_t wall;     ///< family of the other surface's features
   };
   struct Ways {
     std::array<Way, most_ways> way;
     std::uint32_t count = 0;
     std::span<const Way> all() const { return {way.data(), count}; }
+    bool is_only_one_to(std::uint32_t wall) const {
+      return std::count_if(way.begin(), way.begin() + count, [&](const Way& w) { return w.wall == wall; }) == 1;
+    }
   };
 
   struct Place {
@@ -77,29 +81,31 @@ class PointsTowards {
   Vector3<double> seen(const Vector3<double>& p) const {
     return transpose_times(b_.axes, a_.origin + a_.axes * p - b_.origin);
   }
-  /// sink(normal, gap) for all contacts of a ball at p, in the own frame.
+  /// sink(wall, normal, gap) for all contacts of a ball at p, in the own frame.
   template <class Sink>
   void touch(const Vector3<double>& p, double radius, Sink&& sink) const {
-    onto_.touch(seen(p), radius, [&](std::uint32_t, const Vector3<double>& normal, double gap) {
-      sink(transpose_times(a_.axes, b_.axes * normal), gap);
+    onto_.touch(seen(p), radius, [&](std::uint32_t feature, const Vector3<double>& normal, double gap) {
+      sink(surface::family_of<Onto>(feature), transpose_times(a_.axes, b_.axes * normal), gap);
     });
   }
   /// The ways in which a ball at p meets the other surface.
   Ways find_ways(const Vector3<double>& p, double radius) const {
     Ways ways;
     std::uint32_t next = 0;
-    onto_.touch(seen(p), radius, [&](std::uint32_t feature, const Vector3<double>& normal, double) {
+    touch(p, radius, [&](std::uint32_t wall, const Vector3<double>& normal, double) {
       if (ways.count == most_ways) return;
-      const std::uint32_t wall = std::min(surface::family_of<Onto>(feature), of_a_rim - most_ways);
-      ways.way[ways.count++] = {std::max(next, wall), transpose_times(a_.axes, b_.axes * normal)};
+      const std::uint32_t named = std::min(wall, of_a_rim / most_ways - 1) * most_ways;
+      ways.way[ways.count++] = {std::max(next, named), normal, wall};
       next = ways.way[ways.count - 1].number + 1;
     });
     return ways;
   }
-  Place nearest(const Vector3<double>& p, double radius) const {
+  /// Where a ball at p meets the other surface, or one wall of it, first.
+  static constexpr std::uint32_t any_wall = ~0u;
+  Place nearest(const Vector3<double>& p, double radius, std::uint32_t of = any_wall) const {
     Place best = {1e300, {0, 0, 0}};
-    touch(p, radius, [&](const Vector3<double>& normal, double gap) {
-      if (gap < best.gap) best = {gap, normal};
+    touch(p, radius, [&](std::uint32_t wall, const Vector3<double>& normal, double gap) {
+      if (gap < best.gap && (of == any_wall || wall == of)) best = {gap, normal};
     });
     return best;
   }
@@ -184,8 +190,8 @@ class PointsTowards {
   }
 
   /// The point of a superquadric that lies deepest in the other surface: where it shares the normal of another
-  /// superquadric, else where descend() ends. A surface that is met in several ways (a corner of a mesh) has one for
-  /// each, the point farthest along it.
+  /// superquadric, else where descend() ends on each wall that is near. A wall that is met in several ways (a corner of
+  /// a mesh) has one for each, the point farthest along it.
   void list_deepest(std::size_t spread) {
     if (!from_.grain()) return;
     const shape::Superquadric& grain = *from_.grain();
@@ -205,29 +211,29 @@ class PointsTowards {
     const Ways ways = find_ways({0, 0, 0}, grain.bounding_radius());
     for (const Way& way : ways.all()) {
       Vector3<double> p = grain.even_support(upright, way.along);
-      if (ways.count == 1) p = descend(grain, p);
+      if (ways.is_only_one_to(way.wall)) p = descend(grain, p, way.wall);
       fade(spread, p, way.along, third);
       add(first_near + way.number, p);
     }
   }
   static constexpr double upright[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
 
-  /// From a point of a convex skin to the one that lies deepest in the other surface, or comes nearest to it, by the
-  /// method of Frank and Wolfe (1956, doi:10.1002/nav.3800030109): over and over along the chord to the point that lies
-  /// farthest along the other's normal, to where the gap is least as its slopes at both ends tell. On a plane the first
-  /// point is the last; between round bodies the gap's error falls by a factor a step.
-  Vector3<double> descend(const shape::Superquadric& grain, Vector3<double> p) const {
+  /// From a point of a convex skin to the one that lies deepest in a wall of the other surface, or comes nearest to it,
+  /// by the method of Frank and Wolfe (1956, doi:10.1002/nav.3800030109): over and over along the chord to the point
+  /// that lies farthest along the other's normal, to where the gap is least as its slopes at both ends tell. On a plane
+  /// the first point is the last; between round bodies the gap's error falls by a factor a step.
+  Vector3<double> descend(const shape::Superquadric& grain, Vector3<double> p, std::uint32_t wall) const {
     const double reach = 2.0 * grain.bounding_radius(), near = 1e-10 * grain.mean_radius();
-    Place here = nearest(p, reach);
+    Place here = nearest(p, reach, wall);
     for (int k = 0; k < 30 && here.gap < reach; ++k) {
       const Vector3<double> end = grain.support(upright, here.normal), chord = end - p;
       const double fall = dot(here.normal, chord);
       if (!(fall > near)) break;
-      const Place there = nearest(end, reach);
+      const Place there = nearest(end, reach, wall);
       if (!(there.gap < reach)) break;
       const double rise = -dot(there.normal, chord);
       const Vector3<double> next = rise <= 0.0 ? end : p + (fall / (fall + rise)) * chord;
-      const Place at_next = rise <= 0.0 ? there : nearest(next, reach);
+      const Place at_next = rise <= 0.0 ? there : nearest(next, reach, wall);
       if (!(at_next.gap < here.gap)) break;
       p = next;
       here = at_next;
