@@ -1,7 +1,10 @@
-// Contact search between spheres and a mesh: building the tree, queries through it, and without it.
+// Contact search with meshes: building the tree, queries of spheres through it, and without it; a finely cut body that
+// lies flat on another.
 
+#include <dem/integrator/symplectic_euler.hpp>
 #include <dem/math/mesh_shapes.hpp>
 #include <dem/surface/triangle_mesh.hpp>
+#include <dem/world/world.hpp>
 
 #include <benchmark/benchmark.h>
 
@@ -61,5 +64,27 @@ void mesh_brute_force(benchmark::State& state) {
   }
 }
 BENCHMARK(mesh_brute_force)->Arg(6662);
+
+struct Bodies : dem::Model {
+  using Surfaces = dem::surface::Set<dem::surface::Box, dem::surface::TriangleMesh>;
+  using Integrator = dem::integrator::SymplecticEuler;
+};
+
+/// A step of a slab whose underside of n x n squares lies on a block of triangles: items are its points that touch.
+void bodies_face_on_face(benchmark::State& state) {
+  using dem::surface::TriangleMesh;
+  const int n = static_cast<int>(state.range(0));
+  const dem::Vec3 edges(0.2, 0.2, 0.1);
+  dem::World<Bodies> w({.gravity = {0, 0, -9.81}, .time_step = 1e-5, .threads = 1});
+  w.set_contact({{4e5, 240.0, 1.0}, {0.5, 4e5, 400.0, 0.975}});
+  const auto slab = w.machine().add_body(dem::mbd::box_body("slab", edges, 1000.0).at({0, 0, 0.05 - 1e-4}));
+  w.add_body_contact(
+      w.add_surface(slab, TriangleMesh(dem::mesh::box(edges, n))),
+      w.add_surface(w.ground(), TriangleMesh(dem::mesh::box({1, 1, 0.2}, 3)), {.position = {0.03, 0.02, -0.1}}));
+  w.run(10);
+  for (auto _ : state) w.run(1);
+  state.SetItemsProcessed(state.iterations() * (n + 1) * (n + 1));
+}
+BENCHMARK(bodies_face_on_face)->Arg(9)->Arg(31)->Arg(99)->Unit(benchmark::kMicrosecond);
 
 }  // namespace

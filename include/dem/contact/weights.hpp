@@ -28,31 +28,52 @@ enum class Fit {
 /// Dampers have to take more than that: see "Bodies against bodies" in ARCHITECTURE.md for how much.
 template <class Point>
 void fit_weights(std::size_t count, Fit fit, Point&& point) {
-  struct Part {
+  // Points of flat faces have few normals, however many they are: their sums are over normals.
+  struct Direction {
     Vector3<double> normal;
-    double depth, part, overlap;  // m, the second times the weight
+    double first = 0.0, second = 0.0;            // sums over its own points
+    double first_near = 0.0, second_near = 0.0;  // with those of the other directions
   };
+  struct Part {
+    double part, overlap;  // m, the first times the weight, not negative
+    std::size_t direction;
+  };
+  static thread_local std::vector<Direction> directions;
   static thread_local std::vector<Part> parts;
+  directions.clear();
   parts.clear();
+  const auto direction_of = [&](const Vector3<double>& normal) {
+    for (std::size_t k = directions.size(); k-- > 0;) {
+      const Vector3<double> d = directions[k].normal - normal;
+      if (dot(d, d) < 1e-24) return k;  // the same but for rounding
+    }
+    directions.push_back({normal});
+    return directions.size() - 1;
+  };
   for (std::size_t k = 0; k < count; ++k) {
     const Geometry<double> g = point(k).geometry();
     const double depth = std::max(0.0, g.overlap);
-    parts.push_back({g.normal, depth, depth * g.area, g.overlap});
+    parts.push_back({depth * g.area, g.overlap, direction_of(g.normal)});
+    Direction& own = directions[parts.back().direction];
+    own.first += parts.back().part;
+    own.second += parts.back().part * depth;
+  }
+  for (Direction& d : directions) {
+    for (const Direction& other : directions) {
+      const double cosine = std::max(0.0, dot(d.normal, other.normal));
+      d.first_near += cosine * cosine * other.first;
+      d.second_near += cosine * cosine * other.second;
+    }
   }
   for (std::size_t k = 0; k < count; ++k) {
-    double first = 0.0, second = 0.0;
-    for (const Part& other : parts) {
-      const double cosine = std::max(0.0, dot(parts[k].normal, other.normal)), share = cosine * cosine * other.part;
-      first += share;
-      second += share * other.depth;
-    }
+    const auto& [normal, own_first, own_second, first, second] = directions[parts[k].direction];
     double& weight = point(k).area;
     if (!(first > 0.0)) {
       if (!(parts[k].overlap < 0.0)) continue;
       bool nearest = true;
       for (std::size_t m = 0; m < count; ++m) {
         const bool nearer = parts[m].overlap > parts[k].overlap || (parts[m].overlap == parts[k].overlap && m < k);
-        nearest &= !(nearer && dot(parts[k].normal, parts[m].normal) > 0.0);
+        nearest &= !(nearer && dot(normal, directions[parts[m].direction].normal) > 0.0);
       }
       weight = nearest ? 1.0 : 0.0;
       continue;
