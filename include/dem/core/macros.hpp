@@ -3,7 +3,8 @@
 #include <cstdio>
 #include <cstdlib>
 
-/// DEM_FN marks a function that host and device (CUDA) code may both call.
+/// DEM_FN marks a function that host and device (CUDA) code may both call, as far as what it is given may: laws,
+/// integrators, spheres, plain surfaces and the superquadric's function do (tests/cuda). Packs are the host's.
 #if defined(__CUDACC__)
 #define DEM_FN __host__ __device__ __forceinline__
 #else

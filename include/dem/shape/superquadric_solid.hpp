@@ -39,7 +39,7 @@ class SuperquadricSolid {
 
   const Vector3<double>& radius() const { return radius_; }
   const Vector3<double>& exponent() const { return exponent_; }
-  double smallest_radius() const { return std::min({radius_.x, radius_.y, radius_.z}); }
+  DEM_FN double smallest_radius() const { return std::min({radius_.x, radius_.y, radius_.z}); }
 
   /// F(x), for one point or a pack of points: at most 1 inside.
   template <class T>
