@@ -1,10 +1,10 @@
 #!/usr/bin/env bash
 # The full-size runs behind RESULTS.md: three packings, and on each of them half the time step and half the shearing
-# speed; a loose and a dense packing; the predictor-corrector. Prints a table. Runs that are there already are not made
-# again, so it may be stopped (Ctrl-C) and called again. Several of it may share a folder and so the work, best with
-# different parts: a run that another one is at is waited for.
+# speed; a loose and a dense packing; the predictor-corrector; the thesis's poured block, and its softer grains. Prints a
+# table. Runs that are there already are not made again, so it may be stopped (Ctrl-C) and called again. Several of it
+# may share a folder and so the work, best with different parts: a run that another one is at is waited for.
 #
-#   study.sh <direct_shear> <folder> [seeds|half_step|half_speed|density|integrator ...]
+#   study.sh <direct_shear> <folder> [seeds|half_step|half_speed|density|integrator|poured|soft ...]
 #
 # A packing and its three loads take 35 to 40 minutes on one core at 2.3 GHz; all of them, by that, some ten hours.
 set -euo pipefail
@@ -12,7 +12,7 @@ set -euo pipefail
 rig=$(realpath "$1")
 folder=$2
 shift 2
-[ $# -gt 0 ] || set -- seeds half_step half_speed density integrator
+[ $# -gt 0 ] || set -- seeds half_step half_speed density integrator poured soft
 mkdir -p "$folder"
 cd "$folder"
 [ -w . ] || { echo "cannot write in $folder" >&2 && exit 1; }
@@ -65,8 +65,10 @@ for part in "$@"; do
     integrator)
       run seed_1 --seed 1
       run predictor_corrector --packing-file seed_1/packing.txt --integrator predictor-corrector ;;
+    poured) run poured --packing poured ;;
+    soft) run soft --stiffness 2000 ;;
     *)
-      echo "no part '$part'; there are seeds, half_step, half_speed, density and integrator" >&2
+      echo "no part '$part'; there are seeds, half_step, half_speed, density, integrator, poured and soft" >&2
       exit 1 ;;
   esac
 done
