@@ -1,5 +1,5 @@
-// The searches of round grains and of simple surfaces, and the superquadric's function, compile for a device. Nothing is
-// run. Clusters (which compare packs of spheres), polyhedra and meshes are searched by the host alone.
+// The searches of round grains and of simple surfaces, and the superquadric's function, compile for a device. Nothing
+// is run. Clusters (which compare packs of spheres), polyhedra and meshes are searched by the host alone.
 
 #include <dem/shape/sphere.hpp>
 #include <dem/shape/superquadric_solid.hpp>
