@@ -24,8 +24,8 @@ void measure(PackingResult& p, const Settings& s, dem::io::Progress& progress) {
 }
 
 /// Says so when a packing has not come out as dense as asked for.
-inline void compare_density(const PackingResult& p, dem::io::Progress& progress) {
-  const double reached = relative_density(p.solid_fraction);
+inline void compare_density(const PackingResult& p, const Settings& s, dem::io::Progress& progress) {
+  const double reached = relative_density(s, p.solid_fraction);
   if (!(std::abs(reached - p.asked_density) > 0.02)) return;  // also if either is not known
   progress.message(
       fmt::format("warning: the packing has relative density {:.2f}, but {:g} was asked for; change "
@@ -108,7 +108,7 @@ void run_campaign(const Settings& s, Campaign& campaign, const std::function<voi
       const double fraction = campaign.packing.solid_fraction;
       progress.finish(std::isfinite(fraction) ? fmt::format("solid fraction {:.3f}", fraction) : "");
     }
-    compare_density(campaign.packing, progress);
+    compare_density(campaign.packing, s, progress);
     for (const double load : s.loads) {
       LoadResult& r = campaign.loads.emplace_back();
       r.load = load;

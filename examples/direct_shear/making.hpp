@@ -3,7 +3,6 @@
 #include "stages.hpp"
 
 #include <dem/soil/coordination.hpp>
-#include <dem/soil/relative_density.hpp>
 #include <dem/soil/rest.hpp>
 
 #include <algorithm>
@@ -43,7 +42,7 @@ void pour(Rig& rig, const Settings& s, double solid_height, dem::io::Progress& p
     for (const auto p : rig.world.particles()) sum += rig.world.position(p).z();
     return sum / static_cast<double>(rig.world.particle_count());
   };
-  const double high = mean_height(), low = 0.5 * solid_height / dem::soil::solid_fraction_at(0.0);
+  const double high = mean_height(), low = 0.5 * solid_height / dem::soil::solid_fraction_at(0.0, density_limits(s));
   progress.begin("pour", 1.0);
   settle(rig, s, progress,
          [&] { return 0.9 * std::clamp((high - mean_height()) / std::max(high - low, 1e-9), 0.0, 1.0); });
@@ -72,7 +71,8 @@ void end_shaking(Rig& rig, const Settings& s, double t0) {
 /// until the density that was asked for is reached, or, without friction, changes no more. Then friction is back.
 template <class Rig>
 void densify(Rig& rig, const Settings& s, dem::io::Progress& progress) {
-  const double start = rig.world.time(), wanted = dem::soil::solid_fraction_at(s.relative_density);
+  const double start = rig.world.time();
+  const double wanted = dem::soil::solid_fraction_at(s.relative_density, density_limits(s));
   const auto measure = [&] {
     const double fraction = inner_fraction(rig, s);
     if (std::isfinite(fraction)) return fraction;
@@ -123,7 +123,8 @@ PackingResult make_packing(const Settings& s, std::span<const dem::soil::Placeme
   double highest = s.box_height;
   for (const auto& g : grains) highest = std::max(highest, g.position.z() + 3.0 * s.half_edge);
   const double solid = solid_height<Shape>(s);
-  const double seam = s.seam_height > 0.0 ? s.seam_height : 0.5 * solid / dem::soil::solid_fraction_at(0.5);
+  const double seam =
+      s.seam_height > 0.0 ? s.seam_height : 0.5 * solid / dem::soil::solid_fraction_at(0.5, density_limits(s));
   Settings pouring = s;
   pouring.stable_share = 0.8;  // a smaller share is for the test: nothing but rest is asked of a packing
   Rig<Integrator, Shape> rig(pouring, {.seam = seam, .wall_top = highest, .lid_low = highest}, grains);

@@ -28,7 +28,8 @@ inline void add_specimen_options(CLI::App& app, Settings& s) {
   add("--wall-thickness", s.wall_thickness, "[m], at least the travel; 0: 15 mm or twice the travel");
   add("--lid-clearance", s.lid_clearance, "lid to wall, in radii of a grain's sphere");
   add("--packing", s.packing, "random or poured")->check(CLI::IsMember({"random", "poured"}));
-  add("--relative-density", s.relative_density, "of a random packing, 0 (as it settles) to 1, in the limits of cube8");
+  add("--relative-density", s.relative_density,
+      "of a random packing, 0 (as it settles) to 1 (the densest of the shape)");
   add("--tilt", s.tilt_deg, "of the poured block about each axis [deg]");
   add("--shake-amplitude", s.shake_amplitude, "[m]");
   add("--shake-frequency", s.shake_frequency, "[Hz]");
@@ -47,13 +48,13 @@ inline void add_contact_options(CLI::App& app, Settings& s) {
   const auto add = [&](const char* name, auto& value, const char* text) {
     app.add_option(name, value, text)->group(group)->capture_default_str();
   };
-  add("--stiffness", s.stiffness, "K [N/m]");
-  add("--damping", s.damping, "C [N s/m]");
+  add("--stiffness", s.stiffness, "K [N/m]; 0: by shape (cube8: 20000, a sphere; others: 80000, as four of them)");
+  add("--damping", s.damping, "C [N s/m]; negative: by shape (cube8: 0.015, others: 0.06)");
   add("--separation-factor", s.separation_factor, "Sp, share of C while separating");
   add("--friction", s.friction, "mu, grain on grain");
   add("--wall-friction", s.wall_friction, "mu, grain on wall; negative: as grain on grain");
   add("--friction-stiffness", s.friction_stiffness, "kt [N/m]; negative: as K");
-  add("--velocity-stiffness", s.velocity_stiffness, "cv [N s/m]");
+  add("--velocity-stiffness", s.velocity_stiffness, "cv [N s/m]; negative: by shape, as C");
   add("--breaking-factor", s.breaking_factor, "friction kept by a broken asperity");
   add("--density", s.density, "of a grain [kg/m^3]");
   add("--constants-for", s.constants_for, "half-edge that K, kt, C and cv are given for [m]");

@@ -1,8 +1,8 @@
 #include "report.hpp"
 
 #include <dem/io/io.hpp>
-#include <dem/soil/relative_density.hpp>
 
+#include <algorithm>
 #include <exception>
 #include <numbers>
 #include <optional>
@@ -36,9 +36,20 @@ dem::io::Table strength_table(const Settings& s, const Campaign& c) {
     t.row(number(1e-3 * normal, "{:.3f}"), number(1e-3 * r.maximum), number(1e-3 * reference),
           number(100.0 * (r.maximum / reference - 1.0), "{:+.1f}"), number(1e3 * r.at_maximum),
           number(1e-3 * r.residual), number(r.solid_fraction * s.density, "{:.0f}"),
-          number(relative_density(r.solid_fraction)), number(1e3 * r.dilation, "{:+.2f}"), r.finished);
+          number(relative_density(s, r.solid_fraction)), number(1e3 * r.dilation, "{:+.2f}"), r.finished);
   }
   return t;
+}
+
+/// What to know of the comparison with table 3.3; empty if there is nothing to say.
+std::string coarseness_text(const Settings& s, const Campaign& c) {
+  constexpr double of_thesis = 0.9e-3;
+  if (s.half_edge <= 1.01 * of_thesis || fit(c).origin == std::nullopt) return {};
+  return fmt::format(
+      "The grains are of half-edge {:g} mm; those of table 3.3, of {:g} mm (--size full), are weaker in the same box, "
+      "most "
+      "of all at light loads.",
+      1e3 * s.half_edge, 1e3 * of_thesis);
 }
 
 dem::io::Table check_table(const Campaign& c) {
@@ -75,16 +86,18 @@ dem::io::Table angle_table(const Fits& f) {
 std::string packing_text(const Settings& s, const Campaign& c) {
   const PackingResult& p = c.packing;
   if (!std::isfinite(p.height)) return "The packing was not finished.";
-  const auto& limits = dem::soil::cube8_limits;
+  const auto& limits = density_limits(s);
   std::string text = fmt::format(
       "Packing before loading: {} grains, bulk density {} kg/m³ (solid fraction {}), relative density {}{}, "
       "height {:.1f} mm",
       p.packing.grains.size(), number(s.density * p.solid_fraction, "{:.0f}"), number(p.solid_fraction, "{:.3f}"),
-      number(relative_density(p.solid_fraction)),
+      number(relative_density(s, p.solid_fraction)),
       std::isfinite(p.asked_density) ? fmt::format(" ({:g} asked for)", p.asked_density) : "", 1e3 * p.height);
   if (std::isfinite(p.coordination)) text += fmt::format(", {:.2f} neighbours a grain", p.coordination);
-  return text + fmt::format(". Relative density counts from solid fraction {:.3f} (loosest) to {:.3f} (densest).",
-                            limits.loosest, limits.densest);
+  return text +
+         fmt::format(
+             ". Relative density counts from solid fraction {:.3f}, the loosest of this shape, to {:.3f}, the densest.",
+             limits.loosest, limits.densest);
 }
 
 std::string frames_text(const Campaign& c) { return "Files for ParaView are missing: " + c.frames_problem; }
@@ -197,11 +210,17 @@ std::string speed_text(const Campaign& c) {
 void print_report(const Settings& s, const Campaign& c) {
   fmt::print("\n{}\n\n", packing_text(s, c));
   dem::io::print(strength_table(s, c));
+  if (const auto text = coarseness_text(s, c); !text.empty()) fmt::print("{}\n", text);
   fmt::print("\n");
   dem::io::print(check_table(c));
   fmt::print("\n");
   dem::io::print(angle_table(fit(c)));
   fmt::print("\n{}\n", speed_text(c));
+}
+
+/// Whether there is anything to draw.
+bool any_sheared(const Campaign& c) {
+  return std::any_of(c.loads.begin(), c.loads.end(), [](const LoadResult& r) { return !r.samples.empty(); });
 }
 
 /// Writes report.html. Returns why plots could not be drawn, or nothing.
@@ -210,7 +229,9 @@ std::string write_page(const Settings& s, const Campaign& c, const std::string& 
   const Fits fits = fit(c);
   dem::io::HtmlReport page("Direct shear test");
   if (const auto status = status_text(c); !status.empty()) page.paragraph(status);
-  page.paragraph(packing_text(s, c)).table(strength_table(s, c)).table(angle_table(fits));
+  page.paragraph(packing_text(s, c)).table(strength_table(s, c));
+  if (const auto text = coarseness_text(s, c); !text.empty()) page.paragraph(text);
+  page.table(angle_table(fits));
   const auto add_plot = [&](const Plot& plot, const char* name, const char* caption) {
     const auto drawn = dem::io::render_plot(plot, s.output / name);
     if (drawn) {
@@ -220,11 +241,13 @@ std::string write_page(const Settings& s, const Campaign& c, const std::string& 
       page.paragraph(fmt::format("{}: not drawn ({})", caption, drawn.reason));
     }
   };
-  page.heading("Plots");
-  add_plot(stress_plot(s, c), "shear_stress", "Shear stress on the bottom box over the displacement of the top box.");
-  add_plot(curves(s, c, &Sample::lid_rise, 1e3, "Dilation", "lid rise [mm]"), "dilation",
-           "Rise of the lid while shearing.");
-  add_plot(mohr_coulomb_plot(c, fits), "mohr_coulomb", "Maximum shear stress over normal stress.");
+  if (any_sheared(c)) {
+    page.heading("Plots");
+    add_plot(stress_plot(s, c), "shear_stress", "Shear stress on the bottom box over the displacement of the top box.");
+    add_plot(curves(s, c, &Sample::lid_rise, 1e3, "Dilation", "lid rise [mm]"), "dilation",
+             "Rise of the lid while shearing.");
+    add_plot(mohr_coulomb_plot(c, fits), "mohr_coulomb", "Maximum shear stress over normal stress.");
+  }
   page.heading("Checks").table(check_table(c)).paragraph(speed_text(c));
   page.heading("Settings").settings(list_settings(s));
   page.heading("settings.toml", 3).paragraph("What repeats the run: direct_shear --config settings.toml");
@@ -259,8 +282,9 @@ bool report(const Settings& s, const Campaign& c, const std::string& config) {
     complete = false;
   }
   if (complete) {
-    fmt::print("Report, {}tables{}: {}\n", not_drawn.empty() ? "plots, " : "", s.vtk ? " and ParaView files" : "",
-               s.output.string());
+    const bool sheared = any_sheared(c);
+    fmt::print("Report, {}tables{}: {}\n", sheared && not_drawn.empty() ? "plots, " : "",
+               sheared && s.vtk ? " and ParaView files" : "", s.output.string());
   }
   return complete;
 }

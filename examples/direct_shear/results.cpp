@@ -1,7 +1,6 @@
 #include "results.hpp"
 
 #include <dem/core/error.hpp>
-#include <dem/soil/relative_density.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -65,8 +64,9 @@ void evaluate(LoadResult& r, const Settings& s) {
   r.lid_share = lid / static_cast<double>(stress.size());
 }
 
-double relative_density(double solid_fraction) {
-  return solid_fraction > 1e-6 && solid_fraction <= 1.0 ? dem::soil::relative_density(solid_fraction) : not_known;
+double relative_density(const Settings& s, double solid_fraction) {
+  if (!(solid_fraction > 1e-6 && solid_fraction <= 1.0)) return not_known;
+  return dem::soil::relative_density(solid_fraction, density_limits(s));
 }
 
 Fits fit(const Campaign& c) {

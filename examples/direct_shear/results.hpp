@@ -87,8 +87,9 @@ std::vector<double> smoothed(std::span<const Sample> samples, double Sample::*va
 /// Finds maximum, residual and dilation in the samples; what they are too few for stays not known.
 void evaluate(LoadResult& r, const Settings& s);
 
-/// Relative density in the limits of cube8; not known for what is no solid fraction, as of grains pressed together.
-double relative_density(double solid_fraction);
+/// Relative density between the limits of the grains' shape; not known for what is no solid fraction, as of grains
+/// pressed together.
+double relative_density(const Settings& s, double solid_fraction);
 
 /// Mohr-Coulomb lines of the loads that were sheared to their end; empty where there are too few for one.
 struct Fits {

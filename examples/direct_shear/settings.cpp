@@ -36,6 +36,23 @@ const Size& size_named(const std::string& name) {
   dem::fail("--size is '{}', but must be smoke, quick or full", name);
 }
 
+struct GrainShape {
+  const char *name, *plural;
+  double stiffness, damping;  ///< K (N/m), C and cv (N s/m)
+  dem::soil::DensityLimits limits;
+};
+
+const GrainShape& shape_of(const Settings& s) {
+  static const GrainShape shapes[] = {
+      {"cube8", "cubes of 8 spheres", 2e4, 0.015, dem::soil::cube8_limits},
+      {"polyhedron", "polyhedral cubes", 8e4, 0.06, dem::soil::sharp_cube_limits},
+      {"superquadric", "superquadric cubes", 8e4, 0.06, dem::soil::rounded_cube_limits}};
+  for (const GrainShape& shape : shapes) {
+    if (s.shape == shape.name) return shape;
+  }
+  dem::fail("--shape is '{}', but must be cube8, polyhedron or superquadric", s.shape);
+}
+
 void check_specimen(const Settings& s) {
   dem::require_positive(s.box_length, "--box-length", "m");
   dem::require_positive(s.box_width, "--box-width", "m");
@@ -62,7 +79,7 @@ void check_specimen(const Settings& s) {
 }
 
 void check_contacts(const Settings& s) {
-  dem::require_positive(s.stiffness, "--stiffness", "N/m");
+  dem::require_positive(s.stiffness, "--stiffness", "N/m (0: by shape)");
   dem::require_non_negative(s.damping, "--damping", "N s/m");
   dem::require_within(s.separation_factor, 0.0, 1.0, "--separation-factor");
   dem::require_non_negative(s.friction, "--friction", "(no unit)");
@@ -144,6 +161,10 @@ void resolve(Settings& s) {
   fill(s.travel, size.travel);
   fill(s.wall_thickness, std::max(0.015, 2.0 * s.travel));
   fill(s.vtk_interval, s.travel / 20.0);
+  const GrainShape& shape = shape_of(s);
+  fill(s.stiffness, shape.stiffness);
+  if (s.damping < 0.0) s.damping = shape.damping;
+  if (s.velocity_stiffness < 0.0) s.velocity_stiffness = shape.damping;
   if (s.wall_friction < 0.0) s.wall_friction = s.friction;
   if (s.friction_stiffness < 0.0) s.friction_stiffness = s.stiffness;
   if (s.packing_only) s.loads.clear();
@@ -164,6 +185,8 @@ void resolve(Settings& s) {
   }
 }
 
+const dem::soil::DensityLimits& density_limits(const Settings& s) { return shape_of(s).limits; }
+
 std::string load_name(const Settings& s, double load) {
   return fmt::format("load_{:.1f}kPa", 1e-3 * s.normal_stress(load));
 }
@@ -176,9 +199,7 @@ std::vector<std::pair<std::string, std::string>> list_settings(const Settings& s
   return {
       {"size", s.size},
       {"grains", fmt::format("{} {}", s.packing_file.empty() ? std::to_string(s.grains) : "the packing file's",
-                             s.shape == "cube8"        ? "cubes of 8 spheres"
-                             : s.shape == "polyhedron" ? "polyhedral cubes"
-                                                       : "superquadric cubes")},
+                             shape_of(s).plural)},
       {"half-edge", mm(s.half_edge)},
       {"grain density", fmt::format("{:g} kg/m³", s.density)},
       {"box", fmt::format("{:g} x {:g} x {:g} mm", 1e3 * s.box_length, 1e3 * s.box_width, 1e3 * s.box_height)},

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <dem/soil/relative_density.hpp>
+
 #include <array>
 #include <cstdint>
 #include <filesystem>
@@ -27,18 +29,21 @@ struct Settings {
   double wall_thickness = 0.0;  ///< m, at least the travel; 0: 15 mm or twice the travel, whichever is more
   double lid_clearance = 0.25;  ///< of lid and walls, in radii of a grain's sphere; below 1
 
-  // Contacts (thesis table 3.2 and figure 3.6) of a grain of half-edge `constants_for`
-  double stiffness = 20000.0;         ///< K, N/m: the screenshots' value; the tables' 2000 is too soft, see README.md
-  double damping = 0.015;             ///< C, N s/m
-  double separation_factor = 0.05;    ///< Sp
-  double friction = 0.4;              ///< mu, grain on grain
-  double wall_friction = -1.0;        ///< mu, grain on wall; negative: as grain on grain
-  double friction_stiffness = -1.0;   ///< kt, N/m; negative: as K
-  double velocity_stiffness = 0.015;  ///< cv, N s/m
-  double breaking_factor = 0.975;     ///< share of the friction that a broken asperity keeps
-  double density = 2650.0;            ///< kg/m^3, of a grain
-  double constants_for = 0.9e-3;      ///< m
-  bool scale_contacts = true;         ///< K, kt ~ size and C, cv ~ size^2: see contact_scale()
+  // Contacts (thesis table 3.2 and figure 3.6) of a grain of half-edge `constants_for`. By shape: the thesis's 20,000
+  // N/m and 0.015 N s/m for each sphere of cube8, of which four touch where a face lies on a face; four times that for
+  // the other shapes, whose faces touch once.
+  double stiffness = 0.0;            ///< K, N/m: the screenshots' value; the tables' 2000 is too soft, see README.md;
+                                     ///< 0: by shape
+  double damping = -1.0;             ///< C, N s/m; negative: by shape
+  double separation_factor = 0.05;   ///< Sp
+  double friction = 0.4;             ///< mu, grain on grain
+  double wall_friction = -1.0;       ///< mu, grain on wall; negative: as grain on grain
+  double friction_stiffness = -1.0;  ///< kt, N/m; negative: as K
+  double velocity_stiffness = -1.0;  ///< cv, N s/m; negative: by shape
+  double breaking_factor = 0.975;    ///< share of the friction that a broken asperity keeps
+  double density = 2650.0;           ///< kg/m^3, of a grain
+  double constants_for = 0.9e-3;     ///< m
+  bool scale_contacts = true;        ///< K, kt ~ size and C, cv ~ size^2: see contact_scale()
 
   // Packing
   std::string packing = "random";  ///< random or poured
@@ -102,6 +107,9 @@ void resolve(Settings& s);
 /// the damping ratio is C/sqrt(K m), so that K ~ d and C ~ d^2 keep both: a coarse specimen deforms as the fine one
 /// does. 1 for the full size.
 double contact_scale(const Settings& s);
+
+/// The loosest and the densest state of the grains' shape, which relative densities are counted between.
+const dem::soil::DensityLimits& density_limits(const Settings& s);
 
 /// What the files of a load (kg) are called, by its normal stress.
 std::string load_name(const Settings& s, double load);

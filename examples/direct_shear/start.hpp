@@ -82,7 +82,8 @@ void check_amount(const Settings& s) {
   }
   if (s.packing != "random" || s.relative_density == 0.0) return;
   // Nine tenths of the centres lie below the top of the region. Densifying starts from the loosest.
-  const double h = s.half_edge, high = solid / dem::soil::solid_fraction_at(0.0), top = h + 0.9 * (high - 2.0 * h);
+  const double h = s.half_edge, high = solid / dem::soil::solid_fraction_at(0.0, density_limits(s)),
+               top = h + 0.9 * (high - 2.0 * h);
   const double least = std::min({s.box_length, s.box_width, top});
   if (least > 2.0 * measuring_margin(s)) return;
   dem::fail(

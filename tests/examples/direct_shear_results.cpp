@@ -172,11 +172,22 @@ TEST_CASE("the thesis's table 3.3 is fitted with the thesis's angle") {
 }
 
 TEST_CASE("relative density is not known of what is no solid fraction") {
-  CHECK(relative_density(0.762) == Approx(0.0).margin(1e-12));
-  CHECK(relative_density(0.960) == Approx(1.0));
-  CHECK(std::isnan(relative_density(1.01)));
-  CHECK(std::isnan(relative_density(0.0)));
-  CHECK(std::isnan(relative_density(not_known)));
+  const Settings s;
+  CHECK(relative_density(s, 0.762) == Approx(0.0).margin(1e-12));
+  CHECK(relative_density(s, 0.960) == Approx(1.0));
+  CHECK(std::isnan(relative_density(s, 1.01)));
+  CHECK(std::isnan(relative_density(s, 0.0)));
+  CHECK(std::isnan(relative_density(s, not_known)));
+}
+
+TEST_CASE("relative density is counted between the limits of the grains' shape") {
+  Settings s;
+  for (const char* shape : {"cube8", "polyhedron", "superquadric"}) {
+    s.shape = shape;
+    const dem::soil::DensityLimits& limits = density_limits(s);
+    CHECK(relative_density(s, limits.loosest) == Approx(0.0).margin(1e-12));
+    CHECK(relative_density(s, limits.densest) == Approx(1.0));
+  }
 }
 
 TEST_CASE("what an earlier run left is removed, and nothing else") {

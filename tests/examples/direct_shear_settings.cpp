@@ -11,6 +11,7 @@
 
 #include <unistd.h>
 
+using Catch::Approx;
 using Catch::Matchers::ContainsSubstring;
 using direct_shear::Settings;
 
@@ -209,6 +210,22 @@ TEST_CASE("what is left open follows the size") {
   CHECK(direct_shear::contact_scale(s) == 1.0);
 }
 
+TEST_CASE("shapes whose faces touch once get the constants of the four spheres that touch on a face of cube8") {
+  const Settings cube8 = read({}).settings, sharp = read({"--shape=polyhedron"}).settings,
+                 given =
+                     read({"--shape=superquadric", "--stiffness=3", "--damping=0", "--velocity-stiffness=5"}).settings;
+  CHECK(cube8.stiffness == 20000.0);
+  CHECK(cube8.damping == 0.015);
+  CHECK(cube8.velocity_stiffness == 0.015);
+  CHECK(sharp.stiffness == 4.0 * cube8.stiffness);
+  CHECK(sharp.friction_stiffness == sharp.stiffness);
+  CHECK(sharp.damping == Approx(4.0 * cube8.damping));
+  CHECK(sharp.velocity_stiffness == Approx(4.0 * cube8.velocity_stiffness));
+  CHECK(given.stiffness == 3.0);
+  CHECK(given.damping == 0.0);
+  CHECK(given.velocity_stiffness == 5.0);
+}
+
 TEST_CASE("every option is checked by its own name") {
   const auto refused = [](const std::string& option, const std::string& value) {
     INFO(option << " " << value);
@@ -223,18 +240,19 @@ TEST_CASE("every option is checked by its own name") {
     for (const char* value : {"-1", "nan", "inf"}) refused(positive, value);
   }
   for (const char* zero_is_no_default :
-       {"--box-length", "--box-width", "--box-height", "--densify-time", "--settle-limit", "--stiffness", "--density",
+       {"--box-length", "--box-width", "--box-height", "--densify-time", "--settle-limit", "--density",
         "--constants-for", "--lid-speed", "--rest-speed", "--consolidation-limit", "--overlap-limit",
         "--shake-frequency", "--loads"}) {
     refused(zero_is_no_default, "0");
   }
   for (const char* not_negative :
        {"--seam-height", "--lid-clearance", "--relative-density", "--tilt", "--shake-amplitude", "--shake-time",
-        "--damping", "--separation-factor", "--friction", "--velocity-stiffness", "--breaking-factor", "--ramp-time",
-        "--smoothing", "--residual-share", "--time-step"}) {
+        "--separation-factor", "--friction", "--breaking-factor", "--ramp-time", "--smoothing", "--residual-share",
+        "--time-step"}) {
     for (const char* value : {"-1", "nan", "inf"}) refused(not_negative, value);
   }
-  for (const char* automatic_if_negative : {"--wall-friction", "--friction-stiffness"}) {
+  for (const char* automatic_if_negative :
+       {"--wall-friction", "--friction-stiffness", "--damping", "--velocity-stiffness"}) {
     CHECK_NOTHROW(read({std::string(automatic_if_negative) + "=-1"}));
     for (const char* value : {"nan", "inf"}) refused(automatic_if_negative, value);
   }

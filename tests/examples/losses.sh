@@ -47,6 +47,12 @@ grep -q 'the plots were not drawn' "$log" || fail "It does not say that plots ar
 grep -q '^Report, tables: ' "$log" || fail "It promises plots, or ParaView files, that are not there"
 [ -s "$output/plain/shear_stress.gp" ] || fail "The scripts of the plots are missing"
 
+# A packing alone has nothing to draw, and misses nothing.
+"$rig" --size smoke --packing-only --relative-density 0 --output "$output/packed" > "$log" 2>&1 || fail "No packing was made"
+grep -q '^Report, tables: ' "$log" || fail "It promises plots, or ParaView files, that are not there"
+! grep -q 'not drawn' "$log" "$output/packed/report.html" || fail "It misses plots of nothing"
+[ -s "$output/packed/packing.txt" ] || fail "There is no packing"
+
 # What ends a run early is told in the names of the options, and all that is known by then is reported.
 status=0
 "$rig" --size smoke --packing-file "$packing" --overlap-limit 1e-3 --no-vtk --output "$output/deep" \
