@@ -44,11 +44,11 @@ dem::io::Table strength_table(const Settings& s, const Campaign& c) {
 /// What to know of the comparison with table 3.3; empty if there is nothing to say.
 std::string coarseness_text(const Settings& s, const Campaign& c) {
   constexpr double of_thesis = 0.9e-3;
-  if (s.half_edge <= 1.01 * of_thesis || fit(c).origin == std::nullopt) return {};
+  const bool any = std::any_of(c.loads.begin(), c.loads.end(), [](const LoadResult& r) { return r.finished; });
+  if (!any || s.shape != "cube8" || s.half_edge <= 1.01 * of_thesis) return {};
   return fmt::format(
-      "The grains are of half-edge {:g} mm; those of table 3.3, of {:g} mm (--size full), are weaker in the same box, "
-      "most "
-      "of all at light loads.",
+      "The grains are of half-edge {:g} mm. Those of table 3.3, of {:g} mm (--size full), are weaker in the same box, "
+      "most of all at light loads.",
       1e3 * s.half_edge, 1e3 * of_thesis);
 }
 

@@ -6,7 +6,7 @@
 #
 #   study.sh <direct_shear> <folder> [seeds|half_step|half_speed|density|integrator|poured|soft ...]
 #
-# A packing and its three loads take 35 to 40 minutes on one core at 2.3 GHz; all of them, by that, some ten hours.
+# A packing and its three loads take 35 to 40 minutes on one core at 2.3 GHz; all of them, by that, more than ten hours.
 set -euo pipefail
 
 rig=$(realpath "$1")

@@ -16,7 +16,8 @@ struct DensityLimits {
 /// Densest: friction off and shaken until the density changes by less than 0.001 in 0.2 s; the cubes are then largely
 /// in layers, so most of the way to 1 is order, not only density.
 inline constexpr DensityLimits cube8_limits = {0.762, 0.960};
-/// The same of sharp cubes (shape::cube) and of cubes that are superquadrics with exponents of 8.
+/// The same of sharp cubes (shape::cube) and of cubes that are superquadrics with exponents of 8, with four times the
+/// thesis's K, C and cv, as a face of cube8 has on its four spheres.
 inline constexpr DensityLimits sharp_cube_limits = {0.530, 0.893}, rounded_cube_limits = {0.616, 0.855};
 
 /// Relative density as soil mechanics defines it (ASTM D4254), (e_max - e)/(e_max - e_min) with the void ratio
