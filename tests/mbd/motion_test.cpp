@@ -194,6 +194,31 @@ TEST_CASE("a function of the user reads a sensor in every substep, and trials ar
   CHECK(std::abs(m.sensor(cell).mean().force.x) == Approx(13.0 / 1.5).epsilon(1e-6));
 }
 
+TEST_CASE("sensors go on after a function of the user threw within a trial") {
+  Machine<PredictorCorrector> m;
+  m.gravity.setZero();
+  m.substeps = 2;
+  const BodyId block = m.add_body(given_body("block", 2.0, Vec3(0.1, 0.1, 0.1)));
+  const JointId weld = m.add_joint(fixed("weld", m.ground(), block, {0, 0, 0}));
+  const SensorId cell = m.add_sensor(joint_sensor("cell", weld, 0.0));
+  bool fails = false;
+  m.add_load(applied_force("push", block, {0, 0, 0}, X, Signal::function([&](double) {
+                             if (fails) throw std::runtime_error("no such file");
+                             return 10.0;
+                           })));
+  const double dt = 1e-4;
+  m.design_for(dt);
+  m.initialise(0.0, Vec3::Zero());
+  fails = true;
+  m.clear_forces();
+  m.hold_contacts(0);
+  CHECK_THROWS_WITH(m.advance_substeps(0, dt, Vec3::Zero()), "no such file");
+  fails = false;
+  m.substeps = 1;
+  for (int s = 0; s < 5000; ++s) m.step(dt);
+  CHECK(std::abs(m.sensor(cell).latest().force.x) == Approx(10.0).epsilon(1e-3));  // the weld's spring has settled
+}
+
 TEMPLATE_TEST_CASE("substeps keep the energy that goes to and fro between grains and machine", "", PredictorCorrector,
                    SymplecticEuler, VelocityVerlet) {
   // Forces that are merely held over a step would feed in (omega dt)^2/2 a step: at omega dt = 0.02 and 31416 steps
