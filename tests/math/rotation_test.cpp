@@ -40,6 +40,23 @@ TEST_CASE("a rotation vector of any length gives its rotation") {
   }
 }
 
+TEST_CASE("a rotation gives back its vector, whatever its angle") {
+  // About axes near each of the quaternion's components. The vector is good to some roundings of the matrix, 1e-15.
+  for (const Vec3& direction : {axis, Vec3(1, 0.1, -0.2), Vec3(-0.1, 1, 0.3), Vec3(0.2, 0.1, -1), Vec3(1, 1, 1)}) {
+    for (const double t : {0.0, 1e-300, 1e-9, 0.01, 1.0, 2.0, 2.1, 3.0, std::numbers::pi - 1e-9}) {
+      CAPTURE(t, direction.transpose());
+      const Vec3 angle = t * direction.normalized();
+      const Vec3 back = to_eigen(dem::vector_from_rotation(dem::rotation_from_vector(from_eigen(angle))));
+      CHECK((back - angle).norm() < 4e-15);
+    }
+    // Half a turn: one way round or the other.
+    const auto half = dem::rotation_from_vector(from_eigen(Vec3(std::numbers::pi * direction.normalized())));
+    const Vec3 back = to_eigen(dem::vector_from_rotation(half));
+    CHECK(std::abs(back.norm() - std::numbers::pi) < 4e-15);
+    CHECK(back.cross(direction.normalized()).norm() < 4e-15);
+  }
+}
+
 TEST_CASE("a rotation turns the right way") {
   const auto quarter = dem::rotation_from_vector(dem::Vector3<double>{0, 0, std::numbers::pi / 2});
   const Vec3 turned = to_eigen(quarter * dem::Vector3<double>{1, 0, 0});

@@ -2,6 +2,8 @@
 
 #include <dem/math/vector.hpp>
 
+#include <cmath>
+
 namespace dem {
 
 /// sin(t)/t and (1 - cos(t))/t^2 as functions of t^2. Taylor series up to |t| = 0.5, where the first term left out is
@@ -63,20 +65,56 @@ DEM_HOT Matrix3<T> orthonormalised(const Matrix3<T>& r) {
   return correction * r;
 }
 
+/// The vector of a rotation, the inverse of rotation_from_vector: its length is the angle (rad), from 0 to pi. Through
+/// the quaternion, from its largest component, so that no angle loses digits. (In place of Eigen's AngleAxis, which
+/// costs each user half a second of compiling.)
+inline Vector3<double> vector_from_rotation(const Matrix3<double>& r) {
+  const double xx = r.row0.x, yy = r.row1.y, zz = r.row2.z;
+  // Quaternions times four of their components: w, x, y, z.
+  const Vector3<double> off = {r.row2.y - r.row1.z, r.row0.z - r.row2.x, r.row1.x - r.row0.y};
+  const double xy = r.row0.y + r.row1.x, yz = r.row1.z + r.row2.y, zx = r.row2.x + r.row0.z;
+  double w = 1.0 + xx + yy + zz;
+  Vector3<double> v = off;
+  if (xx + yy + zz < 0.0) {
+    if (xx >= yy && xx >= zz) {
+      w = off.x;
+      v = {1.0 + xx - yy - zz, xy, zx};
+    } else if (yy >= zz) {
+      w = off.y;
+      v = {xy, 1.0 + yy - zz - xx, yz};
+    } else {
+      w = off.z;
+      v = {zx, yz, 1.0 + zz - xx - yy};
+    }
+    if (w < 0.0) {
+      w = -w;
+      v = -v;
+    }
+  }
+  const double sine = norm(v);  // of half the angle, but for the factor that w has as well
+  return (sine > 0.0 ? 2.0 * std::atan2(sine, w) / sine : 0.0) * v;
+}
+
 /// The smallest turn that takes one direction into another; both of any length above 0. Opposite directions have no
 /// smallest one: half a turn about some axis across them. (In place of Eigen's FromTwoVectors, which solves that case
 /// by a singular value decomposition and costs each user seconds of compiling.)
 inline Mat3 rotation_between(const Vec3& from, const Vec3& to) {
-  const Vec3 a = from.normalized(), b = to.normalized();
+  const auto unit = [](const Vector3<double>& a) { return (1.0 / norm(a)) * a; };
+  // I + s a b^T.
+  const auto dyad = [](double s, const Vector3<double>& a, const Vector3<double>& b) {
+    return Matrix3<double>{Vector3<double>{1, 0, 0} + (s * a.x) * b, Vector3<double>{0, 1, 0} + (s * a.y) * b,
+                           Vector3<double>{0, 0, 1} + (s * a.z) * b};
+  };
+  const Vector3<double> a = unit(from_eigen(from)), b = unit(from_eigen(to));
   // Two reflections make a turn by twice the angle between their normals: the first takes a to -b, the second to b.
-  const Vec3 middle = a + b;
-  if (middle.squaredNorm() < 1e-24) {
-    const Vec3 across = a.cross(std::abs(a.x()) < 0.6 ? Vec3::UnitX() : Vec3::UnitY()).normalized();
-    return 2.0 * across * across.transpose() - Mat3::Identity();
+  const Vector3<double> middle = a + b;
+  if (dot(middle, middle) < 1e-24) {
+    const Vector3<double> other = std::abs(a.x) < 0.6 ? Vector3<double>{1, 0, 0} : Vector3<double>{0, 1, 0};
+    const Vector3<double> across = unit(cross(a, other));
+    return -to_eigen(dyad(-2.0, across, across));
   }
-  const Vec3 n = middle.normalized();
-  const Mat3 to_minus_b = Mat3::Identity() - 2.0 * n * n.transpose();
-  return (Mat3::Identity() - 2.0 * b * b.transpose()) * to_minus_b;
+  const Vector3<double> n = unit(middle);
+  return to_eigen(dyad(-2.0, b, b) * dyad(-2.0, n, n));
 }
 
 }  // namespace dem

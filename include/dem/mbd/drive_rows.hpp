@@ -42,8 +42,7 @@ inline Wrench response_of(const Body& x, const Wrench& impulse) {
 /// Angle (rad) and axis of the rotation that is left from what is wanted to what is.
 inline Vector3<double> rotation_off(const PrescribedMotion& p, const integrator::Motion<double>& m) {
   const Matrix3<double> wanted = rotation_from_vector(p.drive.value * p.axis) * p.start_rotation;
-  const Eigen::AngleAxisd off(to_eigen(m.rotation) * to_eigen(wanted).transpose());
-  return from_eigen(Vec3(off.angle() * off.axis()));
+  return vector_from_rotation(m.rotation * transposed(wanted));
 }
 
 /// The directions in which a joint holds its points: a correction of its angle must not part them.
