@@ -32,16 +32,30 @@ function(dem_add_catch_tests name label)
   catch_discover_tests(test_${name} TEST_PREFIX "${name}." PROPERTIES LABELS ${label})
 endfunction()
 
-# dem_add_header_checks(<include dir>): every header compiles when it is the first and only one, and also when it is
-# included twice. Built as part of `all`; CUDA headers (*.cuh) are left to nvcc.
+# dem_add_header_checks(<include dir>): every header compiles when it is the first and only one, and is guarded. A header
+# that another one includes before anything else is compiled first there, so only the others are compiled for
+# themselves. Built as part of `all`; CUDA headers (*.cuh) are left to nvcc.
 function(dem_add_header_checks include_dir)
   file(GLOB_RECURSE headers CONFIGURE_DEPENDS RELATIVE "${include_dir}" "${include_dir}/*.hpp")
+  set(tried_in_others "")
+  foreach(header IN LISTS headers)
+    set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS "${include_dir}/${header}")
+    file(STRINGS "${include_dir}/${header}" directives REGEX "^[ \t]*#" LIMIT_COUNT 2)
+    list(POP_FRONT directives guard first)
+    if(NOT guard STREQUAL "#pragma once")
+      message(FATAL_ERROR "${include_dir}/${header} does not begin with #pragma once, which keeps it from being read twice")
+    endif()
+    if(first MATCHES "^#include <(dem/.*)>$")
+      list(APPEND tried_in_others "${CMAKE_MATCH_1}")
+    endif()
+  endforeach()
+  list(REMOVE_ITEM headers ${tried_in_others})
   add_library(header_self_containment OBJECT)
   dem_program(header_self_containment)
   target_compile_options(header_self_containment PRIVATE -O0)
   foreach(header IN LISTS headers)
     set(source "${CMAKE_CURRENT_BINARY_DIR}/header_self_containment/${header}.cpp")
-    file(CONFIGURE OUTPUT "${source}" CONTENT "#include <${header}>\n#include <${header}>\n")
+    file(CONFIGURE OUTPUT "${source}" CONTENT "#include <${header}>\n")
     target_sources(header_self_containment PRIVATE "${source}")
   endforeach()
 endfunction()
