@@ -87,4 +87,21 @@ void bodies_face_on_face(benchmark::State& state) {
 }
 BENCHMARK(bodies_face_on_face)->Arg(9)->Arg(31)->Arg(99)->Unit(benchmark::kMicrosecond);
 
+/// A step of a rod of triangles with n facets that lies across another one: edges of one cross the other. Items are
+/// steps.
+void bodies_crossed(benchmark::State& state) {
+  using dem::surface::TriangleMesh;
+  const TriangleMesh rod(dem::mesh::cylinder(0.1, 2.0, static_cast<int>(state.range(0))));
+  const auto along = [](const dem::Vec3& axis) { return dem::rotation_between(dem::Vec3::UnitZ(), axis); };
+  dem::World<Bodies> w({.gravity = {0, 0, -9.81}, .time_step = 1e-5, .threads = 1});
+  w.set_contact({{4e5, 240.0, 1.0}, {0.5, 4e5, 400.0, 0.975}});
+  const auto upper =
+      w.machine().add_body(dem::mbd::cylinder_body("rod", 0.1, 2.0, 1000.0).at({0, 0, 0.2 - 1e-3}, along({1, 0, 0})));
+  w.add_body_contact(w.add_surface(upper, rod), w.add_surface(w.ground(), rod, {.rotation = along({0.2, 1, 0})}));
+  w.run(10);
+  for (auto _ : state) w.run(1);
+  state.SetItemsProcessed(state.iterations());
+}
+BENCHMARK(bodies_crossed)->Arg(48)->Arg(400)->Arg(2000)->Unit(benchmark::kMicrosecond);
+
 }  // namespace

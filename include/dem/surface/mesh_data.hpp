@@ -61,6 +61,7 @@ struct MeshData {
   PointSet points;                                       ///< vertices, and points on long sharp edges
   PointSet corners;  ///< those of them that stick out: on sharp edges, or on a convex surface
   EdgeSet edges;     ///< that stick out, see is_ridge
+  EdgeSet bends;     ///< others that are long, see is_long_bend; for bodies, which may meet between far vertices
   Bounds bounds;
   double mean_edge = 0.0;  ///< m
 };
@@ -132,27 +133,44 @@ inline bool is_convex(const MeshData& m, std::uint32_t v) {
   return height < -1e-6 * length;
 }
 
-/// Whether the surface ends at edge k of triangle t, or bends away there by more than 0.02 rad. A flat side of a grain
-/// that lies on an edge of a smaller turn meets the faces beside it before it has sunk by a hundredth of its half size.
-inline bool is_ridge(const MeshData& m, std::uint32_t t, std::size_t k) {
+/// Sine of the angle by which the surface bends away at edge k of triangle t; 1 where it ends or turns by more than a
+/// right angle, 0 where it is flat or concave.
+inline double bend(const MeshData& m, std::uint32_t t, std::size_t k) {
   const std::uint32_t other = m.topology.neighbour[t][k];
-  if (other == MeshTopology::none) return true;
+  if (other == MeshTopology::none) return 1.0;
   const Vector3<double>&n = m.faces[t].normal, &across = m.faces[other].normal;
   double height = 0.0;  // of the other triangle over this one's plane
   for (const std::uint32_t v : m.mesh.triangles[other]) height += dot(n, m.vertices[v] - m.faces[t].a);
-  return height < 0.0 && (dot(n, across) < 0.0 || norm(cross(n, across)) > 0.02);
+  if (!(height < 0.0)) return 0.0;
+  return dot(n, across) < 0.0 ? 1.0 : norm(cross(n, across));
+}
+/// Whether the surface ends at an edge or bends away by more than 0.02 rad. A flat side of a grain that lies on an edge
+/// of a smaller turn meets the faces beside it before it has sunk by a hundredth of its half size.
+inline bool is_ridge(double bend) { return bend > 0.02; }
+/// Whether an edge of a smaller turn is longer than a quarter of the radius of the bend, as those of a finely cut
+/// cylinder: its vertices are then too far apart to stand for it. `bend` as above, `width` of the narrower triangle.
+inline bool is_long_bend(double bend, double length, double width) {
+  return bend > 1e-5 && bend * length > 0.25 * width;  // below is the rounding of single precision
 }
 inline void find_edges(MeshData& m) {
-  std::vector<std::array<Vec3, 2>> edges;
+  std::vector<std::array<Vec3, 2>> edges, bends;
   for (std::uint32_t t = 0; t < m.faces.size(); ++t) {
     for (std::size_t k = 0; k < 3; ++k) {
       const std::uint32_t other = m.topology.neighbour[t][k];
-      if ((other != MeshTopology::none && other < t) || !is_ridge(m, t, k)) continue;
+      if (other != MeshTopology::none && other < t) continue;
       const auto& corner = m.mesh.triangles[t];
-      edges.push_back({m.mesh.vertices[corner[k]], m.mesh.vertices[corner[(k + 1) % 3]]});
+      const std::array<Vec3, 2> ends = {m.mesh.vertices[corner[k]], m.mesh.vertices[corner[(k + 1) % 3]]};
+      const double turn = bend(m, t, k), length = (ends[1] - ends[0]).norm();
+      if (is_ridge(turn)) {
+        edges.push_back(ends);
+      } else if (is_long_bend(turn, length,
+                              std::min(m.mesh.area_vector(t).norm(), m.mesh.area_vector(other).norm()) / length)) {
+        bends.push_back(ends);
+      }
     }
   }
   m.edges = EdgeSet(edges);
+  m.bends = EdgeSet(bends);
 }
 
 /// Vertices, and points on sharp edges that are longer than the spacing (m; 0: none). Throws Error for more than the

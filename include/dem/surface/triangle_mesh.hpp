@@ -3,9 +3,10 @@
 #include <dem/surface/direction_code.hpp>
 #include <dem/surface/mesh_parts.hpp>
 
-#include <array>
+#include <algorithm>
 #include <memory>
 #include <numbers>
+#include <vector>
 
 namespace dem::surface {
 
@@ -124,10 +125,15 @@ class TriangleMesh {
   /// most_parts numbers an edge.
   template <class Sink>
   void edges(const Bounds& box, Sink&& sink) const {
-    data_->edges.for_each_in(box, [&](std::uint32_t k, const Vector3<double>& tail, const Vector3<double>& head) {
-      const std::uint32_t number = first_edge + most_parts * k;
-      if (k < first_edge / most_parts) sink(number, tail, head);  // as many as the keys of contacts can tell apart
-    });
+    const auto numbered_from = [&](std::size_t first) {
+      return [first, &sink](std::uint32_t k, const Vector3<double>& tail, const Vector3<double>& head) {
+        // As many as the keys of contacts can tell apart.
+        const std::size_t number = first_edge + most_parts * (first + k);
+        if (number < 2 * first_edge) sink(static_cast<std::uint32_t>(number), tail, head);
+      };
+    };
+    data_->edges.for_each_in(box, numbered_from(0));
+    data_->bends.for_each_in(box, numbered_from(data_->edges.size()));
   }
   /// The parts of the way from tail to head that lie in the solid: sink(from, to), shares of the way, ascending. A
   /// sheet has none.
@@ -146,7 +152,6 @@ class TriangleMesh {
   }
 
  private:
-  static constexpr int most = 16;                         // contacts of one sphere
   static constexpr std::uint32_t most_groups = 1u << 20;  // a feature has 28 bits
   static constexpr std::uint32_t first_edge = 1u << 22;   // beyond the numbers of points
   using Part = NearestOnFace::Part;
@@ -159,12 +164,7 @@ class TriangleMesh {
 
     std::uint32_t name() const { return group << direction_bits | direction_code(normal); }
   };
-  struct Found {
-    int count = 0;
-    std::array<Minimum, most> minimum;
-
-    Minimum& operator[](int k) { return minimum[static_cast<std::size_t>(k)]; }
-  };
+  using Found = std::vector<Minimum>;
 
   /// True if the nearest point of face f is a local minimum of the distance to the whole surface. A generous tolerance
   /// does no harm: what is found twice has one normal and becomes one contact.
@@ -237,14 +237,7 @@ class TriangleMesh {
       const Vector3<double> v = p - q.point;
       const double distance2 = dot(v, v);
       if (distance2 >= reach2 || !is_minimum(f, q, v)) return;
-      const Minimum m = minimum_at(f, q, v, std::sqrt(distance2));
-      if (found.count < most) {
-        found[found.count++] = m;
-        return;
-      }
-      auto farthest = std::max_element(found.minimum.begin(), found.minimum.end(),
-                                       [](const Minimum& a, const Minimum& b) { return a.distance < b.distance; });
-      if (m.distance < farthest->distance) *farthest = m;
+      found.push_back(minimum_at(f, q, v, std::sqrt(distance2)));
     });
   }
   bool find_nearest(const Vector3<double>& p, double depth, Minimum& nearest) const {
@@ -269,14 +262,15 @@ class TriangleMesh {
   /// Contacts up to a reach before the surface, and if there are none, of a centre up to a depth behind it.
   template <class Sink>
   void touch_to(const Vector3<double>& p, double radius, double depth, Sink&& sink) const {
-    Found found;
+    static thread_local Found found;  // sinks only gather, so no query runs within another
+    found.clear();
     if (radius > 0.0) find_minima(p, radius, found);
-    if (found.count == 0 && depth > radius) {
+    if (found.empty() && depth > radius) {
       Minimum nearest;
       if (find_nearest(p, depth, nearest) && nearest.behind) sink(nearest.name(), nearest.normal, -nearest.distance);
       return;
     }
-    if (found.count == 0) return;
+    if (found.empty()) return;
     sort(found, [](const Minimum& a, const Minimum& b) { return a.distance < b.distance; });
     if (found[0].behind) {  // the centre is inside: out the shortest way
       sink(found[0].name(), found[0].normal, -found[0].distance);
@@ -285,30 +279,33 @@ class TriangleMesh {
     reduce(found);
     sort(found, [](const Minimum& a, const Minimum& b) { return a.name() < b.name(); });
     std::uint32_t next = 0;
-    for (int k = 0; k < found.count; ++k) {
-      const std::uint32_t name = std::max(next, found[k].name());
-      sink(name, found[k].normal, found[k].distance);
+    for (const Minimum& m : found) {
+      const std::uint32_t name = std::max(next, m.name());
+      sink(name, m.normal, m.distance);
       next = name + 1;
     }
   }
 
-  /// Insertion sort: there are few. Equal ones keep their order.
+  /// Equal ones keep their order. By insertion where there are few, as nearly always.
   template <class Before>
   static void sort(Found& found, Before&& before) {
-    for (int k = 1; k < found.count; ++k) {
-      for (int at = k; at > 0 && before(found[at], found[at - 1]); --at) std::swap(found[at], found[at - 1]);
+    if (found.size() > 32) {
+      std::stable_sort(found.begin(), found.end(), before);
+      return;
+    }
+    for (std::size_t k = 1; k < found.size(); ++k) {
+      for (std::size_t at = k; at > 0 && before(found[at], found[at - 1]); --at) std::swap(found[at], found[at - 1]);
     }
   }
   /// Of contacts with nearly the same normal the deepest stays; what is seen from behind lies beyond the solid.
   void reduce(Found& found) const {
-    int kept = 0;
-    for (int k = 0; k < found.count; ++k) {
-      const Minimum m = found[k];
+    std::size_t kept = 0;
+    for (const Minimum& m : found) {
       bool is_new = !m.behind;
-      for (int other = 0; other < kept; ++other) is_new &= dot(m.normal, found[other].normal) < merge_cosine_;
+      for (std::size_t other = 0; other < kept; ++other) is_new &= dot(m.normal, found[other].normal) < merge_cosine_;
       if (is_new) found[kept++] = m;
     }
-    found.count = kept;
+    found.resize(kept);
   }
 
   void set_point_depth(double depth) {
