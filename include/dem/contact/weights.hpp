@@ -59,11 +59,15 @@ void fit_weights(std::size_t count, Fit fit, Point&& point) {
     own.second += parts.back().part * depth;
   }
   for (Direction& d : directions) {
+    const Vector3<double> normal = d.normal;
+    double first = 0.0, second = 0.0;  // apart from what is read, which keeps them in registers
     for (const Direction& other : directions) {
-      const double cosine = std::max(0.0, dot(d.normal, other.normal));
-      d.first_near += cosine * cosine * other.first;
-      d.second_near += cosine * cosine * other.second;
+      const double cosine = std::max(0.0, dot(normal, other.normal)), square = cosine * cosine;
+      first += square * other.first;
+      second += square * other.second;
     }
+    d.first_near = first;
+    d.second_near = second;
   }
   for (std::size_t k = 0; k < count; ++k) {
     const auto& [normal, own_first, own_second, first, second] = directions[parts[k].direction];
