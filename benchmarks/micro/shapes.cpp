@@ -57,7 +57,7 @@ void narrow_phase(benchmark::State& state, const A& a, const B& b, bool known) {
     a.orient(turn(), at(pose_a, k));
     b.orient(turn(), at(pose_b, k));
     const Vec3 way = Vec3(normal(random), normal(random), normal(random)).normalized();
-    // From apart to the first touch, and a tenth of a percent of the way on.
+    // From apart to the first touch, which is at most half a percent of the distance deep.
     for (double distance = a.bounding_radius() + b.bounding_radius(); distance > 0; distance *= 0.995) {
       separation[k] = dem::from_eigen(Vec3(distance * way));
       Memory nothing{};

@@ -29,7 +29,9 @@ inline void add_specimen_options(CLI::App& app, Settings& s) {
   add("--lid-clearance", s.lid_clearance, "lid to wall, in radii of a grain's sphere");
   add("--packing", s.packing, "random or poured")->check(CLI::IsMember({"random", "poured"}));
   add("--relative-density", s.relative_density,
-      "of a random packing, 0 (as it settles) to 1 (the densest of the shape)");
+      "of a random packing, 0 (as it settles) to 1 (the densest of the shape); negative: by shape (cube8: 0.18, "
+      "others: "
+      "0.5)");
   add("--tilt", s.tilt_deg, "of the poured block about each axis [deg]");
   add("--shake-amplitude", s.shake_amplitude, "[m]");
   add("--shake-frequency", s.shake_frequency, "[Hz]");

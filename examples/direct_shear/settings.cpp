@@ -39,14 +39,15 @@ const Size& size_named(const std::string& name) {
 struct GrainShape {
   const char *name, *plural;
   double stiffness, damping;  ///< K (N/m), C and cv (N s/m)
+  double relative_density;    ///< looser sharp or rounded cubes leave columns in corners that stand out of the box
   dem::soil::DensityLimits limits;
 };
 
 const GrainShape& shape_of(const Settings& s) {
   static const GrainShape shapes[] = {
-      {"cube8", "cubes of 8 spheres", 2e4, 0.015, dem::soil::cube8_limits},
-      {"polyhedron", "polyhedral cubes", 8e4, 0.06, dem::soil::sharp_cube_limits},
-      {"superquadric", "superquadric cubes", 8e4, 0.06, dem::soil::rounded_cube_limits}};
+      {"cube8", "cubes of 8 spheres", 2e4, 0.015, 0.18, dem::soil::cube8_limits},
+      {"polyhedron", "polyhedral cubes", 8e4, 0.06, 0.5, dem::soil::sharp_cube_limits},
+      {"superquadric", "superquadric cubes", 8e4, 0.06, 0.5, dem::soil::rounded_cube_limits}};
   for (const GrainShape& shape : shapes) {
     if (s.shape == shape.name) return shape;
   }
@@ -164,6 +165,7 @@ void resolve(Settings& s) {
   const GrainShape& shape = shape_of(s);
   fill(s.stiffness, shape.stiffness);
   if (s.damping < 0.0) s.damping = shape.damping;
+  if (s.relative_density < 0.0) s.relative_density = shape.relative_density;
   if (s.velocity_stiffness < 0.0) s.velocity_stiffness = shape.damping;
   if (s.wall_friction < 0.0) s.wall_friction = s.friction;
   if (s.friction_stiffness < 0.0) s.friction_stiffness = s.stiffness;

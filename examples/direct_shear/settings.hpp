@@ -47,7 +47,7 @@ struct Settings {
 
   // Packing
   std::string packing = "random";  ///< random or poured
-  double relative_density = 0.18;  ///< of a random packing; 0: as it settles
+  double relative_density = -1.0;  ///< of a random packing; 0: as it settles; negative: by shape
   double tilt_deg = 10.0;          ///< of a poured block, about each axis
   double shake_amplitude = 2e-4;   ///< m
   double shake_frequency = 25.0;   ///< Hz

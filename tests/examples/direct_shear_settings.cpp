@@ -226,6 +226,14 @@ TEST_CASE("shapes whose faces touch once get the constants of the four spheres t
   CHECK(given.velocity_stiffness == 5.0);
 }
 
+TEST_CASE("a packing is as dense as its shape needs, unless it is told") {
+  CHECK(read({}).settings.relative_density == 0.18);
+  CHECK(read({"--shape=polyhedron"}).settings.relative_density == 0.5);
+  CHECK(read({"--shape=superquadric"}).settings.relative_density == 0.5);
+  CHECK(read({"--shape=polyhedron", "--relative-density=0"}).settings.relative_density == 0.0);
+  CHECK_THROWS_WITH(read({"--relative-density=1.01"}), ContainsSubstring("--relative-density"));
+}
+
 TEST_CASE("every option is checked by its own name") {
   const auto refused = [](const std::string& option, const std::string& value) {
     INFO(option << " " << value);
@@ -246,13 +254,12 @@ TEST_CASE("every option is checked by its own name") {
     refused(zero_is_no_default, "0");
   }
   for (const char* not_negative :
-       {"--seam-height", "--lid-clearance", "--relative-density", "--tilt", "--shake-amplitude", "--shake-time",
-        "--separation-factor", "--friction", "--breaking-factor", "--ramp-time", "--smoothing", "--residual-share",
-        "--time-step"}) {
+       {"--seam-height", "--lid-clearance", "--tilt", "--shake-amplitude", "--shake-time", "--separation-factor",
+        "--friction", "--breaking-factor", "--ramp-time", "--smoothing", "--residual-share", "--time-step"}) {
     for (const char* value : {"-1", "nan", "inf"}) refused(not_negative, value);
   }
   for (const char* automatic_if_negative :
-       {"--wall-friction", "--friction-stiffness", "--damping", "--velocity-stiffness"}) {
+       {"--wall-friction", "--friction-stiffness", "--damping", "--velocity-stiffness", "--relative-density"}) {
     CHECK_NOTHROW(read({std::string(automatic_if_negative) + "=-1"}));
     for (const char* value : {"nan", "inf"}) refused(automatic_if_negative, value);
   }

@@ -134,6 +134,38 @@ TEST_CASE("a ball on a superquadric touches where the surface is nearest to its 
   }
 }
 
+TEST_CASE("superquadrics of either policy touch each other by the points of both") {
+  using Both = Mixed<Superquadric, SuperquadricPoints>;
+  Random random(3);
+  const Vec3 radii(1, 1.2, 0.8), exponents(6, 4, 8);
+  int touching = 0;
+  for (int k = 0; k < 100; ++k) {
+    const Mat3 ra = random.rotation(), rb = random.rotation();
+    const Vec3 d = random.between(1.6, 2.2) * random.direction();
+    const SuperquadricPoints points(radii, exponents, 6), other(Vec3::Ones(), {8, 8, 8}, 4);
+    const Superquadric smooth(Vec3::Ones(), {8, 8, 8}, 4);
+    const auto expected = contacts(points, ra, other, rb, d);
+    const auto found = contacts(Both(points), ra, Both(smooth), rb, d);
+    check_same(found, expected, 1e-14);  // the same numbers by the same way
+    // From the other side: the same contacts, mirrored.
+    auto turned = contacts(Both(smooth), rb, Both(points), ra, -d);
+    REQUIRE(turned.size() == found.size());
+    for (std::size_t c = 0; c < found.size(); ++c) {
+      CHECK((turned[c].normal + found[c].normal).norm() < 1e-12);
+      CHECK((turned[c].point + d - found[c].point).norm() < 1e-12);
+      CHECK(turned[c].area == Approx(found[c].area));
+    }
+    touching += !found.empty();
+    // Points that weigh by area are counted on their own side alone.
+    const SuperquadricPoints weighed(radii, exponents, 6, PointArea::physical);
+    const auto by_area = contacts(Both(weighed), ra, Both(smooth), rb, d);
+    std::size_t own = 0;
+    for (const Contact& c : expected) own += (c.feature & SuperquadricPoints::other_way) == 0;
+    CHECK(by_area.size() == own);
+  }
+  CHECK(touching > 20);
+}
+
 TEMPLATE_TEST_CASE("a superquadric and a polyhedron touch as one contact", "", Superquadric, SuperquadricPoints) {
   using Both = Mixed<Polyhedron, TestType>;
   const Polyhedron brick = dem::shape::box({3.0, 2.0, 4.0});  // edges

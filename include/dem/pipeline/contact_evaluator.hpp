@@ -66,6 +66,7 @@ class ContactEvaluator {
       for (int lane = 0; lane < lanes; ++lane) {
         const auto k = static_cast<std::size_t>(at + lane);
         const Hit& hit = hits[k];
+        DEM_ASSERT(k == 0 || hits[k - 1].key < hit.key, "contacts ascend in their keys, and each has its own");
         memories.now.key[k] = hit.key;
         scatter(touch_of(k), &touch_[0][0], lane);
         partners.set(lane, view_i(k), view_j(k));

@@ -49,6 +49,9 @@ class SuperquadricGrain {
   Vec3 unit_inertia() const { return mass_.inertia.diagonal(); }
   /// m, of the sphere of the same volume: the radius that contact laws see.
   double mean_radius() const { return mean_radius_; }
+  DEM_HOT double effective_radius(const SuperquadricGrain& other) const {
+    return mean_radius_ * other.mean_radius_ / (mean_radius_ + other.mean_radius_);
+  }
   /// Whether it is a ball, with exponents of 2 and equal radii.
   bool is_ball() const {
     const Vector3<double>&e = solid_.exponent(), &r = solid_.radius();
@@ -164,10 +167,6 @@ class SuperquadricGrain {
     }
     patch_ = {std::max(1.0, points_across.maxCoeff()), area_across.maxCoeff()};
     if (area == PointArea::share) patch_.area = 1.0;
-  }
-
-  DEM_HOT double effective_radius(const SuperquadricGrain& other) const {
-    return mean_radius_ * other.mean_radius_ / (mean_radius_ + other.mean_radius_);
   }
 
  private:

@@ -69,4 +69,19 @@ struct PairContact<SuperquadricPoints, Balls> {
   }
 };
 
+/// Superquadrics of either policy: the points of both skins, as among SuperquadricPoints. Where these weigh by area a
+/// Superquadric, whose points have shares, shows none of its own.
+template <>
+struct PairContact<SuperquadricPoints, Superquadric> {
+  template <class Sink>
+  static DEM_HOT void collide(const SuperquadricPoints& a, const double* pose_a, const Superquadric& b,
+                              const double* pose_b, const Vector3<double>& separation, Sink&& sink) {
+    SuperquadricPoints::collide_skins(a, pose_a, b, pose_b, separation,
+                                      [&](std::uint32_t feature, const contact::PointTouch<double>& touch) {
+                                        if (a.has_shares() || (feature & SuperquadricPoints::other_way) == 0)
+                                          sink(feature, touch);
+                                      });
+  }
+};
+
 }  // namespace dem::shape

@@ -34,6 +34,14 @@ class SuperquadricPoints : public SuperquadricGrain {
   template <class Sink>
   static DEM_HOT void collide(const SuperquadricPoints& a, const double* pose_a, const SuperquadricPoints& b,
                               const double* pose_b, const Vector3<double>& separation, Sink&& sink) {
+    collide_skins(a, pose_a, b, pose_b, separation, sink);
+  }
+  static std::uint32_t mirrored(std::uint32_t feature) { return feature ^ other_way; }
+
+  /// The same for any two superquadrics by the points of their skins.
+  template <class Sink>
+  static DEM_HOT void collide_skins(const SuperquadricGrain& a, const double* pose_a, const SuperquadricGrain& b,
+                                    const double* pose_b, const Vector3<double>& separation, Sink&& sink) {
     const Matrix3<double> ra = rotation(pose_a), rb = rotation(pose_b);
     const Matrix3<double> turn = transposed(ra) * rb;
     const Vector3<double> centre = transpose_times(ra, separation);
@@ -45,11 +53,10 @@ class SuperquadricPoints : public SuperquadricGrain {
       find(sink);
     }
   }
-  static std::uint32_t mirrored(std::uint32_t feature) { return feature ^ other_way; }
 
  private:
   template <class Sink>
-  static DEM_HOT void find_points(const SuperquadricPoints& a, const Matrix3<double>& ra, const SuperquadricPoints& b,
+  static DEM_HOT void find_points(const SuperquadricGrain& a, const Matrix3<double>& ra, const SuperquadricGrain& b,
                                   const Matrix3<double>& rb, const Matrix3<double>& turn, const Vector3<double>& centre,
                                   const Vector3<double>& separation, Sink&& sink) {
     const double radius = a.effective_radius(b);

@@ -159,6 +159,7 @@ struct Particles {
 
   /// Row k becomes what was row order[k].
   void permute(std::span<const std::uint32_t> order) {
+    DEM_ASSERT(order.size() <= count, "no row becomes two");
     AlignedVector<double> old;
     for_each_column([&](AlignedVector<double>& column) {
       old = column;
