@@ -1,21 +1,21 @@
 #!/usr/bin/env bash
 # The programs that the pages show are those that are compiled and tested: each block of C++ in a part of a page stands,
-# letter by letter, in a source of its example.
+# letter by letter, in a source of its example or test.
 set -euo pipefail
 
 cd "$(dirname "$0")/.."
 
-# check <page> <first line of the part> <line after it> <example>
+# check <page> <first line of the part> <line after it> <folder of the sources>
 check() {
-  local page=$1 first=$2 last=$3 example=$4 block="" inside=false count=0 line sources
-  sources=$(cat "examples/$example"/*.hpp "examples/$example"/*.cpp 2> /dev/null || true)$'\n'  # which the shell cut off
+  local page=$1 first=$2 last=$3 folder=$4 block="" inside=false count=0 line sources
+  sources=$(cat "$folder"/*.hpp "$folder"/*.cpp 2> /dev/null || true)$'\n'  # which the shell cut off
   while IFS= read -r line; do
     if [ "$line" = '```cpp' ]; then
       inside=true block=""
     elif [ "$line" = '```' ] && $inside; then
       inside=false count=$((count + 1))
       [[ $sources == *"$block"* ]] && continue
-      echo "$page: this block is not in examples/$example; make them the same:"
+      echo "$page: this block is not in $folder; make them the same:"
       printf '%s' "$block"
       exit 1
     elif $inside; then
@@ -25,6 +25,8 @@ check() {
   [ "$count" -gt 0 ] || { echo "$page: no block of C++ from '$first' to '$last'"; exit 1; }
 }
 
-check README.md "# dem" "## Use it" first_steps
-check ARCHITECTURE.md "**Your own law**" "**Your own shape**" own_law
-check ARCHITECTURE.md "**Your own shape**" "## The step" own_shape
+check README.md "# dem" "## Use it" examples/first_steps
+check README.md "## Use it" "## The direct shear test" tests/pages
+check ARCHITECTURE.md "\`with_restitution()\`" "**Your own law**" tests/pages
+check ARCHITECTURE.md "**Your own law**" "**Your own shape**" examples/own_law
+check ARCHITECTURE.md "**Your own shape**" "## The step" examples/own_shape

@@ -231,6 +231,36 @@ TEST_CASE("superquadrics with curved sides touch as deep as their common normal 
   }
 }
 
+TEST_CASE("a ball touches superquadrics and cylinders where their surface is nearest to its centre, from either side") {
+  const double r = 0.15, depth = 1e-3;
+  const dem::surface::Sphere ball(r);
+  const Vec3 at(0.2, -0.1, 0.3);
+  const Mat3 turned = about({1, 2, -1}, 0.7);
+  const auto check = [&](const Parts::Surfaces& other, const Vec3& foot, const Vec3& normal, double tolerance) {
+    const Vec3 place = at + turned * foot, n = turned * normal;
+    const Placed b = {ball, place + (r - depth) * n}, o = {other, at, turned};
+    const Push on_ball = push(b, o), on_other = push(o, b);
+    CHECK((on_ball.force - depth * n).norm() < tolerance * depth);
+    CHECK((on_other.force + depth * n).norm() < tolerance * depth);
+    CHECK((on_other.torque + (place - at).cross(depth * n)).norm() < 10 * tolerance * depth);
+    CHECK(push({ball, place + (r + 0.01 * depth) * n}, o).force.norm() == 0.0);
+  };
+  // Searches for the nearest point of a superquadric end within 3e-6 of its size.
+  for (const Vec3& exponents : {Vec3(2, 2, 2), Vec3(4, 3, 6), Vec3(8, 8, 8)}) {
+    const Vec3 radii(0.3, 0.2, 0.4);
+    const shape::SuperquadricSolid solid(radii, exponents);
+    for (const Vec3& way : {Vec3(1, 0.2, 0.1), Vec3(0.5, -1, 1), Vec3(0.1, 0.1, -1)}) {
+      CAPTURE(exponents.transpose(), way.transpose());
+      const auto foot = solid.radial(from_eigen(Vec3(way.normalized())));
+      check(surface::Superquadric(radii, exponents), to_eigen(foot.position), to_eigen(foot.normal), 1e-4);
+    }
+  }
+  const Cylinder cylinder(0.3, 0.8);
+  check(cylinder, {0.3, 0, 0.1}, {1, 0, 0}, 1e-9);
+  check(cylinder, {0.1, 0.05, -0.4}, {0, 0, -1}, 1e-9);
+  check(cylinder, {0, 0.3, 0.4}, Vec3(0, 1, 1).normalized(), 1e-9);
+}
+
 TEST_CASE("a superquadric body that is a ball rolls on flat ground as a ball does") {
   const double R = 0.1, slope = 0.2, angle = std::atan(slope);
   const std::vector<Parts::Surfaces> grounds = {Plane{}, Box({8, 1, 0.2}), TriangleMesh(mesh::box({8, 1, 0.2}, 5))};
