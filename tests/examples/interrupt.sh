@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# Ctrl-C while the direct shear example shears: it ends with 130, and what was there by then is saved and reported.
+# Ctrl-C while the direct shear example shears: it ends with 130, and what was there by then is saved and reported. And
+# while it makes its packing, of which there is nothing to save yet: it says so, and ends with 130 too.
 #
 #   interrupt.sh <direct_shear> <output folder> <packing file>
 set -euo pipefail
@@ -14,10 +15,6 @@ fi
 
 rm -rf "$output"
 mkdir -p "$output"
-log=$output/log.txt
-env --default-signal=INT "$rig" --size smoke --packing-file "$packing" --travel 0.006 --no-vtk --output "$output" \
-  > "$log" 2>&1 &
-run=$!
 trap 'kill -KILL "$run" 2> /dev/null || true' EXIT
 
 refuse() {
@@ -26,15 +23,29 @@ refuse() {
   exit 1
 }
 
-for ((k = 0; k < 1200; ++k)); do
-  ! grep -q 'shear at 44.1 kPa: [1-9][0-9]* %' "$log" || break
-  kill -0 "$run" 2> /dev/null || refuse "The run ended before it sheared"
-  sleep 0.1
-done
-kill -INT "$run"
-status=0
-wait "$run" || status=$?
-[ "$status" = 130 ] || refuse "The run ended with $status, not with 130"
+# interrupted <pattern> <options>...: starts the rig, and stops it as soon as what it prints matches the pattern.
+interrupted() {
+  local pattern=$1 status=0
+  shift
+  env --default-signal=INT "$rig" --size smoke --no-vtk "$@" > "$log" 2>&1 &
+  run=$!
+  for ((k = 0; k < 1200; ++k)); do
+    ! grep -q "$pattern" "$log" || break
+    kill -0 "$run" 2> /dev/null || refuse "The run ended before it printed '$pattern'"
+    sleep 0.1
+  done
+  kill -INT "$run"
+  wait "$run" || status=$?
+  [ "$status" = 130 ] || refuse "The run ended with $status, not with 130"
+}
+
+log=$output/pouring.txt
+interrupted 'pour: ' --output "$output/pouring"
+grep -q 'The packing was not finished' "$log" || refuse "The run does not say that the packing was not finished"
+[ ! -e "$output/pouring/packing.txt" ] || refuse "A packing was saved that was not finished"
+
+log=$output/log.txt
+interrupted 'shear at 44.1 kPa: [1-9][0-9]* %' --packing-file "$packing" --travel 0.006 --output "$output"
 
 for file in report.html results.csv load_44.1kPa.csv settings.toml; do
   [ -s "$output/$file" ] || refuse "$file is missing or empty"

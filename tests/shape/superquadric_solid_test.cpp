@@ -128,7 +128,7 @@ TEST_CASE("gauge, support function and derivatives of a superquadric belong toge
   }
 }
 
-TEST_CASE("the depth of a point in a superquadric errs by no more than its bound") {
+TEST_CASE("depth and normal of a point in a superquadric err by no more than their bounds") {
   std::mt19937 random(3);
   std::uniform_real_distribution<double> uniform(0.0, 1.0);
   for (const Case& c : cases) {
@@ -148,14 +148,17 @@ TEST_CASE("the depth of a point in a superquadric errs by no more than its bound
         REQUIRE(solid.penetration(x, depth, normal));
         CHECK(norm(normal) == Approx(1.0).epsilon(1e-12));
         CHECK(depth >= true_depth * (1 - 1e-9));
-        // The stated bound, with the sharper curvature of both ends, and as much again for higher orders.
+        // The stated bound, with the sharper curvature of both ends, and as much again for higher orders; of the normal
+        // too.
         const Vector3<double> ray = (1 / norm(x)) * x;
-        const double cosine = dot(ray, normal), tangent2 = 1 / (cosine * cosine) - 1;
+        const double cosine = dot(ray, normal), tangent2 = std::max(0.0, 1 / (cosine * cosine) - 1);
         const auto other = solid.jet(solid.radial(x).position);
         const double curvature = std::max(
             sharpest, std::max({other.curvature.x, other.curvature.y, other.curvature.z}) / norm(other.gradient));
         CHECK(depth - true_depth <=
               true_depth * std::pow(true_depth * curvature, 3) * tangent2 * std::pow(1 + 0.5 * tangent2, 2) + 1e-12);
+        CHECK(norm(normal - foot.normal) <=
+              2 * std::pow(true_depth * curvature, 2) * std::sqrt(tangent2) * (1 + 0.5 * tangent2) + 1e-9);
         worst = std::max(worst, depth / true_depth - 1);
       }
       INFO("exponents " << c.exponents.transpose() << ", depth " << true_depth);

@@ -94,7 +94,8 @@ class SuperquadricSolid {
   /// that is used. The depth is never less than the distance d to the surface, and more by at most
   ///   d (d/r)^3 t^2 (1 + t^2/2)^2 / 2
   /// to leading order, where t is the tangent of the angle between ray and normal and r the smallest radius of
-  /// curvature nearby: the overestimate is of fourth order in d.
+  /// curvature nearby: the overestimate is of fourth order in d. It is r/2 times the square of the angle by which the
+  /// normal is off, which is so at most (d/r)^2 t (1 + t^2/2): of second order.
   DEM_FN bool penetration(const Vector3<double>& x, double& depth, Vector3<double>& normal) const {
     if (!(value(x) < 1.0)) return false;
     if (value(1e3 * x) < 1e-3) {  // the centre itself has no ray
