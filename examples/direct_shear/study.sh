@@ -6,9 +6,11 @@
 #
 #   study.sh <direct_shear> <folder> [seeds|half_step|half_speed|density|integrator|poured|soft ...]
 #
-# A packing and its three loads take 35 to 40 minutes on one core at 2.3 GHz; all of them, by that, more than ten hours.
+# THREADS (1 unless it is set) is how many threads a run has. A packing and its three loads take 35 to 40 minutes on one
+# core at 2.3 GHz; all of them, by that, more than ten hours.
 set -euo pipefail
 
+[ $# -ge 2 ] || { sed -n 's/^#   //p' "$0" >&2 && exit 2; }
 rig=$(realpath "$1")
 folder=$2
 shift 2

@@ -27,6 +27,7 @@ refuse() {
 interrupted() {
   local pattern=$1 status=0
   shift
+  : > "$log"
   env --default-signal=INT "$rig" --size smoke --no-vtk "$@" > "$log" 2>&1 &
   run=$!
   for ((k = 0; k < 1200; ++k)); do
