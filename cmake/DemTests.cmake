@@ -39,6 +39,7 @@ function(dem_add_header_checks include_dir)
   file(GLOB_RECURSE headers CONFIGURE_DEPENDS RELATIVE "${include_dir}" "${include_dir}/*.hpp")
   set(tried_in_others "")
   foreach(header IN LISTS headers)
+    # Its first include may change.
     set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS "${include_dir}/${header}")
     file(STRINGS "${include_dir}/${header}" directives REGEX "^[ \t]*#" LIMIT_COUNT 2)
     list(POP_FRONT directives guard first)

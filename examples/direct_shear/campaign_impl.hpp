@@ -103,6 +103,7 @@ void run_campaign(const Settings& s, Campaign& campaign, const std::function<voi
       campaign.packing = make_packing<Integrator, Shape>(s, first.grains, progress);
       dem::soil::save_packing(campaign.packing.packing, s.save_packing);  // before anything else can go wrong
     }
+    if (!s.packing_only) dem::soil::strike_off(campaign.packing.packing.grains, s.strike_off);
     measure<Shape>(campaign.packing, s, progress);
     if (making > 0) {
       const double fraction = campaign.packing.solid_fraction;

@@ -33,10 +33,10 @@ inline std::vector<IdleOption> idle_options(const Settings& s) {
     unless(!random || s.relative_density != 0.0, "with a --relative-density above 0, for which a packing is shaken",
            {"--densify-time", "--shake-amplitude", "--shake-frequency"});
   }
-  unless(
-      !s.packing_only, "without --packing-only, for it is of the test",
-      {"--stable-share", "--loads", "--lid-speed", "--rest-speed", "--consolidation-limit", "--shear-speed", "--travel",
-       "--ramp-time", "--smoothing", "--residual-share", "--area-correction", "--vtk-spheres", "--vtk-interval"});
+  unless(!s.packing_only, "without --packing-only, for it is of the test",
+         {"--stable-share", "--strike-off", "--loads", "--lid-speed", "--rest-speed", "--consolidation-limit",
+          "--shear-speed", "--travel", "--ramp-time", "--smoothing", "--residual-share", "--area-correction",
+          "--vtk-spheres", "--vtk-interval"});
   unless(s.scale_contacts, "with --scale-contacts true", {"--constants-for"});
   unless(s.time_step == 0.0, "without --time-step, which sets the step", {"--stable-share"});
   unless(s.time_step != 0.0, "with --time-step", {"--allow-unstable-time-step"});

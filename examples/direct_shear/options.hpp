@@ -37,6 +37,10 @@ inline void add_specimen_options(CLI::App& app, Settings& s) {
   add("--shake-frequency", s.shake_frequency, "[Hz]");
   add("--shake-time", s.shake_time, "for a poured packing [s]");
   add("--densify-time", s.densify_time, "for a random packing: friction goes to zero in this time [s]");
+  add("--strike-off", s.strike_off,
+      "share of the grains, the highest ones, that are taken off before the test, as a straight edge levels a "
+      "specimen; "
+      "negative: by shape (polyhedron: 0.18, for columns of sharp cubes would carry the lid; others: 0)");
   add("--settle-limit", s.settle_limit, "a packing must be at rest by then [s]");
   add("--packing-file", s.packing_file, "read the packing from this file instead of making one");
   add("--save-packing", s.save_packing, "file for the packing; empty: packing.txt in the output folder");

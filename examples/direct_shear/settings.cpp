@@ -40,14 +40,15 @@ struct GrainShape {
   const char *name, *plural;
   double stiffness, damping;  ///< K (N/m), C and cv (N s/m)
   double relative_density;    ///< looser sharp or rounded cubes leave columns in corners that stand out of the box
+  double strike_off;
   dem::soil::DensityLimits limits;
 };
 
 const GrainShape& shape_of(const Settings& s) {
   static const GrainShape shapes[] = {
-      {"cube8", "cubes of 8 spheres", 2e4, 0.015, 0.18, dem::soil::cube8_limits},
-      {"polyhedron", "polyhedral cubes", 8e4, 0.06, 0.5, dem::soil::sharp_cube_limits},
-      {"superquadric", "superquadric cubes", 8e4, 0.06, 0.5, dem::soil::rounded_cube_limits}};
+      {"cube8", "cubes of 8 spheres", 2e4, 0.015, 0.18, 0.0, dem::soil::cube8_limits},
+      {"polyhedron", "polyhedral cubes", 8e4, 0.06, 0.5, 0.18, dem::soil::sharp_cube_limits},
+      {"superquadric", "superquadric cubes", 8e4, 0.06, 0.5, 0.0, dem::soil::rounded_cube_limits}};
   for (const GrainShape& shape : shapes) {
     if (s.shape == shape.name) return shape;
   }
@@ -70,6 +71,7 @@ void check_specimen(const Settings& s) {
   dem::require_within(s.wall_thickness, s.travel, 10.0, "--wall-thickness (m, from the travel up)");
   dem::require_within(s.lid_clearance, 0.0, 0.99, "--lid-clearance");
   dem::require_within(s.relative_density, 0.0, 1.0, "--relative-density");
+  dem::require_within(s.strike_off, 0.0, 0.9, "--strike-off");
   dem::require_within(s.tilt_deg, 0.0, 90.0, "--tilt (deg)");
   // Beyond the walls the grains would leave the world.
   dem::require_within(s.shake_amplitude, 0.0, s.wall_thickness, "--shake-amplitude (m, up to the wall thickness)");
@@ -166,6 +168,7 @@ void resolve(Settings& s) {
   fill(s.stiffness, shape.stiffness);
   if (s.damping < 0.0) s.damping = shape.damping;
   if (s.relative_density < 0.0) s.relative_density = shape.relative_density;
+  if (s.strike_off < 0.0) s.strike_off = shape.strike_off;
   if (s.velocity_stiffness < 0.0) s.velocity_stiffness = shape.damping;
   if (s.wall_friction < 0.0) s.wall_friction = s.friction;
   if (s.friction_stiffness < 0.0) s.friction_stiffness = s.stiffness;
@@ -219,6 +222,7 @@ std::vector<std::pair<std::string, std::string>> list_settings(const Settings& s
                   : s.packing == "poured"
                       ? fmt::format("poured block, tilted by {:g}° about each axis", s.tilt_deg)
                       : fmt::format("random, seed {}, relative density {:g} asked for", s.seed, s.relative_density)},
+      {"struck off", s.strike_off > 0.0 ? fmt::format("the highest {:g} % of the grains", 1e2 * s.strike_off) : "none"},
       {"loads", fmt::format("{} kg", fmt::join(s.loads, ", "))},
       {"shearing", fmt::format("{:g} mm at {:g} mm/s", 1e3 * s.travel, 1e3 * s.shear_speed)},
       {"stresses are forces over",

@@ -53,10 +53,11 @@ struct Settings {
   double shake_frequency = 25.0;   ///< Hz
   double shake_time = 0.2;         ///< s, of a poured packing
   double densify_time = 0.5;       ///< s, in which friction goes from full to none while a random packing is shaken
-  double settle_limit = 3.0;       ///< s; a packing that is not at rest by then ends the run
-  std::string packing_file;        ///< read instead of made
-  std::string save_packing;        ///< empty: <output>/packing.txt
-  bool packing_only = false;       ///< make, measure and save the packing; no test
+  double strike_off = -1.0;   ///< share of a packing's grains, the highest, taken away; 0: none; negative: by shape
+  double settle_limit = 3.0;  ///< s; a packing that is not at rest by then ends the run
+  std::string packing_file;   ///< read instead of made
+  std::string save_packing;   ///< empty: <output>/packing.txt
+  bool packing_only = false;  ///< make, measure and save the packing; no test
 
   // Test
   std::vector<double> loads;         ///< kg, on the lid; empty: by size

@@ -111,7 +111,7 @@ TEST_CASE("an option that would do nothing is refused, on the command line and i
   refused({"--packing-only"}, {"--loads", "--lid-speed", "--shear-speed", "--travel", "--smoothing", "--vtk-interval"},
           "5");
   refused({"--packing-only"}, {"--area-correction", "--vtk-spheres"}, "true");
-  refused({"--packing-only"}, {"--stable-share"}, "0.5");
+  refused({"--packing-only"}, {"--stable-share", "--strike-off"}, "0.5");
   refused({"--time-step=1e-6"}, {"--stable-share"}, "0.5");
   refused({}, {"--allow-unstable-time-step"}, "true");
   refused({"--scale-contacts=false"}, {"--constants-for"}, "0.001");
@@ -232,6 +232,10 @@ TEST_CASE("a packing is as dense as its shape needs, unless it is told") {
   CHECK(read({"--shape=superquadric"}).settings.relative_density == 0.5);
   CHECK(read({"--shape=polyhedron", "--relative-density=0"}).settings.relative_density == 0.0);
   CHECK_THROWS_WITH(read({"--relative-density=1.01"}), ContainsSubstring("--relative-density"));
+  CHECK(read({}).settings.strike_off == 0.0);
+  CHECK(read({"--shape=polyhedron"}).settings.strike_off == 0.18);
+  CHECK(read({"--shape=superquadric"}).settings.strike_off == 0.0);
+  CHECK_THROWS_WITH(read({"--strike-off=0.91"}), ContainsSubstring("--strike-off"));
 }
 
 TEST_CASE("every option is checked by its own name") {
@@ -258,8 +262,8 @@ TEST_CASE("every option is checked by its own name") {
         "--friction", "--breaking-factor", "--ramp-time", "--smoothing", "--residual-share", "--time-step"}) {
     for (const char* value : {"-1", "nan", "inf"}) refused(not_negative, value);
   }
-  for (const char* automatic_if_negative :
-       {"--wall-friction", "--friction-stiffness", "--damping", "--velocity-stiffness", "--relative-density"}) {
+  for (const char* automatic_if_negative : {"--wall-friction", "--friction-stiffness", "--damping",
+                                            "--velocity-stiffness", "--relative-density", "--strike-off"}) {
     CHECK_NOTHROW(read({std::string(automatic_if_negative) + "=-1"}));
     for (const char* value : {"nan", "inf"}) refused(automatic_if_negative, value);
   }

@@ -35,6 +35,7 @@ interrupted() {
     kill -0 "$run" 2> /dev/null || refuse "The run ended before it printed '$pattern'"
     sleep 0.1
   done
+  grep -q "$pattern" "$log" || refuse "The run did not print '$pattern' in two minutes"
   kill -INT "$run"
   wait "$run" || status=$?
   [ "$status" = 130 ] || refuse "The run ended with $status, not with 130"

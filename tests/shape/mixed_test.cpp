@@ -147,6 +147,7 @@ TEST_CASE("superquadrics of either policy touch each other by the points of both
     const auto expected = contacts(points, ra, other, rb, d);
     const auto found = contacts(Both(points), ra, Both(smooth), rb, d);
     check_same(found, expected, 1e-14);  // the same numbers by the same way
+    for (std::size_t c = 0; c < found.size(); ++c) CHECK(found[c].area == Approx(expected[c].area).epsilon(1e-12));
     // From the other side: the same contacts, mirrored.
     auto turned = contacts(Both(smooth), rb, Both(points), ra, -d);
     REQUIRE(turned.size() == found.size());
@@ -154,13 +155,20 @@ TEST_CASE("superquadrics of either policy touch each other by the points of both
       CHECK((turned[c].normal + found[c].normal).norm() < 1e-12);
       CHECK((turned[c].point + d - found[c].point).norm() < 1e-12);
       CHECK(turned[c].area == Approx(found[c].area));
+      CHECK(turned[c].feature == found[c].feature);
     }
     touching += !found.empty();
     // Points that weigh by area are counted on their own side alone.
     const SuperquadricPoints weighed(radii, exponents, 6, PointArea::physical);
     const auto by_area = contacts(Both(weighed), ra, Both(smooth), rb, d);
     std::size_t own = 0;
-    for (const Contact& c : expected) own += (c.feature & SuperquadricPoints::other_way) == 0;
+    for (const Contact& c : expected) {
+      if ((c.feature & SuperquadricPoints::other_way) != 0) continue;
+      REQUIRE(own < by_area.size());
+      CHECK(by_area[own].overlap == Approx(c.overlap));
+      CHECK(by_area[own].area == weighed.points().area[c.feature]);
+      ++own;
+    }
     CHECK(by_area.size() == own);
   }
   CHECK(touching > 20);

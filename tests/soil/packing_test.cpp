@@ -124,6 +124,24 @@ TEST_CASE("percentiles and the inner region") {
   CHECK(inner_region(grains, 2.0, 2.0, 3.0, 99.0).is_empty());    // though the product of its edges is positive
 }
 
+TEST_CASE("a straight edge takes the highest grains off, and leaves the others as they are") {
+  std::vector<Placement> grains;
+  for (const double z : {3.0, 1.0, 4.0, 1.0, 5.0, 9.0, 2.0, 6.0, 5.0, 3.0}) grains.push_back({{0.1 * z, 0, z}});
+  const auto heights = [&](double share) {
+    auto left = grains;
+    strike_off(left, share);
+    std::vector<double> z;
+    for (const auto& g : left) z.push_back(g.position.z());
+    return z;
+  };
+  CHECK(heights(0.0).size() == 10);
+  CHECK(heights(0.099).size() == 10);  // less than one grain
+  CHECK(heights(0.2) == std::vector<double>{3, 1, 4, 1, 5, 2, 5, 3});
+  CHECK(heights(0.3) == std::vector<double>{3, 1, 4, 1, 5, 2, 3});  // of equal ones the later
+  CHECK(heights(1.0).empty());
+  CHECK_THROWS_WITH(heights(-0.1), ContainsSubstring("strike off"));
+}
+
 TEST_CASE("relative density goes by void ratios") {
   const DensityLimits limits = {0.5, 0.8};  // e = 1 and 0.25
   CHECK(relative_density(0.5, limits) == Approx(0.0).margin(1e-15));

@@ -63,6 +63,7 @@ class PointsTowards {
     std::uint32_t number;   ///< from 0 on, ascending: of the wall that it leads to, whichever others are near
     Vector3<double> along;  ///< into the other surface, own frame
     std::uint32_t wall;     ///< family of the other surface's features
+    double gap;             ///< m
   };
   struct Ways {
     std::array<Way, most_ways> way;
@@ -88,16 +89,24 @@ class PointsTowards {
       sink(surface::family_of<Onto>(feature), transpose_times(a_.axes, b_.axes * normal), gap);
     });
   }
-  /// The ways in which a ball at p meets the other surface.
+  /// The ways in which a ball at p meets the other surface; the nearest ones if they are too many.
   Ways find_ways(const Vector3<double>& p, double radius) const {
     Ways ways;
-    std::uint32_t next = 0;
-    touch(p, radius, [&](std::uint32_t wall, const Vector3<double>& normal, double) {
-      if (ways.count == most_ways) return;
-      const std::uint32_t named = std::min(wall, of_a_rim / most_ways - 1) * most_ways;
-      ways.way[ways.count++] = {std::max(next, named), normal, wall};
-      next = ways.way[ways.count - 1].number + 1;
+    touch(p, radius, [&](std::uint32_t wall, const Vector3<double>& normal, double gap) {
+      if (ways.count == most_ways) {
+        const auto farthest = std::max_element(ways.way.begin(), ways.way.end(),
+                                               [](const Way& a, const Way& b) { return a.gap < b.gap; });
+        if (gap >= farthest->gap) return;
+        std::copy(farthest + 1, ways.way.end(), farthest);
+        --ways.count;
+      }
+      ways.way[ways.count++] = {0, normal, wall, gap};
     });
+    std::uint32_t next = 0;
+    for (Way& way : std::span(ways.way.data(), ways.count)) {
+      way.number = std::max(next, std::min(way.wall, of_a_rim / most_ways - 1) * most_ways);
+      next = way.number + 1;
+    }
     return ways;
   }
   /// Where a ball at p meets the other surface, or one wall of it, first.

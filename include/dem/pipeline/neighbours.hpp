@@ -66,8 +66,8 @@ void collect_memories(std::span<const Chunk<Model>> chunks, const Particles& p,
     for (int c = 0; c < of_pairs.count; ++c) {
       const std::uint64_t key = of_pairs.key[static_cast<std::size_t>(c)];
       const auto candidate = static_cast<std::uint32_t>(key >> 32);
+      DEM_ASSERT(candidate < chunk.candidate.size(), "what is remembered is of a candidate");
       while (chunk.candidate_first[k + 1] <= candidate) ++k;
-      DEM_ASSERT(k < chunk_size, "each candidate belongs to a grain of its chunk");
       pairs.push_back({p.id[index * chunk_size + k], p.id[chunk.candidate[candidate]], static_cast<std::uint32_t>(key),
                        history_of<Memory, size>(of_pairs, c)});
     }

@@ -5,8 +5,11 @@
 #include <dem/math/vector.hpp>
 
 #include <algorithm>
+#include <cstddef>
+#include <numeric>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace dem::soil {
@@ -40,6 +43,23 @@ inline double height_percentile(std::span<const Placement> grains, double share)
   const auto k = static_cast<std::ptrdiff_t>(share * static_cast<double>(z.size() - 1) + 0.5);
   std::nth_element(z.begin(), z.begin() + k, z.end());
   return z[static_cast<std::size_t>(k)];
+}
+
+/// Takes the highest grains off, a share of all of them, as a straight edge levels a specimen; the others keep their
+/// order. Throws Error for a share that is not from 0 to 1.
+inline void strike_off(std::vector<Placement>& grains, double share) {
+  require_within(share, 0.0, 1.0, "share of the grains to strike off");
+  const auto kept = grains.size() - static_cast<std::size_t>(share * static_cast<double>(grains.size()));
+  if (kept == grains.size()) return;
+  std::vector<std::size_t> by_height(grains.size());
+  std::iota(by_height.begin(), by_height.end(), std::size_t{0});
+  std::stable_sort(by_height.begin(), by_height.end(),
+                   [&](std::size_t a, std::size_t b) { return grains[a].position.z() < grains[b].position.z(); });
+  by_height.resize(kept);
+  std::sort(by_height.begin(), by_height.end());
+  std::vector<Placement> left;
+  for (const std::size_t k : by_height) left.push_back(grains[k]);
+  grains = std::move(left);
 }
 
 /// Where the grains of a world are, in the order of their ids.

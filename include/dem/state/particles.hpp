@@ -159,7 +159,7 @@ struct Particles {
 
   /// Row k becomes what was row order[k].
   void permute(std::span<const std::uint32_t> order) {
-    DEM_ASSERT(order.size() <= count, "no row becomes two");
+    DEM_ASSERT(order.size() <= count, "rows are moved or dropped, and none is made");
     AlignedVector<double> old;
     for_each_column([&](AlignedVector<double>& column) {
       old = column;

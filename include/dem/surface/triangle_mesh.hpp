@@ -95,6 +95,7 @@ class TriangleMesh {
     return data_->tree.reaches(p, reach * reach);
   }
 
+  /// sink(feature, normal, gap) for each contact of a sphere; it must not ask a mesh in turn.
   template <class Sink>
   void touch(const Vector3<double>& p, double radius, Sink&& sink) const {
     touch_to(p, radius, radius > 0.0 ? options_.depth : point_depth_, sink);
