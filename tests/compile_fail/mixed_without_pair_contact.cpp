@@ -1,7 +1,8 @@
 // expect: Mixed: nothing says how these two shapes touch
 #include <dem/shape/mixed.hpp>
+#include <dem/shape/polyhedron.hpp>
 
-using Both = dem::shape::Mixed<dem::shape::Superquadric, dem::shape::SuperquadricPoints>;
+using Both = dem::shape::Mixed<dem::shape::Superquadric, dem::shape::Polyhedron>;
 static_assert(dem::shape::Shape<Both>);
 
 int main() {
