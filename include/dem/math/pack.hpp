@@ -42,7 +42,13 @@ inline constexpr int pack_width = static_cast<int>(Pack::size());
 /// The mask as bits, lane 0 lowest.
 DEM_HOT std::uint32_t bits(const PackMask& mask) {
   if constexpr (requires { mask.__to_bitset(); }) {
-    return static_cast<std::uint32_t>(mask.__to_bitset().to_ulong());
+    auto result = static_cast<std::uint32_t>(mask.__to_bitset().to_ulong());
+#if defined(__AVX512F__) && !defined(__clang__)
+    // g++ 12 widens a mask register into memory by storing its one byte, and reads four back: rubbish above lane 7
+    // wherever registers are short. By way of a general register it cannot.
+    asm("" : "+r"(result));
+#endif
+    return result;
   } else {
     std::uint32_t result = 0;
     for (int k = 0; k < pack_width; ++k) result |= std::uint32_t(mask[static_cast<std::size_t>(k)]) << k;
