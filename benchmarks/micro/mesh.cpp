@@ -1,9 +1,9 @@
 // Contact search with meshes: building the tree, queries of spheres through it, and without it; a finely cut body that
 // lies flat on another.
 
+#include <dem/geometry/mesh/mesh_shapes.hpp>
+#include <dem/geometry/mesh/triangle_mesh.hpp>
 #include <dem/integrator/symplectic_euler.hpp>
-#include <dem/math/mesh_shapes.hpp>
-#include <dem/surface/triangle_mesh.hpp>
 #include <dem/world/world.hpp>
 
 #include <benchmark/benchmark.h>

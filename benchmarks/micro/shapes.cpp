@@ -1,10 +1,10 @@
 // Narrow phase of each pair of shapes: pairs of grains that overlap a little at random orientations, and that go on
 // touching as grains in a bed do.
 
-#include <dem/shape/mixed.hpp>
-#include <dem/shape/polyhedra.hpp>
-#include <dem/shape/polyhedron_sphere.hpp>
-#include <dem/shape/superquadric_polyhedron.hpp>
+#include <dem/geometry/mixed.hpp>
+#include <dem/geometry/polyhedron/polyhedra.hpp>
+#include <dem/geometry/polyhedron/polyhedron_sphere.hpp>
+#include <dem/geometry/superquadric/superquadric_polyhedron.hpp>
 
 #include <benchmark/benchmark.h>
 

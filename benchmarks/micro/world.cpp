@@ -64,7 +64,7 @@ void gather_forces(benchmark::State& state) {
   state.counters["loads a grain"] = static_cast<double>(loads) / 10000;
   for (auto _ : state) {
     for (std::size_t c = 0; c < w.chunks.size(); ++c) {
-      dem::pipeline::gather_forces<Euler>(c, w.chunks, w.particles, w.incoming_first, w.incoming);
+      dem::grain::gather_forces<Euler>(c, w.chunks, w.particles, w.incoming_first, w.incoming);
     }
   }
   state.SetItemsProcessed(state.iterations() * 10000);
@@ -80,10 +80,10 @@ void integrator(benchmark::State& state) {
     for (std::size_t c = 0; c < w.chunks.size(); ++c) {
       for (int stage = 0; stage < I::stages; ++stage) {
         if constexpr (I::predicts_before_forces) {
-          dem::pipeline::predict_chunk<Model>(c, w.chunks[c], w.particles, w.species, stage, 0.0);
+          dem::grain::predict_chunk<Model>(c, w.chunks[c], w.particles, w.species, stage, 0.0);
         }
-        dem::pipeline::move_chunk<Model>(c, w.chunks[c], w.particles, w.species, w.inertia, w.options.gravity, stage,
-                                         0.0, false);
+        dem::grain::move_chunk<Model>(c, w.chunks[c], w.particles, w.species, w.inertia, w.options.gravity, stage, 0.0,
+                                      false);
       }
     }
   }

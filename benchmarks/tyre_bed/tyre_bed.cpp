@@ -2,8 +2,8 @@
 // what the contacts of grains with the mesh cost, as a share of the step.
 
 #include <dem/dem.hpp>
-#include <dem/io/ascii_table.hpp>
-#include <dem/math/mesh_shapes.hpp>
+#include <dem/geometry/mesh/mesh_shapes.hpp>
+#include <dem/report/ascii_table.hpp>
 
 #include <CLI/CLI.hpp>
 
@@ -130,7 +130,7 @@ void run(const char* name, const Settings& s) {
     for (const auto& chunk : world.state().chunks) {
       for (int c = 0; c < chunk.surface_contacts.committed(); ++c) {
         const auto key = chunk.surface_contacts.last.key[static_cast<std::size_t>(c)];
-        contacts += dem::pipeline::SurfaceKey::surface(key) == mesh_surface.index();
+        contacts += dem::grain::SurfaceKey::surface(key) == mesh_surface.index();
       }
     }
     if (active) load = world.surface_force(mesh_surface).z();

@@ -9,13 +9,13 @@
 #include "old_results.hpp"
 #include "report.hpp"
 
+#include <dem/geometry/cluster/sphere_cluster.hpp>
+#include <dem/geometry/polyhedron/polyhedron.hpp>
+#include <dem/geometry/superquadric/superquadric.hpp>
 #include <dem/integrator/predictor_corrector.hpp>
 #include <dem/integrator/symplectic_euler.hpp>
 #include <dem/integrator/velocity_verlet.hpp>
 #include <dem/io/file.hpp>
-#include <dem/shape/polyhedron.hpp>
-#include <dem/shape/sphere_cluster.hpp>
-#include <dem/shape/superquadric.hpp>
 
 #include <fmt/format.h>
 

@@ -1,6 +1,6 @@
 #include "report.hpp"
 
-#include <dem/io/io.hpp>
+#include <dem/report/report.hpp>
 
 #include <algorithm>
 #include <exception>

@@ -2,9 +2,9 @@
 
 #include "settings.hpp"
 
-#include <dem/shape/polyhedra.hpp>
-#include <dem/shape/sphere_cluster.hpp>
-#include <dem/shape/superquadric.hpp>
+#include <dem/geometry/cluster/sphere_cluster.hpp>
+#include <dem/geometry/polyhedron/polyhedra.hpp>
+#include <dem/geometry/superquadric/superquadric.hpp>
 #include <dem/soil/packing.hpp>
 #include <dem/world/world.hpp>
 

@@ -4,8 +4,8 @@
 #include "results.hpp"
 #include "rig.hpp"
 
-#include <dem/io/interrupt.hpp>
-#include <dem/io/progress.hpp>
+#include <dem/report/interrupt.hpp>
+#include <dem/report/progress.hpp>
 #include <dem/soil/bulk_density.hpp>
 #include <dem/soil/rest.hpp>
 

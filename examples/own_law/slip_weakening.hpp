@@ -1,8 +1,8 @@
 #pragma once
 
 #include <dem/core/error.hpp>
-#include <dem/friction/friction_law.hpp>
-#include <dem/friction/spring_slider.hpp>
+#include <dem/law/friction/friction_law.hpp>
+#include <dem/law/friction/spring_slider.hpp>
 
 struct SlipWeakening {  // a spring that slips at mu Fn, mu falling from `coefficient` to `residual` over `distance`
   template <class T>

@@ -1,7 +1,7 @@
 #pragma once
 
-#include <dem/contact/normal_law.hpp>
 #include <dem/core/error.hpp>
+#include <dem/law/normal/normal_law.hpp>
 
 struct StiffeningSpring {  // F = K d (1 + (d/depth)^2) + C d', never pulling
   template <class T>

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <dem/contact/touch.hpp>
+#include <dem/geometry/contact_point.hpp>
 #include <dem/math/vector.hpp>
 
 #include <algorithm>

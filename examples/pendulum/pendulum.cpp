@@ -5,11 +5,11 @@
 // writes pendulum.csv (time, angle, speed, forces in the pivot), plots and a series for ParaView, and prints the errors
 // against closed forms.
 
-#include <dem/io/columns.hpp>
 #include <dem/io/csv.hpp>
-#include <dem/io/plot.hpp>
 #include <dem/io/vtk_machine.hpp>
 #include <dem/mbd/mbd.hpp>
+#include <dem/report/columns.hpp>
+#include <dem/report/plot.hpp>
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>

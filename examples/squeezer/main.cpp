@@ -6,10 +6,10 @@
 // prints the seven angles at 0.03 s against the reference, writes squeezer.csv, and draws the angles and what the
 // crank's bearing carries.
 
-#include <dem/io/ascii_table.hpp>
-#include <dem/io/columns.hpp>
 #include <dem/io/csv.hpp>
-#include <dem/io/plot.hpp>
+#include <dem/report/ascii_table.hpp>
+#include <dem/report/columns.hpp>
+#include <dem/report/plot.hpp>
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>

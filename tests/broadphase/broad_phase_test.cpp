@@ -1,7 +1,7 @@
 #include "catch.hpp"
 
-#include <dem/broadphase/all_pairs.hpp>
-#include <dem/broadphase/uniform_grid.hpp>
+#include <dem/grain/broadphase/all_pairs.hpp>
+#include <dem/grain/broadphase/uniform_grid.hpp>
 #include <dem/math/vector.hpp>
 
 #include <functional>

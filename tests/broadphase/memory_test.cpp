@@ -1,6 +1,6 @@
 #include "catch.hpp"
 
-#include <dem/broadphase/uniform_grid.hpp>
+#include <dem/grain/broadphase/uniform_grid.hpp>
 
 #include <malloc.h>
 

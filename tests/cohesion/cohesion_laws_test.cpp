@@ -1,13 +1,13 @@
 #include "contact/lanes.hpp"
 #include "core/error_of.hpp"
 
-#include <dem/cohesion/constant.hpp>
-#include <dem/cohesion/contact_stress.hpp>
-#include <dem/cohesion/dmt.hpp>
-#include <dem/cohesion/jkr.hpp>
-#include <dem/cohesion/liquid_bridge.hpp>
-#include <dem/cohesion/none.hpp>
-#include <dem/contact/hertz.hpp>
+#include <dem/law/cohesion/constant.hpp>
+#include <dem/law/cohesion/contact_stress.hpp>
+#include <dem/law/cohesion/dmt.hpp>
+#include <dem/law/cohesion/jkr.hpp>
+#include <dem/law/cohesion/liquid_bridge.hpp>
+#include <dem/law/cohesion/none.hpp>
+#include <dem/law/normal/hertz.hpp>
 
 using Catch::Approx;
 using namespace dem::cohesion;

@@ -1,5 +1,5 @@
 // expect: BroadPhase: needs finder\(\) const with for_each_candidate\(i, f\), which calls f\(j\) for each j > i
-#include <dem/broadphase/all_pairs.hpp>
+#include <dem/grain/broadphase/all_pairs.hpp>
 #include <dem/world/model.hpp>
 
 struct Nothing : dem::broadphase::AllPairs {

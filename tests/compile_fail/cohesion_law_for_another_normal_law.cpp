@@ -1,5 +1,5 @@
 // expect: CohesionLaw: this one is made for one normal law
-#include <dem/cohesion/jkr.hpp>
+#include <dem/law/cohesion/jkr.hpp>
 #include <dem/world/model.hpp>
 
 struct Grain : dem::Model {  // with the default normal law, Penalty

@@ -1,5 +1,5 @@
 // expect: Shape: the model's cohesion acts at a distance, so collide .* must take a gap
-#include <dem/cohesion/liquid_bridge.hpp>
+#include <dem/law/cohesion/liquid_bridge.hpp>
 #include <dem/world/model.hpp>
 
 struct Short : dem::shape::Sphere {

@@ -1,5 +1,5 @@
 // expect: FrictionLaw: needs .template <class T> static Vector3<T> force
-#include <dem/friction/none.hpp>
+#include <dem/law/friction/none.hpp>
 #include <dem/world/model.hpp>
 
 struct Law : dem::friction::None {

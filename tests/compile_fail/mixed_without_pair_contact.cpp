@@ -1,6 +1,6 @@
 // expect: Mixed: nothing says how these two shapes touch
-#include <dem/shape/mixed.hpp>
-#include <dem/shape/polyhedron.hpp>
+#include <dem/geometry/mixed.hpp>
+#include <dem/geometry/polyhedron/polyhedron.hpp>
 
 using Both = dem::shape::Mixed<dem::shape::Superquadric, dem::shape::Polyhedron>;
 static_assert(dem::shape::Shape<Both>);

@@ -1,5 +1,5 @@
 // expect: Shape: needs .static constexpr int pose_size., doubles cached per grain
-#include <dem/shape/sphere.hpp>
+#include <dem/geometry/sphere/sphere.hpp>
 
 struct Blob {};
 

@@ -1,6 +1,6 @@
 // expect: friction::Varying: the law that it wraps needs a parameter 'coefficient'
-#include <dem/friction/none.hpp>
-#include <dem/friction/varying.hpp>
+#include <dem/law/friction/none.hpp>
+#include <dem/law/friction/varying.hpp>
 #include <dem/world/model.hpp>
 
 struct Grain : dem::Model {

@@ -2,7 +2,7 @@
 #include "contact/lanes.hpp"
 #include "core/error_of.hpp"
 
-#include <dem/contact/hysteretic.hpp>
+#include <dem/law/normal/hysteretic.hpp>
 
 using Catch::Approx;
 using namespace dem::contact;

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <dem/contact/state.hpp>
+#include <dem/law/state.hpp>
 
 /// What comes of an impact of one mass against a wall.
 struct Rebound {

@@ -2,7 +2,7 @@
 
 #include "catch.hpp"
 
-#include <dem/contact/state.hpp>
+#include <dem/law/state.hpp>
 
 #include <array>
 #include <bit>

@@ -1,6 +1,6 @@
 #include "core/error_of.hpp"
 
-#include <dem/contact/penalty.hpp>
+#include <dem/law/normal/penalty.hpp>
 
 #include <limits>
 #include <random>

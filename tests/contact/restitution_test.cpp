@@ -2,8 +2,8 @@
 #include "contact/lanes.hpp"
 #include "core/error_of.hpp"
 
-#include <dem/contact/hertz.hpp>
-#include <dem/contact/linear_spring_dashpot.hpp>
+#include <dem/law/normal/hertz.hpp>
+#include <dem/law/normal/linear_spring_dashpot.hpp>
 
 using Catch::Approx;
 using namespace dem::contact;

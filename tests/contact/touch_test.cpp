@@ -1,6 +1,6 @@
 #include "catch.hpp"
 
-#include <dem/contact/touch.hpp>
+#include <dem/geometry/contact_point.hpp>
 
 using Catch::Approx;
 using dem::Vec3;

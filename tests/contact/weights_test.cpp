@@ -1,4 +1,4 @@
-#include <dem/contact/weights.hpp>
+#include <dem/geometry/contact_shares.hpp>
 
 #include <vector>
 

@@ -1,7 +1,7 @@
 #include "core/error_of.hpp"
 
-#include <dem/exec/openmp.hpp>
-#include <dem/exec/serial.hpp>
+#include <dem/parallel/openmp.hpp>
+#include <dem/parallel/serial.hpp>
 
 #include <atomic>
 #include <vector>

@@ -1,7 +1,7 @@
 #include "core/error_of.hpp"
 
-#include <dem/friction/asperity_spring.hpp>
-#include <dem/friction/none.hpp>
+#include <dem/law/friction/asperity_spring.hpp>
+#include <dem/law/friction/none.hpp>
 
 #include <limits>
 #include <random>

@@ -1,12 +1,12 @@
 #include "contact/lanes.hpp"
 #include "core/error_of.hpp"
 
-#include <dem/contact/hertz.hpp>
-#include <dem/friction/asperity_spring.hpp>
-#include <dem/friction/coulomb_viscous.hpp>
-#include <dem/friction/cundall_strack.hpp>
-#include <dem/friction/mindlin.hpp>
-#include <dem/friction/varying.hpp>
+#include <dem/law/friction/asperity_spring.hpp>
+#include <dem/law/friction/coulomb_viscous.hpp>
+#include <dem/law/friction/cundall_strack.hpp>
+#include <dem/law/friction/mindlin.hpp>
+#include <dem/law/friction/varying.hpp>
+#include <dem/law/normal/hertz.hpp>
 
 using Catch::Approx;
 using dem::Vec3;

@@ -2,7 +2,7 @@
 #include "files.hpp"
 #include "xml.hpp"
 
-#include <dem/io/html_report.hpp>
+#include <dem/report/html_report.hpp>
 
 #include <string>
 

@@ -1,6 +1,6 @@
 #include "catch.hpp"
 
-#include <dem/io/interrupt.hpp>
+#include <dem/report/interrupt.hpp>
 
 #include <csignal>
 

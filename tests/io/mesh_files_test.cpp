@@ -1,11 +1,11 @@
 #include "files.hpp"
 
+#include <dem/geometry/mass_properties.hpp>
+#include <dem/geometry/mesh/mesh_repair.hpp>
 #include <dem/io/drawn_surface.hpp>
 #include <dem/io/obj.hpp>
 #include <dem/io/stl.hpp>
 #include <dem/io/vtk_bodies.hpp>
-#include <dem/math/mass_properties.hpp>
-#include <dem/math/mesh_repair.hpp>
 
 #include <fmt/format.h>
 

@@ -2,7 +2,7 @@
 #include "files.hpp"
 #include "xml.hpp"
 
-#include <dem/io/plot.hpp>
+#include <dem/report/plot.hpp>
 
 #include <cmath>
 #include <string>

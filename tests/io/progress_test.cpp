@@ -1,7 +1,7 @@
 #include "catch.hpp"
 #include "files.hpp"
 
-#include <dem/io/progress.hpp>
+#include <dem/report/progress.hpp>
 
 #include <algorithm>
 #include <stdexcept>

@@ -1,7 +1,7 @@
 #include "catch.hpp"
 #include "files.hpp"
 
-#include <dem/io/ascii_table.hpp>
+#include <dem/report/ascii_table.hpp>
 
 #include <string>
 

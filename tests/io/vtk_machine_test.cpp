@@ -2,9 +2,9 @@
 #include "core/error_of.hpp"
 #include "files.hpp"
 
-#include <dem/io/columns.hpp>
 #include <dem/io/vtk_machine.hpp>
 #include <dem/mbd/machine.hpp>
+#include <dem/report/columns.hpp>
 #include <dem/world/world.hpp>
 
 #include <cstring>

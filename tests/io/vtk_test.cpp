@@ -2,10 +2,10 @@
 #include "files.hpp"
 #include "xml.hpp"
 
+#include <dem/geometry/polyhedron/polyhedra.hpp>
 #include <dem/io/polyhedron_mesh.hpp>
 #include <dem/io/vtk.hpp>
 #include <dem/math/vector.hpp>
-#include <dem/shape/polyhedra.hpp>
 
 #include <Eigen/Geometry>
 

@@ -1,8 +1,8 @@
 #include "catch.hpp"
 #include "core/error_of.hpp"
 
-#include <dem/math/convex_hull.hpp>
-#include <dem/math/polyhedron_mass.hpp>
+#include <dem/geometry/polyhedron/convex_hull.hpp>
+#include <dem/geometry/polyhedron/polyhedron_mass.hpp>
 
 #include <random>
 #include <set>

@@ -1,6 +1,6 @@
 #include "catch.hpp"
 
-#include <dem/math/mass_properties.hpp>
+#include <dem/geometry/mass_properties.hpp>
 
 #include <array>
 #include <numbers>

@@ -1,8 +1,8 @@
 #include "core/error_of.hpp"
 
-#include <dem/math/mass_properties.hpp>
-#include <dem/math/mesh_repair.hpp>
-#include <dem/math/mesh_shapes.hpp>
+#include <dem/geometry/mass_properties.hpp>
+#include <dem/geometry/mesh/mesh_repair.hpp>
+#include <dem/geometry/mesh/mesh_shapes.hpp>
 #include <dem/math/rotation.hpp>
 
 #include <random>

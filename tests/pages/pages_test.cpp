@@ -2,14 +2,14 @@
 
 #include "catch.hpp"
 
-#include <dem/contact/elastic.hpp>
-#include <dem/contact/hertz.hpp>
-#include <dem/contact/linear_spring_dashpot.hpp>
-#include <dem/contact/restitution.hpp>
-#include <dem/friction/cundall_strack.hpp>
-#include <dem/friction/mindlin.hpp>
+#include <dem/grain/materials.hpp>
+#include <dem/law/friction/cundall_strack.hpp>
+#include <dem/law/friction/mindlin.hpp>
+#include <dem/law/normal/elastic.hpp>
+#include <dem/law/normal/hertz.hpp>
+#include <dem/law/normal/linear_spring_dashpot.hpp>
+#include <dem/law/normal/restitution.hpp>
 #include <dem/mbd/mbd.hpp>
-#include <dem/state/materials.hpp>
 #include <dem/world/model.hpp>
 
 #include <cmath>

@@ -1,16 +1,16 @@
 #include "catch.hpp"
 
-#include <dem/cohesion/dmt.hpp>
-#include <dem/cohesion/jkr.hpp>
-#include <dem/cohesion/liquid_bridge.hpp>
-#include <dem/contact/hertz.hpp>
-#include <dem/contact/hysteretic.hpp>
-#include <dem/contact/linear_spring_dashpot.hpp>
-#include <dem/friction/coulomb_viscous.hpp>
-#include <dem/friction/mindlin.hpp>
-#include <dem/friction/none.hpp>
-#include <dem/pipeline/contact_wrench.hpp>
-#include <dem/rolling/torsion.hpp>
+#include <dem/grain/contact_wrench.hpp>
+#include <dem/law/cohesion/dmt.hpp>
+#include <dem/law/cohesion/jkr.hpp>
+#include <dem/law/cohesion/liquid_bridge.hpp>
+#include <dem/law/friction/coulomb_viscous.hpp>
+#include <dem/law/friction/mindlin.hpp>
+#include <dem/law/friction/none.hpp>
+#include <dem/law/normal/hertz.hpp>
+#include <dem/law/normal/hysteretic.hpp>
+#include <dem/law/normal/linear_spring_dashpot.hpp>
+#include <dem/law/rolling/torsion.hpp>
 #include <dem/world/model.hpp>
 
 using Catch::Approx;
@@ -40,8 +40,8 @@ struct Pulling : Model {
 constexpr double radius = 1e-3;
 
 template <class M>
-pipeline::NormalForce<double> at(double overlap, const ContactParameters<M>& p, ContactHistory<M, double>& h) {
-  return pipeline::normal_force<M>(contact::NormalState<double>{overlap, 0.0, radius, 1e-5, 1e-6}, p, h);
+grain::NormalForce<double> at(double overlap, const ContactParameters<M>& p, ContactHistory<M, double>& h) {
+  return grain::normal_force<M>(contact::NormalState<double>{overlap, 0.0, radius, 1e-5, 1e-6}, p, h);
 }
 
 }  // namespace
@@ -83,10 +83,10 @@ TEST_CASE("what limits friction is the repulsion and the grip, never less than n
 TEST_CASE("a contact's wrench has the torque of rolling and torsion, equal and opposite") {
   const ContactParameters<Sticky> p = {{1e8, 0.0}, {0, 0}, {0.2, 1e9, 0.0}, {0.0}};
   const contact::SphereTouch<double> touch = {{2 * radius - 1e-6, 0, 0}, radius, radius};
-  const pipeline::Encounter<double> e = {touch.link, {0, 0, 0}, {3, 0, 0}, {1, 0, 0}, 1e5};
+  const grain::Encounter<double> e = {touch.link, {0, 0, 0}, {3, 0, 0}, {1, 0, 0}, 1e5};
   ContactHistory<Sticky, double> h = {};
   double ratio = 0.0;
-  const auto w = pipeline::contact_wrench<Sticky, double>(touch, e, p, 1e-3, h, ratio);
+  const auto w = grain::contact_wrench<Sticky, double>(touch, e, p, 1e-3, h, ratio);
   // R* = r/2; the spring is stiff, so it is at its limit: mu_t R* Fn against the spin of i.
   const double limit = 0.2 * 0.5 * radius * -w.force.x;
   CHECK(-w.force.x == Approx(4.0 / 3.0 * 1e8 * std::sqrt(0.5 * radius * 1e-6) * 1e-6));
@@ -103,11 +103,11 @@ TEST_CASE("a point of a patch gives its share of what the whole contact gives, b
     using Cohesion = cohesion::JKR;
   };
   const ContactParameters<Elastic> p = {{1e7, 0.3}, {0.5, 3e6, 0.2}, {0.2, 1e3, 0.3}, {0.05, 1e7}};
-  const pipeline::Encounter<double> e = {{0, 0, 2 * radius}, {0.02, -0.01, 0.1}, {3, 4, 5}, {-1, 0, 2}, 1e5};
+  const grain::Encounter<double> e = {{0, 0, 2 * radius}, {0.02, -0.01, 0.1}, {3, 4, 5}, {-1, 0, 2}, 1e5};
   const auto of = [&](double share, ContactHistory<Elastic, double>& h) {
     double overlap_ratio;
     const contact::PointTouch<double> touch = {{0, 0, 1}, 1e-5, {0, 0, radius}, 0.5 * radius, share};
-    return pipeline::contact_wrench<Elastic, double>(touch, e, p, 1e-6, h, overlap_ratio);
+    return grain::contact_wrench<Elastic, double>(touch, e, p, 1e-6, h, overlap_ratio);
   };
   ContactHistory<Elastic, double> whole_history = {}, share_history = {};
   for (int step = 0; step < 3; ++step) {
@@ -131,11 +131,11 @@ TEST_CASE("points that are less than a whole contact together keep its damping r
   };
   const double k = 1000.0, b = 0.3, inverse_mass = 1e5, speed = 0.1, d = 1e-5, share = 0.25;
   const ContactParameters<Damped> p = {{k, b}, {}};
-  const pipeline::Encounter<double> e = {{0, 0, 2 * radius}, {0, 0, speed}, {0, 0, 0}, {0, 0, 0}, inverse_mass};
+  const grain::Encounter<double> e = {{0, 0, 2 * radius}, {0, 0, speed}, {0, 0, 0}, {0, 0, 0}, inverse_mass};
   const contact::PointTouch<double> touch = {{0, 0, 1}, d, {0, 0, radius}, 0.5 * radius, share, share};
   ContactHistory<Damped, double> h = {};
   double overlap_ratio;
-  const double force = -pipeline::contact_wrench<Damped, double>(touch, e, p, 1e-6, h, overlap_ratio).force.z;
+  const double force = -grain::contact_wrench<Damped, double>(touch, e, p, 1e-6, h, overlap_ratio).force.z;
   CHECK(force == Approx(share * k * d + 2.0 * b * std::sqrt(share * k / inverse_mass) * speed).epsilon(1e-14));
 }
 
@@ -143,8 +143,7 @@ TEST_CASE("a normal law that pulls at the end of a contact presses nothing toget
   // Friction limited by a negative force would push along the sliding.
   const ContactParameters<Pulling> p = {contact::LinearSpringDashpot::with_restitution(1e4, 0.3, true), {}};
   ContactHistory<Pulling, double> h = {};
-  const auto parting =
-      pipeline::normal_force<Pulling>(contact::NormalState<double>{1e-8, -1.0, radius, 1e-5, 1e-6}, p, h);
+  const auto parting = grain::normal_force<Pulling>(contact::NormalState<double>{1e-8, -1.0, radius, 1e-5, 1e-6}, p, h);
   CHECK(parting.repulsion < 0.0);
   CHECK(parting.pressing == 0.0);
 }

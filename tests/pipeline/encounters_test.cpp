@@ -1,9 +1,9 @@
-#include <dem/pipeline/encounters.hpp>
+#include <dem/grain/encounters.hpp>
 
 #include "catch.hpp"
 
 using namespace dem;
-using namespace dem::pipeline;
+using namespace dem::grain;
 
 TEST_CASE("partners of a pack come out lane by lane, whatever the width of a pack") {
   // All numbers are small integers and halves, so every sum is exact and the comparisons may be.

@@ -1,16 +1,16 @@
-#include <dem/contact/hysteretic.hpp>
-#include <dem/exec/serial.hpp>
-#include <dem/friction/none.hpp>
+#include <dem/geometry/polyhedron/polyhedra.hpp>
+#include <dem/geometry/sphere/sphere.hpp>
+#include <dem/grain/contact_evaluator.hpp>
 #include <dem/integrator/velocity_verlet.hpp>
-#include <dem/pipeline/contact_evaluator.hpp>
-#include <dem/shape/polyhedra.hpp>
-#include <dem/shape/sphere.hpp>
+#include <dem/law/friction/none.hpp>
+#include <dem/law/normal/hysteretic.hpp>
+#include <dem/parallel/serial.hpp>
 #include <dem/world/world.hpp>
 
 #include "catch.hpp"
 
 using namespace dem;
-using namespace dem::pipeline;
+using namespace dem::grain;
 
 namespace {
 

@@ -1,9 +1,9 @@
 #include "catch.hpp"
 
-#include <dem/friction/none.hpp>
+#include <dem/geometry/mixed.hpp>
+#include <dem/grain/stable_time_step.hpp>
 #include <dem/integrator/velocity_verlet.hpp>
-#include <dem/pipeline/stable_time_step.hpp>
-#include <dem/shape/mixed.hpp>
+#include <dem/law/friction/none.hpp>
 #include <dem/world/model.hpp>
 
 using Catch::Approx;
@@ -30,8 +30,8 @@ double limit(const Shape& shape, double normal, double friction, bool surface = 
   const double density = 2650, mass = density * shape.volume();
   const std::vector<dem::Species<Shape>> species = {
       {shape, material, density, mass, 1 / mass, density * shape.unit_inertia()}};
-  const std::vector<dem::pipeline::SurfaceMatter> surfaces(surface ? 1 : 0, {material});
-  return dem::pipeline::stable_time_step<Model>(species, materials, surfaces, 0.1).value;
+  const std::vector<dem::grain::SurfaceMatter> surfaces(surface ? 1 : 0, {material});
+  return dem::grain::stable_time_step<Model>(species, materials, surfaces, 0.1).value;
 }
 
 const Vec3 radii(1e-3, 1.2e-3, 0.8e-3), exponents(8, 8, 8);

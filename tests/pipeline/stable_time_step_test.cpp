@@ -1,8 +1,8 @@
 #include "world/scenes.hpp"
 
-#include <dem/contact/hertz.hpp>
-#include <dem/friction/cundall_strack.hpp>
-#include <dem/rolling/elastic_plastic.hpp>
+#include <dem/law/friction/cundall_strack.hpp>
+#include <dem/law/normal/hertz.hpp>
+#include <dem/law/rolling/elastic_plastic.hpp>
 
 using Catch::Approx;
 
@@ -52,10 +52,9 @@ TEST_CASE("the smallest, the stiffest and the friction spring limit the time ste
   dem::World<Balls> ramp;
   ramp.set_contact({{2000.0, 0.0, 1.0}, {0.5, 2000.0, 0.3, 0.0}});
   ramp.add_species(Sphere(1e-3));
-  const double n = dem::pipeline::contacts_in_line, w = 7.0 / (2650.0 * Sphere(1e-3).volume());
-  CHECK(ramp.stable_time_step().value ==
-        Approx(dem::pipeline::stable_step(Balls::Integrator::stability_limit, n * 2000.0,
-                                          n * dem::pipeline::damped_share * 0.3, w)));
+  const double n = dem::grain::contacts_in_line, w = 7.0 / (2650.0 * Sphere(1e-3).volume());
+  CHECK(ramp.stable_time_step().value == Approx(dem::grain::stable_step(Balls::Integrator::stability_limit, n * 2000.0,
+                                                                        n * dem::grain::damped_share * 0.3, w)));
   CHECK(ramp.stable_time_step().value < 0.8 * fine);
 
   // A stiff wall counts as soon as it is there.
@@ -72,7 +71,7 @@ TEST_CASE("a damper shortens the step as much as a force that lags by half a ste
   // x'' = -k w x - c w x' with the velocity of the last half step in the force: grows above the limit, dies below.
   const double k = 2000.0, w = 1e5;
   for (const double ratio : {0.0, 0.1, 1.0, 5.0}) {
-    const double c = 2 * ratio * std::sqrt(k / w), limit = dem::pipeline::stable_step(2.0, k, c, w);
+    const double c = 2 * ratio * std::sqrt(k / w), limit = dem::grain::stable_step(2.0, k, c, w);
     const auto grows = [&](double dt) {
       double x = 1.0, v = 0.0;
       for (int step = 0; step < 3000; ++step) {
@@ -85,8 +84,8 @@ TEST_CASE("a damper shortens the step as much as a force that lags by half a ste
     CHECK_FALSE(grows(0.99 * limit));
     CHECK(grows(1.01 * limit));
   }
-  CHECK(dem::pipeline::stable_step(2.0, 0.0, 0.5, w) == Approx(2.0 / (0.5 * w)));  // a damper alone: c w dt < 2
-  CHECK(dem::pipeline::stable_step(2.0, 0.0, 0.0, w) == 1e300);
+  CHECK(dem::grain::stable_step(2.0, 0.0, 0.5, w) == Approx(2.0 / (0.5 * w)));  // a damper alone: c w dt < 2
+  CHECK(dem::grain::stable_step(2.0, 0.0, 0.0, w) == 1e300);
 }
 
 TEST_CASE("laws that stiffen, and rolling springs, limit the time step too") {
@@ -106,9 +105,9 @@ TEST_CASE("laws that stiffen, and rolling springs, limit the time step too") {
   };
   // Hertz at the reported overlap, 2 x limit x R*: the slope 2 E* sqrt(R* d) = 2 E* R* sqrt(2 limit).
   const double m = 2650.0 * Sphere(r).volume(), w = 2 / m * 3.5, k = 2e8 * 0.5 * r * std::sqrt(0.02);
-  const double n = dem::pipeline::contacts_in_line;
+  const double n = dem::grain::contacts_in_line;
   const double soft = limit_of(0.0, 1.0, 1.0, 0.01).value;
-  CHECK(soft == Approx(dem::pipeline::stable_step(2.0, n * k, 0.0, w)).epsilon(1e-12));
+  CHECK(soft == Approx(dem::grain::stable_step(2.0, n * k, 0.0, w)).epsilon(1e-12));
   CHECK(limit_of(0.0, 1.0, 1.0, 0.16).value == Approx(soft / 2));  // the fourth root
   CHECK(limit_of(0.5, 1.0, 1.0, 0.01).value < 0.9 * soft);
   CHECK_THAT(limit_of(0.5, 1.0, 1.0, 0.01).contact, Catch::Matchers::ContainsSubstring("damper"));
@@ -116,7 +115,7 @@ TEST_CASE("laws that stiffen, and rolling springs, limit the time step too") {
   CHECK_THAT(limit_of(0.0, 16 * k, 1.0, 0.01).contact, Catch::Matchers::ContainsSubstring("friction stiffness"));
   // Rolling: kr R*^2 against 2/I, I = 2/5 m r^2. Where friction is as stiff, both turn the grain: their squares add up.
   const auto rolling = limit_of(0.0, 1.0, 1e6, 0.01);
-  CHECK(rolling.value == Approx(dem::pipeline::stable_step(2.0, n * 1e6 * 0.25 * r * r, 0.0, 5 / (m * r * r))));
+  CHECK(rolling.value == Approx(dem::grain::stable_step(2.0, n * 1e6 * 0.25 * r * r, 0.0, 5 / (m * r * r))));
   CHECK_THAT(rolling.contact, Catch::Matchers::ContainsSubstring("rolling stiffness"));
   const double friction = limit_of(0.0, 1e6, 1.0, 0.01).value, both = limit_of(0.0, 1e6, 1e6, 0.01).value;
   CHECK(1 / (both * both) == Approx(1 / (friction * friction) + 1 / (rolling.value * rolling.value)).epsilon(1e-4));

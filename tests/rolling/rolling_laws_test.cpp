@@ -1,11 +1,11 @@
 #include "contact/lanes.hpp"
 #include "core/error_of.hpp"
 
-#include <dem/rolling/constant_torque.hpp>
-#include <dem/rolling/elastic_plastic.hpp>
-#include <dem/rolling/none.hpp>
-#include <dem/rolling/sum.hpp>
-#include <dem/rolling/torsion.hpp>
+#include <dem/law/rolling/constant_torque.hpp>
+#include <dem/law/rolling/elastic_plastic.hpp>
+#include <dem/law/rolling/none.hpp>
+#include <dem/law/rolling/sum.hpp>
+#include <dem/law/rolling/torsion.hpp>
 
 using Catch::Approx;
 using dem::Vec3;

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <dem/shape/shape.hpp>
+#include <dem/geometry/shape.hpp>
 
 #include <vector>
 

@@ -2,11 +2,11 @@
 #include "contacts.hpp"
 #include "random.hpp"
 
+#include <dem/geometry/mixed.hpp>
+#include <dem/geometry/polyhedron/polyhedra.hpp>
+#include <dem/geometry/polyhedron/polyhedron_sphere.hpp>
+#include <dem/geometry/superquadric/superquadric_polyhedron.hpp>
 #include <dem/math/rotation.hpp>
-#include <dem/shape/mixed.hpp>
-#include <dem/shape/polyhedra.hpp>
-#include <dem/shape/polyhedron_sphere.hpp>
-#include <dem/shape/superquadric_polyhedron.hpp>
 
 using Catch::Approx;
 using dem::Ball;

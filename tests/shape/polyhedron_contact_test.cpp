@@ -2,8 +2,8 @@
 #include "contacts.hpp"
 #include "random.hpp"
 
+#include <dem/geometry/polyhedron/polyhedra.hpp>
 #include <dem/math/rotation.hpp>
-#include <dem/shape/polyhedra.hpp>
 
 using Catch::Approx;
 using dem::Mat3;

@@ -1,7 +1,7 @@
 #include "catch.hpp"
 
-#include <dem/shape/polyhedra.hpp>
-#include <dem/shape/polyhedron_sphere.hpp>
+#include <dem/geometry/polyhedron/polyhedra.hpp>
+#include <dem/geometry/polyhedron/polyhedron_sphere.hpp>
 
 #include <random>
 

@@ -2,8 +2,8 @@
 #include "core/error_of.hpp"
 #include "random.hpp"
 
-#include <dem/math/mesh_repair.hpp>
-#include <dem/shape/polyhedra.hpp>
+#include <dem/geometry/mesh/mesh_repair.hpp>
+#include <dem/geometry/polyhedron/polyhedra.hpp>
 
 using Catch::Approx;
 using Catch::Matchers::ContainsSubstring;

@@ -2,8 +2,8 @@
 #include "core/error_of.hpp"
 #include "random.hpp"
 
-#include <dem/shape/sphere.hpp>
-#include <dem/shape/sphere_cluster.hpp>
+#include <dem/geometry/cluster/sphere_cluster.hpp>
+#include <dem/geometry/sphere/sphere.hpp>
 
 #include <array>
 

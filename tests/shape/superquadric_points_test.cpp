@@ -2,8 +2,8 @@
 #include "contacts.hpp"
 #include "random.hpp"
 
-#include <dem/shape/superquadric.hpp>
-#include <dem/shape/superquadric_points.hpp>
+#include <dem/geometry/superquadric/superquadric.hpp>
+#include <dem/geometry/superquadric/superquadric_points.hpp>
 
 #include <numbers>
 

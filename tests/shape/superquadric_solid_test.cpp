@@ -1,7 +1,7 @@
 #include "core/error_of.hpp"
 
-#include <dem/shape/superquadric_integrals.hpp>
-#include <dem/shape/superquadric_skin.hpp>
+#include <dem/geometry/superquadric/superquadric_integrals.hpp>
+#include <dem/geometry/superquadric/superquadric_skin.hpp>
 
 #include <numbers>
 #include <random>

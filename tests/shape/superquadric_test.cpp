@@ -2,9 +2,9 @@
 #include "contacts.hpp"
 #include "random.hpp"
 
+#include <dem/geometry/sphere/sphere.hpp>
+#include <dem/geometry/superquadric/superquadric.hpp>
 #include <dem/math/rotation.hpp>
-#include <dem/shape/sphere.hpp>
-#include <dem/shape/superquadric.hpp>
 
 using Catch::Approx;
 using dem::Mat3;

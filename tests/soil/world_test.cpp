@@ -1,6 +1,6 @@
 #include "catch.hpp"
 
-#include <dem/shape/sphere_cluster.hpp>
+#include <dem/geometry/cluster/sphere_cluster.hpp>
 #include <dem/soil/coordination.hpp>
 #include <dem/soil/packing.hpp>
 #include <dem/soil/rest.hpp>

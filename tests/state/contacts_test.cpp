@@ -1,6 +1,6 @@
 #include "catch.hpp"
 
-#include <dem/state/contacts.hpp>
+#include <dem/grain/contact_list.hpp>
 
 TEST_CASE("the number of committed contacts is that of the last step, whatever the present one finds") {
   dem::ContactMemories<2> memories;

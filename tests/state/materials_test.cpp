@@ -1,9 +1,9 @@
 #include "core/error_of.hpp"
 
-#include <dem/cohesion/liquid_bridge.hpp>
-#include <dem/rolling/elastic_plastic.hpp>
-#include <dem/state/body.hpp>
-#include <dem/state/materials.hpp>
+#include <dem/grain/materials.hpp>
+#include <dem/law/cohesion/liquid_bridge.hpp>
+#include <dem/law/rolling/elastic_plastic.hpp>
+#include <dem/mbd/body.hpp>
 #include <dem/world/model.hpp>
 
 using dem::MaterialId;

@@ -1,6 +1,6 @@
 #include "catch.hpp"
 
-#include <dem/surface/box_tree.hpp>
+#include <dem/geometry/mesh/bounding_volume_tree.hpp>
 
 #include <functional>
 #include <random>

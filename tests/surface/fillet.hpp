@@ -1,6 +1,6 @@
 #pragma once
 
-#include <dem/math/indexed_mesh.hpp>
+#include <dem/geometry/mesh/indexed_mesh.hpp>
 
 #include <cmath>
 #include <numbers>

@@ -1,10 +1,10 @@
 #include "catch.hpp"
 #include "random.hpp"
 
-#include <dem/pipeline/follow_turns.hpp>
+#include <dem/coupling/follow_turns.hpp>
 
 using dem::Vec3;
-using dem::pipeline::Hit;
+using dem::grain::Hit;
 using Memory = dem::ContactMemory<1>;
 
 namespace {
@@ -35,7 +35,7 @@ std::vector<double> recalled(const Step& before, std::vector<std::uint64_t> keys
   std::sort(sorted.begin(), sorted.end());
   std::vector<Hit> hits;
   for (const std::uint64_t k : sorted) hits.push_back({k, 0, 0, 0});
-  dem::pipeline::follow_turns(std::span<const Hit>(hits), m, [&](std::uint64_t) { return have_directions; });
+  dem::coupling::follow_turns(std::span<const Hit>(hits), m, [&](std::uint64_t) { return have_directions; });
   CHECK(std::is_sorted(m.key.begin(), m.key.begin() + m.count));
   std::vector<double> values;
   for (const std::uint64_t k : keys) {

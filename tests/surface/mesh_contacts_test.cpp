@@ -2,8 +2,8 @@
 #include "random.hpp"
 #include "touches.hpp"
 
-#include <dem/math/mesh_shapes.hpp>
-#include <dem/surface/triangle_mesh.hpp>
+#include <dem/geometry/mesh/mesh_shapes.hpp>
+#include <dem/geometry/mesh/triangle_mesh.hpp>
 
 #include <set>
 

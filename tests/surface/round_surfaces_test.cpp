@@ -2,9 +2,9 @@
 #include "random.hpp"
 #include "touches.hpp"
 
-#include <dem/surface/cylinder.hpp>
-#include <dem/surface/sphere.hpp>
-#include <dem/surface/superquadric.hpp>
+#include <dem/geometry/cylinder/cylinder.hpp>
+#include <dem/geometry/sphere/sphere_surface.hpp>
+#include <dem/geometry/superquadric/superquadric_surface.hpp>
 
 using Catch::Approx;
 using dem::Vec3;

@@ -1,8 +1,8 @@
 #include "core/error_of.hpp"
 #include "touches.hpp"
 
-#include <dem/surface/box.hpp>
-#include <dem/surface/plane.hpp>
+#include <dem/geometry/box/box.hpp>
+#include <dem/geometry/plane/plane.hpp>
 
 #include <random>
 

@@ -2,9 +2,9 @@
 #include "random.hpp"
 #include "touches.hpp"
 
-#include <dem/math/mesh_shapes.hpp>
-#include <dem/surface/box.hpp>
-#include <dem/surface/triangle_mesh.hpp>
+#include <dem/geometry/box/box.hpp>
+#include <dem/geometry/mesh/mesh_shapes.hpp>
+#include <dem/geometry/mesh/triangle_mesh.hpp>
 
 #include <set>
 

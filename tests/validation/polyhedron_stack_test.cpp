@@ -1,6 +1,6 @@
 #include "world/scenes.hpp"
 
-#include <dem/shape/polyhedra.hpp>
+#include <dem/geometry/polyhedron/polyhedra.hpp>
 
 TEST_CASE("a stack of five cubes, put down askew, stands still for ten seconds") {
   using Sharp = Grains<dem::shape::Polyhedron, dem::integrator::VelocityVerlet>;

@@ -2,9 +2,9 @@
 
 #include "world/scenes.hpp"
 
-#include <dem/rolling/torsion.hpp>
-#include <dem/shape/superquadric.hpp>
-#include <dem/shape/superquadric_points.hpp>
+#include <dem/geometry/superquadric/superquadric.hpp>
+#include <dem/geometry/superquadric/superquadric_points.hpp>
+#include <dem/law/rolling/torsion.hpp>
 
 using dem::shape::Superquadric;
 using dem::shape::SuperquadricPoints;

@@ -1,7 +1,7 @@
 #include "core/error_of.hpp"
 #include "world/laws.hpp"
 
-#include <dem/math/mesh_shapes.hpp>
+#include <dem/geometry/mesh/mesh_shapes.hpp>
 
 using Catch::Approx;
 using dem::surface::Box;

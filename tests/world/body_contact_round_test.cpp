@@ -1,9 +1,9 @@
 #include "core/error_of.hpp"
 #include "world/laws.hpp"
 
-#include <dem/contact/elastic.hpp>
-#include <dem/math/mesh_shapes.hpp>
-#include <dem/surface/superquadric.hpp>
+#include <dem/geometry/mesh/mesh_shapes.hpp>
+#include <dem/geometry/superquadric/superquadric_surface.hpp>
+#include <dem/law/normal/elastic.hpp>
 
 using Catch::Approx;
 using dem::mbd::box_body;

@@ -1,9 +1,9 @@
 #include "core/error_of.hpp"
 #include "scenes.hpp"
 
-#include <dem/contact/linear_spring_dashpot.hpp>
-#include <dem/math/mesh_shapes.hpp>
-#include <dem/surface/superquadric.hpp>
+#include <dem/geometry/mesh/mesh_shapes.hpp>
+#include <dem/geometry/superquadric/superquadric_surface.hpp>
+#include <dem/law/normal/linear_spring_dashpot.hpp>
 
 using Catch::Approx;
 using dem::BodyId;

@@ -1,7 +1,7 @@
 #include "scenes.hpp"
 
-#include <dem/contact/linear_spring_dashpot.hpp>
-#include <dem/surface/box.hpp>
+#include <dem/geometry/box/box.hpp>
+#include <dem/law/normal/linear_spring_dashpot.hpp>
 
 #include <array>
 

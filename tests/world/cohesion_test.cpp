@@ -1,7 +1,7 @@
 #include "world/laws.hpp"
 
-#include <dem/shape/mixed.hpp>
-#include <dem/shape/superquadric.hpp>
+#include <dem/geometry/mixed.hpp>
+#include <dem/geometry/superquadric/superquadric.hpp>
 
 using Catch::Approx;
 

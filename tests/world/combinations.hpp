@@ -2,11 +2,11 @@
 
 #include "world/laws.hpp"
 
-#include <dem/cohesion/dmt.hpp>
-#include <dem/shape/mixed.hpp>
-#include <dem/shape/polyhedra.hpp>
-#include <dem/shape/polyhedron_sphere.hpp>
-#include <dem/shape/superquadric_polyhedron.hpp>
+#include <dem/geometry/mixed.hpp>
+#include <dem/geometry/polyhedron/polyhedra.hpp>
+#include <dem/geometry/polyhedron/polyhedron_sphere.hpp>
+#include <dem/geometry/superquadric/superquadric_polyhedron.hpp>
+#include <dem/law/cohesion/dmt.hpp>
 
 // Every kind of grain under laws that it was not made for: laws are those of a whole contact, shapes hand over points
 // of patches, and a run shows whether the two fit.

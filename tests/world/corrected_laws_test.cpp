@@ -1,6 +1,6 @@
 #include "world/combinations.hpp"
 
-#include <dem/math/mesh_shapes.hpp>
+#include <dem/geometry/mesh/mesh_shapes.hpp>
 
 // The predictor-corrector evaluates every contact twice a step, and what contacts remember is kept of the second time
 // only: with every kind of memory, and every kind of grain that renames its points, it must tell the same as an

@@ -1,9 +1,9 @@
 #include "world/laws.hpp"
 
-#include <dem/math/mesh_shapes.hpp>
-#include <dem/shape/polyhedra.hpp>
-#include <dem/shape/superquadric.hpp>
-#include <dem/shape/superquadric_points.hpp>
+#include <dem/geometry/mesh/mesh_shapes.hpp>
+#include <dem/geometry/polyhedron/polyhedra.hpp>
+#include <dem/geometry/superquadric/superquadric.hpp>
+#include <dem/geometry/superquadric/superquadric_points.hpp>
 
 using dem::surface::TriangleMesh;
 

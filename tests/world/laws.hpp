@@ -4,21 +4,21 @@
 
 #include "world/scenes.hpp"
 
-#include <dem/cohesion/constant.hpp>
-#include <dem/cohesion/jkr.hpp>
-#include <dem/cohesion/liquid_bridge.hpp>
-#include <dem/contact/hertz.hpp>
-#include <dem/contact/hysteretic.hpp>
-#include <dem/contact/linear_spring_dashpot.hpp>
-#include <dem/friction/coulomb_viscous.hpp>
-#include <dem/friction/cundall_strack.hpp>
-#include <dem/friction/mindlin.hpp>
-#include <dem/friction/none.hpp>
-#include <dem/friction/varying.hpp>
-#include <dem/rolling/constant_torque.hpp>
-#include <dem/rolling/elastic_plastic.hpp>
-#include <dem/rolling/sum.hpp>
-#include <dem/rolling/torsion.hpp>
+#include <dem/law/cohesion/constant.hpp>
+#include <dem/law/cohesion/jkr.hpp>
+#include <dem/law/cohesion/liquid_bridge.hpp>
+#include <dem/law/friction/coulomb_viscous.hpp>
+#include <dem/law/friction/cundall_strack.hpp>
+#include <dem/law/friction/mindlin.hpp>
+#include <dem/law/friction/none.hpp>
+#include <dem/law/friction/varying.hpp>
+#include <dem/law/normal/hertz.hpp>
+#include <dem/law/normal/hysteretic.hpp>
+#include <dem/law/normal/linear_spring_dashpot.hpp>
+#include <dem/law/rolling/constant_torque.hpp>
+#include <dem/law/rolling/elastic_plastic.hpp>
+#include <dem/law/rolling/sum.hpp>
+#include <dem/law/rolling/torsion.hpp>
 
 using namespace dem;
 

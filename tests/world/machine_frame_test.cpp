@@ -3,7 +3,7 @@
 #include "catch.hpp"
 
 #include <dem/dem.hpp>
-#include <dem/math/mesh_shapes.hpp>
+#include <dem/geometry/mesh/mesh_shapes.hpp>
 #include <dem/mbd/mbd.hpp>
 
 using dem::BodyId;

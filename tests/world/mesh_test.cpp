@@ -1,6 +1,6 @@
 #include "scenes.hpp"
 
-#include <dem/math/mesh_shapes.hpp>
+#include <dem/geometry/mesh/mesh_shapes.hpp>
 
 using Catch::Approx;
 using dem::surface::MeshSide;

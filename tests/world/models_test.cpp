@@ -1,6 +1,6 @@
 #include "scenes.hpp"
 
-#include <dem/friction/none.hpp>
+#include <dem/law/friction/none.hpp>
 
 using Catch::Approx;
 using namespace dem;

@@ -1,11 +1,11 @@
 #include "scenes.hpp"
 
-#include <dem/contact/hertz.hpp>
-#include <dem/contact/linear_spring_dashpot.hpp>
-#include <dem/friction/none.hpp>
-#include <dem/shape/mixed.hpp>
-#include <dem/shape/polyhedra.hpp>
-#include <dem/shape/polyhedron_sphere.hpp>
+#include <dem/geometry/mixed.hpp>
+#include <dem/geometry/polyhedron/polyhedra.hpp>
+#include <dem/geometry/polyhedron/polyhedron_sphere.hpp>
+#include <dem/law/friction/none.hpp>
+#include <dem/law/normal/hertz.hpp>
+#include <dem/law/normal/linear_spring_dashpot.hpp>
 
 using Catch::Approx;
 using dem::shape::Polyhedron;

@@ -166,8 +166,8 @@ TEST_CASE("torques of rolling and torsion are equal and opposite") {
 TEST_CASE("a rolling memory seen from the other grain points the other way, and a twist stays") {
   constexpr int size = history_size<SpringModel>;
   STATIC_REQUIRE(size == 3 + 3 + 1);
-  pipeline::Remembered<size> memory = {3, 5, 0, {1, 2, 3, 4, 5, 6, 7}};
-  pipeline::mirror<SpringModel>(memory);
+  grain::Remembered<size> memory = {3, 5, 0, {1, 2, 3, 4, 5, 6, 7}};
+  grain::mirror<SpringModel>(memory);
   CHECK(memory.i == 5);
   CHECK(memory.history == std::array<double, 7>{-1, -2, -3, -4, -5, -6, 7});
 }

@@ -1,9 +1,9 @@
 #include "scenes.hpp"
 
-#include <dem/math/mesh_shapes.hpp>
-#include <dem/shape/mixed.hpp>
-#include <dem/shape/polyhedra.hpp>
-#include <dem/shape/superquadric_polyhedron.hpp>
+#include <dem/geometry/mesh/mesh_shapes.hpp>
+#include <dem/geometry/mixed.hpp>
+#include <dem/geometry/polyhedron/polyhedra.hpp>
+#include <dem/geometry/superquadric/superquadric_polyhedron.hpp>
 
 using Catch::Approx;
 using dem::shape::Superquadric;

@@ -1,10 +1,10 @@
 #include "scenes.hpp"
 #include "surface/fillet.hpp"
 
-#include <dem/contact/hysteretic.hpp>
-#include <dem/math/mesh_shapes.hpp>
-#include <dem/shape/superquadric.hpp>
-#include <dem/surface/superquadric.hpp>
+#include <dem/geometry/mesh/mesh_shapes.hpp>
+#include <dem/geometry/superquadric/superquadric.hpp>
+#include <dem/geometry/superquadric/superquadric_surface.hpp>
+#include <dem/law/normal/hysteretic.hpp>
 
 using Catch::Approx;
 namespace surface = dem::surface;

@@ -5,12 +5,12 @@
 #include "catch.hpp"
 #include "random.hpp"
 
-#include <dem/broadphase/all_pairs.hpp>
-#include <dem/exec/serial.hpp>
+#include <dem/geometry/cluster/sphere_cluster.hpp>
+#include <dem/grain/broadphase/all_pairs.hpp>
 #include <dem/integrator/symplectic_euler.hpp>
 #include <dem/integrator/velocity_verlet.hpp>
 #include <dem/math/rotation.hpp>
-#include <dem/shape/sphere_cluster.hpp>
+#include <dem/parallel/serial.hpp>
 #include <dem/world/world.hpp>
 
 #include <vector>

@@ -1,11 +1,11 @@
 #include "scenes.hpp"
 
-#include <dem/math/mesh_shapes.hpp>
-#include <dem/shape/mixed.hpp>
-#include <dem/shape/polyhedra.hpp>
-#include <dem/surface/cylinder.hpp>
-#include <dem/surface/superquadric.hpp>
-#include <dem/surface/triangle_mesh.hpp>
+#include <dem/geometry/cylinder/cylinder.hpp>
+#include <dem/geometry/mesh/mesh_shapes.hpp>
+#include <dem/geometry/mesh/triangle_mesh.hpp>
+#include <dem/geometry/mixed.hpp>
+#include <dem/geometry/polyhedron/polyhedra.hpp>
+#include <dem/geometry/superquadric/superquadric_surface.hpp>
 
 using Catch::Approx;
 using dem::shape::Polyhedron;

@@ -1,6 +1,6 @@
 #include "scenes.hpp"
 
-#include <dem/shape/mixed.hpp>
+#include <dem/geometry/mixed.hpp>
 
 using Catch::Approx;
 using dem::shape::Mixed;

@@ -1,11 +1,11 @@
 #include "core/error_of.hpp"
 #include "scenes.hpp"
 
-#include <dem/math/mesh_shapes.hpp>
-#include <dem/shape/mixed.hpp>
-#include <dem/shape/polyhedra.hpp>
-#include <dem/shape/polyhedron_sphere.hpp>
-#include <dem/shape/superquadric.hpp>
+#include <dem/geometry/mesh/mesh_shapes.hpp>
+#include <dem/geometry/mixed.hpp>
+#include <dem/geometry/polyhedron/polyhedra.hpp>
+#include <dem/geometry/polyhedron/polyhedron_sphere.hpp>
+#include <dem/geometry/superquadric/superquadric.hpp>
 
 using dem::shape::Mixed;
 using dem::shape::Polyhedron;

@@ -1,14 +1,14 @@
 #pragma once
 // Surfaces of machine parts as meshes to look at.
 
+#include <dem/geometry/box/box.hpp>
+#include <dem/geometry/cylinder/cylinder.hpp>
+#include <dem/geometry/mesh/mesh_shapes.hpp>
+#include <dem/geometry/mesh/triangle_mesh.hpp>
+#include <dem/geometry/plane/plane.hpp>
+#include <dem/geometry/sphere/sphere_surface.hpp>
+#include <dem/geometry/superquadric/superquadric_surface.hpp>
 #include <dem/io/surface_mesh.hpp>
-#include <dem/math/mesh_shapes.hpp>
-#include <dem/surface/box.hpp>
-#include <dem/surface/cylinder.hpp>
-#include <dem/surface/plane.hpp>
-#include <dem/surface/sphere.hpp>
-#include <dem/surface/superquadric.hpp>
-#include <dem/surface/triangle_mesh.hpp>
 
 #include <variant>
 

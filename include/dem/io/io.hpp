@@ -1,12 +1,6 @@
 #pragma once
-// The whole io layer: progress and Ctrl-C, tables on the terminal and in CSV files, ParaView files, plots, reports.
-// POSIX; nothing here knows about a World: <dem/io/vtk_grains.hpp> and <dem/io/vtk_machine.hpp> do.
+// Files: tables in CSV, frames for ParaView. POSIX. Nothing here knows about a World: <dem/io/vtk_grains.hpp> and
+// <dem/io/vtk_machine.hpp> do. Progress, plots and reports are <dem/report/report.hpp>.
 
-#include <dem/io/ascii_table.hpp>
-#include <dem/io/columns.hpp>
 #include <dem/io/csv.hpp>
-#include <dem/io/html_report.hpp>
-#include <dem/io/interrupt.hpp>
-#include <dem/io/plot.hpp>
-#include <dem/io/progress.hpp>
 #include <dem/io/vtk.hpp>

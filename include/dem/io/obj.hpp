@@ -1,9 +1,9 @@
 #pragma once
 // Triangle meshes in OBJ files (Wavefront): vertices and faces; everything else in such a file is skipped.
 
+#include <dem/geometry/mesh/indexed_mesh.hpp>
 #include <dem/io/file.hpp>
 #include <dem/io/mesh_text.hpp>
-#include <dem/math/indexed_mesh.hpp>
 
 namespace dem::io {
 

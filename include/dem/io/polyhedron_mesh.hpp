@@ -1,8 +1,8 @@
 #pragma once
 // Polyhedral grains as meshes for write_vtk_bodies: one BodyMesh a grain, which may share the mesh of their species.
 
+#include <dem/geometry/polyhedron/polyhedron.hpp>
 #include <dem/io/surface_mesh.hpp>
-#include <dem/shape/polyhedron.hpp>
 
 namespace dem::io {
 

@@ -1,9 +1,9 @@
 #pragma once
 // Triangle meshes in STL files, ascii and binary (the format of stereolithography, 3D Systems 1989).
 
+#include <dem/geometry/mesh/indexed_mesh.hpp>
 #include <dem/io/file.hpp>
 #include <dem/io/mesh_text.hpp>
-#include <dem/math/indexed_mesh.hpp>
 
 #include <bit>
 #include <cstdint>
@@ -95,8 +95,8 @@ inline IndexedMesh read_ascii_stl(std::string_view text, const std::string& file
 }  // namespace detail
 
 /// The mesh in the bytes of an STL file; `file` is its name for messages. Each triangle has vertices of its own:
-/// `repaired` (math/mesh_repair.hpp), which surface::TriangleMesh calls, merges them. Lengths are as in the file, often
-/// mm: use IndexedMesh::scaled. Throws Error, with line or byte, for everything that is not an STL file.
+/// `repaired` (geometry/mesh/mesh_repair.hpp), which surface::TriangleMesh calls, merges them. Lengths are as in the
+/// file, often mm: use IndexedMesh::scaled. Throws Error, with line or byte, for everything that is not an STL file.
 [[nodiscard]] inline IndexedMesh parse_stl(std::string_view bytes, const std::string& file) {
   // A binary header may begin with "solid", too: a file of just the length that byte 80 announces is binary.
   const bool has_header = bytes.size() >= detail::stl_header;

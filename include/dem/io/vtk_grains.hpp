@@ -2,9 +2,9 @@
 // Grains of any shape for ParaView (.vtp): each drawn with the mesh of its species.
 
 #include <dem/core/ids.hpp>
+#include <dem/geometry/mixed.hpp>
 #include <dem/io/polyhedron_mesh.hpp>
 #include <dem/io/vtk_bodies.hpp>
-#include <dem/shape/mixed.hpp>
 
 namespace dem::io {
 

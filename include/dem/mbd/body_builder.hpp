@@ -1,7 +1,7 @@
 #pragma once
 
+#include <dem/mbd/body.hpp>
 #include <dem/mbd/body_mass.hpp>
-#include <dem/state/body.hpp>
 
 #include <string>
 #include <utility>

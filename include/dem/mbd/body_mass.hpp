@@ -1,8 +1,8 @@
 #pragma once
 
 #include <dem/core/error.hpp>
-#include <dem/math/mass_properties.hpp>
-#include <dem/math/mesh_topology.hpp>
+#include <dem/geometry/mass_properties.hpp>
+#include <dem/geometry/mesh/mesh_topology.hpp>
 
 #include <array>
 #include <cstdint>

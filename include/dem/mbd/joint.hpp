@@ -5,9 +5,9 @@
 // stiffness k, is exactly Hold::point with k and Align::parallel with k h^2, evaluated in closed form.
 
 #include <dem/core/macros.hpp>
+#include <dem/mbd/body.hpp>
 #include <dem/mbd/bushing.hpp>
 #include <dem/mbd/joint_spec.hpp>
-#include <dem/state/body.hpp>
 
 #include <cmath>
 #include <numbers>

@@ -1,7 +1,7 @@
 #pragma once
 
 #include <dem/core/macros.hpp>
-#include <dem/friction/asperity_spring.hpp>
+#include <dem/law/friction/asperity_spring.hpp>
 #include <dem/mbd/coordinate.hpp>
 
 namespace dem::mbd {

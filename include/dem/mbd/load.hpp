@@ -1,10 +1,10 @@
 #pragma once
 
 #include <dem/core/error.hpp>
+#include <dem/mbd/body.hpp>
 #include <dem/mbd/ids.hpp>
 #include <dem/mbd/signal.hpp>
 #include <dem/mbd/wrench.hpp>
-#include <dem/state/body.hpp>
 
 #include <functional>
 #include <string>

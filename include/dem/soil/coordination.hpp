@@ -1,8 +1,8 @@
 #pragma once
 
-#include <dem/broadphase/uniform_grid.hpp>
 #include <dem/core/aligned.hpp>
 #include <dem/core/ids.hpp>
+#include <dem/grain/broadphase/uniform_grid.hpp>
 #include <dem/math/vector.hpp>
 
 #include <cstddef>

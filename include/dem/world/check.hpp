@@ -63,7 +63,7 @@ StepReport find_problem(WorldState<Model>& w) {
     }
   }
   if (w.body_contacts.worst_overlap > w.options.overlap_limit) [[unlikely]] {
-    const pipeline::BodyPair& pair = w.body_contacts.pairs[w.body_contacts.worst_pair];
+    const coupling::BodyPair& pair = w.body_contacts.pairs[w.body_contacts.worst_pair];
     const auto body = [&](SurfaceId s) { return w.machine.bodies()[w.surfaces[s.index()].body.index()].name; };
     return problem(
         StepReport::Problem::overlap, p.count,

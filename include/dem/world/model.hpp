@@ -1,18 +1,18 @@
 #pragma once
 
-#include <dem/broadphase/uniform_grid.hpp>
-#include <dem/cohesion/none.hpp>
-#include <dem/contact/penalty.hpp>
-#include <dem/exec/openmp.hpp>
-#include <dem/friction/asperity_spring.hpp>
+#include <dem/geometry/box/box.hpp>
+#include <dem/geometry/cylinder/cylinder.hpp>
+#include <dem/geometry/mesh/triangle_mesh.hpp>
+#include <dem/geometry/plane/plane.hpp>
+#include <dem/geometry/sphere/sphere.hpp>
+#include <dem/geometry/sphere/sphere_surface.hpp>
+#include <dem/grain/broadphase/uniform_grid.hpp>
 #include <dem/integrator/predictor_corrector.hpp>
-#include <dem/rolling/none.hpp>
-#include <dem/shape/sphere.hpp>
-#include <dem/surface/box.hpp>
-#include <dem/surface/cylinder.hpp>
-#include <dem/surface/plane.hpp>
-#include <dem/surface/sphere.hpp>
-#include <dem/surface/triangle_mesh.hpp>
+#include <dem/law/cohesion/none.hpp>
+#include <dem/law/friction/asperity_spring.hpp>
+#include <dem/law/normal/penalty.hpp>
+#include <dem/law/rolling/none.hpp>
+#include <dem/parallel/openmp.hpp>
 
 namespace dem {
 

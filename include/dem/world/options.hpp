@@ -1,9 +1,9 @@
 #pragma once
 
 #include <dem/core/ids.hpp>
+#include <dem/geometry/surface.hpp>
 #include <dem/math/vector.hpp>
-#include <dem/state/body.hpp>
-#include <dem/surface/surface.hpp>
+#include <dem/mbd/body.hpp>
 
 #include <optional>
 #include <string>

@@ -1,11 +1,11 @@
 #pragma once
 
+#include <dem/coupling/body_contacts.hpp>
+#include <dem/coupling/body_stability.hpp>
+#include <dem/coupling/machine_surface.hpp>
+#include <dem/grain/materials.hpp>
+#include <dem/grain/neighbours.hpp>
 #include <dem/mbd/machine.hpp>
-#include <dem/pipeline/body_contacts.hpp>
-#include <dem/pipeline/body_stability.hpp>
-#include <dem/pipeline/neighbours.hpp>
-#include <dem/state/machine_surface.hpp>
-#include <dem/state/materials.hpp>
 #include <dem/world/model.hpp>
 #include <dem/world/options.hpp>
 #include <dem/world/stopwatch.hpp>
@@ -43,7 +43,7 @@ struct WorldState {
   std::vector<Chunk<Model>> chunks;
   typename Model::BroadPhase broad_phase;
   std::vector<std::uint32_t> incoming_first;
-  std::vector<pipeline::Incoming> incoming;
+  std::vector<grain::Incoming> incoming;
   double list_skin = 0.0;                ///< m, with which the neighbour list was made
   bool list_valid = false;               ///< false after grains were added or moved by hand
   std::uint64_t rebuilds = 0;            ///< neighbour lists made
@@ -53,7 +53,7 @@ struct WorldState {
   mbd::Machine<Integrator> machine;
   std::vector<Surface> surfaces;
   std::vector<SurfaceSensor> surface_sensors;
-  pipeline::BodyContacts<Model> body_contacts;
+  coupling::BodyContacts<Model> body_contacts;
   typename Model::Executor executor;
   Stopwatch stopwatch;
 
@@ -73,12 +73,12 @@ bool neighbours_outdated(const WorldState<Model>& w) {
 template <class Model>
 void rebuild_neighbours(WorldState<Model>& w) {
   auto& p = w.particles;
-  std::vector<pipeline::Remembered<history_size<Model>>> pairs, surfaces;
-  pipeline::collect_memories<Model>(std::span<const Chunk<Model>>(w.chunks), p, pairs, surfaces);
+  std::vector<grain::Remembered<history_size<Model>>> pairs, surfaces;
+  grain::collect_memories<Model>(std::span<const Chunk<Model>>(w.chunks), p, pairs, surfaces);
   if (!w.to_remove.empty()) {
     p.remove(w.to_remove);
     w.to_remove.clear();
-    pipeline::forget_removed(p, pairs, surfaces);
+    grain::forget_removed(p, pairs, surfaces);
   }
 
   if (p.count == 0) {
@@ -102,11 +102,11 @@ void rebuild_neighbours(WorldState<Model>& w) {
 
   w.chunks.resize(p.chunks());
   w.executor.for_each(w.chunks.size(), [&](std::size_t c) {
-    pipeline::list_candidates<Model>(c, w.chunks[c], p, w.broad_phase, w.species, w.materials.range() + w.skin());
-    pipeline::refresh_chunk<Model>(c, w.chunks[c], p, w.species);
+    grain::list_candidates<Model>(c, w.chunks[c], p, w.broad_phase, w.species, w.materials.range() + w.skin());
+    grain::refresh_chunk<Model>(c, w.chunks[c], p, w.species);
   });
-  pipeline::list_incoming<Model>(std::span<const Chunk<Model>>(w.chunks), p.count, w.incoming_first, w.incoming);
-  pipeline::return_memories<Model>(std::span<Chunk<Model>>(w.chunks), p, pairs, surfaces);
+  grain::list_incoming<Model>(std::span<const Chunk<Model>>(w.chunks), p.count, w.incoming_first, w.incoming);
+  grain::return_memories<Model>(std::span<Chunk<Model>>(w.chunks), p, pairs, surfaces);
   w.list_valid = true;
   w.list_skin = w.skin();
   ++w.rebuilds;
@@ -124,10 +124,10 @@ void find_points_deep_enough(WorldState<Model>& w) {
         surface.geometry);
   };
   for (auto& s : w.surfaces) find_to(s, w.largest_radius);
-  for (const pipeline::BodyPair& pair : w.body_contacts.pairs) {
+  for (const coupling::BodyPair& pair : w.body_contacts.pairs) {
     auto &a = w.surfaces[pair.a.index()], &b = w.surfaces[pair.b.index()];
-    find_to(a, pipeline::point_radius(b));
-    find_to(b, pipeline::point_radius(a));
+    find_to(a, coupling::point_radius(b));
+    find_to(b, coupling::point_radius(a));
   }
 }
 
@@ -143,7 +143,7 @@ void sample_surface_sensors(WorldState<Model>& w) {
   for (SurfaceSensor& s : w.surface_sensors) {
     const auto& surface = w.surfaces[s.surface.index()];
     mbd::Wrench load = {surface.force, surface.torque};
-    for (const pipeline::BodyPair& pair : w.body_contacts.pairs) {
+    for (const coupling::BodyPair& pair : w.body_contacts.pairs) {
       if (pair.a == s.surface) load = load + mbd::Wrench{pair.force, pair.torque_a};
       if (pair.b == s.surface) load = load + mbd::Wrench{-pair.force, pair.torque_b};
     }

@@ -1,8 +1,8 @@
 #pragma once
 
-#include <dem/pipeline/move.hpp>
-#include <dem/pipeline/pair_contacts.hpp>
-#include <dem/pipeline/surface_contacts.hpp>
+#include <dem/coupling/surface_contacts.hpp>
+#include <dem/grain/move.hpp>
+#include <dem/grain/pair_contacts.hpp>
 #include <dem/world/state.hpp>
 
 namespace dem {
@@ -18,13 +18,13 @@ void find_contacts(WorldState<Model>& w) {
   w.stopwatch.start();
   follow_bodies(w);
   w.executor.for_each(w.chunks.size(), [&](std::size_t c) {
-    thread_local pipeline::PairScratch<Model> pair_scratch;
-    thread_local pipeline::SurfaceScratch surface_scratch;
-    pipeline::ForceSums sums;
-    pipeline::find_pair_contacts<Model>(c, w.chunks[c], w.particles, w.species, w.materials, w.time_step, sums,
-                                        pair_scratch);
+    thread_local grain::PairScratch<Model> pair_scratch;
+    thread_local coupling::SurfaceScratch surface_scratch;
+    grain::ForceSums sums;
+    grain::find_pair_contacts<Model>(c, w.chunks[c], w.particles, w.species, w.materials, w.time_step, sums,
+                                     pair_scratch);
     const double start = w.stopwatch.clock();
-    pipeline::find_surface_contacts<Model>(c, w.chunks[c], w.particles, std::span(std::as_const(w.species)),
+    coupling::find_surface_contacts<Model>(c, w.chunks[c], w.particles, std::span(std::as_const(w.species)),
                                            w.materials, std::span(std::as_const(w.surfaces)), w.largest_radius,
                                            w.time_step, sums, surface_scratch);
     w.chunks[c].surface_seconds += w.stopwatch.clock() - start;
@@ -34,7 +34,7 @@ void find_contacts(WorldState<Model>& w) {
   w.stopwatch.start();
   w.machine.clear_forces();
   load_bodies(w);
-  pipeline::find_body_contacts<Model>(w.body_contacts, std::span(std::as_const(w.surfaces)), w.materials,
+  coupling::find_body_contacts<Model>(w.body_contacts, std::span(std::as_const(w.surfaces)), w.materials,
                                       std::span(w.machine.bodies()), w.time_step);
   w.stopwatch.stop(Phase::machine);
 }
@@ -71,13 +71,13 @@ template <class Model>
 void advance(WorldState<Model>& w) {
   using Integrator = typename Model::Integrator;
   const Vec3& gravity = w.options.gravity;
-  const bool clean_rotations = w.step % pipeline::steps_between_orthonormalisations == 0;
+  const bool clean_rotations = w.step % grain::steps_between_orthonormalisations == 0;
 
   for (int stage = 0; stage < Integrator::stages; ++stage) {
     const bool last = stage + 1 == Integrator::stages;
     if constexpr (Integrator::predicts_before_forces) {
       w.executor.for_each(w.chunks.size(), [&](std::size_t c) {
-        pipeline::predict_chunk<Model>(c, w.chunks[c], w.particles, w.species, stage, w.time_step);
+        grain::predict_chunk<Model>(c, w.chunks[c], w.particles, w.species, stage, w.time_step);
       });
       predict_machine(w, stage);
     }
@@ -89,9 +89,9 @@ void advance(WorldState<Model>& w) {
 
     w.stopwatch.start();
     w.executor.for_each(w.chunks.size(), [&](std::size_t c) {
-      pipeline::gather_forces<Model>(c, w.chunks, w.particles, w.incoming_first, w.incoming);
-      pipeline::move_chunk<Model>(c, w.chunks[c], w.particles, w.species, w.inertia, gravity, stage, w.time_step,
-                                  clean_rotations && last);
+      grain::gather_forces<Model>(c, w.chunks, w.particles, w.incoming_first, w.incoming);
+      grain::move_chunk<Model>(c, w.chunks[c], w.particles, w.species, w.inertia, gravity, stage, w.time_step,
+                               clean_rotations && last);
       if (last) w.chunks[c].commit();
     });
     if (last) w.body_contacts.memories.commit();
@@ -108,12 +108,12 @@ template <class Model>
 void initialise(WorldState<Model>& w) {
   if (w.list_valid) {
     w.executor.for_each(w.chunks.size(),
-                        [&](std::size_t c) { pipeline::refresh_chunk<Model>(c, w.chunks[c], w.particles, w.species); });
+                        [&](std::size_t c) { grain::refresh_chunk<Model>(c, w.chunks[c], w.particles, w.species); });
   }
   find_contacts(w);
   w.executor.for_each(w.chunks.size(), [&](std::size_t c) {
-    pipeline::gather_forces<Model>(c, w.chunks, w.particles, w.incoming_first, w.incoming);
-    pipeline::initialise_chunk<Model>(c, w.particles, w.inertia, w.options.gravity);
+    grain::gather_forces<Model>(c, w.chunks, w.particles, w.incoming_first, w.incoming);
+    grain::initialise_chunk<Model>(c, w.particles, w.inertia, w.options.gravity);
   });
   w.machine.initialise(w.time, w.options.gravity);
 }

@@ -28,7 +28,7 @@ template <class Shape>
 bool meets_with_points(const Shape& shape) {
   bool any = false;
   shape::visit_kind(shape, [&]<class Kind>(const Kind& grain) {
-    if (pipeline::touches_as_ball(grain)) return;
+    if (coupling::touches_as_ball(grain)) return;
     std::array<double, std::max(1, Kind::pose_size)> pose = {};
     if constexpr (Kind::pose_size > 0) grain.orient(Matrix3<double>::identity(), pose.data());
     grain.probe(pose.data(), [&](std::uint32_t, const contact::Probe& probe) { any |= probe.radius <= 0.0; });
@@ -55,11 +55,11 @@ void check_thin_sheets(const WorldState<Model>& w) {
   }
   const auto check = [&](SurfaceId sheet, SurfaceId other) {
     const auto& s = w.surfaces[other.index()];
-    if (!lets_points_through(w.surfaces[sheet.index()]) || !pipeline::has_points(s) || pipeline::is_ball(s)) return;
+    if (!lets_points_through(w.surfaces[sheet.index()]) || !coupling::has_points(s) || coupling::is_ball(s)) return;
     fail("{} is a two-sided sheet of triangles, but {}, which may touch it, shows points to it: {}",
          surface_in_words(w, sheet.index()), surface_in_words(w, other.index()), remedy);
   };
-  for (const pipeline::BodyPair& pair : w.body_contacts.pairs) {
+  for (const coupling::BodyPair& pair : w.body_contacts.pairs) {
     check(pair.a, pair.b);
     check(pair.b, pair.a);
   }

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <dem/pipeline/stable_time_step.hpp>
+#include <dem/grain/stable_time_step.hpp>
 #include <dem/world/check.hpp>
 #include <dem/world/report.hpp>
 #include <dem/world/step.hpp>
@@ -72,7 +72,7 @@ class World : public WorldSetup<M> {
   std::uint64_t steps() const { return state_.step; }
   double time_step() const { return state_.time_step; }
   /// Largest stable time step of grains and machine, and what limits it.
-  pipeline::StableTimeStep stable_time_step() const {
+  grain::StableTimeStep stable_time_step() const {
     auto limit = stable_time_step_of_contacts();
     const auto machine = state_.machine.stable_time_step();
     if (machine.dt < limit.value) limit = {machine.dt, machine.limited_by};
@@ -149,14 +149,14 @@ class World : public WorldSetup<M> {
   StepReport ok() const { return {StepReport::Problem::none, state_.time, state_.step, {}, {}}; }
 
   /// Of grains with each other and with surfaces, and of bodies with each other.
-  pipeline::StableTimeStep stable_time_step_of_contacts() const {
-    std::vector<pipeline::SurfaceMatter> of_surfaces;
+  grain::StableTimeStep stable_time_step_of_contacts() const {
+    std::vector<grain::SurfaceMatter> of_surfaces;
     for (const auto& s : state_.surfaces) {
-      of_surfaces.push_back({s.material, pipeline::softness_of(s, state_.machine.bodies()[s.body.index()], 0.0)});
+      of_surfaces.push_back({s.material, coupling::softness_of(s, state_.machine.bodies()[s.body.index()], 0.0)});
     }
     auto limit =
-        pipeline::stable_time_step<Model>(state_.species, state_.materials, of_surfaces, state_.options.overlap_limit);
-    const auto bodies = pipeline::stable_time_step_of_bodies<Model>(
+        grain::stable_time_step<Model>(state_.species, state_.materials, of_surfaces, state_.options.overlap_limit);
+    const auto bodies = coupling::stable_time_step_of_bodies<Model>(
         state_.body_contacts.pairs, std::span(state_.surfaces), std::span(state_.machine.bodies()), state_.materials,
         state_.options.overlap_limit);
     if (bodies.value < limit.value) limit = bodies;
@@ -182,7 +182,7 @@ class World : public WorldSetup<M> {
   }
   void check_time_step(double dt) {
     design_machine(dt);
-    const pipeline::StableTimeStep limit = stable_time_step();
+    const grain::StableTimeStep limit = stable_time_step();
     if (dt > limit.value && !state_.options.allow_unstable_time_step) {
       const auto& machine = state_.machine;
       const bool by_machine = machine.stable_time_step().dt <= limit.value;

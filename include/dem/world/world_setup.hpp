@@ -151,12 +151,12 @@ class WorldSetup {
       fail("body '{}' and body '{}' are both fixed for good, so no force between them would move anything", body_a.name,
            body_b.name);
     }
-    if (!pipeline::has_points(sa) && !pipeline::has_points(sb)) {
+    if (!coupling::has_points(sa) && !coupling::has_points(sb)) {
       fail("neither surface {} nor surface {} has points that could touch the other (planes have none)", a.value,
            b.value);
     }
-    if (w.body_contacts.pairs.size() >= pipeline::BodyKey::most_pairs) {
-      fail("a world takes at most {} body contacts", pipeline::BodyKey::most_pairs);
+    if (w.body_contacts.pairs.size() >= coupling::BodyKey::most_pairs) {
+      fail("a world takes at most {} body contacts", coupling::BodyKey::most_pairs);
     }
     w.body_contacts.pairs.push_back({a, b});
     checked_ = initialised_ = false;
@@ -173,7 +173,7 @@ class WorldSetup {
         const BodyId i = w.surfaces[a].body, j = w.surfaces[b].body;
         const Body &body_i = w.machine.body(i), &body_j = w.machine.body(j);
         bool skip = i == j || (body_i.fixed && body_j.fixed && !(body_i.mass + body_j.mass > 0.0)) ||
-                    (!pipeline::has_points(w.surfaces[a]) && !pipeline::has_points(w.surfaces[b]));
+                    (!coupling::has_points(w.surfaces[a]) && !coupling::has_points(w.surfaces[b]));
         for (const auto& joint : w.machine.parts().joints) {
           if (joint.kind == mbd::JointKind::free) continue;
           skip |= (joint.a == i.value && joint.b == j.value) || (joint.a == j.value && joint.b == i.value);

@@ -1,0 +1,164 @@
+#pragma once
+
+#include <dem/coupling/body_points.hpp>
+#include <dem/coupling/follow_turns.hpp>
+#include <dem/geometry/contact_shares.hpp>
+#include <dem/grain/materials.hpp>
+
+#include <span>
+#include <vector>
+
+namespace dem::coupling {
+
+/// Two surfaces of machine parts that may touch each other, and what passed between them in the last force evaluation.
+struct BodyPair {
+  SurfaceId a, b;
+  Vector3<double> force = {0, 0, 0};     ///< N, on the body of a
+  Vector3<double> torque_a = {0, 0, 0};  ///< N m, on the body of a about its centre of mass
+  Vector3<double> torque_b = {0, 0, 0};  ///< N m, on the body of b about its centre of mass
+  int contacts = 0;                      ///< points that touch
+};
+
+/// Key of a contact between bodies: pair, whose point it is, number of the point, feature of the other surface.
+struct BodyKey {
+  static constexpr std::size_t most_pairs = 1u << 12;
+  static constexpr std::uint64_t make(std::size_t pair, bool back, std::uint32_t point, std::uint32_t feature) {
+    return std::uint64_t{pair} << 52 | std::uint64_t{back} << 51 | std::uint64_t{point} << 28 | feature;
+  }
+};
+
+/// Contacts of machine parts with each other and with the ground: their pairs, their memories, and lists for a step.
+template <class Model>
+struct BodyContacts {
+  std::vector<BodyPair> pairs;
+  ContactMemories<history_size<Model>> memories;
+  double worst_overlap = 0.0;  ///< in effective diameters, of the last force evaluation
+  std::size_t worst_pair = 0;
+
+  std::vector<BodyPoint> points;
+  std::vector<grain::Hit> hits;
+  std::vector<contact::SurfaceTouch<double>> touches;
+  grain::ContactForces forces;
+};
+
+/// The gap (m) up to which a ball of a pair of surfaces is held by cohesion at a distance, as a grain is; NoGap if the
+/// model has no such law. Points are not: check_body_cohesion() refuses pairs without a ball.
+template <class Model>
+auto body_gap(const ContactParameters<Model>& parameters, double radius) {
+  if constexpr (cohesion::reaches<typename Model::Cohesion>) {
+    return Model::Cohesion::range(parameters.cohesion, radius);
+  } else {
+    return shape::NoGap{};
+  }
+}
+
+/// What the contacts of a pair have in common.
+struct PairContact {
+  std::size_t pair;
+  std::uint32_t law;
+  double radius;  ///< m, effective
+};
+
+/// Contacts of the points of one surface of a pair with the other surface, up to a gap where cohesion acts at a
+/// distance (else NoGap).
+template <class Model, class Surface, class Gap>
+void probe_body(const PairContact& at, bool back, const Surface& from, const Surface& onto, const Body& carrier,
+                Gap gap, BodyContacts<Model>& c) {
+  list_points(from, onto, c.points);
+  const Vector3<double> offset = from.origin - carrier.motion.position, start = from.origin - onto.origin;
+  const std::size_t first = c.hits.size();
+  std::visit(
+      [&]<class G>(const G& geometry) {
+        for (const BodyPoint& point : c.points) {
+          const Vector3<double> place = from.axes * point.place, p = transpose_times(onto.axes, start + place);
+          const double reach = shape::widened(point.radius, gap);
+          if (!geometry.near(p, reach)) continue;
+          geometry.touch(p, reach, [&](std::uint32_t feature, const Vector3<double>& normal, double distance) {
+            c.hits.push_back({BodyKey::make(at.pair, back, point.number, feature), static_cast<std::uint32_t>(at.pair),
+                              back ? 1u : 0u, at.law});
+            c.touches.push_back({offset + place, onto.axes * normal, point.radius, distance, at.radius, point.weight});
+          });
+        }
+        if constexpr (history_size < Model >> 0 && surface::NamesDirections<G>) {
+          follow_turns(std::span<const grain::Hit>(c.hits).subspan(first), c.memories.last,
+                       [](std::uint64_t) { return true; });
+        }
+      },
+      onto.geometry);
+}
+
+/// Makes the touches of a pair from `first` on one whole contact. Those of `b` with `a` look the other way.
+template <class Model>
+void fit_pair(std::size_t first, BodyContacts<Model>& c) {
+  const auto turn_round = [&] {
+    for (std::size_t k = first; k < c.touches.size(); ++k) {
+      if (c.hits[k].partner != 0) c.touches[k].normal = -c.touches[k].normal;
+    }
+  };
+  turn_round();
+  contact::fit_weights(c.touches.size() - first, contact::Fit::always,
+                       [&](std::size_t k) -> contact::SurfaceTouch<double>& { return c.touches[first + k]; });
+  turn_round();
+}
+
+/// Contacts between surfaces of machine parts, thesis section 2.2.4: the points of each surface of a pair against the
+/// other surface, weighted so that those that push one way are one whole contact, with the laws and memories of grains;
+/// adds the forces to the bodies. Pairs whose bounding boxes do not meet cost nothing more. One thread does it in the
+/// order of pairs and points: the same sums in every run.
+template <class Model, class Surface>
+void find_body_contacts(BodyContacts<Model>& c, std::span<const Surface> surfaces, const Materials<Model>& materials,
+                        std::span<Body> bodies, double dt) {
+  if (c.pairs.empty()) return;
+  c.hits.clear();
+  c.touches.clear();
+  for (std::size_t k = 0; k < c.pairs.size(); ++k) {
+    BodyPair& pair = c.pairs[k];
+    pair.force = pair.torque_a = pair.torque_b = {0, 0, 0};
+    pair.contacts = 0;
+    const Surface &a = surfaces[pair.a.index()], &b = surfaces[pair.b.index()];
+    const Body &body_a = bodies[a.body.index()], &body_b = bodies[b.body.index()];
+    if (!a.active || !b.active || (body_a.fixed && body_b.fixed)) continue;
+    const PairContact at = {k, materials.row(a.material, b.material), pair_radius(a, b)};
+    const auto gap = body_gap<Model>(materials.table()[at.law], at.radius);
+    const double wide = shape::widened(0.0, gap);
+    if ((a.low.array() > b.high.array() + wide).any() || (b.low.array() > a.high.array() + wide).any()) continue;
+    const std::size_t first = c.touches.size();
+    if (!is_ball(b)) probe_body(at, false, a, b, body_a, gap, c);
+    if (is_ball(b) || !is_ball(a)) probe_body(at, true, b, a, body_b, gap, c);
+    if (!is_ball(a) && !is_ball(b)) fit_pair(first, c);  // each touch of a ball is a contact
+  }
+
+  const auto surface_of = [&](std::size_t hit, bool partner) -> const Surface& {
+    const BodyPair& pair = c.pairs[c.hits[hit].i];
+    return surfaces[((c.hits[hit].partner != 0) != partner ? pair.b : pair.a).index()];
+  };
+  const auto body_of = [&](std::size_t hit, bool partner) -> Body& {
+    return bodies[surface_of(hit, partner).body.index()];
+  };
+  grain::ContactEvaluator<Model, contact::SurfaceTouch> evaluator(materials.table(), dt);
+  const grain::Deepest deepest = evaluator.run(
+      c.hits, c.memories, c.forces, [&](std::size_t k) { return c.touches[k]; },
+      [&](std::size_t k) -> const PartnerView& { return surface_of(k, false).view; },
+      [&](std::size_t k) -> const PartnerView& { return surface_of(k, true).view; });
+  c.worst_overlap = deepest.overlap;
+  if (deepest.overlap > 0.0) c.worst_pair = c.hits[deepest.hit].i;
+
+  for (std::size_t k = 0; k < c.hits.size(); ++k) {
+    const Vector3<double> force = grain::ContactForces::at(c.forces.force, k);
+    const Vector3<double> torque_i = grain::ContactForces::at(c.forces.torque_i, k);
+    const Vector3<double> torque_j = grain::ContactForces::at(c.forces.torque_j, k);
+    Body &i = body_of(k, false), &j = body_of(k, true);
+    i.force += force;
+    i.torque += torque_i;
+    j.force -= force;
+    j.torque += torque_j;
+    BodyPair& pair = c.pairs[c.hits[k].i];
+    const bool back = c.hits[k].partner != 0;
+    pair.force += back ? -force : force;
+    pair.torque_a += back ? torque_j : torque_i;
+    pair.torque_b += back ? torque_i : torque_j;
+    ++pair.contacts;
+  }
+}
+
+}  // namespace dem::coupling

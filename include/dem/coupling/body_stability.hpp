@@ -1,0 +1,80 @@
+#pragma once
+
+#include <dem/coupling/body_contacts.hpp>
+#include <dem/grain/stable_time_step.hpp>
+
+namespace dem::coupling {
+
+/// From the centre of mass of a surface's body to the farthest corner of the surface's box, m.
+template <class Surface>
+double reach_of(const Surface& s) {
+  const surface::Bounds b = std::visit([](const auto& geometry) { return geometry.bounds(); }, s.geometry);
+  double farthest = 0.0;
+  for (unsigned k = 0; k < 8; ++k) {
+    const Vec3 corner(k & 1 ? b.high.x() : b.low.x(), k & 2 ? b.high.y() : b.low.y(), k & 4 ? b.high.z() : b.low.z());
+    farthest = std::max(farthest, (s.position + s.rotation * corner).norm());
+  }
+  return farthest;
+}
+/// How little a body resists at the farthest point of its surface, 1/m + R^2/I (1/kg); 0 for a fixed one. An endless
+/// surface is touched at `lever` (m).
+template <class Surface>
+double softness_of(const Surface& s, const Body& body, double lever) {
+  if (body.fixed) return 0.0;
+  if (const double reach = reach_of(s); reach < 1e100) lever = reach;
+  return 1.0 / body.mass + lever * lever / body.inertia.minCoeff();
+}
+
+/// Throws Error for a pair whose cohesion law acts at a distance, but not between these two: points that are shares of
+/// one contact have no pull of their own, so one surface of the pair has to be a ball.
+template <class Model, class Surface>
+void check_body_cohesion(const Surface& a, const Surface& b, const Body& body_a, const Body& body_b,
+                         const Materials<Model>& materials) {
+  if constexpr (cohesion::reaches<typename Model::Cohesion>) {
+    const auto& parameters = materials.table()[materials.row(a.material, b.material)];
+    const double reach = Model::Cohesion::range(parameters.cohesion, pair_radius(a, b));
+    if (!(reach > 0.0) || is_ball(a) || is_ball(b)) return;
+    fail(
+        "body '{}' and body '{}' of the materials '{}' and '{}' attract each other up to a gap of {:g} m, but bodies "
+        "feel cohesion at a distance only if one of them is a ball; give these materials contact constants without "
+        "cohesion, make one of the surfaces a surface::Sphere, or take a cohesion law that needs touch",
+        body_a.name, body_b.name, materials.name(a.material), materials.name(b.material), reach);
+  }
+}
+
+/// Largest stable time step of the contacts between bodies. All points act at the farthest point of the surface from
+/// the centre of mass, in line:
+///   W = 1/m_a + 1/m_b + R_a^2/I_a + R_b^2/I_b in stable_step()
+/// The points of one side are one contact, but as the deeper ones take over weight, up to twice as stiff; and there may
+/// be two sides, as in a groove. A ball touches with one point. Throws Error as check_body_cohesion() does.
+template <class Model, class Surface>
+grain::StableTimeStep stable_time_step_of_bodies(std::span<const BodyPair> pairs, std::span<const Surface> surfaces,
+                                                 std::span<const Body> bodies, const Materials<Model>& materials,
+                                                 double overlap_limit) {
+  grain::StableTimeStep result;
+  for (const BodyPair& pair : pairs) {
+    const Surface &a = surfaces[pair.a.index()], &b = surfaces[pair.b.index()];
+    const Body &body_a = bodies[a.body.index()], &body_b = bodies[b.body.index()];
+    check_body_cohesion(a, b, body_a, body_b, materials);
+    // An endless surface is touched where its partner is.
+    const double smaller = std::min(reach_of(a), reach_of(b));
+    const double soft = softness_of(a, body_a, smaller) + softness_of(b, body_b, smaller);
+    if (!(soft > 0.0)) continue;
+    const auto turning_of = [](const Body& body) { return body.fixed ? 0.0 : 1.0 / body.inertia.minCoeff(); };
+    const double turning = turning_of(body_a) + turning_of(body_b);
+    const double inverse_mass = (body_a.fixed ? 0.0 : 1.0 / body_a.mass) + (body_b.fixed ? 0.0 : 1.0 / body_b.mass);
+    const double n = is_ball(a) || is_ball(b) ? 2.0 : 4.0;
+    const double radius = pair_radius(a, b);
+    const auto& parameters = materials.table()[materials.row(a.material, b.material)];
+    const contact::NormalState<double> deepest = {2.0 * overlap_limit * radius, 0.0, radius, 1.0 / inverse_mass, 0.0};
+    grain::for_each_swing<Model>(
+        parameters, deepest, 1.0, soft, turning, [&](double k, double c, double mobility, const auto& text) {
+          const double dt = grain::stable_step(Model::Integrator::stability_limit, n * k, n * c, mobility);
+          if (!(dt < result.value)) return;
+          result = {dt, fmt::format("body '{}' on body '{}': {}, {:g} times", body_a.name, body_b.name, text(), n)};
+        });
+  }
+  return result;
+}
+
+}  // namespace dem::coupling

@@ -1,0 +1,227 @@
+#pragma once
+
+#include <dem/coupling/support_touches.hpp>
+#include <dem/geometry/contact_shares.hpp>
+#include <dem/geometry/direction_code.hpp>
+#include <dem/geometry/shape.hpp>
+#include <dem/geometry/surface.hpp>
+#include <dem/grain/contact_evaluator.hpp>
+#include <dem/grain/contact_key.hpp>
+
+#include <vector>
+
+namespace dem::coupling {
+
+/// The probe indices under which support points, and corners of surfaces in a grain, are remembered.
+inline constexpr std::uint32_t support_probe = 0xff0, corner_probe = 0xfff;
+inline constexpr std::uint32_t first_ball = 1u << 24;  ///< among its features
+
+/// A sharp grain may be entered by corners and edges of surfaces that none of its own points meets. Such a shape tells
+/// how deep a point (from the grain's centre, global axes) lies inside of it and which way out is the shortest.
+/// If its points are shares of one contact, has_shares(), it says how they are fitted: shares_fit.
+template <class Shape>
+concept HasPenetration = requires(const Shape& shape, const double* pose, const Vector3<double>& point, double& depth,
+                                  Vector3<double>& outward_normal) {
+  { shape.penetration(pose, point, depth, outward_normal) } -> std::same_as<bool>;
+};
+/// A surface with corners: corners(point, radius, sink) calls sink(number, corner) for those within the radius, or
+/// sink(number, corner, weight) with a weight below 1 where they come and go.
+template <class S>
+concept HasCorners = requires(const S& s, const Vector3<double>& point) {
+  s.corners(point, 1.0, [](std::uint32_t, const Vector3<double>&, double = 1.0) {});
+};
+
+/// A solid ball, or one that may be hollow: is_ball().
+template <class S>
+concept IsBall = requires(const S& s) {
+  { s.is_ball() } -> std::same_as<bool>;
+};
+/// A round surface, as balls that fill it: balls(point, radius, sink) calls sink(number, centre, ball's radius) for
+/// those that a grain may touch, and is_on_ball(point) is true where their skin is the surface's.
+template <class S>
+concept HasBalls = requires(const S& s, const Vector3<double>& point) {
+  s.balls(point, 1.0, [](std::uint32_t, const Vector3<double>&, double) {});
+  { s.is_on_ball(point) } -> std::same_as<bool>;
+};
+/// A sharp grain that tells where a ball touches it.
+template <class Shape>
+concept TouchesBalls = requires(const Shape& s, const double* pose, const Vector3<double>& centre,
+                                contact::BallTouch& touch) {
+  { s.touch_ball(pose, centre, 1.0, touch) } -> std::same_as<bool>;
+};
+
+/// A round grain that tells which point of its skin meets a plane first, and what its other points weigh beside it.
+template <class Shape>
+concept HasSupport = requires(const Shape& s, const double* pose, const Vector3<double>& v) {
+  { s.even_support(pose, v) } -> std::same_as<Vector3<double>>;
+  { s.beside_support(v, v, v) } -> std::same_as<double>;
+};
+/// Lists that a thread uses again for each chunk.
+struct SurfaceScratch {
+  std::vector<std::uint32_t> law_of;
+  std::vector<grain::Hit> hits;
+  std::vector<contact::SurfaceTouch<double>> touches;
+  std::vector<double> total_share;  ///< of the touches of patches (contact::PatchTouch); 1 from where it ends
+  SupportTouches supports;          ///< of one grain on one surface
+  grain::ContactForces forces;
+};
+
+/// What all contacts of a grain with a surface have in common.
+struct GrainAtSurface {
+  std::uint32_t grain, local, surface, law;
+  const double* pose;
+  Vector3<double> centre;  ///< m, of the grain in the surface's frame
+
+  void add(SurfaceScratch& s, std::uint32_t probe, std::uint32_t feature,
+           const contact::SurfaceTouch<double>& touch) const {
+    s.hits.push_back({grain::SurfaceKey::make(surface, local, probe, feature), grain, surface, law});
+    s.touches.push_back(touch);
+  }
+};
+
+/// A probe of the grain on a surface, up to a gap where cohesion acts at a distance (else NoGap).
+template <class Surface, class Geometry, class Gap>
+void touch_with_probe(const GrainAtSurface& at, std::uint32_t index, const contact::Probe& probe,
+                      const Surface& surface, const Geometry& geometry, Gap gap, SurfaceScratch& s) {
+  const Vector3<double> seen = at.centre + transpose_times(surface.axes, probe.centre);
+  const auto add = [&](std::uint32_t feature, const Vector3<double>& normal, double distance) {
+    at.add(s, index, feature,
+           {probe.centre, surface.axes * normal, probe.radius, distance,
+            surface::radius_on(geometry, probe.effective_radius), probe.area});
+  };
+  if constexpr (!std::is_same_v<Gap, shape::NoGap>) {
+    if (probe.radius == 0.0) {
+      surface::touch_point(geometry, seen, gap, add);
+      return;
+    }
+  }
+  geometry.touch(seen, shape::widened(probe.radius, gap), add);
+}
+
+/// Where the surface is flat, a grain meets it first with its support point, which lies between the points of its skin.
+/// The ways to the surface are those that the grain's bounding sphere finds. `first`: of the touches of the grain's own
+/// points, which lose their weight near a support point.
+template <class Shape, class Surface, class Geometry, class Gap>
+void touch_with_supports(const GrainAtSurface& at, const Shape& grain, const Surface& surface, const Geometry& geometry,
+                         std::size_t first, Gap gap, SurfaceScratch& s) {
+  s.supports.clear();
+  const auto add_way = [&](std::uint32_t feature, const Vector3<double>& seen, double) {
+    const Vector3<double> way = surface.axes * seen;
+    s.supports.add_way({surface::family_of<Geometry>(feature), way, grain.even_support(at.pose, way)});
+  };
+  geometry.touch(at.centre, shape::widened(grain.bounding_radius(), gap), add_way);
+  const double radius = surface::radius_on(geometry, grain.mean_radius());
+  for (std::size_t k = 0; k < s.supports.way_count(); ++k) {
+    const Vector3<double> point = s.supports.way(k).point;
+    const auto add = [&](std::uint32_t feature, const Vector3<double>& normal, double distance) {
+      s.supports.add_touch(k, surface::family_of<Geometry>(feature), feature,
+                           {point, surface.axes * normal, 0.0, distance, radius, 1.0});
+    };
+    surface::touch_point(geometry, at.centre + transpose_times(surface.axes, point), shape::widened(0.0, gap), add);
+  }
+  const std::size_t end = s.touches.size();
+  for (const auto& t : s.supports.sorted()) at.add(s, support_probe, t.feature, t.touch);
+  for (std::size_t way = 0; way < s.supports.way_count(); ++way) {
+    if (!s.supports.is_used(way)) continue;
+    for (std::size_t k = first; k < end; ++k) {
+      s.touches[k].area *=
+          grain.beside_support(s.touches[k].centre, s.supports.way(way).point, s.supports.way(way).along);
+    }
+  }
+}
+
+/// Corners and balls of a surface in a grain. A corner weighs as one of the grain's own probes does on average, a ball
+/// as a whole contact.
+template <class Shape, class Surface, class Geometry, class Gap>
+void touch_with_corners(const GrainAtSurface& at, const Shape& grain, const Surface& surface, const Geometry& geometry,
+                        Gap gap, SurfaceScratch& s) {
+  double probes = 0.0, area = 0.0, radius = 0.0;
+  const auto look_at_probes = [&] {
+    if (probes > 0.0) return;
+    grain.probe(at.pose, [&](std::uint32_t, const contact::Probe& probe) {
+      probes += 1.0;
+      area += probe.area;
+      radius += probe.effective_radius;
+    });
+  };
+  // Seen from the grain, its skin at `point` lies `depth` behind the surface.
+  const auto add = [&](std::uint32_t number, const Vector3<double>& point, const Vector3<double>& normal, double depth,
+                       double weight) {
+    at.add(s, corner_probe, number,
+           {point, normal, 0.0, -depth, surface::radius_on(geometry, radius / probes), weight});
+  };
+  const double reach = shape::widened(grain.bounding_radius(), gap);
+  if constexpr (HasCorners<Geometry>) {
+    geometry.corners(at.centre, reach, [&](std::uint32_t corner, const Vector3<double>& place, double weight = 1.0) {
+      double depth = 0.0;
+      Vector3<double> outward{};
+      const Vector3<double> point = surface.axes * (place - at.centre);
+      if (!grain.penetration(at.pose, point, depth, outward)) return;
+      look_at_probes();
+      add(corner, point + depth * outward, outward, depth, weight * area / probes);
+    });
+  }
+  if constexpr (HasBalls<Geometry> && TouchesBalls<Shape>) {
+    if (!shape::has_shares(grain)) return;
+    geometry.balls(at.centre, reach, [&](std::uint32_t ball, const Vector3<double>& centre, double of_ball) {
+      contact::BallTouch t;
+      const Vector3<double> seen = surface.axes * (centre - at.centre);
+      bool touches = false;
+      if constexpr (std::is_same_v<Gap, shape::NoGap>) touches = grain.touch_ball(at.pose, seen, of_ball, t);
+      else touches = grain.touch_ball(at.pose, seen, of_ball, t, gap);
+      if (!touches) return;
+      if (!geometry.is_on_ball(at.centre + transpose_times(surface.axes, t.point))) return;
+      look_at_probes();
+      add(first_ball + ball, t.point + (0.5 * t.overlap) * t.normal, t.normal, t.overlap, 1.0);
+    });
+  }
+}
+
+/// Whether a grain's radii and exponents make it a ball, which meets surfaces as one.
+template <class Shape>
+bool touches_as_ball(const Shape& grain) {
+  if constexpr (requires { grain.is_ball(); }) {
+    return grain.is_ball() && shape::has_shares(grain);
+  } else {
+    return false;
+  }
+}
+
+/// All contacts of a grain of one kind with a surface.
+template <class Shape, class Surface, class Geometry, class Gap>
+void touch_surface(const GrainAtSurface& at, const Shape& grain, const Surface& surface, const Geometry& geometry,
+                   Gap gap, SurfaceScratch& s) {
+  const std::size_t first = s.touches.size();
+  if constexpr (TouchesBalls<Shape> && IsBall<Geometry>) {
+    if (geometry.is_ball() && shape::has_shares(grain)) {  // one contact is all of it
+      touch_with_corners(at, grain, surface, geometry, gap, s);
+      return;
+    }
+  }
+  if constexpr (requires { grain.mean_radius(); }) {
+    if (touches_as_ball(grain)) {
+      const double radius = grain.mean_radius();
+      touch_with_probe(at, 0, {{0, 0, 0}, radius, radius, 1.0}, surface, geometry, gap, s);
+      return;
+    }
+  }
+  grain.probe(at.pose, [&](std::uint32_t index, const contact::Probe& probe) {
+    touch_with_probe(at, index, probe, surface, geometry, gap, s);
+  });
+  if constexpr (HasSupport<Shape>) {
+    if (shape::has_shares(grain)) touch_with_supports(at, grain, surface, geometry, first, gap, s);
+  }
+  if constexpr (HasPenetration<Shape>) touch_with_corners(at, grain, surface, geometry, gap, s);
+  if constexpr (requires { Shape::shares_fit; }) {
+    if (!shape::has_shares(grain)) return;
+    const auto point = [&](std::size_t k) -> contact::SurfaceTouch<double>& { return s.touches[first + k]; };
+    const std::size_t count = s.touches.size() - first;
+    contact::fit_weights(count, Shape::shares_fit, point);
+    if constexpr (shape::PatchShape<Shape>) {
+      s.total_share.resize(first, 1.0);
+      for (std::size_t k = 0; k < count; ++k) s.total_share.push_back(contact::total_share(count, k, point));
+    }
+  }
+}
+
+}  // namespace dem::coupling

@@ -1,0 +1,50 @@
+#pragma once
+
+#include <dem/core/ids.hpp>
+#include <dem/geometry/surface.hpp>
+#include <dem/grain/partner_view.hpp>
+#include <dem/mbd/body.hpp>
+
+#include <string>
+
+namespace dem {
+
+/// A surface of a machine part: which body carries it, where, and of what material. `Geometry` is the model's variant
+/// of surface kinds.
+template <class Geometry>
+struct MachineSurface {
+  std::string name;
+  BodyId body;
+  MaterialId material;
+  Geometry geometry;
+  Vec3 position = Vec3::Zero();  ///< m, of the surface's frame in the body's frame
+  Mat3 rotation = Mat3::Identity();
+  bool active = true;  ///< an inactive surface touches nothing
+
+  // Where the surface is now; refreshed from its body before each force evaluation.
+  Vector3<double> origin = {0, 0, 0};
+  Matrix3<double> axes = Matrix3<double>::identity();
+  Vec3 low = Vec3::Zero(), high = Vec3::Zero();  ///< m, bounding box in global axes
+
+  PartnerView view = {};  ///< of the body
+
+  // Sum over all grains of the last force evaluation.
+  Vector3<double> force = {0, 0, 0};   ///< N, on the surface
+  Vector3<double> torque = {0, 0, 0};  ///< N m, about its body's centre of mass
+
+  void follow(const Body& b) {
+    view = {b.motion.position, 0.0, b.motion.velocity, b.fixed ? 0.0 : 1.0 / b.mass,
+            b.motion.rotation * b.motion.angular_velocity};
+    origin = b.motion.position + b.motion.rotation * from_eigen(position);
+    axes = b.motion.rotation * from_eigen(rotation);
+    const surface::Bounds local = std::visit([](const auto& kind) { return kind.bounds(); }, geometry);
+    // Half sizes along the global axes: |R| times the local half sizes. The origin comes last: added to the middle of
+    // a half space, 1e150 m away, it would be lost.
+    const Vec3 middle = to_eigen(axes) * (0.5 * (local.low + local.high));
+    const Vec3 half = to_eigen(axes).cwiseAbs() * (0.5 * (local.high - local.low));
+    low = to_eigen(origin) + (middle - half);
+    high = to_eigen(origin) + (middle + half);
+  }
+};
+
+}  // namespace dem

@@ -1,0 +1,73 @@
+#pragma once
+
+#include <dem/geometry/contact_point.hpp>
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace dem::coupling {
+
+/// What the support points of a grain touch of one surface. There is one for each way to it, and a point that lies
+/// farthest along one way may reach another wall as well, as in a corner. Each wall is left to its own way, so what a
+/// wall remembers of the grain goes by the wall's name alone, whichever others are near.
+class SupportTouches {
+ public:
+  struct Way {
+    std::uint32_t family;   ///< of the surface's features, in which it was found (surface::family_of)
+    Vector3<double> along;  ///< unit vector into the surface, global axes
+    Vector3<double> point;  ///< m, from the grain's centre, global axes
+  };
+  struct Touch {
+    std::uint32_t feature, family;
+    std::size_t way, owner;  ///< whose point it is, and whose wall
+    contact::SurfaceTouch<double> touch;
+    bool is_spare = false;
+  };
+
+  void clear() {
+    ways_.clear();
+    touches_.clear();
+  }
+  void add_way(const Way& way) { ways_.push_back(way); }
+  std::size_t way_count() const { return ways_.size(); }
+  const Way& way(std::size_t k) const { return ways_[k]; }
+
+  /// A wall is of the way that is most along the normal there, one of its family if there is any.
+  void add_touch(std::size_t way, std::uint32_t family, std::uint32_t feature,
+                 const contact::SurfaceTouch<double>& touch) {
+    const auto rank = [&](const Way& w) { return dot(w.along, touch.normal) + (w.family == family ? 4.0 : 0.0); };
+    std::size_t owner = way;
+    for (std::size_t k = 0; k < ways_.size(); ++k) owner = rank(ways_[k]) > rank(ways_[owner]) ? k : owner;
+    touches_.push_back({feature, family, way, owner, touch});
+  }
+
+  /// In the order of features, each with another number; without those of walls that their owner's point touches, too.
+  const std::vector<Touch>& sorted() {
+    if (ways_.size() < 2) return touches_;
+    for (Touch& t : touches_) {
+      t.is_spare = t.way != t.owner && std::any_of(touches_.begin(), touches_.end(), [&](const Touch& own) {
+                     return own.way == t.owner && own.owner == t.owner && own.family == t.family;
+                   });
+    }
+    std::erase_if(touches_, [](const Touch& t) { return t.is_spare; });
+    std::sort(touches_.begin(), touches_.end(), [](const Touch& a, const Touch& b) {
+      return a.feature != b.feature ? a.feature < b.feature : a.way < b.way;
+    });
+    for (std::size_t k = 1; k < touches_.size(); ++k) {
+      touches_[k].feature = std::max(touches_[k].feature, touches_[k - 1].feature + 1u);
+    }
+    return touches_;
+  }
+  /// Whether a way has kept a touch.
+  bool is_used(std::size_t way) const {
+    return std::any_of(touches_.begin(), touches_.end(), [&](const Touch& t) { return t.way == way; });
+  }
+
+ private:
+  std::vector<Way> ways_;
+  std::vector<Touch> touches_;
+};
+
+}  // namespace dem::coupling

@@ -1,0 +1,109 @@
+#pragma once
+
+#include <dem/geometry/contact_point.hpp>
+
+#include <algorithm>
+#include <cstddef>
+#include <vector>
+
+namespace dem::contact {
+
+/// When points are taken as one whole contact.
+enum class Fit {
+  always,   ///< however few there are
+  if_more,  ///< where they are more than one; else they keep their weights
+};
+
+/// Weights points that are one contact, so that together they are as stiff as one. A point with weight w and overlap d
+/// gets w d / sum w d: the weights' sum is 1, and a point that only just touches counts nothing, so no force jumps when
+/// points come and go. Points whose normals are at an angle are different contacts: in a point's sum the others count
+/// with the square of the cosine, those at more than a right angle not at all. With Fit::if_more points count as
+/// N = (sum w d)^2 / sum w d^2, which is n w where n are equally deep; up to N = 1 they stay as they are, and from
+/// there to N = 2 one rule goes over into the other. `point(k)` gives touch k, one of the touch types. Across a gap
+/// (cohesion at a distance) the nearest point, which was the last to part, is the whole contact.
+///
+/// Such shares have no potential, and none could have one: n equal points are as stiff as one, so a second point that
+/// sinks to the depth of a first must do no work on the way, and yet push when it is there. Turning a body on its
+/// points therefore gains or loses energy, in a cycle a share of what the contact stores, whatever the stiffness.
+/// Dampers have to take more than that: see "Bodies against bodies" in ARCHITECTURE.md for how much.
+template <class Point>
+void fit_weights(std::size_t count, Fit fit, Point&& point) {
+  // Points of flat faces have few normals, however many they are: their sums are over normals.
+  struct Direction {
+    Vector3<double> normal;
+    double first = 0.0, second = 0.0;            // sums over its own points
+    double first_near = 0.0, second_near = 0.0;  // with those of the other directions
+  };
+  struct Part {
+    double part, overlap;  // m, the first times the weight, not negative
+    std::size_t direction;
+  };
+  static thread_local std::vector<Direction> directions;
+  static thread_local std::vector<Part> parts;
+  directions.clear();
+  parts.clear();
+  const auto direction_of = [&](const Vector3<double>& normal) {
+    for (std::size_t k = directions.size(); k-- > 0;) {
+      const Vector3<double> d = directions[k].normal - normal;
+      if (dot(d, d) < 1e-24) return k;  // the same but for rounding
+    }
+    directions.push_back({normal});
+    return directions.size() - 1;
+  };
+  for (std::size_t k = 0; k < count; ++k) {
+    const Geometry<double> g = point(k).geometry();
+    const double depth = std::max(0.0, g.overlap);
+    parts.push_back({depth * g.area, g.overlap, direction_of(g.normal)});
+    Direction& own = directions[parts.back().direction];
+    own.first += parts.back().part;
+    own.second += parts.back().part * depth;
+  }
+  for (Direction& d : directions) {
+    const Vector3<double> normal = d.normal;
+    double first = 0.0, second = 0.0;  // apart from what is read, which keeps them in registers
+    for (const Direction& other : directions) {
+      const double cosine = std::max(0.0, dot(normal, other.normal)), square = cosine * cosine;
+      first += square * other.first;
+      second += square * other.second;
+    }
+    d.first_near = first;
+    d.second_near = second;
+  }
+  for (std::size_t k = 0; k < count; ++k) {
+    const auto& [normal, own_first, own_second, first, second] = directions[parts[k].direction];
+    double& weight = point(k).area;
+    if (!(first > 0.0)) {
+      if (!(parts[k].overlap < 0.0)) continue;
+      bool nearest = true;
+      for (std::size_t m = 0; m < count; ++m) {
+        const bool nearer = parts[m].overlap > parts[k].overlap || (parts[m].overlap == parts[k].overlap && m < k);
+        nearest &= !(nearer && dot(normal, directions[parts[m].direction].normal) > 0.0);
+      }
+      weight = nearest ? 1.0 : 0.0;
+      continue;
+    }
+    const double whole = parts[k].part / first;
+    if (fit == Fit::always) {
+      weight = whole;
+    } else if (const double n = first * first / second; n > 1.0) {
+      const double over = std::min(1.0, n - 1.0);
+      weight = (1.0 - over) * weight / n + over * whole;
+    }
+  }
+}
+
+/// What points that are shares of one contact add up to along the normal of point k (Geometry::total_share): their
+/// springs push along it with the square of the cosine. A tiny number is added, so that nothing is divided by zero.
+inline constexpr double least_total_share = 1e-12;
+template <class Point>
+double total_share(std::size_t count, std::size_t k, Point&& point) {
+  const Vector3<double> normal = point(k).normal;
+  double sum = least_total_share;
+  for (std::size_t m = 0; m < count; ++m) {
+    const double cosine = std::max(0.0, dot(normal, point(m).normal));
+    sum += cosine * cosine * point(m).area;
+  }
+  return sum;
+}
+
+}  // namespace dem::contact

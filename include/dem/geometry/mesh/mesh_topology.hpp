@@ -1,0 +1,59 @@
+#pragma once
+
+#include <dem/geometry/mesh/indexed_mesh.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <tuple>
+#include <vector>
+
+namespace dem {
+
+/// Who shares which edge. Edge k of a triangle leads from its corner k to its corner k + 1.
+struct MeshTopology {
+  static constexpr std::uint32_t none = 0xffffffffu;
+
+  std::vector<std::array<std::uint32_t, 3>> neighbour;  ///< triangle across each edge; none: boundary or non-manifold
+  std::size_t boundary_edges = 0;                       ///< that belong to one triangle only
+  std::size_t non_manifold_edges = 0;                   ///< that belong to three or more
+  std::size_t inconsistent_edges = 0;                   ///< whose two triangles run along them the same way
+
+  bool closed() const { return boundary_edges == 0 && non_manifold_edges == 0; }
+  bool oriented() const { return inconsistent_edges == 0; }
+};
+
+/// Pairs the triangles' edges by sorting them: O(n log n).
+inline MeshTopology topology_of(const IndexedMesh& mesh) {
+  struct Use {
+    std::uint32_t low, high, triangle;
+    std::uint8_t edge;
+    bool forward;
+  };
+  std::vector<Use> uses;
+  uses.reserve(3 * mesh.triangles.size());
+  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
+    for (std::uint8_t k = 0; k < 3; ++k) {
+      const std::uint32_t a = mesh.triangles[t][k], b = mesh.triangles[t][(k + 1u) % 3u];
+      uses.push_back({std::min(a, b), std::max(a, b), t, k, a < b});
+    }
+  }
+  std::sort(uses.begin(), uses.end(), [](const Use& a, const Use& b) {
+    return std::tie(a.low, a.high, a.triangle, a.edge) < std::tie(b.low, b.high, b.triangle, b.edge);
+  });
+  MeshTopology topology;
+  topology.neighbour.assign(mesh.triangles.size(), {MeshTopology::none, MeshTopology::none, MeshTopology::none});
+  for (std::size_t from = 0, to = 0; from < uses.size(); from = to) {
+    while (to < uses.size() && uses[to].low == uses[from].low && uses[to].high == uses[from].high) ++to;
+    if (to - from == 1) ++topology.boundary_edges;
+    if (to - from > 2) ++topology.non_manifold_edges;
+    if (to - from != 2) continue;
+    const Use &a = uses[from], &b = uses[from + 1];
+    topology.neighbour[a.triangle][a.edge] = b.triangle;
+    topology.neighbour[b.triangle][b.edge] = a.triangle;
+    if (a.forward == b.forward) ++topology.inconsistent_edges;
+  }
+  return topology;
+}
+
+}  // namespace dem

@@ -1,0 +1,120 @@
+#pragma once
+
+#include <dem/geometry/shape.hpp>
+
+namespace dem::shape {
+
+/// How grains of the shapes A and B touch: the customisation point by which shapes of different kinds share a world
+/// (see Mixed). Specialise it for one order of the two; the other follows by itself:
+///   template <>
+///   struct PairContact<Egg, Brick> {
+///     template <class Sink>
+///     static void collide(const Egg& a, const double* pose_a, const Brick& b, const double* pose_b,
+///                         const Vector3<double>& separation, Sink&& sink);
+///   };
+/// collide calls sink(feature, touch) as a Shape's own does: touches seen from a's centre, features ascending and below
+/// 2^24; any touch with geometry() will do. What a search wants to keep for a pair of neighbours goes into a type
+/// Memory (copyable, empty when made), and collide then takes a Memory& before the sink. To meet cohesion at a
+/// distance, collide also takes a gap (m) as a last argument, as that of a ReachingShape does.
+template <class A, class B>
+struct PairContact;
+
+/// Two grains of one kind: as the shape itself says.
+template <Shape S>
+struct PairContact<S, S> {
+  template <class Sink, class... Gap>
+  requires(sizeof...(Gap) == 0 || ReachingShape<S>) static DEM_HOT
+      void collide(const S& a, const double* pose_a, const S& b, const double* pose_b,
+                   const Vector3<double>& separation, Sink&& sink, Gap... gap) {
+    S::collide(a, pose_a, b, pose_b, separation, sink, gap...);
+  }
+};
+template <RememberingShape S>
+struct PairContact<S, S> {
+  using Memory = typename S::PairMemory;
+  template <class Sink, class... Gap>
+  requires(sizeof...(Gap) == 0 || ReachingShape<S>) static DEM_HOT
+      void collide(const S& a, const double* pose_a, const S& b, const double* pose_b,
+                   const Vector3<double>& separation, Memory& memory, Sink&& sink, Gap... gap) {
+    S::collide(a, pose_a, b, pose_b, separation, memory, sink, gap...);
+  }
+};
+
+/// The pair is specialised in this order.
+template <class A, class B>
+concept HasPairContact = requires {
+  sizeof(PairContact<A, B>);
+};
+
+/// The pair, in whichever order it is specialised, also finds contacts across a gap.
+template <class A, class B>
+concept ReachesInOrder = requires(const A& a, const B& b, const double* pose, const Vector3<double>& separation) {
+  PairContact<A, B>::collide(a, pose, b, pose, separation, AnySink{}, 1.0);
+}
+|| requires(const A& a, const B& b, const double* pose, const Vector3<double>& separation,
+            typename PairContact<A, B>::Memory& memory) {
+  PairContact<A, B>::collide(a, pose, b, pose, separation, memory, AnySink{}, 1.0);
+};
+template <class A, class B>
+concept ReachingPair = ReachesInOrder<A, B> || ReachesInOrder<B, A>;
+
+/// What a pair of A and B keeps between searches, in whichever order it is specialised.
+struct NoMemory {};
+template <class A, class B>
+struct PairMemoryOf {
+  using type = NoMemory;
+};
+template <class A, class B>
+requires requires { typename PairContact<A, B>::Memory; }
+struct PairMemoryOf<A, B> {
+  using type = typename PairContact<A, B>::Memory;
+};
+template <class A, class B>
+requires(!HasPairContact<A, B>) && requires { typename PairContact<B, A>::Memory; }
+struct PairMemoryOf<A, B> {
+  using type = typename PairContact<B, A>::Memory;
+};
+
+/// A contact that was found from b's side, seen from a's.
+DEM_HOT contact::PointTouch<double> turned_round(const contact::Geometry<double>& g,
+                                                 const Vector3<double>& separation) {
+  return {-g.normal, g.overlap, g.arm + separation, g.effective_radius, g.area, g.total_share};
+}
+
+/// Contacts of any two kinds as point touches, through PairContact<A, B> or PairContact<B, A>; up to a gap (m) where
+/// cohesion acts at a distance (else NoGap).
+template <class A, class B, class Memory, class Sink, class Gap = NoGap>
+DEM_HOT void collide_pair(const A& a, const double* pose_a, const B& b, const double* pose_b,
+                          const Vector3<double>& separation, Memory& memory, Sink&& sink, Gap gap = {}) {
+  const auto call = [&memory, gap](auto pair, const auto&... arguments) {
+    using Pair = decltype(pair);
+    const auto with = [&](const auto&... reach) {
+      if constexpr (requires { typename Pair::Memory; }) {
+        const auto split = [&](const auto& x, const double* pose_x, const auto& y, const double* pose_y,
+                               const Vector3<double>& between, const auto& given) {
+          Pair::collide(x, pose_x, y, pose_y, between, memory, given, reach...);
+        };
+        split(arguments...);
+      } else {
+        Pair::collide(arguments..., reach...);
+      }
+    };
+    if constexpr (std::is_same_v<Gap, NoGap>) with();
+    else with(gap);
+  };
+  if constexpr (HasPairContact<A, B>) {
+    call(PairContact<A, B>{}, a, pose_a, b, pose_b, separation, [&](std::uint32_t feature, const auto& touch) {
+      const contact::Geometry<double> g = touch.geometry();
+      sink(feature, contact::PointTouch<double>{g.normal, g.overlap, g.arm, g.effective_radius, g.area, g.total_share});
+    });
+  } else {
+    static_assert(
+        HasPairContact<B, A>,
+        "Mixed: nothing says how these two shapes touch; specialise dem::shape::PairContact<A, B> for them, or include "
+        "polyhedron_sphere.hpp / superquadric_polyhedron.hpp");
+    call(PairContact<B, A>{}, b, pose_b, a, pose_a, -separation,
+         [&](std::uint32_t feature, const auto& touch) { sink(feature, turned_round(touch.geometry(), separation)); });
+  }
+}
+
+}  // namespace dem::shape

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <dem/geometry/surface.hpp>
+
+namespace dem::surface {
+
+/// The half space z < 0 of its own frame: endless, solid below.
+class Plane {
+ public:
+  template <class T>
+  DEM_HOT auto near(const Vector3<T>& p, const T& radius) const {
+    return p.z < radius;
+  }
+
+  template <class Sink>
+  DEM_HOT void touch(const Vector3<double>& p, double radius, Sink&& sink) const {
+    if (p.z < radius) sink(0u, Vector3<double>{0, 0, -1}, p.z);
+  }
+
+  Bounds bounds() const {
+    const double far = 1e150;
+    return {Vec3::Constant(-far), Vec3(far, far, 0.0)};
+  }
+};
+
+}  // namespace dem::surface

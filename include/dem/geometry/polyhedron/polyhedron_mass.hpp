@@ -1,0 +1,37 @@
+#pragma once
+
+#include <dem/geometry/mass_properties.hpp>
+
+#include <span>
+#include <vector>
+
+namespace dem {
+
+/// Volume integrals of the solid inside closed faces (any polyhedron, convex or not), whose corners run
+/// counter-clockwise seen from outside. Each face is cut into triangles, each triangle makes a tetrahedron with a point
+/// inside, and the integrals of 1, x and x x^T over a tetrahedron with corners 0, a, b, c are
+///   V = a . (b x c)/6,   V s/4,   V (s s^T + a a^T + b b^T + c c^T)/20   with s = a + b + c.
+/// A volume below zero says that the faces are turned inside out.
+inline MassProperties polyhedron_mass_properties(std::span<const Vec3> corners,
+                                                 std::span<const std::vector<int>> faces) {
+  Vec3 middle = Vec3::Zero();
+  for (const Vec3& p : corners) middle += p / static_cast<double>(corners.size());
+  const auto corner = [&](int k) -> Vec3 { return corners[static_cast<std::size_t>(k)] - middle; };
+  double volume = 0.0;
+  Vec3 first = Vec3::Zero();
+  Mat3 second = Mat3::Zero();
+  for (const auto& face : faces) {
+    for (std::size_t k = 2; k < face.size(); ++k) {
+      const Vec3 a = corner(face[0]), b = corner(face[k - 1]), c = corner(face[k]), s = a + b + c;
+      const double v = a.dot(b.cross(c)) / 6.0;
+      volume += v;
+      first += v / 4.0 * s;
+      second += v / 20.0 * (s * s.transpose() + a * a.transpose() + b * b.transpose() + c * c.transpose());
+    }
+  }
+  const Vec3 offset = volume != 0.0 ? Vec3(first / volume) : Vec3(Vec3::Zero());
+  const Mat3 about_centre = second - volume * offset * offset.transpose();
+  return {volume, middle + offset, about_centre.trace() * Mat3::Identity() - about_centre};
+}
+
+}  // namespace dem

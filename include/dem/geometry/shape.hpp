@@ -1,0 +1,199 @@
+#pragma once
+
+#include <dem/geometry/contact_point.hpp>
+#include <dem/geometry/mass_properties.hpp>
+
+#include <concepts>
+#include <cstdint>
+#include <variant>
+#include <vector>
+
+namespace dem::shape {
+
+/// A sink for the concept check below; a real one evaluates the contact.
+struct AnySink {
+  template <class Touch>
+  void operator()(std::uint32_t, const Touch&) const {}
+};
+struct AnyProbe {
+  void operator()(std::uint32_t, const contact::Probe&) const {}
+};
+
+/// A shape is what a grain is. Its frame sits in the centre of mass along the principal axes. It has
+///   pose_size            doubles cached per grain: the shape's points in global axes, relative to the grain's centre;
+///   has_orientation      false if a turned grain is the same grain (spheres): then its rotation stays the identity;
+///   most_contacts        upper bound of the contacts of one pair;
+///   orient(R, pose)      fills that cache;
+///   volume(), unit_inertia(), bounding_radius();
+///   collide(a, pose_a, b, pose_b, separation, sink)   calls sink(feature, PairTouch) once per contact, features
+///                        ascending, where separation leads from a's centre to b's;
+///   mirrored(feature)    the feature number of the same contact when a and b change places;
+///   probe(pose, sink)    calls sink(index, contact::Probe) for each sphere or point that the shape shows to surfaces,
+///                        indices ascending, below 4095.
+/// It may also have
+///   patch(), surface_patch()   where it touches with many points at once (see patch_of);
+///   has_shares(), shares_fit   true if the points that it shows to a surface are shares of one contact, and a
+///                              contact::Fit that says how these are fitted;
+///   is_patch(feature)          if contacts of a pair are the points of one patch (see PatchShape);
+///   penetration(pose, point, depth, outward_normal)   whether a point (m, from the grain's centre, global axes) lies
+///                        inside, how deep, and which way is out: then corners and edges of surfaces are felt;
+///   touch_ball(pose, centre, radius, touch)   whether a ball touches, and where (contact::BallTouch): then surfaces
+///                        that are balls are felt exactly, and mantles of cylinders through balls.
+template <class S>
+concept Shape = requires(const S& shape, const Matrix3<double>& rotation, double* pose,
+                         const Vector3<double>& separation) {
+  { S::pose_size } -> std::convertible_to<int>;
+  { S::has_orientation } -> std::convertible_to<bool>;
+  { S::most_contacts } -> std::convertible_to<std::size_t>;
+  typename S::template PairTouch<double>;
+  { shape.bounding_radius() } -> std::convertible_to<double>;
+  { shape.volume() } -> std::convertible_to<double>;
+  { shape.unit_inertia() } -> std::convertible_to<Vec3>;
+  shape.orient(rotation, pose);
+  S::collide(shape, pose, shape, pose, separation, AnySink{});
+  { S::mirrored(std::uint32_t{}) } -> std::same_as<std::uint32_t>;
+  shape.probe(pose, AnyProbe{});
+};
+
+/// A shape whose pairs have at most 64 possible contacts may also say which of them touch as bits, without branches,
+/// and make the touch of each later; the contact loop then has no branch that depends on the answer:
+///   touching(a, pose_a, b, pose_b, separation) -> uint64_t,  feature_of(bit), ascending with the bits,
+///   touch(a, pose_a, b, pose_b, separation, feature) -> PairTouch.
+template <class S>
+concept BitShape = Shape<S> && requires(const S& shape, const double* pose, const Vector3<double>& separation) {
+  { S::touching(shape, pose, shape, pose, separation) } -> std::same_as<std::uint64_t>;
+  { S::feature_of(0) } -> std::same_as<std::uint32_t>;
+  { S::touch(shape, pose, shape, pose, separation, 0u) } -> std::same_as<typename S::template PairTouch<double>>;
+};
+
+/// A shape whose search for contacts takes up where it stopped a step ago: PairMemory is what it keeps for each pair of
+/// neighbours (empty when they are listed anew), and collide(a, pose_a, b, pose_b, separation, memory, sink) uses it.
+/// The memory belongs to the pair, not to a thread: results stay the same for any number of threads.
+template <class S>
+concept RememberingShape = Shape<S> &&
+    requires(const S& shape, const double* pose, const Vector3<double>& separation, typename S::PairMemory& memory) {
+  S::collide(shape, pose, shape, pose, separation, memory, AnySink{});
+};
+
+/// A shape that may meet cohesion at a distance also finds contacts across a gap: collide takes the gap (m) as a last
+/// argument and then hands over pairs of points up to that far apart, with a negative overlap; touching of a BitShape
+/// likewise. A RememberingShape takes both its memory and the gap.
+template <class S>
+concept ReachingShape = Shape<S> && requires(const S& shape, const double* pose, const Vector3<double>& separation) {
+  S::collide(shape, pose, shape, pose, separation, AnySink{}, 1.0);
+} &&(!BitShape<S> ||
+     requires(const S& shape, const double* pose, const Vector3<double>& separation) {
+       { S::touching(shape, pose, shape, pose, separation, 1.0) } -> std::same_as<std::uint64_t>;
+     }) &&
+    (!RememberingShape<S> ||
+     requires(const S& shape, const double* pose, const Vector3<double>& separation, typename S::PairMemory& memory) {
+       S::collide(shape, pose, shape, pose, separation, memory, AnySink{}, 1.0);
+     });
+
+/// The gap of models without cohesion at a distance: none. Widening by it is no instruction.
+struct NoGap {};
+template <class T>
+DEM_HOT T widened(const T& reach, NoGap) {
+  return reach;
+}
+template <class T>
+DEM_HOT T widened(const T& reach, double gap) {
+  return reach + T(gap);
+}
+
+template <class S>
+constexpr void check_reaching_shape() {
+  static_assert(ReachingShape<S>,
+                "Shape: the model's cohesion acts at a distance, so collide (and touching, if there) must take a gap "
+                "in m as a last argument and find pairs up to that far apart; or choose a cohesion without range()");
+}
+
+/// The memories of a list of pairs; nothing for shapes that keep none.
+template <class S>
+struct PairMemories {
+  void reset(std::size_t) {}
+  std::size_t bytes() const { return 0; }
+};
+template <RememberingShape S>
+struct PairMemories<S> {
+  std::vector<typename S::PairMemory> memory;
+  void reset(std::size_t pairs) { memory.assign(pairs, {}); }
+  std::size_t bytes() const { return memory.capacity() * sizeof(typename S::PairMemory); }
+};
+
+/// A shape whose pair contacts may be the points of one patch tells by their features, with `static bool
+/// is_patch(std::uint32_t feature)`. Such points slide as one, so a point that turns up in a patch remembers what the
+/// others do: when the patch changes its corners, or the way it is found, friction goes on.
+template <class S>
+concept PatchShape = Shape<S> && requires(std::uint32_t feature) {
+  { S::is_patch(feature) } -> std::same_as<bool>;
+};
+
+/// f(kind) for a grain that is one of several kinds (Mixed), f(shape) for all others.
+template <class S, class F>
+DEM_HOT void visit_kind(const S& shape, F&& f) {
+  if constexpr (requires { shape.kind(); }) {
+    std::visit(f, shape.kind());
+  } else {
+    f(shape);
+  }
+}
+
+/// Whether the points that a grain shows to a surface are shares of one contact, as it tells with has_shares().
+template <class S>
+bool has_shares(const S& shape) {
+  if constexpr (requires { shape.has_shares(); }) {
+    return shape.has_shares();
+  } else {
+    return false;
+  }
+}
+
+/// A shape made of points may touch with many at once: patch() says with how many and of what area, in a pair of
+/// grains, and surface_patch() on a surface. For all others both are one.
+template <class S>
+contact::Patch patch_of(const S& shape) {
+  if constexpr (requires {
+                  { shape.patch() } -> std::same_as<contact::Patch>;
+                }) {
+    return shape.patch();
+  } else {
+    return {};
+  }
+}
+template <class S>
+contact::Patch surface_patch_of(const S& shape) {
+  if constexpr (requires {
+                  { shape.surface_patch() } -> std::same_as<contact::Patch>;
+                }) {
+    return shape.surface_patch();
+  } else {
+    return {};
+  }
+}
+
+template <class S>
+constexpr void check_shape() {
+  static_assert(
+      requires { S::pose_size; }, "Shape: needs 'static constexpr int pose_size', doubles cached per grain");
+  static_assert(
+      requires { S::has_orientation; }, "Shape: needs 'static constexpr bool has_orientation', false only for spheres");
+  static_assert(
+      requires { S::most_contacts; },
+      "Shape: needs 'static constexpr std::size_t most_contacts', the most contacts a pair may have");
+  static_assert(
+      requires { typename S::template PairTouch<double>; },
+      "Shape: needs 'template <class T> PairTouch', the raw numbers of a contact between two such shapes");
+  static_assert(
+      requires(const S& shape) {
+        { shape.bounding_radius() } -> std::convertible_to<double>;
+        { shape.volume() } -> std::convertible_to<double>;
+        { shape.unit_inertia() } -> std::convertible_to<Vec3>;
+      },
+      "Shape: needs bounding_radius() in m, volume() in m^3 and unit_inertia(), the principal moments per density");
+  static_assert(Shape<S>,
+                "Shape: needs orient(R, pose), static collide(a, pose_a, b, pose_b, separation, sink), static "
+                "mirrored(feature) and probe(pose, sink)");
+}
+
+}  // namespace dem::shape

@@ -1,0 +1,53 @@
+#pragma once
+
+#include <dem/geometry/shape.hpp>
+
+namespace dem::shape {
+
+/// A single sphere.
+class Sphere {
+ public:
+  static constexpr int pose_size = 0;
+  static constexpr bool has_orientation = false;
+  static constexpr std::size_t most_contacts = 1;
+  template <class T>
+  using PairTouch = contact::SphereTouch<T>;
+
+  /// Throws Error unless radius > 0 (m).
+  explicit Sphere(double radius) : radius_(require_positive(radius, "radius of a sphere", "m")) {}
+
+  double radius() const { return radius_; }
+  double bounding_radius() const { return radius_; }
+  double volume() const { return sphere_mass_properties(radius_).volume; }
+  Vec3 unit_inertia() const { return sphere_mass_properties(radius_).inertia.diagonal(); }
+
+  void orient(const Matrix3<double>&, double*) const {}
+
+  template <class Gap = NoGap>
+  static DEM_HOT std::uint64_t touching(const Sphere& a, const double*, const Sphere& b, const double*,
+                                        const Vector3<double>& separation, Gap gap = {}) {
+    const double reach = widened(a.radius_ + b.radius_, gap);
+    return dot(separation, separation) < reach * reach ? 1u : 0u;
+  }
+  static constexpr std::uint32_t feature_of(int bit) { return static_cast<std::uint32_t>(bit); }
+  static DEM_HOT PairTouch<double> touch(const Sphere& a, const double*, const Sphere& b, const double*,
+                                         const Vector3<double>& separation, std::uint32_t) {
+    return {separation, a.radius_, b.radius_};
+  }
+  template <class Sink, class Gap = NoGap>
+  static DEM_HOT void collide(const Sphere& a, const double* pose_a, const Sphere& b, const double* pose_b,
+                              const Vector3<double>& separation, Sink&& sink, Gap gap = {}) {
+    if (touching(a, pose_a, b, pose_b, separation, gap) != 0) sink(0u, touch(a, pose_a, b, pose_b, separation, 0u));
+  }
+  static std::uint32_t mirrored(std::uint32_t feature) { return feature; }
+
+  template <class Sink>
+  DEM_HOT void probe(const double*, Sink&& sink) const {
+    sink(0u, contact::Probe{{0, 0, 0}, radius_, radius_});
+  }
+
+ private:
+  double radius_;
+};
+
+}  // namespace dem::shape

@@ -1,0 +1,57 @@
+#pragma once
+
+#include <dem/core/ids.hpp>
+#include <dem/geometry/shape.hpp>
+#include <dem/grain/contact_list.hpp>
+#include <dem/grain/particles.hpp>
+
+namespace dem {
+
+/// Force and torque (about the centre of mass of the surface's body) that one chunk's grains exert on one surface.
+struct SurfaceLoad {
+  SurfaceId surface;
+  Vector3<double> force;   ///< N
+  Vector3<double> torque;  ///< N m
+};
+
+/// What a contact does to its partner j, for the chunk that j belongs to.
+struct PartnerLoad {
+  Vector3<double> force;   ///< N
+  Vector3<double> torque;  ///< N m, about the centre of j
+};
+
+/// The deepest contact of a chunk's grains in a step.
+struct DeepestContact {
+  double overlap = 0.0;       ///< in effective diameters
+  std::uint32_t i = 0;        ///< row of the grain
+  std::uint32_t partner = 0;  ///< row of the other grain, or number of the surface
+  bool with_surface = false;
+};
+
+/// What belongs to chunk_size consecutive grains: their candidates, contacts and bounds.
+template <class Model>
+struct Chunk {
+  std::array<std::uint32_t, chunk_size + 1> candidate_first = {};  ///< candidates of the k-th grain of the chunk
+  std::vector<std::uint32_t> candidate;                            ///< partners j > i, ascending for each i
+  std::vector<std::uint8_t> owner;                                 ///< of each candidate: its i in the chunk
+  [[no_unique_address]] shape::PairMemories<typename Model::Shape> searches;  ///< of the candidates
+  ContactMemories<history_size<Model>> pair_contacts, surface_contacts;
+
+  std::vector<PartnerLoad> partner_loads;         ///< of the contacts whose partner is in another chunk, in their order
+  std::vector<std::uint32_t> partner_load_first;  ///< for each candidate, and one entry more
+  std::vector<SurfaceLoad> surface_loads;
+
+  Vec3 low = Vec3::Zero(), high = Vec3::Zero();  ///< of the grains' centres
+  double moved2 = 0.0;  ///< m^2, largest squared displacement since the neighbour list was made
+  DeepestContact deepest;
+  double surface_seconds = 0.0;  ///< s, spent on contacts with surfaces while the stopwatch was on
+  bool finite = true;            ///< no position or velocity is NaN or infinite
+
+  /// The contacts' memories of this step become the ones that the next step starts from.
+  void commit() {
+    pair_contacts.commit();
+    surface_contacts.commit();
+  }
+};
+
+}  // namespace dem

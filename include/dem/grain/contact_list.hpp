@@ -1,0 +1,65 @@
+#pragma once
+
+#include <dem/core/aligned.hpp>
+#include <dem/law/state.hpp>
+
+#include <array>
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+namespace dem {
+
+/// What a contact remembers: the histories of its laws, one after the other.
+template <class Model, class T>
+struct ContactHistory {
+  typename Model::Normal::template History<T> normal;
+  typename Model::Friction::template History<T> friction;
+  typename Model::Rolling::template History<T> rolling;
+  typename Model::Cohesion::template History<T> cohesion;
+};
+
+template <class Model>
+inline constexpr int normal_history_size = contact::field_count<typename Model::Normal::template History<double>>;
+template <class Model>
+inline constexpr int friction_history_size = contact::field_count<typename Model::Friction::template History<double>>;
+template <class Model>
+inline constexpr int rolling_history_size = contact::field_count<typename Model::Rolling::template History<double>>;
+template <class Model>
+inline constexpr int cohesion_history_size = contact::field_count<typename Model::Cohesion::template History<double>>;
+template <class Model>
+inline constexpr int history_size = normal_history_size<Model> + friction_history_size<Model> +
+                                    rolling_history_size<Model> + cohesion_history_size<Model>;
+
+/// The memory of the contacts of one chunk: keys ascending, one history each. A key says who touches whom, and where:
+/// (candidate << 32 | feature).
+template <int Size>
+struct ContactMemory {
+  int count = 0;
+  std::vector<std::uint64_t> key;
+  std::array<AlignedVector<double>, static_cast<std::size_t>(Size)> history;
+
+  void reserve(std::size_t n) {
+    key.resize(n);
+    for (auto& column : history) column.resize(n);
+  }
+};
+
+/// The memories of all contacts of one chunk with one kind of partner (grains or surfaces): those of this step and
+/// those of the last committed one.
+template <int HistorySize>
+struct ContactMemories {
+  ContactMemory<HistorySize> now, last;
+
+  /// Room for n contacts of this step and the padding of a last pack.
+  void make_room(int n) {
+    const auto need = static_cast<std::size_t>(n + pack_width);
+    if (now.key.size() < need) now.reserve((need + need / 4 + 15) / 16 * 16);
+  }
+  /// This step's memories become the committed ones.
+  void commit() { std::swap(now, last); }
+  /// How many contacts the last committed step had: those of `last`.
+  int committed() const { return last.count; }
+};
+
+}  // namespace dem

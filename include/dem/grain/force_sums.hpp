@@ -1,0 +1,35 @@
+#pragma once
+
+#include <dem/grain/particles.hpp>
+
+#include <array>
+
+namespace dem::grain {
+
+/// Sums of the forces on the grains of one chunk while its contacts are found. What is added for a grain of another
+/// chunk lands in a row that nobody reads, so that the loop over the contacts has no branches.
+class ForceSums {
+ public:
+  /// `local`: row of the grain minus the first row of the chunk; chunk_size or more (also after wrapping) is elsewhere.
+  DEM_HOT void add(std::size_t local, const Vector3<double>& force, const Vector3<double>& torque) {
+    Row& row = rows_[local < chunk_size ? local : chunk_size];
+    row.force += force;
+    row.torque += torque;
+  }
+  /// Hands the sums to the grains of a chunk.
+  template <class Particles>
+  void write(std::size_t chunk_index, Particles& p) const {
+    for (std::size_t k = 0; k < chunk_size; ++k) {
+      p.force.set(chunk_index * chunk_size + k, rows_[k].force);
+      p.torque.set(chunk_index * chunk_size + k, rows_[k].torque);
+    }
+  }
+
+ private:
+  struct Row {
+    Vector3<double> force, torque;
+  };
+  std::array<Row, chunk_size + 1> rows_ = {};
+};
+
+}  // namespace dem::grain

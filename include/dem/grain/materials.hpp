@@ -1,0 +1,152 @@
+#pragma once
+
+#include <dem/core/error.hpp>
+#include <dem/core/ids.hpp>
+#include <dem/law/cohesion/cohesion_law.hpp>
+#include <dem/law/friction/friction_law.hpp>
+#include <dem/law/normal/normal_law.hpp>
+#include <dem/law/rolling/rolling_law.hpp>
+
+#include <algorithm>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace dem {
+
+/// The constants of a contact between two materials (T = double) or those of a pack of contacts.
+template <class Model, class T = double>
+struct ContactParameters {
+  typename Model::Normal::template Parameters<T> normal;
+  typename Model::Friction::template Parameters<T> friction;
+  [[no_unique_address]] typename Model::Rolling::template Parameters<T> rolling = {};
+  [[no_unique_address]] typename Model::Cohesion::template Parameters<T> cohesion = {};
+};
+
+/// Materials by name, and a table with the contact constants of each pair. A pair that was not set takes the default.
+template <class Model>
+class Materials {
+ public:
+  using Parameters = ContactParameters<Model>;
+
+  /// The material of that name; made when it is new.
+  MaterialId id(std::string_view name) {
+    for (std::size_t k = 0; k < names_.size(); ++k) {
+      if (names_[k] == name) return MaterialId(k);
+    }
+    names_.emplace_back(name);
+    entry_.assign(names_.size() * names_.size(), default_entry);
+    for (std::size_t k = 0; k < pairs_.size(); ++k) {
+      entry(pairs_[k].a, pairs_[k].b) = static_cast<std::uint32_t>(k + 1);
+      entry(pairs_[k].b, pairs_[k].a) = static_cast<std::uint32_t>(k + 1);
+    }
+    return MaterialId(names_.size() - 1);
+  }
+
+  /// Constants of every pair that has none of its own. Throws Error if one makes no sense.
+  void set_default(const Parameters& p) {
+    check(p);
+    table_[default_entry] = p;
+    has_default_ = true;
+  }
+  /// Constants of the pair a, b (and b, a). Throws Error if one makes no sense.
+  void set(std::string_view a, std::string_view b, const Parameters& p) {
+    check(p);
+    const MaterialId ia = id(a), ib = id(b);
+    if (const std::uint32_t known = entry(ia, ib); known != default_entry) {
+      table_[known] = p;
+      return;
+    }
+    pairs_.push_back({ia, ib});
+    table_.push_back(p);
+    entry(ia, ib) = entry(ib, ia) = static_cast<std::uint32_t>(table_.size() - 1);
+  }
+
+  /// Row of the table for a pair.
+  std::uint32_t row(MaterialId a, MaterialId b) const { return entry_[a.index() * names_.size() + b.index()]; }
+  const std::vector<Parameters>& table() const { return table_; }
+  const std::string& name(MaterialId m) const { return names_.at(m.index()); }
+  std::size_t count() const { return names_.size(); }
+
+  /// The largest gap (m) at which partners of that effective radius or less may still act on each other: 0 unless the
+  /// cohesion law acts at a distance. World finds it when it is prepared.
+  void find_range(double radius) {
+    range_ = 0.0;
+    if constexpr (cohesion::reaches<typename Model::Cohesion>) {
+      for (const Parameters& p : table_) {
+        if (&p != table_.data() || has_default_) range_ = std::max(range_, Model::Cohesion::range(p.cohesion, radius));
+      }
+    }
+  }
+  double range() const { return range_; }
+
+  /// Notes that grains, not only machine parts, are made of this material.
+  void mark_as_grain(MaterialId m) {
+    grain_.resize(std::max(grain_.size(), names_.size()), false);
+    grain_[m.index()] = true;
+  }
+  /// Throws Error if two materials that may meet (at least one of them of grains) have no constants.
+  void check_complete() const {
+    if (has_default_) return;
+    for (std::size_t a = 0; a < names_.size(); ++a) {
+      for (std::size_t b = 0; b <= a; ++b) {
+        if (is_grain(a) || is_grain(b)) check_pair(MaterialId(b), MaterialId(a));
+      }
+    }
+  }
+  /// Throws Error if constants were given for a material that nothing is made of: a name that was misspelt. The names
+  /// that grains and walls have by default may wait for them.
+  void check_names(std::span<const MaterialId> used) const {
+    const auto is_used = [&](MaterialId m) {
+      return name(m) == "grain" || name(m) == "wall" || std::find(used.begin(), used.end(), m) != used.end();
+    };
+    for (const Pair& pair : pairs_) {
+      for (const MaterialId m : {pair.a, pair.b}) {
+        if (is_used(m)) continue;
+        std::string known;
+        for (const MaterialId u : used) {
+          if (known.find("'" + name(u) + "'") == std::string::npos) known += fmt::format(" '{}'", name(u));
+        }
+        fail(
+            "contact constants were given for the material '{}', but no grain and no surface is made of it; there "
+            "are:{}; correct the name, or add what it is for first",
+            name(m), known);
+      }
+    }
+  }
+  /// Throws Error if the two materials have no constants.
+  void check_pair(MaterialId a, MaterialId b) const {
+    if (has_default_ || row(a, b) != default_entry) return;
+    fail(
+        "no contact constants for the materials '{}' and '{}'; call set_contact(\"{}\", \"{}\", ...), or "
+        "set_contact(...) for all pairs",
+        name(a), name(b), name(a), name(b));
+  }
+
+ private:
+  struct Pair {
+    MaterialId a, b;
+  };
+  static constexpr std::uint32_t default_entry = 0;
+
+  bool is_grain(std::size_t m) const { return m < grain_.size() && grain_[m]; }
+  static void check(const Parameters& p) {
+    Model::Normal::check(p.normal);
+    Model::Friction::check(p.friction);
+    Model::Rolling::check(p.rolling);
+    Model::Cohesion::check(p.cohesion);
+    cohesion::check_with_normal_law<typename Model::Cohesion>(p.cohesion, p.normal);
+  }
+  std::uint32_t& entry(MaterialId a, MaterialId b) { return entry_[a.index() * names_.size() + b.index()]; }
+
+  std::vector<std::string> names_;
+  std::vector<Parameters> table_ = {Parameters{}};
+  std::vector<Pair> pairs_;  // pairs_[k] has row k + 1
+  std::vector<std::uint32_t> entry_;
+  std::vector<bool> grain_;
+  bool has_default_ = false;
+  double range_ = 0.0;
+};
+
+}  // namespace dem

@@ -1,0 +1,155 @@
+#pragma once
+
+#include <dem/grain/chunk.hpp>
+#include <dem/grain/species.hpp>
+
+#include <cmath>
+#include <span>
+
+namespace dem::grain {
+
+/// Where a grain finds the contacts that another chunk holds for it: candidate entry `candidate` of chunk `chunk`,
+/// whose partner it is.
+struct Incoming {
+  std::uint32_t chunk, candidate;
+};
+
+/// Completes the sums of forces on the grains of one chunk with the contacts that other chunks hold, in a fixed order.
+/// Every chunk only reads what others wrote: no locks, and the same bits on any number of threads.
+template <class Model, class Particles>
+void gather_forces(std::size_t chunk_index, std::span<const Chunk<Model>> chunks, Particles& p,
+                   std::span<const std::uint32_t> incoming_first, std::span<const Incoming> incoming) {
+  const std::size_t begin = chunk_index * chunk_size;
+  const std::size_t end = std::min(begin + chunk_size, p.count);
+  for (std::size_t i = begin; i < end; ++i) {
+    Vector3<double> force = p.force[i], torque = p.torque[i];
+    for (std::uint32_t m = incoming_first[i]; m < incoming_first[i + 1]; ++m) {
+      const Chunk<Model>& other = chunks[incoming[m].chunk];
+      const std::uint32_t stop = other.partner_load_first[incoming[m].candidate + 1];
+      for (std::uint32_t c = other.partner_load_first[incoming[m].candidate]; c < stop; ++c) {
+        force += other.partner_loads[c].force;
+        torque += other.partner_loads[c].torque;
+      }
+    }
+    p.force.set(i, force);
+    p.torque.set(i, torque);
+  }
+}
+
+/// Acceleration of a pack of grains from the gathered forces (eqs. 12 and 13).
+template <class Particles>
+DEM_HOT integrator::Acceleration<Pack> acceleration(std::size_t i, const Particles& p,
+                                                    std::span<const SpeciesInertia> inertia, const Vec3& gravity,
+                                                    const integrator::Motion<Pack>& m, double lead = 0.0) {
+  const auto of = [&](auto&& member) {
+    return generate([&](int lane) { return member(inertia[p.species[i + static_cast<std::size_t>(lane)]]); });
+  };
+  const bool one_species = inertia.size() == 1;
+  const auto value = [&](auto&& member) { return one_species ? Pack(member(inertia[0])) : of(member); };
+  const Pack inverse_mass = value([](const SpeciesInertia& s) { return s.inverse_mass; });
+  const Pack mobility = value([](const SpeciesInertia& s) { return s.mobility; });
+  const Vector3<Pack> moments = {value([](const SpeciesInertia& s) { return s.inertia[0]; }),
+                                 value([](const SpeciesInertia& s) { return s.inertia[1]; }),
+                                 value([](const SpeciesInertia& s) { return s.inertia[2]; })};
+  const Vector3<Pack> inverse = {value([](const SpeciesInertia& s) { return s.inverse_inertia[0]; }),
+                                 value([](const SpeciesInertia& s) { return s.inverse_inertia[1]; }),
+                                 value([](const SpeciesInertia& s) { return s.inverse_inertia[2]; })};
+  const Vector3<Pack> g = {Pack(gravity.x()), Pack(gravity.y()), Pack(gravity.z())};
+  Vector3<Pack> torque = p.torque.pack(i);
+  if constexpr (Particles::has_orientation) torque = transpose_times(m.rotation, torque);
+  return {inverse_mass * p.force.pack(i) + mobility * g,
+          integrator::angular_acceleration(torque, m.angular_velocity, moments, inverse, Pack(lead))};
+}
+
+/// What contacts read of the grains of one chunk.
+template <class Particles, class Shape>
+void refresh_views(std::size_t begin, std::size_t end, Particles& p, std::span<const Species<Shape>> species) {
+  for (std::size_t i = begin; i < end; ++i) {
+    const Species<Shape>& kind = species[p.species[i]];
+    p.view[i] = {p.position[i], kind.shape.bounding_radius(), p.velocity[i], kind.inverse_mass, p.angular_velocity(i)};
+  }
+}
+
+/// Refreshes what depends on where the grains of a chunk are: views, poses, bounds, and how far they moved since the
+/// neighbour list was made.
+template <class Model, class Particles>
+void refresh_chunk(std::size_t chunk_index, Chunk<Model>& chunk, Particles& p,
+                   std::span<const Species<typename Model::Shape>> species) {
+  const std::size_t begin = chunk_index * chunk_size;
+  const std::size_t end = std::min(begin + chunk_size, p.count);
+  refresh_views(begin, end, p, species);
+  if constexpr (Model::Shape::pose_size > 0) {
+    for (std::size_t i = begin; i < end; ++i) species[p.species[i]].shape.orient(p.rotation(i), p.pose_of(i));
+  }
+  if (end < begin + chunk_size) p.pad();
+  Vector3<Pack> low = p.position.pack(begin), high = low;
+  Pack moved2(0.0), check(0.0);
+  for (std::size_t i = begin; i < begin + chunk_size; i += static_cast<std::size_t>(pack_width)) {
+    const Vector3<Pack> x = p.position.pack(i), v = p.velocity.pack(i), w = p.spin.pack(i);
+    low = {min(low.x, x.x), min(low.y, x.y), min(low.z, x.z)};
+    high = {max(high.x, x.x), max(high.y, x.y), max(high.z, x.z)};
+    const Vector3<Pack> moved = x - p.listed_at.pack(i);
+    moved2 = max(moved2, dot(moved, moved));
+    // A NaN or an infinity anywhere survives these sums: 0 * inf = NaN.
+    check += Pack(0.0) * (x.x + x.y + x.z + v.x + v.y + v.z + w.x + w.y + w.z);
+  }
+  chunk.low = Vec3(smallest(low.x), smallest(low.y), smallest(low.z));
+  chunk.high = Vec3(largest(high.x), largest(high.y), largest(high.z));
+  chunk.moved2 = largest(moved2);
+  bool finite = true;
+  for (int k = 0; k < pack_width; ++k) finite &= lane(check, k) == 0.0;
+  chunk.finite = finite;
+}
+
+/// How many steps lie between two clean-ups of the rotation matrices. Rounding turns a product of rotations into a
+/// non-rotation by about 1e-16 a step, so 1e-14 at the most.
+inline constexpr std::uint64_t steps_between_orthonormalisations = 64;
+
+/// Forces -> accelerations -> motion, for the grains of one chunk.
+template <class Model, class Particles>
+void move_chunk(std::size_t chunk_index, Chunk<Model>& chunk, Particles& p,
+                std::span<const Species<typename Model::Shape>> species, std::span<const SpeciesInertia> inertia,
+                const Vec3& gravity, int stage, double dt, bool clean_rotations) {
+  using Integrator = typename Model::Integrator;
+  const std::size_t begin = chunk_index * chunk_size;
+  const double lead = integrator::gyroscopic_lead<Integrator>(dt);
+  for (std::size_t i = begin; i < begin + chunk_size; i += static_cast<std::size_t>(pack_width)) {
+    integrator::Motion<Pack> m = p.motion(i);
+    auto memory = p.memory_pack(i);
+    Integrator::template after_forces<Pack>(stage, Pack(dt), m, memory, acceleration(i, p, inertia, gravity, m, lead));
+    if (clean_rotations && Particles::has_orientation) m.rotation = orthonormalised(m.rotation);
+    p.set_motion(i, m);
+    p.set_memory_pack(i, memory);
+  }
+  refresh_chunk<Model>(chunk_index, chunk, p, species);
+}
+
+/// The integrator's memory from the forces at the initial state.
+template <class Model, class Particles>
+void initialise_chunk(std::size_t chunk_index, Particles& p, std::span<const SpeciesInertia> inertia,
+                      const Vec3& gravity) {
+  const std::size_t begin = chunk_index * chunk_size;
+  for (std::size_t i = begin; i < begin + chunk_size; i += static_cast<std::size_t>(pack_width)) {
+    auto memory = p.memory_pack(i);
+    Model::Integrator::template initialise<Pack>(memory, acceleration(i, p, inertia, gravity, p.motion(i)));
+    p.set_memory_pack(i, memory);
+  }
+}
+
+/// The part of an integration stage that comes before the forces (velocity Verlet's first kick and drift).
+template <class Model, class Particles>
+void predict_chunk(std::size_t chunk_index, Chunk<Model>& chunk, Particles& p,
+                   std::span<const Species<typename Model::Shape>> species, int stage, double dt) {
+  using Integrator = typename Model::Integrator;
+  const std::size_t begin = chunk_index * chunk_size;
+  for (std::size_t i = begin; i < begin + chunk_size; i += static_cast<std::size_t>(pack_width)) {
+    integrator::Motion<Pack> m = p.motion(i);
+    auto memory = p.memory_pack(i);
+    Integrator::template before_forces<Pack>(stage, Pack(dt), m, memory);
+    p.set_motion(i, m);
+    p.set_memory_pack(i, memory);
+  }
+  refresh_chunk<Model>(chunk_index, chunk, p, species);
+}
+
+}  // namespace dem::grain

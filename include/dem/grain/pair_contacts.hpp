@@ -1,0 +1,211 @@
+#pragma once
+
+#include <dem/geometry/shape.hpp>
+#include <dem/grain/chunk.hpp>
+#include <dem/grain/contact_evaluator.hpp>
+#include <dem/grain/force_sums.hpp>
+#include <dem/grain/species.hpp>
+
+#include <span>
+
+namespace dem::grain {
+
+/// Lists that a thread uses again for each chunk.
+template <class Model>
+struct PairScratch {
+  std::vector<std::uint32_t> close;     ///< candidates whose bounding spheres overlap
+  std::vector<std::uint64_t> touching;  ///< BitShape: answers that are not zero
+  std::vector<Hit> hits;
+  std::vector<typename Model::Shape::template PairTouch<double>> touches;  ///< other shapes: one for each hit
+  ContactForces forces;
+};
+
+/// The candidates of a chunk as pairs of grains.
+template <class Model, class Particles>
+struct ChunkPairs {
+  using Shape = typename Model::Shape;
+  const Chunk<Model>& chunk;
+  const Particles& p;
+  std::span<const Species<Shape>> species;
+  const Materials<Model>& materials;
+  std::size_t begin;  ///< first grain of the chunk
+
+  /// How far apart grains may be and still be a contact.
+  DEM_HOT auto gap() const {
+    if constexpr (cohesion::reaches<typename Model::Cohesion>) {
+      return materials.range();
+    } else {
+      return shape::NoGap{};
+    }
+  }
+  DEM_HOT std::size_t i(std::uint32_t candidate) const { return begin + chunk.owner[candidate]; }
+  DEM_HOT std::size_t j(std::uint32_t candidate) const { return chunk.candidate[candidate]; }
+  DEM_HOT const Species<Shape>& kind(std::size_t grain) const { return species[p.species[grain]]; }
+  DEM_HOT Vector3<double> separation(std::size_t i, std::size_t j) const {
+    return p.view[j].position - p.view[i].position;
+  }
+  DEM_HOT Hit hit(std::uint32_t candidate, std::uint32_t feature) const {
+    const auto a = static_cast<std::uint32_t>(i(candidate)), b = static_cast<std::uint32_t>(j(candidate));
+    const std::uint32_t law = materials.table().size() == 1 ? 0 : materials.row(kind(a).material, kind(b).material);
+    return {std::uint64_t{candidate} << 32 | feature, a, b, law};
+  }
+};
+
+/// Candidates whose bounding spheres overlap, a pack at a time and without branches, as the answer is a coin toss.
+template <class Pairs>
+std::size_t list_close(const Pairs& pairs, std::uint32_t candidates, std::vector<std::uint32_t>& close) {
+  close.resize(candidates + std::size_t{pack_width});
+  std::size_t count = 0;
+  PartnerLanes partners;
+  for (std::uint32_t at = 0; at < candidates; at += pack_width) {
+    for (std::uint32_t lane = 0; lane < pack_width; ++lane) {
+      const std::uint32_t k = std::min(at + lane, candidates - 1);
+      partners.set(static_cast<int>(lane), pairs.p.view[pairs.i(k)], pairs.p.view[pairs.j(k)]);
+    }
+    const auto [x, y, z, radii] = separations(partners);
+    const Pack reach = shape::widened(radii, pairs.gap());
+    const std::uint32_t near = bits(x * x + y * y + z * z < reach * reach);
+    for (std::uint32_t lane = 0; lane < pack_width; ++lane) {
+      close[count] = at + lane;
+      count += near >> lane & (at + lane < candidates ? 1u : 0u);
+    }
+  }
+  return count;
+}
+
+/// Which points of grain i touch which of grain j, or come within the reach of cohesion, as bits.
+template <class Model, class Pairs>
+DEM_HOT std::uint64_t touching(const Pairs& pairs, std::size_t i, std::size_t j) {
+  using Shape = typename Model::Shape;
+  const auto& a = pairs.kind(i).shape;
+  const auto& b = pairs.kind(j).shape;
+  if constexpr (cohesion::reaches<typename Model::Cohesion>) {
+    return Shape::touching(a, pairs.p.pose_of(i), b, pairs.p.pose_of(j), pairs.separation(i, j), pairs.gap());
+  } else {
+    return Shape::touching(a, pairs.p.pose_of(i), b, pairs.p.pose_of(j), pairs.separation(i, j));
+  }
+}
+
+/// Narrow phase of shapes that answer in bits: bits of all close pairs first, then one loop over the contacts, which
+/// steps to the next pair by a conditional move.
+template <class Model, class Pairs>
+void find_hits_by_bits(const Pairs& pairs, std::size_t close_count, PairScratch<Model>& s) {
+  using Shape = typename Model::Shape;
+  if constexpr (!Shape::has_orientation) {  // a sphere is its own bounding sphere: the question is answered
+    s.hits.resize(close_count);
+    for (std::size_t c = 0; c < close_count; ++c) s.hits[c] = pairs.hit(s.close[c], 0);
+    return;
+  }
+  s.touching.resize(close_count + 1);
+  std::size_t touching_pairs = 0, total = 0;
+  for (std::size_t c = 0; c < close_count; ++c) {
+    const std::uint32_t k = s.close[c];
+    const std::size_t i = pairs.i(k), j = pairs.j(k);
+    const std::uint64_t bits = touching<Model>(pairs, i, j);
+    total += static_cast<std::size_t>(std::popcount(bits));
+    s.close[touching_pairs] = k;
+    s.touching[touching_pairs] = bits;
+    touching_pairs += bits != 0 ? 1 : 0;
+  }
+  s.touching[touching_pairs] = 0;
+
+  s.hits.resize(total);
+  std::size_t pair = 0;
+  std::uint64_t bits = s.touching[0];
+  for (Hit& hit : s.hits) {
+    hit = pairs.hit(s.close[pair], Shape::feature_of(std::countr_zero(bits)));
+    bits &= bits - 1;
+    pair += bits == 0 ? 1 : 0;
+    bits = bits == 0 ? s.touching[pair] : bits;
+  }
+}
+
+/// Narrow phase of all other shapes.
+template <class Model, class Pairs>
+void find_hits_one_by_one(const Pairs& pairs, std::size_t close_count,
+                          shape::PairMemories<typename Model::Shape>& searches, PairScratch<Model>& s) {
+  using Shape = typename Model::Shape;
+  s.hits.clear();
+  s.touches.clear();
+  for (std::size_t c = 0; c < close_count; ++c) {
+    const std::uint32_t k = s.close[c];
+    const std::size_t i = pairs.i(k), j = pairs.j(k);
+    const Shape &a = pairs.kind(i).shape, &b = pairs.kind(j).shape;
+    const auto sink = [&](std::uint32_t feature, const auto& touch) {
+      s.hits.push_back(pairs.hit(k, feature));
+      s.touches.push_back(touch);
+    };
+    const auto collide = [&](auto&&... more) {
+      Shape::collide(a, pairs.p.pose_of(i), b, pairs.p.pose_of(j), pairs.separation(i, j), more...);
+    };
+    constexpr bool reaches = cohesion::reaches<typename Model::Cohesion>;
+    if constexpr (shape::RememberingShape<Shape>) {
+      if constexpr (reaches) collide(searches.memory[k], sink, pairs.gap());
+      else collide(searches.memory[k], sink);
+    } else {
+      if constexpr (reaches) collide(sink, pairs.gap());
+      else collide(sink);
+    }
+  }
+}
+
+/// Adds the contacts' forces to the chunk's own grains and keeps what partners in other chunks feel. Both is written
+/// for every contact, and what does not apply is overwritten or never read: whose a partner is, is a coin toss as well.
+template <class Model>
+void share_forces(std::size_t begin, Chunk<Model>& chunk, const PairScratch<Model>& s, ForceSums& sums) {
+  chunk.partner_loads.resize(s.hits.size() + 1);
+  std::fill(chunk.partner_load_first.begin(), chunk.partner_load_first.end(), 0u);
+  std::size_t foreign = 0;
+  for (std::size_t c = 0; c < s.hits.size(); ++c) {
+    const Hit& hit = s.hits[c];
+    const Vector3<double> force = ContactForces::at(s.forces.force, c);
+    const PartnerLoad load = {-force, ContactForces::at(s.forces.torque_j, c)};
+    sums.add(hit.i - begin, force, ContactForces::at(s.forces.torque_i, c));
+    sums.add(hit.partner - begin, load.force, load.torque);
+    chunk.partner_loads[foreign] = load;
+    const std::uint32_t elsewhere = hit.partner - begin >= chunk_size ? 1 : 0;
+    foreign += elsewhere;
+    chunk.partner_load_first[(hit.key >> 32) + 1] += elsewhere;
+  }
+  std::uint32_t total = 0;
+  for (std::uint32_t& first : chunk.partner_load_first) first = total += first;
+}
+
+/// Contacts of the grains of one chunk with their candidates: narrow phase, laws, forces. Writes to the chunk and its
+/// own grains' sums only, so chunks may run at the same time.
+template <class Model, class Particles>
+void find_pair_contacts(std::size_t chunk_index, Chunk<Model>& chunk, const Particles& p,
+                        std::span<const Species<typename Model::Shape>> species, const Materials<Model>& materials,
+                        double dt, ForceSums& sums, PairScratch<Model>& s) {
+  using Shape = typename Model::Shape;
+  const std::size_t begin = chunk_index * chunk_size;
+  const ChunkPairs<Model, Particles> pairs{chunk, p, species, materials, begin};
+  const std::size_t close_count = list_close(pairs, static_cast<std::uint32_t>(chunk.candidate.size()), s.close);
+
+  if constexpr (shape::BitShape<Shape>) {
+    find_hits_by_bits<Model>(pairs, close_count, s);
+  } else {
+    find_hits_one_by_one<Model>(pairs, close_count, chunk.searches, s);
+  }
+
+  const auto touch_of = [&](std::size_t c) {
+    if constexpr (shape::BitShape<Shape>) {
+      const std::size_t i = s.hits[c].i, j = s.hits[c].partner;
+      return Shape::touch(pairs.kind(i).shape, p.pose_of(i), pairs.kind(j).shape, p.pose_of(j), pairs.separation(i, j),
+                          static_cast<std::uint32_t>(s.hits[c].key));
+    } else {
+      return s.touches[c];
+    }
+  };
+  ContactEvaluator<Model, Shape::template PairTouch, Shape> evaluator(materials.table(), dt);
+  const Deepest deepest = evaluator.run(
+      s.hits, chunk.pair_contacts, s.forces, touch_of,
+      [&](std::size_t c) -> const PartnerView& { return p.view[s.hits[c].i]; },
+      [&](std::size_t c) -> const PartnerView& { return p.view[s.hits[c].partner]; });
+  chunk.deepest = {deepest.overlap, 0, 0, false};
+  if (deepest.overlap > 0.0)
+    chunk.deepest = {deepest.overlap, s.hits[deepest.hit].i, s.hits[deepest.hit].partner, false};
+  share_forces(begin, chunk, s, sums);
+}
+
+}  // namespace dem::grain

@@ -1,0 +1,181 @@
+#pragma once
+
+#include <dem/core/aligned.hpp>
+#include <dem/grain/partner_view.hpp>
+#include <dem/integrator/motion.hpp>
+#include <dem/law/state.hpp>
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace dem {
+
+/// Grains are worked on in chunks of this many: one chunk's contacts fit the first-level cache, and a chunk, not a
+/// thread, is the unit of work, so that results do not depend on the number of threads.
+inline constexpr std::size_t chunk_size = 256;
+
+/// Three columns x, y, z.
+struct Columns3 {
+  AlignedVector<double> x, y, z;
+
+  Vector3<double> operator[](std::size_t i) const { return {x[i], y[i], z[i]}; }
+  void set(std::size_t i, const Vector3<double>& v) {
+    x[i] = v.x;
+    y[i] = v.y;
+    z[i] = v.z;
+  }
+  Vector3<Pack> pack(std::size_t i) const { return {load(&x[i]), load(&y[i]), load(&z[i])}; }
+  void set_pack(std::size_t i, const Vector3<Pack>& v) {
+    store(v.x, &x[i]);
+    store(v.y, &y[i]);
+    store(v.z, &z[i]);
+  }
+  template <class F>
+  void for_each_column(F&& f) {
+    f(x);
+    f(y);
+    f(z);
+  }
+};
+
+/// The grains as structure of arrays. Rows are re-sorted in space now and then; `id` tells which grain a row holds and
+/// `row_of` where a grain is. The columns are padded to whole chunks: see pad().
+template <class Shape, class Integrator>
+struct Particles {
+  using Motion = integrator::Motion<Pack>;
+  static constexpr bool has_orientation = Shape::has_orientation;
+  template <class T>
+  using Memory = typename Integrator::template Memory<T>;
+  static constexpr int memory_size = contact::field_count<Memory<double>>;
+  static_assert(sizeof(Memory<Pack>) == sizeof(Pack) * (memory_size > 0 ? memory_size : 1) || memory_size == 0);
+
+  std::size_t count = 0;        ///< grains, padding not counted
+  Columns3 position, velocity;  ///< m, m/s
+  Columns3 spin;                ///< rad/s, body frame (what the integrator advances)
+  Columns3 row0, row1, row2;    ///< rotation, body -> global, by rows
+  Columns3 force, torque;       ///< N, N m of the last force evaluation, gravity not included; global axes
+  Columns3 listed_at;           ///< m, position when the neighbour list was made
+  std::array<AlignedVector<double>, static_cast<std::size_t>(memory_size)> memory;  ///< of the integrator
+  AlignedVector<PartnerView> view;                                                  ///< what contacts read
+  AlignedVector<double> pose;                                                       ///< Shape::pose_size a grain
+  std::vector<std::uint32_t> species, id;
+  std::vector<std::uint32_t> row_of;  ///< by id; `gone` for grains that were removed
+  static constexpr std::uint32_t gone = 0xffffffffu;
+
+  std::size_t chunks() const { return (count + chunk_size - 1) / chunk_size; }
+  const double* pose_of(std::size_t i) const { return pose.data() + i * Shape::pose_size; }
+  double* pose_of(std::size_t i) { return pose.data() + i * Shape::pose_size; }
+
+  Matrix3<double> rotation(std::size_t i) const { return {row0[i], row1[i], row2[i]}; }
+  /// rad/s, global axes.
+  Vector3<double> angular_velocity(std::size_t i) const {
+    if constexpr (has_orientation) return rotation(i) * spin[i];
+    return spin[i];
+  }
+  void set_rotation(std::size_t i, const Matrix3<double>& r) {
+    row0.set(i, r.row0);
+    row1.set(i, r.row1);
+    row2.set(i, r.row2);
+  }
+
+  Motion motion(std::size_t i) const {
+    if constexpr (Shape::has_orientation) {
+      return {position.pack(i), velocity.pack(i), spin.pack(i), {row0.pack(i), row1.pack(i), row2.pack(i)}};
+    } else {
+      return {position.pack(i), velocity.pack(i), spin.pack(i), Matrix3<Pack>::identity()};
+    }
+  }
+  void set_motion(std::size_t i, const Motion& m) {
+    position.set_pack(i, m.position);
+    velocity.set_pack(i, m.velocity);
+    spin.set_pack(i, m.angular_velocity);
+    if constexpr (Shape::has_orientation) {
+      row0.set_pack(i, m.rotation.row0);
+      row1.set_pack(i, m.rotation.row1);
+      row2.set_pack(i, m.rotation.row2);
+    }
+  }
+  Memory<Pack> memory_pack(std::size_t i) const {
+    Memory<Pack> result{};
+    if constexpr (memory_size > 0) {
+      std::array<Pack, static_cast<std::size_t>(memory_size)> packs;
+      for (std::size_t k = 0; k < memory.size(); ++k) packs[k] = load(&memory[k][i]);
+      result = std::bit_cast<Memory<Pack>>(packs);
+    }
+    return result;
+  }
+  void set_memory_pack(std::size_t i, const Memory<Pack>& m) {
+    if constexpr (memory_size > 0) {
+      const auto packs = std::bit_cast<std::array<Pack, static_cast<std::size_t>(memory_size)>>(m);
+      for (std::size_t k = 0; k < memory.size(); ++k) store(packs[k], &memory[k][i]);
+    }
+  }
+
+  /// Calls f(column) for every column of doubles that has one entry a grain.
+  template <class F>
+  void for_each_column(F&& f) {
+    for (Columns3* c : {&position, &velocity, &spin, &row0, &row1, &row2, &force, &torque, &listed_at}) {
+      c->for_each_column(f);
+    }
+    for (auto& column : memory) f(column);
+  }
+
+  /// Makes room for n grains and pads to whole chunks. Padding rows stay where they are put: see pad().
+  void resize(std::size_t n) {
+    const std::size_t rows = (n + chunk_size - 1) / chunk_size * chunk_size;
+    for_each_column([&](AlignedVector<double>& column) { column.resize(rows, 0.0); });
+    view.resize(rows);
+    pose.resize(rows * Shape::pose_size, 0.0);
+    species.resize(rows, 0);
+    id.resize(rows, 0xffffffffu);
+    count = n;
+  }
+
+  /// Takes grains (ids) out; the others keep their order.
+  void remove(std::span<const std::uint32_t> ids) {
+    for (const std::uint32_t k : ids) row_of[k] = gone;
+    std::vector<std::uint32_t> kept;
+    for (std::size_t i = 0; i < count; ++i) {
+      if (row_of[id[i]] != gone) kept.push_back(static_cast<std::uint32_t>(i));
+    }
+    permute(kept);
+    resize(kept.size());
+  }
+
+  /// Puts the padding rows where the last grain is and stops them, so that bounds and displacements stay right.
+  void pad() {
+    if (count == 0) return;
+    for (std::size_t i = count; i < position.x.size(); ++i) {
+      position.set(i, position[count - 1]);
+      listed_at.set(i, listed_at[count - 1]);
+      for (Columns3* c : {&velocity, &spin, &force, &torque}) c->set(i, {0, 0, 0});
+      set_rotation(i, Matrix3<double>::identity());
+    }
+  }
+
+  /// Row k becomes what was row order[k].
+  void permute(std::span<const std::uint32_t> order) {
+    DEM_ASSERT(order.size() <= count, "rows are moved or dropped, and none is made");
+    AlignedVector<double> old;
+    for_each_column([&](AlignedVector<double>& column) {
+      old = column;
+      for (std::size_t k = 0; k < order.size(); ++k) column[k] = old[order[k]];
+    });
+    old = pose;
+    for (std::size_t k = 0; k < order.size(); ++k) {
+      std::copy_n(old.data() + order[k] * Shape::pose_size, Shape::pose_size, pose_of(k));
+    }
+    const auto old_species = species, old_id = id;
+    for (std::size_t k = 0; k < order.size(); ++k) {
+      species[k] = old_species[order[k]];
+      id[k] = old_id[order[k]];
+      row_of[id[k]] = static_cast<std::uint32_t>(k);
+    }
+  }
+};
+
+}  // namespace dem

@@ -1,0 +1,106 @@
+#pragma once
+
+#include <dem/geometry/shape.hpp>
+#include <dem/grain/materials.hpp>
+#include <dem/grain/species.hpp>
+
+#include <cmath>
+#include <span>
+
+namespace dem::grain {
+
+/// How many contacts at once the stable time step allows for. A grain in a bed has about six, but they pull in
+/// different directions: the highest mode of a packed bed of cubes is that of about four contacts in line.
+inline constexpr double contacts_in_line = 4.0;
+/// How many of these have their damper act on that mode: some are pushed, with the damper of the normal law, the others
+/// are sheared, with that of friction.
+inline constexpr double damped_share = 0.5;
+
+struct StableTimeStep {
+  double value = 1e300;  ///< s
+  std::string contact;   ///< which contact limits it, in words
+};
+
+/// Largest stable time step of one law in contacts of stiffness k and damping c, already times the number that acts in
+/// line, between partners of mass m and inertia I with the lever arm R (bounding radius): with
+///   omega^2 = k W,   B = c W/2,   W = 1/m_i + 1/m_j + R_i^2/I_i + R_j^2/I_j,
+/// explicit integration is stable while dt (sqrt(omega^2 + B^2) + B) stays under the integrator's limit: a force that
+/// is taken from the velocity of a step before makes a damper shorten the step (Belytschko, Liu and Moran 2000).
+/// Rolling resistance acts on W = 1/I_i + 1/I_j instead.
+inline double stable_step(double limit, double k, double c, double w) {
+  const double b = 0.5 * c * w, sum = std::sqrt(k * w + b * b) + b;
+  return sum > 0.0 ? limit / sum : 1e300;
+}
+
+/// The springs of a pair's laws that swing apart from each other: those along the normal, and those of friction and
+/// rolling resistance, which turn the same grains and so add up. Calls limit(k, c, w, text) for each with stiffness k
+/// (N/m), damping c (N s/m), of which `acting` (a share) acts, and mobility w (1/kg); w_turning: 1/(kg m^2), of
+/// rotations; text() says which it is.
+template <class Model, class Parameters, class Limit>
+void for_each_swing(const Parameters& p, const contact::NormalState<double>& deepest, double acting, double w,
+                    double w_turning, Limit&& limit) {
+  const double normal = Model::Normal::stiffness(p.normal, deepest) + Model::Cohesion::stiffness(p.cohesion, deepest);
+  limit(normal, acting * contact::damping_of<typename Model::Normal>(p.normal, deepest), w,
+        [&] { return fmt::format("stiffness {:g} N/m", normal); });
+
+  const double sliding = friction::stiffness_of<typename Model::Friction>(p.friction, deepest);
+  const double slide_damping = acting * contact::damping_of<typename Model::Friction>(p.friction, deepest);
+  const double rolling = Model::Rolling::stiffness(p.rolling, deepest);
+  const double roll_damping = contact::damping_of<typename Model::Rolling>(p.rolling, deepest);
+  const double to_slide = w > 0.0 ? w_turning / w : 0.0;
+  limit(sliding + to_slide * rolling, slide_damping + to_slide * roll_damping, w, [&] {
+    const std::string friction = fmt::format("friction stiffness {:g} N/m", sliding);
+    return rolling + roll_damping > 0.0 ? friction + fmt::format(" with rolling stiffness {:g} N m", rolling)
+                                        : friction;
+  });
+}
+
+/// What the stable time step has to know of a surface.
+struct SurfaceMatter {
+  MaterialId material;
+  double softness = 0.0;  ///< 1/kg, of its body: 1/m + R^2/I at the surface's farthest point; 0 for a fixed one
+};
+
+/// Largest stable time step of the grains: the smallest of all laws and pairs of species and surfaces. A shape whose
+/// contacts are points counts with as many as may touch at once. A nonlinear law's stiffness is taken at the overlap
+/// that the world reports as too deep, WorldOptions::overlap_limit.
+template <class Model>
+StableTimeStep stable_time_step(std::span<const Species<typename Model::Shape>> species,
+                                const Materials<Model>& materials, std::span<const SurfaceMatter> surfaces,
+                                double overlap_limit) {
+  StableTimeStep result;
+  const auto softness = [](const Species<typename Model::Shape>& s) {  // 1/kg
+    const double radius = s.shape.bounding_radius();
+    return 1.0 / s.mass + radius * radius / s.inertia.minCoeff();
+  };
+  const auto turning = [](const Species<typename Model::Shape>& s) { return 1.0 / s.inertia.minCoeff(); };
+  const auto consider = [&](MaterialId a, MaterialId b, double w, double w_turning, double mass, double radius,
+                            const contact::Patch& patch) {
+    const auto& p = materials.table()[materials.row(a, b)];
+    const contact::NormalState<double> deepest = {2.0 * overlap_limit * radius, 0.0, radius, mass, 0.0};
+    for_each_swing<Model>(p, deepest, damped_share, w, w_turning,
+                          [&](double k, double c, double mobility, const auto& text) {
+                            const double n = contacts_in_line * patch.area;
+                            const double dt = stable_step(Model::Integrator::stability_limit, n * k, n * c, mobility);
+                            if (!(dt < result.value)) return;
+                            const char* damper = c > 0.0 ? " with a damper" : "";
+                            result = {dt, fmt::format("{} on {}: {}{}, grain of {:.4g} kg", materials.name(a),
+                                                      materials.name(b), text(), damper, mass)};
+                          });
+  };
+  for (const auto& a : species) {
+    const double ra = a.shape.bounding_radius();
+    for (const auto& b : species) {
+      const double rb = b.shape.bounding_radius();
+      consider(a.material, b.material, softness(a) + softness(b), turning(a) + turning(b), std::min(a.mass, b.mass),
+               ra * rb / (ra + rb), shape::patch_of(a.shape));
+    }
+    for (const SurfaceMatter& s : surfaces) {
+      consider(a.material, s.material, softness(a) + s.softness, turning(a), a.mass, ra,
+               shape::surface_patch_of(a.shape));
+    }
+  }
+  return result;
+}
+
+}  // namespace dem::grain

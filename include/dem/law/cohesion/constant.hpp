@@ -1,0 +1,34 @@
+#pragma once
+
+#include <dem/core/error.hpp>
+#include <dem/law/cohesion/cohesion_law.hpp>
+
+namespace dem::cohesion {
+
+/// A constant pull while the partners touch (the thesis's normal stiction force, a function of the penetration): F
+/// min(1, d/depth). With depth = 0 it is there at once; with a depth it comes on with the overlap.
+struct Constant {
+  template <class T>
+  struct Parameters {
+    T force;           ///< F, N (Pa if the shape's contact points have areas)
+    T depth = T(0.0);  ///< m, overlap from which the pull is whole
+  };
+  template <class T>
+  struct History {};
+
+  template <class T>
+  static DEM_HOT Attraction<T> force(const Parameters<T>& p, const NormalState<T>& s, History<T>&) {
+    const T share = min(T(1), max(T(0), s.overlap) / max(p.depth, T(1e-300)));
+    return {p.force * share, T(0)};
+  }
+
+  static double stiffness(const Parameters<double>& p, const NormalState<double>&) {
+    return p.depth > 0.0 ? p.force / p.depth : 0.0;
+  }
+  static void check(const Parameters<double>& p) {
+    require_non_negative(p.force, "cohesive force", "N");
+    require_non_negative(p.depth, "depth of a cohesive force", "m");
+  }
+};
+
+}  // namespace dem::cohesion

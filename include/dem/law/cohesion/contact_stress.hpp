@@ -1,0 +1,37 @@
+#pragma once
+
+#include <dem/core/error.hpp>
+#include <dem/law/cohesion/cohesion_law.hpp>
+
+namespace dem::cohesion {
+
+/// A constant adhesive stress on a whole contact: s times the area pi R* d of Hertz's circle. The pull grows with the
+/// overlap, so a linear spring must be stiffer than s pi R*, which the pull takes off it. Where contact points have
+/// areas in m^2, Constant is such a stress.
+///
+/// It knows round contacts only: on flat faces (polyhedra, flat superquadrics) the circle of their radii may be
+/// thousands of times smaller than what touches. To stick face on face with a stress, take Constant with the force
+/// stress times face area: edges and corners then get their shares of it.
+struct ContactStress {
+  template <class T>
+  struct Parameters {
+    T stress;  ///< s, Pa
+  };
+  template <class T>
+  struct History {};
+
+  template <class T>
+  static DEM_HOT Attraction<T> force(const Parameters<T>& p, const NormalState<T>& s, History<T>&) {
+    return {T(pi) * p.stress * s.effective_radius * max(T(0), s.overlap), T(0)};
+  }
+
+  static double stiffness(const Parameters<double>& p, const NormalState<double>& s) {
+    return pi * p.stress * s.effective_radius;
+  }
+  static void check(const Parameters<double>& p) { require_non_negative(p.stress, "adhesive stress", "Pa"); }
+
+ private:
+  static constexpr double pi = 3.14159265358979323846;
+};
+
+}  // namespace dem::cohesion

@@ -1,0 +1,49 @@
+#pragma once
+
+#include <dem/core/error.hpp>
+#include <dem/parallel/executor.hpp>
+
+#include <algorithm>
+
+#if defined(_OPENMP)
+#include <omp.h>
+#endif
+
+namespace dem::exec {
+
+/// OpenMP threads; runs on one thread when the compiler has no OpenMP. Unless a number is set, it uses as many threads
+/// as OpenMP offers, but gives each at least a few pieces of work: waking a thread costs more than a small piece.
+class OpenMP {
+ public:
+  int threads() const { return threads_; }
+  /// Exactly n threads. Throws Error unless n >= 1.
+  void set_threads(int n) {
+    if (n < 1) fail("number of threads is {}, but must be at least 1", n);
+    threads_ = n;
+    least_pieces_ = 1;
+  }
+
+  template <class F>
+  void for_each(std::size_t n, F&& f) const {
+    const auto count = static_cast<std::ptrdiff_t>(n);
+#if defined(_OPENMP)
+    const int team = static_cast<int>(std::min<std::ptrdiff_t>(threads_, count / least_pieces_));
+    if (team > 1) {
+#pragma omp parallel for schedule(static) num_threads(team)
+      for (std::ptrdiff_t k = 0; k < count; ++k) f(static_cast<std::size_t>(k));
+      return;
+    }
+#endif
+    for (std::ptrdiff_t k = 0; k < count; ++k) f(static_cast<std::size_t>(k));
+  }
+
+ private:
+#if defined(_OPENMP)
+  int threads_ = omp_get_max_threads();
+#else
+  int threads_ = 1;
+#endif
+  std::ptrdiff_t least_pieces_ = 4;
+};
+
+}  // namespace dem::exec

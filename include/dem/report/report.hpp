@@ -1,0 +1,9 @@
+#pragma once
+// What a run shows: progress and Ctrl-C, tables on the terminal, plots, HTML reports. POSIX.
+
+#include <dem/report/ascii_table.hpp>
+#include <dem/report/columns.hpp>
+#include <dem/report/html_report.hpp>
+#include <dem/report/interrupt.hpp>
+#include <dem/report/plot.hpp>
+#include <dem/report/progress.hpp>
