@@ -1,32 +1,32 @@
 // The kernels that device code may call compile for a device. Nothing is run.
 
+#include <dem/geometry/box/box.hpp>
+#include <dem/geometry/contact_point.hpp>
+#include <dem/geometry/plane/plane.hpp>
+#include <dem/integrator/predictor_corrector.hpp>
+#include <dem/integrator/symplectic_euler.hpp>
+#include <dem/integrator/velocity_verlet.hpp>
 #include <dem/law/cohesion/constant.hpp>
 #include <dem/law/cohesion/contact_stress.hpp>
 #include <dem/law/cohesion/dmt.hpp>
 #include <dem/law/cohesion/jkr.hpp>
 #include <dem/law/cohesion/liquid_bridge.hpp>
 #include <dem/law/cohesion/none.hpp>
-#include <dem/law/normal/hertz.hpp>
-#include <dem/law/normal/hysteretic.hpp>
-#include <dem/law/normal/linear_spring_dashpot.hpp>
-#include <dem/law/normal/penalty.hpp>
-#include <dem/geometry/contact_point.hpp>
 #include <dem/law/friction/asperity_spring.hpp>
 #include <dem/law/friction/coulomb_viscous.hpp>
 #include <dem/law/friction/cundall_strack.hpp>
 #include <dem/law/friction/mindlin.hpp>
 #include <dem/law/friction/none.hpp>
 #include <dem/law/friction/varying.hpp>
-#include <dem/integrator/predictor_corrector.hpp>
-#include <dem/integrator/symplectic_euler.hpp>
-#include <dem/integrator/velocity_verlet.hpp>
+#include <dem/law/normal/hertz.hpp>
+#include <dem/law/normal/hysteretic.hpp>
+#include <dem/law/normal/linear_spring_dashpot.hpp>
+#include <dem/law/normal/penalty.hpp>
 #include <dem/law/rolling/constant_torque.hpp>
 #include <dem/law/rolling/elastic_plastic.hpp>
 #include <dem/law/rolling/none.hpp>
 #include <dem/law/rolling/sum.hpp>
 #include <dem/law/rolling/torsion.hpp>
-#include <dem/geometry/box/box.hpp>
-#include <dem/geometry/plane/plane.hpp>
 
 using dem::Vector3;
 

@@ -1,12 +1,12 @@
 // The searches of round grains and of simple surfaces, and the superquadric's function, compile for a device. Nothing
 // is run. Clusters (which compare packs of spheres), polyhedra and meshes are searched by the host alone.
 
-#include <dem/geometry/sphere/sphere.hpp>
-#include <dem/geometry/superquadric/superquadric_solid.hpp>
 #include <dem/geometry/box/box.hpp>
 #include <dem/geometry/cylinder/cylinder.hpp>
 #include <dem/geometry/plane/plane.hpp>
+#include <dem/geometry/sphere/sphere.hpp>
 #include <dem/geometry/sphere/sphere_surface.hpp>
+#include <dem/geometry/superquadric/superquadric_solid.hpp>
 
 using dem::Vector3;
 
