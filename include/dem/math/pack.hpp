@@ -1,24 +1,19 @@
 #pragma once
 
-// A pack is as many doubles as one vector register holds; laws and integrators are written once, as templates over the
+// A pack is as many doubles as one vector register holds. Laws and integrators are written once, as templates over the
 // number type T, and run with T = double (machine bodies, tests, device code) or T = Pack (batches of contacts and
-// grains). Where the standard library has no <experimental/simd>, a pack is a single double and everything still works.
+// grains). Packs stand on the compilers' vector extensions. Elsewhere, and with DEM_NO_SIMD, a pack is a single double
+// and everything still works.
 
 #include <dem/core/macros.hpp>
 
-#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <cstdint>
 
-#if !defined(__CUDACC__) && !defined(DEM_NO_SIMD) && __has_include(<experimental/simd>)
-#include <experimental/simd>
-#if defined(__clang__) && defined(__AVX512F__)
-#include <immintrin.h>
-#endif
-#if defined(__cpp_lib_experimental_parallel_simd)
+#if !defined(__CUDACC__) && !defined(DEM_NO_SIMD) && (defined(__GNUC__) || defined(__clang__))
 #define DEM_HAS_SIMD 1
-#endif
+#include <dem/math/simd_register.hpp>
 #endif
 
 namespace dem {
@@ -34,63 +29,97 @@ DEM_HOT bool any_of(bool condition) { return condition; }
 
 #if defined(DEM_HAS_SIMD)
 
-namespace stdx = std::experimental;
-using Pack = stdx::native_simd<double>;
-using PackMask = Pack::mask_type;
-inline constexpr int pack_width = static_cast<int>(Pack::size());
+inline constexpr int pack_width = simd::width;
+
+/// A truth value for each lane.
+struct PackMask {
+  simd::Mask lanes;
+
+  PackMask() = default;
+  DEM_HOT explicit PackMask(simd::Mask m) : lanes(m) {}
+  DEM_HOT explicit PackMask(bool all) : lanes(simd::mask_of(all)) {}
+
+  friend DEM_HOT PackMask operator&&(const PackMask& a, const PackMask& b) {
+    return PackMask(static_cast<simd::Mask>(a.lanes & b.lanes));
+  }
+  friend DEM_HOT PackMask operator||(const PackMask& a, const PackMask& b) {
+    return PackMask(static_cast<simd::Mask>(a.lanes | b.lanes));
+  }
+  friend DEM_HOT PackMask operator!(const PackMask& a) { return PackMask(static_cast<simd::Mask>(~a.lanes)); }
+};
+
+/// `pack_width` doubles.
+struct Pack {
+  simd::Register lanes;
+
+  Pack() = default;
+  DEM_HOT Pack(double all) : lanes(simd::register_of(all)) {}
+  DEM_HOT explicit Pack(simd::Register r) : lanes(r) {}
+
+  DEM_HOT Pack& operator+=(const Pack& b) { return lanes += b.lanes, *this; }
+  DEM_HOT Pack& operator-=(const Pack& b) { return lanes -= b.lanes, *this; }
+  DEM_HOT Pack& operator*=(const Pack& b) { return lanes *= b.lanes, *this; }
+  DEM_HOT Pack& operator/=(const Pack& b) { return lanes /= b.lanes, *this; }
+
+  friend DEM_HOT Pack operator+(const Pack& a, const Pack& b) { return Pack(a.lanes + b.lanes); }
+  friend DEM_HOT Pack operator-(const Pack& a, const Pack& b) { return Pack(a.lanes - b.lanes); }
+  friend DEM_HOT Pack operator*(const Pack& a, const Pack& b) { return Pack(a.lanes * b.lanes); }
+  friend DEM_HOT Pack operator/(const Pack& a, const Pack& b) { return Pack(a.lanes / b.lanes); }
+  friend DEM_HOT Pack operator-(const Pack& a) { return Pack(-a.lanes); }
+  friend DEM_HOT PackMask operator<(const Pack& a, const Pack& b) { return PackMask(simd::less(a.lanes, b.lanes)); }
+  friend DEM_HOT PackMask operator>(const Pack& a, const Pack& b) { return PackMask(simd::less(b.lanes, a.lanes)); }
+  friend DEM_HOT PackMask operator<=(const Pack& a, const Pack& b) {
+    return PackMask(simd::less_or_equal(a.lanes, b.lanes));
+  }
+  friend DEM_HOT PackMask operator>=(const Pack& a, const Pack& b) {
+    return PackMask(simd::less_or_equal(b.lanes, a.lanes));
+  }
+  friend DEM_HOT PackMask operator==(const Pack& a, const Pack& b) { return PackMask(simd::equal(a.lanes, b.lanes)); }
+  friend DEM_HOT PackMask operator!=(const Pack& a, const Pack& b) { return !(a == b); }
+};
 
 /// The mask as bits, lane 0 lowest.
-DEM_HOT std::uint32_t bits(const PackMask& mask) {
-  if constexpr (requires { mask.__to_bitset(); }) {
-    auto result = static_cast<std::uint32_t>(mask.__to_bitset().to_ulong());
-#if defined(__AVX512F__) && !defined(__clang__)
-    // g++ 12 widens a mask register into memory by storing its one byte, and reads four back: rubbish above lane 7
-    // wherever registers are short. By way of a general register it cannot.
-    asm("" : "+r"(result));
-#endif
-    return result;
-  } else {
-    std::uint32_t result = 0;
-    for (int k = 0; k < pack_width; ++k) result |= std::uint32_t(mask[static_cast<std::size_t>(k)]) << k;
-    return result;
-  }
-}
+DEM_HOT std::uint32_t bits(const PackMask& mask) { return simd::bits(mask.lanes); }
+DEM_HOT bool any_of(const PackMask& mask) { return bits(mask) != 0; }
 
 DEM_HOT Pack select(const PackMask& condition, const Pack& yes, const Pack& no) {
-#if defined(__clang__) && defined(__AVX512F__)
-  // There where() of libstdc++ 12 takes no lane at all.
-  if constexpr (sizeof(Pack) == sizeof(__m512d)) {
-    return std::bit_cast<Pack>(_mm512_mask_blend_pd(static_cast<__mmask8>(bits(condition)), std::bit_cast<__m512d>(no),
-                                                    std::bit_cast<__m512d>(yes)));
-  }
-#endif
-  Pack result = no;
-  stdx::where(condition, result) = yes;
-  return result;
+  return Pack(simd::select(condition.lanes, yes.lanes, no.lanes));
 }
-DEM_HOT Pack min(const Pack& a, const Pack& b) { return stdx::min(a, b); }
-DEM_HOT Pack max(const Pack& a, const Pack& b) { return stdx::max(a, b); }
-DEM_HOT Pack sqrt(const Pack& a) { return stdx::sqrt(a); }
-DEM_HOT Pack cbrt(const Pack& a) { return stdx::cbrt(a); }
-DEM_HOT Pack exp(const Pack& a) { return stdx::exp(a); }
-DEM_HOT bool any_of(const PackMask& condition) { return stdx::any_of(condition); }
+DEM_HOT Pack min(const Pack& a, const Pack& b) { return Pack(simd::min(a.lanes, b.lanes)); }
+DEM_HOT Pack max(const Pack& a, const Pack& b) { return Pack(simd::max(a.lanes, b.lanes)); }
+DEM_HOT Pack sqrt(const Pack& a) { return Pack(simd::sqrt(a.lanes)); }
 
-/// Loads a pack from memory aligned to its size.
-DEM_HOT Pack load(const double* p) { return Pack(p, stdx::vector_aligned); }
-DEM_HOT Pack load_unaligned(const double* p) { return Pack(p, stdx::element_aligned); }
-DEM_HOT void store(const Pack& a, double* p) { a.copy_to(p, stdx::vector_aligned); }
-DEM_HOT void store_unaligned(const Pack& a, double* p) { a.copy_to(p, stdx::element_aligned); }
-
+DEM_HOT double lane(const Pack& a, int k) { return a.lanes[k]; }
 /// A pack whose lane k is f(k).
 template <class F>
 DEM_HOT Pack generate(F&& f) {
-  alignas(64) double lanes[pack_width];
-  for (int k = 0; k < pack_width; ++k) lanes[k] = f(k);
-  return load(lanes);
+  simd::Register r;
+  for (int k = 0; k < pack_width; ++k) r[k] = f(k);
+  return Pack(r);
 }
-DEM_HOT double lane(const Pack& a, int k) { return a[static_cast<std::size_t>(k)]; }
-DEM_HOT double largest(const Pack& a) { return stdx::hmax(a); }
-DEM_HOT double smallest(const Pack& a) { return stdx::hmin(a); }
+DEM_HOT Pack cbrt(const Pack& a) {
+  return generate([&](int k) { return std::cbrt(lane(a, k)); });
+}
+DEM_HOT Pack exp(const Pack& a) {
+  return generate([&](int k) { return std::exp(lane(a, k)); });
+}
+
+/// Loads a pack from memory aligned to its size.
+DEM_HOT Pack load(const double* p) { return Pack(*reinterpret_cast<const simd::StoredRegister*>(p)); }
+DEM_HOT Pack load_unaligned(const double* p) { return Pack(*reinterpret_cast<const simd::UnalignedRegister*>(p)); }
+DEM_HOT void store(const Pack& a, double* p) { *reinterpret_cast<simd::StoredRegister*>(p) = a.lanes; }
+DEM_HOT void store_unaligned(const Pack& a, double* p) { *reinterpret_cast<simd::UnalignedRegister*>(p) = a.lanes; }
+
+DEM_HOT double largest(const Pack& a) {
+  double result = lane(a, 0);
+  for (int k = 1; k < pack_width; ++k) result = max(result, lane(a, k));
+  return result;
+}
+DEM_HOT double smallest(const Pack& a) {
+  double result = lane(a, 0);
+  for (int k = 1; k < pack_width; ++k) result = min(result, lane(a, k));
+  return result;
+}
 
 #else
 

@@ -18,25 +18,25 @@ struct Quads {
 #if defined(DEM_HAS_SIMD)
 namespace quads_detail {
 
-using Register = double __attribute__((vector_size(sizeof(Pack))));
+using Register = simd::Register;
 inline constexpr int width = pack_width;
 
 /// Two quads behind each other, as a pack of 8.
-template <class P>
-DEM_HOT P two(const double* low, const double* high) {
+template <class R>
+DEM_HOT R two(const double* low, const double* high) {
   using Quad = double __attribute__((vector_size(4 * sizeof(double))));
   Quad a, b;
   std::memcpy(&a, low, sizeof(a));
   std::memcpy(&b, high, sizeof(b));
-  return std::bit_cast<P>(__builtin_shufflevector(a, b, 0, 1, 2, 3, 4, 5, 6, 7));
+  return __builtin_shufflevector(a, b, 0, 1, 2, 3, 4, 5, 6, 7);
 }
 
 /// Exchanges lanes that are Step apart between two rows.
 template <int Step, int... Lane>
 DEM_HOT void exchange(Pack& a, Pack& b, std::integer_sequence<int, Lane...>) {
-  const auto x = std::bit_cast<Register>(a), y = std::bit_cast<Register>(b);
-  a = std::bit_cast<Pack>(Register(__builtin_shufflevector(x, y, ((Lane & Step) ? width + Lane - Step : Lane)...)));
-  b = std::bit_cast<Pack>(Register(__builtin_shufflevector(x, y, ((Lane & Step) ? width + Lane : Lane + Step)...)));
+  const Register x = a.lanes, y = b.lanes;
+  a = Pack(Register(__builtin_shufflevector(x, y, ((Lane & Step) ? width + Lane - Step : Lane)...)));
+  b = Pack(Register(__builtin_shufflevector(x, y, ((Lane & Step) ? width + Lane : Lane + Step)...)));
 }
 template <int Step>
 DEM_HOT void exchange(Pack& a, Pack& b) {
@@ -54,7 +54,7 @@ DEM_HOT Quads load_quads(Address&& address) {
     Pack& row = q.rows[static_cast<std::size_t>(k)];
 #if defined(DEM_HAS_SIMD)
     if constexpr (pack_width == 8) {
-      row = quads_detail::two<Pack>(address(k), address(k + 4));
+      row = Pack(quads_detail::two<simd::Register>(address(k), address(k + 4)));
       continue;
     } else if constexpr (pack_width == 4) {
       row = load_unaligned(address(k));

@@ -4,16 +4,10 @@
 // over any number type (Vector3<T>, Matrix3<T>) inside kernels, where T may be a pack of doubles and the struct has to
 // be trivially copyable for device code.
 
+#include <dem/math/eager.hpp>
 #include <dem/math/pack.hpp>
 
-#include <Eigen/Core>
-#include <Eigen/Geometry>
-
 namespace dem {
-
-using Vec3 = Eigen::Matrix<double, 3, 1, Eigen::DontAlign>;
-using Mat3 = Eigen::Matrix<double, 3, 3, Eigen::DontAlign>;
-using Quaternion = Eigen::Quaternion<double, Eigen::DontAlign>;
 
 template <class T>
 struct Vector3 {

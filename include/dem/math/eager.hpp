@@ -1,0 +1,173 @@
+#pragma once
+
+// Sums and products of Vec3 and Mat3 that return a Vec3 or a Mat3. Inside dem they are chosen before Eigen's, so no
+// expression types are made: each of these costs a compiler some milliseconds, and three numbers gain nothing by them.
+// Products add in Eigen's order, first + (second + third), so results are the same bits.
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+
+#include <concepts>
+
+namespace dem {
+
+using Vec3 = Eigen::Matrix<double, 3, 1, Eigen::DontAlign>;
+using Mat3 = Eigen::Matrix<double, 3, 3, Eigen::DontAlign>;
+using Quaternion = Eigen::Quaternion<double, Eigen::DontAlign>;
+
+namespace eager {
+
+// Operators take nothing but these types themselves: what mixes them with Eigen's expressions stays Eigen's.
+template <class T>
+concept Vector = std::same_as<T, Vec3>;
+template <class T>
+concept Matrix = std::same_as<T, Mat3>;
+template <class T>
+concept Transpose = std::same_as<T, Eigen::Transpose<const Mat3>> || std::same_as<T, Eigen::Transpose<Mat3>>;
+template <class T>
+concept Number = std::same_as<T, double> || std::same_as<T, int>;
+
+/// a[0] b[0] + ..., where a lies in steps of `stride`.
+inline double dot3(const double* a, int stride, const double* b) {
+  return a[0] * b[0] + (a[stride] * b[1] + a[2 * stride] * b[2]);
+}
+/// Column `k` of a matrix (stored by columns), or its row.
+inline Mat3 product(const double* a, int row_step, int stride, const double* b) {
+  Mat3 r;
+  double* p = r.data();
+  for (int k = 0; k < 9; ++k) p[k] = dot3(a + k % 3 * row_step, stride, b + k / 3 * 3);
+  return r;
+}
+
+}  // namespace eager
+
+template <eager::Vector V>
+inline V operator+(const V& a, const V& b) {
+  const double *p = a.data(), *q = b.data();
+  return V(p[0] + q[0], p[1] + q[1], p[2] + q[2]);
+}
+template <eager::Vector V>
+inline V operator-(const V& a, const V& b) {
+  const double *p = a.data(), *q = b.data();
+  return V(p[0] - q[0], p[1] - q[1], p[2] - q[2]);
+}
+template <eager::Vector V>
+inline V operator-(const V& a) {
+  const double* p = a.data();
+  return V(-p[0], -p[1], -p[2]);
+}
+template <eager::Number S, eager::Vector V>
+inline V operator*(S s, const V& a) {
+  const double* p = a.data();
+  return V(s * p[0], s * p[1], s * p[2]);
+}
+template <eager::Vector V, eager::Number S>
+inline V operator*(const V& a, S s) {
+  const double* p = a.data();
+  return V(p[0] * s, p[1] * s, p[2] * s);
+}
+template <eager::Vector V, eager::Number S>
+inline V operator/(const V& a, S s) {
+  const double* p = a.data();
+  return V(p[0] / s, p[1] / s, p[2] / s);
+}
+template <eager::Matrix M, eager::Vector V>
+inline V operator*(const M& m, const V& a) {
+  const double *p = m.data(), *q = a.data();
+  return V(eager::dot3(p, 3, q), eager::dot3(p + 1, 3, q), eager::dot3(p + 2, 3, q));
+}
+template <eager::Transpose T, eager::Vector V>
+inline V operator*(const T& t, const V& a) {
+  const double *p = t.nestedExpression().data(), *q = a.data();
+  return V(eager::dot3(p, 1, q), eager::dot3(p + 3, 1, q), eager::dot3(p + 6, 1, q));
+}
+
+template <eager::Matrix M>
+inline M operator+(const M& a, const M& b) {
+  M r;
+  for (int k = 0; k < 9; ++k) r.data()[k] = a.data()[k] + b.data()[k];
+  return r;
+}
+template <eager::Matrix M>
+inline M operator-(const M& a, const M& b) {
+  M r;
+  for (int k = 0; k < 9; ++k) r.data()[k] = a.data()[k] - b.data()[k];
+  return r;
+}
+template <eager::Number S, eager::Matrix M>
+inline M operator*(S s, const M& a) {
+  M r;
+  for (int k = 0; k < 9; ++k) r.data()[k] = s * a.data()[k];
+  return r;
+}
+template <eager::Matrix M>
+inline M operator*(const M& a, const M& b) {
+  return eager::product(a.data(), 1, 3, b.data());
+}
+template <eager::Transpose T, eager::Matrix M>
+inline M operator*(const T& a, const M& b) {
+  return eager::product(a.nestedExpression().data(), 3, 1, b.data());
+}
+template <eager::Matrix M, eager::Transpose T>
+inline M operator*(const M& a, const T& b) {
+  M r;
+  const double *p = a.data(), *q = b.nestedExpression().data();
+  for (int k = 0; k < 9; ++k) {
+    const int i = k % 3, j = k / 3;
+    r.data()[k] = p[i] * q[j] + (p[i + 3] * q[j + 3] + p[i + 6] * q[j + 6]);
+  }
+  return r;
+}
+
+/// Vec3's products as functions, which give a Vec3 where Eigen's give a type of their own.
+template <eager::Vector V>
+inline V cross(const V& a, const V& b) {
+  const double *p = a.data(), *q = b.data();
+  return V(p[1] * q[2] - p[2] * q[1], p[2] * q[0] - p[0] * q[2], p[0] * q[1] - p[1] * q[0]);
+}
+template <eager::Vector V>
+inline double dot(const V& a, const V& b) {
+  return eager::dot3(a.data(), 1, b.data());
+}
+/// The matrix a b^T.
+template <eager::Vector V>
+inline Mat3 outer(const V& a, const V& b) {
+  Mat3 r;
+  for (int k = 0; k < 9; ++k) r.data()[k] = a.data()[k % 3] * b.data()[k / 3];
+  return r;
+}
+/// `s` times the unit matrix.
+inline Mat3 scaled_identity(double s) {
+  Mat3 r;
+  for (int k = 0; k < 9; ++k) r.data()[k] = k % 4 == 0 ? s : 0.0;
+  return r;
+}
+/// The smaller, and the larger, of each of the components.
+inline Vec3 lower(const Vec3& a, const Vec3& b) {
+  Vec3 r;
+  for (int k = 0; k < 3; ++k) r.data()[k] = a.data()[k] < b.data()[k] ? a.data()[k] : b.data()[k];
+  return r;
+}
+inline Vec3 upper(const Vec3& a, const Vec3& b) {
+  Vec3 r;
+  for (int k = 0; k < 3; ++k) r.data()[k] = a.data()[k] < b.data()[k] ? b.data()[k] : a.data()[k];
+  return r;
+}
+/// (s, s, s).
+inline Vec3 uniform(double s) { return Vec3(s, s, s); }
+inline bool is_finite(const Vec3& a) {
+  // A difference of a finite number with itself is 0.
+  return a.data()[0] - a.data()[0] == 0.0 && a.data()[1] - a.data()[1] == 0.0 && a.data()[2] - a.data()[2] == 0.0;
+}
+/// How far m is from a rotation matrix: the larger of |m^T m - 1| (of all elements) and, for a reflection, 2.
+inline double distance_from_rotation(const Mat3& m) {
+  const Mat3 d = m.transpose() * m - scaled_identity(1.0);
+  double sum = 0.0;
+  for (int k = 0; k < 9; ++k) sum += d.data()[k] * d.data()[k];
+  const double* p = m.data();
+  const double determinant = p[0] * (p[4] * p[8] - p[5] * p[7]) - p[3] * (p[1] * p[8] - p[2] * p[7]) +
+                             p[6] * (p[1] * p[5] - p[2] * p[4]);
+  return determinant > 0.0 ? __builtin_sqrt(sum) : sum - sum == 0.0 ? 2.0 : sum;
+}
+
+}  // namespace dem
