@@ -1,13 +1,8 @@
 #pragma once
 
-// fmt 9 switches its constexpr off under nvcc, and then its own format strings do not compile.
-#if defined(__CUDACC__) && !defined(FMT_USE_CONSTEXPR)
-#define FMT_USE_CONSTEXPR 1
-#endif
-#include <fmt/format.h>
+#include <dem/core/text.hpp>
 
 #include <stdexcept>
-#include <utility>
 
 namespace dem {
 
@@ -19,8 +14,8 @@ struct Error : std::runtime_error {
 
 /// Throws Error with a formatted text.
 template <class... Args>
-[[noreturn]] void fail(fmt::format_string<Args...> text, Args&&... args) {
-  throw Error(fmt::format(text, std::forward<Args>(args)...));
+[[noreturn]] void fail(TextFormat<std::type_identity_t<Args>...> format, const Args&... arguments) {
+  throw Error(text(format, arguments...));
 }
 
 /// Throws unless `value` is finite and greater than zero; returns it.

@@ -121,7 +121,7 @@ void find_body_contacts(BodyContacts<Model>& c, std::span<const Surface> surface
     const PairContact at = {k, materials.row(a.material, b.material), pair_radius(a, b)};
     const auto gap = body_gap<Model>(materials.table()[at.law], at.radius);
     const double wide = shape::widened(0.0, gap);
-    if ((a.low.array() > b.high.array() + wide).any() || (b.low.array() > a.high.array() + wide).any()) continue;
+    if (!boxes_overlap(a.low, a.high, b.low - filled(wide), b.high + filled(wide))) continue;
     const std::size_t first = c.touches.size();
     if (!is_ball(b)) probe_body(at, false, a, b, body_a, gap, c);
     if (is_ball(b) || !is_ball(a)) probe_body(at, true, b, a, body_b, gap, c);

@@ -21,12 +21,12 @@ struct BodyPoint {
 /// The box (in the frame of `from`) that both surfaces' bounding boxes share.
 template <class Surface>
 surface::Bounds shared_box(const Surface& from, const Surface& onto) {
-  const Vec3 low = from.low.cwiseMax(onto.low), high = from.high.cwiseMin(onto.high);
+  const Vec3 low = upper(from.low, onto.low), high = lower(from.high, onto.high);
   const Mat3 axes = to_eigen(from.axes);
   const Vec3 centre = axes.transpose() * (0.5 * (low + high) - to_eigen(from.origin));
-  const Vec3 half = axes.cwiseAbs().transpose() * (0.5 * (high - low));
+  const Vec3 half = transposed(magnitudes(axes)) * (0.5 * (high - low));
   const double slack = 1e-9 * half.maxCoeff();  // for rounding
-  return {centre.array() - half.array() - slack, centre.array() + half.array() + slack};
+  return {centre - half - filled(slack), centre + half + filled(slack)};
 }
 
 /// Finds the points of one surface (`From`, a geometry) that may touch another one (`Onto`): those that the surface is

@@ -71,7 +71,7 @@ grain::StableTimeStep stable_time_step_of_bodies(std::span<const BodyPair> pairs
         parameters, deepest, 1.0, soft, turning, [&](double k, double c, double mobility, const auto& text) {
           const double dt = grain::stable_step(Model::Integrator::stability_limit, n * k, n * c, mobility);
           if (!(dt < result.value)) return;
-          result = {dt, fmt::format("body '{}' on body '{}': {}, {:g} times", body_a.name, body_b.name, text(), n)};
+          result = {dt, dem::text("body '{}' on body '{}': {}, {:g} times", body_a.name, body_b.name, text(), n)};
         });
   }
   return result;

@@ -41,7 +41,7 @@ struct MachineSurface {
     // Half sizes along the global axes: |R| times the local half sizes. The origin comes last: added to the middle of
     // a half space, 1e150 m away, it would be lost.
     const Vec3 middle = to_eigen(axes) * (0.5 * (local.low + local.high));
-    const Vec3 half = to_eigen(axes).cwiseAbs() * (0.5 * (local.high - local.low));
+    const Vec3 half = magnitudes(to_eigen(axes)) * (0.5 * (local.high - local.low));
     low = to_eigen(origin) + (middle - half);
     high = to_eigen(origin) + (middle + half);
   }

@@ -97,7 +97,7 @@ void find_surface_contacts(std::size_t chunk_index, Chunk<Model>& chunk, const P
     }
   }();
   const double reach = shape::widened(largest_radius, gap);
-  const Vec3 low = chunk.low - Vec3::Constant(reach), high = chunk.high + Vec3::Constant(reach);
+  const Vec3 low = chunk.low - filled(reach), high = chunk.high + filled(reach);
   std::vector<grain::Hit>& hits = scratch.hits;
   std::vector<std::uint32_t>& law_of = scratch.law_of;
   hits.clear();
@@ -107,7 +107,7 @@ void find_surface_contacts(std::size_t chunk_index, Chunk<Model>& chunk, const P
   law_of.resize(species.size());
   for (std::size_t s = 0; s < surfaces.size(); ++s) {
     const Surface& surface = surfaces[s];
-    if (!surface.active || (low.array() > surface.high.array()).any() || (high.array() < surface.low.array()).any()) {
+    if (!surface.active || !boxes_overlap(low, high, surface.low, surface.high)) {
       continue;
     }
     if (!is_close<typename Model::Shape>(surface, 0.5 * (chunk.low + chunk.high),

@@ -32,7 +32,7 @@ class EdgeSet {
   EdgeSet() = default;
   explicit EdgeSet(const std::vector<std::array<Vec3, 2>>& edges) {
     std::vector<Bounds> boxes;
-    for (const auto& [a, b] : edges) boxes.push_back({a.cwiseMin(b), a.cwiseMax(b)});
+    for (const auto& [a, b] : edges) boxes.push_back({lower(a, b), upper(a, b)});
     tree_ = BoxTree(boxes);
     for (const std::uint32_t k : tree_.order()) {
       ends_.push_back({from_eigen(edges[k][0]), from_eigen(edges[k][1])});

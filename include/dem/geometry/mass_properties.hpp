@@ -33,28 +33,30 @@ namespace detail {
 /// Of all frames along these eigenvectors (ascending eigenvalues) the one that turns the unit axes least. Eigenvectors
 /// of equal eigenvalues may be any in their plane.
 inline Mat3 nearest_axes(const Vec3& values, const Mat3& vectors) {
-  const double equal = 1e-6 * values.cwiseAbs().maxCoeff();
+  const double equal = 1e-6 * std::max(std::fabs(values[0]), std::fabs(values[2]));
   const bool low = values[1] - values[0] < equal, high = values[2] - values[1] < equal;
   if (low && high) return Mat3::Identity();
   if (low || high) {
-    Vec3 z = vectors.col(low ? 2 : 0);  // of the moment that differs
-    int k;
-    z.cwiseAbs().maxCoeff(&k);
+    Vec3 z = column(vectors, low ? 2 : 0);  // of the moment that differs
+    int k = 0;
+    for (int i = 1; i < 3; ++i) k = std::fabs(z[i]) > std::fabs(z[k]) ? i : k;
     if (z[k] < 0.0) z = -z;
-    return rotation_between(Vec3::Unit(k), z);
+    Vec3 axis = Vec3::Zero();
+    axis[k] = 1.0;
+    return rotation_between(axis, z);
   }
   std::array<int, 3> order = {0, 1, 2};
   Mat3 best = Mat3::Identity();
   double least_turned = -4.0;  // the trace is 1 + 2 cos(angle)
   do {
     for (int signs = 0; signs < 4; ++signs) {  // the third sign makes it a rotation
-      Mat3 m;
-      m.col(0) = (signs & 1 ? -1.0 : 1.0) * vectors.col(order[0]);
-      m.col(1) = (signs & 2 ? -1.0 : 1.0) * vectors.col(order[1]);
-      m.col(2) = m.col(0).cross(m.col(1));
-      if (m.trace() > least_turned) {
-        least_turned = m.trace();
-        best = m;
+      const Vec3 x = (signs & 1 ? -1.0 : 1.0) * column(vectors, order[0]);
+      const Vec3 y = (signs & 2 ? -1.0 : 1.0) * column(vectors, order[1]);
+      const Vec3 z = cross(x, y);
+      const double trace = x.x() + y.y() + z.z();
+      if (trace > least_turned) {
+        least_turned = trace;
+        best = from_columns(x, y, z);
       }
     }
   } while (std::next_permutation(order.begin(), order.end()));
@@ -68,32 +70,32 @@ inline Mat3 nearest_axes(const Vec3& values, const Mat3& vectors) {
 /// a wheel of single precision do, and their axes stay as near to the given ones as they can: a part that was drawn
 /// along its axes stays as drawn. Throws Error unless the tensor is symmetric (to 1e-9).
 inline PrincipalAxes principal_axes(const Mat3& inertia) {
-  const double scale = inertia.cwiseAbs().maxCoeff();
-  const double skew = (inertia - inertia.transpose()).cwiseAbs().maxCoeff();
+  const double scale = largest_magnitude(inertia);
+  const double skew = largest_magnitude(inertia - transposed(inertia));
   if (!(skew <= 1e-9 * scale)) {  // also if an element is not a number
     fail(
         "an inertia tensor is not symmetric: elements across its diagonal differ by {:g} where the largest is {:g}, "
         "allowed is 1e-9 of it; give both halves of the tensor, with the products of inertia negative",
         skew, scale);
   }
-  const Mat3 off = inertia - Mat3(inertia.diagonal().asDiagonal());
-  if (off.cwiseAbs().maxCoeff() <= 1e-12 * scale) return {inertia.diagonal(), Mat3::Identity()};
+  const Mat3 off = inertia - diagonal_matrix(diagonal(inertia));
+  if (largest_magnitude(off) <= 1e-12 * scale) return {diagonal(inertia), Mat3::Identity()};
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(inertia);
   const Mat3 axes = detail::nearest_axes(solver.eigenvalues(), solver.eigenvectors());
-  return {(axes.transpose() * inertia * axes).diagonal(), axes};
+  return {diagonal(axes.transpose() * inertia * axes), axes};
 }
 
 inline MassProperties sphere_mass_properties(double radius) {
   const double volume = 4.0 / 3.0 * std::numbers::pi * radius * radius * radius;
-  return {volume, Vec3::Zero(), 0.4 * volume * radius * radius * Mat3::Identity()};
+  return {volume, Vec3::Zero(), scaled_identity(0.4 * volume * radius * radius)};
 }
 
 /// A box with the given edge lengths.
 inline MassProperties box_mass_properties(const Vec3& edges) {
   const double volume = edges.prod();
-  const Vec3 squares = edges.cwiseProduct(edges);
-  const Vec3 moments = volume / 12.0 * (Vec3::Constant(squares.sum()) - squares);
-  return {volume, Vec3::Zero(), moments.asDiagonal()};
+  const Vec3 squares = componentwise(edges, edges);
+  const Vec3 moments = volume / 12.0 * (filled(squares.sum()) - squares);
+  return {volume, Vec3::Zero(), diagonal_matrix(moments)};
 }
 
 /// A closed triangle mesh, by summing the signed tetrahedra that the triangles span with the first vertex. Throws Error
@@ -111,11 +113,11 @@ inline MassProperties mesh_mass_properties(std::span<const Vec3> vertices,
     }
     // Relative to the first vertex, so that a mesh far from the origin loses no digits.
     const Vec3 a = vertices[t[0]] - vertices[0], b = vertices[t[1]] - vertices[0], c = vertices[t[2]] - vertices[0];
-    const double v = a.dot(b.cross(c)) / 6.0;
+    const double v = a.dot(cross(b, c)) / 6.0;
     const Vec3 sum = a + b + c;
     volume += v;
     first += v / 4.0 * sum;
-    second += v / 20.0 * (sum * sum.transpose() + a * a.transpose() + b * b.transpose() + c * c.transpose());
+    second += v / 20.0 * (outer(sum, sum) + outer(a, a) + outer(b, b) + outer(c, c));
   }
   if (!(volume > 0.0)) {
     fail(
@@ -124,8 +126,8 @@ inline MassProperties mesh_mass_properties(std::span<const Vec3> vertices,
         volume);
   }
   const Vec3 c = first / volume;
-  const Mat3 covariance = second - volume * c * c.transpose();
-  return {volume, c + vertices[0], covariance.trace() * Mat3::Identity() - covariance};
+  const Mat3 covariance = second - outer(volume * c, c);
+  return {volume, c + vertices[0], scaled_identity(covariance.trace()) - covariance};
 }
 inline MassProperties mesh_mass_properties(const IndexedMesh& mesh) {
   return mesh_mass_properties(mesh.vertices, mesh.triangles);
@@ -140,10 +142,10 @@ struct Ball {
 /// grid, and each column integrated exactly along its axis. With the default grid the error is up to 2e-4 of the
 /// volume.
 inline MassProperties union_mass_properties(std::span<const Ball> balls, int columns_per_edge = 400) {
-  Vec3 low = Vec3::Constant(1e300), high = -low;
+  Vec3 low = filled(1e300), high = -low;
   for (const Ball& b : balls) {
-    low = low.cwiseMin(b.centre - Vec3::Constant(b.radius));
-    high = high.cwiseMax(b.centre + Vec3::Constant(b.radius));
+    low = lower(low, b.centre - filled(b.radius));
+    high = upper(high, b.centre + filled(b.radius));
   }
   const double dx = (high.x() - low.x()) / columns_per_edge, dy = (high.y() - low.y()) / columns_per_edge;
   double m = 0.0;
@@ -174,8 +176,8 @@ inline MassProperties union_mass_properties(std::span<const Ball> balls, int col
   MassProperties p;
   p.volume = m * cell;
   p.centre = first / m;
-  const Mat3 about_centre = second * cell - p.volume * p.centre * p.centre.transpose();
-  p.inertia = about_centre.trace() * Mat3::Identity() - about_centre;
+  const Mat3 about_centre = cell * second - outer(p.volume * p.centre, p.centre);
+  p.inertia = scaled_identity(about_centre.trace()) - about_centre;
   return p;
 }
 
@@ -203,7 +205,7 @@ inline MassProperties separate_mass_properties(std::span<const Ball> balls) {
   for (const Ball& b : balls) {
     const MassProperties ball = sphere_mass_properties(b.radius);
     const Vec3 arm = b.centre - p.centre;
-    p.inertia += ball.inertia + ball.volume * (arm.squaredNorm() * Mat3::Identity() - arm * arm.transpose());
+    p.inertia += ball.inertia + ball.volume * (scaled_identity(arm.squaredNorm()) - outer(arm, arm));
   }
   return p;
 }

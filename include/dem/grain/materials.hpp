@@ -106,7 +106,7 @@ class Materials {
         if (is_used(m)) continue;
         std::string known;
         for (const MaterialId u : used) {
-          if (known.find("'" + name(u) + "'") == std::string::npos) known += fmt::format(" '{}'", name(u));
+          if (known.find("'" + name(u) + "'") == std::string::npos) known += dem::text(" '{}'", name(u));
         }
         fail(
             "contact constants were given for the material '{}', but no grain and no surface is made of it; there "

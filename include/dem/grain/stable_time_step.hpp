@@ -41,7 +41,7 @@ void for_each_swing(const Parameters& p, const contact::NormalState<double>& dee
                     double w_turning, Limit&& limit) {
   const double normal = Model::Normal::stiffness(p.normal, deepest) + Model::Cohesion::stiffness(p.cohesion, deepest);
   limit(normal, acting * contact::damping_of<typename Model::Normal>(p.normal, deepest), w,
-        [&] { return fmt::format("stiffness {:g} N/m", normal); });
+        [&] { return dem::text("stiffness {:g} N/m", normal); });
 
   const double sliding = friction::stiffness_of<typename Model::Friction>(p.friction, deepest);
   const double slide_damping = acting * contact::damping_of<typename Model::Friction>(p.friction, deepest);
@@ -49,9 +49,8 @@ void for_each_swing(const Parameters& p, const contact::NormalState<double>& dee
   const double roll_damping = contact::damping_of<typename Model::Rolling>(p.rolling, deepest);
   const double to_slide = w > 0.0 ? w_turning / w : 0.0;
   limit(sliding + to_slide * rolling, slide_damping + to_slide * roll_damping, w, [&] {
-    const std::string friction = fmt::format("friction stiffness {:g} N/m", sliding);
-    return rolling + roll_damping > 0.0 ? friction + fmt::format(" with rolling stiffness {:g} N m", rolling)
-                                        : friction;
+    const std::string friction = dem::text("friction stiffness {:g} N/m", sliding);
+    return rolling + roll_damping > 0.0 ? friction + dem::text(" with rolling stiffness {:g} N m", rolling) : friction;
   });
 }
 
@@ -84,8 +83,8 @@ StableTimeStep stable_time_step(std::span<const Species<typename Model::Shape>> 
                             const double dt = stable_step(Model::Integrator::stability_limit, n * k, n * c, mobility);
                             if (!(dt < result.value)) return;
                             const char* damper = c > 0.0 ? " with a damper" : "";
-                            result = {dt, fmt::format("{} on {}: {}{}, grain of {:.4g} kg", materials.name(a),
-                                                      materials.name(b), text(), damper, mass)};
+                            result = {dt, dem::text("{} on {}: {}{}, grain of {:.4g} kg", materials.name(a),
+                                                    materials.name(b), text(), damper, mass)};
                           });
   };
   for (const auto& a : species) {

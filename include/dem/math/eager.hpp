@@ -142,6 +142,37 @@ inline Mat3 scaled_identity(double s) {
   for (int k = 0; k < 9; ++k) r.data()[k] = k % 4 == 0 ? s : 0.0;
   return r;
 }
+inline Mat3 diagonal_matrix(const Vec3& d) {
+  Mat3 r = scaled_identity(0.0);
+  for (int k = 0; k < 3; ++k) r.data()[4 * k] = d.data()[k];
+  return r;
+}
+inline Vec3 column(const Mat3& m, int k) { return Vec3(m.data()[3 * k], m.data()[3 * k + 1], m.data()[3 * k + 2]); }
+inline Mat3 from_columns(const Vec3& x, const Vec3& y, const Vec3& z) {
+  Mat3 r;
+  for (int k = 0; k < 3; ++k) r.data()[k] = x.data()[k], r.data()[3 + k] = y.data()[k], r.data()[6 + k] = z.data()[k];
+  return r;
+}
+inline Vec3 diagonal(const Mat3& m) { return Vec3(m.data()[0], m.data()[4], m.data()[8]); }
+inline Mat3 transposed(const Mat3& m) {
+  Mat3 r;
+  for (int k = 0; k < 9; ++k) r.data()[k] = m.data()[k % 3 * 3 + k / 3];
+  return r;
+}
+/// Of each element.
+inline Mat3 magnitudes(const Mat3& m) {
+  Mat3 r;
+  for (int k = 0; k < 9; ++k) r.data()[k] = __builtin_fabs(m.data()[k]);
+  return r;
+}
+inline double largest_magnitude(const Mat3& m) {
+  double largest = 0.0;
+  for (int k = 0; k < 9; ++k) largest = largest < __builtin_fabs(m.data()[k]) ? __builtin_fabs(m.data()[k]) : largest;
+  return largest;
+}
+inline Vec3 componentwise(const Vec3& a, const Vec3& b) {
+  return Vec3(a.data()[0] * b.data()[0], a.data()[1] * b.data()[1], a.data()[2] * b.data()[2]);
+}
 /// The smaller, and the larger, of each of the components.
 inline Vec3 lower(const Vec3& a, const Vec3& b) {
   Vec3 r;
@@ -153,8 +184,21 @@ inline Vec3 upper(const Vec3& a, const Vec3& b) {
   for (int k = 0; k < 3; ++k) r.data()[k] = a.data()[k] < b.data()[k] ? b.data()[k] : a.data()[k];
   return r;
 }
+/// Whether each component of a is less than that of b; whether none is.
+inline bool all_below(const Vec3& a, const Vec3& b) {
+  const double *p = a.data(), *q = b.data();
+  return p[0] < q[0] && p[1] < q[1] && p[2] < q[2];
+}
+inline bool none_below(const Vec3& a, const Vec3& b) {
+  const double *p = a.data(), *q = b.data();
+  return p[0] >= q[0] && p[1] >= q[1] && p[2] >= q[2];
+}
+/// Whether two boxes along the axes share a point.
+inline bool boxes_overlap(const Vec3& low_a, const Vec3& high_a, const Vec3& low_b, const Vec3& high_b) {
+  return none_below(high_b, low_a) && none_below(high_a, low_b);
+}
 /// (s, s, s).
-inline Vec3 uniform(double s) { return Vec3(s, s, s); }
+inline Vec3 filled(double s) { return Vec3(s, s, s); }
 inline bool is_finite(const Vec3& a) {
   // A difference of a finite number with itself is 0.
   return a.data()[0] - a.data()[0] == 0.0 && a.data()[1] - a.data()[1] == 0.0 && a.data()[2] - a.data()[2] == 0.0;
@@ -165,8 +209,8 @@ inline double distance_from_rotation(const Mat3& m) {
   double sum = 0.0;
   for (int k = 0; k < 9; ++k) sum += d.data()[k] * d.data()[k];
   const double* p = m.data();
-  const double determinant = p[0] * (p[4] * p[8] - p[5] * p[7]) - p[3] * (p[1] * p[8] - p[2] * p[7]) +
-                             p[6] * (p[1] * p[5] - p[2] * p[4]);
+  const double determinant =
+      p[0] * (p[4] * p[8] - p[5] * p[7]) - p[3] * (p[1] * p[8] - p[2] * p[7]) + p[6] * (p[1] * p[5] - p[2] * p[4]);
   return determinant > 0.0 ? __builtin_sqrt(sum) : sum - sum == 0.0 ? 2.0 : sum;
 }
 

@@ -9,8 +9,8 @@ namespace dem {
 template <class Model>
 std::string surface_in_words(const WorldState<Model>& w, std::size_t s) {
   const std::string& name = w.surfaces[s].name;
-  return name.empty() ? fmt::format("surface {} of body '{}'", s, w.machine.bodies()[w.surfaces[s].body.index()].name)
-                      : fmt::format("surface '{}'", name);
+  return name.empty() ? dem::text("surface {} of body '{}'", s, w.machine.bodies()[w.surfaces[s].body.index()].name)
+                      : dem::text("surface '{}'", name);
 }
 
 /// Looks for grains that are not finite, lost, or pressed too deep into something. Costs a look at each chunk; only
@@ -21,57 +21,54 @@ StepReport find_problem(WorldState<Model>& w) {
   const auto problem = [&](StepReport::Problem kind, std::size_t row, std::string text) {
     return StepReport{kind, w.time, w.step, row < p.count ? ParticleId(p.id[row]) : ParticleId{}, std::move(text)};
   };
-  const auto when = [&] { return fmt::format("at t = {:.6g} s (step {})", w.time, w.step); };
+  const auto when = [&] { return dem::text("at t = {:.6g} s (step {})", w.time, w.step); };
   for (std::size_t c = 0; c < w.chunks.size(); ++c) {
     const auto& chunk = w.chunks[c];
     const std::size_t begin = c * chunk_size, end = std::min(begin + chunk_size, p.count);
     if (!chunk.finite) [[unlikely]] {
       for (std::size_t i = begin; i < end; ++i) {
         const Vec3 all = to_eigen(p.position[i]) + to_eigen(p.velocity[i]) + to_eigen(p.spin[i]);
-        if (all.allFinite()) continue;
-        return problem(
-            StepReport::Problem::not_finite, i,
-            fmt::format("grain {} has a position or velocity that is not a number {}: the simulation blew up; "
-                        "lower time_step (now {:g} s) or the stiffness, or raise the damping",
-                        p.id[i], when(), w.time_step));
+        if (is_finite(all)) continue;
+        return problem(StepReport::Problem::not_finite, i,
+                       dem::text("grain {} has a position or velocity that is not a number {}: the simulation blew up; "
+                                 "lower time_step (now {:g} s) or the stiffness, or raise the damping",
+                                 p.id[i], when(), w.time_step));
       }
     }
-    if (const auto& domain = w.options.domain; domain && ((chunk.low.array() < domain->low.array()).any() ||
-                                                          (chunk.high.array() > domain->high.array()).any()))
-        [[unlikely]] {
+    if (const auto& domain = w.options.domain;
+        domain && !(none_below(chunk.low, domain->low) && none_below(domain->high, chunk.high))) [[unlikely]] {
       for (std::size_t i = begin; i < end; ++i) {
         const Vec3 x = to_eigen(p.position[i]);
-        if ((x.array() >= domain->low.array()).all() && (x.array() <= domain->high.array()).all()) continue;
+        if (none_below(x, domain->low) && none_below(domain->high, x)) continue;
         if (!w.known_lost.insert(p.id[i]).second) continue;
         return problem(
             StepReport::Problem::lost, i,
-            fmt::format("grain {} left the domain {} and is at ({:.4g}, {:.4g}, {:.4g}) m; close the walls, lower "
-                        "time_step (now {:g} s), or enlarge domain",
-                        p.id[i], when(), x.x(), x.y(), x.z(), w.time_step));
+            dem::text("grain {} left the domain {} and is at ({:.4g}, {:.4g}, {:.4g}) m; close the walls, lower "
+                      "time_step (now {:g} s), or enlarge domain",
+                      p.id[i], when(), x.x(), x.y(), x.z(), w.time_step));
       }
     }
     if (const DeepestContact& deepest = chunk.deepest; deepest.overlap > w.options.overlap_limit) [[unlikely]] {
       return problem(
           StepReport::Problem::overlap, deepest.i,
-          fmt::format("grain {} overlaps {} by {:.3g} of their effective diameter {}, more than overlap_limit {:g}; "
-                      "raise the normal stiffness, lower time_step (now {:g} s) or the load, or start from a looser "
-                      "packing",
-                      p.id[deepest.i],
-                      deepest.with_surface ? surface_in_words(w, deepest.partner)
-                                           : fmt::format("grain {}", p.id[deepest.partner]),
-                      deepest.overlap, when(), w.options.overlap_limit, w.time_step));
+          dem::text("grain {} overlaps {} by {:.3g} of their effective diameter {}, more than overlap_limit {:g}; "
+                    "raise the normal stiffness, lower time_step (now {:g} s) or the load, or start from a looser "
+                    "packing",
+                    p.id[deepest.i],
+                    deepest.with_surface ? surface_in_words(w, deepest.partner)
+                                         : dem::text("grain {}", p.id[deepest.partner]),
+                    deepest.overlap, when(), w.options.overlap_limit, w.time_step));
     }
   }
   if (w.body_contacts.worst_overlap > w.options.overlap_limit) [[unlikely]] {
     const coupling::BodyPair& pair = w.body_contacts.pairs[w.body_contacts.worst_pair];
     const auto body = [&](SurfaceId s) { return w.machine.bodies()[w.surfaces[s.index()].body.index()].name; };
-    return problem(
-        StepReport::Problem::overlap, p.count,
-        fmt::format("body '{}' overlaps body '{}' by {:.3g} of their effective diameter {}, more than "
-                    "overlap_limit {:g}; raise the normal stiffness between their materials, lower time_step "
-                    "(now {:g} s), or start with the bodies apart",
-                    body(pair.a), body(pair.b), w.body_contacts.worst_overlap, when(), w.options.overlap_limit,
-                    w.time_step));
+    return problem(StepReport::Problem::overlap, p.count,
+                   dem::text("body '{}' overlaps body '{}' by {:.3g} of their effective diameter {}, more than "
+                             "overlap_limit {:g}; raise the normal stiffness between their materials, lower time_step "
+                             "(now {:g} s), or start with the bodies apart",
+                             body(pair.a), body(pair.b), w.body_contacts.worst_overlap, when(), w.options.overlap_limit,
+                             w.time_step));
   }
   if (const auto report = w.machine.report(); !report) {
     return problem(StepReport::Problem::machine, p.count, report.text);

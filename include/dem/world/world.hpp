@@ -190,7 +190,7 @@ class World : public WorldSetup<M> {
           "time step {:g} s is above the largest stable one, {:.4g} s ({}); lower time_step or the stiffness, {}or set "
           "allow_unstable_time_step",
           dt, limit.value, limit.contact,
-          by_machine ? fmt::format("raise machine().substeps (now {}), ", machine.substeps) : "");
+          by_machine ? dem::text("raise machine().substeps (now {}), ", machine.substeps) : "");
     }
     state_.time_step = dt;
   }

@@ -23,7 +23,7 @@ class WorldSetup {
     require_non_negative(options.skin, "skin", "m (0 chooses one)");
     require_positive(options.overlap_limit, "overlap limit", "effective diameters");
     require_finite(options.gravity, "gravity");
-    if (const auto& d = options.domain; d && !(d->low.array() < d->high.array()).all()) {
+    if (const auto& d = options.domain; d && !all_below(d->low, d->high)) {
       fail("the domain's lower corner ({:g}, {:g}, {:g}) m is not below its upper one, ({:g}, {:g}, {:g}) m",
            d->low.x(), d->low.y(), d->low.z(), d->high.x(), d->high.y(), d->high.z());
     }
@@ -74,12 +74,11 @@ class WorldSetup {
       fail("a grain was given species {}, but the world has {}; call add_species first", n.species.value,
            state_.species.size());
     }
-    if (!n.position.allFinite() || !n.velocity.allFinite() || !n.angular_velocity.allFinite()) {
+    if (!is_finite(n.position) || !is_finite(n.velocity) || !is_finite(n.angular_velocity)) {
       fail("grain {} was given a position or velocity that is not finite", id);
     }
     // Written such that a NaN fails as well.
-    if (!((n.rotation.transpose() * n.rotation - Mat3::Identity()).norm() <= 1e-6) ||
-        !(n.rotation.determinant() > 0.0)) {
+    if (!(distance_from_rotation(n.rotation) <= 1e-6)) {
       fail("grain {} was given a rotation matrix that is no rotation; normalise it (R^T R = I, det R = 1)", id);
     }
     const std::size_t row = p.count;
@@ -117,8 +116,7 @@ class WorldSetup {
            state_.machine.bodies().size());
     }
     // Written such that a NaN fails as well: a wall whose place is not known would let everything through.
-    if (!o.position.allFinite() || !((o.rotation.transpose() * o.rotation - Mat3::Identity()).norm() <= 1e-6) ||
-        !(o.rotation.determinant() > 0.0)) {
+    if (!is_finite(o.position) || !(distance_from_rotation(o.rotation) <= 1e-6)) {
       fail(
           "surface '{}' was given a position that is not finite or a rotation matrix that is no rotation (R^T R = I, "
           "det R = 1)",
@@ -228,7 +226,7 @@ class WorldSetup {
     }
   }
   static void require_finite(const Vec3& v, const char* what) {
-    if (!v.allFinite()) fail("{} is ({:g}, {:g}, {:g}), but must be finite", what, v.x(), v.y(), v.z());
+    if (!is_finite(v)) fail("{} is ({:g}, {:g}, {:g}), but must be finite", what, v.x(), v.y(), v.z());
   }
   /// Grains came or were moved by hand.
   void touched() {

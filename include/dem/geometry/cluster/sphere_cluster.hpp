@@ -176,7 +176,7 @@ inline SphereCluster<8> cube8(double half_edge) {
     const Vec3 corner((k & 1) ? 1 : -1, (k & 2) ? 1 : -1, (k & 4) ? 1 : -1);
     balls[k] = {0.5 * half_edge * corner, 0.5 * half_edge};
   }
-  return SphereCluster<8>(balls, box_mass_properties(Vec3::Constant(2.0 * half_edge)));
+  return SphereCluster<8>(balls, box_mass_properties(filled(2.0 * half_edge)));
 }
 
 }  // namespace dem::shape

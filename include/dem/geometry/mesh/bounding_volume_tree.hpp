@@ -103,12 +103,12 @@ class BoxTree {
 
   void split(std::span<const Bounds> boxes, const std::vector<Vec3>& middle, std::uint32_t from, std::uint32_t to) {
     const std::size_t self = nodes_.size();
-    Vec3 low = Vec3::Constant(1e300), high = -low, first = low, last = high;
+    Vec3 low = filled(1e300), high = -low, first = low, last = high;
     for (std::uint32_t k = from; k < to; ++k) {
-      low = low.cwiseMin(boxes[order_[k]].low);
-      high = high.cwiseMax(boxes[order_[k]].high);
-      first = first.cwiseMin(middle[order_[k]]);
-      last = last.cwiseMax(middle[order_[k]]);
+      low = lower(low, boxes[order_[k]].low);
+      high = upper(high, boxes[order_[k]].high);
+      first = lower(first, middle[order_[k]]);
+      last = upper(last, middle[order_[k]]);
     }
     nodes_.push_back({from_eigen(low), from_eigen(high), 0, from, to - from});
     if (to - from > items_in_a_leaf) {

@@ -16,7 +16,7 @@ struct IndexedMesh {
 
   Vec3 corner(std::size_t triangle, int k) const { return vertices[triangles[triangle][static_cast<std::size_t>(k)]]; }
   /// Twice the area (m^2) along the outward normal.
-  Vec3 area_vector(std::size_t t) const { return (corner(t, 1) - corner(t, 0)).cross(corner(t, 2) - corner(t, 0)); }
+  Vec3 area_vector(std::size_t t) const { return cross(corner(t, 1) - corner(t, 0), corner(t, 2) - corner(t, 0)); }
   double area() const {
     double sum = 0.0;
     for (std::size_t t = 0; t < triangles.size(); ++t) sum += 0.5 * area_vector(t).norm();
@@ -59,7 +59,7 @@ struct IndexedMesh {
 /// Throws Error if a triangle names a vertex that is not there, or a coordinate is not a finite number.
 inline void check_indices(const IndexedMesh& mesh) {
   for (std::size_t k = 0; k < mesh.vertices.size(); ++k) {
-    if (!mesh.vertices[k].allFinite()) {
+    if (!is_finite(mesh.vertices[k])) {
       fail("vertex {} of a mesh has a coordinate that is not a finite number; correct or remove it", k);
     }
   }

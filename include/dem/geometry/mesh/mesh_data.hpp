@@ -89,7 +89,7 @@ inline void find_vertices(MeshData& m) {
     for (std::size_t k = 0; k < 3; ++k) {
       const std::uint32_t v = tri[k], next = tri[(k + 1) % 3], last = tri[(k + 2) % 3];
       const Vec3 a = m.mesh.vertices[next] - m.mesh.vertices[v], b = m.mesh.vertices[last] - m.mesh.vertices[v];
-      normal[v] += std::atan2(a.cross(b).norm(), a.dot(b)) * to_eigen(m.faces[t].normal);
+      normal[v] += std::atan2(cross(a, b).norm(), a.dot(b)) * to_eigen(m.faces[t].normal);
       edges.emplace_back(v, next);
       edges.emplace_back(next, v);
       m.vertex_group[v] = std::min(m.vertex_group[v], m.groups.group[t]);
@@ -219,11 +219,11 @@ inline MeshData build_mesh(const IndexedMesh& given, MeshFacing facing, double s
   MeshData m;
   m.report = whole.report;
   std::vector<Bounds> boxes;
-  m.bounds = {Vec3::Constant(1e300), Vec3::Constant(-1e300)};
+  m.bounds = {filled(1e300), filled(-1e300)};
   for (std::size_t t = 0; t < whole.mesh.triangles.size(); ++t) {
     const Vec3 a = whole.mesh.corner(t, 0), b = whole.mesh.corner(t, 1), c = whole.mesh.corner(t, 2);
-    boxes.push_back({a.cwiseMin(b).cwiseMin(c), a.cwiseMax(b).cwiseMax(c)});
-    m.bounds = {m.bounds.low.cwiseMin(boxes.back().low), m.bounds.high.cwiseMax(boxes.back().high)};
+    boxes.push_back({lower(lower(a, b), c), upper(upper(a, b), c)});
+    m.bounds = {lower(m.bounds.low, boxes.back().low), upper(m.bounds.high, boxes.back().high)};
   }
   m.tree = BoxTree(boxes);
   m.mesh.vertices = std::move(whole.mesh.vertices);

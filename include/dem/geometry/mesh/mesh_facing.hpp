@@ -23,7 +23,7 @@ inline bool runs(const std::array<std::uint32_t, 3>& t, std::uint32_t from, std:
 
 /// Six times the volume between a triangle and a point.
 inline double spanned(const IndexedMesh& mesh, std::uint32_t t, const Vec3& from) {
-  return (mesh.corner(t, 0) - from).dot((mesh.corner(t, 1) - from).cross(mesh.corner(t, 2) - from));
+  return (mesh.corner(t, 0) - from).dot(cross(mesh.corner(t, 1) - from, mesh.corner(t, 2) - from));
 }
 
 /// How many times a closed piece goes round a point, as solid angles: 0 outside, 1 or -1 inside, something between on
@@ -33,7 +33,7 @@ inline double winding_number(const IndexedMesh& mesh, const std::vector<std::uin
   double sum = 0.0;
   for (const std::uint32_t t : piece) {
     const Vec3 a = mesh.corner(t, 0) - point, b = mesh.corner(t, 1) - point, c = mesh.corner(t, 2) - point;
-    const double la = a.norm(), lb = b.norm(), lc = c.norm(), volume = a.dot(b.cross(c));
+    const double la = a.norm(), lb = b.norm(), lc = c.norm(), volume = a.dot(cross(b, c));
     if (std::abs(volume) <= 1e-12 * la * lb * lc) continue;  // seen edge on, or the point lies on it
     sum += std::atan2(volume, la * lb * lc + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb);
   }
@@ -96,8 +96,8 @@ inline std::pair<std::size_t, std::size_t> orient(IndexedMesh& mesh, MeshFacing 
       double sum = 0.0;
       for (const std::uint32_t t : members) {
         for (int k = 0; k < 3; ++k) {
-          low = low.cwiseMin(mesh.corner(t, k));
-          high = high.cwiseMax(mesh.corner(t, k));
+          low = lower(low, mesh.corner(t, k));
+          high = upper(high, mesh.corner(t, k));
         }
         sum += spanned(mesh, t, mesh.vertices[0]);
       }
@@ -105,8 +105,8 @@ inline std::pair<std::size_t, std::size_t> orient(IndexedMesh& mesh, MeshFacing 
       volume.push_back(sum);
     }
     const auto holds = [&](std::size_t a, std::size_t b) {
-      return a != b && (boxes[a].first.array() <= boxes[b].first.array()).all() &&
-             (boxes[a].second.array() >= boxes[b].second.array()).all() && encloses(mesh, pieces[a], pieces[b]);
+      return a != b && none_below(boxes[b].first, boxes[a].first) && none_below(boxes[a].second, boxes[b].second) &&
+             encloses(mesh, pieces[a], pieces[b]);
     };
     const double wanted = facing == MeshFacing::outward ? 1.0 : -1.0;
     for (std::size_t outer = 0; outer < pieces.size(); ++outer) {

@@ -57,7 +57,7 @@ inline MeshGroups group_triangles(const IndexedMesh& mesh, const MeshTopology& t
         continue;
       }
       const Vec3 across = mesh.area_vector(other).normalized();
-      const double turn = std::atan2(normal.cross(across).norm(), normal.dot(across));
+      const double turn = std::atan2(cross(normal, across).norm(), normal.dot(across));
       double height = 0.0;  // of the other triangle above this one's plane
       for (int c = 0; c < 3; ++c) {
         const double h = normal.dot(mesh.corner(other, c) - mesh.corner(t, 0));

@@ -26,10 +26,10 @@ struct MeshReport {
 
   /// One finding a line.
   std::string text() const {
-    std::string s = fmt::format("{} triangles over {} vertices in {} connected piece{}\n", triangles, vertices,
-                                components, components == 1 ? "" : "s");
+    std::string s = dem::text("{} triangles over {} vertices in {} connected piece{}\n", triangles, vertices,
+                              components, components == 1 ? "" : "s");
     const auto line = [&](std::size_t count, const char* what) {
-      if (count > 0) s += fmt::format("{} {}\n", count, what);
+      if (count > 0) s += dem::text("{} {}\n", count, what);
     };
     line(merged_vertices, "vertices lay on another one and were merged with it");
     line(unused_vertices, "vertices belonged to no triangle and were removed");
@@ -41,8 +41,8 @@ struct MeshReport {
     line(inconsistent_edges,
          "edges lie between triangles that look opposite ways (a Moebius strip): no side is outside");
     if (closed()) {
-      s += fmt::format("closed; encloses {:.6g} m^3{}\n", std::abs(enclosed_volume),
-                       enclosed_volume < 0.0 ? ", facing inward (a cavity)" : "");
+      s += dem::text("closed; encloses {:.6g} m^3{}\n", std::abs(enclosed_volume),
+                     enclosed_volume < 0.0 ? ", facing inward (a cavity)" : "");
     } else {
       s += "not closed\n";
     }
@@ -196,10 +196,10 @@ inline RepairedMesh repaired(const IndexedMesh& given, MeshFacing facing = MeshF
   IndexedMesh& mesh = result.mesh;
   MeshReport& report = result.report;
   report.unused_vertices = detail::remove_unused(mesh);  // first: a stray vertex must not set the tolerance
-  Vec3 low = Vec3::Constant(1e300), high = -low;
+  Vec3 low = filled(1e300), high = -low;
   for (const Vec3& v : mesh.vertices) {
-    low = low.cwiseMin(v);
-    high = high.cwiseMax(v);
+    low = lower(low, v);
+    high = upper(high, v);
   }
   const double size = mesh.vertices.empty() ? 0.0 : (high - low).norm();
   if (!(size > 0.0) || size > 1e100 || mesh.triangles.empty()) {

@@ -319,8 +319,8 @@ class TriangleMesh {
     // What is behind a cavity or a sheet lies outside of the box of the triangles.
     const bool box_holds_solid = options_.side == MeshSide::solid && data_->report.enclosed_volume > 0.0;
     const double grow = box_holds_solid ? 0.0 : depth;
-    low_ = from_eigen(Vec3(box.low.array() - grow));
-    high_ = from_eigen(Vec3(box.high.array() + grow));
+    low_ = from_eigen(Vec3(box.low - filled(grow)));
+    high_ = from_eigen(Vec3(box.high + filled(grow)));
   }
 
   MeshOptions options_;

@@ -19,7 +19,7 @@ class Plane {
 
   Bounds bounds() const {
     const double far = 1e150;
-    return {Vec3::Constant(-far), Vec3(far, far, 0.0)};
+    return {filled(-far), Vec3(far, far, 0.0)};
   }
 };
 

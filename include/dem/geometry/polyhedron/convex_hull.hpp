@@ -31,9 +31,9 @@ class HullBuilder {
     if (points.size() < 4) fail("a convex hull was given {} points, but needs at least 4", points.size());
     Vec3 low = points[0], high = points[0];
     for (std::size_t k = 0; k < points.size(); ++k) {
-      if (!points[k].allFinite()) fail("point {} of a convex hull is not finite", k);
-      low = low.cwiseMin(points[k]);
-      high = high.cwiseMax(points[k]);
+      if (!is_finite(points[k])) fail("point {} of a convex hull is not finite", k);
+      low = lower(low, points[k]);
+      high = upper(high, points[k]);
     }
     size_ = (high - low).norm();
     middle_ = 0.5 * (low + high);
@@ -132,7 +132,7 @@ class HullBuilder {
   }
 
   Facet facet(int a, int b, int c) const {
-    const Vec3 normal = (at(b) - at(a)).cross(at(c) - at(a)).normalized();
+    const Vec3 normal = cross(at(b) - at(a), at(c) - at(a)).normalized();
     return {{a, b, c}, normal, normal.dot(at(a))};
   }
   const Vec3& at(int k) const { return points_[static_cast<std::size_t>(k)]; }
@@ -157,8 +157,8 @@ class HullBuilder {
     const int a = furthest([&](const Vec3& p) { return (p - middle_).norm(); });
     const int b = furthest([&](const Vec3& p) { return (p - at(a)).norm(); });
     const Vec3 along = (at(b) - at(a)).normalized();
-    const int c = furthest([&](const Vec3& p) { return (p - at(a)).cross(along).norm(); });
-    const Vec3 normal = (at(b) - at(a)).cross(at(c) - at(a)).normalized();
+    const int c = furthest([&](const Vec3& p) { return cross(p - at(a), along).norm(); });
+    const Vec3 normal = cross(at(b) - at(a), at(c) - at(a)).normalized();
     const int d = furthest([&](const Vec3& p) { return std::abs(normal.dot(p - at(a))); });
     const double thickness = std::abs(normal.dot(at(d) - at(a)));
     if (!(size_ > 0.0) || !(thickness > 1e-6 * size_)) {

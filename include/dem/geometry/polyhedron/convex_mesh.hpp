@@ -31,10 +31,10 @@ namespace detail {
 using DirectedEdges = std::map<std::pair<int, int>, int>;  ///< (from, to) -> face that runs along it
 
 inline double size_of(std::span<const Vec3> points) {
-  Vec3 low = Vec3::Constant(1e300), high = -low;
+  Vec3 low = filled(1e300), high = -low;
   for (const Vec3& p : points) {
-    low = low.cwiseMin(p);
-    high = high.cwiseMax(p);
+    low = lower(low, p);
+    high = upper(high, p);
   }
   return (high - low).norm();
 }
@@ -45,8 +45,9 @@ inline Vec3 area_vector(std::span<const Vec3> corners, const std::vector<int>& f
   Vec3 sum = Vec3::Zero();
   const Vec3 origin = corners[static_cast<std::size_t>(face[0])];
   for (std::size_t k = 2; k < face.size(); ++k) {
-    sum += 0.5 * (corners[static_cast<std::size_t>(face[k - 1])] - origin)
-                     .cross(Vec3(corners[static_cast<std::size_t>(face[k])] - origin));
+    const Vec3 a = corners[static_cast<std::size_t>(face[k - 1])] - origin;
+    const Vec3 b = corners[static_cast<std::size_t>(face[k])] - origin;
+    sum += cross(0.5 * a, b);
   }
   return sum;
 }
@@ -164,7 +165,7 @@ class FaceGrower {
   bool is_convex(const std::vector<int>& ring, const Vec3& normal) const {
     for (std::size_t k = 0; k < ring.size(); ++k) {
       const Vec3 &from = at(ring[k]), &to = at(ring[(k + 1) % ring.size()]);
-      const Vec3 outward = (to - from).cross(normal).normalized();
+      const Vec3 outward = cross(to - from, normal).normalized();
       for (const int other : ring) {
         if (outward.dot(at(other) - from) > tolerance_) return false;
       }
@@ -203,7 +204,7 @@ inline void set_edges(ConvexMesh& mesh) {
 inline void check_faces(std::span<const Vec3> corners, std::vector<std::vector<int>>& faces) {
   const double size = size_of(corners);
   for (std::size_t k = 0; k < corners.size(); ++k) {
-    if (!corners[k].allFinite()) fail("corner {} of a polyhedron is not finite", k);
+    if (!is_finite(corners[k])) fail("corner {} of a polyhedron is not finite", k);
     for (std::size_t m = 0; m < k; ++m) {
       const double distance = (corners[k] - corners[m]).norm();
       if (distance > 1e-9 * size) continue;

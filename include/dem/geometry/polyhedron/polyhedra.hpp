@@ -16,12 +16,12 @@ inline Polyhedron box(const Vec3& edges) {
   std::vector<Vec3> corners;
   for (int k = 0; k < 8; ++k) {
     const Vec3 sign(k & 1 ? 1 : -1, k & 2 ? 1 : -1, k & 4 ? 1 : -1);
-    corners.push_back(0.5 * sign.cwiseProduct(edges));
+    corners.push_back(0.5 * componentwise(sign, edges));
   }
   return Polyhedron(corners);
 }
 /// A cube of half-edge h (m): what shape::cube8 makes of eight spheres, with sharp edges.
-inline Polyhedron cube(double half_edge) { return box(Vec3::Constant(2.0 * half_edge)); }
+inline Polyhedron cube(double half_edge) { return box(filled(2.0 * half_edge)); }
 
 namespace detail {
 
@@ -97,15 +97,18 @@ inline Polyhedron rock(const RockOptions& o) {
   std::mt19937_64 random(o.seed);
   const auto uniform = [&] { return static_cast<double>(random() >> 11) * 0x1.0p-53; };
   std::vector<Vec3> points;
-  Vec3 low = Vec3::Constant(1e300), high = -low;
+  Vec3 low = filled(1e300), high = -low;
   for (int k = 0; k < o.points; ++k) {
     const double z = 2.0 * uniform() - 1.0, angle = 2.0 * std::numbers::pi * uniform(), r = std::sqrt(1.0 - z * z);
     points.emplace_back(r * std::cos(angle), r * std::sin(angle), z);
-    low = low.cwiseMin(points.back());
-    high = high.cwiseMax(points.back());
+    low = lower(low, points.back());
+    high = upper(high, points.back());
   }
   const Vec3 wanted = o.length * Vec3(1.0, o.elongation, o.elongation * o.flatness);
-  for (Vec3& p : points) p = (p - low).cwiseQuotient(high - low).cwiseProduct(wanted);
+  const Vec3 size = high - low;
+  for (Vec3& p : points) {
+    for (int k = 0; k < 3; ++k) p[k] = (p[k] - low[k]) / size[k] * wanted[k];
+  }
   return Polyhedron(points);
 }
 

@@ -23,15 +23,15 @@ inline MassProperties polyhedron_mass_properties(std::span<const Vec3> corners,
   for (const auto& face : faces) {
     for (std::size_t k = 2; k < face.size(); ++k) {
       const Vec3 a = corner(face[0]), b = corner(face[k - 1]), c = corner(face[k]), s = a + b + c;
-      const double v = a.dot(b.cross(c)) / 6.0;
+      const double v = a.dot(cross(b, c)) / 6.0;
       volume += v;
       first += v / 4.0 * s;
-      second += v / 20.0 * (s * s.transpose() + a * a.transpose() + b * b.transpose() + c * c.transpose());
+      second += v / 20.0 * (outer(s, s) + outer(a, a) + outer(b, b) + outer(c, c));
     }
   }
   const Vec3 offset = volume != 0.0 ? Vec3(first / volume) : Vec3(Vec3::Zero());
-  const Mat3 about_centre = second - volume * offset * offset.transpose();
-  return {volume, middle + offset, about_centre.trace() * Mat3::Identity() - about_centre};
+  const Mat3 about_centre = second - outer(volume * offset, offset);
+  return {volume, middle + offset, scaled_identity(about_centre.trace()) - about_centre};
 }
 
 }  // namespace dem

@@ -102,7 +102,7 @@ struct PolyhedronTables {
         const int from = face[k], to = face[(k + 1) % face.size()];
         const Vec3 tail = mesh.corners[static_cast<std::size_t>(from)];
         const Vec3 along = mesh.corners[static_cast<std::size_t>(to)] - tail;
-        const Vec3 outward = along.cross(mesh.normals[f]).normalized();
+        const Vec3 outward = cross(along, mesh.normals[f]).normalized();
         side.push_back({from, number.at({from, to}), from_eigen(outward), outward.dot(tail)});
       }
     }

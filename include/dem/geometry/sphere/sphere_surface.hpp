@@ -62,7 +62,7 @@ class Sphere {
   bool is_on_ball(const Vector3<double>&) const { return true; }
 
   Bounds bounds() const {
-    const Vec3 half = Vec3::Constant(side_ == Side::inside ? 2.0 * radius_ : radius_);
+    const Vec3 half = filled(side_ == Side::inside ? 2.0 * radius_ : radius_);
     return {-half, half};
   }
 

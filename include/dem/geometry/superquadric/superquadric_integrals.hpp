@@ -24,8 +24,7 @@ inline MassProperties superquadric_mass_properties(const Vec3& radii, const Vec3
   const Vec3 one = Vec3::Ones();
   Vec3 squares;
   for (int i = 0; i < 3; ++i) squares[i] = superquadric_moment(radii, exponents, one + 2.0 * Vec3::Unit(i));
-  return {superquadric_moment(radii, exponents, one), Vec3::Zero(),
-          Vec3(Vec3::Constant(squares.sum()) - squares).asDiagonal()};
+  return {superquadric_moment(radii, exponents, one), Vec3::Zero(), diagonal_matrix(filled(squares.sum()) - squares)};
 }
 
 /// The largest distance of a superquadric's points from its centre. With the shares v_i = |x_i/r_i|^p_i, which sum to

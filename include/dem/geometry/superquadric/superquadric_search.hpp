@@ -24,7 +24,7 @@ CommonNormal guess_common_normal(const SolidPair& s, const Directions&... direct
 /// common normal is found from anywhere, to the true ones; each solution starts the next search.
 inline Search approach_by_exponents(const SolidPair& s, CommonNormal& c) {
   const auto capped = [](const SuperquadricSolid& solid, double cap) {
-    return SuperquadricSolid(to_eigen(solid.radius()), to_eigen(solid.exponent()).cwiseMin(cap));
+    return SuperquadricSolid(to_eigen(solid.radius()), lower(to_eigen(solid.exponent()), filled(cap)));
   };
   const Vector3<double>&pa = s.a.exponent(), &pb = s.b.exponent();
   const double top = std::max({pa.x, pa.y, pa.z, pb.x, pb.y, pb.z});

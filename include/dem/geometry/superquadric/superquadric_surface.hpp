@@ -17,7 +17,7 @@ namespace dem::surface {
 class Superquadric {
  public:
   /// Half sizes (m) and exponents, each from 2 (round) to 32 (a box for all purposes). Throws Error otherwise.
-  explicit Superquadric(const Vec3& radii, const Vec3& exponents = Vec3::Constant(2.0), Side side = Side::outside)
+  explicit Superquadric(const Vec3& radii, const Vec3& exponents = filled(2.0), Side side = Side::outside)
       : side_(side) {
     for (int k = 0; k < 3; ++k) {
       function_.radius[k] = require_positive(radii[k], "half size of a superquadric", "m");
