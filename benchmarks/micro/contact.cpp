@@ -1,6 +1,7 @@
 // Contact kernels: the laws, one pack of contacts at a time, and the narrow phase of two cubes of eight spheres.
 
 #include <dem/dem.hpp>
+#include <dem/geometry/shapes.hpp>
 #include <dem/geometry/polyhedron/polyhedra.hpp>
 
 #include <benchmark/benchmark.h>

@@ -1,15 +1,10 @@
 #pragma once
 
-/// Everything of dem that a program usually needs. Single headers may be included instead; each stands alone.
+/// What a program usually needs: worlds of spheres and clusters, all laws, machines. Other shapes are
+/// <dem/geometry/shapes.hpp>. Single headers may be included instead; each stands alone.
 
 #include <dem/core/version.hpp>
 #include <dem/geometry/cluster/sphere_cluster.hpp>
-#include <dem/geometry/mixed.hpp>
-#include <dem/geometry/polyhedron/polyhedra.hpp>
-#include <dem/geometry/polyhedron/polyhedron_sphere.hpp>
-#include <dem/geometry/superquadric/superquadric.hpp>
-#include <dem/geometry/superquadric/superquadric_points.hpp>
-#include <dem/geometry/superquadric/superquadric_polyhedron.hpp>
 #include <dem/grain/broadphase/all_pairs.hpp>
 #include <dem/integrator/symplectic_euler.hpp>
 #include <dem/integrator/velocity_verlet.hpp>

@@ -1,5 +1,6 @@
 // expect-success: dem.hpp alone says how each of dem's shapes touches each other one.
 #include <dem/dem.hpp>
+#include <dem/geometry/shapes.hpp>
 
 using namespace dem::shape;
 
