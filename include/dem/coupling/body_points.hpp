@@ -203,14 +203,13 @@ class PointsTowards {
   /// a mesh) has one for each, the point farthest along it.
   void list_deepest(std::size_t spread) {
     if (!from_.grain()) return;
-    const shape::Superquadric& grain = *from_.grain();
+    const auto& grain = *from_.grain();
     const double third = grain.mean_radius() / 3.0;
     if constexpr (IsSuperquadric<Onto>) {
       if (onto_.grain()) {
-        const shape::SolidPair pair = {grain.solid(), onto_.grain()->solid(), transposed(a_.axes) * b_.axes,
-                                       transpose_times(a_.axes, b_.origin - a_.origin)};
-        shape::CommonNormal found;
-        if (!shape::find_common_normal(pair, found)) return;
+        typename std::remove_cvref_t<decltype(grain)>::PairMemory found;
+        const Vector3<double> centre = transpose_times(a_.axes, b_.origin - a_.origin);
+        if (!grain.shares_normal(*onto_.grain(), transposed(a_.axes) * b_.axes, centre, found)) return;
         const Vector3<double> p = found.point + (0.5 * found.overlap) * found.normal;
         fade(spread, p, found.normal, third);
         add(first_near, p);
@@ -231,7 +230,8 @@ class PointsTowards {
   /// by the method of Frank and Wolfe (1956, doi:10.1002/nav.3800030109): over and over along the chord to the point
   /// that lies farthest along the other's normal, to where the gap is least as its slopes at both ends tell. On a plane
   /// the first point is the last; between round bodies the gap's error falls by a factor a step.
-  Vector3<double> descend(const shape::Superquadric& grain, Vector3<double> p, std::uint32_t wall) const {
+  template <class Grain>
+  Vector3<double> descend(const Grain& grain, Vector3<double> p, std::uint32_t wall) const {
     const double reach = 2.0 * grain.bounding_radius(), near = 1e-10 * grain.mean_radius();
     Place here = nearest(p, reach, wall);
     for (int k = 0; k < 30 && here.gap < reach; ++k) {

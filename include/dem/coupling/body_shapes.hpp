@@ -1,7 +1,7 @@
 #pragma once
 
 #include <dem/coupling/machine_surface.hpp>
-#include <dem/geometry/superquadric/superquadric.hpp>
+#include <dem/geometry/shape.hpp>
 #include <dem/mbd/body.hpp>
 
 #include <algorithm>
@@ -48,7 +48,7 @@ concept HasMantle = requires(const S& s, Vector3<double>& p) {
 /// A surface that is a superquadric: grain() is the grain of that shape, or null.
 template <class S>
 concept IsSuperquadric = requires(const S& s) {
-  { s.grain() } -> std::same_as<const shape::Superquadric*>;
+  { s.grain()->even_support(static_cast<const double*>(nullptr), Vector3<double>{}) } -> std::same_as<Vector3<double>>;
 };
 /// A surface that may be one ball: its probe finds every contact, so the partner's points are not needed.
 template <class S>

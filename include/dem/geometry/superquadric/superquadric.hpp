@@ -39,6 +39,12 @@ class Superquadric : public SuperquadricGrain {
     PairMemory nothing;
     collide(a, pose_a, b, pose_b, separation, nothing, sink, gap);
   }
+  /// Where the surfaces of this and of another grain share a normal, in the frame of this one; `turn` leads from the
+  /// other's frame into this, `centre` (m) is the other's. False if they are apart.
+  bool shares_normal(const Superquadric& other, const Matrix3<double>& turn, const Vector3<double>& centre,
+                     CommonNormal& found) const {
+    return find_common_normal({solid(), other.solid(), turn, centre}, found);
+  }
   static std::uint32_t mirrored(std::uint32_t feature) { return feature; }
 };
 
