@@ -1,6 +1,6 @@
 #pragma once
 
-#include <dem/mbd/machine_phases.hpp>
+#include <dem/mbd/solver/machine_phases.hpp>
 
 #include <cmath>
 #include <utility>

@@ -1,0 +1,245 @@
+#pragma once
+
+// Turns a joint as the user wrote it (in global coordinates at assembly) into what a step runs on (body coordinates),
+// and refuses what cannot work.
+
+#include <dem/math/rotation.hpp>
+#include <dem/mbd/solver/parts.hpp>
+
+#include <algorithm>
+#include <utility>
+
+namespace dem::mbd::detail {
+
+/// A global point in a body's frame.
+inline Vec3 to_body(const Body& b, const Vec3& global) { return b.rotation().transpose() * (global - b.position()); }
+
+/// x of a joint's frame; the choice is explained at JointSpec::with_x.
+inline Vec3 x_of_frame(const JointSpec& s, const Vec3& z, const std::string& who) {
+  const Vec3 given = s.x_axis                ? unit(*s.x_axis, "the x axis of " + who)
+                     : std::abs(z.x()) > 0.9 ? Vec3(Vec3::UnitY())
+                                             : Vec3(Vec3::UnitX());
+  const Vec3 x = given - z.dot(given) * z;
+  if (!(x.norm() > 1e-6)) {
+    fail("the x axis of {} runs along its z axis, ({:g}, {:g}, {:g}); give with_x a direction across it", who, z.x(),
+         z.y(), z.z());
+  }
+  return x.normalized();
+}
+
+inline Axes axes_in_body(const Body& b, const Vec3& x, const Vec3& z) {
+  const Mat3 t = b.rotation().transpose();
+  return {from_eigen(Vec3(t * x)), from_eigen(Vec3(t * z.cross(x))), from_eigen(Vec3(t * z))};
+}
+
+inline void use_connections(const Parts& parts, JointSpec& s, const std::string& who) {
+  const auto resolve = [&](ConnectionId id, BodyId& body, Vec3& at) {
+    if (!id.valid()) return;
+    if (id.index() >= parts.connections.size()) {
+      fail("{} names connection point {}, but the machine has {}; use the ConnectionId that add_connection returned",
+           who, id.index(), parts.connections.size());
+    }
+    const Connection& c = parts.connections[id.index()];
+    body = c.body;
+    at = parts.bodies[c.body.index()].point(c.point);
+  };
+  resolve(s.connection_a, s.a, s.at_a);
+  resolve(s.connection_b, s.b, s.at_b);
+}
+
+inline void check_penalty(const JointSpec& s, const std::string& who) {
+  const auto check = [&](const std::optional<double>& value, const char* what, const char* unit_name) {
+    if (value) require_non_negative(*value, fmt::format("{} of {}", what, who).c_str(), unit_name);
+  };
+  check(s.stiffness, "stiffness", "N/m");
+  check(s.damping, "damping", "N s/m");
+  check(s.rotational_stiffness, "rotational stiffness", "N m/rad");
+  check(s.rotational_damping, "rotational damping", "N m s/rad");
+  if ((s.kind == JointKind::bushing || s.kind == JointKind::free) &&
+      (s.stiffness || s.damping || s.rotational_stiffness || s.rotational_damping)) {
+    fail("{} was given a stiffness or damping with with_stiffness or with_damping, which it does not use: {}", who,
+         s.kind == JointKind::bushing ? "a bushing has its own constants for each direction; give them to bushing(...)"
+                                      : "it holds nothing; use a bushing or another kind of joint");
+  }
+  if (s.kind == JointKind::bushing) {
+    for (const Vec3* v :
+         {&s.bushing_stiffness, &s.bushing_damping, &s.bushing_rotational_stiffness, &s.bushing_rotational_damping}) {
+      for (int k = 0; k < 3; ++k) require_non_negative((*v)[k], ("a constant of " + who).c_str(), "(SI units)");
+    }
+  }
+  if (s.kind == JointKind::bushing && s.bushing_stiffness.norm() + s.bushing_rotational_stiffness.norm() <= 0.0) {
+    fail("{} has no stiffness at all: give it bushing_stiffness (N/m) or bushing_rotational_stiffness (N m/rad)", who);
+  }
+}
+
+/// The part of the way from one point to the other in the directions that a joint holds: only there they have to meet.
+inline Vec3 held_part(Hold hold, const Vec3& z, const Vec3& gap) {
+  if (hold == Hold::line) return gap - z.dot(gap) * z;
+  if (hold == Hold::plane) return z.dot(gap) * z;
+  return gap;
+}
+
+/// What the coordinates are said to be at assembly. Throws Error for those that are what they are.
+inline void set_starts(Joint& j, const JointSpec& s, const std::string& who) {
+  for (const JointStart& start : s.starts) {
+    const Freedom freedom = known_freedom(s.kind, start.freedom, "starting_at of " + who);
+    if (freedom != Freedom::turn && freedom != Freedom::slide) {
+      fail(
+          "starting_at of {} gives its {} a value, but only a turn about z and a slide along z can count from any "
+          "value at assembly; move a body instead",
+          who, name_of(freedom));
+    }
+    if (!std::isfinite(start.value)) {
+      fail("the {} of {} starts at {:g}, but must be finite at assembly", name_of(freedom), who, start.value);
+    }
+    (freedom == Freedom::turn ? j.angle_offset : j.slide_offset) = start.value;
+  }
+}
+
+inline Joint make_joint(const Parts& parts, JointSpec& s) {
+  const std::string who = fmt::format("{} '{}'", name_of(s.kind), s.name);
+  use_connections(parts, s, who);
+  const Body &a = known_body(parts, s.a, who), &b = known_body(parts, s.b, who);
+  if (s.a == s.b) {
+    fail("{} joins body '{}' to itself: a joint needs two different bodies; use machine.ground() for a fixed one", who,
+         a.name);
+  }
+  if (a.fixed && b.fixed && s.kind != JointKind::free) {
+    fail(
+        "{} joins '{}' and '{}', which are both fixed, so it would hold nothing; leave it out, or measure with a "
+        "free_joint",
+        who, a.name, b.name);
+  }
+  check_penalty(s, who);
+  finite_point(s.at_a, "the point on body a of " + who);
+  finite_point(s.at_b, "the point on body b of " + who);
+  Vec3 za = unit(s.axis_a, "the axis of " + who), zb = unit(s.axis_b, "the axis of " + who);
+  const bool has_own_axes = s.kind == JointKind::universal || s.kind == JointKind::constant_velocity;
+  // Points and axes that nearly meet are put in the middle: the joint starts at rest, not stretched by the gap.
+  const bool has_one_axis = !has_own_axes && align_of(s.kind) != Align::nothing;
+  const double crooked = za.cross(zb).norm() + (za.dot(zb) < 0.0);
+  const double angle = std::acos(std::clamp(za.dot(zb), -1.0, 1.0));
+  if (has_one_axis && crooked <= s.tolerance && zb != za) za = zb = (za + zb).normalized();
+  const Vec3 gap = s.at_b - s.at_a;
+  const bool may_be_apart = s.kind == JointKind::distance || s.kind == JointKind::free;
+  const Vec3 held_gap = held_part(hold_of(s.kind), za, gap);
+  const double apart = held_gap.norm();
+  if (!may_be_apart && !(apart <= s.tolerance)) {
+    fail(
+        "the points of {} do not meet: ({:g}, {:g}, {:g}) on body '{}' and ({:g}, {:g}, {:g}) on body '{}' are {:g} m "
+        "apart, allowed is {:g} m; move a body or a point, or raise the joint's tolerance",
+        who, s.at_a.x(), s.at_a.y(), s.at_a.z(), a.name, s.at_b.x(), s.at_b.y(), s.at_b.z(), b.name, apart,
+        s.tolerance);
+  }
+  if (has_one_axis && !(crooked <= s.tolerance)) {
+    fail(
+        "the axes of {} are {:g} rad apart, allowed is {:g}; give both bodies the same axis or raise the joint's "
+        "tolerance",
+        who, angle, s.tolerance);
+  }
+  if (has_own_axes && za.dot(zb) < 0.05) {
+    fail("the shafts of {} are bent by {:g} deg, allowed is 87 deg; point both axes the way the torque goes", who,
+         angle * 180.0 / std::numbers::pi);
+  }
+
+  Joint j{};
+  j.a = s.a.value;
+  j.b = s.b.value;
+  j.kind = s.kind;
+  j.turns = turns(s.kind);
+  const Vec3 to_middle = may_be_apart ? Vec3(Vec3::Zero()) : Vec3(0.5 * held_gap);
+  j.point_a = from_eigen(to_body(a, s.at_a + to_middle));
+  j.point_b = from_eigen(to_body(b, s.at_b - to_middle));
+  const Vec3 xa = x_of_frame(s, za, who);
+  Vec3 xb = xa;
+  if (s.kind == JointKind::universal) {
+    const Vec3 yb = zb.cross(xa).normalized();  // the second arm of the cross, square to the first
+    xb = yb.cross(zb);
+  } else if (zb != za) {
+    xb = rotation_between(za, zb) * xa;
+  }
+  j.axes_a = axes_in_body(a, xa, za);
+  j.axes_b = axes_in_body(b, xb, zb);
+  set_starts(j, s, who);
+  j.length = s.length ? require_positive(*s.length, ("length of " + who).c_str(), "m") : gap.norm();
+  if (s.kind == JointKind::distance && !(std::abs(j.length - gap.norm()) <= s.tolerance)) {
+    fail(
+        "{} is {:g} m long, but its points are {:g} m apart, allowed is a difference of {:g} m; move a point, leave "
+        "the length out, or raise the joint's tolerance for a rod that starts under load",
+        who, j.length, gap.norm(), s.tolerance);
+  }
+  if (s.kind == JointKind::distance && !(gap.norm() > 1e-9)) {
+    fail("the points of {} are {:g} m apart, but need a distance; use a spherical joint for points that meet", who,
+         gap.norm());
+  }
+  // What is given counts from the start; the rest waits for the time step.
+  j.k = s.stiffness.value_or(0.0);
+  j.c = s.damping.value_or(0.0);
+  j.kr = s.rotational_stiffness.value_or(0.0);
+  j.cr = s.rotational_damping.value_or(0.0);
+  if (s.kind == JointKind::bushing) {
+    j.k3 = from_eigen(s.bushing_stiffness);
+    j.c3 = from_eigen(s.bushing_damping);
+    j.kr3 = from_eigen(s.bushing_rotational_stiffness);
+    j.cr3 = from_eigen(s.bushing_rotational_damping);
+  }
+  return j;
+}
+
+/// Adds the stops of a joint that is about to be added, as number `joint`.
+inline void add_stops(Parts& parts, JointSpec& s, const Joint& j, std::uint32_t joint) {
+  const std::string who = fmt::format("{} '{}'", name_of(s.kind), s.name);
+  for (JointLimits& l : s.limits) {
+    l.freedom = require_freedom(s.kind, l.freedom, "a stop of " + who);
+    if (!(l.lower < l.upper)) {
+      fail("the limits of {} are {:g} to {:g}: the lower one must be below the upper one", who, l.lower, l.upper);
+    }
+    const double start = coordinate_of(j, parts.bodies[j.a], parts.bodies[j.b], l.freedom).value;
+    if (!(start >= l.lower - s.tolerance && start <= l.upper + s.tolerance)) {
+      fail(
+          "the limits of {} are {:g} to {:g}, but its {} starts at {:g}; widen them, move a body, or say with "
+          "starting_at what the coordinate is at assembly",
+          who, l.lower, l.upper, name_of(l.freedom), start);
+    }
+    if (l.stiffness) require_non_negative(*l.stiffness, ("stop stiffness of " + who).c_str(), "N/m or N m/rad");
+    if (l.damping) require_non_negative(*l.damping, ("stop damping of " + who).c_str(), "N s/m or N m s/rad");
+    for (const JointStops& e : parts.stops) {
+      if (e.joint == joint && e.freedom == l.freedom) {
+        fail("{} has two pairs of limits for its {}; give one", who, name_of(l.freedom));
+      }
+    }
+    parts.stops.push_back(
+        {joint, l.freedom, l.lower, l.upper, l.stiffness.value_or(0.0), l.damping.value_or(0.0), 0.0, {0, 0, 0}});
+  }
+}
+
+inline void add_rubbing(Parts& parts, const JointSpec& s, std::uint32_t joint) {
+  if (!s.friction) return;
+  const std::string who = fmt::format("{} '{}'", name_of(s.kind), s.name);
+  using enum JointKind;
+  if (s.kind == fixed || s.kind == distance || s.kind == bushing || s.kind == free) {
+    fail("{} has friction, but nothing in it slides; a bushing has dampers, and other kinds of joint have friction",
+         who);
+  }
+  JointRubbing e;
+  e.joint = joint;
+  const std::string radius = "JointFriction::radius, of the bearing of " + who;
+  if (s.kind == prismatic || s.kind == point_on_line || s.kind == point_on_plane) {
+    if (s.friction->radius != 0.0) {
+      fail("{} is {:g} m, but only the sliding of a {} rubs; leave the radius out", radius, s.friction->radius,
+           name_of(s.kind));
+    }
+  } else if (s.kind == planar) {
+    e.radius = require_non_negative(s.friction->radius, radius.c_str(), "m");
+  } else {
+    e.radius = require_positive(s.friction->radius, radius.c_str(), "m");
+  }
+  e.preload = require_non_negative(s.friction->preload, ("preload of " + who).c_str(), "N");
+  e.lever = require_non_negative(s.friction->lever, ("lever of " + who).c_str(), "m");
+  e.law = {s.friction->coefficient, s.friction->stiffness.value_or(0.0), s.friction->velocity_stiffness.value_or(0.0),
+           s.friction->breaking_factor};
+  friction::AsperitySpring::check(e.law);
+  parts.rubbing.push_back(e);
+}
+
+}  // namespace dem::mbd::detail

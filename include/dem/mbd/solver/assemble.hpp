@@ -1,0 +1,148 @@
+#pragma once
+
+// Turns what the user wrote (specs, in global coordinates at assembly) into what a step runs on (body coordinates), and
+// refuses what cannot work; joints are in make_joint.hpp.
+
+#include <dem/mbd/joint/make_joint.hpp>
+
+#include <algorithm>
+#include <utility>
+
+namespace dem::mbd::detail {
+
+/// Checks the two ends of an element between points and puts the points into body frames.
+template <class Part, class Spec>
+void attach_points(const Parts& parts, Part& part, const Spec& s, const std::string& who, bool need_distance) {
+  const Body &a = known_body(parts, s.a, who), &b = known_body(parts, s.b, who);
+  if (s.a == s.b) fail("{} joins body '{}' to itself; give it two different bodies", who, a.name);
+  if (need_distance && !((s.at_b - s.at_a).norm() > 1e-9)) {
+    fail(
+        "the two points of {} are {:g} m apart, so its direction is not known; move one of them, or act on a joint's "
+        "coordinate instead",
+        who, (s.at_b - s.at_a).norm());
+  }
+  part.point_a = from_eigen(to_body(a, finite_point(s.at_a, "the first point of " + who)));
+  part.point_b = from_eigen(to_body(b, finite_point(s.at_b, "the second point of " + who)));
+}
+
+inline void check_actuator(const ActuatorSpec& spec, const std::string& who) {
+  require_non_negative(spec.position_gain, ("position gain of " + who).c_str(), "N/m or N m/rad");
+  require_non_negative(spec.speed_gain, ("speed gain of " + who).c_str(), "N s/m or N m s/rad");
+  require_within(spec.throttle, -1.0, 1.0, ("throttle of " + who).c_str());
+  if (!(spec.max_force > 0.0)) {
+    fail("the largest force of {} is {:g} N or N m, but must be greater than zero; leave it out for no limit", who,
+         spec.max_force);
+  }
+}
+
+/// The freedom that a term of a coupling names, or the one of the kind that the term needs.
+inline Freedom freedom_of(const CouplingSpec::Term& term, const Parts& parts, std::size_t number,
+                          const std::string& who) {
+  using enum CouplingSpec::Moves;
+  const Joint& j = known_joint(parts, term.joint, who);
+  Freedom freedom = resolved(j.kind, term.freedom);
+  if (term.needs != any) {
+    const std::vector<Freedom> all = freedoms_of(j.kind);
+    const auto has = [&](Freedom f) { return std::find(all.begin(), all.end(), f) != all.end(); };
+    const bool turns = term.needs == rotation;
+    if (term.freedom == Freedom::own && has(turns ? Freedom::turn : Freedom::slide)) {
+      freedom = turns ? Freedom::turn : Freedom::slide;
+    }
+    if (freedom == Freedom::own || !has(freedom) || is_rotation(freedom) != turns) {
+      fail(
+          "{} needs as joint {} one that {}, but '{}' is a {}{}; exchange the joints, or name a freedom that {} in the "
+          "coupling's terms",
+          who, number, turns ? "turns" : "slides", parts.joint_specs[term.joint.index()].name, name_of(j.kind),
+          term.freedom == Freedom::own ? "" : fmt::format(" and its {} does not", name_of(freedom)),
+          turns ? "turns" : "slides");
+    }
+  }
+  return require_freedom(j.kind, freedom, who);
+}
+
+inline Coupling make_coupling(const Parts& parts, CouplingSpec spec) {
+  const std::string who = fmt::format("coupling '{}'", spec.name);
+  if (spec.terms.size() < 2) fail("{} joins {} coordinates, but needs at least 2", who, spec.terms.size());
+  for (std::size_t i = 0; i < spec.terms.size(); ++i) {
+    spec.terms[i].freedom = freedom_of(spec.terms[i], parts, i + 1, who);
+    if (!std::isfinite(spec.terms[i].ratio) || spec.terms[i].ratio == 0.0) {
+      fail("ratio {} of {} is {:g}, but must be finite and not zero", i + 1, who, spec.terms[i].ratio);
+    }
+    for (std::size_t k = 0; k < i; ++k) {
+      if (spec.terms[k].joint == spec.terms[i].joint && spec.terms[k].freedom == spec.terms[i].freedom) {
+        fail("{} names the same coordinate twice; add up the ratios", who);
+      }
+    }
+  }
+  if (spec.stiffness) require_non_negative(*spec.stiffness, ("stiffness of " + who).c_str(), "per unit of the sum");
+  if (spec.damping) require_non_negative(*spec.damping, ("damping of " + who).c_str(), "per unit of the sum's rate");
+  Coupling g;
+  g.offset = coupling_sum(spec, parts.joints, parts.bodies);
+  g.k = spec.stiffness.value_or(0.0);
+  g.c = spec.damping.value_or(0.0);
+  g.spec = std::move(spec);
+  return g;
+}
+
+inline PrescribedMotion make_motion(const Parts& parts, MotionSpec spec) {
+  const std::string who = fmt::format("prescribed motion '{}'", spec.name);
+  PrescribedMotion p;
+  if (spec.target == MotionSpec::Target::joint) {
+    const Joint& j = known_joint(parts, spec.joint, who);
+    spec.freedom = known_freedom(j.kind, spec.freedom, who);
+    if (spec.freedom == Freedom::bend) {
+      fail(
+          "{} drives the bend of a {}, which has no direction where the joint is straight; drive bend_x and bend_y "
+          "of a universal joint, or use an actuator",
+          who, name_of(j.kind));
+    }
+    if (spec.freedom == Freedom::length) {
+      fail(
+          "{} drives the length of a distance joint, which the joint holds; leave the joint out and use a "
+          "linear_actuator, or put a cylinder of two bodies between the points and drive the slide of its prismatic "
+          "joint",
+          who);
+    }
+    if (parts.bodies[j.a].fixed && parts.bodies[j.b].fixed) {
+      fail("{} drives a joint of '{}' and '{}', which are both fixed; free one, or prescribe its position or pose", who,
+           parts.bodies[j.a].name, parts.bodies[j.b].name);
+    }
+    spec.body = BodyId(j.b);
+  }
+  const Body& b = known_body(parts, spec.body, who);
+  if (spec.target == MotionSpec::Target::pose && !spec.pose) fail("{} has no function that gives the pose", who);
+  p.axis = from_eigen(unit(spec.axis, who));
+  p.start = dot(b.motion.position, p.axis);
+  p.start_rotation = b.motion.rotation;
+  if (spec.frame == BodyFrame::reference) {
+    const BuiltBody& built = parts.built[spec.body.index()];
+    p.axes = built.reference_axes.transpose();
+    p.centre = -(p.axes * built.reference_origin);
+  }
+  p.spec = std::move(spec);
+  return p;
+}
+
+/// Checks that what a sensor measures is there.
+inline void check_sensor(const Parts& parts, const SensorSpec& spec) {
+  const std::size_t count = spec.target == SensorTarget::joint      ? parts.joints.size()
+                            : spec.target == SensorTarget::actuator ? parts.actuators.size()
+                            : spec.target == SensorTarget::drive    ? parts.motions.size()
+                                                                    : parts.bodies.size();
+  const char* what = spec.target == SensorTarget::joint      ? "joint"
+                     : spec.target == SensorTarget::actuator ? "actuator"
+                     : spec.target == SensorTarget::drive    ? "prescribed motion"
+                                                             : "body";
+  if (spec.index >= count) {
+    fail("sensor '{}' measures {} {}, but the machine has {} of them; use the id that add_... returned", spec.name,
+         what, spec.index == BodyId().index() ? "(never added)" : std::to_string(spec.index), count);
+  }
+  if (spec.target == SensorTarget::drive && parts.motions[spec.index].spec.target == MotionSpec::Target::pose) {
+    fail(
+        "sensor '{}' measures the drive of '{}', which prescribes a whole pose and so has no single force; use a "
+        "total_force_sensor on its body",
+        spec.name, parts.motions[spec.index].spec.name);
+  }
+}
+
+}  // namespace dem::mbd::detail

@@ -1,0 +1,168 @@
+#pragma once
+
+// How easily bodies give way: displacement per unit force and turn per unit torque, M^-1 at a point and in a direction.
+
+#include <dem/mbd/joint/coordinate.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace dem::mbd::detail {
+
+/// Largest eigenvalue of a symmetric matrix, by the trigonometric solution of its cubic.
+inline double largest_eigenvalue(const Mat3& m) {
+  const double mean = m.trace() / 3.0;
+  const Mat3 rest = m - mean * Mat3::Identity();
+  const double p = std::sqrt(rest.squaredNorm() / 6.0);
+  if (p <= 1e-15 * std::abs(mean) || p < 1e-300) return mean;
+  const double cosine = std::clamp(Mat3(rest / p).determinant() / 2.0, -1.0, 1.0);
+  return mean + 2.0 * p * std::cos(std::acos(cosine) / 3.0);
+}
+
+/// The same of one that has no negative eigenvalue and at most two that are not 0: half of their sum and difference.
+inline double largest_eigenvalue_of_two(const Mat3& m) {
+  const double sum = m.trace();
+  return 0.5 * (sum + std::sqrt(std::max(0.0, 2.0 * m.squaredNorm() - sum * sum)));
+}
+
+inline Mat3 rotational_mobility(const Body& b) {
+  if (b.fixed) return Mat3::Zero();
+  return b.rotation() * b.inertia.cwiseInverse().asDiagonal() * b.rotation().transpose();
+}
+/// Displacement per unit force at `arm` (global) from the centre of mass.
+inline Mat3 point_mobility(const Body& b, const Vec3& arm) {
+  if (b.fixed) return Mat3::Zero();
+  Mat3 x;
+  x << 0, -arm.z(), arm.y(), arm.z(), 0, -arm.x(), -arm.y(), arm.x(), 0;
+  return Mat3::Identity() / b.mass + x * rotational_mobility(b) * x.transpose();
+}
+
+/// Turn about a unit vector n (global) per unit torque, and displacement along it at `arm` (global) per unit force.
+inline double turn_mobility(const Body& b, const Vector3<double>& n) {
+  if (b.fixed) return 0.0;
+  const Vector3<double> t = transpose_times(b.motion.rotation, n);
+  return t.x * t.x / b.inertia[0] + t.y * t.y / b.inertia[1] + t.z * t.z / b.inertia[2];
+}
+inline double push_mobility(const Body& b, const Vector3<double>& arm, const Vector3<double>& n) {
+  return b.fixed ? 0.0 : 1.0 / b.mass + turn_mobility(b, cross(arm, n));
+}
+
+/// The largest turn per unit torque about any axis, and displacement per unit force at `arm` in any direction. A force
+/// along the arm turns nothing, so at most two directions of the turn's share are left.
+inline double largest_turn_mobility(const Body& b) { return b.fixed ? 0.0 : 1.0 / b.inertia.minCoeff(); }
+inline double largest_push_mobility(const Body& b, const Vec3& arm) {
+  if (b.fixed) return 0.0;
+  return 1.0 / b.mass + largest_eigenvalue_of_two(point_mobility(b, arm) - Mat3::Identity() / b.mass);
+}
+
+/// Square roots of a joint's stiffness, of size 1 where it is the same in all held directions; global axes.
+struct HeldDirections {
+  Mat3 displacement = Mat3::Zero(), rotation = Mat3::Zero();
+};
+inline HeldDirections held_directions(const Joint& j, const Body& a, const Body& b) {
+  const Mat3 A = a.rotation();
+  const auto global = [&](const Vector3<double>& v) { return Vec3(A * to_eigen(v)); };
+  Mat3 axes;
+  axes << global(j.axes_a.x), global(j.axes_a.y), global(j.axes_a.z);
+  const Vec3 z = axes.col(2);
+  const auto roots = [&](const Vector3<double>& k) {
+    return Mat3(axes * to_eigen(k).cwiseSqrt().asDiagonal() * axes.transpose());
+  };
+  HeldDirections held;
+  switch (hold_of(j.kind)) {
+    case Hold::point: held.displacement.setIdentity(); break;
+    case Hold::line: held.displacement = Mat3::Identity() - z * z.transpose(); break;
+    case Hold::plane: held.displacement = z * z.transpose(); break;
+    case Hold::length: {
+      const Vec3 n = (b.point(to_eigen(j.point_b)) - a.point(to_eigen(j.point_a))).normalized();
+      held.displacement = n * n.transpose();
+      break;
+    }
+    case Hold::bushing: held.displacement = roots(j.k3); break;
+    case Hold::nothing: break;
+  }
+  switch (align_of(j.kind)) {
+    case Align::parallel: held.rotation = Mat3::Identity() - z * z.transpose(); break;
+    case Align::locked: held.rotation = j.kind == JointKind::bushing ? roots(j.kr3) : Mat3(Mat3::Identity()); break;
+    case Align::cross: {
+      const Vec3 g = Vec3(b.rotation() * to_eigen(j.axes_b.y)).cross(axes.col(0)).normalized();  // square to the cross
+      held.rotation = g * g.transpose();
+      break;
+    }
+    case Align::constant_velocity: {
+      const Vec3 g = Vec3(z + b.rotation() * to_eigen(j.axes_b.z)).normalized();  // half way between the shafts
+      held.rotation = g * g.transpose();
+      break;
+    }
+    case Align::nothing: break;
+  }
+  return held;
+}
+
+/// Mobilities of the two bodies of a joint, displacement and rotation in held directions.
+struct JointMobility {
+  double displacement_a, displacement_b, rotation_a, rotation_b;
+};
+inline JointMobility mobility_of(const Joint& j, const Body& a, const Body& b) {
+  const HeldDirections held = held_directions(j, a, b);
+  const bool bushing = j.kind == JointKind::bushing;
+  const bool all_displacements = hold_of(j.kind) == Hold::point, all_rotations = align_of(j.kind) == Align::locked;
+  const auto gain = [&](const Mat3& root, const Mat3& w) {
+    return bushing ? largest_eigenvalue(root * w * root) : largest_eigenvalue_of_two(root * w * root);
+  };
+  const auto displacement = [&](const Body& x) {
+    const Vec3 arm = b.point(to_eigen(j.point_b)) - x.position();
+    return all_displacements ? largest_push_mobility(x, arm) : gain(held.displacement, point_mobility(x, arm));
+  };
+  const auto rotation = [&](const Body& x) {
+    return all_rotations && !bushing ? largest_turn_mobility(x) : gain(held.rotation, rotational_mobility(x));
+  };
+  return {displacement(a), displacement(b), rotation(a), rotation(b)};
+}
+
+/// Mobilities of the two bodies along a coordinate of their joint. The axis of a bend may point anywhere.
+inline std::pair<double, double> coordinate_mobility(const Joint& j, const Body& a, const Body& b, Freedom freedom) {
+  if (freedom == Freedom::bend) {
+    return {largest_turn_mobility(a), largest_turn_mobility(b)};
+  }
+  const Coordinate q = coordinate_of(j, a, b, freedom);
+  if (q.rotation) return {turn_mobility(a, q.axis), turn_mobility(b, q.axis)};
+  return {push_mobility(a, q.arm_a, q.axis), push_mobility(b, q.arm_b, q.axis)};
+}
+
+/// Mobilities of the two bodies along the directions that a joint's friction acts in: the largest of them, as all have
+/// the same spring; rotations times the square of the bearing's radius, which turns sliding into rotation.
+inline std::pair<double, double> rubbing_mobility(const Joint& j, const Body& a, const Body& b, double radius) {
+  std::pair<double, double> most = {0.0, 0.0};
+  const auto consider = [&](Freedom freedom) {
+    const double share = is_rotation(freedom) ? radius * radius : 1.0;
+    const auto [wa, wb] = coordinate_mobility(j, a, b, freedom);
+    most = {std::max(most.first, share * wa), std::max(most.second, share * wb)};
+  };
+  switch (j.kind) {
+    case JointKind::planar: consider(Freedom::turn); [[fallthrough]];
+    case JointKind::point_on_plane:
+      consider(Freedom::slide_x);
+      consider(Freedom::slide_y);
+      break;
+    case JointKind::cylindrical:
+      consider(Freedom::turn);
+      consider(Freedom::slide);
+      break;
+    case JointKind::revolute: consider(Freedom::turn); break;
+    case JointKind::prismatic:
+    case JointKind::point_on_line: consider(Freedom::slide); break;
+    default: consider(Freedom::bend); break;
+  }
+  return most;
+}
+
+/// Mobility of the line between two points.
+inline std::pair<double, double> line_mobility(const Vector3<double>& point_a, const Vector3<double>& point_b,
+                                               const Body& a, const Body& b) {
+  const Coordinate q = distance_of(point_a, point_b, a, b);
+  return {push_mobility(a, q.arm_a, q.axis), push_mobility(b, q.arm_b, q.axis)};
+}
+
+}  // namespace dem::mbd::detail

@@ -1,0 +1,122 @@
+#pragma once
+
+#include <dem/mbd/body/body_spec.hpp>
+#include <dem/mbd/drive/actuator.hpp>
+#include <dem/mbd/drive/prescribed.hpp>
+#include <dem/mbd/joint/coupling.hpp>
+#include <dem/mbd/joint/joint_extras.hpp>
+#include <dem/mbd/load/load.hpp>
+#include <dem/mbd/sensor/sensor.hpp>
+
+#include <string>
+#include <vector>
+
+namespace dem::mbd {
+
+/// One coordinate that is prescribed now; a rotation of a body makes three of them, all others one.
+struct DriveRow {
+  static constexpr std::uint32_t no_body = ~std::uint32_t{0};
+  std::uint32_t motion = 0;
+  bool is_reported = true;                 ///< its force is the motion's
+  bool is_held = false;                    ///< by the driven joint: it stays as it is while values are corrected
+  std::uint32_t a = no_body, b = no_body;  ///< bodies that it moves
+  Coordinate now;
+  double value = 0.0, rate = 0.0;  ///< wanted
+};
+
+/// A named point of a body to which joints are attached (thesis section 2.3).
+struct Connection {
+  std::string name;
+  BodyId body;
+  Vec3 point = Vec3::Zero();  ///< m, body frame
+};
+
+/// All that a machine is made of, as plain arrays; an Id is an index into its array.
+struct Parts {
+  std::vector<Body> bodies;
+  std::vector<BuiltBody> built;  ///< each body as it was added, with its reference frame
+  std::vector<Connection> connections;
+  std::vector<Joint> joints;           ///< what a step needs
+  std::vector<JointSpec> joint_specs;  ///< as given: what was left to derive is still empty
+  std::vector<JointStops> stops;       ///< of the coordinates that have them
+  std::vector<JointRubbing> rubbing;   ///< of the joints that have friction
+  std::vector<Coupling> couplings;
+  std::vector<Actuator> actuators;
+  std::vector<Spring> springs;
+  std::vector<Load> loads;
+  std::vector<PrescribedMotion> motions;
+  std::vector<Sensor> sensors;
+
+  // Scratch of a force evaluation, one entry per body.
+  std::vector<Vector3<double>> spin;  ///< rad/s, global
+  std::vector<Wrench> outside;        ///< contact forces that the world added, about the centre of mass
+
+  // Scratch of the prescribed motions.
+  std::vector<DriveRow> drive_rows;
+  std::vector<double> drive_matrix, drive_directions, drive_errors, drive_held;
+};
+
+/// What a joint puts on its body b, about the joint's point: its springs and dampers, its stops and its friction.
+inline Wrench reaction_of(const Parts& parts, std::size_t joint) {
+  Wrench w = {parts.joints[joint].force, parts.joints[joint].torque};
+  for (const JointRubbing& e : parts.rubbing) {
+    if (e.joint == joint) w = w + Wrench{e.force, e.torque};
+  }
+  for (const JointStops& e : parts.stops) {
+    if (e.joint == joint) (is_rotation(e.freedom) ? w.torque : w.force) += e.force * e.axis;
+  }
+  return w;
+}
+
+/// Reports and recorders tell parts by their names: one that has none gets that of its kind (`one`) and its number, one
+/// that another of its kind has is refused. `name_of(item)` is the name of an item.
+template <class Items, class NameOf>
+void settle_name(std::string& name, const Items& items, const char* one, const char* several, NameOf&& name_of) {
+  if (name.empty()) name = fmt::format("{} {}", one, items.size());
+  for (const auto& item : items) {
+    if (name_of(item) == name) fail("two {} are named '{}'; rename one, so that reports are clear", several, name);
+  }
+}
+
+/// The item of an id, or an Error that names the kind of item.
+template <class Items, class Tag>
+auto& known(Items& items, Id<Tag> id, const char* what) {
+  if (id.index() < items.size()) return items[id.index()];
+  fail("{} {} was asked for, but the machine has {} of them; use the id that add_... returned", what,
+       id.valid() ? std::to_string(id.index()) : "(never added)", items.size());
+}
+
+/// The body of an id, or an Error that names who asked for it.
+inline const Body& known_body(const Parts& parts, BodyId id, const std::string& asker) {
+  if (!id.valid()) fail("{} names a body that was never added; use the BodyId that add_body returned", asker);
+  if (id.index() >= parts.bodies.size()) {
+    fail("{} names body {}, but the machine has {} (0 to {}); use the BodyId that add_body returned", asker, id.index(),
+         parts.bodies.size(), static_cast<long>(parts.bodies.size()) - 1);
+  }
+  return parts.bodies[id.index()];
+}
+
+inline const Joint& known_joint(const Parts& parts, JointId id, const std::string& asker) {
+  if (!id.valid() || id.index() >= parts.joints.size()) {
+    fail("{} names a joint that the machine does not have (it has {}); use the JointId that add_joint returned", asker,
+         parts.joints.size());
+  }
+  return parts.joints[id.index()];
+}
+
+/// A point (m) that was given as `what`, or an Error if it is nowhere.
+inline const Vec3& finite_point(const Vec3& p, const std::string& what) {
+  if (!p.allFinite()) fail("{} is ({:g}, {:g}, {:g}), but must be finite", what, p.x(), p.y(), p.z());
+  return p;
+}
+
+inline Vec3 unit(const Vec3& v, const std::string& asker) {
+  const double length = v.norm();
+  if (!(length > 1e-12) || !std::isfinite(length)) {
+    fail("the direction of {} is ({:g}, {:g}, {:g}), but needs a length; give any vector along it", asker, v.x(), v.y(),
+         v.z());
+  }
+  return v / length;
+}
+
+}  // namespace dem::mbd
