@@ -171,7 +171,7 @@ class Machine : public MachinePhases<I> {
     for (std::size_t i = 0; i < parts_.bodies.size(); ++i) saved_.motions[i] = parts_.bodies[i].motion;
     saved_.turns.resize(parts_.joints.size());
     for (std::size_t i = 0; i < parts_.joints.size(); ++i) saved_.turns[i] = parts_.joints[i].angle_estimate;
-    saved_.rubbing = parts_.rubbing;
+    saved_.friction = parts_.friction;
     saved_.drives.resize(parts_.motions.size());
     for (std::size_t i = 0; i < parts_.motions.size(); ++i) saved_.drives[i] = parts_.motions[i].drive;
   }
@@ -180,7 +180,7 @@ class Machine : public MachinePhases<I> {
     memory_ = saved_.memory;
     for (std::size_t i = 0; i < parts_.bodies.size(); ++i) parts_.bodies[i].motion = saved_.motions[i];
     for (std::size_t i = 0; i < parts_.joints.size(); ++i) parts_.joints[i].angle_estimate = saved_.turns[i];
-    parts_.rubbing = saved_.rubbing;
+    parts_.friction = saved_.friction;
     for (std::size_t i = 0; i < parts_.motions.size(); ++i) parts_.motions[i].drive = saved_.drives[i];
   }
 
@@ -189,7 +189,7 @@ class Machine : public MachinePhases<I> {
     std::vector<typename Base::Memory> memory;
     std::vector<integrator::Motion<double>> motions;
     std::vector<double> turns;
-    std::vector<JointRubbing> rubbing;
+    std::vector<JointFrictionState> friction;
     std::vector<PrescribedMotion::Drive> drives;
   };
 

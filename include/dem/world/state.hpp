@@ -142,10 +142,10 @@ template <class Model>
 void sample_surface_sensors(WorldState<Model>& w) {
   for (SurfaceSensor& s : w.surface_sensors) {
     const auto& surface = w.surfaces[s.surface.index()];
-    mbd::Wrench load = {surface.force, surface.torque};
+    Wrench load = {surface.force, surface.torque};
     for (const coupling::BodyPair& pair : w.body_contacts.pairs) {
-      if (pair.a == s.surface) load = load + mbd::Wrench{pair.force, pair.torque_a};
-      if (pair.b == s.surface) load = load + mbd::Wrench{-pair.force, pair.torque_b};
+      if (pair.a == s.surface) load = load + Wrench{pair.force, pair.torque_a};
+      if (pair.b == s.surface) load = load + Wrench{-pair.force, pair.torque_b};
     }
     s.average.add(load, w.time_step);
   }

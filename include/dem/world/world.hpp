@@ -72,11 +72,10 @@ class World : public WorldSetup<M> {
   std::uint64_t steps() const { return state_.step; }
   double time_step() const { return state_.time_step; }
   /// Largest stable time step of grains and machine, and what limits it.
-  grain::StableTimeStep stable_time_step() const {
+  StableTimeStep stable_time_step() const {
     auto limit = stable_time_step_of_contacts();
     const auto machine = state_.machine.stable_time_step();
-    if (machine.dt < limit.value) limit = {machine.dt, machine.limited_by};
-    return limit;
+    return machine.dt < limit.dt ? machine : limit;
   }
   void set_threads(int n) { state_.executor.set_threads(n); }
   int threads() const { return state_.executor.threads(); }
@@ -149,7 +148,7 @@ class World : public WorldSetup<M> {
   StepReport ok() const { return {StepReport::Problem::none, state_.time, state_.step, {}, {}}; }
 
   /// Of grains with each other and with surfaces, and of bodies with each other.
-  grain::StableTimeStep stable_time_step_of_contacts() const {
+  StableTimeStep stable_time_step_of_contacts() const {
     std::vector<grain::SurfaceMatter> of_surfaces;
     for (const auto& s : state_.surfaces) {
       of_surfaces.push_back({s.material, coupling::softness_of(s, state_.machine.bodies()[s.body.index()], 0.0)});
@@ -159,7 +158,7 @@ class World : public WorldSetup<M> {
     const auto bodies = coupling::stable_time_step_of_bodies<Model>(
         state_.body_contacts.pairs, std::span(state_.surfaces), std::span(state_.machine.bodies()), state_.materials,
         state_.options.overlap_limit);
-    if (bodies.value < limit.value) limit = bodies;
+    if (bodies.dt < limit.dt) limit = bodies;
     return limit;
   }
 
@@ -171,7 +170,7 @@ class World : public WorldSetup<M> {
   void choose_time_step_automatically() {
     auto& machine = state_.machine;
     // What a machine derives is laid out for whatever step is chosen: only what is given limits it.
-    const double limit = std::min(stable_time_step_of_contacts().value, machine.stable_time_step_of_given().dt);
+    const double limit = std::min(stable_time_step_of_contacts().dt, machine.stable_time_step_of_given().dt);
     if (limit >= 1e300) fail("nothing in the world limits the time step; set time_step");
     // A step that was chosen before is kept while it is as safe: a change of friction must not change it.
     const double safe = state_.options.time_step_safety * limit;
@@ -182,14 +181,14 @@ class World : public WorldSetup<M> {
   }
   void check_time_step(double dt) {
     design_machine(dt);
-    const grain::StableTimeStep limit = stable_time_step();
-    if (dt > limit.value && !state_.options.allow_unstable_time_step) {
+    const StableTimeStep limit = stable_time_step();
+    if (dt > limit.dt && !state_.options.allow_unstable_time_step) {
       const auto& machine = state_.machine;
-      const bool by_machine = machine.stable_time_step().dt <= limit.value;
+      const bool by_machine = machine.stable_time_step().dt <= limit.dt;
       fail(
           "time step {:g} s is above the largest stable one, {:.4g} s ({}); lower time_step or the stiffness, {}or set "
           "allow_unstable_time_step",
-          dt, limit.value, limit.contact,
+          dt, limit.dt, limit.limited_by,
           by_machine ? dem::text("raise machine().substeps (now {}), ", machine.substeps) : "");
     }
     state_.time_step = dt;

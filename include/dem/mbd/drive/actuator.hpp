@@ -30,11 +30,11 @@ struct ActuatorSpec {
   Curve torque_curve = {};  ///< a motor: N m over rad/s (or N over m/s) at full throttle
   double throttle = 0.0;    ///< -1 .. 1; below 0 the motor runs the other way, with the mirrored curve
   bool on = true;
-  Freedom freedom = Freedom::own;  ///< the joint's coordinate that it drives
+  Dof dof = Dof::own;  ///< the joint's coordinate that it drives
 
-  ActuatorSpec along(Freedom f) const {
+  ActuatorSpec along(Dof f) const {
     ActuatorSpec s = *this;
-    s.freedom = f;
+    s.dof = f;
     return s;
   }
   ActuatorSpec with_max_force(double f) const {
@@ -111,7 +111,7 @@ struct Actuator {
 
 /// The coordinate that an actuator acts on.
 inline Coordinate coordinate_of(const Actuator& u, const std::vector<Joint>& joints, const Body& a, const Body& b) {
-  return u.spec.joint.valid() ? coordinate_of(joints[u.spec.joint.index()], a, b, u.spec.freedom)
+  return u.spec.joint.valid() ? coordinate_of(joints[u.spec.joint.index()], a, b, u.spec.dof)
                               : distance_of(u.point_a, u.point_b, a, b);
 }
 

@@ -26,7 +26,7 @@ inline void check_holds(Parts& parts, double time) {
         off = norm(detail::rotation_off(p, m));
       } else if (!p.spec.by_speed) {
         const Joint& j = parts.joints[p.spec.joint.index()];
-        off = p.drive.value - coordinate_of(j, parts.bodies[j.a], parts.bodies[j.b], p.spec.freedom).value;
+        off = p.drive.value - coordinate_of(j, parts.bodies[j.a], parts.bodies[j.b], p.spec.dof).value;
       }
     }
     if (std::abs(off) > tolerance) {

@@ -25,7 +25,7 @@ inline double power(const Wrench& w, const Wrench& velocity) {
 }
 
 inline bool gives_way(const Parts& parts, std::uint32_t body) {
-  if (body == DriveRow::no_body || parts.bodies[body].fixed) return false;
+  if (body == JacobianRow::no_body || parts.bodies[body].fixed) return false;
   for (const PrescribedMotion& p : parts.motions) {
     if (p.spec.on && p.spec.target == MotionSpec::Target::pose && p.spec.body.value == body) return false;
   }
@@ -46,13 +46,13 @@ inline Vector3<double> rotation_off(const PrescribedMotion& p, const integrator:
 }
 
 /// The directions in which a joint holds its points: a correction of its angle must not part them.
-inline void add_held_rows(Parts& parts, DriveRow row, const Joint& j) {
+inline void add_held_rows(Parts& parts, JacobianRow row, const Joint& j) {
   const Hold hold = hold_of(j.kind);
   if (!row.now.rotation || hold == Hold::nothing || hold == Hold::length || hold == Hold::bushing) return;
   row.is_held = true;
   const auto add = [&](const Vector3<double>& axis_in_a) {
     row.now = displacement_along(axis_in_a, j, parts.bodies[j.a], parts.bodies[j.b]);
-    parts.drive_rows.push_back(row);
+    parts.rows.push_back(row);
   };
   if (hold != Hold::plane) add(j.axes_a.x);
   if (hold != Hold::plane) add(j.axes_a.y);
@@ -62,12 +62,12 @@ inline void add_held_rows(Parts& parts, DriveRow row, const Joint& j) {
 /// Lists the driven coordinates of bodies that give way, as they are now. For a correction of values those that are
 /// driven by speed want to stay where they are, and what the driven joints hold is listed too.
 inline void fill_rows(Parts& parts, bool of_speed) {
-  parts.drive_rows.clear();
+  parts.rows.clear();
   for (std::size_t i = 0; i < parts.motions.size(); ++i) {
     const PrescribedMotion& p = parts.motions[i];
     if (!p.spec.on || p.spec.target == MotionSpec::Target::pose) continue;
     const Body& x = parts.bodies[p.spec.body.index()];
-    DriveRow row;
+    JacobianRow row;
     row.motion = static_cast<std::uint32_t>(i);
     row.b = p.spec.body.value;
     row.value = p.drive.value;
@@ -75,9 +75,9 @@ inline void fill_rows(Parts& parts, bool of_speed) {
     if (p.spec.target == MotionSpec::Target::joint) {
       const Joint& j = parts.joints[p.spec.joint.index()];
       row.a = j.a;
-      row.now = coordinate_of(j, parts.bodies[j.a], parts.bodies[j.b], p.spec.freedom);
+      row.now = coordinate_of(j, parts.bodies[j.a], parts.bodies[j.b], p.spec.dof);
       if (p.spec.by_speed) row.value = row.now.value;
-      parts.drive_rows.push_back(row);
+      parts.rows.push_back(row);
       if (!of_speed) add_held_rows(parts, row, j);
     } else if (x.fixed) {
       continue;
@@ -85,7 +85,7 @@ inline void fill_rows(Parts& parts, bool of_speed) {
       row.now.axis = p.axis;
       row.now.value = dot(x.motion.position, p.axis) - p.start;
       row.now.speed = dot(x.motion.velocity, p.axis);
-      parts.drive_rows.push_back(row);
+      parts.rows.push_back(row);
     } else {
       const Vector3<double> off = rotation_off(p, x.motion), spin = x.motion.rotation * x.motion.angular_velocity;
       const Vec3 axis = to_eigen(p.axis), across = axis.unitOrthogonal();
@@ -93,7 +93,7 @@ inline void fill_rows(Parts& parts, bool of_speed) {
         row.now = {.rotation = true, .axis = from_eigen(n)};
         row.now.value = row.value + dot(off, row.now.axis);
         row.now.speed = dot(spin, row.now.axis);
-        parts.drive_rows.push_back(row);
+        parts.rows.push_back(row);
         row.is_reported = false;
         row.value = row.rate = 0.0;
       }
@@ -104,11 +104,11 @@ inline void fill_rows(Parts& parts, bool of_speed) {
 /// The lower triangle of J D J^T (n x n) of the rows, where `response(body, force and torque)` is a body's share of D.
 template <class Response>
 void fill_matrix(const Parts& parts, std::vector<double>& A, Response&& response) {
-  const std::vector<DriveRow>& rows = parts.drive_rows;
+  const std::vector<JacobianRow>& rows = parts.rows;
   const std::size_t n = rows.size();
   A.assign(n * n, 0.0);
   for (std::size_t k = 0; k < n; ++k) {
-    const DriveRow& row = rows[k];
+    const JacobianRow& row = rows[k];
     for (const bool on_b : {true, false}) {
       const std::uint32_t body = on_b ? row.b : row.a;
       if (!gives_way(parts, body)) continue;
@@ -124,11 +124,11 @@ void fill_matrix(const Parts& parts, std::vector<double>& A, Response&& response
 /// Leaves rows out of the matrix A (their diagonal becomes 0) that repeat rows before them, or lie within 1e-3 of what
 /// they span. That is a matter of directions and levers alone: however unlike the masses are, a row of its own is met.
 inline void leave_out_repeated(Parts& parts, std::vector<double>& A) {
-  const std::vector<DriveRow>& rows = parts.drive_rows;
+  const std::vector<JacobianRow>& rows = parts.rows;
   const std::size_t n = rows.size();
   if (n < 2) return;
   double lever2 = 0.0;  // m^2, of the longest lever: what makes a turn comparable with a displacement
-  for (const DriveRow& r : rows) {
+  for (const JacobianRow& r : rows) {
     if (r.now.rotation) continue;
     if (gives_way(parts, r.a)) lever2 = std::max(lever2, dot(r.now.arm_a, r.now.arm_a));
     if (gives_way(parts, r.b)) lever2 = std::max(lever2, dot(r.now.arm_b, r.now.arm_b));
@@ -154,8 +154,8 @@ inline void solve_rows(Parts& parts, std::vector<double>& errors) {
 /// Hands every body the change of velocity (m/s, rad/s) that the rows' impulses give it.
 template <class Change>
 void push_bodies(Parts& parts, const std::vector<double>& impulses, Change&& change) {
-  for (std::size_t k = 0; k < parts.drive_rows.size(); ++k) {
-    const DriveRow& row = parts.drive_rows[k];
+  for (std::size_t k = 0; k < parts.rows.size(); ++k) {
+    const JacobianRow& row = parts.rows[k];
     const auto push = [&](std::uint32_t body, const Wrench& along) {
       if (gives_way(parts, body)) change(parts.bodies[body], impulses[k] * response_of(parts.bodies[body], along));
     };

@@ -67,8 +67,8 @@ inline void sample_motions(Parts& parts, double time, double dt) {
 inline double impulse_on(const Parts& parts, const PrescribedMotion& p, const std::vector<double>& impulses) {
   const bool rotation = p.spec.target == MotionSpec::Target::rotation;
   double sum = 0.0;
-  for (std::size_t k = 0; k < parts.drive_rows.size(); ++k) {
-    const DriveRow& row = parts.drive_rows[k];
+  for (std::size_t k = 0; k < parts.rows.size(); ++k) {
+    const JacobianRow& row = parts.rows[k];
     Wrench w;
     if (row.b == p.spec.body.value) w = w + push_on_b(row.now);
     if (row.a == p.spec.body.value) w = w + push_on_a(row.now);
@@ -79,8 +79,8 @@ inline double impulse_on(const Parts& parts, const PrescribedMotion& p, const st
 
 /// Adds the impulses to those of their motions, and reports forces if dt > 0 (s).
 inline void report_forces(Parts& parts, const std::vector<double>& impulses, double dt) {
-  for (std::size_t k = 0; k < parts.drive_rows.size(); ++k) {
-    const DriveRow& row = parts.drive_rows[k];
+  for (std::size_t k = 0; k < parts.rows.size(); ++k) {
+    const JacobianRow& row = parts.rows[k];
     if (row.is_reported) parts.motions[row.motion].drive.impulse += impulses[k];
   }
   for (PrescribedMotion& p : parts.motions) {
@@ -103,12 +103,12 @@ inline void correct_values(Parts& parts) {
     fill_rows(parts, false);
     if (k == 0) {
       held.clear();
-      for (const DriveRow& r : parts.drive_rows) held.push_back(r.now.value);
+      for (const JacobianRow& r : parts.rows) held.push_back(r.now.value);
     }
     x.clear();
     bool met = true;
-    for (std::size_t i = 0; i < parts.drive_rows.size(); ++i) {
-      const DriveRow& r = parts.drive_rows[i];
+    for (std::size_t i = 0; i < parts.rows.size(); ++i) {
+      const JacobianRow& r = parts.rows[i];
       const double off = (r.is_held ? held[i] : r.value) - r.now.value;
       x.push_back(off);
       met &= std::abs(off) <= 1e-15 * std::max(1.0, std::abs(r.value));
@@ -135,7 +135,7 @@ inline void apply_motions(Parts& parts, double time, double dt, bool is_over) {
   detail::fill_rows(parts, true);
   std::vector<double>& x = parts.drive_errors;
   x.clear();
-  for (const DriveRow& r : parts.drive_rows) x.push_back(r.rate - r.now.speed);
+  for (const JacobianRow& r : parts.rows) x.push_back(r.rate - r.now.speed);
   detail::solve_rows(parts, x);
   detail::push_bodies(parts, x, [](Body& b, const Wrench& by) {
     b.motion.velocity += by.force;

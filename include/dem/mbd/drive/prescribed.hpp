@@ -46,18 +46,18 @@ struct MotionSpec {
   Target target = Target::position;
   BodyId body = {};
   JointId joint = {};
-  Freedom freedom = Freedom::own;  ///< the joint's coordinate that is prescribed
-  Vec3 axis = Vec3::UnitX();       ///< global; made a unit vector
-  Signal motion = 0.0;             ///< m or rad
-  bool by_speed = false;           ///< only the signal's rate counts, the coordinate goes where that takes it
+  Dof dof = Dof::own;         ///< the joint's coordinate that is prescribed
+  Vec3 axis = Vec3::UnitX();  ///< global; made a unit vector
+  Signal motion = 0.0;        ///< m or rad
+  bool by_speed = false;      ///< only the signal's rate counts, the coordinate goes where that takes it
   std::function<Pose(double)> pose = {};
   BodyFrame frame = BodyFrame::reference;  ///< of the body, which the pose is that of
   bool on = true;
 
-  /// Prescribes one of freedoms_of(the joint's kind) instead of the joint's own coordinate.
-  MotionSpec along(Freedom f) const {
+  /// Prescribes one of dofs_of(the joint's kind) instead of the joint's own coordinate.
+  MotionSpec along(Dof f) const {
     MotionSpec s = *this;
-    s.freedom = f;
+    s.dof = f;
     return s;
   }
 };

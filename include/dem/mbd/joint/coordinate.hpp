@@ -103,22 +103,22 @@ inline Coordinate bend_y_of(const Joint& j, const Body& a, const Body& b) {
   return rotation_about(B * j.axes_b.y, std::atan2(dot(xa, B * j.axes_b.z), dot(xa, B * j.axes_b.x)), a, b);
 }
 
-/// A coordinate of a joint, which has to be one of freedoms_of(its kind). By default the joint's own: the rotation of
+/// A coordinate of a joint, which has to be one of dofs_of(its kind). By default the joint's own: the rotation of
 /// joints that turn, else the displacement along z.
-inline Coordinate coordinate_of(const Joint& j, const Body& a, const Body& b, Freedom freedom = Freedom::own) {
-  switch (freedom) {
-    case Freedom::turn: return rotation_of(j, a, b);
-    case Freedom::slide: return displacement_of(j, a, b);
-    case Freedom::slide_x: return displacement_along(j.axes_a.x, j, a, b);
-    case Freedom::slide_y: return displacement_along(j.axes_a.y, j, a, b);
-    case Freedom::length: return distance_of(j.point_a, j.point_b, a, b);
-    case Freedom::bend: return bend_of(j, a, b);
-    case Freedom::bend_x: return bend_x_of(j, a, b);
-    case Freedom::bend_y: return bend_y_of(j, a, b);
-    case Freedom::own: break;
+inline Coordinate coordinate_of(const Joint& j, const Body& a, const Body& b, Dof dof = Dof::own) {
+  switch (dof) {
+    case Dof::turn: return rotation_of(j, a, b);
+    case Dof::slide: return displacement_of(j, a, b);
+    case Dof::slide_x: return displacement_along(j.axes_a.x, j, a, b);
+    case Dof::slide_y: return displacement_along(j.axes_a.y, j, a, b);
+    case Dof::length: return distance_of(j.point_a, j.point_b, a, b);
+    case Dof::bend: return bend_of(j, a, b);
+    case Dof::bend_x: return bend_x_of(j, a, b);
+    case Dof::bend_y: return bend_y_of(j, a, b);
+    case Dof::own: break;
   }
-  const Freedom own = resolved(j.kind, freedom);
-  return own == Freedom::own ? displacement_of(j, a, b) : coordinate_of(j, a, b, own);
+  const Dof own = resolved(j.kind, dof);
+  return own == Dof::own ? displacement_of(j, a, b) : coordinate_of(j, a, b, own);
 }
 
 /// How far a joint is from holding what it should: m, and rad for small angles.

@@ -21,7 +21,7 @@ struct CouplingSpec {
   struct Term {
     JointId joint;
     double ratio;
-    Freedom freedom = Freedom::own;
+    Dof dof = Dof::own;
     Moves needs = Moves::any;  ///< what the coordinate has to be; `own` is then the joint's turn or its slide
   };
   std::string name;
@@ -34,13 +34,13 @@ struct CouplingSpec {
 /// other way, as outer gears do (ratio = -teeth of `in` / teeth of `out`).
 inline CouplingSpec gear(std::string name, JointId in, JointId out, double ratio) {
   using enum CouplingSpec::Moves;
-  return {std::move(name), {{in, ratio, Freedom::own, rotation}, {out, -1.0, Freedom::own, rotation}}};
+  return {std::move(name), {{in, ratio, Dof::own, rotation}, {out, -1.0, Dof::own, rotation}}};
 }
 /// Rack and pinion: the rack slides by pinion_radius (m) times the pinion's angle. The pinion's joint has to turn, the
 /// rack's to slide; of a cylindrical joint the coordinate that fits is taken.
 inline CouplingSpec rack_and_pinion(std::string name, JointId pinion, JointId rack, double pinion_radius) {
   using enum CouplingSpec::Moves;
-  return {std::move(name), {{pinion, pinion_radius, Freedom::own, rotation}, {rack, -1.0, Freedom::own, displacement}}};
+  return {std::move(name), {{pinion, pinion_radius, Dof::own, rotation}, {rack, -1.0, Dof::own, displacement}}};
 }
 /// Screw: the nut slides by `lead` (m) for each turn. One cylindrical joint may be both.
 inline CouplingSpec screw(std::string name, JointId turning, JointId sliding, double lead) {
@@ -50,9 +50,9 @@ inline CouplingSpec screw(std::string name, JointId turning, JointId sliding, do
 inline CouplingSpec differential(std::string name, JointId in, JointId left, JointId right, double final_ratio) {
   using enum CouplingSpec::Moves;
   return {std::move(name),
-          {{in, 1.0, Freedom::own, rotation},
-           {left, -0.5 * final_ratio, Freedom::own, rotation},
-           {right, -0.5 * final_ratio, Freedom::own, rotation}}};
+          {{in, 1.0, Dof::own, rotation},
+           {left, -0.5 * final_ratio, Dof::own, rotation},
+           {right, -0.5 * final_ratio, Dof::own, rotation}}};
 }
 
 struct Coupling {
@@ -68,7 +68,7 @@ inline double coupling_sum(const CouplingSpec& spec, const std::vector<Joint>& j
   double sum = 0.0;
   for (const auto& term : spec.terms) {
     const Joint& j = joints[term.joint.index()];
-    sum += term.ratio * coordinate_of(j, bodies[j.a], bodies[j.b], term.freedom).value;
+    sum += term.ratio * coordinate_of(j, bodies[j.a], bodies[j.b], term.dof).value;
   }
   return sum;
 }
@@ -77,7 +77,7 @@ DEM_FLATTEN inline void apply_coupling(Coupling& g, const std::vector<Joint>& jo
   double sum = 0.0, rate = 0.0;
   for (const auto& term : g.spec.terms) {
     const Joint& j = joints[term.joint.index()];
-    const Coordinate q = coordinate_of(j, bodies[j.a], bodies[j.b], term.freedom);
+    const Coordinate q = coordinate_of(j, bodies[j.a], bodies[j.b], term.dof);
     sum += term.ratio * q.value;
     rate += term.ratio * q.speed;
   }
@@ -85,7 +85,7 @@ DEM_FLATTEN inline void apply_coupling(Coupling& g, const std::vector<Joint>& jo
   g.multiplier = -g.k * g.error - g.c * rate;
   for (const auto& term : g.spec.terms) {
     const Joint& j = joints[term.joint.index()];
-    coordinate_of(j, bodies[j.a], bodies[j.b], term.freedom).apply(term.ratio * g.multiplier, bodies[j.a], bodies[j.b]);
+    coordinate_of(j, bodies[j.a], bodies[j.b], term.dof).apply(term.ratio * g.multiplier, bodies[j.a], bodies[j.b]);
   }
 }
 

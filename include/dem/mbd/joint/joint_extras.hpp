@@ -6,18 +6,18 @@
 
 namespace dem::mbd {
 
-/// The stops of one coordinate of a joint, ready to run.
-struct JointStops {
+/// The limits of one coordinate of a joint, ready to run.
+struct JointLimitState {
   std::uint32_t joint = 0;
-  Freedom freedom = Freedom::own;
+  Dof dof = Dof::own;
   double lower = 0, upper = 0;        ///< rad or m
   double stiffness = 0, damping = 0;  ///< N/m or N m/rad, N s/m or N m s/rad
-  double force = 0;                   ///< N or N m, what the stop pushes with
+  double force = 0;                   ///< N or N m, what the limit pushes with
   Vector3<double> axis = {0, 0, 0};   ///< global: force times this is the force (N) or torque (N m) on b
 };
 
 /// The friction of a joint, ready to run.
-struct JointRubbing {
+struct JointFrictionState {
   std::uint32_t joint = 0;
   friction::AsperitySpring::Parameters<double> law = {};
   double radius = 0, preload = 0, lever = 0;  ///< m, N, m
@@ -26,9 +26,9 @@ struct JointRubbing {
   Vector3<double> torque = {0, 0, 0};  ///< N m, on b, global; joints that turn or bend
 };
 
-/// A stop pushes back with a spring and, on the way in, a damper; it never pulls.
-DEM_FLATTEN inline void apply_stops(JointStops& e, const Joint& j, Body& a, Body& b) {
-  const Coordinate q = coordinate_of(j, a, b, e.freedom);
+/// A limit pushes back with a spring and, on the way in, a damper; it never pulls.
+DEM_FLATTEN inline void apply_limits(JointLimitState& e, const Joint& j, Body& a, Body& b) {
+  const Coordinate q = coordinate_of(j, a, b, e.dof);
   e.force = 0.0;
   if (q.value >= e.lower && q.value <= e.upper) return;
   // Compared such that a NaN stays one and reaches the report.
@@ -41,7 +41,7 @@ DEM_FLATTEN inline void apply_stops(JointStops& e, const Joint& j, Body& a, Body
 
 /// Asperity friction on the joint's free motion. The spring is stretched from the committed history by the velocity
 /// times `slip_time` (0 in a stage at the start of the step); the history is committed only where `commit` says so.
-DEM_FLATTEN inline void apply_friction(JointRubbing& e, const Joint& j, Body& a, Body& b, double slip_time,
+DEM_FLATTEN inline void apply_friction(JointFrictionState& e, const Joint& j, Body& a, Body& b, double slip_time,
                                        bool commit) {
   using V = Vector3<double>;
   const Matrix3<double>&A = a.motion.rotation, &B = b.motion.rotation;

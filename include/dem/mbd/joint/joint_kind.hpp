@@ -36,7 +36,7 @@ inline const char* name_of(JointKind kind) {
 
 /// A coordinate of a joint, seen from body a: how far b's point has moved along an axis of a's joint frame, or how b
 /// has turned.
-enum class Freedom {
+enum class Dof {
   own,      ///< the rotation of joints that turn about z, the displacement of those that slide along z, or the length
   turn,     ///< rad, about z, over whole turns
   slide,    ///< m, along z
@@ -48,16 +48,16 @@ enum class Freedom {
   bend_y    ///< rad, of a universal joint: about y of body b, the arm of its cross on b
 };
 
-inline const char* name_of(Freedom freedom) {
+inline const char* name_of(Dof dof) {
   constexpr const char* names[] = {"coordinate", "turn", "slide",  "slide_x", "slide_y",
                                    "length",     "bend", "bend_x", "bend_y"};
-  return names[static_cast<int>(freedom)];
+  return names[static_cast<int>(dof)];
 }
-constexpr bool is_rotation(Freedom f) { return f == Freedom::turn || f >= Freedom::bend; }
+constexpr bool is_rotation(Dof f) { return f == Dof::turn || f >= Dof::bend; }
 
 /// The coordinates that a kind of joint has, its own one first.
-inline std::vector<Freedom> freedoms_of(JointKind kind) {
-  using enum Freedom;
+inline std::vector<Dof> dofs_of(JointKind kind) {
+  using enum Dof;
   switch (kind) {
     case JointKind::revolute: return {turn};
     case JointKind::cylindrical: return {turn, slide};
@@ -85,37 +85,37 @@ constexpr bool slides(JointKind kind) {
   using enum JointKind;
   return kind == prismatic || kind == cylindrical || kind == point_on_line || kind == free;
 }
-/// The same coordinate by the name it has among freedoms_of(kind); `own` stays where a kind has no own one.
-constexpr Freedom resolved(JointKind kind, Freedom freedom) {
-  if (freedom != Freedom::own) return freedom;
-  if (kind == JointKind::distance) return Freedom::length;
-  return turns(kind) ? Freedom::turn : slides(kind) ? Freedom::slide : Freedom::own;
+/// The same coordinate by the name it has among dofs_of(kind); `own` stays where a kind has no own one.
+constexpr Dof resolved(JointKind kind, Dof dof) {
+  if (dof != Dof::own) return dof;
+  if (kind == JointKind::distance) return Dof::length;
+  return turns(kind) ? Dof::turn : slides(kind) ? Dof::slide : Dof::own;
 }
 
 /// The coordinate's resolved name. Throws Error, with the coordinates that there are, unless joints of this kind have
 /// that one.
-inline Freedom known_freedom(JointKind kind, Freedom freedom, const std::string& who) {
-  freedom = resolved(kind, freedom);
-  const std::vector<Freedom> list = freedoms_of(kind);
-  if (std::find(list.begin(), list.end(), freedom) != list.end()) return freedom;
+inline Dof known_dof(JointKind kind, Dof dof, const std::string& who) {
+  dof = resolved(kind, dof);
+  const std::vector<Dof> list = dofs_of(kind);
+  if (std::find(list.begin(), list.end(), dof) != list.end()) return dof;
   std::string known;
-  for (const Freedom f : list) known += fmt::format("{}{}", known.empty() ? "" : ", ", name_of(f));
+  for (const Dof f : list) known += fmt::format("{}{}", known.empty() ? "" : ", ", name_of(f));
   if (known.empty()) fail("{} refers to a {}, which leaves no coordinate free", who, name_of(kind));
-  if (freedom == Freedom::own) {
-    fail("{} refers to a {}, which has no coordinate of its own; name one of its freedoms: {}", who, name_of(kind),
-         known);
+  if (dof == Dof::own) {
+    fail("{} refers to a {}, which has no coordinate of its own; name one of its degrees of freedom: {}", who,
+         name_of(kind), known);
   }
-  fail("{} refers to '{}' of a {}, which has only: {}", who, name_of(freedom), name_of(kind), known);
+  fail("{} refers to '{}' of a {}, which has only: {}", who, name_of(dof), name_of(kind), known);
 }
 
 /// The same for what acts on a coordinate, which therefore has to be free.
-inline Freedom require_freedom(JointKind kind, Freedom freedom, const std::string& who) {
-  freedom = known_freedom(kind, freedom, who);
-  if (freedom == Freedom::length) {
+inline Dof require_free_dof(JointKind kind, Dof dof, const std::string& who) {
+  dof = known_dof(kind, dof, who);
+  if (dof == Dof::length) {
     fail("{} acts on the length of a distance joint, which the joint holds; use a linear_actuator or a spring instead",
          who);
   }
-  return freedom;
+  return dof;
 }
 
 }  // namespace dem::mbd

@@ -12,18 +12,18 @@
 
 namespace dem::mbd {
 
-/// A stop at each end of a coordinate of a joint (rad for rotations, m for slides).
+/// A limit at each end of a coordinate of a joint (rad for rotations, m for slides).
 struct JointLimits {
   double lower = -std::numeric_limits<double>::infinity();
   double upper = std::numeric_limits<double>::infinity();
   std::optional<double> stiffness = {};  ///< N/m or N m/rad; derived if not given
-  std::optional<double> damping = {};    ///< N s/m or N m s/rad, while moving into the stop; derived if not given
-  Freedom freedom = Freedom::own;        ///< which coordinate
+  std::optional<double> damping = {};    ///< N s/m or N m s/rad, while moving into the limit; derived if not given
+  Dof dof = Dof::own;                    ///< which coordinate
 };
 
 /// What a coordinate of a joint is at assembly, rad or m.
 struct JointStart {
-  Freedom freedom = Freedom::own;
+  Dof dof = Dof::own;
   double value = 0.0;
 };
 
@@ -60,7 +60,7 @@ struct JointSpec {
   Vec3 bushing_rotational_stiffness = Vec3::Zero(), bushing_rotational_damping = Vec3::Zero();  ///< N m/rad, N m s/rad
   std::optional<double> length = {};     ///< m, of a distance joint, within `tolerance`; that at assembly if not given
   std::vector<JointStart> starts = {};   ///< of coordinates that are not 0 at assembly
-  std::vector<JointLimits> limits = {};  ///< one for each coordinate that has stops
+  std::vector<JointLimits> limits = {};  ///< one for each coordinate that is limited
   std::optional<JointFriction> friction = {};
   /// m, within which the two points have to meet at assembly; rad for the axes. What is within it is made to meet: each
   /// body's point moves to the middle of the gap and its axis to the mean of both, so that the joint starts at rest.
@@ -87,12 +87,12 @@ struct JointSpec {
     return s;
   }
   JointSpec with_limits(double lower, double upper) const { return with_limits(JointLimits{lower, upper}); }
-  JointSpec with_limits(Freedom freedom, double lower, double upper) const {
-    return with_limits(JointLimits{.lower = lower, .upper = upper, .freedom = freedom});
+  JointSpec with_limits(Dof dof, double lower, double upper) const {
+    return with_limits(JointLimits{.lower = lower, .upper = upper, .dof = dof});
   }
-  JointSpec with_limits(const JointLimits& stops) const {
+  JointSpec with_limits(const JointLimits& given) const {
     JointSpec s = *this;
-    s.limits.push_back(stops);
+    s.limits.push_back(given);
     return s;
   }
   JointSpec with_friction(const JointFriction& f) const {
@@ -102,10 +102,10 @@ struct JointSpec {
   }
   /// The joint's own coordinate, or another one that turns about or slides along z, counts from this value (rad or m)
   /// at assembly.
-  JointSpec starting_at(double coordinate) const { return starting_at(Freedom::own, coordinate); }
-  JointSpec starting_at(Freedom freedom, double coordinate) const {
+  JointSpec starting_at(double coordinate) const { return starting_at(Dof::own, coordinate); }
+  JointSpec starting_at(Dof dof, double coordinate) const {
     JointSpec s = *this;
-    s.starts.push_back({freedom, coordinate});
+    s.starts.push_back({dof, coordinate});
     return s;
   }
 };

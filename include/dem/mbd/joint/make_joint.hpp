@@ -82,17 +82,17 @@ inline Vec3 held_part(Hold hold, const Vec3& z, const Vec3& gap) {
 /// What the coordinates are said to be at assembly. Throws Error for those that are what they are.
 inline void set_starts(Joint& j, const JointSpec& s, const std::string& who) {
   for (const JointStart& start : s.starts) {
-    const Freedom freedom = known_freedom(s.kind, start.freedom, "starting_at of " + who);
-    if (freedom != Freedom::turn && freedom != Freedom::slide) {
+    const Dof dof = known_dof(s.kind, start.dof, "starting_at of " + who);
+    if (dof != Dof::turn && dof != Dof::slide) {
       fail(
           "starting_at of {} gives its {} a value, but only a turn about z and a slide along z can count from any "
           "value at assembly; move a body instead",
-          who, name_of(freedom));
+          who, name_of(dof));
     }
     if (!std::isfinite(start.value)) {
-      fail("the {} of {} starts at {:g}, but must be finite at assembly", name_of(freedom), who, start.value);
+      fail("the {} of {} starts at {:g}, but must be finite at assembly", name_of(dof), who, start.value);
     }
-    (freedom == Freedom::turn ? j.angle_offset : j.slide_offset) = start.value;
+    (dof == Dof::turn ? j.angle_offset : j.slide_offset) = start.value;
   }
 }
 
@@ -186,34 +186,34 @@ inline Joint make_joint(const Parts& parts, JointSpec& s) {
   return j;
 }
 
-/// Adds the stops of a joint that is about to be added, as number `joint`.
-inline void add_stops(Parts& parts, JointSpec& s, const Joint& j, std::uint32_t joint) {
+/// Adds the limits of a joint that is about to be added, as number `joint`.
+inline void add_limits(Parts& parts, JointSpec& s, const Joint& j, std::uint32_t joint) {
   const std::string who = fmt::format("{} '{}'", name_of(s.kind), s.name);
   for (JointLimits& l : s.limits) {
-    l.freedom = require_freedom(s.kind, l.freedom, "a stop of " + who);
+    l.dof = require_free_dof(s.kind, l.dof, "a limit of " + who);
     if (!(l.lower < l.upper)) {
       fail("the limits of {} are {:g} to {:g}: the lower one must be below the upper one", who, l.lower, l.upper);
     }
-    const double start = coordinate_of(j, parts.bodies[j.a], parts.bodies[j.b], l.freedom).value;
+    const double start = coordinate_of(j, parts.bodies[j.a], parts.bodies[j.b], l.dof).value;
     if (!(start >= l.lower - s.tolerance && start <= l.upper + s.tolerance)) {
       fail(
           "the limits of {} are {:g} to {:g}, but its {} starts at {:g}; widen them, move a body, or say with "
           "starting_at what the coordinate is at assembly",
-          who, l.lower, l.upper, name_of(l.freedom), start);
+          who, l.lower, l.upper, name_of(l.dof), start);
     }
-    if (l.stiffness) require_non_negative(*l.stiffness, ("stop stiffness of " + who).c_str(), "N/m or N m/rad");
-    if (l.damping) require_non_negative(*l.damping, ("stop damping of " + who).c_str(), "N s/m or N m s/rad");
-    for (const JointStops& e : parts.stops) {
-      if (e.joint == joint && e.freedom == l.freedom) {
-        fail("{} has two pairs of limits for its {}; give one", who, name_of(l.freedom));
+    if (l.stiffness) require_non_negative(*l.stiffness, ("limit stiffness of " + who).c_str(), "N/m or N m/rad");
+    if (l.damping) require_non_negative(*l.damping, ("limit damping of " + who).c_str(), "N s/m or N m s/rad");
+    for (const JointLimitState& e : parts.limits) {
+      if (e.joint == joint && e.dof == l.dof) {
+        fail("{} has two pairs of limits for its {}; give one", who, name_of(l.dof));
       }
     }
-    parts.stops.push_back(
-        {joint, l.freedom, l.lower, l.upper, l.stiffness.value_or(0.0), l.damping.value_or(0.0), 0.0, {0, 0, 0}});
+    parts.limits.push_back(
+        {joint, l.dof, l.lower, l.upper, l.stiffness.value_or(0.0), l.damping.value_or(0.0), 0.0, {0, 0, 0}});
   }
 }
 
-inline void add_rubbing(Parts& parts, const JointSpec& s, std::uint32_t joint) {
+inline void add_friction(Parts& parts, const JointSpec& s, std::uint32_t joint) {
   if (!s.friction) return;
   const std::string who = fmt::format("{} '{}'", name_of(s.kind), s.name);
   using enum JointKind;
@@ -221,7 +221,7 @@ inline void add_rubbing(Parts& parts, const JointSpec& s, std::uint32_t joint) {
     fail("{} has friction, but nothing in it slides; a bushing has dampers, and other kinds of joint have friction",
          who);
   }
-  JointRubbing e;
+  JointFrictionState e;
   e.joint = joint;
   const std::string radius = "JointFriction::radius, of the bearing of " + who;
   if (s.kind == prismatic || s.kind == point_on_line || s.kind == point_on_plane) {
@@ -239,7 +239,7 @@ inline void add_rubbing(Parts& parts, const JointSpec& s, std::uint32_t joint) {
   e.law = {s.friction->coefficient, s.friction->stiffness.value_or(0.0), s.friction->velocity_stiffness.value_or(0.0),
            s.friction->breaking_factor};
   friction::AsperitySpring::check(e.law);
-  parts.rubbing.push_back(e);
+  parts.friction.push_back(e);
 }
 
 }  // namespace dem::mbd::detail

@@ -1,10 +1,10 @@
 #pragma once
 
 #include <dem/core/error.hpp>
+#include <dem/math/wrench.hpp>
 #include <dem/mbd/body/body.hpp>
 #include <dem/mbd/drive/signal.hpp>
 #include <dem/mbd/ids.hpp>
-#include <dem/mbd/wrench.hpp>
 
 #include <functional>
 #include <string>

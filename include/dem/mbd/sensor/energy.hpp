@@ -49,7 +49,7 @@ inline double elastic_energy(const Joint& j, const Body& a, const Body& b) {
 }
 
 /// The energies of a machine in J: of motion, of height (against gravity, from the origin) and in its joints. Springs,
-/// actuators, couplings, stops and the springs of friction are not counted.
+/// actuators, couplings, limits and the springs of friction are not counted.
 struct Energy {
   double kinetic = 0.0, potential = 0.0, elastic = 0.0;
   double sum() const { return kinetic + potential + elastic; }

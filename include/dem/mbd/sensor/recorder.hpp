@@ -40,7 +40,7 @@ class Recorder {
     known_joint(m->parts(), id, "a recorder");
     const std::string name = m->parts().joint_specs[id.index()].name;
     const JointKind kind = m->joint(id).kind;
-    for (const Freedom f : freedoms_of(kind)) {
+    for (const Dof f : dofs_of(kind)) {
       const bool rotation = is_rotation(f);
       add(fmt::format("{}_{}_{}", name, name_of(f), rotation ? "rad" : "m"),
           [m, id, f] { return m->coordinate(id, f); });

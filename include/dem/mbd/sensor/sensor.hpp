@@ -1,8 +1,8 @@
 #pragma once
 
 #include <dem/core/error.hpp>
+#include <dem/math/wrench.hpp>
 #include <dem/mbd/ids.hpp>
-#include <dem/mbd/wrench.hpp>
 
 #include <array>
 #include <string>
@@ -63,7 +63,7 @@ class WindowAverage {
 enum class SensorTarget {
   contacts,  ///< force and torque on a body from outside the machine (the grains), about its centre of mass
   total,     ///< force and torque on a body from everything but gravity, about its centre of mass
-  joint,     ///< force and torque of a joint on its body b with its stops and friction, about the joint's point
+  joint,     ///< force and torque of a joint on its body b with its limits and friction, about the joint's point
   actuator,  ///< force of an actuator in force.x
   drive      ///< force of a prescribed motion's drive in force.x
 };

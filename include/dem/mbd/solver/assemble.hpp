@@ -35,41 +35,40 @@ inline void check_actuator(const ActuatorSpec& spec, const std::string& who) {
   }
 }
 
-/// The freedom that a term of a coupling names, or the one of the kind that the term needs.
-inline Freedom freedom_of(const CouplingSpec::Term& term, const Parts& parts, std::size_t number,
-                          const std::string& who) {
+/// The degree of freedom that a term of a coupling names, or the one of the kind that the term needs.
+inline Dof dof_of(const CouplingSpec::Term& term, const Parts& parts, std::size_t number, const std::string& who) {
   using enum CouplingSpec::Moves;
   const Joint& j = known_joint(parts, term.joint, who);
-  Freedom freedom = resolved(j.kind, term.freedom);
+  Dof dof = resolved(j.kind, term.dof);
   if (term.needs != any) {
-    const std::vector<Freedom> all = freedoms_of(j.kind);
-    const auto has = [&](Freedom f) { return std::find(all.begin(), all.end(), f) != all.end(); };
+    const std::vector<Dof> all = dofs_of(j.kind);
+    const auto has = [&](Dof f) { return std::find(all.begin(), all.end(), f) != all.end(); };
     const bool turns = term.needs == rotation;
-    if (term.freedom == Freedom::own && has(turns ? Freedom::turn : Freedom::slide)) {
-      freedom = turns ? Freedom::turn : Freedom::slide;
+    if (term.dof == Dof::own && has(turns ? Dof::turn : Dof::slide)) {
+      dof = turns ? Dof::turn : Dof::slide;
     }
-    if (freedom == Freedom::own || !has(freedom) || is_rotation(freedom) != turns) {
+    if (dof == Dof::own || !has(dof) || is_rotation(dof) != turns) {
       fail(
-          "{} needs as joint {} one that {}, but '{}' is a {}{}; exchange the joints, or name a freedom that {} in the "
+          "{} needs as joint {} one that {}, but '{}' is a {}{}; exchange the joints, or name a degree of freedom that "
+          "{} in the "
           "coupling's terms",
           who, number, turns ? "turns" : "slides", parts.joint_specs[term.joint.index()].name, name_of(j.kind),
-          term.freedom == Freedom::own ? "" : fmt::format(" and its {} does not", name_of(freedom)),
-          turns ? "turns" : "slides");
+          term.dof == Dof::own ? "" : fmt::format(" and its {} does not", name_of(dof)), turns ? "turns" : "slides");
     }
   }
-  return require_freedom(j.kind, freedom, who);
+  return require_free_dof(j.kind, dof, who);
 }
 
 inline Coupling make_coupling(const Parts& parts, CouplingSpec spec) {
   const std::string who = fmt::format("coupling '{}'", spec.name);
   if (spec.terms.size() < 2) fail("{} joins {} coordinates, but needs at least 2", who, spec.terms.size());
   for (std::size_t i = 0; i < spec.terms.size(); ++i) {
-    spec.terms[i].freedom = freedom_of(spec.terms[i], parts, i + 1, who);
+    spec.terms[i].dof = dof_of(spec.terms[i], parts, i + 1, who);
     if (!std::isfinite(spec.terms[i].ratio) || spec.terms[i].ratio == 0.0) {
       fail("ratio {} of {} is {:g}, but must be finite and not zero", i + 1, who, spec.terms[i].ratio);
     }
     for (std::size_t k = 0; k < i; ++k) {
-      if (spec.terms[k].joint == spec.terms[i].joint && spec.terms[k].freedom == spec.terms[i].freedom) {
+      if (spec.terms[k].joint == spec.terms[i].joint && spec.terms[k].dof == spec.terms[i].dof) {
         fail("{} names the same coordinate twice; add up the ratios", who);
       }
     }
@@ -89,14 +88,14 @@ inline PrescribedMotion make_motion(const Parts& parts, MotionSpec spec) {
   PrescribedMotion p;
   if (spec.target == MotionSpec::Target::joint) {
     const Joint& j = known_joint(parts, spec.joint, who);
-    spec.freedom = known_freedom(j.kind, spec.freedom, who);
-    if (spec.freedom == Freedom::bend) {
+    spec.dof = known_dof(j.kind, spec.dof, who);
+    if (spec.dof == Dof::bend) {
       fail(
           "{} drives the bend of a {}, which has no direction where the joint is straight; drive bend_x and bend_y "
           "of a universal joint, or use an actuator",
           who, name_of(j.kind));
     }
-    if (spec.freedom == Freedom::length) {
+    if (spec.dof == Dof::length) {
       fail(
           "{} drives the length of a distance joint, which the joint holds; leave the joint out and use a "
           "linear_actuator, or put a cylinder of two bodies between the points and drive the slide of its prismatic "

@@ -42,12 +42,12 @@ class Assembly : public Mechanism {
     settle_name(spec.name, parts_.joint_specs, "joint", "joints", [](const JointSpec& s) { return s.name; });
     const Joint j = detail::make_joint(parts_, spec);
     const auto number = static_cast<std::uint32_t>(parts_.joints.size());
-    const std::size_t stops = parts_.stops.size();
+    const std::size_t limits = parts_.limits.size();
     try {
-      detail::add_stops(parts_, spec, j, number);
-      detail::add_rubbing(parts_, spec, number);
+      detail::add_limits(parts_, spec, j, number);
+      detail::add_friction(parts_, spec, number);
     } catch (...) {  // a refused joint leaves nothing behind
-      parts_.stops.resize(stops);
+      parts_.limits.resize(limits);
       throw;
     }
     parts_.joints.push_back(j);
@@ -63,7 +63,7 @@ class Assembly : public Mechanism {
     if (spec.three_points) spec = on_three_points(std::move(spec), who);
     if (spec.joint.valid()) {
       const Joint& j = known_joint(parts_, spec.joint, who);
-      spec.freedom = require_freedom(j.kind, spec.freedom, who);
+      spec.dof = require_free_dof(j.kind, spec.dof, who);
       u.a = j.a;
       u.b = j.b;
     } else {

@@ -12,9 +12,9 @@ namespace dem::mbd {
 
 inline constexpr double endless_step = 1e30;  ///< s
 
-/// The limits that a joint's user gave for a coordinate that has stops.
-inline const JointLimits& limits_of(const JointSpec& s, Freedom freedom) {
-  return *std::find_if(s.limits.begin(), s.limits.end(), [&](const JointLimits& l) { return l.freedom == freedom; });
+/// The limits that a joint's user gave for a coordinate that is limited.
+inline const JointLimits& limits_of(const JointSpec& s, Dof dof) {
+  return *std::find_if(s.limits.begin(), s.limits.end(), [&](const JointLimits& l) { return l.dof == dof; });
 }
 
 namespace detail {
@@ -31,28 +31,28 @@ struct Derivation {
 
   void fill(const Parts& m, const JointSpec& s, Joint& j) const {
     if (j.kind == JointKind::bushing || j.kind == JointKind::free) return;
-    const JointMobility w = mobility_of(j, m.bodies[j.a], m.bodies[j.b]);
+    const JointInverseMass w = inverse_mass_of(j, m.bodies[j.a], m.bodies[j.b]);
     const double displacement = shares[j.a] * w.displacement_a + shares[j.b] * w.displacement_b;
     const double rotation = shares[j.a] * w.rotation_a + shares[j.b] * w.rotation_b;
     const bool both = displacement > 0.0 && rotation > 0.0;
     const double factor = joint_frequency * (both ? std::sqrt(0.5) : 1.0);
     // Derived damping belongs to the joint's whole frequency, which is higher than that of its displacements alone.
-    const auto damping_of = [&](const std::optional<double>& k, double derived, double mobility) {
-      return k ? damp(*k, mobility) : 2.0 * damping_ratio * derived * dt / joint_frequency;
+    const auto damping_of = [&](const std::optional<double>& k, double derived, double inverse_mass) {
+      return k ? damp(*k, inverse_mass) : 2.0 * damping_ratio * derived * dt / joint_frequency;
     };
     j.k = s.stiffness.value_or(stiff(factor, displacement));
     j.kr = s.rotational_stiffness.value_or(stiff(factor, rotation));
     j.c = s.damping.value_or(damping_of(s.stiffness, j.k, displacement));
     j.cr = s.rotational_damping.value_or(damping_of(s.rotational_stiffness, j.kr, rotation));
   }
-  void fill(const Parts& m, const JointLimits& given, JointStops& e) const {
-    const double w = along(m, m.joints[e.joint], e.freedom);
+  void fill(const Parts& m, const JointLimits& given, JointLimitState& e) const {
+    const double w = along(m, m.joints[e.joint], e.dof);
     e.stiffness = given.stiffness.value_or(stiff(joint_frequency, w));
     e.damping = given.damping.value_or(damp(e.stiffness, w));
   }
-  void fill(const Parts& m, const JointFriction& given, JointRubbing& e) const {
+  void fill(const Parts& m, const JointFriction& given, JointFrictionState& e) const {
     const Joint& j = m.joints[e.joint];
-    const auto [wa, wb] = rubbing_mobility(j, m.bodies[j.a], m.bodies[j.b], e.radius);
+    const auto [wa, wb] = inverse_mass_of_friction(j, m.bodies[j.a], m.bodies[j.b], e.radius);
     const double w = shares[j.a] * wa + shares[j.b] * wb;
     e.law.stiffness = given.stiffness.value_or(stiff(friction_frequency, w));
     e.law.velocity_stiffness = given.velocity_stiffness.value_or(damp(e.law.stiffness, w));
@@ -61,7 +61,7 @@ struct Derivation {
     double w = 0.0;
     for (const auto& term : s.terms) {
       w += term.ratio * term.ratio * static_cast<double>(s.terms.size()) *
-           along(m, m.joints[term.joint.index()], term.freedom);
+           along(m, m.joints[term.joint.index()], term.dof);
     }
     g.k = s.stiffness.value_or(stiff(joint_frequency, w));
     g.c = s.damping.value_or(damp(g.k, w));
@@ -71,8 +71,8 @@ struct Derivation {
   /// Stiffness for a frequency of `factor`/dt, where 1 N moves the shares by `w` m/s^2; nothing moves: nothing to hold.
   double stiff(double factor, double w) const { return w > 0.0 ? factor * factor / (dt * dt * w) : 0.0; }
   static double damp(double k, double w) { return w > 0.0 ? 2.0 * damping_ratio * std::sqrt(k / w) : 0.0; }
-  double along(const Parts& m, const Joint& j, Freedom freedom) const {
-    const auto [wa, wb] = coordinate_mobility(j, m.bodies[j.a], m.bodies[j.b], freedom);
+  double along(const Parts& m, const Joint& j, Dof dof) const {
+    const auto [wa, wb] = inverse_mass_along(j, m.bodies[j.a], m.bodies[j.b], dof);
     return shares[j.a] * wa + shares[j.b] * wb;
   }
 };
@@ -84,8 +84,8 @@ struct Derivation {
 inline void derive_stiffness(Parts& m, double dt) {
   const detail::Derivation derivation(m, dt);
   for (std::size_t i = 0; i < m.joints.size(); ++i) derivation.fill(m, m.joint_specs[i], m.joints[i]);
-  for (JointStops& e : m.stops) derivation.fill(m, limits_of(m.joint_specs[e.joint], e.freedom), e);
-  for (JointRubbing& e : m.rubbing) derivation.fill(m, *m.joint_specs[e.joint].friction, e);
+  for (JointLimitState& e : m.limits) derivation.fill(m, limits_of(m.joint_specs[e.joint], e.dof), e);
+  for (JointFrictionState& e : m.friction) derivation.fill(m, *m.joint_specs[e.joint].friction, e);
   for (Coupling& g : m.couplings) derivation.fill(m, g.spec, g);
 }
 
@@ -105,8 +105,8 @@ inline std::string first_underived(const Parts& m) {
     const bool rotation =
         holds && align_of(s.kind) != Align::nothing && !(s.rotational_stiffness && s.rotational_damping);
     if (displacement || rotation) return fmt::format("{} '{}'", name_of(s.kind), s.name);
-    for (const JointLimits& stops : s.limits) {
-      if (!(stops.stiffness && stops.damping)) return fmt::format("stops of '{}'", s.name);
+    for (const JointLimits& l : s.limits) {
+      if (!(l.stiffness && l.damping)) return fmt::format("limits of '{}'", s.name);
     }
     if (s.friction && !(s.friction->stiffness && s.friction->velocity_stiffness)) {
       return fmt::format("friction of '{}'", s.name);

@@ -26,34 +26,34 @@ inline double largest_eigenvalue_of_two(const Mat3& m) {
   return 0.5 * (sum + std::sqrt(std::max(0.0, 2.0 * m.squaredNorm() - sum * sum)));
 }
 
-inline Mat3 rotational_mobility(const Body& b) {
+inline Mat3 inverse_inertia_of(const Body& b) {
   if (b.fixed) return Mat3::Zero();
   return b.rotation() * b.inertia.cwiseInverse().asDiagonal() * b.rotation().transpose();
 }
 /// Displacement per unit force at `arm` (global) from the centre of mass.
-inline Mat3 point_mobility(const Body& b, const Vec3& arm) {
+inline Mat3 inverse_mass_matrix(const Body& b, const Vec3& arm) {
   if (b.fixed) return Mat3::Zero();
   Mat3 x;
   x << 0, -arm.z(), arm.y(), arm.z(), 0, -arm.x(), -arm.y(), arm.x(), 0;
-  return Mat3::Identity() / b.mass + x * rotational_mobility(b) * x.transpose();
+  return Mat3::Identity() / b.mass + x * inverse_inertia_of(b) * x.transpose();
 }
 
 /// Turn about a unit vector n (global) per unit torque, and displacement along it at `arm` (global) per unit force.
-inline double turn_mobility(const Body& b, const Vector3<double>& n) {
+inline double inverse_inertia_about(const Body& b, const Vector3<double>& n) {
   if (b.fixed) return 0.0;
   const Vector3<double> t = transpose_times(b.motion.rotation, n);
   return t.x * t.x / b.inertia[0] + t.y * t.y / b.inertia[1] + t.z * t.z / b.inertia[2];
 }
-inline double push_mobility(const Body& b, const Vector3<double>& arm, const Vector3<double>& n) {
-  return b.fixed ? 0.0 : 1.0 / b.mass + turn_mobility(b, cross(arm, n));
+inline double inverse_mass_at(const Body& b, const Vector3<double>& arm, const Vector3<double>& n) {
+  return b.fixed ? 0.0 : 1.0 / b.mass + inverse_inertia_about(b, cross(arm, n));
 }
 
 /// The largest turn per unit torque about any axis, and displacement per unit force at `arm` in any direction. A force
 /// along the arm turns nothing, so at most two directions of the turn's share are left.
-inline double largest_turn_mobility(const Body& b) { return b.fixed ? 0.0 : 1.0 / b.inertia.minCoeff(); }
-inline double largest_push_mobility(const Body& b, const Vec3& arm) {
+inline double largest_inverse_inertia(const Body& b) { return b.fixed ? 0.0 : 1.0 / b.inertia.minCoeff(); }
+inline double largest_inverse_mass(const Body& b, const Vec3& arm) {
   if (b.fixed) return 0.0;
-  return 1.0 / b.mass + largest_eigenvalue_of_two(point_mobility(b, arm) - Mat3::Identity() / b.mass);
+  return 1.0 / b.mass + largest_eigenvalue_of_two(inverse_mass_matrix(b, arm) - Mat3::Identity() / b.mass);
 }
 
 /// Square roots of a joint's stiffness, of size 1 where it is the same in all held directions; global axes.
@@ -101,10 +101,10 @@ inline HeldDirections held_directions(const Joint& j, const Body& a, const Body&
 }
 
 /// Mobilities of the two bodies of a joint, displacement and rotation in held directions.
-struct JointMobility {
+struct JointInverseMass {
   double displacement_a, displacement_b, rotation_a, rotation_b;
 };
-inline JointMobility mobility_of(const Joint& j, const Body& a, const Body& b) {
+inline JointInverseMass inverse_mass_of(const Joint& j, const Body& a, const Body& b) {
   const HeldDirections held = held_directions(j, a, b);
   const bool bushing = j.kind == JointKind::bushing;
   const bool all_displacements = hold_of(j.kind) == Hold::point, all_rotations = align_of(j.kind) == Align::locked;
@@ -113,56 +113,56 @@ inline JointMobility mobility_of(const Joint& j, const Body& a, const Body& b) {
   };
   const auto displacement = [&](const Body& x) {
     const Vec3 arm = b.point(to_eigen(j.point_b)) - x.position();
-    return all_displacements ? largest_push_mobility(x, arm) : gain(held.displacement, point_mobility(x, arm));
+    return all_displacements ? largest_inverse_mass(x, arm) : gain(held.displacement, inverse_mass_matrix(x, arm));
   };
   const auto rotation = [&](const Body& x) {
-    return all_rotations && !bushing ? largest_turn_mobility(x) : gain(held.rotation, rotational_mobility(x));
+    return all_rotations && !bushing ? largest_inverse_inertia(x) : gain(held.rotation, inverse_inertia_of(x));
   };
   return {displacement(a), displacement(b), rotation(a), rotation(b)};
 }
 
 /// Mobilities of the two bodies along a coordinate of their joint. The axis of a bend may point anywhere.
-inline std::pair<double, double> coordinate_mobility(const Joint& j, const Body& a, const Body& b, Freedom freedom) {
-  if (freedom == Freedom::bend) {
-    return {largest_turn_mobility(a), largest_turn_mobility(b)};
+inline std::pair<double, double> inverse_mass_along(const Joint& j, const Body& a, const Body& b, Dof dof) {
+  if (dof == Dof::bend) {
+    return {largest_inverse_inertia(a), largest_inverse_inertia(b)};
   }
-  const Coordinate q = coordinate_of(j, a, b, freedom);
-  if (q.rotation) return {turn_mobility(a, q.axis), turn_mobility(b, q.axis)};
-  return {push_mobility(a, q.arm_a, q.axis), push_mobility(b, q.arm_b, q.axis)};
+  const Coordinate q = coordinate_of(j, a, b, dof);
+  if (q.rotation) return {inverse_inertia_about(a, q.axis), inverse_inertia_about(b, q.axis)};
+  return {inverse_mass_at(a, q.arm_a, q.axis), inverse_mass_at(b, q.arm_b, q.axis)};
 }
 
 /// Mobilities of the two bodies along the directions that a joint's friction acts in: the largest of them, as all have
 /// the same spring; rotations times the square of the bearing's radius, which turns sliding into rotation.
-inline std::pair<double, double> rubbing_mobility(const Joint& j, const Body& a, const Body& b, double radius) {
+inline std::pair<double, double> inverse_mass_of_friction(const Joint& j, const Body& a, const Body& b, double radius) {
   std::pair<double, double> most = {0.0, 0.0};
-  const auto consider = [&](Freedom freedom) {
-    const double share = is_rotation(freedom) ? radius * radius : 1.0;
-    const auto [wa, wb] = coordinate_mobility(j, a, b, freedom);
+  const auto consider = [&](Dof dof) {
+    const double share = is_rotation(dof) ? radius * radius : 1.0;
+    const auto [wa, wb] = inverse_mass_along(j, a, b, dof);
     most = {std::max(most.first, share * wa), std::max(most.second, share * wb)};
   };
   switch (j.kind) {
-    case JointKind::planar: consider(Freedom::turn); [[fallthrough]];
+    case JointKind::planar: consider(Dof::turn); [[fallthrough]];
     case JointKind::point_on_plane:
-      consider(Freedom::slide_x);
-      consider(Freedom::slide_y);
+      consider(Dof::slide_x);
+      consider(Dof::slide_y);
       break;
     case JointKind::cylindrical:
-      consider(Freedom::turn);
-      consider(Freedom::slide);
+      consider(Dof::turn);
+      consider(Dof::slide);
       break;
-    case JointKind::revolute: consider(Freedom::turn); break;
+    case JointKind::revolute: consider(Dof::turn); break;
     case JointKind::prismatic:
-    case JointKind::point_on_line: consider(Freedom::slide); break;
-    default: consider(Freedom::bend); break;
+    case JointKind::point_on_line: consider(Dof::slide); break;
+    default: consider(Dof::bend); break;
   }
   return most;
 }
 
 /// Mobility of the line between two points.
-inline std::pair<double, double> line_mobility(const Vector3<double>& point_a, const Vector3<double>& point_b,
-                                               const Body& a, const Body& b) {
+inline std::pair<double, double> inverse_mass_of_line(const Vector3<double>& point_a, const Vector3<double>& point_b,
+                                                      const Body& a, const Body& b) {
   const Coordinate q = distance_of(point_a, point_b, a, b);
-  return {push_mobility(a, q.arm_a, q.axis), push_mobility(b, q.arm_b, q.axis)};
+  return {inverse_mass_at(a, q.arm_a, q.axis), inverse_mass_at(b, q.arm_b, q.axis)};
 }
 
 }  // namespace dem::mbd::detail

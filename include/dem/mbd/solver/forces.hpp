@@ -37,12 +37,12 @@ DEM_FLATTEN inline void add_forces(Parts& m, double time, double dt, bool is_las
   }
   for (Load& load : m.loads) apply_load(load, m.bodies, time, dt);
   for (Joint& j : m.joints) apply_penalty(j, m.bodies[j.a], m.bodies[j.b], m.spin[j.a], m.spin[j.b], followed);
-  for (JointRubbing& e : m.rubbing) {
+  for (JointFrictionState& e : m.friction) {
     const Joint& j = m.joints[e.joint];
     apply_friction(e, j, m.bodies[j.a], m.bodies[j.b], followed, is_last_stage);
   }
-  for (JointStops& e : m.stops)
-    apply_stops(e, m.joints[e.joint], m.bodies[m.joints[e.joint].a], m.bodies[m.joints[e.joint].b]);
+  for (JointLimitState& e : m.limits)
+    apply_limits(e, m.joints[e.joint], m.bodies[m.joints[e.joint].a], m.bodies[m.joints[e.joint].b]);
   for (Coupling& g : m.couplings) apply_coupling(g, m.joints, m.bodies);
   for (Spring& s : m.springs) apply_spring(s, m.bodies);
   for (Actuator& u : m.actuators) apply_actuator(u, m.joints, m.bodies, time, dt);

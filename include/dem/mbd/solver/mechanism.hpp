@@ -40,34 +40,34 @@ class Mechanism {
     return body(c.body).point(c.point);
   }
 
-  /// A coordinate and its speed, one of freedoms_of(the joint's kind). Without a name the joint's own: the rotation
+  /// A coordinate and its speed, one of dofs_of(the joint's kind). Without a name the joint's own: the rotation
   /// (rad, over whole turns) of one that turns, the slide (m) of one that slides, the length (m) of a distance joint.
-  double coordinate(JointId id, Freedom freedom = Freedom::own) const { return coordinate_now(id, freedom).value; }
-  double speed(JointId id, Freedom freedom = Freedom::own) const { return coordinate_now(id, freedom).speed; }
+  double coordinate(JointId id, Dof dof = Dof::own) const { return coordinate_now(id, dof).value; }
+  double speed(JointId id, Dof dof = Dof::own) const { return coordinate_now(id, dof).speed; }
   /// The slide along z (m, m/s), e.g. the second coordinate of a cylindrical joint.
-  double slide(JointId id) const { return coordinate(id, Freedom::slide); }
-  double slide_speed(JointId id) const { return speed(id, Freedom::slide); }
+  double slide(JointId id) const { return coordinate(id, Dof::slide); }
+  double slide_speed(JointId id) const { return speed(id, Dof::slide); }
   Violation violation(JointId id) const {
     const Joint& j = joint(id);
     return violation_of(j, parts_.bodies[j.a], parts_.bodies[j.b]);
   }
   /// Force (N) and torque (N m, about the joint's point) that the joint puts on its body b: its springs and dampers,
-  /// stops and friction. Actuators, couplings and drives that act on its coordinates report their own.
+  /// limits and friction. Actuators, couplings and drives that act on its coordinates report their own.
   Wrench reaction(JointId id) const {
     joint(id);
     return reaction_of(parts_, id.index());
   }
   const Joint& joint(JointId id) const { return known(parts_.joints, id, "joint"); }
-  /// Stops of a joint's coordinate, or its friction; nullptr if it has none.
-  const JointStops* stops(JointId id, Freedom freedom = Freedom::own) const {
-    freedom = resolved(joint(id).kind, freedom);
-    for (const JointStops& e : parts_.stops) {
-      if (e.joint == id.value && e.freedom == freedom) return &e;
+  /// Limits of a joint's coordinate, or its friction; nullptr if it has none.
+  const JointLimitState* limits(JointId id, Dof dof = Dof::own) const {
+    dof = resolved(joint(id).kind, dof);
+    for (const JointLimitState& e : parts_.limits) {
+      if (e.joint == id.value && e.dof == dof) return &e;
     }
     return nullptr;
   }
-  const JointRubbing* rubbing(JointId id) const {
-    for (const JointRubbing& e : parts_.rubbing) {
+  const JointFrictionState* friction(JointId id) const {
+    for (const JointFrictionState& e : parts_.friction) {
       if (e.joint == id.value) return &e;
     }
     return nullptr;
@@ -75,7 +75,7 @@ class Mechanism {
   /// Sets the preload (N) of a joint's friction while running: a brake. Throws Error if the joint has no friction.
   void set_friction_preload(JointId id, double newtons) {
     joint(id);
-    for (JointRubbing& e : parts_.rubbing) {
+    for (JointFrictionState& e : parts_.friction) {
       if (e.joint == id.value) {
         e.preload = require_non_negative(newtons, "preload of a joint's friction", "N");
         return;
@@ -175,11 +175,11 @@ class Mechanism {
   bool changed_ = false;  ///< a body, joint or coupling was added since the last initialise
 
  private:
-  Coordinate coordinate_now(JointId id, Freedom freedom) const {
+  Coordinate coordinate_now(JointId id, Dof dof) const {
     const Joint& j = joint(id);
     const std::string& name = parts_.joint_specs[id.index()].name;
     return coordinate_of(j, parts_.bodies[j.a], parts_.bodies[j.b],
-                         known_freedom(j.kind, freedom, "a coordinate of '" + name + "'"));
+                         known_dof(j.kind, dof, "a coordinate of '" + name + "'"));
   }
 };
 

@@ -14,7 +14,7 @@
 namespace dem::mbd {
 
 /// One coordinate that is prescribed now; a rotation of a body makes three of them, all others one.
-struct DriveRow {
+struct JacobianRow {
   static constexpr std::uint32_t no_body = ~std::uint32_t{0};
   std::uint32_t motion = 0;
   bool is_reported = true;                 ///< its force is the motion's
@@ -36,10 +36,10 @@ struct Parts {
   std::vector<Body> bodies;
   std::vector<BuiltBody> built;  ///< each body as it was added, with its reference frame
   std::vector<Connection> connections;
-  std::vector<Joint> joints;           ///< what a step needs
-  std::vector<JointSpec> joint_specs;  ///< as given: what was left to derive is still empty
-  std::vector<JointStops> stops;       ///< of the coordinates that have them
-  std::vector<JointRubbing> rubbing;   ///< of the joints that have friction
+  std::vector<Joint> joints;                 ///< what a step needs
+  std::vector<JointSpec> joint_specs;        ///< as given: what was left to derive is still empty
+  std::vector<JointLimitState> limits;       ///< of the coordinates that have them
+  std::vector<JointFrictionState> friction;  ///< of the joints that have friction
   std::vector<Coupling> couplings;
   std::vector<Actuator> actuators;
   std::vector<Spring> springs;
@@ -52,18 +52,18 @@ struct Parts {
   std::vector<Wrench> outside;        ///< contact forces that the world added, about the centre of mass
 
   // Scratch of the prescribed motions.
-  std::vector<DriveRow> drive_rows;
+  std::vector<JacobianRow> rows;
   std::vector<double> drive_matrix, drive_directions, drive_errors, drive_held;
 };
 
-/// What a joint puts on its body b, about the joint's point: its springs and dampers, its stops and its friction.
+/// What a joint puts on its body b, about the joint's point: its springs and dampers, its limits and its friction.
 inline Wrench reaction_of(const Parts& parts, std::size_t joint) {
   Wrench w = {parts.joints[joint].force, parts.joints[joint].torque};
-  for (const JointRubbing& e : parts.rubbing) {
+  for (const JointFrictionState& e : parts.friction) {
     if (e.joint == joint) w = w + Wrench{e.force, e.torque};
   }
-  for (const JointStops& e : parts.stops) {
-    if (e.joint == joint) (is_rotation(e.freedom) ? w.torque : w.force) += e.force * e.axis;
+  for (const JointLimitState& e : parts.limits) {
+    if (e.joint == joint) (is_rotation(e.dof) ? w.torque : w.force) += e.force * e.axis;
   }
   return w;
 }

@@ -17,7 +17,7 @@ constexpr bool changes_with_pose(JointKind kind) {
 
 /// Keeps what was derived for one pose stable in others. A joint at a lever L of a body moves it by 1/m + L^2/I per
 /// newton, so a spring that was laid out for a short lever is too stiff for a long one. Every few steps such springs
-/// are lowered to what would be derived in the present pose, with their stops, friction and couplings; users' values
+/// are lowered to what would be derived in the present pose, with their limits, friction and couplings; users' values
 /// are left alone. Nothing is raised again, as a strained spring that gets stiffer gains energy, while one that gets
 /// softer loses some.
 ///
@@ -36,11 +36,11 @@ class Softening {
       if (changes_with_pose(s.kind) && holds && !given) joints_.push_back(i);
     }
     const auto changes = [&](std::uint32_t joint) { return changes_with_pose(m.joints[joint].kind); };
-    for (std::uint32_t i = 0; i < m.stops.size(); ++i) {
-      if (changes(m.stops[i].joint)) stops_.push_back(i);
+    for (std::uint32_t i = 0; i < m.limits.size(); ++i) {
+      if (changes(m.limits[i].joint)) limits_.push_back(i);
     }
-    for (std::uint32_t i = 0; i < m.rubbing.size(); ++i) {
-      if (changes(m.rubbing[i].joint)) rubbing_.push_back(i);
+    for (std::uint32_t i = 0; i < m.friction.size(); ++i) {
+      if (changes(m.friction[i].joint)) friction_.push_back(i);
     }
     for (std::uint32_t i = 0; i < m.couplings.size(); ++i) {
       const auto& terms = m.couplings[i].spec.terms;
@@ -48,7 +48,7 @@ class Softening {
         couplings_.push_back(i);
       }
     }
-    if (joints_.size() + stops_.size() + rubbing_.size() + couplings_.size() > 0) derivation_ = {m, dt};
+    if (joints_.size() + limits_.size() + friction_.size() + couplings_.size() > 0) derivation_ = {m, dt};
   }
 
   /// To be called at the end of each step.
@@ -79,16 +79,16 @@ class Softening {
       cut(j.kr, now.kr);
       cut(j.cr, now.cr);
     }
-    for (const std::uint32_t i : stops_) {
-      JointStops& e = m.stops[i];
-      JointStops now = e;
-      derivation_.fill(m, limits_of(m.joint_specs[e.joint], e.freedom), now);
+    for (const std::uint32_t i : limits_) {
+      JointLimitState& e = m.limits[i];
+      JointLimitState now = e;
+      derivation_.fill(m, limits_of(m.joint_specs[e.joint], e.dof), now);
       cut(e.stiffness, now.stiffness);
       cut(e.damping, now.damping);
     }
-    for (const std::uint32_t i : rubbing_) {
-      JointRubbing& e = m.rubbing[i];
-      JointRubbing now = e;
+    for (const std::uint32_t i : friction_) {
+      JointFrictionState& e = m.friction[i];
+      JointFrictionState now = e;
       derivation_.fill(m, *m.joint_specs[e.joint].friction, now);
       cut(e.law.stiffness, now.law.stiffness);
       cut(e.law.velocity_stiffness, now.law.velocity_stiffness);
@@ -104,7 +104,7 @@ class Softening {
   }
 
   detail::Derivation derivation_;
-  std::vector<std::uint32_t> joints_, stops_, rubbing_, couplings_;
+  std::vector<std::uint32_t> joints_, limits_, friction_, couplings_;
   int interval_ = 1, steps_left_ = 1;
 };
 

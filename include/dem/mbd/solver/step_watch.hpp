@@ -47,10 +47,10 @@ class StepWatch {
     return false;
   }
   static bool has_given(const JointSpec& s) {
-    const bool stops =
+    const bool limits =
         std::any_of(s.limits.begin(), s.limits.end(), [](const JointLimits& l) { return l.stiffness || l.damping; });
     const bool friction = s.friction && (s.friction->stiffness || s.friction->velocity_stiffness);
-    return stops || friction || s.kind == JointKind::bushing || s.stiffness || s.damping || s.rotational_stiffness ||
+    return limits || friction || s.kind == JointKind::bushing || s.stiffness || s.damping || s.rotational_stiffness ||
            s.rotational_damping;
   }
   /// omega^2 dt^2 + 2 c dt of the worst part, by the better bound, over 4: below 1 each of the integrators is stable.

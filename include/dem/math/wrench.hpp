@@ -2,7 +2,7 @@
 
 #include <dem/math/vector.hpp>
 
-namespace dem::mbd {
+namespace dem {
 
 /// A force (N) and a torque (N m) in global axes.
 struct Wrench {
@@ -13,4 +13,4 @@ struct Wrench {
   friend Wrench operator*(double s, const Wrench& a) { return {s * a.force, s * a.torque}; }
 };
 
-}  // namespace dem::mbd
+}  // namespace dem

@@ -31,16 +31,16 @@ TEST_CASE("a universal joint reports the two angles of its cross, their speeds a
   for (const double x : {-1.2, -0.3, 0.0, 0.7}) {
     for (const double y : {-0.9, 0.0, 0.4, 1.3}) {
       Bent u(x, y);
-      CHECK(u.machine.coordinate(u.cross, Freedom::bend_x) == Approx(x).margin(1e-14));
-      CHECK(u.machine.coordinate(u.cross, Freedom::bend_y) == Approx(y).margin(1e-14));
+      CHECK(u.machine.coordinate(u.cross, Dof::bend_x) == Approx(x).margin(1e-14));
+      CHECK(u.machine.coordinate(u.cross, Dof::bend_y) == Approx(y).margin(1e-14));
       // The angle between the shafts: cos = cos x cos y. Near 0 the arc cosine is good to the root of rounding only.
-      CHECK(u.machine.coordinate(u.cross, Freedom::bend) == Approx(std::acos(std::cos(x) * std::cos(y))).margin(2e-8));
+      CHECK(u.machine.coordinate(u.cross, Dof::bend) == Approx(std::acos(std::cos(x) * std::cos(y))).margin(2e-8));
       // Angular velocity 2 about x and 3 about yb: those are the speeds.
       auto& body = u.machine.body(u.shaft);
       const Vec3 yb = turn(x, X) * Y;
       body.motion.angular_velocity = from_eigen(Vec3(body.rotation().transpose() * (2.0 * X + 3.0 * yb)));
-      CHECK(u.machine.speed(u.cross, Freedom::bend_x) == Approx(2.0).epsilon(1e-13));
-      CHECK(u.machine.speed(u.cross, Freedom::bend_y) == Approx(3.0).epsilon(1e-13));
+      CHECK(u.machine.speed(u.cross, Dof::bend_x) == Approx(2.0).epsilon(1e-13));
+      CHECK(u.machine.speed(u.cross, Dof::bend_y) == Approx(3.0).epsilon(1e-13));
     }
   }
 }
@@ -51,10 +51,10 @@ TEST_CASE("a planar joint and a point on a plane report where they are, along x 
   const JointId table = m.add_joint(planar("table", m.ground(), puck, {0, 0, 0}, Z));
   m.body(puck).motion.position = {0.3, -0.2, 0};
   m.body(puck).motion.velocity = {1, 2, 0};
-  CHECK(m.coordinate(table, Freedom::slide_x) == Approx(0.3));
-  CHECK(m.coordinate(table, Freedom::slide_y) == Approx(-0.2));
-  CHECK(m.speed(table, Freedom::slide_x) == Approx(1.0));
-  CHECK(m.speed(table, Freedom::slide_y) == Approx(2.0));
+  CHECK(m.coordinate(table, Dof::slide_x) == Approx(0.3));
+  CHECK(m.coordinate(table, Dof::slide_y) == Approx(-0.2));
+  CHECK(m.speed(table, Dof::slide_x) == Approx(1.0));
+  CHECK(m.speed(table, Dof::slide_y) == Approx(2.0));
 }
 
 TEST_CASE("a distance joint reports its length, and nothing may drive it") {
@@ -67,9 +67,9 @@ TEST_CASE("a distance joint reports its length, and nothing may drive it") {
   check_refused([&] { m.add_actuator(joint_actuator("ram", rod, 1, 1)); }, "'ram'", "length of a distance joint");
   // Joints without a coordinate of their own say which they have.
   const JointId ball = m.add_joint(spherical("ball", m.ground(), bob, {3, 0, 4}));
-  CHECK(m.coordinate(ball, Freedom::bend) == Approx(0.0).margin(1e-12));
-  check_refused([&] { m.coordinate(ball); }, "'ball'", "name one of its freedoms: bend");
-  check_refused([&] { m.speed(rod, Freedom::slide); }, "'slide' of a distance joint", "only: length");
+  CHECK(m.coordinate(ball, Dof::bend) == Approx(0.0).margin(1e-12));
+  check_refused([&] { m.coordinate(ball); }, "'ball'", "name one of its degrees of freedom: bend");
+  check_refused([&] { m.speed(rod, Dof::slide); }, "'slide' of a distance joint", "only: length");
 }
 
 TEST_CASE("stops hold the slide of a cylindrical joint, the cone of a ball joint and a universal joint's arms") {
@@ -78,26 +78,25 @@ TEST_CASE("stops hold the slide of a cylindrical joint, the cone of a ball joint
   const BodyId rod = m.add_body(brick("rod", {0, 0, 0})),
                ball = m.add_body(given_body("ball", 1.0, Vec3(0.03, 0.03, 0.03)).at({0, 3, 0})),
                shaft = m.add_body(brick("shaft", {0, 6, 0}));
-  const JointId sleeve = m.add_joint(cylindrical("sleeve", m.ground(), rod, {0, 0, 0}, Z)
-                                         .with_limits(-10.0, 10.0)
-                                         .with_limits(Freedom::slide, -0.1, 0.2));
+  const JointId sleeve = m.add_joint(
+      cylindrical("sleeve", m.ground(), rod, {0, 0, 0}, Z).with_limits(-10.0, 10.0).with_limits(Dof::slide, -0.1, 0.2));
   const JointId socket =
-      m.add_joint(spherical("socket", m.ground(), ball, {0, 3, 0}).with_limits(Freedom::bend, -1.0, 0.5));
+      m.add_joint(spherical("socket", m.ground(), ball, {0, 3, 0}).with_limits(Dof::bend, -1.0, 0.5));
   const JointId cross =
-      m.add_joint(universal("cross", m.ground(), shaft, {0, 6, 0}, Z, Z).with_limits(Freedom::bend_y, -0.3, 0.4));
+      m.add_joint(universal("cross", m.ground(), shaft, {0, 6, 0}, Z, Z).with_limits(Dof::bend_y, -0.3, 0.4));
   m.add_load(applied_force("push", rod, {0, 0, 0}, Z, 4.0));
   m.add_load(applied_torque("tilt", ball, Vec3(1, 1, 0), 3.0));
   m.add_load(applied_torque("twist", shaft, Y, -2.0));
   REQUIRE(m.run(3.0, 1e-3));
   // At rest against its stop each coordinate is at the limit, less what the load presses into the derived spring, and
   // the stop's force balances the load.
-  CHECK(m.coordinate(sleeve, Freedom::slide) == Approx(0.2).margin(1e-4));
-  CHECK(m.stops(sleeve, Freedom::slide)->force == Approx(-4.0).epsilon(1e-3));
-  CHECK(m.stops(sleeve)->force == 0.0);
-  CHECK(m.coordinate(socket, Freedom::bend) == Approx(0.5).margin(1e-3));
-  CHECK(m.stops(socket, Freedom::bend)->force == Approx(-3.0).epsilon(1e-2));
-  CHECK(m.coordinate(cross, Freedom::bend_y) == Approx(-0.3).margin(1e-3));
-  CHECK(m.stops(cross, Freedom::bend_y)->force == Approx(2.0).epsilon(1e-2));
+  CHECK(m.coordinate(sleeve, Dof::slide) == Approx(0.2).margin(1e-4));
+  CHECK(m.limits(sleeve, Dof::slide)->force == Approx(-4.0).epsilon(1e-3));
+  CHECK(m.limits(sleeve)->force == 0.0);
+  CHECK(m.coordinate(socket, Dof::bend) == Approx(0.5).margin(1e-3));
+  CHECK(m.limits(socket, Dof::bend)->force == Approx(-3.0).epsilon(1e-2));
+  CHECK(m.coordinate(cross, Dof::bend_y) == Approx(-0.3).margin(1e-3));
+  CHECK(m.limits(cross, Dof::bend_y)->force == Approx(2.0).epsilon(1e-2));
 }
 
 TEST_CASE(
@@ -110,14 +109,14 @@ TEST_CASE(
   const CouplingId coupling = m.add_coupling(screw("screw thread", thread, thread, 2.0 * pi * lead));
   // The nut turns as it slides: its inertia counts as m + J/lead^2 = 2 kg. On 8 N/m with 8 N s/m that is the critically
   // damped oscillator of 2 rad/s, x = 0.05 (1 - (1 + 2 t) exp(-2 t)).
-  m.add_actuator(joint_actuator("push", thread, 8.0, 8.0, 0.05).along(Freedom::slide));
+  m.add_actuator(joint_actuator("push", thread, 8.0, 8.0, 0.05).along(Dof::slide));
   REQUIRE(m.run(1.0, 1e-3));
   const double expected = 0.05 * (1.0 - 3.0 * std::exp(-2.0));
   // Half of the push, at most 0.2 N, goes through the screw's spring, which gives way by that over its stiffness.
   const double give = 0.2 / m.coupling(coupling).k;
   CHECK(give < 3e-4 * expected);
-  CHECK(m.coordinate(thread, Freedom::slide) == Approx(expected).epsilon(1e-3));  // the step adds an error of order dt
-  CHECK(m.coordinate(thread) * lead == Approx(m.coordinate(thread, Freedom::slide)).margin(give));
+  CHECK(m.coordinate(thread, Dof::slide) == Approx(expected).epsilon(1e-3));  // the step adds an error of order dt
+  CHECK(m.coordinate(thread) * lead == Approx(m.coordinate(thread, Dof::slide)).margin(give));
 }
 
 TEST_CASE("friction brakes the bending of a universal joint") {
@@ -131,10 +130,10 @@ TEST_CASE("friction brakes the bending of a universal joint") {
                                         .with_friction({.coefficient = 0.5, .radius = 0.02, .preload = 100.0}));
   m.body(shaft).motion.angular_velocity = {2.0, 0, 0};
   REQUIRE(m.run(0.1, 1e-4));
-  CHECK(m.speed(cross, Freedom::bend_x) == Approx(1.0).epsilon(0.01));  // the spring takes some steps to build up
+  CHECK(m.speed(cross, Dof::bend_x) == Approx(1.0).epsilon(0.01));  // the spring takes some steps to build up
   REQUIRE(m.run(0.4, 1e-4));
-  CHECK(std::abs(m.speed(cross, Freedom::bend_x)) < 0.01);
-  CHECK(m.coordinate(cross, Freedom::bend_x) == Approx(0.2).epsilon(0.02));
+  CHECK(std::abs(m.speed(cross, Dof::bend_x)) < 0.01);
+  CHECK(m.coordinate(cross, Dof::bend_x) == Approx(0.2).epsilon(0.02));
 }
 
 TEST_CASE("friction is stable in each of its directions, and a bushing's damper without a spring is no stiff one") {
@@ -146,8 +145,8 @@ TEST_CASE("friction is stable in each of its directions, and a bushing's damper 
   const JointId sleeve = m.add_joint(cylindrical("sleeve", m.ground(), rod, {0, 0, 0}, Z)
                                          .with_friction({.coefficient = 0.3, .radius = 1e-3, .preload = 10.0}));
   REQUIRE(m.run(2.0, 1e-3));
-  CHECK(std::abs(m.coordinate(sleeve, Freedom::slide)) < 0.02);
-  CHECK(std::abs(m.speed(sleeve, Freedom::slide)) < 1e-3);
+  CHECK(std::abs(m.coordinate(sleeve, Dof::slide)) < 0.02);
+  CHECK(std::abs(m.speed(sleeve, Dof::slide)) < 1e-3);
 
   // A damper of 10 N s/m on 1 kg needs steps below 2 m/c = 0.2 s, with or without a spring beside it.
   Machine<SymplecticEuler> soft;
