@@ -47,16 +47,12 @@ inline Vector3<double> rotation_off(const PrescribedMotion& p, const integrator:
 
 /// The directions in which a joint holds its points: a correction of its angle must not part them.
 inline void add_held_rows(Parts& parts, JacobianRow row, const Joint& j) {
-  const Hold hold = hold_of(j.kind);
-  if (!row.now.rotation || hold == Hold::nothing || hold == Hold::length || hold == Hold::bushing) return;
+  if (!row.now.rotation) return;
   row.is_held = true;
-  const auto add = [&](const Vector3<double>& axis_in_a) {
+  for_each_held_axis(j, traits_of(j.kind).hold, [&](const Vector3<double>& axis_in_a) {
     row.now = displacement_along(axis_in_a, j, parts.bodies[j.a], parts.bodies[j.b]);
     parts.rows.push_back(row);
-  };
-  if (hold != Hold::plane) add(j.axes_a.x);
-  if (hold != Hold::plane) add(j.axes_a.y);
-  if (hold != Hold::line) add(j.axes_a.z);
+  });
 }
 
 /// Lists the driven coordinates of bodies that give way, as they are now. For a correction of values those that are

@@ -1,6 +1,9 @@
 #pragma once
 
-#include <dem/mbd/joint/joint.hpp>
+#include <dem/mbd/joint/kinds.hpp>
+
+#include <cmath>
+#include <numbers>
 
 namespace dem::mbd {
 
@@ -128,27 +131,11 @@ struct Violation {
 };
 
 inline Violation violation_of(const Joint& j, const Body& a, const Body& b) {
+  const JointTraits& traits = traits_of(j.kind);
   const Matrix3<double>&A = a.motion.rotation, &B = b.motion.rotation;
   const Vector3<double> d = b.motion.position + B * j.point_b - a.motion.position - A * j.point_a;
-  const Vector3<double> xa = A * j.axes_a.x, ya = A * j.axes_a.y, za = A * j.axes_a.z;
-  const Vector3<double> xb = B * j.axes_b.x, yb = B * j.axes_b.y, zb = B * j.axes_b.z;
-  Violation v;
-  switch (hold_of(j.kind)) {
-    case Hold::point: v.displacement = norm(d); break;
-    case Hold::line: v.displacement = norm(d - dot(za, d) * za); break;
-    case Hold::plane: v.displacement = std::abs(dot(za, d)); break;
-    case Hold::length: v.displacement = std::abs(norm(d) - j.length); break;
-    default: break;  // a bushing is meant to give way
-  }
-  if (j.kind == JointKind::bushing) return v;
-  switch (align_of(j.kind)) {
-    case Align::parallel: v.rotation = norm(cross(za, zb)); break;
-    case Align::locked: v.rotation = 0.5 * norm(cross(xa, xb) + cross(ya, yb) + cross(za, zb)); break;
-    case Align::cross: v.rotation = std::abs(dot(xa, yb)); break;
-    case Align::constant_velocity: v.rotation = 0.5 * std::abs(dot(ya, xb) - dot(xa, yb)); break;
-    default: break;
-  }
-  return v;
+  const detail::FrameOfA at{j, A};
+  return {detail::opening(j, traits.hold, at, d), detail::misalignment(j, traits.align, at, B)};
 }
 
 }  // namespace dem::mbd

@@ -1,12 +1,21 @@
 #pragma once
 
-#include <dem/core/error.hpp>
+// What the library knows of a kind of joint. Each kind says it in a file of its own, beside the function that makes
+// such a joint; kinds.hpp has the list. A new kind is a file, a name in JointKind and a line in that list.
 
-#include <algorithm>
+#include <dem/math/vector.hpp>
+#include <dem/mbd/joint/dof.hpp>
+
 #include <string>
-#include <vector>
+
+namespace dem {
+struct Body;
+}
 
 namespace dem::mbd {
+
+struct Joint;
+struct JointSpec;
 
 /// What a joint leaves free. Joint frame: origin in the joint's point, z along its axis.
 enum class JointKind {
@@ -25,97 +34,54 @@ enum class JointKind {
   free                ///< everything; measures a rotation and a displacement, e.g. for a rotational actuator
 };
 
-inline const char* name_of(JointKind kind) {
-  constexpr const char* names[] = {
-      "fixed joint",         "spherical joint",      "revolute joint",  "cylindrical joint",
-      "prismatic joint",     "planar joint",         "universal joint", "constant-velocity joint",
-      "point-on-line joint", "point-on-plane joint", "distance joint",  "bushing",
-      "free joint"};
-  return names[static_cast<int>(kind)];
-}
-
-/// A coordinate of a joint, seen from body a: how far b's point has moved along an axis of a's joint frame, or how b
-/// has turned.
-enum class Dof {
-  own,      ///< the rotation of joints that turn about z, the displacement of those that slide along z, or the length
-  turn,     ///< rad, about z, over whole turns
-  slide,    ///< m, along z
-  slide_x,  ///< m
-  slide_y,  ///< m
-  length,   ///< m, between the points of a distance joint; it is held, so it can only be read
-  bend,     ///< rad, angle between the two z axes, 0 to pi
-  bend_x,   ///< rad, of a universal joint: about x of body a, the arm of its cross on a
-  bend_y    ///< rad, of a universal joint: about y of body b, the arm of its cross on b
+/// Which displacements of b's point in a's joint frame are held at zero (hold.hpp).
+enum class Hold { nothing, point, line, plane, length, bushing };
+/// Which rotations of b's joint frame in a's are held (align.hpp).
+enum class Align { nothing, parallel, locked, cross, constant_velocity, bushing };
+/// What rubs in a joint (friction.hpp).
+enum class Bearing {
+  none,
+  journal,  ///< turns about z
+  guide,    ///< slides along z
+  sleeve,   ///< turns about z and slides along z
+  plate,    ///< slides along x and y; turns about z too, if it has a radius
+  point,    ///< slides along x and y
+  socket    ///< turns about x, y and z
+};
+/// Where the stiffness of a joint comes from.
+enum class Stiffness {
+  derived,  ///< what is not given is derived from the time step
+  own,      ///< constants for each direction, all of them given
+  none      ///< it holds nothing
 };
 
-inline const char* name_of(Dof dof) {
-  constexpr const char* names[] = {"coordinate", "turn", "slide",  "slide_x", "slide_y",
-                                   "length",     "bend", "bend_x", "bend_y"};
-  return names[static_cast<int>(dof)];
-}
-constexpr bool is_rotation(Dof f) { return f == Dof::turn || f >= Dof::bend; }
+struct JointTraits {
+  JointKind kind;
+  const char* name;                 ///< in reports
+  Dofs dofs = {};                   ///< the degrees of freedom that can be read
+  Dof own = Dof::own;               ///< which of them is meant where none is named; `own`: none of them
+  Bearing bearing = Bearing::none;  ///< what rubs
+  Stiffness stiffness = Stiffness::derived;
+  bool two_axes = false;      ///< each body has an axis of its own, up to 87 deg from the other's
+  bool points_apart = false;  ///< the two points need not meet
+  /// Whether another pose changes how easily the bodies give way: the lever on body a grows as the joint slides, or the
+  /// directions that it holds turn in one of the bodies.
+  bool changes_with_pose = true;
+  /// Throws Error for what this kind cannot be given; called by `who`. May be left out.
+  void (*check)(const JointSpec& spec, const std::string& who) = nullptr;
+  /// Takes over what this kind alone is given; `gap` (m) is from the point on a to that on b. May be left out.
+  void (*take)(Joint& joint, const JointSpec& spec, const Vec3& gap, const std::string& who) = nullptr;
 
-/// The coordinates that a kind of joint has, its own one first.
-inline std::vector<Dof> dofs_of(JointKind kind) {
-  using enum Dof;
-  switch (kind) {
-    case JointKind::revolute: return {turn};
-    case JointKind::cylindrical: return {turn, slide};
-    case JointKind::prismatic: return {slide};
-    case JointKind::planar: return {turn, slide_x, slide_y};
-    case JointKind::universal: return {bend_x, bend_y, bend};
-    case JointKind::spherical:
-    case JointKind::constant_velocity: return {bend};
-    case JointKind::point_on_line: return {slide, bend};
-    case JointKind::point_on_plane: return {slide_x, slide_y, bend};
-    case JointKind::bushing: return {slide, slide_x, slide_y, bend};
-    case JointKind::free: return {turn, slide, slide_x, slide_y, bend};
-    case JointKind::distance: return {length};
-    default: return {};
-  }
-}
+  // Set by joint_that_holds (penalty.hpp).
+  Hold hold = Hold::nothing;
+  Align align = Align::nothing;
+  /// Adds the joint's force to its bodies and keeps it as the reaction. wa, wb: rad/s, global. dt (s) is the time by
+  /// which the joint's turns are followed: the time step in the last stage of a step, else 0.
+  void (*force)(Joint& joint, Body& a, Body& b, const Vector3<double>& wa, const Vector3<double>& wb,
+                double dt) = nullptr;
 
-/// Whether a kind's own coordinate is a rotation about z (else a displacement along z).
-constexpr bool turns(JointKind kind) {
-  using enum JointKind;
-  return kind == revolute || kind == cylindrical || kind == planar || kind == free;
-}
-/// Whether a kind has a coordinate that slides along z.
-constexpr bool slides(JointKind kind) {
-  using enum JointKind;
-  return kind == prismatic || kind == cylindrical || kind == point_on_line || kind == free;
-}
-/// The same coordinate by the name it has among dofs_of(kind); `own` stays where a kind has no own one.
-constexpr Dof resolved(JointKind kind, Dof dof) {
-  if (dof != Dof::own) return dof;
-  if (kind == JointKind::distance) return Dof::length;
-  return turns(kind) ? Dof::turn : slides(kind) ? Dof::slide : Dof::own;
-}
-
-/// The coordinate's resolved name. Throws Error, with the coordinates that there are, unless joints of this kind have
-/// that one.
-inline Dof known_dof(JointKind kind, Dof dof, const std::string& who) {
-  dof = resolved(kind, dof);
-  const std::vector<Dof> list = dofs_of(kind);
-  if (std::find(list.begin(), list.end(), dof) != list.end()) return dof;
-  std::string known;
-  for (const Dof f : list) known += fmt::format("{}{}", known.empty() ? "" : ", ", name_of(f));
-  if (known.empty()) fail("{} refers to a {}, which leaves no coordinate free", who, name_of(kind));
-  if (dof == Dof::own) {
-    fail("{} refers to a {}, which has no coordinate of its own; name one of its degrees of freedom: {}", who,
-         name_of(kind), known);
-  }
-  fail("{} refers to '{}' of a {}, which has only: {}", who, name_of(dof), name_of(kind), known);
-}
-
-/// The same for what acts on a coordinate, which therefore has to be free.
-inline Dof require_free_dof(JointKind kind, Dof dof, const std::string& who) {
-  dof = known_dof(kind, dof, who);
-  if (dof == Dof::length) {
-    fail("{} acts on the length of a distance joint, which the joint holds; use a linear_actuator or a spring instead",
-         who);
-  }
-  return dof;
-}
+  /// Whether its own coordinate is a rotation about z, which is followed over whole turns.
+  constexpr bool turns() const { return own == Dof::turn; }
+};
 
 }  // namespace dem::mbd

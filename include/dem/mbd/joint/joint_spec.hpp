@@ -1,5 +1,6 @@
 #pragma once
 
+#include <dem/core/error.hpp>
 #include <dem/math/vector.hpp>
 #include <dem/mbd/ids.hpp>
 #include <dem/mbd/joint/joint_kind.hpp>
@@ -42,7 +43,7 @@ struct JointFriction {
   std::optional<double> velocity_stiffness = {};  ///< N s/m; derived if not given
 };
 
-/// What a joint is made from. The functions below make the usual ones; the `with_...` functions refine them.
+/// What a joint is made from. Each kind has a function that makes it (kinds.hpp); the `with_...` functions refine it.
 /// A stiffness or damping that is not given is derived when the machine learns its time step (see stability.hpp).
 struct JointSpec {
   std::string name;
@@ -95,6 +96,7 @@ struct JointSpec {
     s.limits.push_back(given);
     return s;
   }
+  bool has_stiffness_or_damping() const { return stiffness || damping || rotational_stiffness || rotational_damping; }
   JointSpec with_friction(const JointFriction& f) const {
     JointSpec s = *this;
     s.friction = f;
@@ -120,67 +122,6 @@ inline JointSpec joint(JointKind kind, std::string name, BodyId a, BodyId b, con
 inline JointSpec joint(JointKind kind, std::string name, ConnectionId a, ConnectionId b,
                        const Vec3& axis = Vec3::UnitZ()) {
   return {.name = std::move(name), .kind = kind, .axis_a = axis, .axis_b = axis, .connection_a = a, .connection_b = b};
-}
-
-inline JointSpec fixed(std::string name, BodyId a, BodyId b, const Vec3& at) {
-  return joint(JointKind::fixed, std::move(name), a, b, at);
-}
-inline JointSpec spherical(std::string name, BodyId a, BodyId b, const Vec3& at) {
-  return joint(JointKind::spherical, std::move(name), a, b, at);
-}
-inline JointSpec revolute(std::string name, BodyId a, BodyId b, const Vec3& at, const Vec3& axis) {
-  return joint(JointKind::revolute, std::move(name), a, b, at, axis);
-}
-inline JointSpec cylindrical(std::string name, BodyId a, BodyId b, const Vec3& at, const Vec3& axis) {
-  return joint(JointKind::cylindrical, std::move(name), a, b, at, axis);
-}
-inline JointSpec prismatic(std::string name, BodyId a, BodyId b, const Vec3& at, const Vec3& axis) {
-  return joint(JointKind::prismatic, std::move(name), a, b, at, axis);
-}
-inline JointSpec planar(std::string name, BodyId a, BodyId b, const Vec3& at, const Vec3& normal) {
-  return joint(JointKind::planar, std::move(name), a, b, at, normal);
-}
-/// Shaft a runs along axis_a and shaft b along axis_b, both pointing the way the torque goes. with_x gives the arm of
-/// the cross on shaft a; two joints in a row cancel their ripple if the arms on the shaft between them are parallel.
-inline JointSpec universal(std::string name, BodyId a, BodyId b, const Vec3& at, const Vec3& axis_a,
-                           const Vec3& axis_b) {
-  JointSpec s = joint(JointKind::universal, std::move(name), a, b, at, axis_a);
-  s.axis_b = axis_b;
-  return s;
-}
-inline JointSpec constant_velocity(std::string name, BodyId a, BodyId b, const Vec3& at, const Vec3& axis_a,
-                                   const Vec3& axis_b) {
-  JointSpec s = universal(std::move(name), a, b, at, axis_a, axis_b);
-  s.kind = JointKind::constant_velocity;
-  return s;
-}
-/// A point of b stays on a line that is fixed to a.
-inline JointSpec point_on_line(std::string name, BodyId a, BodyId b, const Vec3& at, const Vec3& axis) {
-  return joint(JointKind::point_on_line, std::move(name), a, b, at, axis);
-}
-/// A point of b stays on a plane that is fixed to a.
-inline JointSpec point_on_plane(std::string name, BodyId a, BodyId b, const Vec3& at, const Vec3& normal) {
-  return joint(JointKind::point_on_plane, std::move(name), a, b, at, normal);
-}
-/// A massless rod between a point of a and a point of b.
-inline JointSpec distance(std::string name, BodyId a, const Vec3& at_a, BodyId b, const Vec3& at_b) {
-  JointSpec s = joint(JointKind::distance, std::move(name), a, b, at_a);
-  s.at_b = at_b;
-  return s;
-}
-/// Springs (N/m, N m/rad) and dampers (N s/m, N m s/rad) along and about the x, y, z axes of a frame with z along axis.
-inline JointSpec bushing(std::string name, BodyId a, BodyId b, const Vec3& at, const Vec3& axis, const Vec3& stiffness,
-                         const Vec3& damping, const Vec3& rotational_stiffness, const Vec3& rotational_damping) {
-  JointSpec s = joint(JointKind::bushing, std::move(name), a, b, at, axis);
-  s.bushing_stiffness = stiffness;
-  s.bushing_damping = damping;
-  s.bushing_rotational_stiffness = rotational_stiffness;
-  s.bushing_rotational_damping = rotational_damping;
-  return s;
-}
-/// Holds nothing; measures the rotation about and the displacement along an axis.
-inline JointSpec free_joint(std::string name, BodyId a, BodyId b, const Vec3& at, const Vec3& axis) {
-  return joint(JointKind::free, std::move(name), a, b, at, axis);
 }
 
 }  // namespace dem::mbd

@@ -55,28 +55,7 @@ inline void check_penalty(const JointSpec& s, const std::string& who) {
   check(s.damping, "damping", "N s/m");
   check(s.rotational_stiffness, "rotational stiffness", "N m/rad");
   check(s.rotational_damping, "rotational damping", "N m s/rad");
-  if ((s.kind == JointKind::bushing || s.kind == JointKind::free) &&
-      (s.stiffness || s.damping || s.rotational_stiffness || s.rotational_damping)) {
-    fail("{} was given a stiffness or damping with with_stiffness or with_damping, which it does not use: {}", who,
-         s.kind == JointKind::bushing ? "a bushing has its own constants for each direction; give them to bushing(...)"
-                                      : "it holds nothing; use a bushing or another kind of joint");
-  }
-  if (s.kind == JointKind::bushing) {
-    for (const Vec3* v :
-         {&s.bushing_stiffness, &s.bushing_damping, &s.bushing_rotational_stiffness, &s.bushing_rotational_damping}) {
-      for (int k = 0; k < 3; ++k) require_non_negative((*v)[k], ("a constant of " + who).c_str(), "(SI units)");
-    }
-  }
-  if (s.kind == JointKind::bushing && s.bushing_stiffness.norm() + s.bushing_rotational_stiffness.norm() <= 0.0) {
-    fail("{} has no stiffness at all: give it bushing_stiffness (N/m) or bushing_rotational_stiffness (N m/rad)", who);
-  }
-}
-
-/// The part of the way from one point to the other in the directions that a joint holds: only there they have to meet.
-inline Vec3 held_part(Hold hold, const Vec3& z, const Vec3& gap) {
-  if (hold == Hold::line) return gap - z.dot(gap) * z;
-  if (hold == Hold::plane) return z.dot(gap) * z;
-  return gap;
+  if (const auto check_kind = traits_of(s.kind).check) check_kind(s, who);
 }
 
 /// What the coordinates are said to be at assembly. Throws Error for those that are what they are.
@@ -104,7 +83,8 @@ inline Joint make_joint(const Parts& parts, JointSpec& s) {
     fail("{} joins body '{}' to itself: a joint needs two different bodies; use machine.ground() for a fixed one", who,
          a.name);
   }
-  if (a.fixed && b.fixed && s.kind != JointKind::free) {
+  const JointTraits& traits = traits_of(s.kind);
+  if (a.fixed && b.fixed && traits.stiffness != Stiffness::none) {
     fail(
         "{} joins '{}' and '{}', which are both fixed, so it would hold nothing; leave it out, or measure with a "
         "free_joint",
@@ -114,17 +94,15 @@ inline Joint make_joint(const Parts& parts, JointSpec& s) {
   finite_point(s.at_a, "the point on body a of " + who);
   finite_point(s.at_b, "the point on body b of " + who);
   Vec3 za = unit(s.axis_a, "the axis of " + who), zb = unit(s.axis_b, "the axis of " + who);
-  const bool has_own_axes = s.kind == JointKind::universal || s.kind == JointKind::constant_velocity;
   // Points and axes that nearly meet are put in the middle: the joint starts at rest, not stretched by the gap.
-  const bool has_one_axis = !has_own_axes && align_of(s.kind) != Align::nothing;
+  const bool has_one_axis = !traits.two_axes && traits.align != Align::nothing;
   const double crooked = za.cross(zb).norm() + (za.dot(zb) < 0.0);
   const double angle = std::acos(std::clamp(za.dot(zb), -1.0, 1.0));
   if (has_one_axis && crooked <= s.tolerance && zb != za) za = zb = (za + zb).normalized();
   const Vec3 gap = s.at_b - s.at_a;
-  const bool may_be_apart = s.kind == JointKind::distance || s.kind == JointKind::free;
-  const Vec3 held_gap = held_part(hold_of(s.kind), za, gap);
+  const Vec3 held_gap = held_part(traits.hold, za, gap);
   const double apart = held_gap.norm();
-  if (!may_be_apart && !(apart <= s.tolerance)) {
+  if (!traits.points_apart && !(apart <= s.tolerance)) {
     fail(
         "the points of {} do not meet: ({:g}, {:g}, {:g}) on body '{}' and ({:g}, {:g}, {:g}) on body '{}' are {:g} m "
         "apart, allowed is {:g} m; move a body or a point, or raise the joint's tolerance",
@@ -137,7 +115,7 @@ inline Joint make_joint(const Parts& parts, JointSpec& s) {
         "tolerance",
         who, angle, s.tolerance);
   }
-  if (has_own_axes && za.dot(zb) < 0.05) {
+  if (traits.two_axes && za.dot(zb) < 0.05) {
     fail("the shafts of {} are bent by {:g} deg, allowed is 87 deg; point both axes the way the torque goes", who,
          angle * 180.0 / std::numbers::pi);
   }
@@ -146,13 +124,13 @@ inline Joint make_joint(const Parts& parts, JointSpec& s) {
   j.a = s.a.value;
   j.b = s.b.value;
   j.kind = s.kind;
-  j.turns = turns(s.kind);
-  const Vec3 to_middle = may_be_apart ? Vec3(Vec3::Zero()) : Vec3(0.5 * held_gap);
+  j.turns = traits.turns();
+  const Vec3 to_middle = traits.points_apart ? Vec3(Vec3::Zero()) : Vec3(0.5 * held_gap);
   j.point_a = from_eigen(to_body(a, s.at_a + to_middle));
   j.point_b = from_eigen(to_body(b, s.at_b - to_middle));
   const Vec3 xa = x_of_frame(s, za, who);
   Vec3 xb = xa;
-  if (s.kind == JointKind::universal) {
+  if (traits.align == Align::cross) {
     const Vec3 yb = zb.cross(xa).normalized();  // the second arm of the cross, square to the first
     xb = yb.cross(zb);
   } else if (zb != za) {
@@ -161,28 +139,12 @@ inline Joint make_joint(const Parts& parts, JointSpec& s) {
   j.axes_a = axes_in_body(a, xa, za);
   j.axes_b = axes_in_body(b, xb, zb);
   set_starts(j, s, who);
-  j.length = s.length ? require_positive(*s.length, ("length of " + who).c_str(), "m") : gap.norm();
-  if (s.kind == JointKind::distance && !(std::abs(j.length - gap.norm()) <= s.tolerance)) {
-    fail(
-        "{} is {:g} m long, but its points are {:g} m apart, allowed is a difference of {:g} m; move a point, leave "
-        "the length out, or raise the joint's tolerance for a rod that starts under load",
-        who, j.length, gap.norm(), s.tolerance);
-  }
-  if (s.kind == JointKind::distance && !(gap.norm() > 1e-9)) {
-    fail("the points of {} are {:g} m apart, but need a distance; use a spherical joint for points that meet", who,
-         gap.norm());
-  }
   // What is given counts from the start; the rest waits for the time step.
   j.k = s.stiffness.value_or(0.0);
   j.c = s.damping.value_or(0.0);
   j.kr = s.rotational_stiffness.value_or(0.0);
   j.cr = s.rotational_damping.value_or(0.0);
-  if (s.kind == JointKind::bushing) {
-    j.k3 = from_eigen(s.bushing_stiffness);
-    j.c3 = from_eigen(s.bushing_damping);
-    j.kr3 = from_eigen(s.bushing_rotational_stiffness);
-    j.cr3 = from_eigen(s.bushing_rotational_damping);
-  }
+  if (traits.take) traits.take(j, s, gap, who);
   return j;
 }
 
@@ -211,35 +173,6 @@ inline void add_limits(Parts& parts, JointSpec& s, const Joint& j, std::uint32_t
     parts.limits.push_back(
         {joint, l.dof, l.lower, l.upper, l.stiffness.value_or(0.0), l.damping.value_or(0.0), 0.0, {0, 0, 0}});
   }
-}
-
-inline void add_friction(Parts& parts, const JointSpec& s, std::uint32_t joint) {
-  if (!s.friction) return;
-  const std::string who = fmt::format("{} '{}'", name_of(s.kind), s.name);
-  using enum JointKind;
-  if (s.kind == fixed || s.kind == distance || s.kind == bushing || s.kind == free) {
-    fail("{} has friction, but nothing in it slides; a bushing has dampers, and other kinds of joint have friction",
-         who);
-  }
-  JointFrictionState e;
-  e.joint = joint;
-  const std::string radius = "JointFriction::radius, of the bearing of " + who;
-  if (s.kind == prismatic || s.kind == point_on_line || s.kind == point_on_plane) {
-    if (s.friction->radius != 0.0) {
-      fail("{} is {:g} m, but only the sliding of a {} rubs; leave the radius out", radius, s.friction->radius,
-           name_of(s.kind));
-    }
-  } else if (s.kind == planar) {
-    e.radius = require_non_negative(s.friction->radius, radius.c_str(), "m");
-  } else {
-    e.radius = require_positive(s.friction->radius, radius.c_str(), "m");
-  }
-  e.preload = require_non_negative(s.friction->preload, ("preload of " + who).c_str(), "N");
-  e.lever = require_non_negative(s.friction->lever, ("lever of " + who).c_str(), "m");
-  e.law = {s.friction->coefficient, s.friction->stiffness.value_or(0.0), s.friction->velocity_stiffness.value_or(0.0),
-           s.friction->breaking_factor};
-  friction::AsperitySpring::check(e.law);
-  parts.friction.push_back(e);
 }
 
 }  // namespace dem::mbd::detail

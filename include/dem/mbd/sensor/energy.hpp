@@ -19,33 +19,11 @@ inline Vec3 angular_momentum(const Body& b) {
 
 /// J, stored in a joint's penalty springs.
 inline double elastic_energy(const Joint& j, const Body& a, const Body& b) {
+  const JointTraits& traits = traits_of(j.kind);
   const Matrix3<double>&A = a.motion.rotation, &B = b.motion.rotation;
   const Vector3<double> d = b.motion.position + B * j.point_b - a.motion.position - A * j.point_a;
-  const auto dots = [&](const Vector3<double>& in_a, const Vector3<double>& in_b) { return dot(A * in_a, B * in_b); };
-  const auto along = [&](const Vector3<double>& axis) { return dot(A * axis, d); };
-  const Axes &x = j.axes_a, &y = j.axes_b;
-  const Violation v = violation_of(j, a, b);
-  double energy = 0.5 * j.k * v.displacement * v.displacement;
-  if (hold_of(j.kind) == Hold::bushing) {
-    energy =
-        0.5 * (j.k3.x * along(x.x) * along(x.x) + j.k3.y * along(x.y) * along(x.y) + j.k3.z * along(x.z) * along(x.z));
-  }
-  const double bend[3] = {1.0 - dots(x.x, y.x), 1.0 - dots(x.y, y.y), 1.0 - dots(x.z, y.z)};
-  switch (align_of(j.kind)) {
-    case Align::parallel: energy += j.kr * bend[2]; break;
-    case Align::locked:
-      if (j.kind == JointKind::bushing) {
-        const Vector3<double> r = rotation_vector(A * x.x, A * x.y, A * x.z, B * y.x, B * y.y, B * y.z);
-        energy += 0.5 * (j.kr3.x * r.x * r.x + j.kr3.y * r.y * r.y + j.kr3.z * r.z * r.z);
-      } else {
-        energy += 0.5 * j.kr * (bend[0] + bend[1] + bend[2]);
-      }
-      break;
-    case Align::cross:
-    case Align::constant_velocity: energy += 0.5 * j.kr * v.rotation * v.rotation; break;
-    case Align::nothing: break;
-  }
-  return energy;
+  const detail::FrameOfA at{j, A};
+  return detail::holding_energy(j, traits.hold, at, d) + detail::aligning_energy(j, traits.align, at, B);
 }
 
 /// The energies of a machine in J: of motion, of height (against gravity, from the origin) and in its joints. Springs,

@@ -41,13 +41,12 @@ inline Dof dof_of(const CouplingSpec::Term& term, const Parts& parts, std::size_
   const Joint& j = known_joint(parts, term.joint, who);
   Dof dof = resolved(j.kind, term.dof);
   if (term.needs != any) {
-    const std::vector<Dof> all = dofs_of(j.kind);
-    const auto has = [&](Dof f) { return std::find(all.begin(), all.end(), f) != all.end(); };
+    const Dofs& all = dofs_of(j.kind);
     const bool turns = term.needs == rotation;
-    if (term.dof == Dof::own && has(turns ? Dof::turn : Dof::slide)) {
+    if (term.dof == Dof::own && all.has(turns ? Dof::turn : Dof::slide)) {
       dof = turns ? Dof::turn : Dof::slide;
     }
-    if (dof == Dof::own || !has(dof) || is_rotation(dof) != turns) {
+    if (dof == Dof::own || !all.has(dof) || is_rotation(dof) != turns) {
       fail(
           "{} needs as joint {} one that {}, but '{}' is a {}{}; exchange the joints, or name a degree of freedom that "
           "{} in the "

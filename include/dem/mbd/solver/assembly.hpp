@@ -45,7 +45,10 @@ class Assembly : public Mechanism {
     const std::size_t limits = parts_.limits.size();
     try {
       detail::add_limits(parts_, spec, j, number);
-      detail::add_friction(parts_, spec, number);
+      if (spec.friction) {
+        const std::string who = fmt::format("{} '{}'", name_of(spec.kind), spec.name);
+        parts_.friction.push_back(detail::make_friction(spec, number, who));
+      }
     } catch (...) {  // a refused joint leaves nothing behind
       parts_.limits.resize(limits);
       throw;

@@ -30,7 +30,7 @@ struct Derivation {
       : dt(require_positive(time_step, "time step", "s")), shares(shares_of(m, elements_of(m))) {}
 
   void fill(const Parts& m, const JointSpec& s, Joint& j) const {
-    if (j.kind == JointKind::bushing || j.kind == JointKind::free) return;
+    if (traits_of(j.kind).stiffness != Stiffness::derived) return;
     const JointInverseMass w = inverse_mass_of(j, m.bodies[j.a], m.bodies[j.b]);
     const double displacement = shares[j.a] * w.displacement_a + shares[j.b] * w.displacement_b;
     const double rotation = shares[j.a] * w.rotation_a + shares[j.b] * w.rotation_b;
@@ -100,10 +100,10 @@ inline Parts without_derived(Parts m) {
 inline std::string first_underived(const Parts& m) {
   using namespace detail;
   for (const JointSpec& s : m.joint_specs) {
-    const bool holds = s.kind != JointKind::bushing && s.kind != JointKind::free;  // with stiffness that is derived
-    const bool displacement = holds && hold_of(s.kind) != Hold::nothing && !(s.stiffness && s.damping);
-    const bool rotation =
-        holds && align_of(s.kind) != Align::nothing && !(s.rotational_stiffness && s.rotational_damping);
+    const JointTraits& traits = traits_of(s.kind);
+    const bool holds = traits.stiffness == Stiffness::derived;
+    const bool displacement = holds && traits.hold != Hold::nothing && !(s.stiffness && s.damping);
+    const bool rotation = holds && traits.align != Align::nothing && !(s.rotational_stiffness && s.rotational_damping);
     if (displacement || rotation) return fmt::format("{} '{}'", name_of(s.kind), s.name);
     for (const JointLimits& l : s.limits) {
       if (!(l.stiffness && l.damping)) return fmt::format("limits of '{}'", s.name);

@@ -1,8 +1,11 @@
 #pragma once
 
-// How easily bodies give way: displacement per unit force and turn per unit torque, M^-1 at a point and in a direction.
+// How easily bodies give way. The effective mass of a body at a point and in a direction n is 1/(n.W n), where W is the
+// acceleration per unit force there; of a rotation it is an inertia. What is computed is its inverse, 0 for fixed
+// bodies.
 
 #include <dem/mbd/joint/coordinate.hpp>
+#include <dem/mbd/joint/friction.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -56,72 +59,36 @@ inline double largest_inverse_mass(const Body& b, const Vec3& arm) {
   return 1.0 / b.mass + largest_eigenvalue_of_two(inverse_mass_matrix(b, arm) - Mat3::Identity() / b.mass);
 }
 
-/// Square roots of a joint's stiffness, of size 1 where it is the same in all held directions; global axes.
-struct HeldDirections {
-  Mat3 displacement = Mat3::Zero(), rotation = Mat3::Zero();
-};
-inline HeldDirections held_directions(const Joint& j, const Body& a, const Body& b) {
-  const Mat3 A = a.rotation();
-  const auto global = [&](const Vector3<double>& v) { return Vec3(A * to_eigen(v)); };
-  Mat3 axes;
-  axes << global(j.axes_a.x), global(j.axes_a.y), global(j.axes_a.z);
-  const Vec3 z = axes.col(2);
-  const auto roots = [&](const Vector3<double>& k) {
-    return Mat3(axes * to_eigen(k).cwiseSqrt().asDiagonal() * axes.transpose());
-  };
-  HeldDirections held;
-  switch (hold_of(j.kind)) {
-    case Hold::point: held.displacement.setIdentity(); break;
-    case Hold::line: held.displacement = Mat3::Identity() - z * z.transpose(); break;
-    case Hold::plane: held.displacement = z * z.transpose(); break;
-    case Hold::length: {
-      const Vec3 n = (b.point(to_eigen(j.point_b)) - a.point(to_eigen(j.point_a))).normalized();
-      held.displacement = n * n.transpose();
-      break;
-    }
-    case Hold::bushing: held.displacement = roots(j.k3); break;
-    case Hold::nothing: break;
-  }
-  switch (align_of(j.kind)) {
-    case Align::parallel: held.rotation = Mat3::Identity() - z * z.transpose(); break;
-    case Align::locked: held.rotation = j.kind == JointKind::bushing ? roots(j.kr3) : Mat3(Mat3::Identity()); break;
-    case Align::cross: {
-      const Vec3 g = Vec3(b.rotation() * to_eigen(j.axes_b.y)).cross(axes.col(0)).normalized();  // square to the cross
-      held.rotation = g * g.transpose();
-      break;
-    }
-    case Align::constant_velocity: {
-      const Vec3 g = Vec3(z + b.rotation() * to_eigen(j.axes_b.z)).normalized();  // half way between the shafts
-      held.rotation = g * g.transpose();
-      break;
-    }
-    case Align::nothing: break;
-  }
-  return held;
-}
-
-/// Mobilities of the two bodies of a joint, displacement and rotation in held directions.
+/// Inverse effective masses of the two bodies of a joint (1/kg), and inverse effective inertias (1/(kg m^2)), each the
+/// largest in a held direction. Of a bushing they are times its stiffness.
 struct JointInverseMass {
   double displacement_a, displacement_b, rotation_a, rotation_b;
 };
 inline JointInverseMass inverse_mass_of(const Joint& j, const Body& a, const Body& b) {
-  const HeldDirections held = held_directions(j, a, b);
-  const bool bushing = j.kind == JointKind::bushing;
-  const bool all_displacements = hold_of(j.kind) == Hold::point, all_rotations = align_of(j.kind) == Align::locked;
-  const auto gain = [&](const Mat3& root, const Mat3& w) {
-    return bushing ? largest_eigenvalue(root * w * root) : largest_eigenvalue_of_two(root * w * root);
+  const JointTraits& traits = traits_of(j.kind);
+  const Mat3 A = a.rotation();
+  const auto global = [&](const Vector3<double>& v) { return Vec3(A * to_eigen(v)); };
+  Mat3 axes;
+  axes << global(j.axes_a.x), global(j.axes_a.y), global(j.axes_a.z);
+  const Vec3 point = b.point(to_eigen(j.point_b));
+  const auto largest = [&](const Mat3& root, const Mat3& w) {
+    return traits.stiffness == Stiffness::own ? largest_eigenvalue(root * w * root)
+                                              : largest_eigenvalue_of_two(root * w * root);
   };
+  const Mat3 held = held_displacements(j, traits.hold, axes, point - a.point(to_eigen(j.point_a)));
   const auto displacement = [&](const Body& x) {
-    const Vec3 arm = b.point(to_eigen(j.point_b)) - x.position();
-    return all_displacements ? largest_inverse_mass(x, arm) : gain(held.displacement, inverse_mass_matrix(x, arm));
+    const Vec3 arm = point - x.position();
+    return traits.hold == Hold::point ? largest_inverse_mass(x, arm) : largest(held, inverse_mass_matrix(x, arm));
   };
+  const Mat3 aligned = held_rotations(j, traits.align, axes, b.rotation());
   const auto rotation = [&](const Body& x) {
-    return all_rotations && !bushing ? largest_inverse_inertia(x) : gain(held.rotation, inverse_inertia_of(x));
+    return traits.align == Align::locked ? largest_inverse_inertia(x) : largest(aligned, inverse_inertia_of(x));
   };
   return {displacement(a), displacement(b), rotation(a), rotation(b)};
 }
 
-/// Mobilities of the two bodies along a coordinate of their joint. The axis of a bend may point anywhere.
+/// Inverse effective masses or inertias of the two bodies along a coordinate of their joint. The axis of a bend may
+/// point anywhere.
 inline std::pair<double, double> inverse_mass_along(const Joint& j, const Body& a, const Body& b, Dof dof) {
   if (dof == Dof::bend) {
     return {largest_inverse_inertia(a), largest_inverse_inertia(b)};
@@ -131,34 +98,19 @@ inline std::pair<double, double> inverse_mass_along(const Joint& j, const Body& 
   return {inverse_mass_at(a, q.arm_a, q.axis), inverse_mass_at(b, q.arm_b, q.axis)};
 }
 
-/// Mobilities of the two bodies along the directions that a joint's friction acts in: the largest of them, as all have
-/// the same spring; rotations times the square of the bearing's radius, which turns sliding into rotation.
+/// The same along the directions that a joint's friction acts in: the largest of them, as all have the same spring;
+/// rotations times the square of the bearing's radius, which turns sliding into rotation.
 inline std::pair<double, double> inverse_mass_of_friction(const Joint& j, const Body& a, const Body& b, double radius) {
   std::pair<double, double> most = {0.0, 0.0};
-  const auto consider = [&](Dof dof) {
+  for (const Dof dof : rubbing_dofs(traits_of(j.kind).bearing)) {
     const double share = is_rotation(dof) ? radius * radius : 1.0;
     const auto [wa, wb] = inverse_mass_along(j, a, b, dof);
     most = {std::max(most.first, share * wa), std::max(most.second, share * wb)};
-  };
-  switch (j.kind) {
-    case JointKind::planar: consider(Dof::turn); [[fallthrough]];
-    case JointKind::point_on_plane:
-      consider(Dof::slide_x);
-      consider(Dof::slide_y);
-      break;
-    case JointKind::cylindrical:
-      consider(Dof::turn);
-      consider(Dof::slide);
-      break;
-    case JointKind::revolute: consider(Dof::turn); break;
-    case JointKind::prismatic:
-    case JointKind::point_on_line: consider(Dof::slide); break;
-    default: consider(Dof::bend); break;
   }
   return most;
 }
 
-/// Mobility of the line between two points.
+/// The same along the line between two points.
 inline std::pair<double, double> inverse_mass_of_line(const Vector3<double>& point_a, const Vector3<double>& point_b,
                                                       const Body& a, const Body& b) {
   const Coordinate q = distance_of(point_a, point_b, a, b);

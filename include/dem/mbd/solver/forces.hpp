@@ -36,7 +36,9 @@ DEM_FLATTEN inline void add_forces(Parts& m, double time, double dt, bool is_las
     m.outside[i] = {b.force, b.torque};
   }
   for (Load& load : m.loads) apply_load(load, m.bodies, time, dt);
-  for (Joint& j : m.joints) apply_penalty(j, m.bodies[j.a], m.bodies[j.b], m.spin[j.a], m.spin[j.b], followed);
+  for (Joint& j : m.joints) {
+    traits_of(j.kind).force(j, m.bodies[j.a], m.bodies[j.b], m.spin[j.a], m.spin[j.b], followed);
+  }
   for (JointFrictionState& e : m.friction) {
     const Joint& j = m.joints[e.joint];
     apply_friction(e, j, m.bodies[j.a], m.bodies[j.b], followed, is_last_stage);

@@ -4,7 +4,8 @@
 #include <dem/mbd/drive/actuator.hpp>
 #include <dem/mbd/drive/prescribed.hpp>
 #include <dem/mbd/joint/coupling.hpp>
-#include <dem/mbd/joint/joint_extras.hpp>
+#include <dem/mbd/joint/friction.hpp>
+#include <dem/mbd/joint/limits.hpp>
 #include <dem/mbd/load/load.hpp>
 #include <dem/mbd/sensor/sensor.hpp>
 

@@ -8,13 +8,6 @@
 
 namespace dem::mbd {
 
-/// Whether another pose changes how easily the bodies give way to a joint of this kind: its lever on body a grows as it
-/// slides, or the directions that it holds turn in one of the bodies.
-constexpr bool changes_with_pose(JointKind kind) {
-  using enum JointKind;
-  return kind != fixed && kind != spherical && kind != revolute;
-}
-
 /// Keeps what was derived for one pose stable in others. A joint at a lever L of a body moves it by 1/m + L^2/I per
 /// newton, so a spring that was laid out for a short lever is too stiff for a long one. Every few steps such springs
 /// are lowered to what would be derived in the present pose, with their limits, friction and couplings; users' values
@@ -32,10 +25,10 @@ class Softening {
     for (std::uint32_t i = 0; i < m.joints.size(); ++i) {
       const JointSpec& s = m.joint_specs[i];
       const bool given = s.stiffness && s.damping && s.rotational_stiffness && s.rotational_damping;
-      const bool holds = s.kind != JointKind::bushing && s.kind != JointKind::free;
-      if (changes_with_pose(s.kind) && holds && !given) joints_.push_back(i);
+      const JointTraits& traits = traits_of(s.kind);
+      if (traits.changes_with_pose && traits.stiffness == Stiffness::derived && !given) joints_.push_back(i);
     }
-    const auto changes = [&](std::uint32_t joint) { return changes_with_pose(m.joints[joint].kind); };
+    const auto changes = [&](std::uint32_t joint) { return traits_of(m.joints[joint].kind).changes_with_pose; };
     for (std::uint32_t i = 0; i < m.limits.size(); ++i) {
       if (changes(m.limits[i].joint)) limits_.push_back(i);
     }

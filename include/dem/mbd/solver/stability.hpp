@@ -61,10 +61,11 @@ inline std::vector<Element> elements_of(const Parts& m) {
   std::vector<Element> list;
   for (std::size_t i = 0; i < m.joints.size(); ++i) {
     const Joint& j = m.joints[i];
-    if (j.kind == JointKind::free) continue;
+    const Stiffness stiffness = traits_of(j.kind).stiffness;
+    if (stiffness == Stiffness::none) continue;
     const JointInverseMass w = inverse_mass_of(j, m.bodies[j.a], m.bodies[j.b]);
     Element e{joint, i, {{j.a}, {j.b}}};
-    if (j.kind == JointKind::bushing) {  // its inverse masses hold the stiffness, and those of its dampers the damping
+    if (stiffness == Stiffness::own) {  // its inverse masses hold the stiffness, and those of its dampers the damping
       Joint damper = j;
       damper.k3 = j.c3;
       damper.kr3 = j.cr3;

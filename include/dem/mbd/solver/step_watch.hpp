@@ -36,10 +36,10 @@ class StepWatch {
   static bool may_grow(const Parts& m) {
     if (!m.springs.empty()) return true;
     for (const JointSpec& s : m.joint_specs) {
-      if (changes_with_pose(s.kind) && has_given(s)) return true;
+      if (traits_of(s.kind).changes_with_pose && has_given(s)) return true;
     }
     for (const Actuator& u : m.actuators) {
-      if (!u.spec.joint.valid() || changes_with_pose(m.joints[u.spec.joint.index()].kind)) return true;
+      if (!u.spec.joint.valid() || traits_of(m.joints[u.spec.joint.index()].kind).changes_with_pose) return true;
     }
     for (const Coupling& c : m.couplings) {
       if (c.spec.stiffness || c.spec.damping) return true;
@@ -50,8 +50,7 @@ class StepWatch {
     const bool limits =
         std::any_of(s.limits.begin(), s.limits.end(), [](const JointLimits& l) { return l.stiffness || l.damping; });
     const bool friction = s.friction && (s.friction->stiffness || s.friction->velocity_stiffness);
-    return limits || friction || s.kind == JointKind::bushing || s.stiffness || s.damping || s.rotational_stiffness ||
-           s.rotational_damping;
+    return limits || friction || traits_of(s.kind).stiffness == Stiffness::own || s.has_stiffness_or_damping();
   }
   /// omega^2 dt^2 + 2 c dt of the worst part, by the better bound, over 4: below 1 each of the integrators is stable.
   static double share_of_limit(const Parts& m, double dt) {

@@ -1,0 +1,109 @@
+#pragma once
+
+// All that there is to know of the displacements that a joint holds: one struct for each Hold. Springs are the gradient
+// of an energy, so that without damping energy is kept; with d = x_b - x_a, the way from a's point to b's:
+//   point  k/2 |d|^2   line  k/2 |d - z z.d|^2   plane  k/2 (z.d)^2   length  k/2 (|d| - l)^2
+//   bushing  (kx (x.d)^2 + ky (y.d)^2 + kz (z.d)^2) / 2
+
+#include <dem/mbd/joint/joint.hpp>
+
+#include <cmath>
+
+namespace dem::mbd::detail {
+
+/// Axes of a's joint frame, global. Those that a joint does not need are never computed.
+struct FrameOfA {
+  const Joint& joint;
+  const Matrix3<double>& A;
+  DEM_HOT Vector3<double> x() const { return A * joint.axes_a.x; }
+  DEM_HOT Vector3<double> y() const { return A * joint.axes_a.y; }
+  DEM_HOT Vector3<double> z() const { return A * joint.axes_a.z; }
+};
+
+/// The force (N) on b of the springs and dampers at a displacement d (m) and its rate v (m/s), global.
+template <Hold hold>
+DEM_HOT Vector3<double> holding_force(const Joint& j, const FrameOfA& at, const Vector3<double>& d,
+                                      const Vector3<double>& v) {
+  using V = Vector3<double>;
+  if constexpr (hold == Hold::point) {
+    return -(j.k * d) - j.c * v;
+  } else if constexpr (hold == Hold::line) {
+    const V z = at.z();
+    return -(j.k * (d - dot(z, d) * z)) - j.c * (v - dot(z, v) * z);
+  } else if constexpr (hold == Hold::plane) {
+    const V z = at.z();
+    return -(j.k * dot(z, d) + j.c * dot(z, v)) * z;
+  } else if constexpr (hold == Hold::length) {
+    const double l = norm(d);
+    const V n = (1.0 / max(l, 1e-300)) * d;
+    return -(j.k * (l - j.length) + j.c * dot(n, v)) * n;
+  } else if constexpr (hold == Hold::bushing) {
+    const V x = at.x(), y = at.y(), z = at.z();
+    return -(j.k3.x * dot(x, d) + j.c3.x * dot(x, v)) * x - (j.k3.y * dot(y, d) + j.c3.y * dot(y, v)) * y -
+           (j.k3.z * dot(z, d) + j.c3.z * dot(z, v)) * z;
+  } else {
+    return V{0, 0, 0};
+  }
+}
+
+/// How far (m) a joint is from holding what it should at a displacement d. A bushing is meant to give way.
+inline double opening(const Joint& j, Hold hold, const FrameOfA& at, const Vector3<double>& d) {
+  switch (hold) {
+    case Hold::point: return norm(d);
+    case Hold::line: return norm(d - dot(at.z(), d) * at.z());
+    case Hold::plane: return std::abs(dot(at.z(), d));
+    case Hold::length: return std::abs(norm(d) - j.length);
+    case Hold::bushing:
+    case Hold::nothing: break;
+  }
+  return 0.0;
+}
+
+/// J, in the springs at a displacement d.
+inline double holding_energy(const Joint& j, Hold hold, const FrameOfA& at, const Vector3<double>& d) {
+  if (hold == Hold::bushing) {
+    const double x = dot(at.x(), d), y = dot(at.y(), d), z = dot(at.z(), d);
+    return 0.5 * (j.k3.x * x * x + j.k3.y * y * y + j.k3.z * z * z);
+  }
+  const double open = opening(j, hold, at, d);
+  return 0.5 * j.k * open * open;
+}
+
+/// The part of the way from one point to the other in the directions that are held, with z the joint's axis: only there
+/// two points have to meet at assembly.
+inline Vec3 held_part(Hold hold, const Vec3& z, const Vec3& gap) {
+  if (hold == Hold::line) return gap - z.dot(gap) * z;
+  if (hold == Hold::plane) return z.dot(gap) * z;
+  return gap;
+}
+
+/// The axes of a's joint frame, in a, along which b's point is held at a fixed place: `each(axis)`. A joint of given
+/// length and a bushing have none.
+template <class F>
+void for_each_held_axis(const Joint& j, Hold hold, F&& each) {
+  if (hold == Hold::point || hold == Hold::line) {
+    each(j.axes_a.x);
+    each(j.axes_a.y);
+  }
+  if (hold == Hold::point || hold == Hold::plane) each(j.axes_a.z);
+}
+
+/// The square root of the stiffness as a matrix, of size 1 where it is the same in all held directions; `axes` has the
+/// axes of a's joint frame as columns, d is the displacement; global.
+inline Mat3 held_displacements(const Joint& j, Hold hold, const Mat3& axes, const Vec3& d) {
+  const Vec3 z = axes.col(2);
+  switch (hold) {
+    case Hold::point: return Mat3::Identity();
+    case Hold::line: return Mat3::Identity() - z * z.transpose();
+    case Hold::plane: return z * z.transpose();
+    case Hold::length: {
+      const Vec3 n = d.normalized();
+      return n * n.transpose();
+    }
+    case Hold::bushing: return axes * to_eigen(j.k3).cwiseSqrt().asDiagonal() * axes.transpose();
+    case Hold::nothing: break;
+  }
+  return Mat3::Zero();
+}
+
+}  // namespace dem::mbd::detail
