@@ -92,7 +92,8 @@ TEST_CASE("a joint whose points and axes nearly meet starts at rest, in the midd
     CHECK(m.violation(j).displacement < 1e-15);
     CHECK(m.violation(j).rotation < 1e-15);
     // What is free keeps its gap.
-    const bool slides_z = hold_of(kind) == Hold::line, slides_xy = hold_of(kind) == Hold::plane;
+    const bool slides_z = traits_of(kind).hold == Hold::line;
+    const bool slides_xy = traits_of(kind).hold == Hold::plane;
     if (slides_z) CHECK(m.coordinate(j, Dof::slide) == Approx(0.0007).epsilon(2e-3));  // the axis leans by 5e-4
     if (slides_xy) CHECK(m.coordinate(j, Dof::slide_x) == Approx(0.001).epsilon(2e-3));
   }

@@ -46,7 +46,6 @@ TEST_CASE("without damping, every joint's force is the gradient of its energy") 
     // Somewhere off the assembled pose.
     m.body(b).motion.position += from_eigen(vector(0.05));
     m.body(b).motion.rotation = from_eigen(Mat3(turned(vector(0.2)) * m.body(b).rotation()));
-    m.clear_forces();
     m.initialise(0.0, Vec3::Zero());
     const Vec3 f = to_eigen(m.body(b).force), t = to_eigen(m.body(b).torque);
     INFO(name_of(kind));

@@ -25,23 +25,16 @@ TEMPLATE_TEST_CASE("prescribed motion holds in the sub-steps that a world asks f
                    SymplecticEuler, VelocityVerlet) {
   // As a world steps it: the contact forces (none here) first, then several machine steps; of two stages the second
   // starts again.
-  Machine<TestType> m;
+  InWorld<TestType> world;
+  Mechanism& m = world.m;
   m.substeps = 4;
   const BodyId box = m.add_body(ball("box", 3.0));
   const JointId guide = m.add_joint(prismatic("guide", m.ground(), box, {0, 0, 0}, X));
   const MotionId drive = m.add_motion(prescribed_joint("drive", guide, Signal::sine(0.01, 2.0)));
   const double dt = 4e-4, w = 2.0 * pi * 2.0;
-  m.design_for(dt);
-  m.initialise(0.0, Vec3::Zero());
-  for (int s = 0; s < 800; ++s) {
-    for (int stage = 0; stage < TestType::stages; ++stage) {
-      if (TestType::predicts_before_forces) m.advance_substeps(stage, dt, Vec3::Zero());
-      m.clear_forces();
-      m.hold_contacts(stage);
-      if (!TestType::predicts_before_forces) m.advance_substeps(stage, dt, Vec3::Zero());
-    }
-  }
-  const double t = m.time();
+  world.start(dt);
+  for (int s = 0; s < 800; ++s) world.step(dt, Vec3::Zero(), [] {});
+  const double t = world.solver.time();
   CHECK(t == Approx(0.32));
   CHECK(m.coordinate(guide) == Approx(0.01 * std::sin(w * t)).epsilon(1e-12));
   CHECK(m.motion(drive).drive.force == Approx(-3.0 * 0.01 * w * w * std::sin(w * (t - dt / 8))).epsilon(1e-3));

@@ -20,6 +20,8 @@ struct Pose {
   std::optional<Vec3> angular_velocity = {};  ///< rad/s, global axes
 };
 
+using PoseFunction = std::function<Pose(double)>;  ///< of the time (s)
+
 /// A prescribed motion (eq. 19): the value and the speed of one coordinate, or a whole pose, are set exactly at the end
 /// of every stage, whatever force it takes; that force is reported.
 ///
@@ -50,7 +52,7 @@ struct MotionSpec {
   Vec3 axis = Vec3::UnitX();  ///< global; made a unit vector
   Signal motion = 0.0;        ///< m or rad
   bool by_speed = false;      ///< only the signal's rate counts, the coordinate goes where that takes it
-  std::function<Pose(double)> pose = {};
+  PoseFunction pose = {};
   BodyFrame frame = BodyFrame::reference;  ///< of the body, which the pose is that of
   bool on = true;
 
@@ -83,7 +85,7 @@ inline MotionSpec prescribed_speed(std::string name, JointId joint, Signal speed
   return s;
 }
 /// Prescribes where one of the body's frames is: by default the reference frame, as BodySpec::at does.
-inline MotionSpec prescribed_pose(std::string name, BodyId body, std::function<Pose(double)> pose,
+inline MotionSpec prescribed_pose(std::string name, BodyId body, PoseFunction pose,
                                   BodyFrame frame = BodyFrame::reference) {
   return {.name = std::move(name),
           .target = MotionSpec::Target::pose,

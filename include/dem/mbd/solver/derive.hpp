@@ -13,7 +13,7 @@ namespace dem::mbd {
 inline constexpr double endless_step = 1e30;  ///< s
 
 /// The limits that a joint's user gave for a coordinate that is limited.
-inline const JointLimits& limits_of(const JointSpec& s, Dof dof) {
+inline const JointLimits& given_limits(const JointSpec& s, Dof dof) {
   return *std::find_if(s.limits.begin(), s.limits.end(), [&](const JointLimits& l) { return l.dof == dof; });
 }
 
@@ -84,7 +84,7 @@ struct Derivation {
 inline void derive_stiffness(Parts& m, double dt) {
   const detail::Derivation derivation(m, dt);
   for (std::size_t i = 0; i < m.joints.size(); ++i) derivation.fill(m, m.joint_specs[i], m.joints[i]);
-  for (JointLimitState& e : m.limits) derivation.fill(m, limits_of(m.joint_specs[e.joint], e.dof), e);
+  for (JointLimitState& e : m.limits) derivation.fill(m, given_limits(m.joint_specs[e.joint], e.dof), e);
   for (JointFrictionState& e : m.friction) derivation.fill(m, *m.joint_specs[e.joint].friction, e);
   for (Coupling& g : m.couplings) derivation.fill(m, g.spec, g);
 }

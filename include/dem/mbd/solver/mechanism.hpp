@@ -1,17 +1,56 @@
 #pragma once
 
-#include <dem/mbd/drive/prescribe.hpp>
-#include <dem/mbd/solver/assemble.hpp>
-#include <dem/mbd/solver/forces.hpp>
+#include <dem/mbd/solver/add_parts.hpp>
+#include <dem/mbd/solver/steer.hpp>
 
 namespace dem::mbd {
 
-/// The parts of a mechanism, looked at (poses, coordinates, reactions) and steered (set points, brakes, switches).
-/// `Assembly` puts them together.
+/// A machine without its motion: put together (add_...), looked at (poses, coordinates, reactions) and steered (set
+/// points, brakes, switches). What moves it is a Solver: that of a Machine, or that of a world. Every add_... function
+/// checks what it is given, throws Error in words, and returns an id.
 class Mechanism {
  public:
-  /// All bodies, in the order of their ids. Mass, inertia and `fixed` are read when a run starts (initialise); later,
-  /// set_fixed changes the latter. References to bodies are good until the next one is added, as ground() may do.
+  /// Machine steps within one step dt of the world, or of a machine alone.
+  int substeps = 1;
+  double largest_speed = 1e5;  ///< m/s or rad/s; a body that is faster is reported as blown up
+
+  // -------------------------------------------------------------------------------------------------- put together
+
+  BodyId add_body(const BodySpec& spec) { return detail::add_body(parts_, build_body(spec)); }
+  /// A body that is given in its own frame: centre of mass and principal axes.
+  BodyId add_body(const Body& body) {
+    check_body(body);
+    return detail::add_body(parts_, {body, Vec3::Zero(), Mat3::Identity()});
+  }
+  BodyId add_fixed_body(std::string name, const Vec3& position = Vec3::Zero()) {
+    return add_body(fixed_body(std::move(name), position));
+  }
+  /// The fixed body "ground" at the origin; made when first asked for, which adds a body.
+  BodyId ground() {
+    if (!ground_.valid()) ground_ = add_fixed_body("ground");
+    return ground_;
+  }
+  /// A connection point (section 2.3) at a global point.
+  ConnectionId add_connection(std::string name, BodyId body, const Vec3& at) {
+    return detail::add_connection(parts_, std::move(name), body, at);
+  }
+  /// A connection point at a point of the body's reference frame.
+  ConnectionId add_connection_in_reference(std::string name, BodyId body, const Vec3& point) {
+    known_body(parts_, body, fmt::format("connection point '{}'", name));
+    return add_connection(std::move(name), body, reference_point(body, point));
+  }
+  JointId add_joint(JointSpec spec) { return detail::add_joint(parts_, std::move(spec)); }
+  ActuatorId add_actuator(ActuatorSpec spec) { return detail::add_actuator(parts_, std::move(spec)); }
+  SpringId add_spring(SpringSpec spec) { return detail::add_spring(parts_, std::move(spec)); }
+  CouplingId add_coupling(CouplingSpec spec) { return detail::add_coupling(parts_, std::move(spec)); }
+  LoadId add_load(LoadSpec spec) { return detail::add_load(parts_, std::move(spec)); }
+  MotionId add_motion(MotionSpec spec) { return detail::add_motion(parts_, std::move(spec)); }
+  SensorId add_sensor(SensorSpec spec) { return detail::add_sensor(parts_, std::move(spec)); }
+
+  // ----------------------------------------------------------------------------------------------------- looked at
+
+  /// All bodies, in the order of their ids. Mass, inertia and `fixed` are read when a run starts; later, set_fixed
+  /// changes the latter. References to bodies are good until the next one is added, as ground() may do.
   std::vector<Body>& bodies() { return parts_.bodies; }
   const std::vector<Body>& bodies() const { return parts_.bodies; }
   Body& body(BodyId id) { return known(parts_.bodies, id, "body"); }
@@ -40,10 +79,10 @@ class Mechanism {
     return body(c.body).point(c.point);
   }
 
-  /// A coordinate and its speed, one of dofs_of(the joint's kind). Without a name the joint's own: the rotation
-  /// (rad, over whole turns) of one that turns, the slide (m) of one that slides, the length (m) of a distance joint.
-  double coordinate(JointId id, Dof dof = Dof::own) const { return coordinate_now(id, dof).value; }
-  double speed(JointId id, Dof dof = Dof::own) const { return coordinate_now(id, dof).speed; }
+  /// A coordinate and its speed, one of dofs_of(the joint's kind). Without a name the joint's own: the rotation (rad,
+  /// over whole turns) of one that turns, the slide (m) of one that slides, the length (m) of a distance joint.
+  double coordinate(JointId id, Dof dof = Dof::own) const { return coordinate_now(parts_, id, dof).value; }
+  double speed(JointId id, Dof dof = Dof::own) const { return coordinate_now(parts_, id, dof).speed; }
   /// The slide along z (m, m/s), e.g. the second coordinate of a cylindrical joint.
   double slide(JointId id) const { return coordinate(id, Dof::slide); }
   double slide_speed(JointId id) const { return speed(id, Dof::slide); }
@@ -59,109 +98,10 @@ class Mechanism {
   }
   const Joint& joint(JointId id) const { return known(parts_.joints, id, "joint"); }
   /// Limits of a joint's coordinate, or its friction; nullptr if it has none.
-  const JointLimitState* limits(JointId id, Dof dof = Dof::own) const {
-    dof = resolved(joint(id).kind, dof);
-    for (const JointLimitState& e : parts_.limits) {
-      if (e.joint == id.value && e.dof == dof) return &e;
-    }
-    return nullptr;
-  }
-  const JointFrictionState* friction(JointId id) const {
-    for (const JointFrictionState& e : parts_.friction) {
-      if (e.joint == id.value) return &e;
-    }
-    return nullptr;
-  }
-  /// Sets the preload (N) of a joint's friction while running: a brake. Throws Error if the joint has no friction.
-  void set_friction_preload(JointId id, double newtons) {
-    joint(id);
-    for (JointFrictionState& e : parts_.friction) {
-      if (e.joint == id.value) {
-        e.preload = require_non_negative(newtons, "preload of a joint's friction", "N");
-        return;
-      }
-    }
-    fail("joint '{}' has no friction to preload; add it with with_friction", parts_.joint_specs[id.index()].name);
-  }
+  const JointLimitState* limits(JointId id, Dof dof = Dof::own) const { return limits_of(parts_, id, dof); }
+  const JointFrictionState* friction(JointId id) const { return friction_of(parts_, id); }
 
   const Actuator& actuator(ActuatorId id) const { return known(parts_.actuators, id, "actuator"); }
-  /// Sets the set point (m or rad) and its rate from outside, for instance every step. Throws Error unless finite, and
-  /// for a motor, which has a throttle instead.
-  void set_target(ActuatorId id, double value, double rate = 0.0) { set_target(id, Signal::held(value, rate)); }
-  void set_target(ActuatorId id, Signal signal) {
-    ActuatorSpec& s = known(parts_.actuators, id, "actuator").spec;
-    if (!s.torque_curve.empty()) fail("actuator '{}' is a motor, which has no set point; use set_throttle", s.name);
-    s.set_point = std::move(signal);
-  }
-  void set_throttle(ActuatorId id, double throttle) {
-    ActuatorSpec& s = known(parts_.actuators, id, "actuator").spec;
-    if (s.torque_curve.empty()) fail("actuator '{}' is no motor, so it has no throttle; use set_target", s.name);
-    s.throttle = require_within(throttle, -1.0, 1.0, "throttle of a motor");
-  }
-  void switch_on(ActuatorId id, bool on = true) { known(parts_.actuators, id, "actuator").spec.on = on; }
-  /// A fixed body stops when the motion that moves it is switched off.
-  void switch_on(MotionId id, bool on = true) {
-    PrescribedMotion& p = known(parts_.motions, id, "prescribed motion");
-    Body& b = parts_.bodies[p.spec.body.index()];
-    if (!on && p.spec.on && b.fixed && p.spec.target != MotionSpec::Target::joint) {
-      b.motion.velocity = b.motion.angular_velocity = {0, 0, 0};
-    }
-    p.has_hold &= on && p.spec.on;
-    p.spec.on = on;
-  }
-  void switch_on(LoadId id, bool on = true) { known(parts_.loads, id, "load").spec.on = on; }
-  /// Stops and fixes a body where it is, or sets it free; what is derived from masses is derived again.
-  void set_fixed(BodyId id, bool fixed = true) {
-    Body& b = body(id);
-    if (b.fixed == fixed) return;
-    b.fixed = fixed;
-    try {
-      check_body(b);
-    } catch (...) {
-      b.fixed = true;
-      throw;
-    }
-    if (fixed) b.motion.velocity = b.motion.angular_velocity = {0, 0, 0};
-    changed_ = true;
-  }
-  void set_load(LoadId id, Signal size) {
-    LoadSpec& s = known(parts_.loads, id, "load").spec;
-    if (s.law)
-      fail("load '{}' has a law of its own and no size; let the law give other forces, or switch it off", s.name);
-    s.size = std::move(size);
-  }
-  /// Another signal for a prescribed coordinate, or another function for a pose (set_pose).
-  void set_motion(MotionId id, Signal motion) {
-    PrescribedMotion& p = known(parts_.motions, id, "prescribed motion");
-    if (p.spec.target == MotionSpec::Target::pose) {
-      fail("prescribed motion '{}' is a whole pose, which no signal gives; use set_pose", p.spec.name);
-    }
-    p.spec.motion = p.spec.by_speed ? motion.as_rate() : std::move(motion);
-    p.has_hold = false;
-  }
-  /// For values that come from outside every step: how far each is from the last is the caller's care, only the first
-  /// one is compared with the coordinate. A motion prescribed by its speed takes that alone, set_motion(id, speed).
-  void set_motion(MotionId id, double value, double rate) {
-    const PrescribedMotion& p = motion(id);
-    if (p.spec.by_speed) {
-      fail("prescribed motion '{}' is one of speed and takes no value with a rate; use set_motion(id, speed)",
-           p.spec.name);
-    }
-    const bool has_hold = p.has_hold;
-    set_motion(id, Signal::held(value, rate));
-    parts_.motions[id.index()].has_hold = has_hold;
-  }
-
-  void set_pose(MotionId id, std::function<Pose(double)> pose) {
-    PrescribedMotion& p = known(parts_.motions, id, "prescribed motion");
-    if (p.spec.target != MotionSpec::Target::pose) {
-      fail("prescribed motion '{}' is that of one coordinate, not of a pose; use set_motion", p.spec.name);
-    }
-    if (!pose) fail("prescribed motion '{}' was given no function that gives the pose", p.spec.name);
-    p.spec.pose = std::move(pose);
-    p.has_hold = false;
-  }
-
   const Load& load(LoadId id) const { return known(parts_.loads, id, "load"); }
   const Spring& spring(SpringId id) const { return known(parts_.springs, id, "spring"); }
   const Coupling& coupling(CouplingId id) const { return known(parts_.couplings, id, "coupling"); }
@@ -170,17 +110,44 @@ class Mechanism {
   const Parts& parts() const { return parts_; }
   Parts& parts() { return parts_; }
 
- protected:
-  Parts parts_;
-  bool changed_ = false;  ///< a body, joint or coupling was added since the last initialise
+  // ------------------------------------------------------------------------------------------------------- steered
+
+  /// Sets the preload (N) of a joint's friction while running: a brake. Throws Error if the joint has no friction.
+  void set_friction_preload(JointId id, double newtons) { detail::set_friction_preload(parts_, id, newtons); }
+  /// Sets the set point (m or rad) and its rate from outside, for instance every step. Throws Error unless finite, and
+  /// for a motor, which has a throttle instead.
+  void set_target(ActuatorId id, double value, double rate = 0.0) { set_target(id, Signal::held(value, rate)); }
+  void set_target(ActuatorId id, Signal signal) {
+    detail::set_target(known(parts_.actuators, id, "actuator").spec, std::move(signal));
+  }
+  void set_throttle(ActuatorId id, double throttle) {
+    detail::set_throttle(known(parts_.actuators, id, "actuator").spec, throttle);
+  }
+  void switch_on(ActuatorId id, bool on = true) { known(parts_.actuators, id, "actuator").spec.on = on; }
+  /// A fixed body stops when the motion that moves it is switched off.
+  void switch_on(MotionId id, bool on = true) {
+    detail::switch_on(parts_, known(parts_.motions, id, "prescribed motion"), on);
+  }
+  void switch_on(LoadId id, bool on = true) { known(parts_.loads, id, "load").spec.on = on; }
+  /// Stops and fixes a body where it is, or sets it free; what is derived from masses is derived again.
+  void set_fixed(BodyId id, bool fixed = true) { detail::set_fixed(parts_, body(id), fixed); }
+  void set_load(LoadId id, Signal size) { detail::set_load(known(parts_.loads, id, "load").spec, std::move(size)); }
+  /// Another signal for a prescribed coordinate, or another function for a pose (set_pose).
+  void set_motion(MotionId id, Signal motion) {
+    detail::set_motion(known(parts_.motions, id, "prescribed motion"), std::move(motion));
+  }
+  /// For values that come from outside every step: how far each is from the last is the caller's care, only the first
+  /// one is compared with the coordinate. A motion prescribed by its speed takes that alone, set_motion(id, speed).
+  void set_motion(MotionId id, double value, double rate) {
+    detail::set_motion(known(parts_.motions, id, "prescribed motion"), value, rate);
+  }
+  void set_pose(MotionId id, PoseFunction pose) {
+    detail::set_pose(known(parts_.motions, id, "prescribed motion"), std::move(pose));
+  }
 
  private:
-  Coordinate coordinate_now(JointId id, Dof dof) const {
-    const Joint& j = joint(id);
-    const std::string& name = parts_.joint_specs[id.index()].name;
-    return coordinate_of(j, parts_.bodies[j.a], parts_.bodies[j.b],
-                         known_dof(j.kind, dof, "a coordinate of '" + name + "'"));
-  }
+  Parts parts_;
+  BodyId ground_;
 };
 
 }  // namespace dem::mbd

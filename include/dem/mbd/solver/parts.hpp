@@ -7,6 +7,7 @@
 #include <dem/mbd/joint/friction.hpp>
 #include <dem/mbd/joint/limits.hpp>
 #include <dem/mbd/load/load.hpp>
+#include <dem/mbd/load/spring.hpp>
 #include <dem/mbd/sensor/sensor.hpp>
 
 #include <string>
@@ -47,6 +48,8 @@ struct Parts {
   std::vector<Load> loads;
   std::vector<PrescribedMotion> motions;
   std::vector<Sensor> sensors;
+
+  std::uint64_t revision = 0;  ///< grows with each body, joint, coupling ... that is added, set free or fixed
 
   // Scratch of a force evaluation, one entry per body.
   std::vector<Vector3<double>> spin;  ///< rad/s, global
@@ -103,6 +106,28 @@ inline const Joint& known_joint(const Parts& parts, JointId id, const std::strin
          parts.joints.size());
   }
   return parts.joints[id.index()];
+}
+
+/// A coordinate of a joint and its speed, now. Throws Error unless joints of this kind have it.
+inline Coordinate coordinate_now(const Parts& parts, JointId id, Dof dof) {
+  const Joint& j = known(parts.joints, id, "joint");
+  const std::string& name = parts.joint_specs[id.index()].name;
+  return coordinate_of(j, parts.bodies[j.a], parts.bodies[j.b],
+                       known_dof(j.kind, dof, "a coordinate of '" + name + "'"));
+}
+/// The limits of a joint's coordinate, or its friction; nullptr if it has none.
+inline const JointLimitState* limits_of(const Parts& parts, JointId id, Dof dof) {
+  dof = resolved(known(parts.joints, id, "joint").kind, dof);
+  for (const JointLimitState& e : parts.limits) {
+    if (e.joint == id.value && e.dof == dof) return &e;
+  }
+  return nullptr;
+}
+inline const JointFrictionState* friction_of(const Parts& parts, JointId id) {
+  for (const JointFrictionState& e : parts.friction) {
+    if (e.joint == id.value) return &e;
+  }
+  return nullptr;
 }
 
 /// A point (m) that was given as `what`, or an Error if it is nowhere.

@@ -75,7 +75,7 @@ class Softening {
     for (const std::uint32_t i : limits_) {
       JointLimitState& e = m.limits[i];
       JointLimitState now = e;
-      derivation_.fill(m, limits_of(m.joint_specs[e.joint], e.dof), now);
+      derivation_.fill(m, given_limits(m.joint_specs[e.joint], e.dof), now);
       cut(e.stiffness, now.stiffness);
       cut(e.damping, now.damping);
     }
