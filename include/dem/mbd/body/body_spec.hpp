@@ -1,5 +1,6 @@
 #pragma once
 
+#include <dem/geometry/principal_axes.hpp>
 #include <dem/mbd/body/body.hpp>
 #include <dem/mbd/body/body_mass.hpp>
 
@@ -45,7 +46,8 @@ BodySpec given_body(std::string name, double mass, const Eigen::MatrixBase<Deriv
   if constexpr (Derived::ColsAtCompileTime == 3) {
     tensor = inertia;
   } else {
-    tensor = Vec3(inertia).asDiagonal();
+    const Vec3 moments = inertia;
+    tensor = to_eigen(diagonal(from_eigen(moments)));
   }
   return {.name = std::move(name), .mass_properties = {mass, centre_of_mass, tensor}};
 }
@@ -59,11 +61,6 @@ inline BodySpec cylinder_body(std::string name, double radius, double length, do
 }
 inline BodySpec sphere_body(std::string name, double radius, double density) {
   return {.name = std::move(name), .mass_properties = sphere_mass(radius, density)};
-}
-/// A solid that a closed mesh encloses, in the frame of the mesh (kg/m^3). Throws Error if the mesh is open or encloses
-/// no volume.
-inline BodySpec mesh_body(std::string name, const IndexedMesh& mesh, double density) {
-  return {.name = std::move(name), .mass_properties = mesh_mass(mesh, density)};
 }
 /// A body that stays where it is (or is moved by prescribed motion alone); it needs no mass.
 inline BodySpec fixed_body(std::string name, const Vec3& position = Vec3::Zero()) {
@@ -80,15 +77,16 @@ struct BuiltBody {
 /// Finds the principal axes and moves the reference frame's motion to the centre of mass. Throws Error if the body has
 /// no mass, an impossible inertia, a rotation that is not one, or a number that is not finite.
 inline BuiltBody build_body(const BodySpec& spec) {
-  if (!((spec.rotation * spec.rotation.transpose() - Mat3::Identity()).norm() <= 1e-9) ||
-      !(spec.rotation.determinant() > 0)) {
+  using V = Vector3<double>;
+  const Matrix3<double> turn = from_eigen(spec.rotation);
+  if (!(squared_norm(turn * transposed(turn) - diagonal(1, 1, 1)) <= 1e-18) || !(determinant(turn) > 0)) {
     fail(
         "the rotation of body '{}' is not a right-handed rotation (its rows are not orthonormal): use "
         "Eigen::AngleAxisd or Quaternion::normalized() to make it",
         spec.name);
   }
   for (const Vec3* v : {&spec.position, &spec.velocity, &spec.angular_velocity, &spec.mass_properties.centre_of_mass}) {
-    if (!v->allFinite()) {
+    if (!is_finite(from_eigen(*v))) {
       fail(
           "body '{}' was given ({:g}, {:g}, {:g}) as its position, velocity, angular velocity or centre of mass, which "
           "must be finite",
@@ -98,19 +96,20 @@ inline BuiltBody build_body(const BodySpec& spec) {
   BuiltBody built;
   Body& b = built.body;
   const PrincipalAxes principal = principal_axes(spec.mass_properties.inertia);
+  const Matrix3<double> axes = from_eigen(principal.rotation);
   b.name = spec.name;
   b.fixed = spec.fixed;
   b.mass = spec.mass_properties.mass;  // of a fixed body possibly 0: it cannot be set free
   b.inertia = principal.moments;
   check_body(b);
-  const Vec3 arm = spec.rotation * spec.mass_properties.centre_of_mass;
-  const Mat3 rotation = spec.rotation * principal.rotation;
-  b.motion.position = from_eigen(Vec3(spec.position + arm));
-  b.motion.velocity = from_eigen(Vec3(spec.velocity + spec.angular_velocity.cross(arm)));
-  b.motion.rotation = from_eigen(rotation);
-  b.motion.angular_velocity = from_eigen(Vec3(rotation.transpose() * spec.angular_velocity));
-  built.reference_origin = -(principal.rotation.transpose() * spec.mass_properties.centre_of_mass);
-  built.reference_axes = principal.rotation.transpose();
+  const V centre = from_eigen(spec.mass_properties.centre_of_mass), spin = from_eigen(spec.angular_velocity);
+  const V arm = turn * centre;
+  b.motion.position = from_eigen(spec.position) + arm;
+  b.motion.velocity = from_eigen(spec.velocity) + cross(spin, arm);
+  b.motion.rotation = turn * axes;
+  b.motion.angular_velocity = transpose_times(b.motion.rotation, spin);
+  built.reference_origin = to_eigen(-transpose_times(axes, centre));
+  built.reference_axes = to_eigen(transposed(axes));
   return built;
 }
 

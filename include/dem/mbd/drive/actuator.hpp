@@ -115,7 +115,7 @@ inline Coordinate coordinate_of(const Actuator& u, const std::vector<Joint>& joi
                               : distance_of(u.point_a, u.point_b, a, b);
 }
 
-DEM_FLATTEN inline void apply_actuator(Actuator& u, const std::vector<Joint>& joints, std::vector<Body>& bodies,
+inline void apply_actuator(Actuator& u, const std::vector<Joint>& joints, std::vector<Body>& bodies,
                                        double time, double dt) {
   Body &a = bodies[u.a], &b = bodies[u.b];
   const Coordinate q = coordinate_of(u, joints, a, b);

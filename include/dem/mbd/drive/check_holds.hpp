@@ -16,8 +16,8 @@ inline void check_holds(Parts& parts, double time) {
     double off = 0.0;
     if (p.spec.target == MotionSpec::Target::pose) {
       const Pose pose = p.spec.pose(time);
-      off = (detail::centre_at(p, pose) - to_eigen(m.position)).norm() +
-            (detail::rotation_at(p, pose) - to_eigen(m.rotation)).norm();
+      off = norm(detail::centre_at(p, pose) - m.position) +
+            std::sqrt(squared_norm(detail::rotation_at(p, pose) - m.rotation));
     } else {
       p.drive.value = p.spec.motion(time).value;
       if (p.spec.target == MotionSpec::Target::position) {

@@ -84,9 +84,9 @@ inline void fill_rows(Parts& parts, bool of_speed) {
       parts.rows.push_back(row);
     } else {
       const Vector3<double> off = rotation_off(p, x.motion), spin = x.motion.rotation * x.motion.angular_velocity;
-      const Vec3 axis = to_eigen(p.axis), across = axis.unitOrthogonal();
-      for (const Vec3& n : {axis, across, Vec3(axis.cross(across))}) {
-        row.now = {.rotation = true, .axis = from_eigen(n)};
+      const Vector3<double> across = any_across(p.axis);
+      for (const Vector3<double>& n : {p.axis, across, cross(p.axis, across)}) {
+        row.now = {.rotation = true, .axis = n};
         row.now.value = row.value + dot(off, row.now.axis);
         row.now.speed = dot(spin, row.now.axis);
         parts.rows.push_back(row);

@@ -12,26 +12,32 @@ namespace dem::mbd {
 namespace detail {
 
 /// Where a pose puts the centre of mass (m), and the body frame's rotation.
-inline Vec3 centre_at(const PrescribedMotion& p, const Pose& pose) { return pose.position + pose.rotation * p.centre; }
-inline Mat3 rotation_at(const PrescribedMotion& p, const Pose& pose) { return pose.rotation * p.axes; }
+inline Vector3<double> centre_at(const PrescribedMotion& p, const Pose& pose) {
+  return from_eigen(pose.position) + from_eigen(pose.rotation) * p.centre;
+}
+inline Matrix3<double> rotation_at(const PrescribedMotion& p, const Pose& pose) {
+  return from_eigen(pose.rotation) * p.axes;
+}
 
 /// Sets a body whose pose is prescribed.
 inline void carry(PrescribedMotion& p, integrator::Motion<double>& m, double time) {
+  using V = Vector3<double>;
   const Pose pose = p.spec.pose(time);
-  m.position = from_eigen(centre_at(p, pose));
-  m.rotation = from_eigen(rotation_at(p, pose));
-  Vec3 velocity = pose.velocity.value_or(Vec3::Zero()), spin = pose.angular_velocity.value_or(Vec3::Zero());
+  m.position = centre_at(p, pose);
+  m.rotation = rotation_at(p, pose);
+  V velocity = pose.velocity ? from_eigen(*pose.velocity) : V{0, 0, 0};
+  V spin = pose.angular_velocity ? from_eigen(*pose.angular_velocity) : V{0, 0, 0};
   if (!pose.velocity || !pose.angular_velocity) {
     constexpr double h = 1e-6;
     const Pose before = p.spec.pose(time - h), after = p.spec.pose(time + h);
-    if (!pose.velocity) velocity = (after.position - before.position) / (2.0 * h);
-    if (!pose.angular_velocity) {
-      const Mat3 r = after.rotation * before.rotation.transpose();  // its skew part is the small turn between the two
-      spin = Vec3(r(2, 1) - r(1, 2), r(0, 2) - r(2, 0), r(1, 0) - r(0, 1)) / (4.0 * h);
+    if (!pose.velocity) velocity = (from_eigen(after.position) - from_eigen(before.position)) / (2.0 * h);
+    if (!pose.angular_velocity) {  // the skew part of the small turn between the two
+      const Matrix3<double> r = from_eigen(after.rotation) * transposed(from_eigen(before.rotation));
+      spin = V{r.row2.y - r.row1.z, r.row0.z - r.row2.x, r.row1.x - r.row0.y} / (4.0 * h);
     }
   }
-  m.velocity = from_eigen(Vec3(velocity + spin.cross(pose.rotation * p.centre)));
-  m.angular_velocity = transpose_times(m.rotation, from_eigen(spin));
+  m.velocity = velocity + cross(spin, from_eigen(pose.rotation) * p.centre);
+  m.angular_velocity = transpose_times(m.rotation, spin);
   p.drive.value = m.position.x + m.position.y + m.position.z;  // only to tell whether it is a number
 }
 

@@ -3,7 +3,7 @@
 #include <dem/mbd/drive/signal.hpp>
 #include <dem/mbd/joint/coordinate.hpp>
 
-#include <functional>
+#include <dem/core/function.hpp>
 #include <optional>
 #include <string>
 #include <utility>
@@ -20,7 +20,7 @@ struct Pose {
   std::optional<Vec3> angular_velocity = {};  ///< rad/s, global axes
 };
 
-using PoseFunction = std::function<Pose(double)>;  ///< of the time (s)
+using PoseFunction = Function<Pose(double)>;  ///< of the time (s)
 
 /// A prescribed motion (eq. 19): the value and the speed of one coordinate, or a whole pose, are set exactly at the end
 /// of every stage, whatever force it takes; that force is reported.
@@ -100,8 +100,8 @@ struct PrescribedMotion {
   double start = 0.0;     ///< m, position along the axis when it was added
   bool has_hold = false;  ///< it has been compared with its coordinate since it was added or changed
   Matrix3<double> start_rotation = Matrix3<double>::identity();
-  Vec3 centre = Vec3::Zero();    ///< m, of mass, in the frame of the poses
-  Mat3 axes = Mat3::Identity();  ///< body frame -> frame of the poses
+  Vector3<double> centre = {0, 0, 0};                  ///< m, of mass, in the frame of the poses
+  Matrix3<double> axes = Matrix3<double>::identity();  ///< body frame -> frame of the poses
   struct Drive {
     double value = 0.0, rate = 0.0;  ///< what was set last
     double impulse = 0.0;            ///< N s or N m s, given since the force was reported

@@ -4,7 +4,7 @@
 #include <dem/mbd/drive/curve.hpp>
 
 #include <cmath>
-#include <functional>
+#include <dem/core/function.hpp>
 #include <numbers>
 #include <utility>
 
@@ -68,13 +68,13 @@ class Signal {
   /// Any function of time. A rate that is not given is the mean one over the machine's time step, half of it before t
   /// and half after: good to dt^2 where the function is smooth. Over the steps it sums up to what the function rises
   /// by, so a jump of the set point gives a damper's whole impulse, c times the jump, whatever the time step is.
-  static Signal function(std::function<double(double)> value) {
+  static Signal function(Function<double(double)> value) {
     return Signal([value = std::move(value)](double t, double dt) -> Sample {
       const double h = dt > 0.0 ? 0.5 * dt : 1e-6;
       return {value(t), (value(t + h) - value(t - h)) / (2.0 * h)};
     });
   }
-  static Signal function(std::function<double(double)> value, std::function<double(double)> rate) {
+  static Signal function(Function<double(double)> value, Function<double(double)> rate) {
     return Signal([value = std::move(value), rate = std::move(rate)](double t, double) -> Sample {
       return {value(t), rate(t)};
     });
@@ -99,10 +99,10 @@ class Signal {
     if (!std::isfinite(x)) fail("a {} is {:g}, but must be finite", what, x);
     return x;
   }
-  explicit Signal(std::function<Sample(double, double)> f) : function_(std::move(f)) {}
+  explicit Signal(Function<Sample(double, double)> f) : function_(std::move(f)) {}
 
   Sample sample_;
-  std::function<Sample(double, double)> function_;
+  Function<Sample(double, double)> function_;
 };
 
 }  // namespace dem::mbd

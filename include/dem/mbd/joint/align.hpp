@@ -78,25 +78,25 @@ inline double aligning_energy(const Joint& j, Align align, const FrameOfA& at, c
   return 0.0;
 }
 
-/// The square root of the stiffness as a matrix, of size 1 where it is the same in all held directions; `axes` has the
-/// axes of a's joint frame as columns, B is b's rotation; global.
-inline Mat3 held_rotations(const Joint& j, Align align, const Mat3& axes, const Mat3& B) {
-  const Vec3 z = axes.col(2);
+/// The square root of the stiffness as a matrix, of size 1 where it is the same in all held directions; B is b's
+/// rotation; global.
+inline Matrix3<double> held_rotations(const Joint& j, Align align, const FrameOfA& at, const Matrix3<double>& B) {
+  const Vector3<double> z = at.z();
   switch (align) {
-    case Align::parallel: return Mat3::Identity() - z * z.transpose();
-    case Align::locked: return Mat3::Identity();
-    case Align::bushing: return axes * to_eigen(j.kr3).cwiseSqrt().asDiagonal() * axes.transpose();
+    case Align::parallel: return diagonal(1, 1, 1) - outer(z, z);
+    case Align::locked: return diagonal(1, 1, 1);
+    case Align::bushing: return square_root_of(j.kr3, at);
     case Align::cross: {
-      const Vec3 g = Vec3(B * to_eigen(j.axes_b.y)).cross(axes.col(0)).normalized();  // square to the cross
-      return g * g.transpose();
+      const Vector3<double> g = normalised(cross(B * j.axes_b.y, at.x()));  // square to the cross
+      return outer(g, g);
     }
     case Align::constant_velocity: {
-      const Vec3 g = Vec3(z + B * to_eigen(j.axes_b.z)).normalized();  // half way between the shafts
-      return g * g.transpose();
+      const Vector3<double> g = normalised(z + B * j.axes_b.z);  // half way between the shafts
+      return outer(g, g);
     }
     case Align::nothing: break;
   }
-  return Mat3::Zero();
+  return diagonal(0, 0, 0);
 }
 
 }  // namespace dem::mbd::detail

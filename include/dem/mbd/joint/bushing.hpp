@@ -18,11 +18,11 @@ inline void check_bushing(const JointSpec& s, const std::string& who) {
        {&s.bushing_stiffness, &s.bushing_damping, &s.bushing_rotational_stiffness, &s.bushing_rotational_damping}) {
     for (int k = 0; k < 3; ++k) require_non_negative((*v)[k], ("a constant of " + who).c_str(), "(SI units)");
   }
-  if (s.bushing_stiffness.norm() + s.bushing_rotational_stiffness.norm() <= 0.0) {
+  if (norm(from_eigen(s.bushing_stiffness)) + norm(from_eigen(s.bushing_rotational_stiffness)) <= 0.0) {
     fail("{} has no stiffness at all: give it bushing_stiffness (N/m) or bushing_rotational_stiffness (N m/rad)", who);
   }
 }
-inline void take_constants(Joint& j, const JointSpec& s, const Vec3&, const std::string&) {
+inline void take_constants(Joint& j, const JointSpec& s, const Vector3<double>&, const std::string&) {
   j.k3 = from_eigen(s.bushing_stiffness);
   j.c3 = from_eigen(s.bushing_damping);
   j.kr3 = from_eigen(s.bushing_rotational_stiffness);

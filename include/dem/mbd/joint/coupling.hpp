@@ -73,7 +73,7 @@ inline double coupling_sum(const CouplingSpec& spec, const std::vector<Joint>& j
   return sum;
 }
 
-DEM_FLATTEN inline void apply_coupling(Coupling& g, const std::vector<Joint>& joints, std::vector<Body>& bodies) {
+inline void apply_coupling(Coupling& g, const std::vector<Joint>& joints, std::vector<Body>& bodies) {
   double sum = 0.0, rate = 0.0;
   for (const auto& term : g.spec.terms) {
     const Joint& j = joints[term.joint.index()];

@@ -7,8 +7,8 @@ namespace dem::mbd {
 
 namespace detail {
 
-inline void take_length(Joint& j, const JointSpec& s, const Vec3& gap, const std::string& who) {
-  const double apart = gap.norm();
+inline void take_length(Joint& j, const JointSpec& s, const Vector3<double>& gap, const std::string& who) {
+  const double apart = norm(gap);
   j.length = s.length ? require_positive(*s.length, ("length of " + who).c_str(), "m") : apart;
   if (!(std::abs(j.length - apart) <= s.tolerance)) {
     fail(

@@ -16,7 +16,7 @@ inline void check_free(const JointSpec& s, const std::string& who) {
   }
 }
 /// Puts no force on the bodies; its turns are followed.
-DEM_FLATTEN inline void follow_turns(Joint& j, Body& a, Body& b, const Vector3<double>& wa, const Vector3<double>& wb,
+inline void follow_turns(Joint& j, Body& a, Body& b, const Vector3<double>& wa, const Vector3<double>& wb,
                                      double dt) {
   j.angle_estimate += dt * dot(turn_gradient(a.motion.rotation * j.axes_a.z, b.motion.rotation * j.axes_b.z), wb - wa);
 }

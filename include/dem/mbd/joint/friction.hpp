@@ -72,7 +72,7 @@ inline JointFrictionState make_friction(const JointSpec& s, std::uint32_t joint,
 
 /// Asperity friction on the joint's free motion. The spring is stretched from the committed history by the velocity
 /// times `slip_time` (0 in a stage at the start of the step); the history is committed only where `commit` says so.
-DEM_FLATTEN inline void apply_friction(JointFrictionState& e, const Joint& j, Body& a, Body& b, double slip_time,
+inline void apply_friction(JointFrictionState& e, const Joint& j, Body& a, Body& b, double slip_time,
                                        bool commit) {
   using V = Vector3<double>;
   const Matrix3<double>&A = a.motion.rotation, &B = b.motion.rotation;

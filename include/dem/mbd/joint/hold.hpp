@@ -5,6 +5,7 @@
 //   point  k/2 |d|^2   line  k/2 |d - z z.d|^2   plane  k/2 (z.d)^2   length  k/2 (|d| - l)^2
 //   bushing  (kx (x.d)^2 + ky (y.d)^2 + kz (z.d)^2) / 2
 
+#include <dem/math/matrix3.hpp>
 #include <dem/mbd/joint/joint.hpp>
 
 #include <cmath>
@@ -19,6 +20,12 @@ struct FrameOfA {
   DEM_HOT Vector3<double> y() const { return A * joint.axes_a.y; }
   DEM_HOT Vector3<double> z() const { return A * joint.axes_a.z; }
 };
+
+/// The square root of a stiffness k along the axes of a's joint frame, as a matrix in global axes.
+inline Matrix3<double> square_root_of(const Vector3<double>& k, const FrameOfA& at) {
+  const Matrix3<double> axes = from_columns(at.x(), at.y(), at.z());
+  return axes * diagonal(std::sqrt(k.x), std::sqrt(k.y), std::sqrt(k.z)) * transposed(axes);
+}
 
 /// The force (N) on b of the springs and dampers at a displacement d (m) and its rate v (m/s), global.
 template <Hold hold>
@@ -71,9 +78,9 @@ inline double holding_energy(const Joint& j, Hold hold, const FrameOfA& at, cons
 
 /// The part of the way from one point to the other in the directions that are held, with z the joint's axis: only there
 /// two points have to meet at assembly.
-inline Vec3 held_part(Hold hold, const Vec3& z, const Vec3& gap) {
-  if (hold == Hold::line) return gap - z.dot(gap) * z;
-  if (hold == Hold::plane) return z.dot(gap) * z;
+inline Vector3<double> held_part(Hold hold, const Vector3<double>& z, const Vector3<double>& gap) {
+  if (hold == Hold::line) return gap - dot(z, gap) * z;
+  if (hold == Hold::plane) return dot(z, gap) * z;
   return gap;
 }
 
@@ -88,22 +95,22 @@ void for_each_held_axis(const Joint& j, Hold hold, F&& each) {
   if (hold == Hold::point || hold == Hold::plane) each(j.axes_a.z);
 }
 
-/// The square root of the stiffness as a matrix, of size 1 where it is the same in all held directions; `axes` has the
-/// axes of a's joint frame as columns, d is the displacement; global.
-inline Mat3 held_displacements(const Joint& j, Hold hold, const Mat3& axes, const Vec3& d) {
-  const Vec3 z = axes.col(2);
+/// The square root of the stiffness as a matrix, of size 1 where it is the same in all held directions; d is the
+/// displacement; global.
+inline Matrix3<double> held_displacements(const Joint& j, Hold hold, const FrameOfA& at, const Vector3<double>& d) {
+  const Vector3<double> z = at.z();
   switch (hold) {
-    case Hold::point: return Mat3::Identity();
-    case Hold::line: return Mat3::Identity() - z * z.transpose();
-    case Hold::plane: return z * z.transpose();
+    case Hold::point: return diagonal(1, 1, 1);
+    case Hold::line: return diagonal(1, 1, 1) - outer(z, z);
+    case Hold::plane: return outer(z, z);
     case Hold::length: {
-      const Vec3 n = d.normalized();
-      return n * n.transpose();
+      const Vector3<double> n = normalised(d);
+      return outer(n, n);
     }
-    case Hold::bushing: return axes * to_eigen(j.k3).cwiseSqrt().asDiagonal() * axes.transpose();
+    case Hold::bushing: return square_root_of(j.k3, at);
     case Hold::nothing: break;
   }
-  return Mat3::Zero();
+  return diagonal(0, 0, 0);
 }
 
 }  // namespace dem::mbd::detail

@@ -70,7 +70,7 @@ struct JointTraits {
   /// Throws Error for what this kind cannot be given; called by `who`. May be left out.
   void (*check)(const JointSpec& spec, const std::string& who) = nullptr;
   /// Takes over what this kind alone is given; `gap` (m) is from the point on a to that on b. May be left out.
-  void (*take)(Joint& joint, const JointSpec& spec, const Vec3& gap, const std::string& who) = nullptr;
+  void (*take)(Joint& joint, const JointSpec& spec, const Vector3<double>& gap, const std::string& who) = nullptr;
 
   // Set by joint_that_holds (penalty.hpp).
   Hold hold = Hold::nothing;

@@ -16,7 +16,7 @@ struct JointLimitState {
 };
 
 /// A limit pushes back with a spring and, on the way in, a damper; it never pulls.
-DEM_FLATTEN inline void apply_limits(JointLimitState& e, const Joint& j, Body& a, Body& b) {
+inline void apply_limits(JointLimitState& e, const Joint& j, Body& a, Body& b) {
   const Coordinate q = coordinate_of(j, a, b, e.dof);
   e.force = 0.0;
   if (q.value >= e.lower && q.value <= e.upper) return;

@@ -7,29 +7,31 @@
 #include <dem/mbd/solver/parts.hpp>
 
 #include <algorithm>
+#include <numbers>
 #include <utility>
 
 namespace dem::mbd::detail {
 
 /// A global point in a body's frame.
-inline Vec3 to_body(const Body& b, const Vec3& global) { return b.rotation().transpose() * (global - b.position()); }
-
-/// x of a joint's frame; the choice is explained at JointSpec::with_x.
-inline Vec3 x_of_frame(const JointSpec& s, const Vec3& z, const std::string& who) {
-  const Vec3 given = s.x_axis                ? unit(*s.x_axis, "the x axis of " + who)
-                     : std::abs(z.x()) > 0.9 ? Vec3(Vec3::UnitY())
-                                             : Vec3(Vec3::UnitX());
-  const Vec3 x = given - z.dot(given) * z;
-  if (!(x.norm() > 1e-6)) {
-    fail("the x axis of {} runs along its z axis, ({:g}, {:g}, {:g}); give with_x a direction across it", who, z.x(),
-         z.y(), z.z());
-  }
-  return x.normalized();
+inline Vector3<double> to_body(const Body& b, const Vector3<double>& global) {
+  return transpose_times(b.motion.rotation, global - b.motion.position);
 }
 
-inline Axes axes_in_body(const Body& b, const Vec3& x, const Vec3& z) {
-  const Mat3 t = b.rotation().transpose();
-  return {from_eigen(Vec3(t * x)), from_eigen(Vec3(t * z.cross(x))), from_eigen(Vec3(t * z))};
+/// x of a joint's frame; the choice is explained at JointSpec::with_x.
+inline Vector3<double> x_of_frame(const JointSpec& s, const Vector3<double>& z, const std::string& who) {
+  using V = Vector3<double>;
+  const V given = s.x_axis ? unit(*s.x_axis, "the x axis of " + who) : std::abs(z.x) > 0.9 ? V{0, 1, 0} : V{1, 0, 0};
+  const V x = given - dot(z, given) * z;
+  if (!(norm(x) > 1e-6)) {
+    fail("the x axis of {} runs along its z axis, ({:g}, {:g}, {:g}); give with_x a direction across it", who, z.x, z.y,
+         z.z);
+  }
+  return normalised(x);
+}
+
+inline Axes axes_in_body(const Body& b, const Vector3<double>& x, const Vector3<double>& z) {
+  const auto in_body = [&](const Vector3<double>& v) { return transpose_times(b.motion.rotation, v); };
+  return {in_body(x), in_body(cross(z, x)), in_body(z)};
 }
 
 inline void use_connections(const Parts& parts, JointSpec& s, const std::string& who) {
@@ -91,17 +93,19 @@ inline Joint make_joint(const Parts& parts, JointSpec& s) {
         who, a.name, b.name);
   }
   check_penalty(s, who);
-  finite_point(s.at_a, "the point on body a of " + who);
-  finite_point(s.at_b, "the point on body b of " + who);
-  Vec3 za = unit(s.axis_a, "the axis of " + who), zb = unit(s.axis_b, "the axis of " + who);
+  using V = Vector3<double>;
+  const V at_a = finite_point(s.at_a, "the point on body a of " + who);
+  const V at_b = finite_point(s.at_b, "the point on body b of " + who);
+  V za = unit(s.axis_a, "the axis of " + who), zb = unit(s.axis_b, "the axis of " + who);
   // Points and axes that nearly meet are put in the middle: the joint starts at rest, not stretched by the gap.
   const bool has_one_axis = !traits.two_axes && traits.align != Align::nothing;
-  const double crooked = za.cross(zb).norm() + (za.dot(zb) < 0.0);
-  const double angle = std::acos(std::clamp(za.dot(zb), -1.0, 1.0));
-  if (has_one_axis && crooked <= s.tolerance && zb != za) za = zb = (za + zb).normalized();
-  const Vec3 gap = s.at_b - s.at_a;
-  const Vec3 held_gap = held_part(traits.hold, za, gap);
-  const double apart = held_gap.norm();
+  const auto differ = [](const V& a, const V& b) { return a.x != b.x || a.y != b.y || a.z != b.z; };
+  const double crooked = norm(cross(za, zb)) + (dot(za, zb) < 0.0);
+  const double angle = std::acos(std::clamp(dot(za, zb), -1.0, 1.0));
+  if (has_one_axis && crooked <= s.tolerance && differ(za, zb)) za = zb = normalised(za + zb);
+  const V gap = at_b - at_a;
+  const V held_gap = held_part(traits.hold, za, gap);
+  const double apart = norm(held_gap);
   if (!traits.points_apart && !(apart <= s.tolerance)) {
     fail(
         "the points of {} do not meet: ({:g}, {:g}, {:g}) on body '{}' and ({:g}, {:g}, {:g}) on body '{}' are {:g} m "
@@ -115,7 +119,7 @@ inline Joint make_joint(const Parts& parts, JointSpec& s) {
         "tolerance",
         who, angle, s.tolerance);
   }
-  if (traits.two_axes && za.dot(zb) < 0.05) {
+  if (traits.two_axes && dot(za, zb) < 0.05) {
     fail("the shafts of {} are bent by {:g} deg, allowed is 87 deg; point both axes the way the torque goes", who,
          angle * 180.0 / std::numbers::pi);
   }
@@ -125,16 +129,16 @@ inline Joint make_joint(const Parts& parts, JointSpec& s) {
   j.b = s.b.value;
   j.kind = s.kind;
   j.turns = traits.turns();
-  const Vec3 to_middle = traits.points_apart ? Vec3(Vec3::Zero()) : Vec3(0.5 * held_gap);
-  j.point_a = from_eigen(to_body(a, s.at_a + to_middle));
-  j.point_b = from_eigen(to_body(b, s.at_b - to_middle));
-  const Vec3 xa = x_of_frame(s, za, who);
-  Vec3 xb = xa;
+  const V to_middle = traits.points_apart ? V{0, 0, 0} : 0.5 * held_gap;
+  j.point_a = to_body(a, at_a + to_middle);
+  j.point_b = to_body(b, at_b - to_middle);
+  const V xa = x_of_frame(s, za, who);
+  V xb = xa;
   if (traits.align == Align::cross) {
-    const Vec3 yb = zb.cross(xa).normalized();  // the second arm of the cross, square to the first
-    xb = yb.cross(zb);
-  } else if (zb != za) {
-    xb = rotation_between(za, zb) * xa;
+    const V yb = normalised(cross(zb, xa));  // the second arm of the cross, square to the first
+    xb = cross(yb, zb);
+  } else if (differ(za, zb)) {
+    xb = from_eigen(rotation_between(to_eigen(za), to_eigen(zb))) * xa;
   }
   j.axes_a = axes_in_body(a, xa, za);
   j.axes_b = axes_in_body(b, xb, zb);

@@ -6,7 +6,7 @@
 #include <dem/mbd/drive/signal.hpp>
 #include <dem/mbd/ids.hpp>
 
-#include <functional>
+#include <dem/core/function.hpp>
 #include <string>
 #include <utility>
 #include <vector>
@@ -15,7 +15,7 @@ namespace dem::mbd {
 
 /// A force law of the user's own: force (N) and torque (N m, about the body's centre of mass) in global axes, at a time
 /// (s) and a state of the body.
-using LoadLaw = std::function<Wrench(double time, const Body& body)>;
+using LoadLaw = Function<Wrench(double time, const Body& body)>;
 
 /// A force (N) at a point of a body, or a torque (N m), along a direction that stays in space or turns with the body;
 /// or whatever a law gives.

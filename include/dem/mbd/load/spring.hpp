@@ -24,7 +24,7 @@ inline SpringSpec spring(std::string name, BodyId a, const Vec3& at_a, BodyId b,
                          double damping = 0.0, double free_length = -1.0) {
   require_non_negative(stiffness, "stiffness of a spring", "N/m");
   require_non_negative(damping, "damping of a spring", "N s/m");
-  const double l0 = free_length < 0.0 ? (at_b - at_a).norm() : free_length;
+  const double l0 = free_length < 0.0 ? norm(from_eigen(at_b) - from_eigen(at_a)) : free_length;
   return {.name = std::move(name),
           .a = a,
           .b = b,
@@ -59,7 +59,7 @@ struct Spring {
   double force = 0.0;                          ///< N, positive pushes the points apart
 };
 
-DEM_FLATTEN inline void apply_spring(Spring& s, std::vector<Body>& bodies) {
+inline void apply_spring(Spring& s, std::vector<Body>& bodies) {
   Body &a = bodies[s.spec.a.index()], &b = bodies[s.spec.b.index()];
   const Coordinate q = distance_of(s.point_a, s.point_b, a, b);
   s.length = q.value;

@@ -13,8 +13,9 @@ inline double kinetic_energy(const Body& b) {
 
 /// kg m^2/s, about the origin, global axes.
 inline Vec3 angular_momentum(const Body& b) {
-  return b.mass * b.position().cross(b.velocity()) +
-         b.rotation() * b.inertia.cwiseProduct(to_eigen(b.motion.angular_velocity));
+  const Vector3<double>& w = b.motion.angular_velocity;
+  const Vector3<double> spin = {b.inertia[0] * w.x, b.inertia[1] * w.y, b.inertia[2] * w.z};
+  return to_eigen(b.mass * cross(b.motion.position, b.motion.velocity) + b.motion.rotation * spin);
 }
 
 /// J, stored in a joint's penalty springs.
@@ -38,7 +39,7 @@ inline Energy energy_of(const Parts& m, const Vec3& gravity) {
   for (const Body& b : m.bodies) {
     if (b.fixed) continue;
     e.kinetic += kinetic_energy(b);
-    e.potential -= b.mass * gravity.dot(b.position());
+    e.potential -= b.mass * dot(from_eigen(gravity), b.motion.position);
   }
   for (const Joint& j : m.joints) e.elastic += elastic_energy(j, m.bodies[j.a], m.bodies[j.b]);
   return e;

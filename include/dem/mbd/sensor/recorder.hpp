@@ -2,7 +2,7 @@
 
 #include <dem/mbd/solver/mechanism.hpp>
 
-#include <functional>
+#include <dem/core/function.hpp>
 #include <span>
 #include <string>
 #include <utility>
@@ -28,7 +28,7 @@ class Recorder {
   explicit Recorder(const Mechanism& machine) : machine_(&machine) {}
 
   /// A column of the user's own.
-  Recorder& add(std::string column, std::function<double()> value) {
+  Recorder& add(std::string column, Function<double()> value) {
     columns_.push_back(std::move(column));
     values_.push_back(std::move(value));
     row_.resize(values_.size());
@@ -97,7 +97,7 @@ class Recorder {
  private:
   const Mechanism* machine_;
   std::vector<std::string> columns_;
-  std::vector<std::function<double()>> values_;
+  std::vector<Function<double()>> values_;
   std::vector<double> row_;
   double next_ = -1e300;
   bool started_ = false;

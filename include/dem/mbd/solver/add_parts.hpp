@@ -27,7 +27,7 @@ inline ConnectionId add_connection(Parts& parts, std::string name, BodyId body, 
   const Body& b = known_body(parts, body, who);
   settle_name(name, parts.connections, "connection point", "connection points",
               [](const Connection& c) { return c.name; });
-  Connection c{std::move(name), body, to_body(b, finite_point(at, who))};
+  Connection c{std::move(name), body, to_eigen(to_body(b, finite_point(at, who)))};
   return keep<ConnectionId>(parts, parts.connections, std::move(c), false);
 }
 
@@ -52,13 +52,15 @@ inline JointId add_joint(Parts& parts, JointSpec spec) {
 
 /// A rotational actuator between three points acts on a free joint about the normal of their plane.
 inline JointId joint_on_three_points(Parts& parts, const ActuatorSpec& spec, const std::string& who) {
-  const Vec3 to_a = unit(spec.toward_a - spec.at_a, who), to_b = unit(spec.toward_b - spec.at_b, who);
-  const Vec3 normal = to_a.cross(to_b);
-  if (normal.norm() < 1e-6) {
+  using V = Vector3<double>;
+  const V to_a = unit(from_eigen(spec.toward_a) - from_eigen(spec.at_a), who);
+  const V to_b = unit(from_eigen(spec.toward_b) - from_eigen(spec.at_b), who);
+  const V normal = cross(to_a, to_b);
+  if (norm(normal) < 1e-6) {
     fail("the three points of {} lie on a line, so its axis is not known; use joint_actuator on a revolute joint", who);
   }
-  return add_joint(parts, free_joint("angle of " + who, spec.a, spec.b, spec.at_a, normal)
-                              .starting_at(std::atan2(normal.norm(), to_a.dot(to_b))));
+  return add_joint(parts, free_joint("angle of " + who, spec.a, spec.b, spec.at_a, to_eigen(normal))
+                              .starting_at(std::atan2(norm(normal), dot(to_a, to_b))));
 }
 
 inline ActuatorId add_actuator(Parts& parts, ActuatorSpec spec) {
@@ -101,10 +103,10 @@ inline LoadId add_load(Parts& parts, LoadSpec spec) {
   settle_name(spec.name, parts.loads, "load", "loads", name_in_spec);
   const std::string who = fmt::format("load '{}'", spec.name);
   const Body& b = known_body(parts, spec.body, who);
-  const Vec3 n = unit(spec.direction, who);
+  const Vector3<double> n = unit(spec.direction, who);
   Load load;
-  load.point = from_eigen(to_body(b, finite_point(spec.at, "the point of " + who)));
-  load.direction = from_eigen(spec.follows_body ? Vec3(b.rotation().transpose() * n) : n);
+  load.point = to_body(b, finite_point(spec.at, "the point of " + who));
+  load.direction = spec.follows_body ? transpose_times(b.motion.rotation, n) : n;
   load.spec = std::move(spec);
   return keep<LoadId>(parts, parts.loads, std::move(load), false);
 }

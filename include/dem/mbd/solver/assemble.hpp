@@ -15,14 +15,16 @@ template <class Part, class Spec>
 void attach_points(const Parts& parts, Part& part, const Spec& s, const std::string& who, bool need_distance) {
   const Body &a = known_body(parts, s.a, who), &b = known_body(parts, s.b, who);
   if (s.a == s.b) fail("{} joins body '{}' to itself; give it two different bodies", who, a.name);
-  if (need_distance && !((s.at_b - s.at_a).norm() > 1e-9)) {
+  const auto point_a = finite_point(s.at_a, "the first point of " + who);
+  const auto point_b = finite_point(s.at_b, "the second point of " + who);
+  if (const double apart = norm(point_b - point_a); need_distance && !(apart > 1e-9)) {
     fail(
         "the two points of {} are {:g} m apart, so its direction is not known; move one of them, or act on a joint's "
         "coordinate instead",
-        who, (s.at_b - s.at_a).norm());
+        who, apart);
   }
-  part.point_a = from_eigen(to_body(a, finite_point(s.at_a, "the first point of " + who)));
-  part.point_b = from_eigen(to_body(b, finite_point(s.at_b, "the second point of " + who)));
+  part.point_a = to_body(a, point_a);
+  part.point_b = to_body(b, point_b);
 }
 
 inline void check_actuator(const ActuatorSpec& spec, const std::string& who) {
@@ -109,13 +111,13 @@ inline PrescribedMotion make_motion(const Parts& parts, MotionSpec spec) {
   }
   const Body& b = known_body(parts, spec.body, who);
   if (spec.target == MotionSpec::Target::pose && !spec.pose) fail("{} has no function that gives the pose", who);
-  p.axis = from_eigen(unit(spec.axis, who));
+  p.axis = unit(spec.axis, who);
   p.start = dot(b.motion.position, p.axis);
   p.start_rotation = b.motion.rotation;
   if (spec.frame == BodyFrame::reference) {
     const BuiltBody& built = parts.built[spec.body.index()];
-    p.axes = built.reference_axes.transpose();
-    p.centre = -(p.axes * built.reference_origin);
+    p.axes = transposed(from_eigen(built.reference_axes));
+    p.centre = -(p.axes * from_eigen(built.reference_origin));
   }
   p.spec = std::move(spec);
   return p;

@@ -13,32 +13,21 @@
 
 namespace dem::mbd::detail {
 
-/// Largest eigenvalue of a symmetric matrix, by the trigonometric solution of its cubic.
-inline double largest_eigenvalue(const Mat3& m) {
-  const double mean = m.trace() / 3.0;
-  const Mat3 rest = m - mean * Mat3::Identity();
-  const double p = std::sqrt(rest.squaredNorm() / 6.0);
-  if (p <= 1e-15 * std::abs(mean) || p < 1e-300) return mean;
-  const double cosine = std::clamp(Mat3(rest / p).determinant() / 2.0, -1.0, 1.0);
-  return mean + 2.0 * p * std::cos(std::acos(cosine) / 3.0);
+/// The inverse of the inertia (1/(kg m^2)), global axes.
+inline Matrix3<double> inverse_inertia_of(const Body& b) {
+  if (b.fixed) return diagonal(0, 0, 0);
+  const Matrix3<double>& r = b.motion.rotation;
+  return r * diagonal(1.0 / b.inertia[0], 1.0 / b.inertia[1], 1.0 / b.inertia[2]) * transposed(r);
 }
-
-/// The same of one that has no negative eigenvalue and at most two that are not 0: half of their sum and difference.
-inline double largest_eigenvalue_of_two(const Mat3& m) {
-  const double sum = m.trace();
-  return 0.5 * (sum + std::sqrt(std::max(0.0, 2.0 * m.squaredNorm() - sum * sum)));
+/// What turning adds to the displacement per unit force at `arm` (global) from the centre of mass (1/kg).
+inline Matrix3<double> inverse_mass_by_turning(const Body& b, const Vector3<double>& arm) {
+  const Matrix3<double> x = cross_matrix(arm);
+  return x * inverse_inertia_of(b) * transposed(x);
 }
-
-inline Mat3 inverse_inertia_of(const Body& b) {
-  if (b.fixed) return Mat3::Zero();
-  return b.rotation() * b.inertia.cwiseInverse().asDiagonal() * b.rotation().transpose();
-}
-/// Displacement per unit force at `arm` (global) from the centre of mass.
-inline Mat3 inverse_mass_matrix(const Body& b, const Vec3& arm) {
-  if (b.fixed) return Mat3::Zero();
-  Mat3 x;
-  x << 0, -arm.z(), arm.y(), arm.z(), 0, -arm.x(), -arm.y(), arm.x(), 0;
-  return Mat3::Identity() / b.mass + x * inverse_inertia_of(b) * x.transpose();
+/// Displacement per unit force at `arm` (1/kg).
+inline Matrix3<double> inverse_mass_matrix(const Body& b, const Vector3<double>& arm) {
+  if (b.fixed) return diagonal(0, 0, 0);
+  return diagonal(1.0 / b.mass, 1.0 / b.mass, 1.0 / b.mass) + inverse_mass_by_turning(b, arm);
 }
 
 /// Turn about a unit vector n (global) per unit torque, and displacement along it at `arm` (global) per unit force.
@@ -53,10 +42,11 @@ inline double inverse_mass_at(const Body& b, const Vector3<double>& arm, const V
 
 /// The largest turn per unit torque about any axis, and displacement per unit force at `arm` in any direction. A force
 /// along the arm turns nothing, so at most two directions of the turn's share are left.
-inline double largest_inverse_inertia(const Body& b) { return b.fixed ? 0.0 : 1.0 / b.inertia.minCoeff(); }
-inline double largest_inverse_mass(const Body& b, const Vec3& arm) {
-  if (b.fixed) return 0.0;
-  return 1.0 / b.mass + largest_eigenvalue_of_two(inverse_mass_matrix(b, arm) - Mat3::Identity() / b.mass);
+inline double largest_inverse_inertia(const Body& b) {
+  return b.fixed ? 0.0 : 1.0 / std::min({b.inertia[0], b.inertia[1], b.inertia[2]});
+}
+inline double largest_inverse_mass(const Body& b, const Vector3<double>& arm) {
+  return b.fixed ? 0.0 : 1.0 / b.mass + largest_eigenvalue_of_two(inverse_mass_by_turning(b, arm));
 }
 
 /// Inverse effective masses of the two bodies of a joint (1/kg), and inverse effective inertias (1/(kg m^2)), each the
@@ -66,21 +56,21 @@ struct JointInverseMass {
 };
 inline JointInverseMass inverse_mass_of(const Joint& j, const Body& a, const Body& b) {
   const JointTraits& traits = traits_of(j.kind);
-  const Mat3 A = a.rotation();
-  const auto global = [&](const Vector3<double>& v) { return Vec3(A * to_eigen(v)); };
-  Mat3 axes;
-  axes << global(j.axes_a.x), global(j.axes_a.y), global(j.axes_a.z);
-  const Vec3 point = b.point(to_eigen(j.point_b));
-  const auto largest = [&](const Mat3& root, const Mat3& w) {
+  using V = Vector3<double>;
+  using M = Matrix3<double>;
+  const FrameOfA at{j, a.motion.rotation};
+  const V point = b.motion.position + b.motion.rotation * j.point_b;
+  const auto largest = [&](const M& root, const M& w) {
     return traits.stiffness == Stiffness::own ? largest_eigenvalue(root * w * root)
                                               : largest_eigenvalue_of_two(root * w * root);
   };
-  const Mat3 held = held_displacements(j, traits.hold, axes, point - a.point(to_eigen(j.point_a)));
+  const V gap = point - a.motion.position - a.motion.rotation * j.point_a;
+  const M held = held_displacements(j, traits.hold, at, gap),
+          aligned = held_rotations(j, traits.align, at, b.motion.rotation);
   const auto displacement = [&](const Body& x) {
-    const Vec3 arm = point - x.position();
+    const V arm = point - x.motion.position;
     return traits.hold == Hold::point ? largest_inverse_mass(x, arm) : largest(held, inverse_mass_matrix(x, arm));
   };
-  const Mat3 aligned = held_rotations(j, traits.align, axes, b.rotation());
   const auto rotation = [&](const Body& x) {
     return traits.align == Align::locked ? largest_inverse_inertia(x) : largest(aligned, inverse_inertia_of(x));
   };

@@ -28,7 +28,7 @@ inline void sample_sensors(Parts& m, double dt) {
 /// that of the state the forces are evaluated at, `dt` (s) the machine's time step. Joint friction is evaluated from
 /// the committed history, and committed, like turns, in the last stage only; sensors are sampled after it
 /// (sample_sensors).
-DEM_FLATTEN inline void add_forces(Parts& m, double time, double dt, bool is_last_stage) {
+inline void add_forces(Parts& m, double time, double dt, bool is_last_stage) {
   const double followed = is_last_stage ? dt : 0.0;
   for (std::size_t i = 0; i < m.bodies.size(); ++i) {
     const Body& b = m.bodies[i];

@@ -65,14 +65,15 @@ class Mechanism {
   /// Global position (m) of a point of the body's reference frame.
   Vec3 reference_point(BodyId id, const Vec3& point) const {
     const BuiltBody& built = known(parts_.built, id, "body");
-    return body(id).point(built.reference_origin + built.reference_axes * point);
+    const Matrix3<double> axes = from_eigen(built.reference_axes);
+    return body(id).point(to_eigen(from_eigen(built.reference_origin) + axes * from_eigen(point)));
   }
   /// Origin of the body's reference frame (m, global): with reference_rotation the pose at which a mesh of the body in
   /// the axes of its drawing is shown (io::BodyMesh).
   Vec3 reference_position(BodyId id) const { return reference_point(id, Vec3::Zero()); }
   /// Reference frame -> global.
   Mat3 reference_rotation(BodyId id) const {
-    return body(id).rotation() * known(parts_.built, id, "body").reference_axes;
+    return to_eigen(body(id).motion.rotation * from_eigen(known(parts_.built, id, "body").reference_axes));
   }
   Vec3 connection_position(ConnectionId id) const {
     const Connection& c = known(parts_.connections, id, "connection point");

@@ -131,18 +131,19 @@ inline const JointFrictionState* friction_of(const Parts& parts, JointId id) {
 }
 
 /// A point (m) that was given as `what`, or an Error if it is nowhere.
-inline const Vec3& finite_point(const Vec3& p, const std::string& what) {
-  if (!p.allFinite()) fail("{} is ({:g}, {:g}, {:g}), but must be finite", what, p.x(), p.y(), p.z());
-  return p;
+inline Vector3<double> finite_point(const Vec3& p, const std::string& what) {
+  if (!is_finite(from_eigen(p))) fail("{} is ({:g}, {:g}, {:g}), but must be finite", what, p.x(), p.y(), p.z());
+  return from_eigen(p);
 }
 
-inline Vec3 unit(const Vec3& v, const std::string& asker) {
-  const double length = v.norm();
+inline Vector3<double> unit(const Vector3<double>& v, const std::string& asker) {
+  const double length = norm(v);
   if (!(length > 1e-12) || !std::isfinite(length)) {
-    fail("the direction of {} is ({:g}, {:g}, {:g}), but needs a length; give any vector along it", asker, v.x(), v.y(),
-         v.z());
+    fail("the direction of {} is ({:g}, {:g}, {:g}), but needs a length; give any vector along it", asker, v.x, v.y,
+         v.z);
   }
   return v / length;
 }
+inline Vector3<double> unit(const Vec3& v, const std::string& asker) { return unit(from_eigen(v), asker); }
 
 }  // namespace dem::mbd
