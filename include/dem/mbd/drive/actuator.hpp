@@ -2,6 +2,7 @@
 
 #include <dem/core/macros.hpp>
 #include <dem/mbd/drive/signal.hpp>
+#include <dem/mbd/ids.hpp>
 #include <dem/mbd/joint/coordinate.hpp>
 
 #include <cmath>
@@ -115,8 +116,8 @@ inline Coordinate coordinate_of(const Actuator& u, const std::vector<Joint>& joi
                               : distance_of(u.point_a, u.point_b, a, b);
 }
 
-inline void apply_actuator(Actuator& u, const std::vector<Joint>& joints, std::vector<Body>& bodies,
-                                       double time, double dt) {
+inline void apply_actuator(Actuator& u, const std::vector<Joint>& joints, std::vector<Body>& bodies, double time,
+                           double dt) {
   Body &a = bodies[u.a], &b = bodies[u.b];
   const Coordinate q = coordinate_of(u, joints, a, b);
   u.coordinate = q.value;

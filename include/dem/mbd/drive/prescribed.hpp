@@ -1,6 +1,7 @@
 #pragma once
 
 #include <dem/mbd/drive/signal.hpp>
+#include <dem/mbd/ids.hpp>
 #include <dem/mbd/joint/coordinate.hpp>
 
 #include <dem/core/function.hpp>

@@ -32,12 +32,12 @@ inline void take_constants(Joint& j, const JointSpec& s, const Vector3<double>&,
 }  // namespace detail
 
 inline constexpr JointTraits bushing_joint =
-    joint_that_holds<Hold::bushing, Align::bushing>({.kind = JointKind::bushing,
-                                                     .name = "bushing",
+    joint_that_holds<Hold::bushing, Align::bushing>({.name = "bushing",
                                                      .dofs = {Dof::slide, Dof::slide_x, Dof::slide_y, Dof::bend},
                                                      .stiffness = Stiffness::own,
                                                      .check = detail::check_bushing,
                                                      .take = detail::take_constants});
+inline constexpr JointKind JointKind::bushing{bushing_joint};
 
 /// Springs (N/m, N m/rad) and dampers (N s/m, N m s/rad) along and about the x, y, z axes of a frame with z along axis.
 inline JointSpec bushing(std::string name, BodyId a, BodyId b, const Vec3& at, const Vec3& axis, const Vec3& stiffness,

@@ -5,12 +5,9 @@
 
 namespace dem::mbd {
 
-inline constexpr JointTraits constant_velocity_joint =
-    joint_that_holds<Hold::point, Align::constant_velocity>({.kind = JointKind::constant_velocity,
-                                                             .name = "constant-velocity joint",
-                                                             .dofs = {Dof::bend},
-                                                             .bearing = Bearing::socket,
-                                                             .two_axes = true});
+inline constexpr JointTraits constant_velocity_joint = joint_that_holds<Hold::point, Align::constant_velocity>(
+    {.name = "constant-velocity joint", .dofs = {Dof::bend}, .bearing = Bearing::socket, .two_axes = true});
+inline constexpr JointKind JointKind::constant_velocity{constant_velocity_joint};
 
 /// Shaft a runs along axis_a and shaft b along axis_b, both pointing the way the torque goes. Both turn alike, however
 /// the joint is bent.

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <dem/mbd/joint/kinds.hpp>
+#include <dem/mbd/joint/align.hpp>
 
 #include <cmath>
 #include <numbers>

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <dem/core/macros.hpp>
+#include <dem/mbd/ids.hpp>
 #include <dem/mbd/joint/coordinate.hpp>
 
 #include <numbers>

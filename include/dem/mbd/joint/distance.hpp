@@ -25,12 +25,12 @@ inline void take_length(Joint& j, const JointSpec& s, const Vector3<double>& gap
 }  // namespace detail
 
 inline constexpr JointTraits distance_joint =
-    joint_that_holds<Hold::length, Align::nothing>({.kind = JointKind::distance,
-                                                    .name = "distance joint",
+    joint_that_holds<Hold::length, Align::nothing>({.name = "distance joint",
                                                     .dofs = {Dof::length},
                                                     .own = Dof::length,
                                                     .points_apart = true,
                                                     .take = detail::take_length});
+inline constexpr JointKind JointKind::distance{distance_joint};
 
 /// A massless rod between a point of a and a point of b.
 inline JointSpec distance(std::string name, BodyId a, const Vec3& at_a, BodyId b, const Vec3& at_b) {

@@ -5,8 +5,9 @@
 
 namespace dem::mbd {
 
-inline constexpr JointTraits fixed_joint = joint_that_holds<Hold::point, Align::locked>(
-    {.kind = JointKind::fixed, .name = "fixed joint", .changes_with_pose = false});
+inline constexpr JointTraits fixed_joint =
+    joint_that_holds<Hold::point, Align::locked>({.name = "fixed joint", .changes_with_pose = false});
+inline constexpr JointKind JointKind::fixed{fixed_joint};
 
 /// Holds everything: two bodies become one.
 inline JointSpec fixed(std::string name, BodyId a, BodyId b, const Vec3& at) {

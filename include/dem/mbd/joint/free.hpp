@@ -16,15 +16,13 @@ inline void check_free(const JointSpec& s, const std::string& who) {
   }
 }
 /// Puts no force on the bodies; its turns are followed.
-inline void follow_turns(Joint& j, Body& a, Body& b, const Vector3<double>& wa, const Vector3<double>& wb,
-                                     double dt) {
+inline void follow_turns(Joint& j, Body& a, Body& b, const Vector3<double>& wa, const Vector3<double>& wb, double dt) {
   j.angle_estimate += dt * dot(turn_gradient(a.motion.rotation * j.axes_a.z, b.motion.rotation * j.axes_b.z), wb - wa);
 }
 
 }  // namespace detail
 
 inline constexpr JointTraits free_joint_traits = {
-    .kind = JointKind::free,
     .name = "free joint",
     .dofs = {Dof::turn, Dof::slide, Dof::slide_x, Dof::slide_y, Dof::bend},
     .own = Dof::turn,
@@ -32,6 +30,7 @@ inline constexpr JointTraits free_joint_traits = {
     .points_apart = true,
     .check = detail::check_free,
     .force = detail::follow_turns};
+inline constexpr JointKind JointKind::free{free_joint_traits};
 
 /// Holds nothing; measures the rotation about and the displacement along an axis.
 inline JointSpec free_joint(std::string name, BodyId a, BodyId b, const Vec3& at, const Vec3& axis) {

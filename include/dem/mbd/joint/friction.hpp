@@ -4,7 +4,7 @@
 
 #include <dem/core/macros.hpp>
 #include <dem/law/friction/asperity_spring.hpp>
-#include <dem/mbd/joint/kinds.hpp>
+#include <dem/mbd/joint/joint.hpp>
 
 namespace dem::mbd {
 
@@ -34,46 +34,11 @@ constexpr Dofs rubbing_dofs(Bearing bearing) {
   return {};
 }
 
-/// Throws Error if the joint cannot rub, or its bearing's radius (m) is missing or is none.
-inline void check_friction(const JointSpec& s, const std::string& who) {
-  const JointTraits& traits = traits_of(s.kind);
-  if (traits.bearing == Bearing::none) {
-    fail("{} has friction, but nothing in it slides; a bushing has dampers, and other kinds of joint have friction",
-         who);
-  }
-  const double radius = s.friction->radius;
-  const std::string what = "JointFriction::radius, of the bearing of " + who;
-  if (traits.bearing == Bearing::guide || traits.bearing == Bearing::point) {
-    if (radius != 0.0) {
-      fail("{} is {:g} m, but only the sliding of a {} rubs; leave the radius out", what, radius, traits.name);
-    }
-  } else if (traits.bearing == Bearing::plate) {
-    require_non_negative(radius, what.c_str(), "m");
-  } else {
-    require_positive(radius, what.c_str(), "m");
-  }
-}
-
-/// The friction of joint number `joint`. Throws Error for what cannot be.
-inline JointFrictionState make_friction(const JointSpec& s, std::uint32_t joint, const std::string& who) {
-  check_friction(s, who);
-  const JointFriction& f = *s.friction;
-  JointFrictionState e;
-  e.joint = joint;
-  e.radius = f.radius;
-  e.preload = require_non_negative(f.preload, ("preload of " + who).c_str(), "N");
-  e.lever = require_non_negative(f.lever, ("lever of " + who).c_str(), "m");
-  e.law = {f.coefficient, f.stiffness.value_or(0.0), f.velocity_stiffness.value_or(0.0), f.breaking_factor};
-  friction::AsperitySpring::check(e.law);
-  return e;
-}
-
 }  // namespace detail
 
 /// Asperity friction on the joint's free motion. The spring is stretched from the committed history by the velocity
 /// times `slip_time` (0 in a stage at the start of the step); the history is committed only where `commit` says so.
-inline void apply_friction(JointFrictionState& e, const Joint& j, Body& a, Body& b, double slip_time,
-                                       bool commit) {
+inline void apply_friction(JointFrictionState& e, const Joint& j, Body& a, Body& b, double slip_time, bool commit) {
   using V = Vector3<double>;
   const Matrix3<double>&A = a.motion.rotation, &B = b.motion.rotation;
   const V wa = A * a.motion.angular_velocity, wb = B * b.motion.angular_velocity;

@@ -3,6 +3,7 @@
 // What the library knows of a kind of joint. Each kind says it in a file of its own, beside the function that makes
 // such a joint; kinds.hpp has the list. A new kind is a file, a name in JointKind and a line in that list.
 
+#include <dem/core/error.hpp>
 #include <dem/math/vector.hpp>
 #include <dem/mbd/joint/dof.hpp>
 
@@ -17,21 +18,35 @@ namespace dem::mbd {
 struct Joint;
 struct JointSpec;
 
-/// What a joint leaves free. Joint frame: origin in the joint's point, z along its axis.
-enum class JointKind {
-  fixed,              ///< nothing
-  spherical,          ///< all rotations
-  revolute,           ///< rotation about z
-  cylindrical,        ///< rotation about z and sliding along z
-  prismatic,          ///< sliding along z
-  planar,             ///< sliding along x and y, rotation about z
-  universal,          ///< rotation about x of body a and about y of body b, the arms of its cross
-  constant_velocity,  ///< bending in any direction; carries the rotation about the shafts unchanged
-  point_on_line,      ///< all rotations and sliding along z
-  point_on_plane,     ///< all rotations and sliding along x and y
-  distance,           ///< all but the distance of two points
-  bushing,            ///< everything, against springs and dampers of its own along and about x, y, z
-  free                ///< everything; measures a rotation and a displacement, e.g. for a rotational actuator
+struct JointTraits;
+
+/// What a joint leaves free. Joint frame: origin in the joint's point, z along its axis. Each kind is defined in a file
+/// of its own, with its traits; a kind of your own is a JointKind of your own traits.
+class JointKind {
+ public:
+  static const JointKind fixed;        ///< nothing
+  static const JointKind spherical;    ///< all rotations
+  static const JointKind revolute;     ///< rotation about z
+  static const JointKind cylindrical;  ///< rotation about z and sliding along z
+  static const JointKind prismatic;    ///< sliding along z
+  static const JointKind planar;       ///< sliding along x and y, rotation about z
+  static const JointKind universal;    ///< rotation about x of body a and y of body b, the arms of its cross
+  static const JointKind
+      constant_velocity;                  ///< bending in any direction; carries the rotation about the shafts unchanged
+  static const JointKind point_on_line;   ///< all rotations and sliding along z
+  static const JointKind point_on_plane;  ///< all rotations and sliding along x and y
+  static const JointKind distance;        ///< all but the distance of two points
+  static const JointKind bushing;         ///< everything, against springs and dampers along and about x, y, z
+  static const JointKind free;            ///< everything; measures a rotation and a displacement
+
+  constexpr JointKind() = default;  ///< none: a joint of it is refused
+  constexpr explicit JointKind(const JointTraits& traits) : traits_(&traits) {}
+  constexpr const JointTraits& traits() const { return *traits_; }
+  constexpr bool valid() const { return traits_ != nullptr; }
+  constexpr bool operator==(const JointKind&) const = default;
+
+ private:
+  const JointTraits* traits_ = nullptr;
 };
 
 /// Which displacements of b's point in a's joint frame are held at zero (hold.hpp).
@@ -56,7 +71,6 @@ enum class Stiffness {
 };
 
 struct JointTraits {
-  JointKind kind;
   const char* name;                 ///< in reports
   Dofs dofs = {};                   ///< the degrees of freedom that can be read
   Dof own = Dof::own;               ///< which of them is meant where none is named; `own`: none of them
@@ -83,5 +97,39 @@ struct JointTraits {
   /// Whether its own coordinate is a rotation about z, which is followed over whole turns.
   constexpr bool turns() const { return own == Dof::turn; }
 };
+
+constexpr const JointTraits& traits_of(JointKind kind) { return kind.traits(); }
+inline const char* name_of(JointKind kind) { return traits_of(kind).name; }
+
+/// The degrees of freedom that a kind of joint has, its own one first.
+constexpr const Dofs& dofs_of(JointKind kind) { return traits_of(kind).dofs; }
+
+/// The same degree of freedom by the name it has among dofs_of(kind); `own` stays where a kind has no own one.
+constexpr Dof resolved(JointKind kind, Dof dof) { return dof == Dof::own ? traits_of(kind).own : dof; }
+
+/// The degree of freedom's resolved name. Throws Error, with those that there are, unless joints of this kind have it.
+inline Dof known_dof(JointKind kind, Dof dof, const std::string& who) {
+  dof = resolved(kind, dof);
+  const Dofs& list = dofs_of(kind);
+  if (list.has(dof)) return dof;
+  std::string known;
+  for (const Dof f : list) known += (known.empty() ? "" : ", ") + std::string(name_of(f));
+  if (known.empty()) fail("{} refers to a {}, which leaves no coordinate free", who, name_of(kind));
+  if (dof == Dof::own) {
+    fail("{} refers to a {}, which has no coordinate of its own; name one of its degrees of freedom: {}", who,
+         name_of(kind), known);
+  }
+  fail("{} refers to '{}' of a {}, which has only: {}", who, name_of(dof), name_of(kind), known);
+}
+
+/// The same for what acts on a coordinate, which therefore has to be free.
+inline Dof require_free_dof(JointKind kind, Dof dof, const std::string& who) {
+  dof = known_dof(kind, dof, who);
+  if (dof == Dof::length) {
+    fail("{} acts on the length of a distance joint, which the joint holds; use a linear_actuator or a spring instead",
+         who);
+  }
+  return dof;
+}
 
 }  // namespace dem::mbd

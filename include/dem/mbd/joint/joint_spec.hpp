@@ -13,6 +13,8 @@
 
 namespace dem::mbd {
 
+struct Parts;
+
 /// A limit at each end of a coordinate of a joint (rad for rotations, m for slides).
 struct JointLimits {
   double lower = -std::numeric_limits<double>::infinity();
@@ -47,7 +49,7 @@ struct JointFriction {
 /// A stiffness or damping that is not given is derived when the machine learns its time step (see stability.hpp).
 struct JointSpec {
   std::string name;
-  JointKind kind = JointKind::fixed;
+  JointKind kind = {};
   BodyId a = {}, b = {};
   Vec3 at_a = Vec3::Zero(), at_b = Vec3::Zero();        ///< m, global at assembly: the joint's point on a and on b
   Vec3 axis_a = Vec3::UnitZ(), axis_b = Vec3::UnitZ();  ///< global at assembly: z of the joint's frame on a and on b
@@ -61,11 +63,15 @@ struct JointSpec {
   Vec3 bushing_rotational_stiffness = Vec3::Zero(), bushing_rotational_damping = Vec3::Zero();  ///< N m/rad, N m s/rad
   std::optional<double> length = {};     ///< m, of a distance joint, within `tolerance`; that at assembly if not given
   std::vector<JointStart> starts = {};   ///< of coordinates that are not 0 at assembly
-  std::vector<JointLimits> limits = {};  ///< one for each coordinate that is limited
-  std::optional<JointFriction> friction = {};
+  std::vector<JointLimits> limits = {};  ///< one for each coordinate that is limited; see with_limits
+  std::optional<JointFriction> friction = {};  ///< see with_friction
   /// m, within which the two points have to meet at assembly; rad for the axes. What is within it is made to meet: each
   /// body's point moves to the middle of the gap and its axis to the mean of both, so that the joint starts at rest.
   double tolerance = 1e-6;
+  /// Set by with_limits and with_friction, without which a program has no code for either: add the joint's limits, its
+  /// friction, to a machine's parts.
+  void (*add_limits)(Parts& parts, JointSpec& spec, const Joint& joint, std::uint32_t number) = nullptr;
+  void (*add_friction)(Parts& parts, JointSpec& spec, const Joint& joint, std::uint32_t number) = nullptr;
 
   /// x of the joint's frame lies in the plane of z and this direction (global at assembly): the first direction of a
   /// planar joint or a bushing, or the arm of a universal joint's cross on body a. Without it x is the global X made
@@ -91,17 +97,9 @@ struct JointSpec {
   JointSpec with_limits(Dof dof, double lower, double upper) const {
     return with_limits(JointLimits{.lower = lower, .upper = upper, .dof = dof});
   }
-  JointSpec with_limits(const JointLimits& given) const {
-    JointSpec s = *this;
-    s.limits.push_back(given);
-    return s;
-  }
+  JointSpec with_limits(const JointLimits& given) const;
   bool has_stiffness_or_damping() const { return stiffness || damping || rotational_stiffness || rotational_damping; }
-  JointSpec with_friction(const JointFriction& f) const {
-    JointSpec s = *this;
-    s.friction = f;
-    return s;
-  }
+  JointSpec with_friction(const JointFriction& f) const;
   /// The joint's own coordinate, or another one that turns about or slides along z, counts from this value (rad or m)
   /// at assembly.
   JointSpec starting_at(double coordinate) const { return starting_at(Dof::own, coordinate); }

@@ -12,11 +12,6 @@
 
 namespace dem::mbd::detail {
 
-/// A global point in a body's frame.
-inline Vector3<double> to_body(const Body& b, const Vector3<double>& global) {
-  return transpose_times(b.motion.rotation, global - b.motion.position);
-}
-
 /// x of a joint's frame; the choice is explained at JointSpec::with_x.
 inline Vector3<double> x_of_frame(const JointSpec& s, const Vector3<double>& z, const std::string& who) {
   using V = Vector3<double>;
@@ -78,7 +73,10 @@ inline void set_starts(Joint& j, const JointSpec& s, const std::string& who) {
 }
 
 inline Joint make_joint(const Parts& parts, JointSpec& s) {
-  const std::string who = fmt::format("{} '{}'", name_of(s.kind), s.name);
+  if (!s.kind.valid()) fail("joint '{}' has no kind; make it with revolute(...) or another of its functions", s.name);
+  if (!s.limits.empty() && !s.add_limits) fail("joint '{}' has limits of its own; give them with with_limits", s.name);
+  if (s.friction && !s.add_friction) fail("joint '{}' has friction of its own; give it with with_friction", s.name);
+  const std::string who = name_of(s.kind) + (" '" + s.name + "'");
   use_connections(parts, s, who);
   const Body &a = known_body(parts, s.a, who), &b = known_body(parts, s.b, who);
   if (s.a == s.b) {
@@ -150,33 +148,6 @@ inline Joint make_joint(const Parts& parts, JointSpec& s) {
   j.cr = s.rotational_damping.value_or(0.0);
   if (traits.take) traits.take(j, s, gap, who);
   return j;
-}
-
-/// Adds the limits of a joint that is about to be added, as number `joint`.
-inline void add_limits(Parts& parts, JointSpec& s, const Joint& j, std::uint32_t joint) {
-  const std::string who = fmt::format("{} '{}'", name_of(s.kind), s.name);
-  for (JointLimits& l : s.limits) {
-    l.dof = require_free_dof(s.kind, l.dof, "a limit of " + who);
-    if (!(l.lower < l.upper)) {
-      fail("the limits of {} are {:g} to {:g}: the lower one must be below the upper one", who, l.lower, l.upper);
-    }
-    const double start = coordinate_of(j, parts.bodies[j.a], parts.bodies[j.b], l.dof).value;
-    if (!(start >= l.lower - s.tolerance && start <= l.upper + s.tolerance)) {
-      fail(
-          "the limits of {} are {:g} to {:g}, but its {} starts at {:g}; widen them, move a body, or say with "
-          "starting_at what the coordinate is at assembly",
-          who, l.lower, l.upper, name_of(l.dof), start);
-    }
-    if (l.stiffness) require_non_negative(*l.stiffness, ("limit stiffness of " + who).c_str(), "N/m or N m/rad");
-    if (l.damping) require_non_negative(*l.damping, ("limit damping of " + who).c_str(), "N s/m or N m s/rad");
-    for (const JointLimitState& e : parts.limits) {
-      if (e.joint == joint && e.dof == l.dof) {
-        fail("{} has two pairs of limits for its {}; give one", who, name_of(l.dof));
-      }
-    }
-    parts.limits.push_back(
-        {joint, l.dof, l.lower, l.upper, l.stiffness.value_or(0.0), l.damping.value_or(0.0), 0.0, {0, 0, 0}});
-  }
 }
 
 }  // namespace dem::mbd::detail

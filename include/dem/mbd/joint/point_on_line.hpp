@@ -5,12 +5,9 @@
 
 namespace dem::mbd {
 
-inline constexpr JointTraits point_on_line_joint =
-    joint_that_holds<Hold::line, Align::nothing>({.kind = JointKind::point_on_line,
-                                                  .name = "point-on-line joint",
-                                                  .dofs = {Dof::slide, Dof::bend},
-                                                  .own = Dof::slide,
-                                                  .bearing = Bearing::guide});
+inline constexpr JointTraits point_on_line_joint = joint_that_holds<Hold::line, Align::nothing>(
+    {.name = "point-on-line joint", .dofs = {Dof::slide, Dof::bend}, .own = Dof::slide, .bearing = Bearing::guide});
+inline constexpr JointKind JointKind::point_on_line{point_on_line_joint};
 
 /// A point of b stays on a line that is fixed to a.
 inline JointSpec point_on_line(std::string name, BodyId a, BodyId b, const Vec3& at, const Vec3& axis) {

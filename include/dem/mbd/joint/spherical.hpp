@@ -5,12 +5,9 @@
 
 namespace dem::mbd {
 
-inline constexpr JointTraits spherical_joint =
-    joint_that_holds<Hold::point, Align::nothing>({.kind = JointKind::spherical,
-                                                   .name = "spherical joint",
-                                                   .dofs = {Dof::bend},
-                                                   .bearing = Bearing::socket,
-                                                   .changes_with_pose = false});
+inline constexpr JointTraits spherical_joint = joint_that_holds<Hold::point, Align::nothing>(
+    {.name = "spherical joint", .dofs = {Dof::bend}, .bearing = Bearing::socket, .changes_with_pose = false});
+inline constexpr JointKind JointKind::spherical{spherical_joint};
 
 /// A ball in a socket: holds a point and leaves all rotations.
 inline JointSpec spherical(std::string name, BodyId a, BodyId b, const Vec3& at) {

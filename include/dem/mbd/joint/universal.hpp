@@ -6,11 +6,11 @@
 namespace dem::mbd {
 
 inline constexpr JointTraits universal_joint =
-    joint_that_holds<Hold::point, Align::cross>({.kind = JointKind::universal,
-                                                 .name = "universal joint",
+    joint_that_holds<Hold::point, Align::cross>({.name = "universal joint",
                                                  .dofs = {Dof::bend_x, Dof::bend_y, Dof::bend},
                                                  .bearing = Bearing::socket,
                                                  .two_axes = true});
+inline constexpr JointKind JointKind::universal{universal_joint};
 
 /// Shaft a runs along axis_a and shaft b along axis_b, both pointing the way the torque goes. with_x gives the arm of
 /// the cross on shaft a; two joints in a row cancel their ripple if the arms on the shaft between them are parallel.

@@ -2,6 +2,7 @@
 
 #include <dem/core/macros.hpp>
 #include <dem/mbd/drive/curve.hpp>
+#include <dem/mbd/ids.hpp>
 #include <dem/mbd/joint/coordinate.hpp>
 
 #include <string>

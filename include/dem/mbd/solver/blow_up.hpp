@@ -9,18 +9,9 @@ namespace dem::mbd {
 
 /// The first function of a user that gave no number in the newest step, in words; empty if all did.
 inline std::string not_a_number(const Parts& parts) {
-  for (const Actuator& u : parts.actuators) {
-    if (std::isnan(u.target.value + u.target.rate)) return fmt::format("The set point of actuator '{}'", u.spec.name);
-  }
-  for (const Load& l : parts.loads) {
-    if (std::isnan(l.size)) return fmt::format("The size of load '{}'", l.spec.name);
-    const Wrench& w = l.wrench;
-    if (l.spec.law && std::isnan(dot(w.force, {1, 1, 1}) + dot(w.torque, {1, 1, 1}))) {
-      return fmt::format("The force or torque of load '{}'", l.spec.name);
-    }
-  }
-  for (const PrescribedMotion& p : parts.motions) {
-    if (std::isnan(p.drive.value + p.drive.rate)) return fmt::format("The value of motion '{}'", p.spec.name);
+  for (const detail::PartKind* kind : parts.kinds) {
+    if (!kind->not_a_number) continue;
+    if (std::string text = kind->not_a_number(parts); !text.empty()) return text;
   }
   return {};
 }

@@ -1,6 +1,15 @@
 #pragma once
 
-#include <dem/mbd/solver/add_parts.hpp>
+#include <dem/mbd/body/add_body.hpp>
+#include <dem/mbd/drive/actuator_part.hpp>
+#include <dem/mbd/drive/motion_part.hpp>
+#include <dem/mbd/joint/coupling_part.hpp>
+#include <dem/mbd/joint/friction_part.hpp>
+#include <dem/mbd/joint/kinds.hpp>
+#include <dem/mbd/joint/limits_part.hpp>
+#include <dem/mbd/load/load_part.hpp>
+#include <dem/mbd/load/spring_part.hpp>
+#include <dem/mbd/sensor/sensor_part.hpp>
 #include <dem/mbd/solver/steer.hpp>
 
 namespace dem::mbd {

@@ -5,6 +5,7 @@
 #include <dem/mbd/drive/prescribed.hpp>
 #include <dem/mbd/joint/coupling.hpp>
 #include <dem/mbd/joint/friction.hpp>
+#include <dem/mbd/joint/joint_spec.hpp>
 #include <dem/mbd/joint/limits.hpp>
 #include <dem/mbd/load/load.hpp>
 #include <dem/mbd/load/spring.hpp>
@@ -14,6 +15,10 @@
 #include <vector>
 
 namespace dem::mbd {
+
+namespace detail {
+struct PartKind;
+}
 
 /// One coordinate that is prescribed now; a rotation of a body makes three of them, all others one.
 struct JacobianRow {
@@ -48,6 +53,12 @@ struct Parts {
   std::vector<Load> loads;
   std::vector<PrescribedMotion> motions;
   std::vector<Sensor> sensors;
+
+  std::vector<const detail::PartKind*> kinds;  ///< that there are, in the order in which they are evaluated
+  /// What prescribed motions and sensors need, if there are any: see motion_part.hpp and sensor_part.hpp.
+  void (*apply_motions)(Parts& parts, double time, double dt, bool is_over) = nullptr;
+  void (*check_holds)(Parts& parts, double time) = nullptr;
+  void (*sample_sensors)(Parts& parts, double dt) = nullptr;
 
   std::uint64_t revision = 0;  ///< grows with each body, joint, coupling ... that is added, set free or fixed
 
@@ -130,6 +141,20 @@ inline const JointFrictionState* friction_of(const Parts& parts, JointId id) {
   return nullptr;
 }
 
+/// Keeps a part; structural ones make what was derived and initialised before out of date.
+template <class Id, class Part>
+Id keep(Parts& parts, std::vector<Part>& list, Part&& part, bool structural = true) {
+  list.push_back(std::move(part));
+  if (structural) ++parts.revision;
+  return Id(list.size() - 1);
+}
+inline constexpr auto name_in_spec = [](const auto& part) -> const std::string& { return part.spec.name; };
+
+/// A global point in a body's frame.
+inline Vector3<double> to_body(const Body& b, const Vector3<double>& global) {
+  return transpose_times(b.motion.rotation, global - b.motion.position);
+}
+
 /// A point (m) that was given as `what`, or an Error if it is nowhere.
 inline Vector3<double> finite_point(const Vec3& p, const std::string& what) {
   if (!is_finite(from_eigen(p))) fail("{} is ({:g}, {:g}, {:g}), but must be finite", what, p.x(), p.y(), p.z());
@@ -144,6 +169,24 @@ inline Vector3<double> unit(const Vector3<double>& v, const std::string& asker) 
   }
   return v / length;
 }
+/// A direction that was given by `asker`, of length 1.
 inline Vector3<double> unit(const Vec3& v, const std::string& asker) { return unit(from_eigen(v), asker); }
+
+/// Checks the two ends of an element between points and puts the points into body frames.
+template <class Part, class Spec>
+void attach_points(const Parts& parts, Part& part, const Spec& s, const std::string& who) {
+  const Body &a = known_body(parts, s.a, who), &b = known_body(parts, s.b, who);
+  if (s.a == s.b) fail("{} joins body '{}' to itself; give it two different bodies", who, a.name);
+  const auto point_a = finite_point(s.at_a, "the first point of " + who);
+  const auto point_b = finite_point(s.at_b, "the second point of " + who);
+  if (const double apart = norm(point_b - point_a); !(apart > 1e-9)) {
+    fail(
+        "the two points of {} are {:g} m apart, so its direction is not known; move one of them, or act on a joint's "
+        "coordinate instead",
+        who, apart);
+  }
+  part.point_a = to_body(a, point_a);
+  part.point_b = to_body(b, point_b);
+}
 
 }  // namespace dem::mbd

@@ -3,8 +3,6 @@
 #include <dem/mbd/solver/derive.hpp>
 
 #include <algorithm>
-#include <cstdint>
-#include <vector>
 
 namespace dem::mbd {
 
@@ -21,27 +19,8 @@ class Softening {
  public:
   Softening() = default;
   /// For what has been derived in `m` for steps of dt (s).
-  Softening(const Parts& m, double dt) {
-    for (std::uint32_t i = 0; i < m.joints.size(); ++i) {
-      const JointSpec& s = m.joint_specs[i];
-      const bool given = s.stiffness && s.damping && s.rotational_stiffness && s.rotational_damping;
-      const JointTraits& traits = traits_of(s.kind);
-      if (traits.changes_with_pose && traits.stiffness == Stiffness::derived && !given) joints_.push_back(i);
-    }
-    const auto changes = [&](std::uint32_t joint) { return traits_of(m.joints[joint].kind).changes_with_pose; };
-    for (std::uint32_t i = 0; i < m.limits.size(); ++i) {
-      if (changes(m.limits[i].joint)) limits_.push_back(i);
-    }
-    for (std::uint32_t i = 0; i < m.friction.size(); ++i) {
-      if (changes(m.friction[i].joint)) friction_.push_back(i);
-    }
-    for (std::uint32_t i = 0; i < m.couplings.size(); ++i) {
-      const auto& terms = m.couplings[i].spec.terms;
-      if (std::any_of(terms.begin(), terms.end(), [&](const auto& t) { return changes(t.joint.value); })) {
-        couplings_.push_back(i);
-      }
-    }
-    if (joints_.size() + limits_.size() + friction_.size() + couplings_.size() > 0) derivation_ = {m, dt};
+  Softening(Parts& m, double dt) : derivation_(m, dt) {
+    if (lower(m) < 1.0) derivation_ = {};
   }
 
   /// To be called at the end of each step.
@@ -55,49 +34,16 @@ class Softening {
  private:
   static constexpr int longest_interval = 64;  // steps
 
-  /// Returns how many times too stiff the worst one was.
+  /// Returns how many times too stiff the worst one was; 0 if no pose changes anything.
   double lower(Parts& m) const {
-    double worst = 1.0;
-    const auto cut = [&](double& value, double allowed) {
-      if (!(value > 1.001 * allowed)) return;  // not for rounding alone
-      worst = std::max(worst, value / allowed);
-      value = allowed;
-    };
-    for (const std::uint32_t i : joints_) {
-      Joint& j = m.joints[i];
-      Joint now = j;
-      derivation_.fill(m, m.joint_specs[i], now);
-      cut(j.k, now.k);
-      cut(j.c, now.c);
-      cut(j.kr, now.kr);
-      cut(j.cr, now.cr);
-    }
-    for (const std::uint32_t i : limits_) {
-      JointLimitState& e = m.limits[i];
-      JointLimitState now = e;
-      derivation_.fill(m, given_limits(m.joint_specs[e.joint], e.dof), now);
-      cut(e.stiffness, now.stiffness);
-      cut(e.damping, now.damping);
-    }
-    for (const std::uint32_t i : friction_) {
-      JointFrictionState& e = m.friction[i];
-      JointFrictionState now = e;
-      derivation_.fill(m, *m.joint_specs[e.joint].friction, now);
-      cut(e.law.stiffness, now.law.stiffness);
-      cut(e.law.velocity_stiffness, now.law.velocity_stiffness);
-    }
-    for (const std::uint32_t i : couplings_) {
-      Coupling& g = m.couplings[i];
-      Coupling now = g;
-      derivation_.fill(m, g.spec, now);
-      cut(g.k, now.k);
-      cut(g.c, now.c);
+    double worst = 0.0;
+    for (const detail::PartKind* kind : m.kinds) {
+      if (kind->soften) worst = std::max(worst, kind->soften(m, derivation_));
     }
     return worst;
   }
 
   detail::Derivation derivation_;
-  std::vector<std::uint32_t> joints_, limits_, friction_, couplings_;
   int interval_ = 1, steps_left_ = 1;
 };
 

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <dem/mbd/drive/check_holds.hpp>
 #include <dem/mbd/solver/blow_up.hpp>
 #include <dem/mbd/solver/forces.hpp>
 #include <dem/mbd/solver/held_contacts.hpp>
@@ -64,7 +63,9 @@ class Solver {
 
   /// Throws Error if a prescribed motion that was added, switched on or given another signal would have to jump to take
   /// hold of its coordinate. To be called before a step begins, so that one that has begun is never refused.
-  void check_motions(Mechanism& m) const { check_holds(m.parts(), time_); }
+  void check_motions(Mechanism& m) const {
+    if (m.parts().check_holds) m.parts().check_holds(m.parts(), time_);
+  }
 
   /// Starts at `time` (s): the integrator's memory is filled from the forces at this state. `put_forces()` adds those
   /// from outside (the grains) to the bodies. Throws Error if a stiffness has to be derived and no time step is known,
@@ -79,9 +80,9 @@ class Solver {
     motion_.read(parts.bodies);
     parts.spin.assign(parts.bodies.size(), {0, 0, 0});
     parts.outside.assign(parts.bodies.size(), {});
-    check_holds(parts, time);
+    check_motions(m);
     const double step = design_dt_ / checked_substeps(m);  // 0 if none is known
-    apply_motions(parts, time, step, false);
+    if (parts.apply_motions) parts.apply_motions(parts, time, step, false);
     for (PrescribedMotion& p : parts.motions) p.drive.impulse = 0.0;  // the speeds that it starts with
     add_forces(parts, time, step, false);
     held_.start(parts.outside);
@@ -161,7 +162,8 @@ class Solver {
   void predict(Mechanism& m, int stage, double dt) {
     if constexpr (I::predicts_before_forces) {
       motion_.before_forces(m.parts().bodies, stage, dt);
-      apply_motions(m.parts(), time_ + dt, dt, false);  // forces see driven bodies where they are at the step's end
+      // Forces see driven bodies where they are at the end of the step.
+      if (m.parts().apply_motions) m.parts().apply_motions(m.parts(), time_ + dt, dt, false);
     }
   }
 
@@ -170,7 +172,7 @@ class Solver {
     Parts& parts = m.parts();
     const bool last = stage == I::stages - 1;
     add_forces(parts, stage_time(start, dt, stage), dt, last);
-    if (last && sampling_) sample_sensors(parts, dt);
+    if (last && sampling_ && parts.sample_sensors) parts.sample_sensors(parts, dt);
     motion_.after_forces(parts.bodies, stage, dt, from_eigen(gravity));
     step_dt_ = dt * m.substeps;
     if (last) end_step(m, dt);
@@ -206,8 +208,8 @@ class Solver {
   /// Sets prescribed motions (eq. 19) for the end of the step.
   void prescribe(Mechanism& m, double time_at_end_of_step, double dt) {
     Parts& parts = m.parts();
-    if (parts.motions.empty()) return;
-    apply_motions(parts, time_at_end_of_step, dt, true);
+    if (!parts.apply_motions) return;
+    parts.apply_motions(parts, time_at_end_of_step, dt, true);
     for (const PrescribedMotion& p : parts.motions) {
       if (p.spec.on) watch_body(m, p.spec.body.index());  // also a fixed one, which nothing else moves
     }

@@ -1,6 +1,7 @@
 #pragma once
 
-#include <dem/mbd/solver/stability.hpp>
+#include <dem/core/stable_time_step.hpp>
+#include <dem/mbd/solver/part_kind.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -96,7 +97,7 @@ StableTimeStep stable_time_step_of(const Parts& m) {
       if (k <= as_stiff * worst_k && c <= as_stiff * worst_c) continue;
       const double dt = largest_stable_step<I>(k, c);
       if (dt < found[i].dt) {
-        found[i] = {dt, name_of(m, elements[e])};
+        found[i] = {dt, elements[e].kind->name_of(m, elements[e].index)};
         worst_k = k;
         worst_c = c;
       }

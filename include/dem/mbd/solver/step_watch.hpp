@@ -1,6 +1,5 @@
 #pragma once
 
-#include <dem/mbd/solver/softening.hpp>
 #include <dem/mbd/solver/stable_time_step.hpp>
 
 #include <algorithm>
@@ -34,23 +33,7 @@ class StepWatch {
 
  private:
   static bool may_grow(const Parts& m) {
-    if (!m.springs.empty()) return true;
-    for (const JointSpec& s : m.joint_specs) {
-      if (traits_of(s.kind).changes_with_pose && has_given(s)) return true;
-    }
-    for (const Actuator& u : m.actuators) {
-      if (!u.spec.joint.valid() || traits_of(m.joints[u.spec.joint.index()].kind).changes_with_pose) return true;
-    }
-    for (const Coupling& c : m.couplings) {
-      if (c.spec.stiffness || c.spec.damping) return true;
-    }
-    return false;
-  }
-  static bool has_given(const JointSpec& s) {
-    const bool limits =
-        std::any_of(s.limits.begin(), s.limits.end(), [](const JointLimits& l) { return l.stiffness || l.damping; });
-    const bool friction = s.friction && (s.friction->stiffness || s.friction->velocity_stiffness);
-    return limits || friction || traits_of(s.kind).stiffness == Stiffness::own || s.has_stiffness_or_damping();
+    return std::any_of(m.kinds.begin(), m.kinds.end(), [&](const auto* k) { return k->may_grow && k->may_grow(m); });
   }
   /// omega^2 dt^2 + 2 c dt of the worst part, by the better bound, over 4: below 1 each of the integrators is stable.
   static double share_of_limit(const Parts& m, double dt) {
