@@ -19,8 +19,8 @@ inline Matrix3<double> operator-(const Matrix3<double>& a, const Matrix3<double>
 inline Matrix3<double> operator*(double s, const Matrix3<double>& m) { return {s * m.row0, s * m.row1, s * m.row2}; }
 
 /// A matrix with these diagonal elements and zeros.
-inline Matrix3<double> diagonal(double x, double y, double z) { return {{x, 0, 0}, {0, y, 0}, {0, 0, z}}; }
-inline Matrix3<double> diagonal(const Vector3<double>& d) { return diagonal(d.x, d.y, d.z); }
+inline Matrix3<double> diagonal_matrix(double x, double y, double z) { return {{x, 0, 0}, {0, y, 0}, {0, 0, z}}; }
+inline Matrix3<double> diagonal_matrix(const Vector3<double>& d) { return diagonal_matrix(d.x, d.y, d.z); }
 /// a b^T.
 inline Matrix3<double> outer(const Vector3<double>& a, const Vector3<double>& b) { return {a.x * b, a.y * b, a.z * b}; }
 /// [a]x, with which [a]x b = a x b.
@@ -53,7 +53,7 @@ inline bool is_finite(const Vector3<double>& a) {
 /// Largest eigenvalue of a symmetric matrix, by the trigonometric solution of its cubic.
 inline double largest_eigenvalue(const Matrix3<double>& m) {
   const double mean = trace(m) / 3.0;
-  const Matrix3<double> rest = m - diagonal(mean, mean, mean);
+  const Matrix3<double> rest = m - diagonal_matrix(mean, mean, mean);
   const double p = std::sqrt(squared_norm(rest) / 6.0);
   if (p <= 1e-15 * std::abs(mean) || p < 1e-300) return mean;
   const double cosine = std::clamp(determinant((1.0 / p) * rest) / 2.0, -1.0, 1.0);

@@ -11,7 +11,7 @@ inline BodyId add_body(Parts& parts, BuiltBody built) {
 }
 
 inline ConnectionId add_connection(Parts& parts, std::string name, BodyId body, const Vec3& at) {
-  const std::string who = fmt::format("connection point '{}'", name);
+  const std::string who = dem::text("connection point '{}'", name);
   const Body& b = known_body(parts, body, who);
   settle_name(name, parts.connections, "connection point", "connection points",
               [](const Connection& c) { return c.name; });

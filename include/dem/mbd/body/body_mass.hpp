@@ -27,7 +27,7 @@ struct BodyMass {
 inline Mat3 steiner(double mass, const Vec3& r) {
   const Vector3<double> x = from_eigen(r);
   const double square = dot(x, x);
-  return to_eigen(mass * (diagonal(square, square, square) - outer(x, x)));
+  return to_eigen(mass * (diagonal_matrix(square, square, square) - outer(x, x)));
 }
 
 /// Two bodies welded together; subtract one with a negative mass.
@@ -61,7 +61,7 @@ inline BodyMass cylinder_mass(double radius, double length, double density) {
   require_positive(length, "length of a cylinder", "m");
   const double m = require_positive(density, "density", "kg/m^3") * std::numbers::pi * radius * radius * length;
   const double across = m * (3.0 * radius * radius + length * length) / 12.0;
-  return {m, Vec3::Zero(), to_eigen(diagonal(across, across, 0.5 * m * radius * radius))};
+  return {m, Vec3::Zero(), to_eigen(diagonal_matrix(across, across, 0.5 * m * radius * radius))};
 }
 
 /// A full sphere about the origin (m, kg/m^3).

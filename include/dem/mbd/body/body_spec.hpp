@@ -47,7 +47,7 @@ BodySpec given_body(std::string name, double mass, const Eigen::MatrixBase<Deriv
     tensor = inertia;
   } else {
     const Vec3 moments = inertia;
-    tensor = to_eigen(diagonal(from_eigen(moments)));
+    tensor = to_eigen(diagonal_matrix(from_eigen(moments)));
   }
   return {.name = std::move(name), .mass_properties = {mass, centre_of_mass, tensor}};
 }
@@ -79,7 +79,7 @@ struct BuiltBody {
 inline BuiltBody build_body(const BodySpec& spec) {
   using V = Vector3<double>;
   const Matrix3<double> turn = from_eigen(spec.rotation);
-  if (!(squared_norm(turn * transposed(turn) - diagonal(1, 1, 1)) <= 1e-18) || !(determinant(turn) > 0)) {
+  if (!(squared_norm(turn * transposed(turn) - diagonal_matrix(1, 1, 1)) <= 1e-18) || !(determinant(turn) > 0)) {
     fail(
         "the rotation of body '{}' is not a right-handed rotation (its rows are not orthonormal): use "
         "Eigen::AngleAxisd or Quaternion::normalized() to make it",

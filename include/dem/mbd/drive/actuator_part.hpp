@@ -62,7 +62,7 @@ inline JointId joint_on_three_points(Parts& parts, const ActuatorSpec& spec, con
 
 inline ActuatorId add_actuator(Parts& parts, ActuatorSpec spec) {
   settle_name(spec.name, parts.actuators, "actuator", "actuators", name_in_spec);
-  const std::string who = fmt::format("actuator '{}'", spec.name);
+  const std::string who = dem::text("actuator '{}'", spec.name);
   check_actuator(spec, who);
   Actuator u;
   if (spec.three_points) spec.joint = joint_on_three_points(parts, spec, who);

@@ -16,7 +16,7 @@ inline constexpr PartKind motion_kind = {.rank = 7, .not_a_number = [](const Par
                                          }};
 
 inline PrescribedMotion make_motion(const Parts& parts, MotionSpec spec) {
-  const std::string who = fmt::format("prescribed motion '{}'", spec.name);
+  const std::string who = dem::text("prescribed motion '{}'", spec.name);
   PrescribedMotion p;
   if (spec.target == MotionSpec::Target::joint) {
     const Joint& j = known_joint(parts, spec.joint, who);

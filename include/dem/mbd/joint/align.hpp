@@ -83,8 +83,8 @@ inline double aligning_energy(const Joint& j, Align align, const FrameOfA& at, c
 inline Matrix3<double> held_rotations(const Joint& j, Align align, const FrameOfA& at, const Matrix3<double>& B) {
   const Vector3<double> z = at.z();
   switch (align) {
-    case Align::parallel: return diagonal(1, 1, 1) - outer(z, z);
-    case Align::locked: return diagonal(1, 1, 1);
+    case Align::parallel: return diagonal_matrix(1, 1, 1) - outer(z, z);
+    case Align::locked: return diagonal_matrix(1, 1, 1);
     case Align::bushing: return square_root_of(j.kr3, at);
     case Align::cross: {
       const Vector3<double> g = normalised(cross(B * j.axes_b.y, at.x()));  // square to the cross
@@ -96,7 +96,7 @@ inline Matrix3<double> held_rotations(const Joint& j, Align align, const FrameOf
     }
     case Align::nothing: break;
   }
-  return diagonal(0, 0, 0);
+  return diagonal_matrix(0, 0, 0);
 }
 
 }  // namespace dem::mbd::detail

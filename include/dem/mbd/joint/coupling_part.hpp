@@ -24,14 +24,14 @@ inline Dof dof_of(const CouplingSpec::Term& term, const Parts& parts, std::size_
           "{} in the "
           "coupling's terms",
           who, number, turns ? "turns" : "slides", parts.joint_specs[term.joint.index()].name, name_of(j.kind),
-          term.dof == Dof::own ? "" : fmt::format(" and its {} does not", name_of(dof)), turns ? "turns" : "slides");
+          term.dof == Dof::own ? "" : dem::text(" and its {} does not", name_of(dof)), turns ? "turns" : "slides");
     }
   }
   return require_free_dof(j.kind, dof, who);
 }
 
 inline Coupling make_coupling(const Parts& parts, CouplingSpec spec) {
-  const std::string who = fmt::format("coupling '{}'", spec.name);
+  const std::string who = dem::text("coupling '{}'", spec.name);
   if (spec.terms.size() < 2) fail("{} joins {} coordinates, but needs at least 2", who, spec.terms.size());
   for (std::size_t i = 0; i < spec.terms.size(); ++i) {
     spec.terms[i].dof = dof_of(spec.terms[i], parts, i + 1, who);

@@ -98,7 +98,7 @@ inline void check_friction(const JointSpec& s, const std::string& who) {
 
 /// Adds the friction of joint number `joint`. Throws Error for what cannot be.
 inline void add_friction(Parts& parts, JointSpec& s, const Joint&, std::uint32_t joint) {
-  const std::string who = fmt::format("{} '{}'", name_of(s.kind), s.name);
+  const std::string who = dem::text("{} '{}'", name_of(s.kind), s.name);
   check_friction(s, who);
   const JointFriction& f = *s.friction;
   JointFrictionState e;

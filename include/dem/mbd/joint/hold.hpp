@@ -24,7 +24,7 @@ struct FrameOfA {
 /// The square root of a stiffness k along the axes of a's joint frame, as a matrix in global axes.
 inline Matrix3<double> square_root_of(const Vector3<double>& k, const FrameOfA& at) {
   const Matrix3<double> axes = from_columns(at.x(), at.y(), at.z());
-  return axes * diagonal(std::sqrt(k.x), std::sqrt(k.y), std::sqrt(k.z)) * transposed(axes);
+  return axes * diagonal_matrix(std::sqrt(k.x), std::sqrt(k.y), std::sqrt(k.z)) * transposed(axes);
 }
 
 /// The force (N) on b of the springs and dampers at a displacement d (m) and its rate v (m/s), global.
@@ -100,8 +100,8 @@ void for_each_held_axis(const Joint& j, Hold hold, F&& each) {
 inline Matrix3<double> held_displacements(const Joint& j, Hold hold, const FrameOfA& at, const Vector3<double>& d) {
   const Vector3<double> z = at.z();
   switch (hold) {
-    case Hold::point: return diagonal(1, 1, 1);
-    case Hold::line: return diagonal(1, 1, 1) - outer(z, z);
+    case Hold::point: return diagonal_matrix(1, 1, 1);
+    case Hold::line: return diagonal_matrix(1, 1, 1) - outer(z, z);
     case Hold::plane: return outer(z, z);
     case Hold::length: {
       const Vector3<double> n = normalised(d);
@@ -110,7 +110,7 @@ inline Matrix3<double> held_displacements(const Joint& j, Hold hold, const Frame
     case Hold::bushing: return square_root_of(j.k3, at);
     case Hold::nothing: break;
   }
-  return diagonal(0, 0, 0);
+  return diagonal_matrix(0, 0, 0);
 }
 
 }  // namespace dem::mbd::detail

@@ -77,7 +77,7 @@ inline constexpr PartKind limits_kind = {
 
 /// Adds the limits of a joint that is about to be added, as number `joint`.
 inline void add_limits(Parts& parts, JointSpec& s, const Joint& j, std::uint32_t joint) {
-  const std::string who = fmt::format("{} '{}'", name_of(s.kind), s.name);
+  const std::string who = dem::text("{} '{}'", name_of(s.kind), s.name);
   for (JointLimits& l : s.limits) {
     l.dof = require_free_dof(s.kind, l.dof, "a limit of " + who);
     if (!(l.lower < l.upper)) {

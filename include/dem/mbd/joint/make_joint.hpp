@@ -46,7 +46,7 @@ inline void use_connections(const Parts& parts, JointSpec& s, const std::string&
 
 inline void check_penalty(const JointSpec& s, const std::string& who) {
   const auto check = [&](const std::optional<double>& value, const char* what, const char* unit_name) {
-    if (value) require_non_negative(*value, fmt::format("{} of {}", what, who).c_str(), unit_name);
+    if (value) require_non_negative(*value, dem::text("{} of {}", what, who).c_str(), unit_name);
   };
   check(s.stiffness, "stiffness", "N/m");
   check(s.damping, "damping", "N s/m");

@@ -25,7 +25,7 @@ inline constexpr PartKind load_kind = {
 
 inline LoadId add_load(Parts& parts, LoadSpec spec) {
   settle_name(spec.name, parts.loads, "load", "loads", name_in_spec);
-  const std::string who = fmt::format("load '{}'", spec.name);
+  const std::string who = dem::text("load '{}'", spec.name);
   const Body& b = known_body(parts, spec.body, who);
   const Vector3<double> n = unit(spec.direction, who);
   Load load;

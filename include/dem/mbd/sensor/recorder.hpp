@@ -42,9 +42,8 @@ class Recorder {
     const JointKind kind = m->joint(id).kind;
     for (const Dof f : dofs_of(kind)) {
       const bool rotation = is_rotation(f);
-      add(fmt::format("{}_{}_{}", name, name_of(f), rotation ? "rad" : "m"),
-          [m, id, f] { return m->coordinate(id, f); });
-      add(fmt::format("{}_{}_speed_{}_per_s", name, name_of(f), rotation ? "rad" : "m"),
+      add(dem::text("{}_{}_{}", name, name_of(f), rotation ? "rad" : "m"), [m, id, f] { return m->coordinate(id, f); });
+      add(dem::text("{}_{}_speed_{}_per_s", name, name_of(f), rotation ? "rad" : "m"),
           [m, id, f] { return m->speed(id, f); });
     }
     add(name + "_force_x_N", [m, id] { return m->reaction(id).force.x; });
@@ -60,10 +59,10 @@ class Recorder {
     const Mechanism* m = machine_;
     const std::string name = known_body(m->parts(), id, "a recorder").name;
     for (int k = 0; k < 3; ++k) {
-      add(fmt::format("{}_{}_m", name, "xyz"[k]), [m, id, k] { return m->body(id).position()[k]; });
+      add(dem::text("{}_{}_m", name, "xyz"[k]), [m, id, k] { return m->body(id).position()[k]; });
     }
     for (int k = 0; k < 3; ++k) {
-      add(fmt::format("{}_v{}_m_per_s", name, "xyz"[k]), [m, id, k] { return m->body(id).velocity()[k]; });
+      add(dem::text("{}_v{}_m_per_s", name, "xyz"[k]), [m, id, k] { return m->body(id).velocity()[k]; });
     }
     return *this;
   }

@@ -26,19 +26,19 @@ std::string cause_of_blow_up(const Parts& parts, const StableTimeStep& at_start,
   }
   constexpr const char* remedy = "take a smaller time step, or a lower stiffness there.";
   if (at_start.dt < dt) {
-    return fmt::format("The time step is {:g} s, but the stable one is {:g} s, limited by {}: {}", dt, at_start.dt,
-                       at_start.limited_by, remedy);
+    return dem::text("The time step is {:g} s, but the stable one is {:g} s, limited by {}: {}", dt, at_start.dt,
+                     at_start.limited_by, remedy);
   }
   if (later.seen()) {
-    return fmt::format(
+    return dem::text(
         "The time step, {:g} s, was stable at the start of the run, but in the pose at t = {:g} s the stable one was "
         "{:g} s, limited by {}: {}",
         dt, later.time(), later.limit().dt * substeps, later.limit().limited_by, remedy);
   }
-  return fmt::format(
+  return dem::text(
       "The time step, {:g} s, was stable at the start of the run{}: check the applied forces, set points and contacts, "
       "or take a smaller one.",
-      dt, at_start.limited_by.empty() ? "" : fmt::format(" (up to {:g} s, by {})", at_start.dt, at_start.limited_by));
+      dt, at_start.limited_by.empty() ? "" : dem::text(" (up to {:g} s, by {})", at_start.dt, at_start.limited_by));
 }
 
 }  // namespace dem::mbd

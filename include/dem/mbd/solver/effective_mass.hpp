@@ -15,9 +15,9 @@ namespace dem::mbd::detail {
 
 /// The inverse of the inertia (1/(kg m^2)), global axes.
 inline Matrix3<double> inverse_inertia_of(const Body& b) {
-  if (b.fixed) return diagonal(0, 0, 0);
+  if (b.fixed) return diagonal_matrix(0, 0, 0);
   const Matrix3<double>& r = b.motion.rotation;
-  return r * diagonal(1.0 / b.inertia[0], 1.0 / b.inertia[1], 1.0 / b.inertia[2]) * transposed(r);
+  return r * diagonal_matrix(1.0 / b.inertia[0], 1.0 / b.inertia[1], 1.0 / b.inertia[2]) * transposed(r);
 }
 /// What turning adds to the displacement per unit force at `arm` (global) from the centre of mass (1/kg).
 inline Matrix3<double> inverse_mass_by_turning(const Body& b, const Vector3<double>& arm) {
@@ -26,8 +26,8 @@ inline Matrix3<double> inverse_mass_by_turning(const Body& b, const Vector3<doub
 }
 /// Displacement per unit force at `arm` (1/kg).
 inline Matrix3<double> inverse_mass_matrix(const Body& b, const Vector3<double>& arm) {
-  if (b.fixed) return diagonal(0, 0, 0);
-  return diagonal(1.0 / b.mass, 1.0 / b.mass, 1.0 / b.mass) + inverse_mass_by_turning(b, arm);
+  if (b.fixed) return diagonal_matrix(0, 0, 0);
+  return diagonal_matrix(1.0 / b.mass, 1.0 / b.mass, 1.0 / b.mass) + inverse_mass_by_turning(b, arm);
 }
 
 /// Turn about a unit vector n (global) per unit torque, and displacement along it at `arm` (global) per unit force.

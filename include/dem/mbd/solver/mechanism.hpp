@@ -45,7 +45,7 @@ class Mechanism {
   }
   /// A connection point at a point of the body's reference frame.
   ConnectionId add_connection_in_reference(std::string name, BodyId body, const Vec3& point) {
-    known_body(parts_, body, fmt::format("connection point '{}'", name));
+    known_body(parts_, body, dem::text("connection point '{}'", name));
     return add_connection(std::move(name), body, reference_point(body, point));
   }
   JointId add_joint(JointSpec spec) { return detail::add_joint(parts_, std::move(spec)); }

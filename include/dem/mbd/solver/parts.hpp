@@ -87,7 +87,7 @@ inline Wrench reaction_of(const Parts& parts, std::size_t joint) {
 /// that another of its kind has is refused. `name_of(item)` is the name of an item.
 template <class Items, class NameOf>
 void settle_name(std::string& name, const Items& items, const char* one, const char* several, NameOf&& name_of) {
-  if (name.empty()) name = fmt::format("{} {}", one, items.size());
+  if (name.empty()) name = dem::text("{} {}", one, items.size());
   for (const auto& item : items) {
     if (name_of(item) == name) fail("two {} are named '{}'; rename one, so that reports are clear", several, name);
   }

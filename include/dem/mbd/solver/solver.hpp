@@ -117,9 +117,9 @@ class Solver {
   MachineReport report(const Mechanism& m) const {
     if (!bad_.valid()) return {true, time_, {}, {}};
     const std::string text =
-        fmt::format("body '{}' blew up at t = {:g} s: its speed is not finite or above largest_speed = {:g}. {}",
-                    m.parts().bodies[bad_.index()].name, bad_time_, m.largest_speed,
-                    cause_of_blow_up<I>(m.parts(), limit_at_start_, watch_, step_dt_, m.substeps));
+        dem::text("body '{}' blew up at t = {:g} s: its speed is not finite or above largest_speed = {:g}. {}",
+                  m.parts().bodies[bad_.index()].name, bad_time_, m.largest_speed,
+                  cause_of_blow_up<I>(m.parts(), limit_at_start_, watch_, step_dt_, m.substeps));
     return {false, bad_time_, bad_, text};
   }
   bool has_blown_up() const { return bad_.valid(); }
