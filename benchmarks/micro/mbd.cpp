@@ -44,7 +44,7 @@ void joint_force(benchmark::State& state) {
   Joint j = m.parts().joints[0];
   const Vector3<double> w = {0.1, 0.2, 0.3};
   for (auto _ : state) {
-    apply_penalty(j, m.body(a), m.body(b), w, w, 1e-3);
+    traits_of(kind).force(j, m.body(a), m.body(b), w, w, 1e-3);
     benchmark::DoNotOptimize(m.body(b).force);
   }
   state.SetLabel(name_of(kind));

@@ -40,7 +40,7 @@ void test_load(const Settings& s, Campaign& campaign, LoadResult& r, dem::io::Pr
   const double seam = s.seam_height > 0.0 ? s.seam_height : 0.5 * campaign.packing.height;
   Rig<Integrator, Shape> rig(s, {.seam = seam, .wall_top = s.box_height, .lid_mass = r.load, .lid_low = highest},
                              grains);
-  campaign.time_step_limit = rig.world.stable_time_step().contact;
+  campaign.time_step_limit = rig.world.stable_time_step().limited_by;
   rig.world.prepare();
   campaign.time_step = rig.world.time_step();
   const auto count_steps = [&] {

@@ -108,9 +108,9 @@ class Rig {
 
   World world;
   dem::BodyId bottom, top, lid;
-  dem::mbd::JointId bottom_slide, top_slide, lid_slide;
-  dem::mbd::ActuatorId shaker, shearing, lid_drive;
-  dem::mbd::SensorId bottom_sensor, lid_sensor, shearing_sensor;
+  dem::JointId bottom_slide, top_slide, lid_slide;
+  dem::ActuatorId shaker, shearing, lid_drive;
+  dem::SensorId bottom_sensor, lid_sensor, shearing_sensor;
 
  private:
   static dem::surface::Bounds domain(const Settings& s, const RigShape& shape) {

@@ -104,11 +104,11 @@ void check_time_step(Settings s) {
         s, {.seam = 0.5 * s.box_height, .wall_top = s.box_height, .lid_mass = lid_mass, .lid_low = s.box_height}, {});
     rig.world.prepare();
     const auto limit = rig.world.stable_time_step();
-    if (insisted || rig.world.time_step() <= limit.value) return;
+    if (insisted || rig.world.time_step() <= limit.dt) return;
     dem::fail(
         "--time-step is {:g} s, but must be at most {:.4g} s, the largest stable one (limited by {}); lower it, leave "
         "it out for a share of the stable one, or insist with --allow-unstable-time-step",
-        s.time_step, limit.value, limit.contact);
+        s.time_step, limit.dt, limit.limited_by);
   };
   if (s.packing_file.empty()) check(RigShape{}.lid_mass);
   for (const double load : s.loads) check(load);

@@ -13,8 +13,8 @@
 namespace squeezer {
 
 using dem::BodyId;
+using dem::JointId;
 using dem::Vec3;
-using dem::mbd::JointId;
 
 /// Angles beta, Theta, gamma, Phi, delta, Omega, epsilon in rad at the start ...
 inline constexpr std::array<double, 7> start = {-0.0617138900142764496358948458001, 0.0,

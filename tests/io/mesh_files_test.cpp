@@ -1,6 +1,6 @@
 #include "files.hpp"
 
-#include <dem/geometry/mass_properties.hpp>
+#include <dem/geometry/mesh/mesh_mass_properties.hpp>
 #include <dem/geometry/mesh/mesh_repair.hpp>
 #include <dem/io/drawn_surface.hpp>
 #include <dem/io/obj.hpp>

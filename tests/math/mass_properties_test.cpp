@@ -1,6 +1,7 @@
 #include "catch.hpp"
 
-#include <dem/geometry/mass_properties.hpp>
+#include <dem/geometry/cluster/ball_mass_properties.hpp>
+#include <dem/geometry/principal_axes.hpp>
 
 #include <array>
 #include <numbers>

@@ -1,6 +1,6 @@
 #include "core/error_of.hpp"
 
-#include <dem/geometry/mass_properties.hpp>
+#include <dem/geometry/mesh/mesh_mass_properties.hpp>
 #include <dem/geometry/mesh/mesh_repair.hpp>
 #include <dem/geometry/mesh/mesh_shapes.hpp>
 #include <dem/math/rotation.hpp>

@@ -26,9 +26,9 @@ TEST_CASE("wrong assemblies are refused in words") {
   CHECK_THAT(refused(revolute("big end", a, b, {0.5, 0, 0}, Z).with_limits(1.0, -1.0)),
              Contains("limits of revolute joint 'big end' are 1 to -1"));
   CHECK_THAT(refused(spherical("ball", a, b, {0.5, 0, 0}).with_limits(0, 1)), Contains("no coordinate of its own"));
-  CHECK_THAT(refused(revolute("pin", a, b, {0.5, 0, 0}, Z).with_limits(Freedom::slide, 0, 1)),
+  CHECK_THAT(refused(revolute("pin", a, b, {0.5, 0, 0}, Z).with_limits(Dof::slide, 0, 1)),
              Contains("'slide' of a revolute joint") && Contains("only: turn"));
-  CHECK_THAT(refused(fixed("weld", a, b, X).with_limits(Freedom::turn, 0, 1)), Contains("no coordinate free"));
+  CHECK_THAT(refused(fixed("weld", a, b, X).with_limits(Dof::turn, 0, 1)), Contains("no coordinate free"));
   CHECK_THAT(refused(revolute("pin", a, b, {0.5, 0, 0}, Z).with_limits(0, 1).with_limits(0, 2)),
              Contains("two pairs of limits"));
   CHECK_THAT(refused(distance("rod", a, X, b, X)), Contains("need a distance"));
@@ -58,7 +58,7 @@ TEST_CASE("wrong assemblies are refused in words") {
              Contains("connection point 'pin' names body 5"));
   const JointId ball = m.add_joint(spherical("ball", a, b, {0.5, 0, 0}));
   CHECK_THAT(message_of([&] { m.add_actuator(joint_actuator("ram", ball, 1, 1)); }),
-             Contains("actuator 'ram'") && Contains("name one of its freedoms: bend"));
+             Contains("actuator 'ram'") && Contains("name one of its degrees of freedom: bend"));
   CHECK_THAT(message_of([&] { m.add_coupling({"gear", {{ball, 1.0}}}); }), Contains("needs at least 2"));
   CHECK_THAT(message_of([&] { m.add_sensor(joint_sensor("cell", JointId(4), 0.1)); }),
              Contains("sensor 'cell' measures joint 4, but the machine has 1 of them"));
@@ -92,9 +92,10 @@ TEST_CASE("a joint whose points and axes nearly meet starts at rest, in the midd
     CHECK(m.violation(j).displacement < 1e-15);
     CHECK(m.violation(j).rotation < 1e-15);
     // What is free keeps its gap.
-    const bool slides_z = hold_of(kind) == Hold::line, slides_xy = hold_of(kind) == Hold::plane;
-    if (slides_z) CHECK(m.coordinate(j, Freedom::slide) == Approx(0.0007).epsilon(2e-3));  // the axis leans by 5e-4
-    if (slides_xy) CHECK(m.coordinate(j, Freedom::slide_x) == Approx(0.001).epsilon(2e-3));
+    const bool slides_z = traits_of(kind).hold == Hold::line;
+    const bool slides_xy = traits_of(kind).hold == Hold::plane;
+    if (slides_z) CHECK(m.coordinate(j, Dof::slide) == Approx(0.0007).epsilon(2e-3));  // the axis leans by 5e-4
+    if (slides_xy) CHECK(m.coordinate(j, Dof::slide_x) == Approx(0.001).epsilon(2e-3));
   }
 }
 
@@ -102,9 +103,9 @@ TEST_CASE("starting_at sets a turn or a slide, and is refused where nothing can 
   Machine<PredictorCorrector> m;
   const BodyId a = m.add_body(brick("a", {0, 0, 0}));
   const auto at = [&](JointKind kind) { return joint(kind, name_of(kind), m.ground(), a, {0, 0, 0}, Z); };
-  const JointId sleeve = m.add_joint(at(JointKind::cylindrical).starting_at(0.3).starting_at(Freedom::slide, 0.02));
+  const JointId sleeve = m.add_joint(at(JointKind::cylindrical).starting_at(0.3).starting_at(Dof::slide, 0.02));
   CHECK(m.coordinate(sleeve) == Approx(0.3));
-  CHECK(m.coordinate(sleeve, Freedom::slide) == Approx(0.02));
+  CHECK(m.coordinate(sleeve, Dof::slide) == Approx(0.02));
   const JointId wire = m.add_joint(at(JointKind::point_on_line).starting_at(0.05));
   CHECK(m.coordinate(wire) == Approx(0.05));
   const auto refused = [&](const JointSpec& s) { return message_of([&] { m.add_joint(s); }); };
@@ -112,23 +113,23 @@ TEST_CASE("starting_at sets a turn or a slide, and is refused where nothing can 
              Contains("spherical joint 'spherical joint'") && Contains("no coordinate of its own"));
   CHECK_THAT(refused(at(JointKind::universal).starting_at(0.1)), Contains("bend_x, bend_y"));
   CHECK_THAT(refused(at(JointKind::fixed).starting_at(0.1)), Contains("no coordinate free"));
-  CHECK_THAT(refused(at(JointKind::planar).starting_at(Freedom::slide_x, 0.1)),
+  CHECK_THAT(refused(at(JointKind::planar).starting_at(Dof::slide_x, 0.1)),
              Contains("its slide_x a value") && Contains("move a body"));
   CHECK_THAT(refused(distance("rod", m.ground(), X, a, Y).starting_at(2.0)), Contains("its length a value"));
 }
 
-TEST_CASE("stops of a bushing or a free joint need a time step, too") {
+TEST_CASE("limits of a bushing or a free joint need a time step, too") {
   for (const bool rubber : {true, false}) {
     Machine<PredictorCorrector> m;
     const BodyId a = m.add_body(brick("a", {0, 0, 0}));
     const Vec3 k(100, 100, 100), none = Vec3::Zero();
     const JointSpec s = rubber ? bushing("buffer", m.ground(), a, {0, 0, 0}, Z, k, none, none, none)
                                : free_joint("buffer", m.ground(), a, {0, 0, 0}, Z);
-    m.add_joint(s.with_limits(Freedom::slide, -0.1, 0.1));
-    check_refused([&] { m.initialise(0.0, m.gravity); }, "stops of 'buffer'", "design_for(dt)");
+    m.add_joint(s.with_limits(Dof::slide, -0.1, 0.1));
+    check_refused([&] { m.initialise(0.0, m.gravity); }, "limits of 'buffer'", "design_for(dt)");
     m.design_for(1e-3);
     m.initialise(0.0, m.gravity);
-    CHECK(m.stops(JointId(0), Freedom::slide)->stiffness > 0.0);
+    CHECK(m.limits(JointId(0), Dof::slide)->stiffness > 0.0);
   }
 }
 
@@ -239,16 +240,12 @@ TEST_CASE("joints that cannot be meant are refused") {
   CHECK_THAT(refused(fixed("bolt", m.ground(), wall, X)), Contains("'ground' and 'wall', which are both fixed"));
   m.add_joint(free_joint("gauge", m.ground(), wall, X, Z));
   // `own` is another name for a coordinate, not another coordinate.
-  CHECK_THAT(refused(revolute("pin", m.ground(), a, X, Z).with_limits(-1, 1).with_limits(Freedom::turn, -1, 2)),
+  CHECK_THAT(refused(revolute("pin", m.ground(), a, X, Z).with_limits(-1, 1).with_limits(Dof::turn, -1, 2)),
              Contains("two pairs of limits for its turn"));
   const JointId slide = m.add_joint(prismatic("slide", m.ground(), a, X, X).with_limits(-1, 1));
-  CHECK(m.stops(slide, Freedom::slide) == m.stops(slide));
-  CHECK(m.stops(slide) != nullptr);
-  check_refused(
-      [&] {
-        m.add_coupling({"gear", {{slide, 1.0}, {slide, 2.0, Freedom::slide}}});
-      },
-      "same coordinate twice");
+  CHECK(m.limits(slide, Dof::slide) == m.limits(slide));
+  CHECK(m.limits(slide) != nullptr);
+  check_refused([&] { m.add_coupling({"gear", {{slide, 1.0}, {slide, 2.0, Dof::slide}}}); }, "same coordinate twice");
   CHECK_THAT(refused(revolute("dry", m.ground(), a, X, Z).with_friction({.coefficient = 0.1})),
              Contains("JointFriction::radius") && Contains("'dry' is 0 m"));
   CouplingSpec teeth = rack_and_pinion("teeth", JointId(0), slide, 2.0);
@@ -291,7 +288,7 @@ TEST_CASE("an id of another machine is refused by every accessor") {
   check_refused([&] { m.coordinate(JointId(1)); }, "joint 1");
   check_refused([&] { m.reaction(JointId()); }, "joint (never added)");
   check_refused([&] { m.violation(JointId(2)); }, "joint 2");
-  check_refused([&] { m.stops(JointId(2)); }, "joint 2");
+  check_refused([&] { m.limits(JointId(2)); }, "joint 2");
   check_refused([&] { m.set_friction_preload(JointId(2), 1.0); }, "joint 2");
   check_refused([&] { m.actuator(ActuatorId(0)); }, "actuator 0");
   check_refused([&] { m.set_target(ActuatorId(0), 1.0); }, "actuator 0");

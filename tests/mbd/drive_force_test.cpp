@@ -139,13 +139,13 @@ TEMPLATE_TEST_CASE("a drive pulls where the joint is, and leaves the body free t
     const BodyId plate = m.add_body(ball("plate", 2.0, inertia));
     JointSpec in_plane = joint(JointKind::planar, "floor", m.ground(), plate, {0, r, 0}, Z);
     const JointId floor = m.add_joint(in_plane.with_x(X));
-    const MotionId pull = m.add_motion(prescribed_joint("pull", floor, speeding_up).along(Freedom::slide_x));
+    const MotionId pull = m.add_motion(prescribed_joint("pull", floor, speeding_up).along(Dof::slide_x));
     REQUIRE(m.run(0.01, 1e-5));
     const double force = a / (1.0 / 2.0 + r * r / inertia);
     CHECK(m.motion(pull).drive.force == Approx(force).epsilon(1e-3));
     CHECK(m.body(plate).velocity().x() == Approx(force / 2.0 * 0.01).epsilon(1e-3));
     CHECK(m.body(plate).angular_velocity().z() == Approx(-force * r / inertia * 0.01).epsilon(1e-3));
-    CHECK(m.coordinate(floor, Freedom::slide_x) == Approx(0.5 * a * 1e-4).epsilon(1e-12));
+    CHECK(m.coordinate(floor, Dof::slide_x) == Approx(0.5 * a * 1e-4).epsilon(1e-12));
   }
 }
 

@@ -16,7 +16,7 @@ TEST_CASE("joint friction: sticks below its limit, slides with it, and stops a w
     REQUIRE(m.run(1.0, 1e-4));
     if (slope < mu) {
       CHECK(std::abs(m.coordinate(guide)) < 1e-4);
-      CHECK(m.rubbing(guide)->force.x == Approx(-2.0 * 9.81 * std::sin(angle)).epsilon(1e-3));
+      CHECK(m.friction(guide)->force.x == Approx(-2.0 * 9.81 * std::sin(angle)).epsilon(1e-3));
     } else {
       const double a = 9.81 * (std::sin(angle) - mu * std::cos(angle));
       CHECK(m.speed(guide) == Approx(a).epsilon(5e-3));  // the start, while friction builds up, is not Coulomb's
@@ -54,7 +54,7 @@ TEST_CASE("friction stops what slides on a plane or along a line, and what turns
     REQUIRE(m.run(0.2, 1e-4));
     // The start, while the springs of friction and of the joint build up, is not Coulomb's.
     CHECK((m.body(puck).velocity() - (speed - 0.2 * mu * 9.81) * along).norm() < 5e-3 * speed);
-    CHECK((to_eigen(m.rubbing(table)->force) + mu * 2.0 * 9.81 * along).norm() < 5e-3 * mu * 2.0 * 9.81);
+    CHECK((to_eigen(m.friction(table)->force) + mu * 2.0 * 9.81 * along).norm() < 5e-3 * mu * 2.0 * 9.81);
     REQUIRE(m.run(1.0, 1e-4));
     CHECK((m.body(puck).position() - way * along).norm() < 5e-3 * way);
     CHECK(m.body(puck).velocity().norm() < 1e-3);
@@ -108,6 +108,6 @@ TEST_CASE("the lever of a joint's friction turns the torque that it carries into
     m.add_load(applied_force("pull", cart, {0, 0, 0}, X, mu * normal + 2.0));  // 2 N more than friction: 1 m/s^2
     REQUIRE(m.run(1.0, 1e-4));
     CHECK(m.speed(guide) == Approx(1.0).epsilon(0.02));  // the start, while friction builds up, is not Coulomb's
-    CHECK(m.rubbing(guide)->force.x == Approx(-mu * normal).epsilon(1e-3));
+    CHECK(m.friction(guide)->force.x == Approx(-mu * normal).epsilon(1e-3));
   }
 }

@@ -46,7 +46,6 @@ TEST_CASE("without damping, every joint's force is the gradient of its energy") 
     // Somewhere off the assembled pose.
     m.body(b).motion.position += from_eigen(vector(0.05));
     m.body(b).motion.rotation = from_eigen(Mat3(turned(vector(0.2)) * m.body(b).rotation()));
-    m.clear_forces();
     m.initialise(0.0, Vec3::Zero());
     const Vec3 f = to_eigen(m.body(b).force), t = to_eigen(m.body(b).torque);
     INFO(name_of(kind));
@@ -253,7 +252,7 @@ TEST_CASE("stops catch a joint that turns and one that slides") {
   double lowest = 0.0;
   REQUIRE(m.run(1.0, 1e-4, [&] { lowest = std::min(lowest, m.coordinate(guide)); }));
   CHECK(m.coordinate(hinge) == Approx(0.5).margin(1e-4));
-  CHECK(m.stops(hinge)->force == Approx(-5.0).epsilon(1e-3));
+  CHECK(m.limits(hinge)->force == Approx(-5.0).epsilon(1e-3));
   // Undamped stops give the speed back, here twice; the deepest point is v sqrt(m/k). Entering a stop within a step
   // costs an error of order omega dt = 0.03 in the force of that step, 1e-3 in the speed.
   CHECK(lowest == Approx(-0.2 - std::sqrt(2.0 / 2e5)).epsilon(1e-4));

@@ -30,4 +30,24 @@ inline BodySpec ball(const std::string& name, double mass = 1.0, double inertia 
   return given_body(name, mass, Vec3(inertia, inertia, inertia));
 }
 
+/// A mechanism with the solver of a world, which calls it stage by stage, and `put_forces` in place of the grains.
+template <class I>
+struct InWorld {
+  Mechanism m;
+  Solver<I> solver;
+
+  void start(double dt, const Vec3& gravity = Vec3::Zero()) {
+    solver.design_for(m, dt);
+    solver.initialise(m, 0.0, gravity, [] {});
+  }
+  template <class PutForces>
+  void stage(int stage, double dt, const Vec3& gravity, PutForces&& put_forces) {
+    solver.stage(m, stage, dt, gravity, put_forces);
+  }
+  template <class PutForces>
+  void step(double dt, const Vec3& gravity, PutForces&& put_forces) {
+    for (int k = 0; k < I::stages; ++k) stage(k, dt, gravity, put_forces);
+  }
+};
+
 }  // namespace dem::mbd::test

@@ -122,15 +122,15 @@ struct SubstepEnergy {
 /// step, as it does the grains.
 template <class I>
 SubstepEnergy substep_energy(int substeps, double omega_dt) {
-  Machine<I> m;
+  InWorld<I> world;
+  Mechanism& m = world.m;
   m.substeps = substeps;
   const double k = 1000.0, mass = 2.0, omega = std::sqrt(k / mass), dt = omega_dt / omega;
   const BodyId a = m.add_body(given_body("a", 1.0, Vec3(0.1, 0.1, 0.1)).moving({0.5, 0, 0}));
   const BodyId b = m.add_body(given_body("b", 1.0, Vec3(0.1, 0.1, 0.1)).at({0, 0.3, 0}).moving({0.5, 0, 0}));
   m.add_joint(fixed("weld", a, b, {0, 0.15, 0}));
   m.add_joint(prismatic("guide", m.ground(), a, {0, 0, 0}, X));
-  m.design_for(dt);
-  m.initialise(0.0, Vec3::Zero());
+  world.start(dt);
   const auto spring_on_bodies = [&] {
     for (const BodyId id : {a, b}) {
       m.body(id).force += {-0.5 * k * m.body(id).motion.position.x, 0, 0};
@@ -146,13 +146,7 @@ SubstepEnergy substep_energy(int substeps, double omega_dt) {
   double first = 0.0, last = 0.0;
   const int steps = static_cast<int>(100 * 2 * pi / omega_dt);
   for (int s = 0; s < steps; ++s) {
-    for (int stage = 0; stage < I::stages; ++stage) {
-      if (I::predicts_before_forces) m.advance_substeps(stage, dt, Vec3::Zero());
-      m.clear_forces();
-      spring_on_bodies();
-      m.hold_contacts(stage);
-      if (!I::predicts_before_forces) m.advance_substeps(stage, dt, Vec3::Zero());
-    }
+    world.step(dt, Vec3::Zero(), spring_on_bodies);
     const double now = energy() / start;
     result.worst = std::max(result.worst, std::abs(now - 1.0));
     if (s < steps / 5) first += now;
@@ -166,8 +160,8 @@ SubstepEnergy substep_energy(int substeps, double omega_dt) {
 
 TEST_CASE("a function of the user reads a sensor in every substep, and trials are not sampled") {
   // A push that follows what a load cell feels. The world calls the machine twice a step, with two stages in a substep.
-  Machine<PredictorCorrector> m;
-  m.gravity.setZero();
+  InWorld<PredictorCorrector> world;
+  Mechanism& m = world.m;
   m.substeps = 2;
   const BodyId block = m.add_body(given_body("block", 2.0, Vec3(0.1, 0.1, 0.1)));
   const JointId weld = m.add_joint(fixed("weld", m.ground(), block, {0, 0, 0}));
@@ -177,15 +171,11 @@ TEST_CASE("a function of the user reads a sensor in every substep, and trials ar
   m.add_load(applied_force("push", block, {0, 0, 0}, X, Signal::function([&](double) {
                              return 10.0 + 0.5 * (6.0 - std::abs(m.sensor(cell).mean().force.x));
                            })));
-  m.design_for(dt);
-  m.initialise(0.0, Vec3::Zero());
+  world.start(dt);
   double latest = 0.0;
   for (int s = 0; s < 5000; ++s) {
     for (int stage = 0; stage < 2; ++stage) {
-      m.clear_forces();
-      m.body(block).apply({0, 0.01 * s, 0}, {0, 0, 0});
-      m.hold_contacts(stage);
-      m.advance_substeps(stage, dt, Vec3::Zero());
+      world.stage(stage, dt, Vec3::Zero(), [&] { m.body(block).apply({0, 0.01 * s, 0}, {0, 0, 0}); });
       if (stage == 0) CHECK(m.sensor(felt).latest().force.y == latest);  // a trial adds nothing
     }
     latest = m.sensor(felt).latest().force.y;
@@ -195,8 +185,8 @@ TEST_CASE("a function of the user reads a sensor in every substep, and trials ar
 }
 
 TEST_CASE("sensors go on after a function of the user threw within a trial") {
-  Machine<PredictorCorrector> m;
-  m.gravity.setZero();
+  InWorld<PredictorCorrector> world;
+  Mechanism& m = world.m;
   m.substeps = 2;
   const BodyId block = m.add_body(given_body("block", 2.0, Vec3(0.1, 0.1, 0.1)));
   const JointId weld = m.add_joint(fixed("weld", m.ground(), block, {0, 0, 0}));
@@ -207,15 +197,13 @@ TEST_CASE("sensors go on after a function of the user threw within a trial") {
                              return 10.0;
                            })));
   const double dt = 1e-4;
-  m.design_for(dt);
-  m.initialise(0.0, Vec3::Zero());
+  world.start(dt);
   fails = true;
-  m.clear_forces();
-  m.hold_contacts(0);
-  CHECK_THROWS_WITH(m.advance_substeps(0, dt, Vec3::Zero()), "no such file");
+  CHECK_THROWS_WITH(world.stage(0, dt, Vec3::Zero(), [] {}), "no such file");
   fails = false;
   m.substeps = 1;
-  REQUIRE(m.run(0.5, dt));
+  world.start(dt);
+  for (int s = 0; s < 5000; ++s) world.step(dt, Vec3::Zero(), [] {});
   CHECK(std::abs(m.sensor(cell).latest().force.x) == Approx(10.0).epsilon(1e-3));  // the weld's spring has settled
 }
 

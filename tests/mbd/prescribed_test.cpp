@@ -25,47 +25,40 @@ TEMPLATE_TEST_CASE("prescribed motion holds in the sub-steps that a world asks f
                    SymplecticEuler, VelocityVerlet) {
   // As a world steps it: the contact forces (none here) first, then several machine steps; of two stages the second
   // starts again.
-  Machine<TestType> m;
+  InWorld<TestType> world;
+  Mechanism& m = world.m;
   m.substeps = 4;
   const BodyId box = m.add_body(ball("box", 3.0));
   const JointId guide = m.add_joint(prismatic("guide", m.ground(), box, {0, 0, 0}, X));
   const MotionId drive = m.add_motion(prescribed_joint("drive", guide, Signal::sine(0.01, 2.0)));
   const double dt = 4e-4, w = 2.0 * pi * 2.0;
-  m.design_for(dt);
-  m.initialise(0.0, Vec3::Zero());
-  for (int s = 0; s < 800; ++s) {
-    for (int stage = 0; stage < TestType::stages; ++stage) {
-      if (TestType::predicts_before_forces) m.advance_substeps(stage, dt, Vec3::Zero());
-      m.clear_forces();
-      m.hold_contacts(stage);
-      if (!TestType::predicts_before_forces) m.advance_substeps(stage, dt, Vec3::Zero());
-    }
-  }
-  const double t = m.time();
+  world.start(dt);
+  for (int s = 0; s < 800; ++s) world.step(dt, Vec3::Zero(), [] {});
+  const double t = world.solver.time();
   CHECK(t == Approx(0.32));
   CHECK(m.coordinate(guide) == Approx(0.01 * std::sin(w * t)).epsilon(1e-12));
   CHECK(m.motion(drive).drive.force == Approx(-3.0 * 0.01 * w * w * std::sin(w * (t - dt / 8))).epsilon(1e-3));
 }
 
-TEST_CASE("any freedom of a joint may be prescribed, each by its own motion") {
+TEST_CASE("any degree of freedom of a joint may be prescribed, each by its own motion") {
   Machine<VelocityVerlet> m;
   const BodyId rod = m.add_body(ball("rod"));
   const JointId guide = m.add_joint(cylindrical("guide", m.ground(), rod, {0, 0, 0}, Z));
-  m.add_motion(prescribed_joint("out", guide, Signal::sine(0.02, 1.0)).along(Freedom::slide));
-  m.add_motion(prescribed_joint("round", guide, Signal::ramp(0.0, 3.0)).along(Freedom::turn));
+  m.add_motion(prescribed_joint("out", guide, Signal::sine(0.02, 1.0)).along(Dof::slide));
+  m.add_motion(prescribed_joint("round", guide, Signal::ramp(0.0, 3.0)).along(Dof::turn));
   const BodyId cross = m.add_body(ball("cross").at({1, 0, 0}));
   const JointId bent = m.add_joint(universal("bent", m.ground(), cross, {1, 0, 0}, Z, Z));
-  m.add_motion(prescribed_joint("bend", bent, Signal::sine(0.3, 0.5)).along(Freedom::bend_x));
+  m.add_motion(prescribed_joint("bend", bent, Signal::sine(0.3, 0.5)).along(Dof::bend_x));
   REQUIRE(m.run(0.6, 1e-4));
   const double t = m.time();
-  CHECK(m.coordinate(guide, Freedom::slide) == Approx(0.02 * std::sin(2 * pi * t)).epsilon(1e-12));
-  CHECK(m.coordinate(guide, Freedom::turn) == Approx(3.0 * t).epsilon(1e-12));
-  CHECK(m.speed(guide, Freedom::turn) == Approx(3.0).epsilon(1e-9));
-  CHECK(m.coordinate(bent, Freedom::bend_x) == Approx(0.3 * std::sin(pi * t)).epsilon(1e-9));
-  check_refused([&] { m.add_motion(prescribed_joint("no", guide, 0.0).along(Freedom::bend)); }, "'no'", "bend",
+  CHECK(m.coordinate(guide, Dof::slide) == Approx(0.02 * std::sin(2 * pi * t)).epsilon(1e-12));
+  CHECK(m.coordinate(guide, Dof::turn) == Approx(3.0 * t).epsilon(1e-12));
+  CHECK(m.speed(guide, Dof::turn) == Approx(3.0).epsilon(1e-9));
+  CHECK(m.coordinate(bent, Dof::bend_x) == Approx(0.3 * std::sin(pi * t)).epsilon(1e-9));
+  check_refused([&] { m.add_motion(prescribed_joint("no", guide, 0.0).along(Dof::bend)); }, "'no'", "bend",
                 "which has only");
   const MotionSpec plain = prescribed_joint("no", bent, 0.0);  // refined without being spent, as other specs are
-  check_refused([&] { m.add_motion(plain.along(Freedom::bend)); }, "'no' drives the bend of a universal joint",
+  check_refused([&] { m.add_motion(plain.along(Dof::bend)); }, "'no' drives the bend of a universal joint",
                 "bend_x and bend_y");
   const MotionId pose =
       m.add_motion(prescribed_pose("still", m.add_fixed_body("flyer"), [](double) { return Pose{}; }));
@@ -231,6 +224,6 @@ TEST_CASE("the length of a distance joint and a bend cannot be prescribed, and t
   const JointId socket = m.add_joint(spherical("socket", m.ground(), a, {1, 0, 0}));
   check_refused([&] { m.add_motion(prescribed_joint("reel", rod, 1.0)); },
                 "'reel' drives the length of a distance joint", "leave the joint out", "prismatic joint");
-  check_refused([&] { m.add_motion(prescribed_joint("tilt", socket, 0.0).along(Freedom::bend)); },
-                "'tilt' drives the bend", "bend_x and bend_y");
+  check_refused([&] { m.add_motion(prescribed_joint("tilt", socket, 0.0).along(Dof::bend)); }, "'tilt' drives the bend",
+                "bend_x and bend_y");
 }

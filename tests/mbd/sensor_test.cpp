@@ -28,7 +28,8 @@ TEST_CASE("a mean over an oscillation finds its middle") {
 }
 
 TEST_CASE("sensors read contacts, sums, joints and actuators") {
-  Machine<PredictorCorrector> m;
+  InWorld<PredictorCorrector> world;
+  Mechanism& m = world.m;
   const BodyId lid = m.add_body(given_body("lid", 2.0, Vec3(0.1, 0.1, 0.1)));
   const JointId weld = m.add_joint(fixed("weld", m.ground(), lid, {0, 0, 0}));
   // A weight that a ram holds up, critically damped with 100/s: at rest long before the window begins.
@@ -40,19 +41,12 @@ TEST_CASE("sensors read contacts, sums, joints and actuators") {
   const SensorId total = m.add_sensor(total_force_sensor("all on the lid", lid, 0.05));
   const SensorId joint = m.add_sensor(joint_sensor("load cell", weld, 0.05));
   const double dt = 1e-4;
-  m.design_for(dt);
-  m.initialise(0.0, m.gravity);
-  for (int k = 0; k < 3000; ++k) {  // the phases as a world calls them, with a push in place of grains
-    for (int stage = 0; stage < PredictorCorrector::stages; ++stage) {
-      m.before_forces(stage, dt);
-      m.clear_forces();
-      m.body(lid).apply({0, 0, -5.0}, {0.1, 0, 0});
-      m.add_forces(m.stage_time(k * dt, dt, stage), dt, stage, stage == 1);
-      m.advance(stage, dt, m.gravity);
-      m.prescribe((k + 1) * dt, dt);
-    }
+  const Vec3 gravity(0, 0, -9.81);
+  world.start(dt, gravity);
+  for (int k = 0; k < 3000; ++k) {  // with a push in place of grains
+    world.step(dt, gravity, [&] { m.body(lid).apply({0, 0, -5.0}, {0.1, 0, 0}); });
   }
-  CHECK(m.time() == Approx(0.3));
+  CHECK(world.solver.time() == Approx(0.3));
   CHECK(m.sensor(contact).mean().force.z == Approx(-5.0));
   CHECK(m.sensor(contact).mean().torque.y == Approx(0.5));
   CHECK(m.sensor(joint).mean().force.z == Approx(5.0 + 2.0 * 9.81).epsilon(1e-6));

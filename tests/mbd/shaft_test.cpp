@@ -177,16 +177,16 @@ TEST_CASE("a coupling takes the coordinates that it needs, and refuses joints th
   CHECK_THAT(refused(screw("thread", axle, second, 0.01)), Contains("joint 2 one that slides"));
   CHECK_THAT(refused(differential("diff", axle, second, slide, 3.0)), Contains("joint 3 one that turns"));
   CouplingSpec wrong = rack_and_pinion("teeth", axle, sleeve, 0.1);
-  wrong.terms[1].freedom = Freedom::turn;
+  wrong.terms[1].dof = Dof::turn;
   CHECK_THAT(refused(wrong), Contains("'sleeve' is a cylindrical joint and its turn does not"));
 
   // A cylindrical joint turns as a pinion and slides as a rack; other coordinates are named.
   const CouplingSpec& rack = m.coupling(m.add_coupling(rack_and_pinion("rack", axle, sleeve, 0.1))).spec;
-  CHECK(rack.terms[1].freedom == Freedom::slide);
+  CHECK(rack.terms[1].dof == Dof::slide);
   const CouplingSpec& thread = m.coupling(m.add_coupling(screw("one thread", sleeve, sleeve, 0.1))).spec;
-  CHECK(thread.terms[0].freedom == Freedom::turn);
-  CHECK(thread.terms[1].freedom == Freedom::slide);
+  CHECK(thread.terms[0].dof == Dof::turn);
+  CHECK(thread.terms[1].dof == Dof::slide);
   CouplingSpec bevel = gear("bevel", axle, socket, 1.0);
-  bevel.terms[1].freedom = Freedom::bend_x;
-  CHECK(m.coupling(m.add_coupling(bevel)).spec.terms[1].freedom == Freedom::bend_x);
+  bevel.terms[1].dof = Dof::bend_x;
+  CHECK(m.coupling(m.add_coupling(bevel)).spec.terms[1].dof == Dof::bend_x);
 }

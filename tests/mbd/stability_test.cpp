@@ -154,29 +154,29 @@ TEST_CASE("stops, friction and couplings of a guide are lowered with it, and giv
   const BodyId sledge = m.add_body(ball("sledge").moving({1, 0, 0})), other = m.add_body(ball("other").at({0, 3, 0}));
   const JointId plane = m.add_joint(
       planar("plane", sledge, m.ground(), {0, 0, 0}, Z)
-          .with_limits(Freedom::slide_y, -0.1, 0.1)
-          .with_limits({.lower = -0.7, .upper = 0.7, .stiffness = 100.0, .damping = 1.0, .freedom = Freedom::slide_x})
+          .with_limits(Dof::slide_y, -0.1, 0.1)
+          .with_limits({.lower = -0.7, .upper = 0.7, .stiffness = 100.0, .damping = 1.0, .dof = Dof::slide_x})
           .with_friction({.coefficient = 1e-6}));
   const JointId hinge = m.add_joint(revolute("hinge", m.ground(), other, {0, 3, 0}, Z));
-  const CouplingId belt = m.add_coupling({"belt", {{plane, 1.0, Freedom::slide_y}, {hinge, 0.1}}});
-  CouplingSpec stiff_belt = {"stiff belt", {{plane, 1.0, Freedom::slide_y}, {hinge, 0.1}}};
+  const CouplingId belt = m.add_coupling({"belt", {{plane, 1.0, Dof::slide_y}, {hinge, 0.1}}});
+  CouplingSpec stiff_belt = {"stiff belt", {{plane, 1.0, Dof::slide_y}, {hinge, 0.1}}};
   stiff_belt.stiffness = 1e4;
   stiff_belt.damping = 1.0;
   const CouplingId stiff = m.add_coupling(stiff_belt);
   REQUIRE(m.run(0.0, 1e-4));
-  const double stop = m.stops(plane, Freedom::slide_y)->stiffness, rub = m.rubbing(plane)->law.stiffness;
+  const double stop = m.limits(plane, Dof::slide_y)->stiffness, rub = m.friction(plane)->law.stiffness;
   const double pull = m.coupling(belt).k, hinge_k = m.joint(hinge).k;
   REQUIRE(m.run(0.5, 1e-4));
-  CHECK(m.stops(plane, Freedom::slide_y)->stiffness == Approx(stop / 3.5).epsilon(0.02));  // up to 6.4 mm late
-  CHECK(m.rubbing(plane)->law.stiffness == Approx(rub / 3.5).epsilon(0.02));
+  CHECK(m.limits(plane, Dof::slide_y)->stiffness == Approx(stop / 3.5).epsilon(0.02));  // up to 6.4 mm late
+  CHECK(m.friction(plane)->law.stiffness == Approx(rub / 3.5).epsilon(0.02));
   CHECK(m.coupling(belt).k < 0.9 * pull);
-  CHECK(m.stops(plane, Freedom::slide_x)->stiffness == 100.0);
+  CHECK(m.limits(plane, Dof::slide_x)->stiffness == 100.0);
   CHECK(m.coupling(stiff).k == 1e4);
   CHECK(m.joint(hinge).k == hinge_k);
   // Nothing is raised again on the way back.
   m.body(sledge).motion.velocity.x = -1.0;
   REQUIRE(m.run(0.4, 1e-4));
-  CHECK(m.stops(plane, Freedom::slide_y)->stiffness == Approx(stop / 3.5).epsilon(0.02));
+  CHECK(m.limits(plane, Dof::slide_y)->stiffness == Approx(stop / 3.5).epsilon(0.02));
 }
 
 TEST_CASE("the report of a blow-up knows the step that joints were derived for last") {

@@ -23,7 +23,7 @@ double limit(double stiffness, double radius, double density = 2650.0) {
   dem::World<Balls> w;
   w.set_contact({{stiffness, 0.0, 1.0}, {0.0, 0.0, 0.0, 0.0}});
   w.add_species(Sphere(radius), {"grain", density});
-  return w.stable_time_step().value;
+  return w.stable_time_step().dt;
 }
 
 }  // namespace
@@ -41,30 +41,30 @@ TEST_CASE("the smallest, the stiffest and the friction spring limit the time ste
   sizes.set_contact({{2000.0, 0.0, 1.0}, {0.0, 0.0, 0.0, 0.0}});
   sizes.add_species(Sphere(1e-3));
   sizes.add_species(Sphere(5e-3));
-  CHECK(sizes.stable_time_step().value == Approx(fine));
+  CHECK(sizes.stable_time_step().dt == Approx(fine));
 
   dem::World<Balls> tangential;
   tangential.set_contact({{2000.0, 0.0, 1.0}, {0.5, 8000.0, 0.0, 0.0}});
   tangential.add_species(Sphere(1e-3));
-  CHECK(tangential.stable_time_step().value == Approx(fine / 2));
+  CHECK(tangential.stable_time_step().dt == Approx(fine / 2));
 
   // The ramp of AsperitySpring is a damper of what sticks: 1/m of two balls, and R^2/I = 2.5/m each.
   dem::World<Balls> ramp;
   ramp.set_contact({{2000.0, 0.0, 1.0}, {0.5, 2000.0, 0.3, 0.0}});
   ramp.add_species(Sphere(1e-3));
   const double n = dem::grain::contacts_in_line, w = 7.0 / (2650.0 * Sphere(1e-3).volume());
-  CHECK(ramp.stable_time_step().value == Approx(dem::grain::stable_step(Balls::Integrator::stability_limit, n * 2000.0,
-                                                                        n * dem::grain::damped_share * 0.3, w)));
-  CHECK(ramp.stable_time_step().value < 0.8 * fine);
+  CHECK(ramp.stable_time_step().dt == Approx(dem::grain::stable_step(Balls::Integrator::stability_limit, n * 2000.0,
+                                                                     n * dem::grain::damped_share * 0.3, w)));
+  CHECK(ramp.stable_time_step().dt < 0.8 * fine);
 
   // A stiff wall counts as soon as it is there.
   dem::World<Balls> walled;
   walled.set_contact({{2000.0, 0.0, 1.0}, {0.0, 0.0, 0.0, 0.0}});
   walled.set_contact("grain", "wall", {{2e6, 0.0, 1.0}, {0.0, 0.0, 0.0, 0.0}});
   walled.add_species(Sphere(1e-3));
-  CHECK(walled.stable_time_step().value == Approx(fine));
+  CHECK(walled.stable_time_step().dt == Approx(fine));
   walled.add_surface(walled.ground(), dem::surface::Plane{});
-  CHECK(walled.stable_time_step().value < fine / 20);
+  CHECK(walled.stable_time_step().dt < fine / 20);
 }
 
 TEST_CASE("a damper shortens the step as much as a force that lags by half a step needs") {
@@ -106,19 +106,19 @@ TEST_CASE("laws that stiffen, and rolling springs, limit the time step too") {
   // Hertz at the reported overlap, 2 x limit x R*: the slope 2 E* sqrt(R* d) = 2 E* R* sqrt(2 limit).
   const double m = 2650.0 * Sphere(r).volume(), w = 2 / m * 3.5, k = 2e8 * 0.5 * r * std::sqrt(0.02);
   const double n = dem::grain::contacts_in_line;
-  const double soft = limit_of(0.0, 1.0, 1.0, 0.01).value;
+  const double soft = limit_of(0.0, 1.0, 1.0, 0.01).dt;
   CHECK(soft == Approx(dem::grain::stable_step(2.0, n * k, 0.0, w)).epsilon(1e-12));
-  CHECK(limit_of(0.0, 1.0, 1.0, 0.16).value == Approx(soft / 2));  // the fourth root
-  CHECK(limit_of(0.5, 1.0, 1.0, 0.01).value < 0.9 * soft);
-  CHECK_THAT(limit_of(0.5, 1.0, 1.0, 0.01).contact, Catch::Matchers::ContainsSubstring("damper"));
-  CHECK(limit_of(0.0, 16 * k, 1.0, 0.01).value == Approx(soft / 4));
-  CHECK_THAT(limit_of(0.0, 16 * k, 1.0, 0.01).contact, Catch::Matchers::ContainsSubstring("friction stiffness"));
+  CHECK(limit_of(0.0, 1.0, 1.0, 0.16).dt == Approx(soft / 2));  // the fourth root
+  CHECK(limit_of(0.5, 1.0, 1.0, 0.01).dt < 0.9 * soft);
+  CHECK_THAT(limit_of(0.5, 1.0, 1.0, 0.01).limited_by, Catch::Matchers::ContainsSubstring("damper"));
+  CHECK(limit_of(0.0, 16 * k, 1.0, 0.01).dt == Approx(soft / 4));
+  CHECK_THAT(limit_of(0.0, 16 * k, 1.0, 0.01).limited_by, Catch::Matchers::ContainsSubstring("friction stiffness"));
   // Rolling: kr R*^2 against 2/I, I = 2/5 m r^2. Where friction is as stiff, both turn the grain: their squares add up.
   const auto rolling = limit_of(0.0, 1.0, 1e6, 0.01);
-  CHECK(rolling.value == Approx(dem::grain::stable_step(2.0, n * 1e6 * 0.25 * r * r, 0.0, 5 / (m * r * r))));
-  CHECK_THAT(rolling.contact, Catch::Matchers::ContainsSubstring("rolling stiffness"));
-  const double friction = limit_of(0.0, 1e6, 1.0, 0.01).value, both = limit_of(0.0, 1e6, 1e6, 0.01).value;
-  CHECK(1 / (both * both) == Approx(1 / (friction * friction) + 1 / (rolling.value * rolling.value)).epsilon(1e-4));
+  CHECK(rolling.dt == Approx(dem::grain::stable_step(2.0, n * 1e6 * 0.25 * r * r, 0.0, 5 / (m * r * r))));
+  CHECK_THAT(rolling.limited_by, Catch::Matchers::ContainsSubstring("rolling stiffness"));
+  const double friction = limit_of(0.0, 1e6, 1.0, 0.01).dt, both = limit_of(0.0, 1e6, 1e6, 0.01).dt;
+  CHECK(1 / (both * both) == Approx(1 / (friction * friction) + 1 / (rolling.dt * rolling.dt)).epsilon(1e-4));
 }
 
 TEMPLATE_TEST_CASE("a bed is stable at the stable time step", "", Sphere, Cube8) {
@@ -138,7 +138,7 @@ TEMPLATE_TEST_CASE("a bed is stable at the stable time step", "", Sphere, Cube8)
   const double stored = (std::is_same_v<TestType, Sphere> ? 1 : 4) * (144 + 96) * 0.5 * k * overlap * overlap;
   const auto energy_after = [&](double factor, double mu, double damping = 0.0) {
     const dem::ContactParameters<Model> p = {{k, damping, 1.0}, {mu, k, 0.0, 1.0}};
-    auto w = make<Model>(shape, p, factor * make<Model>(shape, p).stable_time_step().value);
+    auto w = make<Model>(shape, p, factor * make<Model>(shape, p).stable_time_step().dt);
     add_open_box(w, Vec3::Constant(edge - pitch));
     dem::SurfaceOptions lid;
     lid.position = {0, 0, edge - pitch};

@@ -3,7 +3,7 @@
 #include <dem/grain/materials.hpp>
 #include <dem/law/cohesion/liquid_bridge.hpp>
 #include <dem/law/rolling/elastic_plastic.hpp>
-#include <dem/mbd/body.hpp>
+#include <dem/mbd/body/body.hpp>
 #include <dem/world/model.hpp>
 
 using dem::MaterialId;

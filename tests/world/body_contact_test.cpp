@@ -378,8 +378,8 @@ TEST_CASE("bodies limit the time step, and need contact constants") {
   w.set_contact({{1e6, 0.0, 1.0}, {0.0, 0.0, 0.0, 1.0}});
   // Two sides, each up to twice as stiff, at R = |edges|/2 from the centre of mass: omega^2 = 4 k (1/m + R^2/I).
   const double I = 1.6 / 12 * (0.01 + 0.0064), R2 = 0.25 * edges.squaredNorm();
-  CHECK(w.stable_time_step().value == Approx(2.0 / std::sqrt(4 * 1e6 * (1 / 1.6 + R2 / I))));
-  CHECK_THAT(w.stable_time_step().contact, Catch::Matchers::ContainsSubstring("body 'a' on body 'ground'"));
+  CHECK(w.stable_time_step().dt == Approx(2.0 / std::sqrt(4 * 1e6 * (1 / 1.6 + R2 / I))));
+  CHECK_THAT(w.stable_time_step().limited_by, Catch::Matchers::ContainsSubstring("body 'a' on body 'ground'"));
   w.prepare();
-  CHECK(w.time_step() == Approx(0.5 * w.stable_time_step().value));
+  CHECK(w.time_step() == Approx(0.5 * w.stable_time_step().dt));
 }

@@ -62,7 +62,7 @@ struct Poured {
 struct Stirred {
   dem::World<Grains<Cube8, dem::integrator::VelocityVerlet>> world;
   dem::BodyId flap;
-  dem::mbd::JointId hinge;
+  dem::JointId hinge;
   SurfaceId front;
 
   explicit Stirred(int threads)

@@ -110,7 +110,7 @@ TEST_CASE("a time step above the stable one is refused with the numbers") {
     w.add_species(Sphere(1e-3), {"gravel", 2650.0});
     return w;
   };
-  const double limit = make(0.0, false).stable_time_step().value;
+  const double limit = make(0.0, false).stable_time_step().dt;
   const std::string text = message_of([&] { make(1.5 * limit, false).prepare(); });
   check_says(text, {"time step", "largest stable", "gravel", "2000 N/m", "allow_unstable_time_step", "stiffness"});
   check_says(text, {fmt::format("{:g}", 1.5 * limit).c_str(), fmt::format("{:.4g}", limit).c_str()});
@@ -144,7 +144,7 @@ TEST_CASE("a chosen time step keeps its safety when contacts become stiffer") {
   w.set_contact(stiff);
   w.prepare();
   CHECK(w.time_step() < 0.6 * before);
-  CHECK(w.time_step() == Catch::Approx(0.5 * w.stable_time_step().value));
+  CHECK(w.time_step() == Catch::Approx(0.5 * w.stable_time_step().dt));
   // What does not make contacts stiffer leaves the step alone.
   const double now = w.time_step();
   stiff.friction.coefficient = 0.1;

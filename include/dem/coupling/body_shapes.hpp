@@ -2,7 +2,7 @@
 
 #include <dem/coupling/machine_surface.hpp>
 #include <dem/geometry/shape.hpp>
-#include <dem/mbd/body.hpp>
+#include <dem/mbd/body/body.hpp>
 
 #include <algorithm>
 #include <cmath>

@@ -48,10 +48,10 @@ void check_body_cohesion(const Surface& a, const Surface& b, const Body& body_a,
 /// The points of one side are one contact, but as the deeper ones take over weight, up to twice as stiff; and there may
 /// be two sides, as in a groove. A ball touches with one point. Throws Error as check_body_cohesion() does.
 template <class Model, class Surface>
-grain::StableTimeStep stable_time_step_of_bodies(std::span<const BodyPair> pairs, std::span<const Surface> surfaces,
-                                                 std::span<const Body> bodies, const Materials<Model>& materials,
-                                                 double overlap_limit) {
-  grain::StableTimeStep result;
+StableTimeStep stable_time_step_of_bodies(std::span<const BodyPair> pairs, std::span<const Surface> surfaces,
+                                          std::span<const Body> bodies, const Materials<Model>& materials,
+                                          double overlap_limit) {
+  StableTimeStep result;
   for (const BodyPair& pair : pairs) {
     const Surface &a = surfaces[pair.a.index()], &b = surfaces[pair.b.index()];
     const Body &body_a = bodies[a.body.index()], &body_b = bodies[b.body.index()];
@@ -70,7 +70,7 @@ grain::StableTimeStep stable_time_step_of_bodies(std::span<const BodyPair> pairs
     grain::for_each_swing<Model>(
         parameters, deepest, 1.0, soft, turning, [&](double k, double c, double mobility, const auto& text) {
           const double dt = grain::stable_step(Model::Integrator::stability_limit, n * k, n * c, mobility);
-          if (!(dt < result.value)) return;
+          if (!(dt < result.dt)) return;
           result = {dt, dem::text("body '{}' on body '{}': {}, {:g} times", body_a.name, body_b.name, text(), n)};
         });
   }

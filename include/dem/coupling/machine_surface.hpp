@@ -3,7 +3,7 @@
 #include <dem/core/ids.hpp>
 #include <dem/geometry/surface.hpp>
 #include <dem/grain/partner_view.hpp>
-#include <dem/mbd/body.hpp>
+#include <dem/mbd/body/body.hpp>
 
 #include <string>
 

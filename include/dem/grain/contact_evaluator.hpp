@@ -216,8 +216,8 @@ class ContactEvaluator {
         history, [&](auto& h, int row) { h = packed<std::decay_t<decltype(h)>>(&history_[0][0] + row * pack_width); });
     const PackParameters parameters = same ? uniform_ : gather_parameters();
     Pack overlap_ratio;
-    const Wrench<Pack> w = contact_wrench<Model, Pack>(packed<Touch<Pack>>(&touch_[0][0]), encounter, parameters,
-                                                       Pack(dt_), history, overlap_ratio);
+    const PairWrench<Pack> w = contact_wrench<Model, Pack>(packed<Touch<Pack>>(&touch_[0][0]), encounter, parameters,
+                                                           Pack(dt_), history, overlap_ratio);
     store3(w.force, forces.force, at);
     store3(w.torque_i, forces.torque_i, at);
     store3(w.torque_j, forces.torque_j, at);

@@ -22,7 +22,7 @@ struct Encounter {
 };
 
 template <class T>
-struct Wrench {
+struct PairWrench {
   Vector3<T> force;               ///< N, on i; the partner feels the opposite
   Vector3<T> torque_i, torque_j;  ///< N m, each about its own centre
 };
@@ -67,9 +67,9 @@ DEM_HOT NormalForce<T> normal_force(const contact::NormalState<T>& state, const 
 /// The laws applied to one contact (T = double) or to a pack of contacts: eqs. 20-30. Updates the history and returns
 /// the wrench and, in `overlap_ratio`, the overlap in effective diameters.
 template <class Model, class T, class Touch>
-DEM_HOT Wrench<T> contact_wrench(const Touch& touch, const Encounter<T>& e,
-                                 const ContactParameters<Model, T>& parameters, T dt, ContactHistory<Model, T>& history,
-                                 T& overlap_ratio) {
+DEM_HOT PairWrench<T> contact_wrench(const Touch& touch, const Encounter<T>& e,
+                                     const ContactParameters<Model, T>& parameters, T dt,
+                                     ContactHistory<Model, T>& history, T& overlap_ratio) {
   const contact::Geometry<T> g = touch.geometry();
   const Vector3<T> arm_j = g.arm - e.separation;
   const Vector3<T> velocity = e.velocity + cross(e.spin_i, g.arm) - cross(e.spin_j, arm_j);
@@ -91,7 +91,7 @@ DEM_HOT Wrench<T> contact_wrench(const Touch& touch, const Encounter<T>& e,
 
   const Vector3<T> force = g.area * (friction - normal.repulsion * g.normal);
   overlap_ratio = T(0.5) * g.overlap / g.effective_radius;
-  Wrench<T> wrench = {force, cross(g.arm, force), -cross(arm_j, force)};
+  PairWrench<T> wrench = {force, cross(g.arm, force), -cross(arm_j, force)};
   if constexpr (!std::is_same_v<typename Model::Rolling, rolling::None>) {
     const Vector3<T> spin = e.spin_i - e.spin_j;
     const T twisting = dot(spin, g.normal);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <dem/core/stable_time_step.hpp>
 #include <dem/geometry/shape.hpp>
 #include <dem/grain/materials.hpp>
 #include <dem/grain/species.hpp>
@@ -15,11 +16,6 @@ inline constexpr double contacts_in_line = 4.0;
 /// How many of these have their damper act on that mode: some are pushed, with the damper of the normal law, the others
 /// are sheared, with that of friction.
 inline constexpr double damped_share = 0.5;
-
-struct StableTimeStep {
-  double value = 1e300;  ///< s
-  std::string contact;   ///< which contact limits it, in words
-};
 
 /// Largest stable time step of one law in contacts of stiffness k and damping c, already times the number that acts in
 /// line, between partners of mass m and inertia I with the lever arm R (bounding radius): with
@@ -81,7 +77,7 @@ StableTimeStep stable_time_step(std::span<const Species<typename Model::Shape>> 
                           [&](double k, double c, double mobility, const auto& text) {
                             const double n = contacts_in_line * patch.area;
                             const double dt = stable_step(Model::Integrator::stability_limit, n * k, n * c, mobility);
-                            if (!(dt < result.value)) return;
+                            if (!(dt < result.dt)) return;
                             const char* damper = c > 0.0 ? " with a damper" : "";
                             result = {dt, dem::text("{} on {}: {}{}, grain of {:.4g} kg", materials.name(a),
                                                     materials.name(b), text(), damper, mass)};

@@ -4,7 +4,7 @@
 #include <dem/io/drawn_surface.hpp>
 #include <dem/io/vtk_grains.hpp>
 #include <dem/io/vtk_series.hpp>
-#include <dem/mbd/mechanism.hpp>
+#include <dem/mbd/solver/mechanism.hpp>
 
 #include <cstdint>
 #include <filesystem>

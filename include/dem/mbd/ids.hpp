@@ -2,7 +2,7 @@
 
 #include <dem/core/ids.hpp>
 
-namespace dem::mbd {
+namespace dem {
 
 using ConnectionId = Id<struct ConnectionTag>;  ///< a named point of a body, to which joints are attached
 using JointId = Id<struct JointTag>;            ///< a joint between two bodies
@@ -13,4 +13,4 @@ using LoadId = Id<struct LoadTag>;              ///< an applied force or torque
 using MotionId = Id<struct MotionTag>;          ///< a prescribed motion
 using SensorId = Id<struct SensorTag>;          ///< a force sensor
 
-}  // namespace dem::mbd
+}  // namespace dem

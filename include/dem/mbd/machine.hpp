@@ -1,31 +1,25 @@
 #pragma once
 
-#include <dem/mbd/machine_phases.hpp>
+#include <dem/mbd/solver/solver.hpp>
 
 #include <cmath>
-#include <utility>
-#include <vector>
 
 namespace dem::mbd {
 
-/// A machine: an Assembly that moves, with the integrator of the grains. With grains, the world calls the phases of a
-/// step (MachinePhases); without, `step` and `run` are all it takes.
+/// A machine alone: a Mechanism with the solver that moves it. Among grains, the world has the solver, and its machine
+/// is a Mechanism.
 ///
 ///     Machine<integrator::PredictorCorrector> m;
 ///     const BodyId rod = m.add_body(box_body("rod", {1, 0.1, 0.1}, 100).at({0.5, 0, 0}));
 ///     m.add_joint(revolute("hinge", m.ground(), rod, {0, 0, 0}, {0, 1, 0}));
 ///     if (const MachineReport report = m.run(10.0, 1e-4); !report) fmt::print("{}\n", report.text);
 template <integrator::Integrator I>
-class Machine : public MachinePhases<I> {
-  using Base = MachinePhases<I>;
-  using Base::bad_, Base::contacts_, Base::design_dt_, Base::earlier_contacts_, Base::memory_, Base::parts_,
-      Base::sampling_, Base::time_;
-
+class Machine : public Mechanism {
  public:
-  using Base::add_forces, Base::advance, Base::before_forces, Base::clear_forces, Base::design_for, Base::gravity,
-      Base::initialise, Base::prescribe, Base::report, Base::stage_time, Base::substeps;
+  Vec3 gravity = {0.0, 0.0, -9.81};       ///< m/s^2
+  bool allow_unstable_time_step = false;  ///< accepts a time step above the stable one
 
-  // ------------------------------------------------------------------------------------------- without any world
+  double time() const { return solver_.time(); }  ///< s
 
   /// One step of dt (s), in `substeps` parts. Throws Error, before anything moves, if it is above the stable time step
   /// or a prescribed motion would have to jump. What is derived from the step is derived anew when dt changes: a
@@ -33,8 +27,8 @@ class Machine : public MachinePhases<I> {
   /// them as they are.
   [[nodiscard]] MachineReport step(double dt) {
     prepare(dt);
-    whole_step(dt);
-    return report();
+    solver_.step(*this, dt, gravity);
+    return solver_.report(*this);
   }
 
   /// Steps of dt (s) for a duration (s; the number of steps is rounded). Stops at the first body that blows up. Throws
@@ -48,154 +42,65 @@ class Machine : public MachinePhases<I> {
     require_non_negative(duration, "time to run", "s");
     prepare(dt);
     const long long steps = std::llround(duration / dt);
-    for (long long s = 0; s < steps && !bad_.valid(); ++s) {
+    for (long long s = 0; s < steps && !solver_.has_blown_up(); ++s) {
       if (s > 0) prepare(dt);  // after_step may have changed something
-      whole_step(dt);
+      solver_.step(*this, dt, gravity);
       after_step();
     }
-    return report();
+    return solver_.report(*this);
   }
 
-  // ------------------------------------------------------------------------------- several steps within the world's
-
-  /// Remembers the grains' forces that the bodies carry now, at the world's state of this stage.
-  void hold_contacts(int stage) {
-    if (stage == 0) std::swap(contacts_, earlier_contacts_);
-    std::vector<Wrench>& now = stage == 0 ? contacts_ : corrected_contacts_;
-    now.resize(parts_.bodies.size());
-    for (std::size_t i = 0; i < now.size(); ++i) now[i] = {parts_.bodies[i].force, parts_.bodies[i].torque};
+  /// Derives what was left open (stiffness, damping) for a step of dt (s). Without it, step and run derive for the dt
+  /// that they are given; after it, they keep what was derived, also for a smaller dt.
+  void design_for(double dt) {
+    solver_.design_for(*this, dt);
+    is_designed_ = true;
   }
-
-  /// Takes `substeps` machine steps in place of add_forces, advance and prescribe, for machines that are stiffer than
-  /// the grains. With an integrator of one stage the grains' forces (hold_contacts) are held over the step, and half of
-  /// what they changed by since the last one is made up for by an impulse (catch_up): a free body then moves exactly as
-  /// without sub-steps, so that energy is kept at any stable step. With two stages they run linearly in time: in the
-  /// first on from their values at the start of the last step and of this one, in the second between the start and the
-  /// predicted end of the step. In a world's step:
-  ///
-  ///     clear_forces(); (grains) hold_contacts(stage); advance_substeps(stage, dt, gravity);
-  ///
-  /// and where the integrator predicts, before the grains' forces: advance_substeps(...); clear_forces(); (grains)
-  /// hold_contacts(stage). before_forces, add_forces, advance and prescribe are then not called.
-  void advance_substeps(int stage, double dt, const Vec3& g) {
+  /// Evaluates the forces at the present state, at `time` (s), as the first step would. Throws Error if a stiffness has
+  /// to be derived and design_for was not called, or a prescribed motion would have to jump.
+  void initialise(double time, const Vec3& g) {
     gravity = g;
-    const int n = this->checked_substeps();
-    const double h = dt / n;
-    const bool trial = stage < I::stages - 1;  // done again in the next stage, from the same start
-    if constexpr (I::stages > 1) stage == 0 ? save() : restore();
-    struct Sampling {  // goes on after the sub-steps, also if a function of the user throws in one
-      bool& flag;
-      ~Sampling() { flag = true; }
-    } sampling{Base::sampling_};
-    sampling.flag = !trial;
-    const std::vector<Wrench>& from = stage == 0 ? earlier_contacts_ : contacts_;
-    const std::vector<Wrench>& to = stage == 0 ? contacts_ : corrected_contacts_;
-    const double phase = stage == 0 ? 1.0 : 0.0;
-    if constexpr (I::stages == 1) catch_up(dt, h);
-    for (int s = 0; s < n; ++s) {
-      const double start = time_;
-      for (int k = 0; k < I::stages; ++k) {
-        before_forces(k, h);
-        const double x = phase + (stage_time(s * h, h, k)) / dt;
-        for (std::size_t i = 0; i < parts_.bodies.size(); ++i) {
-          const Wrench w = I::stages == 1 ? contacts_[i] : (1.0 - x) * from[i] + x * to[i];
-          parts_.bodies[i].force = w.force;
-          parts_.bodies[i].torque = w.torque;
-        }
-        add_forces(stage_time(start, h, k), h, k, k == I::stages - 1);
-        advance(k, h, g);
-        prescribe(start + h, h);
-      }
-    }
+    solver_.initialise(*this, time, g, [] {});
   }
+  /// False before the first step or initialise, and after something was added or `substeps` was changed since.
+  bool is_initialised() const { return solver_.is_initialised(*this); }
+
+  /// The largest stable time step, all `substeps` together, and the part that limits it.
+  StableTimeStep stable_time_step() const { return solver_.stable_time_step(*this); }
+  /// The same with the stiffness and damping alone that were given; 1e300 if none limits it.
+  StableTimeStep stable_time_step_of_given() const { return solver_.stable_time_step_of_given(*this); }
 
  private:
-  /// Gives the bodies half of the impulse by which the grains' forces changed since the last step, dt ago: what the
-  /// kick at the end of a step is to velocity Verlet. The machine's own step h is in it because its first half kick was
-  /// with the earlier force (Verlet), or its kicks come before its drifts (symplectic Euler).
-  void catch_up(double dt, double h) {
-    const double time = 0.5 * (I::predicts_before_forces ? dt + h : dt - h);
-    for (std::size_t i = 0; i < parts_.bodies.size(); ++i) {
-      if (!parts_.bodies[i].fixed) this->push(i, time * contacts_[i] + -time * earlier_contacts_[i]);
-    }
-  }
-
   /// Before each step: what was added or changed since the last one counts, and is refused before anything moves.
   void prepare(double dt) {
     require_positive(dt, "time step", "s");
-    const bool same = this->is_initialised();
-    if (!this->is_designed_ && (dt != design_dt_ || !same)) this->derive(dt);
+    const bool same = is_initialised();
+    if (!is_designed_ && (dt != solver_.design_step() || !same)) solver_.design_for(*this, dt);
     if (!same) {
-      if (this->is_designed_) design_for(design_dt_);
-      clear_forces();
-      initialise(time_, gravity);
+      if (is_designed_) design_for(solver_.design_step());
+      initialise(time(), gravity);
+      accepted_dt_ = 0.0;
     }
-    if (!same) accepted_dt_ = 0.0;
     if (dt != accepted_dt_) {
       check_time_step(dt);
-      this->note_stable_step();  // what is derived is another one
+      solver_.note_stable_step(*this);  // what is derived is another one
     }
     accepted_dt_ = dt;
-    this->check_motions();
+    solver_.check_motions(*this);
   }
 
   void check_time_step(double dt) const {
-    const StableTimeStep limit = this->stable_time_step();
-    if (dt <= limit.dt || this->allow_unstable_time_step) return;
+    const StableTimeStep limit = stable_time_step();
+    if (dt <= limit.dt || allow_unstable_time_step) return;
     fail(
         "time step {:g} s of a machine is above the largest stable one, {:.4g} s ({}); lower the time step or the "
         "stiffness there, raise substeps (now {}), or set allow_unstable_time_step",
         dt, limit.dt, limit.limited_by, substeps);
   }
 
-  void whole_step(double dt) {
-    for (int s = 0; s < substeps; ++s) raw_step(dt / substeps);
-  }
-
-  void raw_step(double dt) {
-    const double start = time_;
-    for (int stage = 0; stage < I::stages; ++stage) {
-      before_forces(stage, dt);
-      clear_forces();
-      add_forces(stage_time(start, dt, stage), dt, stage, stage == I::stages - 1);
-      advance(stage, dt, gravity);
-      prescribe(start + dt, dt);
-    }
-  }
-
-  /// Keeps the state at the start of a step / goes back to it.
-  void save() {
-    saved_.time = time_;
-    saved_.memory = memory_;
-    saved_.motions.resize(parts_.bodies.size());
-    for (std::size_t i = 0; i < parts_.bodies.size(); ++i) saved_.motions[i] = parts_.bodies[i].motion;
-    saved_.turns.resize(parts_.joints.size());
-    for (std::size_t i = 0; i < parts_.joints.size(); ++i) saved_.turns[i] = parts_.joints[i].angle_estimate;
-    saved_.rubbing = parts_.rubbing;
-    saved_.drives.resize(parts_.motions.size());
-    for (std::size_t i = 0; i < parts_.motions.size(); ++i) saved_.drives[i] = parts_.motions[i].drive;
-  }
-  void restore() {
-    time_ = saved_.time;
-    memory_ = saved_.memory;
-    for (std::size_t i = 0; i < parts_.bodies.size(); ++i) parts_.bodies[i].motion = saved_.motions[i];
-    for (std::size_t i = 0; i < parts_.joints.size(); ++i) parts_.joints[i].angle_estimate = saved_.turns[i];
-    parts_.rubbing = saved_.rubbing;
-    for (std::size_t i = 0; i < parts_.motions.size(); ++i) parts_.motions[i].drive = saved_.drives[i];
-  }
-
-  struct Saved {
-    double time = 0.0;
-    std::vector<typename Base::Memory> memory;
-    std::vector<integrator::Motion<double>> motions;
-    std::vector<double> turns;
-    std::vector<JointRubbing> rubbing;
-    std::vector<PrescribedMotion::Drive> drives;
-  };
-
-  std::vector<Wrench> corrected_contacts_;
-  double accepted_dt_ = 0.0;  ///< s, that was compared with the stable time step
-  Saved saved_;
+  Solver<I> solver_;
+  bool is_designed_ = false;
+  double accepted_dt_ = 0.0;  // s, that was compared with the stable time step
 };
 
 }  // namespace dem::mbd

@@ -5,6 +5,6 @@
 #include <dem/integrator/predictor_corrector.hpp>
 #include <dem/integrator/symplectic_euler.hpp>
 #include <dem/integrator/velocity_verlet.hpp>
-#include <dem/mbd/energy.hpp>
 #include <dem/mbd/machine.hpp>
-#include <dem/mbd/recorder.hpp>
+#include <dem/mbd/sensor/energy.hpp>
+#include <dem/mbd/sensor/recorder.hpp>

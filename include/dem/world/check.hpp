@@ -70,7 +70,7 @@ StepReport find_problem(WorldState<Model>& w) {
                              body(pair.a), body(pair.b), w.body_contacts.worst_overlap, when(), w.options.overlap_limit,
                              w.time_step));
   }
-  if (const auto report = w.machine.report(); !report) {
+  if (const auto report = w.machine_solver.report(w.machine); !report) {
     return problem(StepReport::Problem::machine, p.count, report.text);
   }
   return {StepReport::Problem::none, w.time, w.step, {}, {}};

@@ -5,7 +5,7 @@
 #include <dem/coupling/machine_surface.hpp>
 #include <dem/grain/materials.hpp>
 #include <dem/grain/neighbours.hpp>
-#include <dem/mbd/machine.hpp>
+#include <dem/mbd/solver/solver.hpp>
 #include <dem/world/model.hpp>
 #include <dem/world/options.hpp>
 #include <dem/world/stopwatch.hpp>
@@ -50,7 +50,8 @@ struct WorldState {
   std::set<std::uint32_t> known_lost;    ///< ids of grains that were reported as lost
   std::vector<std::uint32_t> to_remove;  ///< ids of grains that leave when the next list is made
 
-  mbd::Machine<Integrator> machine;
+  mbd::Mechanism machine;
+  mbd::Solver<Integrator> machine_solver;
   std::vector<Surface> surfaces;
   std::vector<SurfaceSensor> surface_sensors;
   coupling::BodyContacts<Model> body_contacts;
@@ -142,10 +143,10 @@ template <class Model>
 void sample_surface_sensors(WorldState<Model>& w) {
   for (SurfaceSensor& s : w.surface_sensors) {
     const auto& surface = w.surfaces[s.surface.index()];
-    mbd::Wrench load = {surface.force, surface.torque};
+    Wrench load = {surface.force, surface.torque};
     for (const coupling::BodyPair& pair : w.body_contacts.pairs) {
-      if (pair.a == s.surface) load = load + mbd::Wrench{pair.force, pair.torque_a};
-      if (pair.b == s.surface) load = load + mbd::Wrench{-pair.force, pair.torque_b};
+      if (pair.a == s.surface) load = load + Wrench{pair.force, pair.torque_a};
+      if (pair.b == s.surface) load = load + Wrench{-pair.force, pair.torque_b};
     }
     s.average.add(load, w.time_step);
   }

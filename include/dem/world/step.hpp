@@ -8,7 +8,7 @@
 namespace dem {
 
 /// Contacts of the grains with each other and with surfaces at the present state, and the loads that surfaces hand to
-/// their bodies. Each contact's forces stay with its chunk, for gather_forces.
+/// their bodies, whose sums of forces are clear. Each contact's forces stay with its chunk, for gather_forces.
 template <class Model>
 void find_contacts(WorldState<Model>& w) {
   w.stopwatch.start();
@@ -32,37 +32,10 @@ void find_contacts(WorldState<Model>& w) {
   });
   w.stopwatch.stop(Phase::contacts);
   w.stopwatch.start();
-  w.machine.clear_forces();
   load_bodies(w);
   coupling::find_body_contacts<Model>(w.body_contacts, std::span(std::as_const(w.surfaces)), w.materials,
                                       std::span(w.machine.bodies()), w.time_step);
   w.stopwatch.stop(Phase::machine);
-}
-
-/// The machine's share of a stage, before the contacts: only where the integrator predicts.
-template <class Model>
-void predict_machine(WorldState<Model>& w, int stage) {
-  if (w.machine.substeps > 1) {
-    w.machine.advance_substeps(stage, w.time_step, w.options.gravity);
-  } else {
-    w.machine.before_forces(stage, w.time_step);
-  }
-}
-
-/// The machine's share of a stage, after the contacts: joints and actuators, motion, prescribed motion; in one step
-/// with the grains, or in several shorter ones.
-template <class Model>
-void move_machine(WorldState<Model>& w, int stage, bool last_stage) {
-  using Integrator = typename Model::Integrator;
-  auto& machine = w.machine;
-  if (machine.substeps > 1) {
-    machine.hold_contacts(stage);
-    if (!Integrator::predicts_before_forces) machine.advance_substeps(stage, w.time_step, w.options.gravity);
-    return;
-  }
-  machine.add_forces(machine.stage_time(w.time, w.time_step, stage), w.time_step, stage, last_stage);
-  machine.advance(stage, w.time_step, w.options.gravity);
-  machine.prescribe(w.time + w.time_step, w.time_step);
 }
 
 /// One time step (thesis section 2.5): as many force evaluations as the integrator has stages (the thesis: a predictor
@@ -79,12 +52,13 @@ void advance(WorldState<Model>& w) {
       w.executor.for_each(w.chunks.size(), [&](std::size_t c) {
         grain::predict_chunk<Model>(c, w.chunks[c], w.particles, w.species, stage, w.time_step);
       });
-      predict_machine(w, stage);
     }
-    find_contacts(w);
-
     w.stopwatch.start();
-    move_machine(w, stage, last);
+    w.machine_solver.stage(w.machine, stage, w.time_step, gravity, [&] {
+      w.stopwatch.stop(Phase::machine);
+      find_contacts(w);
+      w.stopwatch.start();
+    });
     w.stopwatch.stop(Phase::machine);
 
     w.stopwatch.start();
@@ -110,12 +84,11 @@ void initialise(WorldState<Model>& w) {
     w.executor.for_each(w.chunks.size(),
                         [&](std::size_t c) { grain::refresh_chunk<Model>(c, w.chunks[c], w.particles, w.species); });
   }
-  find_contacts(w);
+  w.machine_solver.initialise(w.machine, w.time, w.options.gravity, [&] { find_contacts(w); });
   w.executor.for_each(w.chunks.size(), [&](std::size_t c) {
     grain::gather_forces<Model>(c, w.chunks, w.particles, w.incoming_first, w.incoming);
     grain::initialise_chunk<Model>(c, w.particles, w.inertia, w.options.gravity);
   });
-  w.machine.initialise(w.time, w.options.gravity);
 }
 
 }  // namespace dem

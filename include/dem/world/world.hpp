@@ -28,7 +28,7 @@ class World : public WorldSetup<M> {
   /// constants are missing, the time step is too large, points would pass a two-sided sheet, or a prescribed motion
   /// would have to jump.
   void prepare() {
-    if (!checked_ || !state_.machine.is_initialised()) {
+    if (!checked_ || !machine_is_initialised()) {
       state_.materials.check_complete();
       state_.materials.check_names(used_materials());
       check_thin_sheets(state_);
@@ -43,8 +43,8 @@ class World : public WorldSetup<M> {
       checked_ = true;
     }
     // A step that has begun must not be refused: motions that were added or changed are looked at before it.
-    state_.machine.check_motions();
-    if (!initialised_ || !state_.machine.is_initialised()) {
+    state_.machine_solver.check_motions(state_.machine);
+    if (!initialised_ || !machine_is_initialised()) {
       initialise(state_);
       initialised_ = true;
     }
@@ -72,11 +72,10 @@ class World : public WorldSetup<M> {
   std::uint64_t steps() const { return state_.step; }
   double time_step() const { return state_.time_step; }
   /// Largest stable time step of grains and machine, and what limits it.
-  grain::StableTimeStep stable_time_step() const {
+  StableTimeStep stable_time_step() const {
     auto limit = stable_time_step_of_contacts();
-    const auto machine = state_.machine.stable_time_step();
-    if (machine.dt < limit.value) limit = {machine.dt, machine.limited_by};
-    return limit;
+    const StableTimeStep machine = stable_time_step_of_machine();
+    return machine.dt < limit.dt ? machine : limit;
   }
   void set_threads(int n) { state_.executor.set_threads(n); }
   int threads() const { return state_.executor.threads(); }
@@ -146,10 +145,12 @@ class World : public WorldSetup<M> {
     for (const auto& s : state_.surfaces) used.push_back(s.material);
     return used;
   }
+  bool machine_is_initialised() const { return state_.machine_solver.is_initialised(state_.machine); }
+  StableTimeStep stable_time_step_of_machine() const { return state_.machine_solver.stable_time_step(state_.machine); }
   StepReport ok() const { return {StepReport::Problem::none, state_.time, state_.step, {}, {}}; }
 
   /// Of grains with each other and with surfaces, and of bodies with each other.
-  grain::StableTimeStep stable_time_step_of_contacts() const {
+  StableTimeStep stable_time_step_of_contacts() const {
     std::vector<grain::SurfaceMatter> of_surfaces;
     for (const auto& s : state_.surfaces) {
       of_surfaces.push_back({s.material, coupling::softness_of(s, state_.machine.bodies()[s.body.index()], 0.0)});
@@ -159,7 +160,7 @@ class World : public WorldSetup<M> {
     const auto bodies = coupling::stable_time_step_of_bodies<Model>(
         state_.body_contacts.pairs, std::span(state_.surfaces), std::span(state_.machine.bodies()), state_.materials,
         state_.options.overlap_limit);
-    if (bodies.value < limit.value) limit = bodies;
+    if (bodies.dt < limit.dt) limit = bodies;
     return limit;
   }
 
@@ -169,36 +170,36 @@ class World : public WorldSetup<M> {
     o.time_step == 0.0 ? choose_time_step_automatically() : check_time_step(o.time_step);
   }
   void choose_time_step_automatically() {
-    auto& machine = state_.machine;
     // What a machine derives is laid out for whatever step is chosen: only what is given limits it.
-    const double limit = std::min(stable_time_step_of_contacts().value, machine.stable_time_step_of_given().dt);
+    const double of_given = state_.machine_solver.stable_time_step_of_given(state_.machine).dt;
+    const double limit = std::min(stable_time_step_of_contacts().dt, of_given);
     if (limit >= 1e300) fail("nothing in the world limits the time step; set time_step");
     // A step that was chosen before is kept while it is as safe: a change of friction must not change it.
     const double safe = state_.options.time_step_safety * limit;
     if (state_.time_step == 0.0 || state_.time_step > (1.0 + 1e-12) * safe) state_.time_step = safe;
     design_machine(state_.time_step);
     // Given and derived parts of the same bodies add up, which a safety factor near 1 leaves no room for.
-    while (machine.stable_time_step().dt < state_.time_step) design_machine(state_.time_step *= 0.9);
+    while (stable_time_step_of_machine().dt < state_.time_step) design_machine(state_.time_step *= 0.9);
   }
   void check_time_step(double dt) {
     design_machine(dt);
-    const grain::StableTimeStep limit = stable_time_step();
-    if (dt > limit.value && !state_.options.allow_unstable_time_step) {
-      const auto& machine = state_.machine;
-      const bool by_machine = machine.stable_time_step().dt <= limit.value;
+    const StableTimeStep limit = stable_time_step();
+    if (dt > limit.dt && !state_.options.allow_unstable_time_step) {
+      const bool by_machine = stable_time_step_of_machine().dt <= limit.dt;
       fail(
           "time step {:g} s is above the largest stable one, {:.4g} s ({}); lower time_step or the stiffness, {}or set "
           "allow_unstable_time_step",
-          dt, limit.value, limit.contact,
-          by_machine ? dem::text("raise machine().substeps (now {}), ", machine.substeps) : "");
+          dt, limit.dt, limit.limited_by,
+          by_machine ? dem::text("raise machine().substeps (now {}), ", state_.machine.substeps) : "");
     }
     state_.time_step = dt;
   }
   /// What is derived depends on the pose. It changes with the machine or the time step, not with the grains, and where
   /// another pose has made it too stiff.
   void design_machine(double dt) {
-    if (state_.machine.is_designed_for(dt) && state_.machine.stable_time_step().dt >= dt) return;
-    state_.machine.design_for(dt);
+    const bool is_designed = state_.machine_solver.is_designed_for(state_.machine, dt);
+    if (is_designed && stable_time_step_of_machine().dt >= dt) return;
+    state_.machine_solver.design_for(state_.machine, dt);
     initialised_ = false;
   }
 

@@ -12,7 +12,6 @@ class WorldSetup {
  public:
   using Model = M;
   using Shape = typename Model::Shape;
-  using Machine = mbd::Machine<typename Model::Integrator>;
   using Parameters = ContactParameters<Model>;
   static_assert(check_model<Model>());
 
@@ -102,9 +101,9 @@ class WorldSetup {
     touched();
   }
 
-  /// Bodies, joints, actuators, sensors.
-  Machine& machine() { return state_.machine; }
-  const Machine& machine() const { return state_.machine; }
+  /// Bodies, joints, actuators, sensors. The world moves them.
+  mbd::Mechanism& machine() { return state_.machine; }
+  const mbd::Mechanism& machine() const { return state_.machine; }
   /// The fixed body of the world: carries walls that never move.
   BodyId ground() { return state_.machine.ground(); }
 

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <dem/geometry/cluster/ball_mass_properties.hpp>
+#include <dem/geometry/principal_axes.hpp>
 #include <dem/geometry/shape.hpp>
 
 #include <algorithm>

@@ -3,6 +3,7 @@
 #include <dem/geometry/contact_shares.hpp>
 #include <dem/geometry/polyhedron/polyhedron_contact.hpp>
 #include <dem/geometry/polyhedron/polyhedron_nearest.hpp>
+#include <dem/geometry/principal_axes.hpp>
 #include <dem/geometry/shape.hpp>
 
 #include <memory>

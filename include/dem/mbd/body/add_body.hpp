@@ -1,0 +1,22 @@
+#pragma once
+
+#include <dem/mbd/solver/parts.hpp>
+
+namespace dem::mbd::detail {
+
+inline BodyId add_body(Parts& parts, BuiltBody built) {
+  settle_name(built.body.name, parts.bodies, "body", "bodies", [](const Body& b) { return b.name; });
+  parts.bodies.push_back(built.body);
+  return keep<BodyId>(parts, parts.built, std::move(built));
+}
+
+inline ConnectionId add_connection(Parts& parts, std::string name, BodyId body, const Vec3& at) {
+  const std::string who = dem::text("connection point '{}'", name);
+  const Body& b = known_body(parts, body, who);
+  settle_name(name, parts.connections, "connection point", "connection points",
+              [](const Connection& c) { return c.name; });
+  Connection c{std::move(name), body, to_eigen(to_body(b, finite_point(at, who)))};
+  return keep<ConnectionId>(parts, parts.connections, std::move(c), false);
+}
+
+}  // namespace dem::mbd::detail

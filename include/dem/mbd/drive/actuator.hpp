@@ -1,0 +1,140 @@
+#pragma once
+
+#include <dem/core/macros.hpp>
+#include <dem/mbd/drive/signal.hpp>
+#include <dem/mbd/ids.hpp>
+#include <dem/mbd/joint/coordinate.hpp>
+
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace dem::mbd {
+
+/// What an actuator is made from. Gains as in eqs. 34 and 38: force = -position_gain (l - l_set) - speed_gain (l' -
+/// l'_set), positive where it makes the coordinate l grow (pushes two points apart, drives b forward along or about a
+/// joint). A gain of zero switches that part off: position_gain = 0 is a speed controller.
+struct ActuatorSpec {
+  std::string name;
+  JointId joint = {};  ///< acts on this joint's coordinate; if not valid, between two points
+  BodyId a = {}, b = {};
+  Vec3 at_a = Vec3::Zero(), at_b = Vec3::Zero();          ///< m, global at assembly
+  Vec3 toward_a = Vec3::Zero(), toward_b = Vec3::Zero();  ///< m, global; arms of a rotational actuator on three points
+  bool three_points = false;
+  double position_gain = 0.0;            ///< K, N/m or N m/rad
+  double speed_gain = 0.0;               ///< c, N s/m or N m s/rad
+  std::optional<Signal> set_point = {};  ///< m or rad, with its rate; if none is given, the coordinate when it is added
+  double max_force = std::numeric_limits<double>::infinity();  ///< N or N m; the force is cut at +- this
+  Curve torque_curve = {};  ///< a motor: N m over rad/s (or N over m/s) at full throttle
+  double throttle = 0.0;    ///< -1 .. 1; below 0 the motor runs the other way, with the mirrored curve
+  bool on = true;
+  Dof dof = Dof::own;  ///< the joint's coordinate that it drives
+
+  ActuatorSpec along(Dof f) const {
+    ActuatorSpec s = *this;
+    s.dof = f;
+    return s;
+  }
+  ActuatorSpec with_max_force(double f) const {
+    ActuatorSpec s = *this;
+    s.max_force = f;
+    return s;
+  }
+  ActuatorSpec switched_off() const {
+    ActuatorSpec s = *this;
+    s.on = false;
+    return s;
+  }
+};
+
+/// Between two points (eqs. 34-37): the coordinate is their distance (m), which must not become zero.
+inline ActuatorSpec linear_actuator(std::string name, BodyId a, const Vec3& at_a, BodyId b, const Vec3& at_b,
+                                    double position_gain, double speed_gain, std::optional<Signal> set_point = {}) {
+  return {.name = std::move(name),
+          .a = a,
+          .b = b,
+          .at_a = at_a,
+          .at_b = at_b,
+          .position_gain = position_gain,
+          .speed_gain = speed_gain,
+          .set_point = std::move(set_point)};
+}
+/// On the coordinate of a joint: force on one that slides, torque on one that turns (eq. 38, over whole turns).
+inline ActuatorSpec joint_actuator(std::string name, JointId joint, double position_gain, double speed_gain,
+                                   std::optional<Signal> set_point = {}) {
+  return {.name = std::move(name),
+          .joint = joint,
+          .position_gain = position_gain,
+          .speed_gain = speed_gain,
+          .set_point = std::move(set_point)};
+}
+/// On three points (section 2.4.2): the angle at `corner` from `toward_a` on body a to `toward_b` on body b, counted
+/// positive about a x b at assembly. It is the turn of a free joint about that normal: give the bodies a joint that
+/// lets them turn about it, as a hinge does. Where they bend away from it, only the turn that is left is measured and
+/// driven.
+inline ActuatorSpec rotational_actuator(std::string name, BodyId a, const Vec3& corner, const Vec3& toward_a, BodyId b,
+                                        const Vec3& toward_b, double position_gain, double speed_gain,
+                                        std::optional<Signal> set_point = {}) {
+  return {.name = std::move(name),
+          .a = a,
+          .b = b,
+          .at_a = corner,
+          .at_b = corner,
+          .toward_a = toward_a,
+          .toward_b = toward_b,
+          .three_points = true,
+          .position_gain = position_gain,
+          .speed_gain = speed_gain,
+          .set_point = std::move(set_point)};
+}
+/// A motor on a joint: torque (N m) over speed (rad/s), times a throttle between -1 and 1 that is set while running.
+/// In reverse it is the same motor the other way round: torque = throttle curve(-speed).
+inline ActuatorSpec motor(std::string name, JointId joint, Curve torque_over_speed, double throttle = 1.0) {
+  if (torque_over_speed.empty()) fail("motor '{}' has no torque curve; give it points (speed, torque)", name);
+  require_within(throttle, -1.0, 1.0, ("throttle of motor '" + name + "'").c_str());
+  return {.name = std::move(name), .joint = joint, .torque_curve = std::move(torque_over_speed), .throttle = throttle};
+}
+
+/// An actuator, ready to run, and what it did in the newest force evaluation.
+struct Actuator {
+  ActuatorSpec spec;
+  std::uint32_t a = 0, b = 0;
+  Vector3<double> point_a = {}, point_b = {};     ///< m, body frames
+  double coordinate = 0.0;                        ///< m or rad
+  double speed = 0.0;                             ///< m/s or rad/s
+  double force = 0.0;                             ///< N or N m, positive where it makes the coordinate grow
+  Signal::Sample target = {};                     ///< the set point
+  double power() const { return force * speed; }  ///< W, delivered to the bodies
+};
+
+/// The coordinate that an actuator acts on.
+inline Coordinate coordinate_of(const Actuator& u, const std::vector<Joint>& joints, const Body& a, const Body& b) {
+  return u.spec.joint.valid() ? coordinate_of(joints[u.spec.joint.index()], a, b, u.spec.dof)
+                              : distance_of(u.point_a, u.point_b, a, b);
+}
+
+inline void apply_actuator(Actuator& u, const std::vector<Joint>& joints, std::vector<Body>& bodies, double time,
+                           double dt) {
+  Body &a = bodies[u.a], &b = bodies[u.b];
+  const Coordinate q = coordinate_of(u, joints, a, b);
+  u.coordinate = q.value;
+  u.speed = q.speed;
+  u.force = 0.0;
+  if (!u.spec.on) return;
+  if (u.spec.torque_curve.empty()) {
+    u.target = (*u.spec.set_point)(time, dt);
+    u.force = -u.spec.position_gain * (q.value - u.target.value) - u.spec.speed_gain * (q.speed - u.target.rate);
+  } else {
+    // Reverse is the mirror image of forward: the curve is read at the speed in the direction of the torque.
+    u.force = u.spec.throttle * u.spec.torque_curve(u.spec.throttle < 0.0 ? -q.speed : q.speed);
+  }
+  // Compared such that a NaN stays one and reaches the report.
+  if (u.force > u.spec.max_force) u.force = u.spec.max_force;
+  if (u.force < -u.spec.max_force) u.force = -u.spec.max_force;
+  q.apply(u.force, a, b);
+}
+
+}  // namespace dem::mbd

@@ -1,0 +1,87 @@
+#pragma once
+
+// Actuators: how they are added, and what the solver asks of them.
+
+#include <dem/mbd/joint/joint_part.hpp>
+
+namespace dem::mbd::detail {
+
+inline constexpr PartKind actuator_kind = {
+    .rank = 6,
+    .add_forces =
+        [](Parts& m, const Evaluation& now) {
+          for (Actuator& u : m.actuators) apply_actuator(u, m.joints, m.bodies, now.time, now.dt);
+        },
+    .list_elements =
+        [](const Parts& m, std::vector<Element>& list) {
+          for (std::size_t i = 0; i < m.actuators.size(); ++i) {
+            const Actuator& u = m.actuators[i];
+            const Body &a = m.bodies[u.a], &b = m.bodies[u.b];
+            const auto w = u.spec.joint.valid() ? inverse_mass_along(m.joints[u.spec.joint.index()], a, b, u.spec.dof)
+                                                : inverse_mass_of_line(u.point_a, u.point_b, a, b);
+            const double c = u.spec.torque_curve.empty() ? u.spec.speed_gain : u.spec.torque_curve.steepest();
+            add_element(list, actuator_kind, i, u.a, u.b, w, u.spec.position_gain, c);
+          }
+        },
+    .name_of = [](const Parts& m, std::size_t i) { return "actuator '" + m.actuators[i].spec.name + "'"; },
+    .may_grow =
+        [](const Parts& m) {
+          return std::any_of(m.actuators.begin(), m.actuators.end(), [&](const Actuator& u) {
+            return !u.spec.joint.valid() || traits_of(m.joints[u.spec.joint.index()].kind).changes_with_pose;
+          });
+        },
+    .not_a_number = [](const Parts& m) -> std::string {
+      for (const Actuator& u : m.actuators) {
+        if (std::isnan(u.target.value + u.target.rate)) return "The set point of actuator '" + u.spec.name + "'";
+      }
+      return {};
+    }};
+
+inline void check_actuator(const ActuatorSpec& spec, const std::string& who) {
+  require_non_negative(spec.position_gain, ("position gain of " + who).c_str(), "N/m or N m/rad");
+  require_non_negative(spec.speed_gain, ("speed gain of " + who).c_str(), "N s/m or N m s/rad");
+  require_within(spec.throttle, -1.0, 1.0, ("throttle of " + who).c_str());
+  if (!(spec.max_force > 0.0)) {
+    fail("the largest force of {} is {:g} N or N m, but must be greater than zero; leave it out for no limit", who,
+         spec.max_force);
+  }
+}
+
+/// A rotational actuator between three points acts on a free joint about the normal of their plane.
+inline JointId joint_on_three_points(Parts& parts, const ActuatorSpec& spec, const std::string& who) {
+  using V = Vector3<double>;
+  const V to_a = unit(from_eigen(spec.toward_a) - from_eigen(spec.at_a), who);
+  const V to_b = unit(from_eigen(spec.toward_b) - from_eigen(spec.at_b), who);
+  const V normal = cross(to_a, to_b);
+  if (norm(normal) < 1e-6) {
+    fail("the three points of {} lie on a line, so its axis is not known; use joint_actuator on a revolute joint", who);
+  }
+  return add_joint(parts, free_joint("angle of " + who, spec.a, spec.b, spec.at_a, to_eigen(normal))
+                              .starting_at(std::atan2(norm(normal), dot(to_a, to_b))));
+}
+
+inline ActuatorId add_actuator(Parts& parts, ActuatorSpec spec) {
+  settle_name(spec.name, parts.actuators, "actuator", "actuators", name_in_spec);
+  const std::string who = dem::text("actuator '{}'", spec.name);
+  check_actuator(spec, who);
+  Actuator u;
+  if (spec.three_points) spec.joint = joint_on_three_points(parts, spec, who);
+  if (spec.joint.valid()) {
+    const Joint& j = known_joint(parts, spec.joint, who);
+    spec.dof = require_free_dof(j.kind, spec.dof, who);
+    u.a = j.a;
+    u.b = j.b;
+  } else {
+    attach_points(parts, u, spec, who);
+    u.a = spec.a.value;
+    u.b = spec.b.value;
+  }
+  u.spec = std::move(spec);
+  if (!u.spec.set_point) {
+    u.spec.set_point = coordinate_of(u, parts.joints, parts.bodies[u.a], parts.bodies[u.b]).value;
+  }
+  use(parts, actuator_kind);
+  return keep<ActuatorId>(parts, parts.actuators, std::move(u));
+}
+
+}  // namespace dem::mbd::detail

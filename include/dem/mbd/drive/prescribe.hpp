@@ -1,0 +1,153 @@
+#pragma once
+
+// Prescribed motion (eq. 19): the impulses that bring every driven coordinate to its value and speed, all at once.
+
+#include <dem/mbd/drive/jacobian.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace dem::mbd {
+
+namespace detail {
+
+/// Where a pose puts the centre of mass (m), and the body frame's rotation.
+inline Vector3<double> centre_at(const PrescribedMotion& p, const Pose& pose) {
+  return from_eigen(pose.position) + from_eigen(pose.rotation) * p.centre;
+}
+inline Matrix3<double> rotation_at(const PrescribedMotion& p, const Pose& pose) {
+  return from_eigen(pose.rotation) * p.axes;
+}
+
+/// Sets a body whose pose is prescribed.
+inline void carry(PrescribedMotion& p, integrator::Motion<double>& m, double time) {
+  using V = Vector3<double>;
+  const Pose pose = p.spec.pose(time);
+  m.position = centre_at(p, pose);
+  m.rotation = rotation_at(p, pose);
+  V velocity = pose.velocity ? from_eigen(*pose.velocity) : V{0, 0, 0};
+  V spin = pose.angular_velocity ? from_eigen(*pose.angular_velocity) : V{0, 0, 0};
+  if (!pose.velocity || !pose.angular_velocity) {
+    constexpr double h = 1e-6;
+    const Pose before = p.spec.pose(time - h), after = p.spec.pose(time + h);
+    if (!pose.velocity) velocity = (from_eigen(after.position) - from_eigen(before.position)) / (2.0 * h);
+    if (!pose.angular_velocity) {  // the skew part of the small turn between the two
+      const Matrix3<double> r = from_eigen(after.rotation) * transposed(from_eigen(before.rotation));
+      spin = V{r.row2.y - r.row1.z, r.row0.z - r.row2.x, r.row1.x - r.row0.y} / (4.0 * h);
+    }
+  }
+  m.velocity = velocity + cross(spin, from_eigen(pose.rotation) * p.centre);
+  m.angular_velocity = transpose_times(m.rotation, spin);
+  p.drive.value = m.position.x + m.position.y + m.position.z;  // only to tell whether it is a number
+}
+
+/// Sets the position or the rotation of a fixed body.
+inline void carry_fixed(const PrescribedMotion& p, integrator::Motion<double>& m) {
+  const PrescribedMotion::Drive& d = p.drive;
+  if (p.spec.target == MotionSpec::Target::position) {
+    m.position += (p.start + d.value - dot(m.position, p.axis)) * p.axis;
+    m.velocity += (d.rate - dot(m.velocity, p.axis)) * p.axis;
+  } else {
+    m.rotation = rotation_from_vector(d.value * p.axis) * p.start_rotation;
+    m.angular_velocity = transpose_times(m.rotation, d.rate * p.axis);
+  }
+}
+
+/// Samples the signals, and sets the bodies that give way to nothing.
+inline void sample_motions(Parts& parts, double time, double dt) {
+  for (PrescribedMotion& p : parts.motions) {
+    if (!p.spec.on) continue;
+    Body& x = parts.bodies[p.spec.body.index()];
+    if (p.spec.target == MotionSpec::Target::pose) {
+      carry(p, x.motion, time);
+      continue;
+    }
+    const Signal::Sample s = p.spec.motion(time, dt);
+    p.drive.value = s.value;
+    p.drive.rate = s.rate;
+    if (x.fixed && p.spec.target != MotionSpec::Target::joint) carry_fixed(p, x.motion);
+  }
+}
+
+/// What the drives put on a fixed body goes to its own drive; along or about its axis.
+inline double impulse_on(const Parts& parts, const PrescribedMotion& p, const std::vector<double>& impulses) {
+  const bool rotation = p.spec.target == MotionSpec::Target::rotation;
+  double sum = 0.0;
+  for (std::size_t k = 0; k < parts.rows.size(); ++k) {
+    const JacobianRow& row = parts.rows[k];
+    Wrench w;
+    if (row.b == p.spec.body.value) w = w + push_on_b(row.now);
+    if (row.a == p.spec.body.value) w = w + push_on_a(row.now);
+    sum += impulses[k] * dot(p.axis, rotation ? w.torque : w.force);
+  }
+  return sum;
+}
+
+/// Adds the impulses to those of their motions, and reports forces if dt > 0 (s).
+inline void report_forces(Parts& parts, const std::vector<double>& impulses, double dt) {
+  for (std::size_t k = 0; k < parts.rows.size(); ++k) {
+    const JacobianRow& row = parts.rows[k];
+    if (row.is_reported) parts.motions[row.motion].drive.impulse += impulses[k];
+  }
+  for (PrescribedMotion& p : parts.motions) {
+    PrescribedMotion::Drive& d = p.drive;
+    const Body& x = parts.bodies[p.spec.body.index()];
+    const bool moves_fixed = p.spec.on && x.fixed && p.spec.target != MotionSpec::Target::joint;
+    if (moves_fixed) d.impulse -= impulse_on(parts, p, impulses);
+    if (dt <= 0.0) continue;
+    d.force = p.spec.on ? d.impulse / dt : 0.0;
+    if (moves_fixed) d.force -= dot(p.axis, p.spec.target == MotionSpec::Target::rotation ? x.torque : x.force);
+    d.impulse = 0.0;
+  }
+}
+
+/// Newton's iteration to the values: one is exact but for rotations, each squares what is left.
+inline void correct_values(Parts& parts) {
+  using V = Vector3<double>;
+  std::vector<double>&x = parts.drive_errors, &held = parts.drive_held;
+  for (int k = 0; k < 5; ++k) {
+    fill_rows(parts, false);
+    if (k == 0) {
+      held.clear();
+      for (const JacobianRow& r : parts.rows) held.push_back(r.now.value);
+    }
+    x.clear();
+    bool met = true;
+    for (std::size_t i = 0; i < parts.rows.size(); ++i) {
+      const JacobianRow& r = parts.rows[i];
+      const double off = (r.is_held ? held[i] : r.value) - r.now.value;
+      x.push_back(off);
+      met &= std::abs(off) <= 1e-15 * std::max(1.0, std::abs(r.value));
+    }
+    if (met) break;
+    solve_rows(parts, x);
+    push_bodies(parts, x, [](Body& b, const Wrench& by) {
+      b.motion.position += by.force;
+      const V spin = b.motion.rotation * b.motion.angular_velocity;  // global, unchanged
+      b.motion.rotation = rotation_from_vector(by.torque) * b.motion.rotation;
+      b.motion.angular_velocity = transpose_times(b.motion.rotation, spin);
+    });
+  }
+}
+
+}  // namespace detail
+
+/// Sets the prescribed values and speeds for `time` (s) in steps of `dt` (s; 0: not known). The drives' forces are
+/// reported where the step is over.
+inline void apply_motions(Parts& parts, double time, double dt, bool is_over) {
+  if (parts.motions.empty()) return;
+  detail::sample_motions(parts, time, dt);
+  detail::correct_values(parts);
+  detail::fill_rows(parts, true);
+  std::vector<double>& x = parts.drive_errors;
+  x.clear();
+  for (const JacobianRow& r : parts.rows) x.push_back(r.rate - r.now.speed);
+  detail::solve_rows(parts, x);
+  detail::push_bodies(parts, x, [](Body& b, const Wrench& by) {
+    b.motion.velocity += by.force;
+    b.motion.angular_velocity += transpose_times(b.motion.rotation, by.torque);
+  });
+  detail::report_forces(parts, x, is_over ? dt : 0.0);
+}
+
+}  // namespace dem::mbd

@@ -1,0 +1,113 @@
+#pragma once
+
+#include <dem/mbd/drive/signal.hpp>
+#include <dem/mbd/ids.hpp>
+#include <dem/mbd/joint/coordinate.hpp>
+
+#include <dem/core/function.hpp>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace dem::mbd {
+
+/// Where one of the two frames of a driven body is (MotionSpec::frame), and how it moves. A velocity that is not given
+/// is found by central differences over 2e-6 s.
+struct Pose {
+  Vec3 position = Vec3::Zero();               ///< m, origin of the frame, global
+  Mat3 rotation = Mat3::Identity();           ///< frame -> global
+  std::optional<Vec3> velocity = {};          ///< m/s, of the origin of the frame
+  std::optional<Vec3> angular_velocity = {};  ///< rad/s, global axes
+};
+
+using PoseFunction = Function<Pose(double)>;  ///< of the time (s)
+
+/// A prescribed motion (eq. 19): the value and the speed of one coordinate, or a whole pose, are set exactly at the end
+/// of every stage, whatever force it takes; that force is reported.
+///
+/// A drive acts as a force would: along its axis at the joint's point, or as a torque, on one body and opposite on the
+/// other, so that momentum is kept (of rotation to the order of the time step) and joints carry what it leaves to them.
+/// All drives are met at once. Where two repeat or contradict each other the earlier one counts, and a body that is
+/// fixed or whose pose is prescribed gives way to none (of two motions of such a body the later one counts). A drive
+/// takes hold of its coordinate where that is: a value that is more than 1 mm or 1 mrad off when it is added, switched
+/// on or given another signal is refused. A speed is set within one step, and the force of that step is the jolt that
+/// this takes.
+///
+/// Two coordinates of joints cannot be prescribed: a bend, which has no direction where the joint is straight (a
+/// universal joint's bend_x and bend_y can), and the length of a distance joint, which the joint itself holds (drive
+/// the slide of a prismatic joint between two bodies, or use a linear_actuator without the joint).
+struct MotionSpec {
+  enum class Target {
+    position,  ///< displacement of a body's centre of mass along a global axis, from where it is when the motion is
+               ///< added
+    rotation,  ///< turn of a body about a global axis, likewise; it turns about no other axis
+    joint,     ///< coordinate of a joint, but no bend or length
+    pose       ///< everything
+  };
+  std::string name;
+  Target target = Target::position;
+  BodyId body = {};
+  JointId joint = {};
+  Dof dof = Dof::own;         ///< the joint's coordinate that is prescribed
+  Vec3 axis = Vec3::UnitX();  ///< global; made a unit vector
+  Signal motion = 0.0;        ///< m or rad
+  bool by_speed = false;      ///< only the signal's rate counts, the coordinate goes where that takes it
+  PoseFunction pose = {};
+  BodyFrame frame = BodyFrame::reference;  ///< of the body, which the pose is that of
+  bool on = true;
+
+  /// Prescribes one of dofs_of(the joint's kind) instead of the joint's own coordinate.
+  MotionSpec along(Dof f) const {
+    MotionSpec s = *this;
+    s.dof = f;
+    return s;
+  }
+};
+
+inline MotionSpec prescribed_position(std::string name, BodyId body, const Vec3& axis, Signal metres) {
+  return {.name = std::move(name), .body = body, .axis = axis, .motion = std::move(metres)};
+}
+inline MotionSpec prescribed_rotation(std::string name, BodyId body, const Vec3& axis, Signal radians) {
+  return {.name = std::move(name),
+          .target = MotionSpec::Target::rotation,
+          .body = body,
+          .axis = axis,
+          .motion = std::move(radians)};
+}
+inline MotionSpec prescribed_joint(std::string name, JointId joint, Signal coordinate) {
+  return {
+      .name = std::move(name), .target = MotionSpec::Target::joint, .joint = joint, .motion = std::move(coordinate)};
+}
+/// Prescribes the speed of a joint's coordinate (m/s or rad/s) and leaves its value as it comes: a driven wheel.
+inline MotionSpec prescribed_speed(std::string name, JointId joint, Signal speed) {
+  MotionSpec s = prescribed_joint(std::move(name), joint, speed.as_rate());
+  s.by_speed = true;
+  return s;
+}
+/// Prescribes where one of the body's frames is: by default the reference frame, as BodySpec::at does.
+inline MotionSpec prescribed_pose(std::string name, BodyId body, PoseFunction pose,
+                                  BodyFrame frame = BodyFrame::reference) {
+  return {.name = std::move(name),
+          .target = MotionSpec::Target::pose,
+          .body = body,
+          .pose = std::move(pose),
+          .frame = frame};
+}
+
+struct PrescribedMotion {
+  MotionSpec spec;
+  Vector3<double> axis = {};
+  double start = 0.0;     ///< m, position along the axis when it was added
+  bool has_hold = false;  ///< it has been compared with its coordinate since it was added or changed
+  Matrix3<double> start_rotation = Matrix3<double>::identity();
+  Vector3<double> centre = {0, 0, 0};                  ///< m, of mass, in the frame of the poses
+  Matrix3<double> axes = Matrix3<double>::identity();  ///< body frame -> frame of the poses
+  struct Drive {
+    double value = 0.0, rate = 0.0;  ///< what was set last
+    double impulse = 0.0;            ///< N s or N m s, given since the force was reported
+    double force = 0.0;              ///< N or N m, makes the coordinate grow (not for a pose)
+  } drive;
+};
+
+}  // namespace dem::mbd

@@ -1,0 +1,102 @@
+#pragma once
+
+// All that there is to know of the rotations that a joint holds. Springs are the gradient of an energy:
+//   parallel  kr (1 - z_a.z_b)   locked  kr/2 sum(1 - e_a.e_b)   cross  kr/2 (x_a.y_b)^2
+//   constant velocity  kr/8 (y_a.x_b - x_a.y_b)^2   bushing  see rotation_vector.hpp
+
+#include <dem/mbd/joint/hold.hpp>
+#include <dem/mbd/joint/rotation_vector.hpp>
+
+namespace dem::mbd::detail {
+
+/// The torque (N m) on b of the springs and dampers at a relative angular velocity w (rad/s), global.
+template <Align align>
+DEM_HOT Vector3<double> aligning_torque(const Joint& j, const FrameOfA& at, const Matrix3<double>& B,
+                                        const Vector3<double>& w) {
+  using V = Vector3<double>;
+  if constexpr (align == Align::parallel) {
+    const V z = at.z();
+    return j.kr * cross(B * j.axes_b.z, z) - j.cr * (w - dot(z, w) * z);
+  } else if constexpr (align == Align::locked) {
+    const V xa = at.x(), ya = at.y(), za = at.z();
+    const V xb = B * j.axes_b.x, yb = B * j.axes_b.y, zb = B * j.axes_b.z;
+    return (0.5 * j.kr) * (cross(xb, xa) + cross(yb, ya) + cross(zb, za)) - j.cr * w;
+  } else if constexpr (align == Align::bushing) {
+    const V x = at.x(), y = at.y(), z = at.z();
+    const V r = rotation_vector(x, y, z, B * j.axes_b.x, B * j.axes_b.y, B * j.axes_b.z);
+    const V spring = rotation_vector_torque(r, {j.kr3.x * r.x, j.kr3.y * r.y, j.kr3.z * r.z});
+    return (spring.x - j.cr3.x * dot(x, w)) * x + (spring.y - j.cr3.y * dot(y, w)) * y +
+           (spring.z - j.cr3.z * dot(z, w)) * z;
+  } else if constexpr (align == Align::cross) {
+    const V xa = at.x(), yb = B * j.axes_b.y;
+    const V g = cross(yb, xa);
+    return -(j.kr * dot(xa, yb) + j.cr * dot(g, w)) * g;
+  } else if constexpr (align == Align::constant_velocity) {
+    const V xa = at.x(), ya = at.y(), xb = B * j.axes_b.x, yb = B * j.axes_b.y;
+    const V g = 0.5 * (cross(xb, ya) - cross(yb, xa));
+    return -(j.kr * 0.5 * (dot(ya, xb) - dot(xa, yb)) + j.cr * dot(g, w)) * g;
+  } else {
+    return V{0, 0, 0};
+  }
+}
+
+/// How far (rad, for small angles) a joint is from holding what it should. A bushing is meant to give way.
+inline double misalignment(const Joint& j, Align align, const FrameOfA& at, const Matrix3<double>& B) {
+  using V = Vector3<double>;
+  const V xa = at.x(), ya = at.y(), za = at.z();
+  const V xb = B * j.axes_b.x, yb = B * j.axes_b.y, zb = B * j.axes_b.z;
+  switch (align) {
+    case Align::parallel: return norm(cross(za, zb));
+    case Align::locked: return 0.5 * norm(cross(xa, xb) + cross(ya, yb) + cross(za, zb));
+    case Align::cross: return std::abs(dot(xa, yb));
+    case Align::constant_velocity: return 0.5 * std::abs(dot(ya, xb) - dot(xa, yb));
+    case Align::bushing:
+    case Align::nothing: break;
+  }
+  return 0.0;
+}
+
+/// J, in the springs.
+inline double aligning_energy(const Joint& j, Align align, const FrameOfA& at, const Matrix3<double>& B) {
+  using V = Vector3<double>;
+  const V xa = at.x(), ya = at.y(), za = at.z();
+  const V xb = B * j.axes_b.x, yb = B * j.axes_b.y, zb = B * j.axes_b.z;
+  switch (align) {
+    case Align::parallel: return j.kr * (1.0 - dot(za, zb));
+    case Align::locked: return 0.5 * j.kr * ((1.0 - dot(xa, xb)) + (1.0 - dot(ya, yb)) + (1.0 - dot(za, zb)));
+    case Align::bushing: {
+      const V r = rotation_vector(xa, ya, za, xb, yb, zb);
+      return 0.5 * (j.kr3.x * r.x * r.x + j.kr3.y * r.y * r.y + j.kr3.z * r.z * r.z);
+    }
+    case Align::cross:
+    case Align::constant_velocity: {
+      const double off = misalignment(j, align, at, B);
+      return 0.5 * j.kr * off * off;
+    }
+    case Align::nothing: break;
+  }
+  return 0.0;
+}
+
+/// The square root of the stiffness as a matrix, of size 1 where it is the same in all held directions; B is b's
+/// rotation; global.
+inline Matrix3<double> held_rotations(const Joint& j, Align align, const FrameOfA& at, const Matrix3<double>& B) {
+  const Vector3<double> z = at.z();
+  switch (align) {
+    case Align::parallel: return diagonal_matrix(1, 1, 1) - outer(z, z);
+    case Align::locked: return diagonal_matrix(1, 1, 1);
+    case Align::bushing: return square_root_of(j.kr3, at);
+    case Align::cross: {
+      const Vector3<double> g = normalised(cross(B * j.axes_b.y, at.x()));  // square to the cross
+      return outer(g, g);
+    }
+    case Align::constant_velocity: {
+      const Vector3<double> g = normalised(z + B * j.axes_b.z);  // half way between the shafts
+      return outer(g, g);
+    }
+    case Align::nothing: break;
+  }
+  return diagonal_matrix(0, 0, 0);
+}
+
+}  // namespace dem::mbd::detail

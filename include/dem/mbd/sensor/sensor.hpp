@@ -1,0 +1,100 @@
+#pragma once
+
+#include <dem/core/error.hpp>
+#include <dem/math/wrench.hpp>
+#include <dem/mbd/ids.hpp>
+
+#include <array>
+#include <string>
+#include <utility>
+
+namespace dem::mbd {
+
+/// The mean of a force and torque over the last `window` seconds, weighted by time. Samples are summed in 64 bins of a
+/// ring, so that it needs no memory that grows, and no sum ever runs away: the newest part of the window is exact, its
+/// oldest edge is one bin coarse.
+class WindowAverage {
+ public:
+  explicit WindowAverage(double window = 0.0) : window_(require_non_negative(window, "averaging window", "s")) {}
+
+  /// Adds a sample that held for dt seconds.
+  void add(const Wrench& w, double dt) {
+    latest_ = w;
+    if (window_ <= 0.0 || dt <= 0.0) return;
+    if (bins_[head_].time >= window_ / bin_count) {
+      head_ = (head_ + 1) % ring_size;
+      bins_[head_] = {};
+    }
+    bins_[head_].sum = bins_[head_].sum + dt * w;
+    bins_[head_].time += dt;
+  }
+
+  /// The newest sample.
+  const Wrench& latest() const { return latest_; }
+
+  /// The mean over the window, or over what there is of it so far. With a window of 0 it is the newest sample.
+  Wrench mean() const {
+    Wrench sum;
+    double time = 0.0;
+    for (int k = 0; k < ring_size && time < window_; ++k) {
+      const Bin& bin = bins_[static_cast<std::size_t>((head_ + ring_size - k) % ring_size)];
+      sum = sum + bin.sum;
+      time += bin.time;
+    }
+    return time > 0.0 ? (1.0 / time) * sum : latest_;
+  }
+  void clear() { bins_ = {}; }
+  double window() const { return window_; }
+
+ private:
+  struct Bin {
+    Wrench sum;
+    double time = 0.0;
+  };
+  static constexpr int bin_count = 64, ring_size = bin_count + 1;
+
+  double window_;
+  Wrench latest_;
+  std::array<Bin, ring_size> bins_ = {};
+  std::size_t head_ = 0;
+};
+
+/// What a sensor measures.
+enum class SensorTarget {
+  contacts,  ///< force and torque on a body from outside the machine (the grains), about its centre of mass
+  total,     ///< force and torque on a body from everything but gravity, about its centre of mass
+  joint,     ///< force and torque of a joint on its body b with its limits and friction, about the joint's point
+  actuator,  ///< force of an actuator in force.x
+  drive      ///< force of a prescribed motion's drive in force.x
+};
+
+struct SensorSpec {
+  std::string name;
+  SensorTarget target;
+  std::size_t index;    ///< of the body, joint, actuator or prescribed motion
+  double window = 0.0;  ///< s, over which the mean is taken
+};
+
+inline SensorSpec contact_sensor(std::string name, BodyId body, double window) {
+  return {std::move(name), SensorTarget::contacts, body.index(), window};
+}
+/// All forces on a body but its weight and the forces of prescribed motions (drive_sensor).
+inline SensorSpec total_force_sensor(std::string name, BodyId body, double window) {
+  return {std::move(name), SensorTarget::total, body.index(), window};
+}
+inline SensorSpec joint_sensor(std::string name, JointId joint, double window) {
+  return {std::move(name), SensorTarget::joint, joint.index(), window};
+}
+inline SensorSpec actuator_sensor(std::string name, ActuatorId actuator, double window) {
+  return {std::move(name), SensorTarget::actuator, actuator.index(), window};
+}
+inline SensorSpec drive_sensor(std::string name, MotionId motion, double window) {
+  return {std::move(name), SensorTarget::drive, motion.index(), window};
+}
+
+struct Sensor {
+  SensorSpec spec;
+  WindowAverage average;
+};
+
+}  // namespace dem::mbd

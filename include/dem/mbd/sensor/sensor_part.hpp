@@ -1,0 +1,55 @@
+#pragma once
+
+// Sensors: how they are added, and how they are sampled.
+
+#include <dem/mbd/solver/part_kind.hpp>
+
+namespace dem::mbd::detail {
+
+/// Hands every sensor what it measures, for the dt (s) that it held.
+inline void sample_sensors(Parts& m, double dt) {
+  for (Sensor& s : m.sensors) {
+    const std::size_t i = s.spec.index;
+    Wrench w;
+    switch (s.spec.target) {
+      case SensorTarget::contacts: w = m.outside[i]; break;
+      case SensorTarget::total: w = {m.bodies[i].force, m.bodies[i].torque}; break;
+      case SensorTarget::joint: w = reaction_of(m, i); break;
+      case SensorTarget::actuator: w.force.x = m.actuators[i].force; break;
+      case SensorTarget::drive: w.force.x = m.motions[i].drive.force; break;
+    }
+    s.average.add(w, dt);
+  }
+}
+
+/// Checks that what a sensor measures is there.
+inline void check_sensor(const Parts& parts, const SensorSpec& spec) {
+  const std::size_t count = spec.target == SensorTarget::joint      ? parts.joints.size()
+                            : spec.target == SensorTarget::actuator ? parts.actuators.size()
+                            : spec.target == SensorTarget::drive    ? parts.motions.size()
+                                                                    : parts.bodies.size();
+  const char* what = spec.target == SensorTarget::joint      ? "joint"
+                     : spec.target == SensorTarget::actuator ? "actuator"
+                     : spec.target == SensorTarget::drive    ? "prescribed motion"
+                                                             : "body";
+  if (spec.index >= count) {
+    fail("sensor '{}' measures {} {}, but the machine has {} of them; use the id that add_... returned", spec.name,
+         what, spec.index == BodyId().index() ? "(never added)" : std::to_string(spec.index), count);
+  }
+  if (spec.target == SensorTarget::drive && parts.motions[spec.index].spec.target == MotionSpec::Target::pose) {
+    fail(
+        "sensor '{}' measures the drive of '{}', which prescribes a whole pose and so has no single force; use a "
+        "total_force_sensor on its body",
+        spec.name, parts.motions[spec.index].spec.name);
+  }
+}
+
+inline SensorId add_sensor(Parts& parts, SensorSpec spec) {
+  settle_name(spec.name, parts.sensors, "sensor", "sensors", name_in_spec);
+  check_sensor(parts, spec);
+  WindowAverage average(spec.window);
+  parts.sample_sensors = &sample_sensors;
+  return keep<SensorId>(parts, parts.sensors, Sensor{std::move(spec), average}, false);
+}
+
+}  // namespace dem::mbd::detail

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <dem/mbd/solver/step_watch.hpp>
+
+#include <cmath>
+#include <string>
+
+namespace dem::mbd {
+
+/// The first function of a user that gave no number in the newest step, in words; empty if all did.
+inline std::string not_a_number(const Parts& parts) {
+  for (const detail::PartKind* kind : parts.kinds) {
+    if (!kind->not_a_number) continue;
+    if (std::string text = kind->not_a_number(parts); !text.empty()) return text;
+  }
+  return {};
+}
+
+/// Why a machine blew up at steps of dt (s, with all `substeps`), in words: a number that is none, a step that was too
+/// large from the start or became so in another pose, or none of these.
+template <class I>
+std::string cause_of_blow_up(const Parts& parts, const StableTimeStep& at_start, const StepWatch<I>& later, double dt,
+                             int substeps) {
+  if (const std::string cause = not_a_number(parts); !cause.empty()) {
+    return cause + " is not a number: check the function that gives it.";
+  }
+  constexpr const char* remedy = "take a smaller time step, or a lower stiffness there.";
+  if (at_start.dt < dt) {
+    return dem::text("The time step is {:g} s, but the stable one is {:g} s, limited by {}: {}", dt, at_start.dt,
+                     at_start.limited_by, remedy);
+  }
+  if (later.seen()) {
+    return dem::text(
+        "The time step, {:g} s, was stable at the start of the run, but in the pose at t = {:g} s the stable one was "
+        "{:g} s, limited by {}: {}",
+        dt, later.time(), later.limit().dt * substeps, later.limit().limited_by, remedy);
+  }
+  return dem::text(
+      "The time step, {:g} s, was stable at the start of the run{}: check the applied forces, set points and contacts, "
+      "or take a smaller one.",
+      dt, at_start.limited_by.empty() ? "" : dem::text(" (up to {:g} s, by {})", at_start.dt, at_start.limited_by));
+}
+
+}  // namespace dem::mbd

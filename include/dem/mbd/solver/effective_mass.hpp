@@ -1,0 +1,110 @@
+#pragma once
+
+// How easily bodies give way. The effective mass of a body at a point and in a direction n is 1/(n.W n), where W is the
+// acceleration per unit force there; of a rotation it is an inertia. What is computed is its inverse, 0 for fixed
+// bodies.
+
+#include <dem/mbd/joint/coordinate.hpp>
+#include <dem/mbd/joint/friction.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace dem::mbd::detail {
+
+/// The inverse of the inertia (1/(kg m^2)), global axes.
+inline Matrix3<double> inverse_inertia_of(const Body& b) {
+  if (b.fixed) return diagonal_matrix(0, 0, 0);
+  const Matrix3<double>& r = b.motion.rotation;
+  return r * diagonal_matrix(1.0 / b.inertia[0], 1.0 / b.inertia[1], 1.0 / b.inertia[2]) * transposed(r);
+}
+/// What turning adds to the displacement per unit force at `arm` (global) from the centre of mass (1/kg).
+inline Matrix3<double> inverse_mass_by_turning(const Body& b, const Vector3<double>& arm) {
+  const Matrix3<double> x = cross_matrix(arm);
+  return x * inverse_inertia_of(b) * transposed(x);
+}
+/// Displacement per unit force at `arm` (1/kg).
+inline Matrix3<double> inverse_mass_matrix(const Body& b, const Vector3<double>& arm) {
+  if (b.fixed) return diagonal_matrix(0, 0, 0);
+  return diagonal_matrix(1.0 / b.mass, 1.0 / b.mass, 1.0 / b.mass) + inverse_mass_by_turning(b, arm);
+}
+
+/// Turn about a unit vector n (global) per unit torque, and displacement along it at `arm` (global) per unit force.
+inline double inverse_inertia_about(const Body& b, const Vector3<double>& n) {
+  if (b.fixed) return 0.0;
+  const Vector3<double> t = transpose_times(b.motion.rotation, n);
+  return t.x * t.x / b.inertia[0] + t.y * t.y / b.inertia[1] + t.z * t.z / b.inertia[2];
+}
+inline double inverse_mass_at(const Body& b, const Vector3<double>& arm, const Vector3<double>& n) {
+  return b.fixed ? 0.0 : 1.0 / b.mass + inverse_inertia_about(b, cross(arm, n));
+}
+
+/// The largest turn per unit torque about any axis, and displacement per unit force at `arm` in any direction. A force
+/// along the arm turns nothing, so at most two directions of the turn's share are left.
+inline double largest_inverse_inertia(const Body& b) {
+  return b.fixed ? 0.0 : 1.0 / std::min({b.inertia[0], b.inertia[1], b.inertia[2]});
+}
+inline double largest_inverse_mass(const Body& b, const Vector3<double>& arm) {
+  return b.fixed ? 0.0 : 1.0 / b.mass + largest_eigenvalue_of_two(inverse_mass_by_turning(b, arm));
+}
+
+/// Inverse effective masses of the two bodies of a joint (1/kg), and inverse effective inertias (1/(kg m^2)), each the
+/// largest in a held direction. Of a bushing they are times its stiffness.
+struct JointInverseMass {
+  double displacement_a, displacement_b, rotation_a, rotation_b;
+};
+inline JointInverseMass inverse_mass_of(const Joint& j, const Body& a, const Body& b) {
+  const JointTraits& traits = traits_of(j.kind);
+  using V = Vector3<double>;
+  using M = Matrix3<double>;
+  const FrameOfA at{j, a.motion.rotation};
+  const V point = b.motion.position + b.motion.rotation * j.point_b;
+  const auto largest = [&](const M& root, const M& w) {
+    return traits.stiffness == Stiffness::own ? largest_eigenvalue(root * w * root)
+                                              : largest_eigenvalue_of_two(root * w * root);
+  };
+  const V gap = point - a.motion.position - a.motion.rotation * j.point_a;
+  const M held = held_displacements(j, traits.hold, at, gap),
+          aligned = held_rotations(j, traits.align, at, b.motion.rotation);
+  const auto displacement = [&](const Body& x) {
+    const V arm = point - x.motion.position;
+    return traits.hold == Hold::point ? largest_inverse_mass(x, arm) : largest(held, inverse_mass_matrix(x, arm));
+  };
+  const auto rotation = [&](const Body& x) {
+    return traits.align == Align::locked ? largest_inverse_inertia(x) : largest(aligned, inverse_inertia_of(x));
+  };
+  return {displacement(a), displacement(b), rotation(a), rotation(b)};
+}
+
+/// Inverse effective masses or inertias of the two bodies along a coordinate of their joint. The axis of a bend may
+/// point anywhere.
+inline std::pair<double, double> inverse_mass_along(const Joint& j, const Body& a, const Body& b, Dof dof) {
+  if (dof == Dof::bend) {
+    return {largest_inverse_inertia(a), largest_inverse_inertia(b)};
+  }
+  const Coordinate q = coordinate_of(j, a, b, dof);
+  if (q.rotation) return {inverse_inertia_about(a, q.axis), inverse_inertia_about(b, q.axis)};
+  return {inverse_mass_at(a, q.arm_a, q.axis), inverse_mass_at(b, q.arm_b, q.axis)};
+}
+
+/// The same along the directions that a joint's friction acts in: the largest of them, as all have the same spring;
+/// rotations times the square of the bearing's radius, which turns sliding into rotation.
+inline std::pair<double, double> inverse_mass_of_friction(const Joint& j, const Body& a, const Body& b, double radius) {
+  std::pair<double, double> most = {0.0, 0.0};
+  for (const Dof dof : rubbing_dofs(traits_of(j.kind).bearing)) {
+    const double share = is_rotation(dof) ? radius * radius : 1.0;
+    const auto [wa, wb] = inverse_mass_along(j, a, b, dof);
+    most = {std::max(most.first, share * wa), std::max(most.second, share * wb)};
+  }
+  return most;
+}
+
+/// The same along the line between two points.
+inline std::pair<double, double> inverse_mass_of_line(const Vector3<double>& point_a, const Vector3<double>& point_b,
+                                                      const Body& a, const Body& b) {
+  const Coordinate q = distance_of(point_a, point_b, a, b);
+  return {inverse_mass_at(a, q.arm_a, q.axis), inverse_mass_at(b, q.arm_b, q.axis)};
+}
+
+}  // namespace dem::mbd::detail

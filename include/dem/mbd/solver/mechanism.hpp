@@ -1,0 +1,163 @@
+#pragma once
+
+#include <dem/mbd/body/add_body.hpp>
+#include <dem/mbd/drive/actuator_part.hpp>
+#include <dem/mbd/drive/motion_part.hpp>
+#include <dem/mbd/joint/coupling_part.hpp>
+#include <dem/mbd/joint/friction_part.hpp>
+#include <dem/mbd/joint/kinds.hpp>
+#include <dem/mbd/joint/limits_part.hpp>
+#include <dem/mbd/load/load_part.hpp>
+#include <dem/mbd/load/spring_part.hpp>
+#include <dem/mbd/sensor/sensor_part.hpp>
+#include <dem/mbd/solver/steer.hpp>
+
+namespace dem::mbd {
+
+/// A machine without its motion: put together (add_...), looked at (poses, coordinates, reactions) and steered (set
+/// points, brakes, switches). What moves it is a Solver: that of a Machine, or that of a world. Every add_... function
+/// checks what it is given, throws Error in words, and returns an id.
+class Mechanism {
+ public:
+  /// Machine steps within one step dt of the world, or of a machine alone.
+  int substeps = 1;
+  double largest_speed = 1e5;  ///< m/s or rad/s; a body that is faster is reported as blown up
+
+  // -------------------------------------------------------------------------------------------------- put together
+
+  BodyId add_body(const BodySpec& spec) { return detail::add_body(parts_, build_body(spec)); }
+  /// A body that is given in its own frame: centre of mass and principal axes.
+  BodyId add_body(const Body& body) {
+    check_body(body);
+    return detail::add_body(parts_, {body, Vec3::Zero(), Mat3::Identity()});
+  }
+  BodyId add_fixed_body(std::string name, const Vec3& position = Vec3::Zero()) {
+    return add_body(fixed_body(std::move(name), position));
+  }
+  /// The fixed body "ground" at the origin; made when first asked for, which adds a body.
+  BodyId ground() {
+    if (!ground_.valid()) ground_ = add_fixed_body("ground");
+    return ground_;
+  }
+  /// A connection point (section 2.3) at a global point.
+  ConnectionId add_connection(std::string name, BodyId body, const Vec3& at) {
+    return detail::add_connection(parts_, std::move(name), body, at);
+  }
+  /// A connection point at a point of the body's reference frame.
+  ConnectionId add_connection_in_reference(std::string name, BodyId body, const Vec3& point) {
+    known_body(parts_, body, dem::text("connection point '{}'", name));
+    return add_connection(std::move(name), body, reference_point(body, point));
+  }
+  JointId add_joint(JointSpec spec) { return detail::add_joint(parts_, std::move(spec)); }
+  ActuatorId add_actuator(ActuatorSpec spec) { return detail::add_actuator(parts_, std::move(spec)); }
+  SpringId add_spring(SpringSpec spec) { return detail::add_spring(parts_, std::move(spec)); }
+  CouplingId add_coupling(CouplingSpec spec) { return detail::add_coupling(parts_, std::move(spec)); }
+  LoadId add_load(LoadSpec spec) { return detail::add_load(parts_, std::move(spec)); }
+  MotionId add_motion(MotionSpec spec) { return detail::add_motion(parts_, std::move(spec)); }
+  SensorId add_sensor(SensorSpec spec) { return detail::add_sensor(parts_, std::move(spec)); }
+
+  // ----------------------------------------------------------------------------------------------------- looked at
+
+  /// All bodies, in the order of their ids. Mass, inertia and `fixed` are read when a run starts; later, set_fixed
+  /// changes the latter. References to bodies are good until the next one is added, as ground() may do.
+  std::vector<Body>& bodies() { return parts_.bodies; }
+  const std::vector<Body>& bodies() const { return parts_.bodies; }
+  Body& body(BodyId id) { return known(parts_.bodies, id, "body"); }
+  const Body& body(BodyId id) const { return known(parts_.bodies, id, "body"); }
+  /// The body of that name. Throws Error if there is none.
+  BodyId body_named(const std::string& name) const {
+    for (std::size_t i = 0; i < parts_.bodies.size(); ++i) {
+      if (parts_.bodies[i].name == name) return BodyId(i);
+    }
+    fail("no body is named '{}'", name);
+  }
+  /// Global position (m) of a point of the body's reference frame.
+  Vec3 reference_point(BodyId id, const Vec3& point) const {
+    const BuiltBody& built = known(parts_.built, id, "body");
+    const Matrix3<double> axes = from_eigen(built.reference_axes);
+    return body(id).point(to_eigen(from_eigen(built.reference_origin) + axes * from_eigen(point)));
+  }
+  /// Origin of the body's reference frame (m, global): with reference_rotation the pose at which a mesh of the body in
+  /// the axes of its drawing is shown (io::BodyMesh).
+  Vec3 reference_position(BodyId id) const { return reference_point(id, Vec3::Zero()); }
+  /// Reference frame -> global.
+  Mat3 reference_rotation(BodyId id) const {
+    return to_eigen(body(id).motion.rotation * from_eigen(known(parts_.built, id, "body").reference_axes));
+  }
+  Vec3 connection_position(ConnectionId id) const {
+    const Connection& c = known(parts_.connections, id, "connection point");
+    return body(c.body).point(c.point);
+  }
+
+  /// A coordinate and its speed, one of dofs_of(the joint's kind). Without a name the joint's own: the rotation (rad,
+  /// over whole turns) of one that turns, the slide (m) of one that slides, the length (m) of a distance joint.
+  double coordinate(JointId id, Dof dof = Dof::own) const { return coordinate_now(parts_, id, dof).value; }
+  double speed(JointId id, Dof dof = Dof::own) const { return coordinate_now(parts_, id, dof).speed; }
+  /// The slide along z (m, m/s), e.g. the second coordinate of a cylindrical joint.
+  double slide(JointId id) const { return coordinate(id, Dof::slide); }
+  double slide_speed(JointId id) const { return speed(id, Dof::slide); }
+  Violation violation(JointId id) const {
+    const Joint& j = joint(id);
+    return violation_of(j, parts_.bodies[j.a], parts_.bodies[j.b]);
+  }
+  /// Force (N) and torque (N m, about the joint's point) that the joint puts on its body b: its springs and dampers,
+  /// limits and friction. Actuators, couplings and drives that act on its coordinates report their own.
+  Wrench reaction(JointId id) const {
+    joint(id);
+    return reaction_of(parts_, id.index());
+  }
+  const Joint& joint(JointId id) const { return known(parts_.joints, id, "joint"); }
+  /// Limits of a joint's coordinate, or its friction; nullptr if it has none.
+  const JointLimitState* limits(JointId id, Dof dof = Dof::own) const { return limits_of(parts_, id, dof); }
+  const JointFrictionState* friction(JointId id) const { return friction_of(parts_, id); }
+
+  const Actuator& actuator(ActuatorId id) const { return known(parts_.actuators, id, "actuator"); }
+  const Load& load(LoadId id) const { return known(parts_.loads, id, "load"); }
+  const Spring& spring(SpringId id) const { return known(parts_.springs, id, "spring"); }
+  const Coupling& coupling(CouplingId id) const { return known(parts_.couplings, id, "coupling"); }
+  const PrescribedMotion& motion(MotionId id) const { return known(parts_.motions, id, "prescribed motion"); }
+  const WindowAverage& sensor(SensorId id) const { return known(parts_.sensors, id, "sensor").average; }
+  const Parts& parts() const { return parts_; }
+  Parts& parts() { return parts_; }
+
+  // ------------------------------------------------------------------------------------------------------- steered
+
+  /// Sets the preload (N) of a joint's friction while running: a brake. Throws Error if the joint has no friction.
+  void set_friction_preload(JointId id, double newtons) { detail::set_friction_preload(parts_, id, newtons); }
+  /// Sets the set point (m or rad) and its rate from outside, for instance every step. Throws Error unless finite, and
+  /// for a motor, which has a throttle instead.
+  void set_target(ActuatorId id, double value, double rate = 0.0) { set_target(id, Signal::held(value, rate)); }
+  void set_target(ActuatorId id, Signal signal) {
+    detail::set_target(known(parts_.actuators, id, "actuator").spec, std::move(signal));
+  }
+  void set_throttle(ActuatorId id, double throttle) {
+    detail::set_throttle(known(parts_.actuators, id, "actuator").spec, throttle);
+  }
+  void switch_on(ActuatorId id, bool on = true) { known(parts_.actuators, id, "actuator").spec.on = on; }
+  /// A fixed body stops when the motion that moves it is switched off.
+  void switch_on(MotionId id, bool on = true) {
+    detail::switch_on(parts_, known(parts_.motions, id, "prescribed motion"), on);
+  }
+  void switch_on(LoadId id, bool on = true) { known(parts_.loads, id, "load").spec.on = on; }
+  /// Stops and fixes a body where it is, or sets it free; what is derived from masses is derived again.
+  void set_fixed(BodyId id, bool fixed = true) { detail::set_fixed(parts_, body(id), fixed); }
+  void set_load(LoadId id, Signal size) { detail::set_load(known(parts_.loads, id, "load").spec, std::move(size)); }
+  /// Another signal for a prescribed coordinate, or another function for a pose (set_pose).
+  void set_motion(MotionId id, Signal motion) {
+    detail::set_motion(known(parts_.motions, id, "prescribed motion"), std::move(motion));
+  }
+  /// For values that come from outside every step: how far each is from the last is the caller's care, only the first
+  /// one is compared with the coordinate. A motion prescribed by its speed takes that alone, set_motion(id, speed).
+  void set_motion(MotionId id, double value, double rate) {
+    detail::set_motion(known(parts_.motions, id, "prescribed motion"), value, rate);
+  }
+  void set_pose(MotionId id, PoseFunction pose) {
+    detail::set_pose(known(parts_.motions, id, "prescribed motion"), std::move(pose));
+  }
+
+ private:
+  Parts parts_;
+  BodyId ground_;
+};
+
+}  // namespace dem::mbd

@@ -1,0 +1,192 @@
+#pragma once
+
+#include <dem/mbd/body/body_spec.hpp>
+#include <dem/mbd/drive/actuator.hpp>
+#include <dem/mbd/drive/prescribed.hpp>
+#include <dem/mbd/joint/coupling.hpp>
+#include <dem/mbd/joint/friction.hpp>
+#include <dem/mbd/joint/joint_spec.hpp>
+#include <dem/mbd/joint/limits.hpp>
+#include <dem/mbd/load/load.hpp>
+#include <dem/mbd/load/spring.hpp>
+#include <dem/mbd/sensor/sensor.hpp>
+
+#include <string>
+#include <vector>
+
+namespace dem::mbd {
+
+namespace detail {
+struct PartKind;
+}
+
+/// One coordinate that is prescribed now; a rotation of a body makes three of them, all others one.
+struct JacobianRow {
+  static constexpr std::uint32_t no_body = ~std::uint32_t{0};
+  std::uint32_t motion = 0;
+  bool is_reported = true;                 ///< its force is the motion's
+  bool is_held = false;                    ///< by the driven joint: it stays as it is while values are corrected
+  std::uint32_t a = no_body, b = no_body;  ///< bodies that it moves
+  Coordinate now;
+  double value = 0.0, rate = 0.0;  ///< wanted
+};
+
+/// A named point of a body to which joints are attached (thesis section 2.3).
+struct Connection {
+  std::string name;
+  BodyId body;
+  Vec3 point = Vec3::Zero();  ///< m, body frame
+};
+
+/// All that a machine is made of, as plain arrays; an Id is an index into its array.
+struct Parts {
+  std::vector<Body> bodies;
+  std::vector<BuiltBody> built;  ///< each body as it was added, with its reference frame
+  std::vector<Connection> connections;
+  std::vector<Joint> joints;                 ///< what a step needs
+  std::vector<JointSpec> joint_specs;        ///< as given: what was left to derive is still empty
+  std::vector<JointLimitState> limits;       ///< of the coordinates that have them
+  std::vector<JointFrictionState> friction;  ///< of the joints that have friction
+  std::vector<Coupling> couplings;
+  std::vector<Actuator> actuators;
+  std::vector<Spring> springs;
+  std::vector<Load> loads;
+  std::vector<PrescribedMotion> motions;
+  std::vector<Sensor> sensors;
+
+  std::vector<const detail::PartKind*> kinds;  ///< that there are, in the order in which they are evaluated
+  /// What prescribed motions and sensors need, if there are any: see motion_part.hpp and sensor_part.hpp.
+  void (*apply_motions)(Parts& parts, double time, double dt, bool is_over) = nullptr;
+  void (*check_holds)(Parts& parts, double time) = nullptr;
+  void (*sample_sensors)(Parts& parts, double dt) = nullptr;
+
+  std::uint64_t revision = 0;  ///< grows with each body, joint, coupling ... that is added, set free or fixed
+
+  // Scratch of a force evaluation, one entry per body.
+  std::vector<Vector3<double>> spin;  ///< rad/s, global
+  std::vector<Wrench> outside;        ///< contact forces that the world added, about the centre of mass
+
+  // Scratch of the prescribed motions.
+  std::vector<JacobianRow> rows;
+  std::vector<double> drive_matrix, drive_directions, drive_errors, drive_held;
+};
+
+/// What a joint puts on its body b, about the joint's point: its springs and dampers, its limits and its friction.
+inline Wrench reaction_of(const Parts& parts, std::size_t joint) {
+  Wrench w = {parts.joints[joint].force, parts.joints[joint].torque};
+  for (const JointFrictionState& e : parts.friction) {
+    if (e.joint == joint) w = w + Wrench{e.force, e.torque};
+  }
+  for (const JointLimitState& e : parts.limits) {
+    if (e.joint == joint) (is_rotation(e.dof) ? w.torque : w.force) += e.force * e.axis;
+  }
+  return w;
+}
+
+/// Reports and recorders tell parts by their names: one that has none gets that of its kind (`one`) and its number, one
+/// that another of its kind has is refused. `name_of(item)` is the name of an item.
+template <class Items, class NameOf>
+void settle_name(std::string& name, const Items& items, const char* one, const char* several, NameOf&& name_of) {
+  if (name.empty()) name = dem::text("{} {}", one, items.size());
+  for (const auto& item : items) {
+    if (name_of(item) == name) fail("two {} are named '{}'; rename one, so that reports are clear", several, name);
+  }
+}
+
+/// The item of an id, or an Error that names the kind of item.
+template <class Items, class Tag>
+auto& known(Items& items, Id<Tag> id, const char* what) {
+  if (id.index() < items.size()) return items[id.index()];
+  fail("{} {} was asked for, but the machine has {} of them; use the id that add_... returned", what,
+       id.valid() ? std::to_string(id.index()) : "(never added)", items.size());
+}
+
+/// The body of an id, or an Error that names who asked for it.
+inline const Body& known_body(const Parts& parts, BodyId id, const std::string& asker) {
+  if (!id.valid()) fail("{} names a body that was never added; use the BodyId that add_body returned", asker);
+  if (id.index() >= parts.bodies.size()) {
+    fail("{} names body {}, but the machine has {} (0 to {}); use the BodyId that add_body returned", asker, id.index(),
+         parts.bodies.size(), static_cast<long>(parts.bodies.size()) - 1);
+  }
+  return parts.bodies[id.index()];
+}
+
+inline const Joint& known_joint(const Parts& parts, JointId id, const std::string& asker) {
+  if (!id.valid() || id.index() >= parts.joints.size()) {
+    fail("{} names a joint that the machine does not have (it has {}); use the JointId that add_joint returned", asker,
+         parts.joints.size());
+  }
+  return parts.joints[id.index()];
+}
+
+/// A coordinate of a joint and its speed, now. Throws Error unless joints of this kind have it.
+inline Coordinate coordinate_now(const Parts& parts, JointId id, Dof dof) {
+  const Joint& j = known(parts.joints, id, "joint");
+  const std::string& name = parts.joint_specs[id.index()].name;
+  return coordinate_of(j, parts.bodies[j.a], parts.bodies[j.b],
+                       known_dof(j.kind, dof, "a coordinate of '" + name + "'"));
+}
+/// The limits of a joint's coordinate, or its friction; nullptr if it has none.
+inline const JointLimitState* limits_of(const Parts& parts, JointId id, Dof dof) {
+  dof = resolved(known(parts.joints, id, "joint").kind, dof);
+  for (const JointLimitState& e : parts.limits) {
+    if (e.joint == id.value && e.dof == dof) return &e;
+  }
+  return nullptr;
+}
+inline const JointFrictionState* friction_of(const Parts& parts, JointId id) {
+  for (const JointFrictionState& e : parts.friction) {
+    if (e.joint == id.value) return &e;
+  }
+  return nullptr;
+}
+
+/// Keeps a part; structural ones make what was derived and initialised before out of date.
+template <class Id, class Part>
+Id keep(Parts& parts, std::vector<Part>& list, Part&& part, bool structural = true) {
+  list.push_back(std::move(part));
+  if (structural) ++parts.revision;
+  return Id(list.size() - 1);
+}
+inline constexpr auto name_in_spec = [](const auto& part) -> const std::string& { return part.spec.name; };
+
+/// A global point in a body's frame.
+inline Vector3<double> to_body(const Body& b, const Vector3<double>& global) {
+  return transpose_times(b.motion.rotation, global - b.motion.position);
+}
+
+/// A point (m) that was given as `what`, or an Error if it is nowhere.
+inline Vector3<double> finite_point(const Vec3& p, const std::string& what) {
+  if (!is_finite(from_eigen(p))) fail("{} is ({:g}, {:g}, {:g}), but must be finite", what, p.x(), p.y(), p.z());
+  return from_eigen(p);
+}
+
+inline Vector3<double> unit(const Vector3<double>& v, const std::string& asker) {
+  const double length = norm(v);
+  if (!(length > 1e-12) || !std::isfinite(length)) {
+    fail("the direction of {} is ({:g}, {:g}, {:g}), but needs a length; give any vector along it", asker, v.x, v.y,
+         v.z);
+  }
+  return v / length;
+}
+/// A direction that was given by `asker`, of length 1.
+inline Vector3<double> unit(const Vec3& v, const std::string& asker) { return unit(from_eigen(v), asker); }
+
+/// Checks the two ends of an element between points and puts the points into body frames.
+template <class Part, class Spec>
+void attach_points(const Parts& parts, Part& part, const Spec& s, const std::string& who) {
+  const Body &a = known_body(parts, s.a, who), &b = known_body(parts, s.b, who);
+  if (s.a == s.b) fail("{} joins body '{}' to itself; give it two different bodies", who, a.name);
+  const auto point_a = finite_point(s.at_a, "the first point of " + who);
+  const auto point_b = finite_point(s.at_b, "the second point of " + who);
+  if (const double apart = norm(point_b - point_a); !(apart > 1e-9)) {
+    fail(
+        "the two points of {} are {:g} m apart, so its direction is not known; move one of them, or act on a joint's "
+        "coordinate instead",
+        who, apart);
+  }
+  part.point_a = to_body(a, point_a);
+  part.point_b = to_body(b, point_b);
+}
+
+}  // namespace dem::mbd

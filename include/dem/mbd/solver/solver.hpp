@@ -1,0 +1,269 @@
+#pragma once
+
+#include <dem/mbd/solver/blow_up.hpp>
+#include <dem/mbd/solver/forces.hpp>
+#include <dem/mbd/solver/held_contacts.hpp>
+#include <dem/mbd/solver/mechanism.hpp>
+#include <dem/mbd/solver/softening.hpp>
+
+#include <string>
+
+namespace dem::mbd {
+
+/// What became of a step or a run.
+struct MachineReport {
+  bool ok = true;
+  double time = 0.0;  ///< s, reached
+  BodyId body = {};   ///< the body that went wrong
+  std::string text;   ///< what happened and which setting to change; empty if all is well
+  explicit operator bool() const { return ok; }
+};
+
+/// What moves a mechanism: a world calls it with the grains' forces, Machine without any. It belongs to one mechanism,
+/// which is handed to each call.
+///
+///     solver.design_for(mechanism, dt);
+///     solver.initialise(mechanism, time, gravity, forces_of_grains);
+///     for (int stage = 0; stage < I::stages; ++stage) solver.stage(mechanism, stage, dt, gravity, forces_of_grains);
+template <integrator::Integrator I>
+class Solver {
+ public:
+  double time() const { return time_; }              ///< s
+  double design_step() const { return design_dt_; }  ///< s, for which was derived what was left open; 0: not yet
+
+  /// Derives what was left open (stiffness, damping) for a step of dt (s), all sub-steps together, in the present pose.
+  void design_for(Mechanism& m, double dt) {
+    derive_stiffness(m.parts(), dt / checked_substeps(m));
+    softening_ = Softening(m.parts(), dt / m.substeps);
+    design_dt_ = dt;
+  }
+
+  /// The largest stable time step of the world, all sub-steps of the machine together, and the part that limits it.
+  StableTimeStep stable_time_step(const Mechanism& m) const {
+    StableTimeStep limit = stable_time_step_of<I>(m.parts());
+    limit.dt *= checked_substeps(m);
+    return limit;
+  }
+  /// The same with the stiffness and damping alone that were given: what a step may be chosen by before anything is
+  /// derived for it. 1e300 if none limits it.
+  StableTimeStep stable_time_step_of_given(const Mechanism& m) const {
+    StableTimeStep limit = stable_time_step_of<I>(without_derived(m.parts()));
+    if (limit.dt > 1e-3 * endless_step) return {};
+    limit.dt *= checked_substeps(m);
+    return limit;
+  }
+
+  /// False before initialise, and after a body, a joint or a coupling was added or `substeps` was changed since:
+  /// design_for and initialise are due.
+  bool is_initialised(const Mechanism& m) const {
+    return initialised_ && m.parts().revision == revision_ && m.substeps == substeps_;
+  }
+  /// Whether what is derived belongs to steps of dt (s), and nothing was added since.
+  bool is_designed_for(const Mechanism& m, double dt) const { return is_initialised(m) && dt == design_dt_; }
+
+  /// Throws Error if a prescribed motion that was added, switched on or given another signal would have to jump to take
+  /// hold of its coordinate. To be called before a step begins, so that one that has begun is never refused.
+  void check_motions(Mechanism& m) const {
+    if (m.parts().check_holds) m.parts().check_holds(m.parts(), time_);
+  }
+
+  /// Starts at `time` (s): the integrator's memory is filled from the forces at this state. `put_forces()` adds those
+  /// from outside (the grains) to the bodies. Throws Error if a stiffness has to be derived and no time step is known,
+  /// or a prescribed motion would have to jump.
+  template <class PutForces>
+  void initialise(Mechanism& m, double time, const Vec3& gravity, PutForces&& put_forces) {
+    Parts& parts = m.parts();
+    require_derived(parts);
+    clear_forces(parts);
+    put_forces();
+    time_ = time;
+    motion_.read(parts.bodies);
+    parts.spin.assign(parts.bodies.size(), {0, 0, 0});
+    parts.outside.assign(parts.bodies.size(), {});
+    check_motions(m);
+    const double step = design_dt_ / checked_substeps(m);  // 0 if none is known
+    if (parts.apply_motions) parts.apply_motions(parts, time, step, false);
+    for (PrescribedMotion& p : parts.motions) p.drive.impulse = 0.0;  // the speeds that it starts with
+    add_forces(parts, time, step, false);
+    held_.start(parts.outside);
+    motion_.initialise(parts.bodies, from_eigen(gravity));
+    note_stable_step(m);
+    substeps_ = m.substeps;
+    revision_ = parts.revision;
+    initialised_ = true;
+  }
+
+  /// One of the integrator's stages of a step of dt (s): where the integrator predicts, the bodies move first; then
+  /// `put_forces()` adds the forces from outside (the grains) to the bodies, whose sums are cleared; joints, loads and
+  /// drives add theirs; the bodies move, and prescribed motions are set. A machine with sub-steps takes them all.
+  template <class PutForces>
+  void stage(Mechanism& m, int stage, double dt, const Vec3& gravity, PutForces&& put_forces) {
+    if (m.substeps == 1) return single_stage(m, stage, dt, gravity, put_forces);
+    if constexpr (I::predicts_before_forces) take_substeps(m, stage, dt, gravity);
+    clear_forces(m.parts());
+    put_forces();
+    held_.hold(m.parts().bodies, stage);
+    if constexpr (!I::predicts_before_forces) take_substeps(m, stage, dt, gravity);
+  }
+
+  /// A step of dt (s), in sub-steps, without forces from outside.
+  void step(Mechanism& m, double dt, const Vec3& gravity) {
+    for (int s = 0; s < m.substeps; ++s) {
+      for (int k = 0; k < I::stages; ++k) single_stage(m, k, dt / m.substeps, gravity, [] {});
+    }
+  }
+
+  /// All is well, or which body blew up, when, and what to change.
+  MachineReport report(const Mechanism& m) const {
+    if (!bad_.valid()) return {true, time_, {}, {}};
+    const std::string text =
+        dem::text("body '{}' blew up at t = {:g} s: its speed is not finite or above largest_speed = {:g}. {}",
+                  m.parts().bodies[bad_.index()].name, bad_time_, m.largest_speed,
+                  cause_of_blow_up<I>(m.parts(), limit_at_start_, watch_, step_dt_, m.substeps));
+    return {false, bad_time_, bad_, text};
+  }
+  bool has_blown_up() const { return bad_.valid(); }
+
+  /// Remembers the largest stable step of this pose, for the report of a blow-up.
+  void note_stable_step(const Mechanism& m) {
+    limit_at_start_ = stable_time_step(m);
+    watch_ = StepWatch<I>(m.parts());
+  }
+
+ private:
+  static int checked_substeps(const Mechanism& m) {
+    if (m.substeps < 1) fail("the machine's substeps are {}, but must be at least 1", m.substeps);
+    return m.substeps;
+  }
+  void require_derived(const Parts& parts) const {
+    if (design_dt_ > 0.0) return;
+    const std::string open = first_underived(parts);
+    if (open.empty()) return;
+    fail(
+        "the stiffness of {} is to be derived, but the machine does not know its time step: call "
+        "machine.design_for(dt) before the first step, or give stiffness and damping",
+        open);
+  }
+
+  /// The time of the state at which a stage's forces are evaluated, in a step of dt from `time`.
+  static double stage_time(double time, double dt, int stage) {
+    return I::predicts_before_forces || stage > 0 ? time + dt : time;
+  }
+
+  template <class PutForces>
+  void single_stage(Mechanism& m, int stage, double dt, const Vec3& gravity, PutForces&& put_forces) {
+    const double start = time_;
+    predict(m, stage, dt);
+    clear_forces(m.parts());
+    put_forces();
+    complete(m, stage, start, dt, gravity);
+  }
+
+  void predict(Mechanism& m, int stage, double dt) {
+    if constexpr (I::predicts_before_forces) {
+      motion_.before_forces(m.parts().bodies, stage, dt);
+      // Forces see driven bodies where they are at the end of the step.
+      if (m.parts().apply_motions) m.parts().apply_motions(m.parts(), time_ + dt, dt, false);
+    }
+  }
+
+  /// The machine's own forces, and what they do to the bodies.
+  void complete(Mechanism& m, int stage, double start, double dt, const Vec3& gravity) {
+    Parts& parts = m.parts();
+    const bool last = stage == I::stages - 1;
+    add_forces(parts, stage_time(start, dt, stage), dt, last);
+    if (last && sampling_ && parts.sample_sensors) parts.sample_sensors(parts, dt);
+    motion_.after_forces(parts.bodies, stage, dt, from_eigen(gravity));
+    step_dt_ = dt * m.substeps;
+    if (last) end_step(m, dt);
+    prescribe(m, start + dt, dt);
+  }
+
+  /// Takes the machine's steps within one of the world's, with the grains' forces as HeldContacts has them.
+  void take_substeps(Mechanism& m, int stage, double dt, const Vec3& gravity) {
+    Parts& parts = m.parts();
+    const int n = checked_substeps(m);
+    const double h = dt / n;
+    const bool trial = stage < I::stages - 1;  // done again in the next stage, from the same start
+    if constexpr (I::stages > 1) {
+      if (stage == 0) saved_.save(parts, motion_.memory(), time_);
+      else time_ = saved_.restore(parts, motion_.memory());
+    }
+    struct Sampling {  // goes on after the sub-steps, also if a function of the user throws in one
+      bool& flag;
+      ~Sampling() { flag = true; }
+    } sampling{sampling_};
+    sampling.flag = !trial;
+    if constexpr (I::stages == 1) held_.catch_up(parts.bodies, motion_, dt, h);
+    for (int s = 0; s < n; ++s) {
+      const double start = time_;
+      for (int k = 0; k < I::stages; ++k) {
+        predict(m, k, h);
+        held_.put_on(parts.bodies, stage, stage_time(s * h, h, k) / dt);
+        complete(m, k, start, h, gravity);
+      }
+    }
+  }
+
+  /// Sets prescribed motions (eq. 19) for the end of the step.
+  void prescribe(Mechanism& m, double time_at_end_of_step, double dt) {
+    Parts& parts = m.parts();
+    if (!parts.apply_motions) return;
+    parts.apply_motions(parts, time_at_end_of_step, dt, true);
+    for (const PrescribedMotion& p : parts.motions) {
+      if (p.spec.on) watch_body(m, p.spec.body.index());  // also a fixed one, which nothing else moves
+    }
+  }
+
+  /// Looks after what drifts or changes slowly: rotations and turns, the stiffness of joints, the stable time step.
+  void end_step(Mechanism& m, double dt) {
+    Parts& parts = m.parts();
+    const bool tidy = ++steps_ % 256 == 0;
+    for (std::size_t i = 0; i < parts.bodies.size(); ++i) {
+      Body& b = parts.bodies[i];
+      if (b.fixed) continue;
+      if (tidy) b.motion.rotation = orthonormalised(b.motion.rotation);
+      watch_body(m, i);
+    }
+    if (tidy) settle_turns(parts);
+    time_ += dt;
+    softening_.follow(parts);
+    if (!bad_.valid()) watch_.follow(parts, dt, time_);
+  }
+
+  void watch_body(const Mechanism& m, std::size_t i) {
+    const auto& motion = m.parts().bodies[i].motion;
+    const double speed2 =
+        max(dot(motion.velocity, motion.velocity), dot(motion.angular_velocity, motion.angular_velocity));
+    const double sum = speed2 + dot(motion.position, motion.position);
+    if (!(speed2 < m.largest_speed * m.largest_speed && sum < 1e300) && !bad_.valid()) [[unlikely]] {
+      bad_ = BodyId(i);
+      bad_time_ = time_;
+    }
+  }
+
+  /// Turn counts are sums of speed times dt; now and then they are set to the exact angles.
+  static void settle_turns(Parts& parts) {
+    for (Joint& j : parts.joints) {
+      if (!j.turns) continue;
+      j.angle_estimate = rotation_of(j, parts.bodies[j.a], parts.bodies[j.b]).value - j.angle_offset;
+    }
+  }
+
+  BodiesInMotion<I> motion_;
+  HeldContacts<I> held_;
+  SavedState<I> saved_;
+  Softening softening_;
+  StepWatch<I> watch_;
+  StableTimeStep limit_at_start_;
+  double time_ = 0.0, design_dt_ = 0.0, step_dt_ = 0.0;  // s; the last two with all sub-steps
+  long steps_ = 0;
+  int substeps_ = 0;  // of the newest initialise, as is the revision
+  std::uint64_t revision_ = 0;
+  bool initialised_ = false;
+  bool sampling_ = true;  // whether forces are felt by the sensors: not those of a trial
+  BodyId bad_;            // the body that blew up, and when
+  double bad_time_ = 0.0;
+};
+
+}  // namespace dem::mbd
