@@ -155,10 +155,10 @@ class MachinePhases : public Assembly {
   /// All is well, or which body blew up, when, and what to change.
   MachineReport report() const {
     if (!bad_.valid()) return {true, time_, {}, {}};
-    const std::string text =
-        fmt::format("body '{}' blew up at t = {:g} s: its speed is not finite or above largest_speed = {:g}. {}",
-                    parts_.bodies[bad_.index()].name, bad_time_, largest_speed,
-                    cause_of_blow_up<I>(parts_, assembled_limit_, watch_, step_dt_, substeps));
+    const std::string text = fmt::format(
+        "body '{}' blew up at t = {:g} s: its motion is not finite or its speed above largest_speed = {:g}. {}",
+        parts_.bodies[bad_.index()].name, bad_time_, largest_speed,
+        cause_of_blow_up<I>(parts_, assembled_limit_, watch_, step_dt_, substeps));
     return {false, bad_time_, bad_, text};
   }
 
@@ -233,8 +233,7 @@ class MachinePhases : public Assembly {
     const bool tidy = ++steps_ % 256 == 0;
     for (std::size_t i = 0; i < parts_.bodies.size(); ++i) {
       Body& b = parts_.bodies[i];
-      if (b.fixed) continue;
-      if (tidy) b.motion.rotation = orthonormalised(b.motion.rotation);
+      if (tidy && !b.fixed) b.motion.rotation = orthonormalised(b.motion.rotation);
       watch(i);
     }
     if (tidy) settle_turns();
@@ -243,11 +242,16 @@ class MachinePhases : public Assembly {
     if (!bad_.valid()) watch_.follow(parts_, dt, time_);
   }
 
+  /// Notes the first body that is too fast, or has anything in its motion that is not a number. Each sum of squares is
+  /// compared by itself: a maximum of several would drop a NaN in one of them.
   void watch(std::size_t i) {
     const auto& m = parts_.bodies[i].motion;
-    const double speed2 = max(dot(m.velocity, m.velocity), dot(m.angular_velocity, m.angular_velocity));
-    const double sum = speed2 + dot(m.position, m.position);
-    if (!(speed2 < largest_speed * largest_speed && sum < 1e300) && !bad_.valid()) [[unlikely]] {
+    const double limit = largest_speed * largest_speed, anywhere = 1e300;
+    const Matrix3<double>& r = m.rotation;
+    const double turned = dot(r.row0, r.row0) + dot(r.row1, r.row1) + dot(r.row2, r.row2);
+    const bool is_well = dot(m.velocity, m.velocity) < limit && dot(m.angular_velocity, m.angular_velocity) < limit &&
+                         dot(m.position, m.position) < anywhere && turned < anywhere;
+    if (!is_well && !bad_.valid()) [[unlikely]] {
       bad_ = BodyId(i);
       bad_time_ = time_;
     }
