@@ -24,8 +24,10 @@
 namespace dem {
 
 DEM_HOT double select(bool condition, double yes, double no) { return condition ? yes : no; }
+// A NaN in the second argument stays, one in the first is dropped, as packs do: max(T(0), f) keeps what is to be
+// reported.
 DEM_HOT double min(double a, double b) { return a < b ? a : b; }
-DEM_HOT double max(double a, double b) { return a < b ? b : a; }
+DEM_HOT double max(double a, double b) { return a > b ? a : b; }
 // The very same functions, so that after `using namespace dem` sqrt(double) is not ambiguous.
 using std::cbrt;
 using std::exp;
@@ -68,8 +70,17 @@ DEM_HOT Pack select(const PackMask& condition, const Pack& yes, const Pack& no) 
   stdx::where(condition, result) = yes;
   return result;
 }
-DEM_HOT Pack min(const Pack& a, const Pack& b) { return stdx::min(a, b); }
-DEM_HOT Pack max(const Pack& a, const Pack& b) { return stdx::max(a, b); }
+// Not those of the standard library: libstdc++ compiles them as if there were no NaN.
+DEM_HOT Pack min(const Pack& a, const Pack& b) {
+  using Lanes [[gnu::vector_size(sizeof(Pack))]] = double;
+  const auto x = std::bit_cast<Lanes>(a), y = std::bit_cast<Lanes>(b);
+  return std::bit_cast<Pack>(x < y ? x : y);
+}
+DEM_HOT Pack max(const Pack& a, const Pack& b) {
+  using Lanes [[gnu::vector_size(sizeof(Pack))]] = double;
+  const auto x = std::bit_cast<Lanes>(a), y = std::bit_cast<Lanes>(b);
+  return std::bit_cast<Pack>(x > y ? x : y);
+}
 DEM_HOT Pack sqrt(const Pack& a) { return stdx::sqrt(a); }
 DEM_HOT Pack cbrt(const Pack& a) { return stdx::cbrt(a); }
 DEM_HOT Pack exp(const Pack& a) { return stdx::exp(a); }
