@@ -104,3 +104,15 @@ TEST_CASE("a speed above the largest one is reported, turning or not") {
     CHECK_FALSE(m.step(1e-9));
   }
 }
+
+TEST_CASE("a run of more steps than doubles count is refused") {
+  Machine<VelocityVerlet> m;
+  m.add_body(brick("a", {0, 0, 0}));
+  for (const double time : {1e20, 1e300}) {
+    check_refused([&] { (void)m.run(time, 1e-3); }, "time to run", "must be at most 9e15 steps");
+  }
+  check_refused([&] { (void)m.run(HUGE_VAL, 1e-3); }, "time to run is inf s");
+  CHECK(m.time() == 0.0);
+  REQUIRE(m.run(3e-3, 1e-3));
+  CHECK(m.time() == Approx(3e-3));
+}

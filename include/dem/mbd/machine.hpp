@@ -38,7 +38,7 @@ class Machine : public MachinePhases<I> {
   }
 
   /// Steps of dt (s) for a duration (s; the number of steps is rounded). Stops at the first body that blows up. Throws
-  /// Error as step does, between two steps.
+  /// Error as step does, between two steps, and for more steps than 9e15.
   [[nodiscard]] MachineReport run(double duration, double dt) {
     return run(duration, dt, [] {});
   }
@@ -47,7 +47,11 @@ class Machine : public MachinePhases<I> {
   [[nodiscard]] MachineReport run(double duration, double dt, F&& after_step) {
     require_non_negative(duration, "time to run", "s");
     prepare(dt);
-    const long long steps = std::llround(duration / dt);
+    const double whole = std::round(duration / dt);
+    if (!(whole <= 0x1.0p53)) {  // beyond it time stands still: t + dt = t
+      fail("time to run is {:g} s, {:g} steps of {:g} s, but must be at most 9e15 steps", duration, whole, dt);
+    }
+    const auto steps = static_cast<long long>(whole);
     for (long long s = 0; s < steps && !bad_.valid(); ++s) {
       if (s > 0) prepare(dt);  // after_step may have changed something
       whole_step(dt);
