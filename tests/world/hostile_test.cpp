@@ -1,0 +1,136 @@
+#include "core/error_of.hpp"
+#include "scenes.hpp"
+
+#include <atomic>
+#include <limits>
+
+// What users' own functions, and numbers that make no sense, do to a world: it says so, at once and in words.
+
+using Catch::Matchers::ContainsSubstring;
+using dem::BodyId;
+using Problem = dem::StepReport::Problem;
+
+namespace {
+
+constexpr double no_number = std::numeric_limits<double>::quiet_NaN();
+
+/// A spring whose faults are switched on by the tests.
+struct Faulty {
+  static inline std::atomic<bool> throws = false, gives_none = false;
+  static inline std::atomic<double> told = 2000.0;
+
+  template <class T>
+  struct Parameters {
+    T stiffness;
+  };
+  template <class T>
+  struct History {};
+
+  template <class T>
+  static DEM_HOT T force(const Parameters<T>& p, const dem::contact::NormalState<T>& s, History<T>&) {
+    if (throws) throw std::runtime_error("no such spring");
+    const T broken = gives_none ? T(no_number) : T(0);
+    return dem::max(T(0), p.stiffness * s.overlap + broken);
+  }
+  static double stiffness(const Parameters<double>&, const dem::contact::NormalState<double>&) { return told; }
+  static void check(const Parameters<double>&) {}
+};
+/// Balls on that spring.
+struct Sand : Grains<Sphere, dem::integrator::VelocityVerlet> {
+  using Normal = Faulty;
+};
+
+struct Reset {  // of the faults, at the end of a test
+  ~Reset() {
+    Faulty::throws = Faulty::gives_none = false;
+    Faulty::told = 2000.0;
+  }
+};
+
+/// `count` pairs of balls that overlap by a thousandth, on as many threads as asked for.
+dem::World<Sand> pairs(int count, int threads = 1) {
+  dem::WorldOptions o = options({0, 0, 0}, 1e-6);
+  o.threads = threads;
+  dem::World<Sand> w(o);
+  w.set_contact({{2000.0}, {0.0, 0.0, 0.0, 1.0}});
+  const SpeciesId ball = w.add_species(Sphere(1e-3));
+  for (int k = 0; k < count; ++k) {
+    for (const double x : {0.0, 1.998e-3}) w.add_particle({ball, Vec3(x + 0.01 * (k % 20), 0.01 * (k / 20), 0)});
+  }
+  return w;
+}
+
+}  // namespace
+
+TEST_CASE("a run of more steps than doubles count is refused, and nothing is owed for it") {
+  auto w = pairs(1);
+  for (const double time : {1e20, 1e300}) check_refused([&] { (void)w.run_for(time); }, "time to run", "at most 9e15");
+  for (const double time : {no_number, HUGE_VAL, -1.0}) check_refused([&] { (void)w.run_for(time); }, "time to run");
+  CHECK(w.steps() == 0);
+  REQUIRE(w.run_for(10e-6));
+  CHECK(w.steps() == 10);
+}
+
+TEST_CASE("a law that tells a stiffness that is none is refused, with a chosen time step and with an automatic one") {
+  const Reset reset;
+  for (const double told : {no_number, HUGE_VAL, -1.0}) {
+    Faulty::told = told;
+    auto chosen = pairs(1);
+    check_refused([&] { chosen.prepare(); }, "stiffness that a normal law tells", "must be finite and not negative");
+    dem::World<Sand> automatic(options({0, 0, 0}));
+    automatic.set_contact({{2000.0}, {0.0, 0.0, 0.0, 1.0}});
+    automatic.add_species(Sphere(1e-3));
+    check_refused([&] { automatic.prepare(); }, "stiffness that a normal law tells");
+  }
+}
+
+TEST_CASE("a force that is not a number is found in its step, on every number of threads") {
+  const Reset reset;
+  for (const int threads : {1, 3}) {
+    auto w = pairs(400, threads);  // 800 grains: 4 chunks
+    REQUIRE(w.step());
+    Faulty::gives_none = true;
+    const dem::StepReport report = w.step();
+    CHECK(report.problem == Problem::not_finite);
+    CHECK_THAT(report.text, ContainsSubstring("not a number"));
+    Faulty::gives_none = false;
+  }
+}
+
+TEST_CASE("numbers whose sum is infinite are found, whichever grain has them") {
+  auto w = pairs(1);
+  w.set_contact({{0.0}, {0.0, 0.0, 0.0, 1.0}});
+  w.set_velocity(ParticleId(1), Vec3(1e308, 0, 1e308));
+  const dem::StepReport report = w.step();
+  CHECK(report.problem == Problem::not_finite);
+  CHECK(report.particle == ParticleId(1));
+}
+
+TEST_CASE("an exception of a law arrives from every number of threads, and the world is not run on") {
+  const Reset reset;
+  for (const int threads : {1, 2, 8}) {
+    auto w = pairs(2000, threads);
+    REQUIRE(w.step());
+    Faulty::throws = true;
+    CHECK_THROWS_WITH(w.step(), "no such spring");
+    Faulty::throws = false;
+    CHECK(w.steps() == 1);
+    CHECK(w.position(ParticleId(0)).allFinite());  // it may be looked at
+    check_refused([&] { (void)w.step(); }, "broken off by an exception", "make a new one");
+  }
+}
+
+TEST_CASE("a floor that turns by a NaN is reported before anything falls through it") {
+  for (const bool alone : {false, true}) {
+    auto w = pairs(1);
+    const BodyId floor = w.machine().add_body(dem::mbd::box_body("floor", {1, 1, 0.1}, 1000).at({0, 0, -0.2}));
+    if (!alone) w.add_surface(floor, dem::surface::Box({1, 1, 0.1}));
+    w.machine().add_load(dem::mbd::custom_load("twist", floor, [](double t, const dem::Body&) {
+      return dem::mbd::Wrench{{0, 0, 0}, {0, 0, t > 5e-6 ? no_number : 0.0}};
+    }));
+    const dem::StepReport report = w.run(20);
+    CHECK(report.problem == Problem::machine);
+    CHECK(report.step < 9);
+    CHECK_THAT(report.text, ContainsSubstring("body 'floor' blew up") && ContainsSubstring("load 'twist' is not"));
+  }
+}
