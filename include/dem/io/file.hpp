@@ -1,5 +1,5 @@
 #pragma once
-// Files: whole-file reading, checked writing, and writing that never leaves half a file.
+// Files: whole-file reading, checked writing, and writing that never leaves half a file (POSIX).
 
 #include <dem/core/error.hpp>
 
@@ -16,6 +16,9 @@
 #include <system_error>
 #include <utility>
 
+#include <fcntl.h>
+#include <unistd.h>
+
 namespace dem::io {
 
 /// Makes the folder that `file` lies in, with its parents. Throws dem::Error when that is not possible.
@@ -29,13 +32,29 @@ inline void make_folder_of(const std::filesystem::path& file) {
   }
 }
 
+namespace detail {
+
+/// Opens a file to be written, never under the number of a standard stream that is closed: what is printed to that
+/// stream would end up in the file. Null, with errno, when it cannot be opened.
+inline std::FILE* open_for_writing(const char* path) {
+  std::FILE* file = std::fopen(path, "wb");
+  if (file == nullptr || ::fileno(file) > STDERR_FILENO) return file;
+  const int moved = ::fcntl(::fileno(file), F_DUPFD, STDERR_FILENO + 1);
+  const int error = errno;
+  std::fclose(file);
+  errno = error;
+  return moved < 0 ? nullptr : ::fdopen(moved, "wb");
+}
+
+}  // namespace detail
+
 /// A file that is written from its start; its folder is made when it is missing. Every method throws dem::Error,
 /// with the path and the system's reason, when the file cannot be opened or written.
 class OutputFile {
  public:
   explicit OutputFile(std::filesystem::path path) : path_(std::move(path)) {
     make_folder_of(path_);
-    file_.reset(std::fopen(path_.c_str(), "wb"));
+    file_.reset(detail::open_for_writing(path_.c_str()));
     if (!file_) {
       fail("cannot open '{}' for writing ({}); choose a path that you may write to", path_.string(),
            std::strerror(errno));
