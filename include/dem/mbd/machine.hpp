@@ -3,6 +3,7 @@
 #include <dem/mbd/machine_phases.hpp>
 
 #include <cmath>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -42,7 +43,8 @@ class Machine : public MachinePhases<I> {
   [[nodiscard]] MachineReport run(double duration, double dt) {
     return run(duration, dt, [] {});
   }
-  /// The same, calling `after_step()` after each step, e.g. to record.
+  /// The same, calling `after_step()` after each step, e.g. to record. If it returns a bool, false ends the run there:
+  /// return !io::interrupted() ends it at Ctrl-C.
   template <class F>
   [[nodiscard]] MachineReport run(double duration, double dt, F&& after_step) {
     require_non_negative(duration, "time to run", "s");
@@ -55,7 +57,11 @@ class Machine : public MachinePhases<I> {
     for (long long s = 0; s < steps && !bad_.valid(); ++s) {
       if (s > 0) prepare(dt);  // after_step may have changed something
       whole_step(dt);
-      after_step();
+      if constexpr (std::is_same_v<std::invoke_result_t<F&>, bool>) {
+        if (!after_step()) break;
+      } else {
+        after_step();
+      }
     }
     return report();
   }
