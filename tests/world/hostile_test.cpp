@@ -71,6 +71,17 @@ TEST_CASE("a run of more steps than doubles count is refused, and nothing is owe
   CHECK(w.steps() == 10);
 }
 
+TEST_CASE("a run ends after the step in which it is told to, and owes nothing") {
+  auto w = pairs(1);
+  int asked = 0;
+  REQUIRE(w.run_for(1.0, [&] { return ++asked < 3; }));
+  CHECK(w.steps() == 3);
+  REQUIRE(w.run_for(2e-6));
+  CHECK(w.steps() == 5);
+  REQUIRE(w.run(100, [] { return false; }));
+  CHECK(w.steps() == 6);
+}
+
 TEST_CASE("a law that tells a stiffness that is none is refused, with a chosen time step and with an automatic one") {
   const Reset reset;
   for (const double told : {no_number, HUGE_VAL, -1.0}) {

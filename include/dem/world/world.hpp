@@ -7,6 +7,8 @@
 #include <dem/world/thin_sheets.hpp>
 #include <dem/world/world_setup.hpp>
 
+#include <concepts>
+
 namespace dem {
 
 /// A simulation: grains, machine, and the laws between them, specialised at compile time for a Model. What is put into
@@ -60,18 +62,31 @@ class World : public WorldSetup<M> {
   /// of a law, a shape or a function of your own arrives here, from whichever thread; the world may then be looked at,
   /// but not run on.
   [[nodiscard]] StepReport run(std::uint64_t n) {
+    return run(n, [] { return true; });
+  }
+  /// The same, asking `goes_on()` after each step: false ends the run there, with all well.
+  template <std::predicate F>
+  [[nodiscard]] StepReport run(std::uint64_t n, F&& goes_on) {
     prepare();
     for (std::uint64_t k = 0; k < n; ++k) {
       unfinished_ = true;
       advance(state_);
       unfinished_ = false;
       if (StepReport report = find_problem(state_); !report) return report;
+      if (!goes_on()) break;
     }
     return ok();
   }
   /// Runs for a time span (s) in whole steps; what a span leaves of a step counts in the next one. Throws Error for
   /// more steps than 9e15.
   [[nodiscard]] StepReport run_for(double seconds) {
+    return run_for(seconds, [] { return true; });
+  }
+  /// The same, asking `goes_on()` after each step: false ends the run there, with all well and nothing owed.
+  ///
+  ///     world.run_for(10.0, [] { return !io::interrupted(); });   // Ctrl-C ends it after the present step
+  template <std::predicate F>
+  [[nodiscard]] StepReport run_for(double seconds, F&& goes_on) {
     prepare();
     const double owed = owed_steps_ + require_non_negative(seconds, "time to run", "s") / time_step();
     if (!(owed <= 0x1.0p53)) {  // beyond it time stands still: t + dt = t
@@ -79,7 +94,7 @@ class World : public WorldSetup<M> {
     }
     const double whole = std::max(0.0, std::round(owed));
     owed_steps_ = owed - whole;
-    return run(static_cast<std::uint64_t>(whole));
+    return run(static_cast<std::uint64_t>(whole), goes_on);
   }
 
   double time() const { return state_.time; }
