@@ -280,6 +280,18 @@ TEST_CASE("a collection is complete after each file") {
   }
 }
 
+TEST_CASE("names that are no UTF-8 leave files that ParaView reads") {
+  const TempFolder folder;
+  VtkSeries series(folder / "run.pvd");
+  series.add(0.0, folder / "caf\xE9.vtp", "part \xFF");
+  const std::vector<double> one = {0, 0, 0};
+  write_vtk_points(folder / "a.vtp", one, {{"v\xFF", 3, one}});
+  CHECK(read_file(folder / "run.pvd") == to_utf8(read_file(folder / "run.pvd")));
+  const std::string points = read_file(folder / "a.vtp");
+  const std::string xml = points.substr(0, points.find("<AppendedData"));
+  CHECK(xml == to_utf8(xml));
+}
+
 TEST_CASE("a collection in the current folder has relative names, too") {
   const TempFolder folder;
   const auto before = std::filesystem::current_path();
