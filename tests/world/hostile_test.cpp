@@ -131,6 +131,39 @@ TEST_CASE("an exception of a law arrives from every number of threads, and the w
   }
 }
 
+TEST_CASE("a hundred free bodies touch each other, each pair with a force of its own") {
+  // 100 balls in a lattice 10 x 10 whose neighbours along x overlap by a thousandth of the radius: 90 pairs of 4,950.
+  // Two balls of radius R overlap by d: each pushes with K d, so a chain pushes its ends apart and leaves its middle.
+  auto w = pairs(1);
+  const double radius = 0.1, overlap = 1e-4;
+  std::vector<BodyId> balls;
+  for (int k = 0; k < 100; ++k) {
+    const Vec3 at((2 * radius - overlap) * (k % 10), 1.0 + 3.0 * radius * (k / 10), 0.0);
+    balls.push_back(w.machine().add_body(dem::mbd::sphere_body("ball " + std::to_string(k), radius, 1000).at(at)));
+    w.add_surface(balls.back(), dem::surface::Sphere(radius));
+  }
+  CHECK(w.add_body_contacts() == 4950);
+  CHECK(w.add_body_contacts() == 0);
+  REQUIRE(w.step());
+  CHECK(w.state().body_contacts.near.size() == 90);
+  int ends = 0;
+  for (int k = 0; k < 100; ++k) {
+    const double pushed = k % 10 == 0 ? -1.0 : k % 10 == 9 ? 1.0 : 0.0;
+    const dem::Vector3<double> f = w.machine().body(balls[static_cast<std::size_t>(k)]).force;
+    CHECK(f.x == Catch::Approx(pushed * 2000.0 * overlap).margin(1e-9));  // of rounding: 2000 N/m on 1e-16 of 1 m
+    ends += pushed != 0.0 ? 1 : 0;
+  }
+  CHECK(ends == 20);
+  // The last pair is number 4,949, in the second block; it goes on touching, and parts where it is switched off.
+  const dem::BodyContactId last(4949);
+  CHECK(w.body_contact_force(last).x() == Catch::Approx(-2000.0 * overlap).margin(1e-9));
+  REQUIRE(w.run(5));
+  CHECK(w.body_contact_force(last).x() < -0.19);
+  w.set_active(SurfaceId(99), false);
+  REQUIRE(w.run(2));
+  CHECK(w.body_contact_force(last).norm() == 0.0);
+}
+
 TEST_CASE("a floor that turns by a NaN is reported before anything falls through it") {
   for (const bool alone : {false, true}) {
     auto w = pairs(1);

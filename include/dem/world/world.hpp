@@ -47,6 +47,7 @@ class World : public WorldSetup<M> {
       for (const auto& pair : state_.body_contacts.pairs) {
         state_.materials.check_pair(state_.surfaces[pair.a.index()].material, state_.surfaces[pair.b.index()].material);
       }
+      coupling::list_pairs(state_.body_contacts, std::span(std::as_const(state_.surfaces)), state_.materials);
       choose_time_step();
       checked_ = true;
     }
