@@ -1,5 +1,7 @@
 #pragma once
 
+#include <dem/core/compiler.hpp>
+
 // fmt 9 switches its constexpr off under nvcc, and then its own format strings do not compile.
 #if defined(__CUDACC__) && !defined(FMT_USE_CONSTEXPR)
 #define FMT_USE_CONSTEXPR 1
