@@ -1,6 +1,7 @@
 # cmake -DSOURCE=<file> -P CompileFail.cmake -- <compiler> <option>...
 #
-# The source must be refused, and the compiler's words must match the regex of its line `// expect: <regex>`. A source
+# The source must be refused, and the compiler's words must match the regex of its line `// expect: <regex>`. A line
+# `// options: <option>...` adds options of the compiler. A source
 # that says `// expect-success` must be accepted instead: it shows that its neighbours fail for their own reason and
 # not because of the options.
 
@@ -11,6 +12,11 @@ if(NOT text MATCHES "// expect(-success|: ([^\n]+))")
   message(FATAL_ERROR "${SOURCE} has neither a line `// expect: <regex>` nor `// expect-success`")
 endif()
 set(expected "${CMAKE_MATCH_2}")
+
+if(text MATCHES "// options: ([^\n]+)")
+  separate_arguments(options UNIX_COMMAND "${CMAKE_MATCH_1}")
+  list(APPEND command ${options})
+endif()
 
 # In the C locale the compiler quotes with plain ASCII, everywhere.
 set(ENV{LC_ALL} C)

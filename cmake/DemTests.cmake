@@ -130,7 +130,7 @@ function(dem_add_cuda_compile_test source)
 endfunction()
 
 # dem_add_clang_test(<source>...): these unit tests pass when clang has compiled them for this machine as well, without
-# OpenMP, whose library clang may lack; and clang accepts a whole world, with OpenMP where it is there.
+# OpenMP, whose library clang may lack; and clang accepts whole worlds without a warning, with OpenMP where it is there.
 function(dem_add_clang_test)
   find_program(DEM_CLANG NAMES clang++ clang++-14 DOC "Compiler that some tests are compiled with besides, if found")
   if(NOT DEM_CLANG OR NOT CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
@@ -149,8 +149,8 @@ function(dem_add_clang_test)
   endif()
   add_test(
     NAME clang.world
-    COMMAND ${DEM_CLANG} -std=c++20 -march=native ${openmp} -fsyntax-only -w ${DEM_INCLUDES}
-            "${CMAKE_CURRENT_SOURCE_DIR}/consumers/main.cpp"
+    COMMAND ${DEM_CLANG} -std=c++20 -march=native ${openmp} -fsyntax-only -Wall -Wextra -Wpedantic -Werror
+            ${DEM_INCLUDES} "${CMAKE_CURRENT_SOURCE_DIR}/clang/worlds.cpp"
     COMMAND_EXPAND_LISTS)
   set_tests_properties(clang.world PROPERTIES LABELS static)
 

@@ -4,10 +4,15 @@
 #include <dem/io/csv.hpp>
 
 #include <cmath>
+#include <csignal>
 #include <cstdlib>
 #include <limits>
 #include <string>
 #include <vector>
+
+#include <fcntl.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 using dem::io::csv_quote;
 using dem::io::CsvWriter;
@@ -111,6 +116,41 @@ TEST_CASE("a full disk is told") {
   if (!std::filesystem::exists("/dev/full")) return;
   CHECK(error_of([] { CsvWriter("/dev/full", {"a"}); }) ==
         "cannot write to '/dev/full' (No space left on device); check that the disk is not full");
+}
+
+TEST_CASE("a process that is killed while it writes leaves nothing, and the older file") {
+  const TempFolder folder;
+  const int probe = ::open(folder.path().c_str(), O_TMPFILE | O_WRONLY, 0666);
+  if (probe < 0) return;  // no such files here
+  ::close(probe);
+  dem::io::write_file(folder / "a.txt", "old");
+  const pid_t child = ::fork();
+  if (child == 0) {
+    dem::io::AtomicFile file(folder / "a.txt");
+    file.write(std::string(100'000, 'x'));
+    std::raise(SIGKILL);
+  }
+  int status = 0;
+  ::waitpid(child, &status, 0);
+  REQUIRE(WIFSIGNALED(status));
+  CHECK(read_file(folder / "a.txt") == "old");
+  CHECK(std::distance(std::filesystem::directory_iterator(folder.path()), {}) == 1);
+  // What a process of another system left is in nobody's way.
+  dem::io::OutputFile(folder / "a.txt.tmp").close();
+  dem::io::write_file(folder / "a.txt", "new");
+  CHECK(read_file(folder / "a.txt") == "new");
+  CHECK(!std::filesystem::exists(folder / "a.txt.tmp"));
+}
+
+TEST_CASE("two that write one file at once do not mix their bytes") {
+  const TempFolder folder;
+  dem::io::AtomicFile first(folder / "a.txt"), second(folder / "a.txt");
+  first.write("first");
+  second.write("second");
+  first.commit();
+  CHECK(read_file(folder / "a.txt") == "first");
+  second.commit();
+  CHECK(read_file(folder / "a.txt") == "second");
 }
 
 TEST_CASE("an atomic file appears complete or not at all") {

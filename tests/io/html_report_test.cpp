@@ -84,3 +84,23 @@ TEST_CASE("what cannot stand in a report is refused") {
           report.table(Table{.caption = "T", .header = {"a"}, .rows = {{"1", "2"}}});
         }) == "table 'T': row 0 has 2 cells, but the header has 1; give one cell a column");
 }
+
+TEST_CASE("bytes that are no UTF-8 become the replacement character, all others stay") {
+  const std::string none = "\xEF\xBF\xBD";
+  for (const std::string whole : {"plain", "τ²", "\xE2\x82\xAC", "\xF0\x9F\x98\x80", "\xED\x9F\xBF", "\xEE\x80\x80",
+                                  "\xF4\x8F\xBF\xBF", "\xEF\xBF\xBD", "a\nb\tc"}) {
+    CHECK(to_utf8(whole) == whole);
+  }
+  CHECK(to_utf8("a\x80z") == "a" + none + "z");                     // a byte that only follows
+  CHECK(to_utf8("\xC3") == none);                                   // cut off
+  CHECK(to_utf8("\xE2\x82z") == none + none + "z");                 // cut off, and something else behind
+  CHECK(to_utf8("\xC0\xAF") == none + none);                        // '/' in two bytes
+  CHECK(to_utf8("\xE0\x80\xAF") == none + none + none);             // in three
+  CHECK(to_utf8("\xED\xA0\x80") == none + none + none);             // half of a pair of UTF-16
+  CHECK(to_utf8("\xF4\x90\x80\x80") == none + none + none + none);  // beyond the last code point
+  CHECK(to_utf8("\xFF\xFE") == none + none);
+  CHECK(to_utf8("\xEF\xBF\xBF") == none + none + none);  // U+FFFF, which XML forbids
+  CHECK(escape_xml("<\xE9\x01>") == "&lt;" + none + "&gt;");
+  const std::string page = HtmlReport("caf\xE9").paragraph("\xFF").html();
+  CHECK(page == to_utf8(page));
+}

@@ -1,5 +1,7 @@
 #include "catch.hpp"
 
+#include <dem/integrator/velocity_verlet.hpp>
+#include <dem/mbd/mbd.hpp>
 #include <dem/report/interrupt.hpp>
 
 #include <csignal>
@@ -87,6 +89,52 @@ TEST_CASE("the second Ctrl-C ends the process") {
           const InterruptGuard next(kSilent);  // nobody has cleared the flag: this one must not catch again
           std::raise(SIGINT);
         }) == SIGINT);
+}
+
+TEST_CASE("a closed terminal is an interrupt, however often it says so, and nobody has to read the message") {
+  clear_interrupt();
+  CHECK(signal_that_ends([] {
+          std::signal(SIGHUP, SIG_DFL);
+          int ends[2];
+          if (::pipe(ends) != 0 || ::dup2(ends[1], STDERR_FILENO) < 0) ::_exit(1);
+          ::close(ends[0]);
+          ::close(ends[1]);
+          const InterruptGuard guard;  // its message goes to a pipe that nobody reads: no SIGPIPE either
+          std::raise(SIGHUP);
+          std::raise(SIGHUP);
+          if (interrupt_signal() != SIGHUP) std::raise(SIGKILL);
+        }) == 0);
+  CHECK(signal_that_ends([] {
+          std::signal(SIGHUP, SIG_IGN);  // as nohup does
+          const InterruptGuard guard(kSilent);
+          std::raise(SIGHUP);
+          if (interrupted()) std::raise(SIGKILL);
+          std::raise(SIGINT);
+          std::raise(SIGHUP);  // ignored as before
+        }) == 0);
+  CHECK(signal_that_ends([] {
+          std::signal(SIGTERM, SIG_IGN);
+          const InterruptGuard guard(kSilent);
+          std::raise(SIGINT);
+          std::raise(SIGTERM);  // ignored as before
+        }) == 0);
+}
+
+TEST_CASE("an interrupt ends a machine's run after the step that is under way") {
+  using dem::mbd::Machine;
+  clear_interrupt();
+  const InterruptGuard guard(kSilent);
+  Machine<dem::integrator::VelocityVerlet> m;
+  m.add_body(dem::mbd::box_body("brick", {1, 1, 1}, 1000));
+  int steps = 0;
+  const auto report = m.run(1.0, 1e-3, [&] {
+    if (++steps == 3) std::raise(SIGINT);
+    return !interrupted();
+  });
+  CHECK(report);
+  CHECK(steps == 3);
+  CHECK(m.time() == Catch::Approx(3e-3));
+  clear_interrupt();
 }
 
 TEST_CASE("only the outermost guard restores the handlers") {

@@ -123,6 +123,43 @@ TEST_CASE("a plot program that fails is told with its last words") {
   CHECK(result.reason == "gnuplot ended with code 3:  last words");
 }
 
+TEST_CASE("a picture that is empty or cut off, as on a full disk, does not count as drawn") {
+  const TempFolder folder;
+  const auto program = folder / "fake";
+  const std::string path = std::getenv("PATH");
+  const std::string svg = "<svg></svg>\n", png = "\\211PNG IEND\\256B\\140\\202";
+  const auto drawn_by = [&](const std::string& svg_bytes, const std::string& png_bytes) {
+    write_file(program, "#!/bin/sh\nprintf '" + svg_bytes + "' > a.svg\nprintf '" + png_bytes + "' > a.png\n");
+    std::filesystem::permissions(program, std::filesystem::perms::owner_all);
+    ::setenv("PATH", (folder.path().string() + ":" + path).c_str(), 1);
+    const PlotResult result = render_plot(small_plot(), folder / "a", "fake");
+    ::setenv("PATH", path.c_str(), 1);
+    CHECK(result.rendered == std::filesystem::exists(folder / "a.svg"));
+    CHECK(result.rendered == std::filesystem::exists(folder / "a.png"));
+    return result;
+  };
+  CHECK(drawn_by(svg, png));
+  for (const auto& [s, p] : {std::pair{std::string(), png}, {svg, std::string()}, {"<svg><path", png}, {svg, "PNG"}}) {
+    CHECK(drawn_by(s, p).reason == "gnuplot left no whole pictures; check that the disk is not full");
+  }
+}
+
+TEST_CASE("names that are no UTF-8 leave a script and a picture that are") {
+  Plot plot = small_plot();
+  plot.title = plot.x_label = plot.y_label = plot.series[0].name = "a\xFF\xE9t";
+  plot.annotations = {{1, 1, "\xC0\xAF"}};
+  const std::string script = gnuplot_script(plot, "a");
+  CHECK(script == to_utf8(script));
+  CHECK_THAT(script, ContainsSubstring("set title 'a\xEF\xBF\xBD\xEF\xBF\xBDt'"));
+  if (!gnuplot_is_there()) return;
+  const TempFolder folder;
+  const PlotResult result = render_plot(plot, folder / "b\xFF");  // a name of a file may be any bytes
+  INFO(result.reason);
+  REQUIRE(result);
+  const std::string svg = read_file(result.svg);
+  CHECK(svg == to_utf8(svg));
+}
+
 TEST_CASE("gnuplot draws svg and png") {
   if (!gnuplot_is_there()) return;
   const TempFolder folder;

@@ -1,12 +1,18 @@
 #include "catch.hpp"
 #include "files.hpp"
 
+#include <dem/io/file.hpp>
+#include <dem/report/ascii_table.hpp>
 #include <dem/report/progress.hpp>
 
 #include <algorithm>
+#include <csignal>
 #include <stdexcept>
 #include <string>
 #include <string_view>
+
+#include <sys/wait.h>
+#include <unistd.h>
 
 using Catch::Approx;
 using dem::io::EtaEstimator;
@@ -227,4 +233,93 @@ TEST_CASE("a stream that is no terminal is known as such") {
   Captured out;
   CHECK(!dem::io::is_terminal(out.file()));
   CHECK(dem::io::terminal_width(out.file()) > 0);
+}
+
+namespace {
+
+/// Everything that Progress prints, and a table, on a terminal or not.
+void show_all(std::FILE* out, bool terminal) {
+  double now = 0;
+  Progress progress({.stages = 2, .out = out, .terminal = terminal, .width = 80, .clock = [&] { return now; }});
+  progress.begin("settle");
+  now += 100;
+  progress.update(1, "half way");
+  progress.message("a note");
+  progress.begin("shear", 4.0);
+  now += 100;
+  progress.update(2.0, [] { return std::string("sigma"); });
+  progress.stop("enough");
+  dem::io::Table table{.header = {"a", "b"}};
+  table.row(1, 2);
+  dem::io::print(table, out);
+}
+
+/// How a process ends that does `actions`: 0 for well, else 256 plus the signal or the exit code.
+template <class Actions>
+int end_of(Actions&& actions) {
+  const pid_t child = ::fork();
+  if (child == 0) {
+    std::signal(SIGPIPE, SIG_DFL);
+    int code = 0;
+    try {
+      actions();
+    } catch (...) {
+      code = 1;
+    }
+    std::exit(code);  // with the last flush of all streams
+  }
+  int status = 0;
+  ::waitpid(child, &status, 0);
+  return WIFSIGNALED(status) ? 256 + WTERMSIG(status) : WEXITSTATUS(status);
+}
+
+}  // namespace
+
+TEST_CASE("a terminal that is gone is no error, and nothing of it reaches a file") {
+  for (const bool terminal : {false, true}) {
+    INFO("terminal " << terminal);
+    show_all(nullptr, terminal);
+    std::FILE* full = std::fopen("/dev/full", "w");
+    if (full != nullptr) {
+      show_all(full, terminal);
+      CHECK_FALSE(dem::io::show_text(full, "lost"));
+      std::fclose(full);
+    }
+    CHECK(end_of([&] {  // closed before the program begins: 2>&-
+            ::close(STDERR_FILENO);
+            show_all(stderr, terminal);
+          }) == 0);
+    CHECK(end_of([&] {  // a reader that goes, as of `program | head -1`, of a stream that is buffered
+            int ends[2];
+            if (::pipe(ends) != 0 || ::dup2(ends[1], STDOUT_FILENO) < 0) ::_exit(2);
+            ::close(ends[0]);
+            ::close(ends[1]);
+            show_all(stdout, terminal);
+            if (dem::io::show_text(stdout, "lost")) ::_exit(3);
+          }) == 0);
+    const TempFolder folder;
+    CHECK(end_of([&] {  // a file that is opened next must not take the stream's place
+            ::close(STDERR_FILENO);
+            dem::io::OutputFile file(folder / "data.csv");
+            show_all(stderr, terminal);
+            file.write("data");
+            file.close();
+          }) == 0);
+    CHECK(dem::io::read_file(folder / "data.csv") == "data");
+  }
+}
+
+TEST_CASE("a signal of a pipe that was there before stays") {
+  CHECK(end_of([] {
+          sigset_t pipe;
+          ::sigemptyset(&pipe);
+          ::sigaddset(&pipe, SIGPIPE);
+          ::pthread_sigmask(SIG_BLOCK, &pipe, nullptr);
+          std::raise(SIGPIPE);
+          std::FILE* full = std::fopen("/dev/full", "w");
+          dem::io::show_text(full, "lost");
+          sigset_t waiting;
+          ::sigpending(&waiting);
+          if (::sigismember(&waiting, SIGPIPE) != 1) ::_exit(4);
+        }) == 0);
 }

@@ -112,3 +112,15 @@ TEST_CASE("an inertia tensor that is diagonal keeps its axes and their order") {
   CHECK(p.rotation == Mat3::Identity());
   CHECK(p.moments == Vec3(3.0, 1.0, 2.0));
 }
+
+TEST_CASE("an inertia tensor with an element that is not finite is refused, whichever it is") {
+  for (const double wrong : {std::nan(""), HUGE_VAL}) {
+    for (int i = 0; i < 3; ++i) {
+      for (int k = 0; k < 3; ++k) {
+        Mat3 inertia = Mat3::Identity();
+        inertia(i, k) = inertia(k, i) = wrong;
+        CHECK_THROWS_WITH(dem::principal_axes(inertia), Catch::Matchers::ContainsSubstring("all must be finite"));
+      }
+    }
+  }
+}

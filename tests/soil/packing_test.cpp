@@ -122,6 +122,16 @@ TEST_CASE("percentiles and the inner region") {
   CHECK(inner_region(grains, 20.0, 10.0, 4.5).is_empty());        // 9 high
   CHECK(inner_region(grains, 20.0, 10.0, 5.0, 99.0).is_empty());  // 10 wide
   CHECK(inner_region(grains, 2.0, 2.0, 3.0, 99.0).is_empty());    // though the product of its edges is positive
+  for (int k = 0; k < 3; ++k) {
+    Region r = {Vec3(0, 0, 0), Vec3(1, 1, 1)};
+    r.high[k] = std::nan("");
+    CHECK(r.is_empty());
+    r.high[k] = HUGE_VAL;
+    CHECK_THROWS_WITH(solid_fraction(grains, 0.1, r), ContainsSubstring("volume of the region to measure in is inf"));
+  }
+  grains[4].position.z() = std::nan("");
+  CHECK_THROWS_WITH(height_percentile(grains, 0.5), ContainsSubstring("grain 4 of a packing is at the height nan m"));
+  CHECK_THROWS_WITH(strike_off(grains, 0.5), ContainsSubstring("grain 4 of a packing is at the height nan m"));
 }
 
 TEST_CASE("a straight edge takes the highest grains off, and leaves the others as they are") {
@@ -140,6 +150,30 @@ TEST_CASE("a straight edge takes the highest grains off, and leaves the others a
   CHECK(heights(0.3) == std::vector<double>{3, 1, 4, 1, 5, 2, 3});  // of equal ones the later
   CHECK(heights(1.0).empty());
   CHECK_THROWS_WITH(heights(-0.1), ContainsSubstring("strike off"));
+}
+
+TEST_CASE("boxes as large as one likes are filled, and absurd numbers refused") {
+  for (const double length : {1e3, 1e9, 1e15, 1e300}) {
+    const auto cloud = random_lattice(100, 1e-3, length, length, 1);
+    REQUIRE(cloud.size() == 100);
+    CHECK(closest(cloud) > 2.0 * cube_bounding_radius(1e-3) - 1e-15 * length);  // as far as the doubles there go
+    const auto block = tilted_block(100, 1e-3, length, length, 0.1);
+    REQUIRE(block.size() == 100);
+    CHECK(closest(block) == Approx(2.04e-3).epsilon(1e-9));
+    // One layer of ten by ten, about the middle of the box: 11 mm from its middle to an edge, with the tilt.
+    for (const Placement& g : block) CHECK(g.position.norm() < 0.02);
+  }
+  CHECK(tilted_block(30, 1e-15, 1.0, 1.0, 0.1).size() == 30);
+  CHECK(random_lattice(30, 1e-15, 1.0, 1.0, 1).size() == 30);
+  for (const double wrong : {std::nan(""), HUGE_VAL, -1.0, 0.0}) {
+    CHECK_THROWS_WITH(random_lattice(9, 1e-3, wrong, 1.0, 1), ContainsSubstring("length of a box along x"));
+    CHECK_THROWS_WITH(tilted_block(9, 1e-3, 1.0, wrong, 0.1), ContainsSubstring("length of a box along y"));
+  }
+  CHECK_THROWS_WITH(random_lattice(9, 1e-3, 1.0, 1.0, 1, 0.05, std::nan("")), ContainsSubstring("bounding radius"));
+  for (const std::size_t count : {std::size_t{100'000'001}, ~std::size_t{0}}) {
+    CHECK_THROWS_WITH(random_lattice(count, 1e-3, 1.0, 1.0, 1), ContainsSubstring("at most 100000000"));
+    CHECK_THROWS_WITH(tilted_block(count, 1e-3, 1.0, 1.0, 0.1), ContainsSubstring("at most 100000000"));
+  }
 }
 
 TEST_CASE("relative density goes by void ratios") {
@@ -194,6 +228,11 @@ TEST_CASE("what is no packing is refused in words") {
                     ContainsSubstring("not positive"));
   CHECK_THROWS_WITH(reading(head + "grains 2\n0 0 0 1 0 0 0\n"), ContainsSubstring("ends at grain 1 of 2"));
   CHECK_THROWS_WITH(reading(head + "grains 1\n0 0 0 1 1 0 0\n"), ContainsSubstring("no unit quaternion"));
+  CHECK_THROWS_WITH(reading(head + "grains 1\n0 0 0,5 1 0 0 0\n"),
+                    ContainsSubstring("line 6: a number of a grain is '0,5', but must be a finite number"));
+  CHECK_THROWS_WITH(reading(head + "grains 1\n0 0 nan 1 0 0 0\n"), ContainsSubstring("line 6"));
+  CHECK_THROWS_WITH(reading(head + "grains 100000000\n"), ContainsSubstring("ends at grain 0 of 100000000"));
+  CHECK_THROWS_WITH(reading(head + "grains -1\n"), ContainsSubstring("number of grains is missing"));
   CHECK_THROWS_WITH(load_packing(file.path.string() + ".none"), ContainsSubstring("cannot read"));
 }
 

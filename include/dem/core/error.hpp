@@ -1,5 +1,6 @@
 #pragma once
 
+#include <dem/core/compiler.hpp>
 #include <dem/core/text.hpp>
 
 #include <stdexcept>

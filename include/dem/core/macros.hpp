@@ -1,5 +1,7 @@
 #pragma once
 
+#include <dem/core/compiler.hpp>
+
 #include <cstdio>
 #include <cstdlib>
 

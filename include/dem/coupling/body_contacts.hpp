@@ -2,6 +2,7 @@
 
 #include <dem/coupling/body_points.hpp>
 #include <dem/coupling/follow_turns.hpp>
+#include <dem/coupling/near_pairs.hpp>
 #include <dem/geometry/contact_shares.hpp>
 #include <dem/grain/materials.hpp>
 
@@ -19,26 +20,37 @@ struct BodyPair {
   int contacts = 0;                      ///< points that touch
 };
 
-/// Key of a contact between bodies: pair, whose point it is, number of the point, feature of the other surface.
+/// Key of a contact between bodies: pair in its block, whose point it is, number of the point, feature of the other
+/// surface.
 struct BodyKey {
-  static constexpr std::size_t most_pairs = 1u << 12;
+  static constexpr std::size_t pairs_of_a_block = 1u << 12, most_pairs = 1u << 24;
   static constexpr std::uint64_t make(std::size_t pair, bool back, std::uint32_t point, std::uint32_t feature) {
-    return std::uint64_t{pair} << 52 | std::uint64_t{back} << 51 | std::uint64_t{point} << 28 | feature;
+    return std::uint64_t{pair % pairs_of_a_block} << 52 | std::uint64_t{back} << 51 | std::uint64_t{point} << 28 |
+           feature;
   }
 };
 
 /// Contacts of machine parts with each other and with the ground: their pairs, their memories, and lists for a step.
 template <class Model>
 struct BodyContacts {
+  using Memories = ContactMemories<history_size<Model>>;
+
   std::vector<BodyPair> pairs;
-  ContactMemories<history_size<Model>> memories;
-  double worst_overlap = 0.0;  ///< in effective diameters, of the last force evaluation
+  NearPairs broad_phase;
+  std::vector<std::uint32_t> near;  ///< pairs whose boxes met in the last force evaluation, ascending; no others push
+  std::vector<Memories> memories;   ///< of each block of pairs
+  double worst_overlap = 0.0;       ///< in effective diameters, of the last force evaluation
   std::size_t worst_pair = 0;
 
   std::vector<BodyPoint> points;
   std::vector<grain::Hit> hits;
   std::vector<contact::SurfaceTouch<double>> touches;
   grain::ContactForces forces;
+
+  /// What contacts remember of this step becomes what the next one starts from.
+  void commit() {
+    for (Memories& m : memories) m.commit();
+  }
 };
 
 /// The gap (m) up to which a ball of a pair of surfaces is held by cohesion at a distance, as a grain is; NoGap if the
@@ -52,6 +64,20 @@ auto body_gap(const ContactParameters<Model>& parameters, double radius) {
   }
 }
 
+/// Tells the broad phase of all pairs; to be called when pairs or constants have changed.
+template <class Model, class Surface>
+void list_pairs(BodyContacts<Model>& c, std::span<const Surface> surfaces, const Materials<Model>& materials) {
+  c.broad_phase.clear(surfaces.size());
+  for (std::uint32_t k = 0; k < c.pairs.size(); ++k) {
+    const Surface &a = surfaces[c.pairs[k].a.index()], &b = surfaces[c.pairs[k].b.index()];
+    const auto& parameters = materials.table()[materials.row(a.material, b.material)];
+    const double gap = shape::widened(0.0, body_gap<Model>(parameters, pair_radius(a, b)));
+    c.broad_phase.add(c.pairs[k].a.value, c.pairs[k].b.value, k, gap);
+  }
+  c.broad_phase.finish();
+  c.memories.resize((c.pairs.size() + BodyKey::pairs_of_a_block - 1) / BodyKey::pairs_of_a_block);
+}
+
 /// What the contacts of a pair have in common.
 struct PairContact {
   std::size_t pair;
@@ -63,7 +89,7 @@ struct PairContact {
 /// distance (else NoGap).
 template <class Model, class Surface, class Gap>
 void probe_body(const PairContact& at, bool back, const Surface& from, const Surface& onto, const Body& carrier,
-                Gap gap, BodyContacts<Model>& c) {
+                Gap gap, typename BodyContacts<Model>::Memories& memories, BodyContacts<Model>& c) {
   list_points(from, onto, c.points);
   const Vector3<double> offset = from.origin - carrier.motion.position, start = from.origin - onto.origin;
   const std::size_t first = c.hits.size();
@@ -80,7 +106,7 @@ void probe_body(const PairContact& at, bool back, const Surface& from, const Sur
           });
         }
         if constexpr (history_size < Model >> 0 && surface::NamesDirections<G>) {
-          follow_turns(std::span<const grain::Hit>(c.hits).subspan(first), c.memories.last,
+          follow_turns(std::span<const grain::Hit>(c.hits).subspan(first), memories.last,
                        [](std::uint64_t) { return true; });
         }
       },
@@ -101,33 +127,28 @@ void fit_pair(std::size_t first, BodyContacts<Model>& c) {
   turn_round();
 }
 
-/// Contacts between surfaces of machine parts, thesis section 2.2.4: the points of each surface of a pair against the
-/// other surface, weighted so that those that push one way are one whole contact, with the laws and memories of grains;
-/// adds the forces to the bodies. Pairs whose bounding boxes do not meet cost nothing more. One thread does it in the
-/// order of pairs and points: the same sums in every run.
+/// Finds the contacts of a pair, with the memories of its block.
 template <class Model, class Surface>
-void find_body_contacts(BodyContacts<Model>& c, std::span<const Surface> surfaces, const Materials<Model>& materials,
-                        std::span<Body> bodies, double dt) {
-  if (c.pairs.empty()) return;
-  c.hits.clear();
-  c.touches.clear();
-  for (std::size_t k = 0; k < c.pairs.size(); ++k) {
-    BodyPair& pair = c.pairs[k];
-    pair.force = pair.torque_a = pair.torque_b = {0, 0, 0};
-    pair.contacts = 0;
-    const Surface &a = surfaces[pair.a.index()], &b = surfaces[pair.b.index()];
-    const Body &body_a = bodies[a.body.index()], &body_b = bodies[b.body.index()];
-    if (!a.active || !b.active || (body_a.fixed && body_b.fixed)) continue;
-    const PairContact at = {k, materials.row(a.material, b.material), pair_radius(a, b)};
-    const auto gap = body_gap<Model>(materials.table()[at.law], at.radius);
-    const double wide = shape::widened(0.0, gap);
-    if (!boxes_overlap(a.low, a.high, b.low - filled(wide), b.high + filled(wide))) continue;
-    const std::size_t first = c.touches.size();
-    if (!is_ball(b)) probe_body(at, false, a, b, body_a, gap, c);
-    if (is_ball(b) || !is_ball(a)) probe_body(at, true, b, a, body_b, gap, c);
-    if (!is_ball(a) && !is_ball(b)) fit_pair(first, c);  // each touch of a ball is a contact
-  }
+void probe_pair(std::size_t k, std::span<const Surface> surfaces, const Materials<Model>& materials,
+                std::span<const Body> bodies, typename BodyContacts<Model>::Memories& memories,
+                BodyContacts<Model>& c) {
+  const Surface &a = surfaces[c.pairs[k].a.index()], &b = surfaces[c.pairs[k].b.index()];
+  const Body &body_a = bodies[a.body.index()], &body_b = bodies[b.body.index()];
+  if (!a.active || !b.active || (body_a.fixed && body_b.fixed)) return;
+  const PairContact at = {k, materials.row(a.material, b.material), pair_radius(a, b)};
+  const auto gap = body_gap<Model>(materials.table()[at.law], at.radius);
+  const double wide = shape::widened(0.0, gap);
+  if (!boxes_overlap(a.low, a.high, b.low - filled(wide), b.high + filled(wide))) return;
+  const std::size_t first = c.touches.size();
+  if (!is_ball(b)) probe_body(at, false, a, b, body_a, gap, memories, c);
+  if (is_ball(b) || !is_ball(a)) probe_body(at, true, b, a, body_b, gap, memories, c);
+  if (!is_ball(a) && !is_ball(b)) fit_pair(first, c);  // each touch of a ball is a contact
+}
 
+/// The laws for the contacts that were found, and their forces for pairs and bodies.
+template <class Model, class Surface>
+void load_pairs(std::span<const Surface> surfaces, const Materials<Model>& materials, std::span<Body> bodies, double dt,
+                typename BodyContacts<Model>::Memories& memories, BodyContacts<Model>& c) {
   const auto surface_of = [&](std::size_t hit, bool partner) -> const Surface& {
     const BodyPair& pair = c.pairs[c.hits[hit].i];
     return surfaces[((c.hits[hit].partner != 0) != partner ? pair.b : pair.a).index()];
@@ -137,11 +158,13 @@ void find_body_contacts(BodyContacts<Model>& c, std::span<const Surface> surface
   };
   grain::ContactEvaluator<Model, contact::SurfaceTouch> evaluator(materials.table(), dt);
   const grain::Deepest deepest = evaluator.run(
-      c.hits, c.memories, c.forces, [&](std::size_t k) { return c.touches[k]; },
+      c.hits, memories, c.forces, [&](std::size_t k) { return c.touches[k]; },
       [&](std::size_t k) -> const PartnerView& { return surface_of(k, false).view; },
       [&](std::size_t k) -> const PartnerView& { return surface_of(k, true).view; });
-  c.worst_overlap = deepest.overlap;
-  if (deepest.overlap > 0.0) c.worst_pair = c.hits[deepest.hit].i;
+  if (deepest.overlap > c.worst_overlap) {
+    c.worst_overlap = deepest.overlap;
+    c.worst_pair = c.hits[deepest.hit].i;
+  }
 
   for (std::size_t k = 0; k < c.hits.size(); ++k) {
     const Vector3<double> force = grain::ContactForces::at(c.forces.force, k);
@@ -158,6 +181,29 @@ void find_body_contacts(BodyContacts<Model>& c, std::span<const Surface> surface
     pair.torque_a += back ? torque_j : torque_i;
     pair.torque_b += back ? torque_i : torque_j;
     ++pair.contacts;
+  }
+}
+
+/// Contacts between surfaces of machine parts, thesis section 2.2.4: the points of each surface of a pair against the
+/// other surface, weighted so that those that push one way are one whole contact, with the laws and memories of grains;
+/// adds the forces to the bodies. Pairs whose bounding boxes do not meet cost nothing. One thread does it in the order
+/// of pairs and points: the same sums in every run.
+template <class Model, class Surface>
+void find_body_contacts(BodyContacts<Model>& c, std::span<const Surface> surfaces, const Materials<Model>& materials,
+                        std::span<Body> bodies, double dt) {
+  if (c.pairs.empty()) return;
+  for (const std::uint32_t k : c.near) c.pairs[k] = {c.pairs[k].a, c.pairs[k].b};
+  for (auto& memories : c.memories) memories.now.count = 0;
+  c.worst_overlap = 0.0;
+  c.broad_phase.find(surfaces, c.near);
+  for (std::size_t at = 0; at < c.near.size();) {
+    const std::size_t block = c.near[at] / BodyKey::pairs_of_a_block;
+    c.hits.clear();
+    c.touches.clear();
+    for (; at < c.near.size() && c.near[at] / BodyKey::pairs_of_a_block == block; ++at) {
+      probe_pair(c.near[at], surfaces, materials, std::span<const Body>(bodies), c.memories[block], c);
+    }
+    load_pairs(surfaces, materials, bodies, dt, c.memories[block], c);
   }
 }
 

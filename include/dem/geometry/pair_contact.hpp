@@ -86,7 +86,7 @@ DEM_HOT contact::PointTouch<double> turned_round(const contact::Geometry<double>
 template <class A, class B, class Memory, class Sink, class Gap = NoGap>
 DEM_HOT void collide_pair(const A& a, const double* pose_a, const B& b, const double* pose_b,
                           const Vector3<double>& separation, Memory& memory, Sink&& sink, Gap gap = {}) {
-  const auto call = [&memory, gap](auto pair, const auto&... arguments) {
+  const auto call = [&](auto pair, const auto&... arguments) {
     using Pair = decltype(pair);
     const auto with = [&](const auto&... reach) {
       if constexpr (requires { typename Pair::Memory; }) {

@@ -99,11 +99,16 @@ inline Mat3 nearest_axes(const Vec3& values, const Mat3& vectors) {
 /// Finds the principal axes, in the order and with the signs that turn the given axes least. A tensor that is diagonal
 /// already (to 1e-12) keeps its axes. Moments that differ by less than 1e-6 of the largest count as equal, as those of
 /// a wheel of single precision do, and their axes stay as near to the given ones as they can: a part that was drawn
-/// along its axes stays as drawn. Throws Error unless the tensor is symmetric (to 1e-9).
+/// along its axes stays as drawn. Throws Error unless the tensor is finite and symmetric (to 1e-9).
 inline PrincipalAxes principal_axes(const Mat3& inertia) {
+  for (int k = 0; k < 9; ++k) {  // looked at first, as the largest of several numbers may leave a NaN out
+    if (0.0 * inertia.data()[k] == 0.0) continue;
+    fail("an inertia tensor has moments {:g}, {:g}, {:g} and products {:g}, {:g}, {:g}, but all must be finite",
+         inertia(0, 0), inertia(1, 1), inertia(2, 2), inertia(0, 1), inertia(0, 2), inertia(1, 2));
+  }
   const double scale = largest_magnitude(inertia);
   const double skew = largest_magnitude(inertia - transposed(inertia));
-  if (!(skew <= 1e-9 * scale)) {  // also if an element is not a number
+  if (!(skew <= 1e-9 * scale)) {
     fail(
         "an inertia tensor is not symmetric: elements across its diagonal differ by {:g} where the largest is {:g}, "
         "allowed is 1e-9 of it; give both halves of the tensor, with the products of inertia negative",

@@ -1,7 +1,7 @@
 #pragma once
 
-/// Every shape of grain: superquadrics, polyhedra, mixtures, and how they touch each other. <dem/dem.hpp> has spheres and
-/// clusters alone, as the others take some seconds to compile.
+/// Every shape of grain: superquadrics, polyhedra, mixtures, and how they touch each other. <dem/dem.hpp> has spheres
+/// and clusters alone, as the others take some seconds to compile.
 
 #include <dem/geometry/cluster/sphere_cluster.hpp>
 #include <dem/geometry/mixed.hpp>

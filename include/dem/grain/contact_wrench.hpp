@@ -53,10 +53,10 @@ DEM_HOT NormalForce<T> normal_force(const contact::NormalState<T>& state, const 
     return {force, max(T(0), force)};  // a law that pulls presses nothing together
   } else {
     contact::NormalState<T> touching = state;
-    if constexpr (cohesion::reaches<Cohesion>) touching.overlap = max(state.overlap, T(0));
+    if constexpr (cohesion::reaches<Cohesion>) touching.overlap = max(T(0), state.overlap);
     T force = Model::Normal::force(parameters.normal, touching, history.normal);
     if constexpr (cohesion::reaches<Cohesion>) {  // across a gap the normal law does nothing and remembers nothing
-      force = select(state.overlap >= T(0), force, T(0));
+      force = select(state.overlap < T(0), T(0), force);
       forget_unless<T>(state.overlap >= T(0), history.normal);
     }
     const cohesion::Attraction<T> a = Cohesion::force(parameters.cohesion, state, history.cohesion);

@@ -31,18 +31,28 @@ inline double stable_step(double limit, double k, double c, double w) {
 /// The springs of a pair's laws that swing apart from each other: those along the normal, and those of friction and
 /// rolling resistance, which turn the same grains and so add up. Calls limit(k, c, w, text) for each with stiffness k
 /// (N/m), damping c (N s/m), of which `acting` (a share) acts, and mobility w (1/kg); w_turning: 1/(kg m^2), of
-/// rotations; text() says which it is.
+/// rotations; text() says which it is. Throws Error if a law tells a stiffness or damping that is negative or not
+/// finite, which would limit nothing.
 template <class Model, class Parameters, class Limit>
 void for_each_swing(const Parameters& p, const contact::NormalState<double>& deepest, double acting, double w,
                     double w_turning, Limit&& limit) {
-  const double normal = Model::Normal::stiffness(p.normal, deepest) + Model::Cohesion::stiffness(p.cohesion, deepest);
-  limit(normal, acting * contact::damping_of<typename Model::Normal>(p.normal, deepest), w,
-        [&] { return dem::text("stiffness {:g} N/m", normal); });
+  const auto stiffness = [](double k, const char* what) { return require_non_negative(k, what, "N/m or N m"); };
+  const auto damping = [](double c, const char* what) { return require_non_negative(c, what, "N s/m or N m s"); };
+  const double normal =
+      stiffness(Model::Normal::stiffness(p.normal, deepest), "stiffness that a normal law tells") +
+      stiffness(Model::Cohesion::stiffness(p.cohesion, deepest), "stiffness that a cohesion law tells");
+  const double normal_damping =
+      damping(contact::damping_of<typename Model::Normal>(p.normal, deepest), "damping that a normal law tells");
+  limit(normal, acting * normal_damping, w, [&] { return dem::text("stiffness {:g} N/m", normal); });
 
-  const double sliding = friction::stiffness_of<typename Model::Friction>(p.friction, deepest);
-  const double slide_damping = acting * contact::damping_of<typename Model::Friction>(p.friction, deepest);
-  const double rolling = Model::Rolling::stiffness(p.rolling, deepest);
-  const double roll_damping = contact::damping_of<typename Model::Rolling>(p.rolling, deepest);
+  const double sliding = stiffness(friction::stiffness_of<typename Model::Friction>(p.friction, deepest),
+                                   "stiffness that a friction law tells");
+  const double slide_damping = acting * damping(contact::damping_of<typename Model::Friction>(p.friction, deepest),
+                                                "damping that a friction law tells");
+  const double rolling =
+      stiffness(Model::Rolling::stiffness(p.rolling, deepest), "stiffness that a law of rolling resistance tells");
+  const double roll_damping = damping(contact::damping_of<typename Model::Rolling>(p.rolling, deepest),
+                                      "damping that a law of rolling resistance tells");
   const double to_slide = w > 0.0 ? w_turning / w : 0.0;
   limit(sliding + to_slide * rolling, slide_damping + to_slide * roll_damping, w, [&] {
     const std::string friction = dem::text("friction stiffness {:g} N/m", sliding);

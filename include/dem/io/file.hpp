@@ -1,5 +1,5 @@
 #pragma once
-// Files: whole-file reading, checked writing, and writing that never leaves half a file.
+// Files: whole-file reading, checked writing, and writing that never leaves half a file (POSIX).
 
 #include <dem/core/error.hpp>
 
@@ -16,6 +16,9 @@
 #include <system_error>
 #include <utility>
 
+#include <fcntl.h>
+#include <unistd.h>
+
 namespace dem::io {
 
 /// Makes the folder that `file` lies in, with its parents. Throws dem::Error when that is not possible.
@@ -29,13 +32,52 @@ inline void make_folder_of(const std::filesystem::path& file) {
   }
 }
 
+namespace detail {
+
+/// A stream on a descriptor that never has the number of a standard stream that is closed: what is printed to that
+/// stream would end up in the file. Null, with errno, if that is not possible.
+inline std::FILE* stream_on(int descriptor) {
+  if (descriptor >= 0 && descriptor <= STDERR_FILENO) {
+    const int moved = ::fcntl(descriptor, F_DUPFD_CLOEXEC, STDERR_FILENO + 1);
+    const int error = errno;
+    ::close(descriptor);
+    errno = error;
+    descriptor = moved;
+  }
+  return descriptor < 0 ? nullptr : ::fdopen(descriptor, "wb");
+}
+
+inline std::FILE* open_for_writing(const std::filesystem::path& path) {
+  return stream_on(::open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666));
+}
+
+/// A file in a folder that has no name yet, so that a process which is killed leaves nothing. Null where the system has
+/// no such files.
+inline std::FILE* open_unnamed([[maybe_unused]] const std::filesystem::path& folder) {
+#if defined(O_TMPFILE)
+  if (::access("/proc/self/fd", X_OK) != 0) return nullptr;  // by which it gets its name
+  return stream_on(::open(folder.empty() ? "." : folder.c_str(), O_TMPFILE | O_WRONLY | O_CLOEXEC, 0666));
+#else
+  return nullptr;
+#endif
+}
+
+/// Gives an unnamed file its name, in place of an older one. False, with errno, if that is not possible.
+inline bool name_file(std::FILE* file, const std::filesystem::path& path) {
+  const std::string unnamed = "/proc/self/fd/" + std::to_string(::fileno(file));
+  if (::unlink(path.c_str()) != 0 && errno != ENOENT) return false;
+  return ::linkat(AT_FDCWD, unnamed.c_str(), AT_FDCWD, path.c_str(), AT_SYMLINK_FOLLOW) == 0;
+}
+
+}  // namespace detail
+
 /// A file that is written from its start; its folder is made when it is missing. Every method throws dem::Error,
 /// with the path and the system's reason, when the file cannot be opened or written.
 class OutputFile {
  public:
   explicit OutputFile(std::filesystem::path path) : path_(std::move(path)) {
     make_folder_of(path_);
-    file_.reset(std::fopen(path_.c_str(), "wb"));
+    file_.reset(detail::open_for_writing(path_));
     if (!file_) {
       fail("cannot open '{}' for writing ({}); choose a path that you may write to", path_.string(),
            std::strerror(errno));
@@ -60,6 +102,10 @@ class OutputFile {
   [[nodiscard]] const std::filesystem::path& path() const { return path_; }
 
  private:
+  friend class AtomicFile;
+
+  OutputFile(std::filesystem::path path, std::FILE* open) : path_(std::move(path)), file_(open) {}
+
   struct Closer {
     void operator()(std::FILE* file) const { std::fclose(file); }
   };
@@ -72,37 +118,50 @@ class OutputFile {
   std::unique_ptr<std::FILE, Closer> file_;
 };
 
-/// A file that appears under its name only when it is complete: bytes go to `<path>.tmp`, and commit() renames that.
-/// Without commit() the temporary file is removed and an older file of this name stays. Throws as OutputFile does.
+/// A file that appears under its name only when it is complete. Until commit() its bytes have no name, or where the
+/// system knows no unnamed files that of `<path>.tmp`. Without commit() they are gone and an older file of this name
+/// stays, also when the process is killed (but for `<path>.tmp`). Throws as OutputFile does.
 class AtomicFile {
  public:
-  explicit AtomicFile(const std::filesystem::path& path) : path_(path), file_(std::filesystem::path(path) += ".tmp") {}
+  explicit AtomicFile(const std::filesystem::path& path)
+      : path_(path), temporary_(std::filesystem::path(path) += ".tmp"), file_(open()) {}
   AtomicFile(const AtomicFile&) = delete;
   AtomicFile& operator=(const AtomicFile&) = delete;
   ~AtomicFile() {
-    if (committed_) return;
     std::error_code ignored;
-    std::filesystem::remove(file_.path(), ignored);
+    if (is_named_) std::filesystem::remove(temporary_, ignored);
   }
 
   void write(const void* data, std::size_t bytes) { file_.write(data, bytes); }
   void write(std::string_view text) { file_.write(text); }
 
   void commit() {
+    if (!is_named_) {
+      file_.flush();
+      if (!detail::name_file(file_.file_.get(), temporary_)) file_.fail_to_write();
+      is_named_ = true;
+    }
     file_.close();
     std::error_code error;
-    std::filesystem::rename(file_.path(), path_, error);
+    std::filesystem::rename(temporary_, path_, error);
     if (error) {
-      fail("cannot rename '{}' to '{}' ({}); is there a folder of that name?", file_.path().string(), path_.string(),
+      fail("cannot rename '{}' to '{}' ({}); is there a folder of that name?", temporary_.string(), path_.string(),
            error.message());
     }
-    committed_ = true;
+    is_named_ = false;
   }
 
  private:
-  std::filesystem::path path_;
+  OutputFile open() {
+    make_folder_of(path_);
+    if (std::FILE* unnamed = detail::open_unnamed(path_.parent_path())) return {path_, unnamed};
+    is_named_ = true;
+    return OutputFile(temporary_);
+  }
+
+  std::filesystem::path path_, temporary_;
+  bool is_named_ = false;  ///< whether there is a file `temporary_`
   OutputFile file_;
-  bool committed_ = false;
 };
 
 /// Writes `content` to `path`, complete or not at all. Throws dem::Error.

@@ -1,5 +1,5 @@
 #pragma once
-// Words and numbers of text files that describe meshes, with the line they stand in.
+// Words and numbers of text files (meshes, packings), with the line they stand in; the same in every locale.
 
 #include <dem/core/error.hpp>
 
@@ -54,6 +54,15 @@ class Words {
   std::string_view peek() const {
     Words copy = *this;
     return copy.next();
+  }
+  /// What is left of this line, without white space around it.
+  std::string rest_of_line() {
+    const std::size_t from = at_;
+    skip_line();
+    std::string_view rest = text_.substr(from, at_ - from);
+    while (!rest.empty() && is_space(rest.front())) rest.remove_prefix(1);
+    while (!rest.empty() && is_space(rest.back())) rest.remove_suffix(1);
+    return std::string(rest);
   }
   void skip_line() {
     while (at_ < text_.size() && !is_line_end(text_[at_])) ++at_;

@@ -21,11 +21,11 @@ struct SurfaceMesh {
   std::vector<std::vector<std::int32_t>> polygons = {};     ///< likewise, with any number of corners
 };
 
-/// A box with edges along the axes, centred at the origin; `size` [m] are its full edge lengths, each > 0.
+/// A box with edges along the axes, centred at the origin; `size` [m] are its full edge lengths, each finite and > 0.
 /// Throws dem::Error otherwise.
 [[nodiscard]] inline SurfaceMesh box_mesh(const Vec3& size) {
+  for (int k = 0; k < 3; ++k) require_positive(size[k], "edge of a box_mesh", "m");
   SurfaceMesh mesh;
-  if (!(size.minCoeff() > 0)) fail("box_mesh: size is {} x {} x {} m; each must be > 0", size.x(), size.y(), size.z());
   for (unsigned corner = 0; corner < 8; ++corner) {  // bits of `corner`: x, y, z at the far side
     const auto side = [corner](unsigned axis) { return (corner >> axis & 1U) != 0 ? 0.5 : -0.5; };
     mesh.vertices.emplace_back(side(0) * size.x(), side(1) * size.y(), side(2) * size.z());
@@ -37,10 +37,9 @@ struct SurfaceMesh {
 /// A cylinder along y (a wheel that rolls along x), centred at the origin; radius and length [m] > 0, `segments` >= 3.
 /// Throws dem::Error otherwise.
 [[nodiscard]] inline SurfaceMesh cylinder_mesh(double radius, double length, int segments = 48) {
-  if (!(radius > 0) || !(length > 0) || segments < 3) {
-    fail("cylinder_mesh: radius {} m, length {} m, {} segments; both lengths must be > 0, and segments >= 3", radius,
-         length, segments);
-  }
+  require_positive(radius, "radius of a cylinder_mesh", "m");
+  require_positive(length, "length of a cylinder_mesh", "m");
+  if (segments < 3) fail("a cylinder_mesh has {} segments, but needs at least 3", segments);
   SurfaceMesh mesh;
   for (int i = 0; i < segments; ++i) {  // vertex 2 i lies at -y, 2 i + 1 at +y
     const double angle = 2 * std::numbers::pi * i / segments;
@@ -63,7 +62,8 @@ struct SurfaceMesh {
 /// A rectangle in the plane z = 0 with its normal along +z, centred at the origin; edges [m] > 0 along x and y.
 /// Throws dem::Error otherwise.
 [[nodiscard]] inline SurfaceMesh rectangle_mesh(double size_x, double size_y) {
-  if (!(size_x > 0) || !(size_y > 0)) fail("rectangle_mesh: size is {} x {} m; both must be > 0", size_x, size_y);
+  require_positive(size_x, "edge of a rectangle_mesh along x", "m");
+  require_positive(size_y, "edge of a rectangle_mesh along y", "m");
   const double x = size_x / 2, y = size_y / 2;
   return {.vertices = {Vec3(-x, -y, 0), Vec3(x, -y, 0), Vec3(x, y, 0), Vec3(-x, y, 0)},
           .triangles = {},

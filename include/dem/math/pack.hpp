@@ -19,8 +19,10 @@
 namespace dem {
 
 DEM_HOT double select(bool condition, double yes, double no) { return condition ? yes : no; }
+// A NaN in the second argument stays, one in the first is dropped, as packs do: max(T(0), f) keeps what is to be
+// reported.
 DEM_HOT double min(double a, double b) { return a < b ? a : b; }
-DEM_HOT double max(double a, double b) { return a < b ? b : a; }
+DEM_HOT double max(double a, double b) { return a > b ? a : b; }
 // The very same functions, so that after `using namespace dem` sqrt(double) is not ambiguous.
 using std::cbrt;
 using std::exp;

@@ -40,7 +40,7 @@ DEM_HOT Mask equal(Register a, Register b) { return _mm512_cmp_pd_mask(a, b, _CM
 DEM_HOT Register select(Mask m, Register yes, Register no) { return _mm512_mask_blend_pd(m, no, yes); }
 DEM_HOT Register sqrt(Register a) { return _mm512_sqrt_pd(a); }
 DEM_HOT Register min(Register a, Register b) { return _mm512_min_pd(a, b); }
-DEM_HOT Register max(Register a, Register b) { return _mm512_max_pd(b, a); }
+DEM_HOT Register max(Register a, Register b) { return _mm512_max_pd(a, b); }
 DEM_HOT std::uint32_t bits(Mask m) {
   std::uint32_t result = m;
 #if !defined(__clang__)
@@ -62,7 +62,7 @@ DEM_HOT Mask less_or_equal(Register a, Register b) { return a <= b; }
 DEM_HOT Mask equal(Register a, Register b) { return a == b; }
 DEM_HOT Register select(Mask m, Register yes, Register no) { return m ? yes : no; }
 DEM_HOT Register min(Register a, Register b) { return a < b ? a : b; }
-DEM_HOT Register max(Register a, Register b) { return a < b ? b : a; }
+DEM_HOT Register max(Register a, Register b) { return a > b ? a : b; }
 
 #if defined(__AVX__)
 DEM_HOT Register sqrt(Register a) { return _mm256_sqrt_pd(a); }

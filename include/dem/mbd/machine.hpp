@@ -3,6 +3,7 @@
 #include <dem/mbd/solver/solver.hpp>
 
 #include <cmath>
+#include <type_traits>
 
 namespace dem::mbd {
 
@@ -32,20 +33,29 @@ class Machine : public Mechanism {
   }
 
   /// Steps of dt (s) for a duration (s; the number of steps is rounded). Stops at the first body that blows up. Throws
-  /// Error as step does, between two steps.
+  /// Error as step does, between two steps, and for more steps than 9e15.
   [[nodiscard]] MachineReport run(double duration, double dt) {
     return run(duration, dt, [] {});
   }
-  /// The same, calling `after_step()` after each step, e.g. to record.
+  /// The same, calling `after_step()` after each step, e.g. to record. If it returns a bool, false ends the run there:
+  /// return !io::interrupted() ends it at Ctrl-C.
   template <class F>
   [[nodiscard]] MachineReport run(double duration, double dt, F&& after_step) {
     require_non_negative(duration, "time to run", "s");
     prepare(dt);
-    const long long steps = std::llround(duration / dt);
+    const double whole = std::round(duration / dt);
+    if (!(whole <= 0x1.0p53)) {  // beyond it time stands still: t + dt = t
+      fail("time to run is {:g} s, {:g} steps of {:g} s, but must be at most 9e15 steps", duration, whole, dt);
+    }
+    const auto steps = static_cast<long long>(whole);
     for (long long s = 0; s < steps && !solver_.has_blown_up(); ++s) {
       if (s > 0) prepare(dt);  // after_step may have changed something
       solver_.step(*this, dt, gravity);
-      after_step();
+      if constexpr (std::is_same_v<std::invoke_result_t<F&>, bool>) {
+        if (!after_step()) break;
+      } else {
+        after_step();
+      }
     }
     return solver_.report(*this);
   }

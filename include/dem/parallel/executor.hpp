@@ -6,7 +6,7 @@
 namespace dem::exec {
 
 /// An executor runs f(0) ... f(n-1), in any order and on any number of threads. Every phase of the step is written such
-/// that the result does not depend on either.
+/// that the result does not depend on either. An exception of f leaves for_each, on the thread that called it.
 template <class E>
 concept Executor = requires(E& executor) {
   executor.for_each(std::size_t{1}, [](std::size_t) {});

@@ -4,6 +4,7 @@
 #include <dem/parallel/executor.hpp>
 
 #include <algorithm>
+#include <exception>
 
 #if defined(_OPENMP)
 #include <omp.h>
@@ -13,6 +14,8 @@ namespace dem::exec {
 
 /// OpenMP threads; runs on one thread when the compiler has no OpenMP. Unless a number is set, it uses as many threads
 /// as OpenMP offers, but gives each at least a few pieces of work: waking a thread costs more than a small piece.
+///
+/// An exception of a piece is thrown on when the others are done; of several, that of the lowest piece.
 class OpenMP {
  public:
   int threads() const { return threads_; }
@@ -29,8 +32,16 @@ class OpenMP {
 #if defined(_OPENMP)
     const int team = static_cast<int>(std::min<std::ptrdiff_t>(threads_, count / least_pieces_));
     if (team > 1) {
+      Thrown thrown;
 #pragma omp parallel for schedule(static) num_threads(team)
-      for (std::ptrdiff_t k = 0; k < count; ++k) f(static_cast<std::size_t>(k));
+      for (std::ptrdiff_t k = 0; k < count; ++k) {
+        try {
+          f(static_cast<std::size_t>(k));
+        } catch (...) {  // an exception must not leave a thread of OpenMP
+          thrown.keep(k);
+        }
+      }
+      if (thrown.first) std::rethrow_exception(thrown.first);
       return;
     }
 #endif
@@ -38,6 +49,19 @@ class OpenMP {
   }
 
  private:
+  /// The exception of the lowest piece, whichever thread comes to it first.
+  struct Thrown {
+    std::exception_ptr first;
+    std::ptrdiff_t piece = 0;
+    void keep(std::ptrdiff_t k) {
+#pragma omp critical(dem_thrown)
+      if (!first || k < piece) {
+        first = std::current_exception();
+        piece = k;
+      }
+    }
+  };
+
 #if defined(_OPENMP)
   int threads_ = omp_get_max_threads();
 #else

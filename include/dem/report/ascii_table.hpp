@@ -3,6 +3,7 @@
 
 #include <dem/io/text.hpp>
 #include <dem/report/table.hpp>
+#include <dem/report/terminal.hpp>
 
 #include <fmt/format.h>
 
@@ -62,7 +63,7 @@ inline std::string align_cell(std::string_view text, int width, Align align) {
   return text;
 }
 
-/// Prints to_text(table) to `out`.
-inline void print(const Table& table, std::FILE* out = stdout) { fmt::print(out, "{}", to_text(table)); }
+/// Prints to_text(table) to `out`. Returns false if it could not be written, as show_text() does.
+inline bool print(const Table& table, std::FILE* out = stdout) { return show_text(out, to_text(table)); }
 
 }  // namespace dem::io

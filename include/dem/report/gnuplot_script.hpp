@@ -2,6 +2,7 @@
 // Line plots as gnuplot scripts.
 
 #include <dem/core/error.hpp>
+#include <dem/io/text.hpp>
 #include <dem/report/plot_data.hpp>
 
 #include <fmt/format.h>
@@ -15,7 +16,8 @@
 namespace dem::io {
 
 /// `text` as a gnuplot string expression that means exactly these characters. Single quotes: gnuplot runs commands
-/// in backticks inside double quotes, and nothing inside single ones.
+/// in backticks inside double quotes, and nothing inside single ones. Bytes that are no UTF-8 stay, as in names of
+/// files.
 [[nodiscard]] inline std::string gnuplot_quote(std::string_view text) {
   std::string quoted = "'";
   for (const char c : text) {
@@ -88,7 +90,7 @@ inline constexpr std::array<int, 6> kPlotPoints = {7, 5, 9, 13, 11, 6};  // fill
     case SeriesStyle::LinePoints: with = fmt::format("linespoints lw 2 pt {} ps 0.8", point); break;
   }
   return fmt::format("$data{} using 1:2 with {} lc rgb '{}' {}", number, with, kPlotColors[color % kPlotColors.size()],
-                     s.name.empty() ? "notitle" : "title " + gnuplot_quote(s.name));
+                     s.name.empty() ? "notitle" : "title " + gnuplot_quote(to_utf8(s.name)));
 }
 
 inline void check_range(const Plot& plot, std::string_view axis, const Range& range, bool log) {
@@ -145,14 +147,14 @@ inline void check_plot(const Plot& plot) {
 
   script += "\nset border 3 lw 1 lc rgb '#444444'\nset tics nomirror out textcolor rgb '#222222'\n";
   script += "set grid lt 1 lw 0.7 lc rgb '#D4D4D4' dt solid\nset style textbox opaque noborder\n";
-  script += fmt::format("set title {}\nset xlabel {}\nset ylabel {}\n", gnuplot_quote(plot.title),
-                        gnuplot_quote(plot.x_label), gnuplot_quote(plot.y_label));
+  script += fmt::format("set title {}\nset xlabel {}\nset ylabel {}\n", gnuplot_quote(to_utf8(plot.title)),
+                        gnuplot_quote(to_utf8(plot.x_label)), gnuplot_quote(to_utf8(plot.y_label)));
   if (plot.log_x) script += "set logscale x\n";
   if (plot.log_y) script += "set logscale y\n";
   script += detail::gnuplot_range("x", plot.x_range) + detail::gnuplot_range("y", plot.y_range);
   script += detail::gnuplot_key(plot.legend);
   for (const Annotation& a : plot.annotations) {
-    script += fmt::format("set label {} at {},{} left front boxed{}\n", gnuplot_quote(a.text), a.x, a.y,
+    script += fmt::format("set label {} at {},{} left front boxed{}\n", gnuplot_quote(to_utf8(a.text)), a.x, a.y,
                           a.point ? " point pt 7 ps 0.6 offset 0.8,0.4" : "");
   }
 

@@ -16,18 +16,30 @@ static_assert(std::atomic<int>::is_always_lock_free, "a signal handler may touch
 inline std::atomic<int> caught_signal{0};
 inline std::atomic<bool> interrupt_announced{true};
 inline int interrupt_guards = 0;
-inline struct sigaction interrupt_old_int {};
-inline struct sigaction interrupt_old_term {};
+inline constexpr int interrupt_signals[] = {SIGINT, SIGTERM, SIGHUP};  ///< Ctrl-C, kill, a terminal that is closed
+inline struct sigaction interrupt_old[3] = {};
 
 // Only async-signal-safe calls in here.
 inline void on_interrupt(int signal) {
-  caught_signal.store(signal);
-  std::signal(SIGINT, SIG_DFL);  // the next one ends the process, even when the run hangs
-  std::signal(SIGTERM, SIG_DFL);
-  if (!interrupt_announced.load()) return;
   const int saved_errno = errno;
+  int none = 0;
+  if (!caught_signal.compare_exchange_strong(none, signal)) return;  // a closed terminal may say so several times
+  for (const int s : {SIGINT, SIGTERM}) {  // the next one ends the process, even when the run hangs
+    struct sigaction now {};
+    ::sigaction(s, nullptr, &now);
+    if (now.sa_handler == on_interrupt) std::signal(s, SIG_DFL);  // others were to be ignored
+  }
+  if (!interrupt_announced.load()) {
+    errno = saved_errno;
+    return;
+  }
+  struct sigaction ignore = {}, before = {};
+  ignore.sa_handler = SIG_IGN;
+  ::sigemptyset(&ignore.sa_mask);
+  ::sigaction(SIGPIPE, &ignore, &before);  // nobody may be left to read this
   static constexpr std::string_view kText = "\ninterrupted: stopping after this step (again: quit at once)\n";
   [[maybe_unused]] const auto written = ::write(STDERR_FILENO, kText.data(), kText.size());
+  ::sigaction(SIGPIPE, &before, nullptr);
   errno = saved_errno;
 }
 
@@ -43,42 +55,43 @@ inline void catch_signal(int signal, const struct sigaction& old) {
 
 }  // namespace detail
 
-/// The signal that interrupted the run (SIGINT, SIGTERM), 0 while there was none.
+/// The signal that interrupted the run (SIGINT, SIGTERM, SIGHUP), 0 while there was none.
 [[nodiscard]] inline int interrupt_signal() noexcept { return detail::caught_signal.load(std::memory_order_relaxed); }
 
-/// Whether Ctrl-C (SIGINT) or SIGTERM came while an InterruptGuard lived. Cheap enough to ask at every step.
+/// Whether Ctrl-C (SIGINT), SIGTERM or SIGHUP came while an InterruptGuard lived. Cheap enough to be asked after every
+/// step of a run.
 [[nodiscard]] inline bool interrupted() noexcept { return interrupt_signal() != 0; }
 
 /// Forgets an interrupt. InterruptGuard does not do it, so that one Ctrl-C ends a whole sweep of runs.
 inline void clear_interrupt() noexcept { detail::caught_signal.store(0); }
 
-/// While it lives, the first Ctrl-C or SIGTERM only makes interrupted() true, and the second one ends the process at
-/// once. Its end restores the handlers that it found. Guards nest (only the outermost acts); they belong to the main
-/// thread.
+/// While it lives, the first Ctrl-C, SIGTERM or SIGHUP (of a terminal that is closed) only makes interrupted() true,
+/// and a second Ctrl-C or SIGTERM ends the process at once. Its end restores the handlers that it found. Guards nest
+/// (only the outermost acts); they belong to the main thread. Signals that the process was started to ignore, as SIGHUP
+/// by nohup, stay ignored.
 ///
 ///     InterruptGuard guard;
-///     while (t < t_end && !interrupted()) { ... }
+///     world.run_for(seconds, [] { return !interrupted(); });  // ends after the step that is under way
 ///     save();
 class InterruptGuard {
  public:
   enum class Message { Print, Silent };
 
-  /// With Message::Print the first signal writes one line to stderr.
+  /// With Message::Print the first signal writes one line to stderr, if that is there.
   explicit InterruptGuard(Message message = Message::Print) {
     if (detail::interrupt_guards++ > 0) return;
     detail::interrupt_announced.store(message == Message::Print);
-    ::sigaction(SIGINT, nullptr, &detail::interrupt_old_int);
-    ::sigaction(SIGTERM, nullptr, &detail::interrupt_old_term);
-    if (interrupted()) return;  // already asked to stop: the next Ctrl-C shall end the process
-    detail::catch_signal(SIGINT, detail::interrupt_old_int);
-    detail::catch_signal(SIGTERM, detail::interrupt_old_term);
+    for (int k = 0; k < 3; ++k) {
+      ::sigaction(detail::interrupt_signals[k], nullptr, &detail::interrupt_old[k]);
+      if (interrupted()) continue;  // already asked to stop: the next Ctrl-C shall end the process
+      detail::catch_signal(detail::interrupt_signals[k], detail::interrupt_old[k]);
+    }
   }
   InterruptGuard(const InterruptGuard&) = delete;
   InterruptGuard& operator=(const InterruptGuard&) = delete;
   ~InterruptGuard() {
     if (--detail::interrupt_guards > 0) return;
-    ::sigaction(SIGINT, &detail::interrupt_old_int, nullptr);
-    ::sigaction(SIGTERM, &detail::interrupt_old_term, nullptr);
+    for (int k = 0; k < 3; ++k) ::sigaction(detail::interrupt_signals[k], &detail::interrupt_old[k], nullptr);
   }
 };
 

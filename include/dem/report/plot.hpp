@@ -38,6 +38,15 @@ namespace detail {
   return one_line(start == std::string_view::npos ? errors : errors.substr(start + 1));
 }
 
+/// Whether the file at `path` is there and ends as a picture of its kind does: on a full disk it would be cut off, or
+/// empty, and gnuplot may say nothing of it.
+[[nodiscard]] inline bool is_whole(const std::filesystem::path& path, std::string_view end) {
+  if (!std::filesystem::exists(path)) return false;
+  const std::string bytes = read_file(path);
+  const auto last = bytes.find_last_not_of(" \r\n");
+  return last != std::string::npos && std::string_view(bytes).substr(0, last + 1).ends_with(end);
+}
+
 }  // namespace detail
 
 /// Draws `plot` to `<base>.svg` and `<base>.png`, and writes `<base>.gp`: the script, data included, to draw or change
@@ -74,9 +83,12 @@ inline PlotResult render_plot(const Plot& plot, const std::filesystem::path& bas
   }
   // --default-settings: no start-up file of the user's may change the plot.
   const auto run = run_program(*program, {"--default-settings", "./" + name + ".gp"}, base.parent_path());
-  if (run.exit_code != 0 || !std::filesystem::exists(svg) || !std::filesystem::exists(png)) {
-    result.reason =
-        fmt::format("gnuplot ended with code {}: {}", run.exit_code, detail::first_line_of_errors(run.errors));
+  const bool drawn = detail::is_whole(svg, "</svg>") && detail::is_whole(png, "IEND\xAE\x42\x60\x82");
+  if (run.exit_code != 0 || !drawn) {
+    const std::string words = detail::first_line_of_errors(run.errors);
+    result.reason = run.exit_code != 0 || !words.empty()
+                        ? fmt::format("gnuplot ended with code {}: {}", run.exit_code, words)
+                        : "gnuplot left no whole pictures; check that the disk is not full";
     std::filesystem::remove(svg, ignored);
     std::filesystem::remove(png, ignored);
     return result;

@@ -24,7 +24,7 @@ namespace dem::io {
 /// How Progress shows itself; every field has a working default.
 struct ProgressOptions {
   int stages = 1;                ///< stages that begin() will open; shown as "[1/2]" when there are several
-  std::FILE* out = stderr;       ///< kept by the caller; stderr leaves stdout to the results
+  std::FILE* out = stderr;       ///< kept by the caller; stderr leaves stdout to the results; null: shown nowhere
   std::optional<bool> terminal;  ///< true: bar, false: plain lines; unset: asked of `out`
   int width = 0;                 ///< cells of the bar's line; 0: the terminal's width, asked at each drawing
   double redraw_s = 0.2;         ///< terminal: least time between two drawings [s]
@@ -41,7 +41,8 @@ struct ProgressOptions {
 ///     while (...) progress.update(t, [&] { return fmt::format("sigma {:.1f} kPa", sigma / 1e3); });
 ///     progress.finish();
 ///
-/// update() costs one reading of the clock when nothing is due. Not for several threads at once.
+/// update() costs one reading of the clock when nothing is due. A stream that cannot be written to any more (its
+/// terminal was closed, its disk is full) is no error: nothing is shown. Not for several threads at once.
 class Progress {
  public:
   /// Total of a stage whose end is not known beforehand.
@@ -102,9 +103,8 @@ class Progress {
   /// Prints a line of its own above the bar. `text` is shown as it is.
   void message(std::string_view text) {
     if (open_ && terminal_) erase_bar();
-    fmt::print(options_.out, "{}\n", text);
+    print(fmt::format("{}\n", text));
     if (open_ && terminal_) show();
-    std::fflush(options_.out);
   }
 
   /// Ends the open stage, if there is one, as reached.
@@ -147,8 +147,9 @@ class Progress {
     } else {
       print_line();
     }
-    std::fflush(options_.out);
   }
+
+  void print(std::string_view text) const { show_text(options_.out, text); }
 
   void print_line() const {
     std::string line = label() + ": ";
@@ -159,7 +160,7 @@ class Progress {
       line += "started";
     }
     if (!status_.empty()) line += ", " + status_;
-    fmt::print(options_.out, "{}\n", line);
+    print(line + "\n");
   }
 
   void draw_bar() {
@@ -179,20 +180,19 @@ class Progress {
     line += "  " + time_text();
     if (!status_.empty()) line += "  " + status_;
     line = clip(line, width);
-    fmt::print(options_.out, "\r{}", pad_right(line, bar_width_));
+    print("\r" + pad_right(line, bar_width_));
     bar_width_ = display_width(line);
   }
 
   void erase_bar() {
-    fmt::print(options_.out, "\r{}\r", std::string(static_cast<std::size_t>(bar_width_), ' '));
+    print(fmt::format("\r{}\r", std::string(static_cast<std::size_t>(bar_width_), ' ')));
     bar_width_ = 0;
   }
 
   void end(const std::string& how, std::string_view status) {
     if (!std::exchange(open_, false)) return;
     if (terminal_) erase_bar();
-    fmt::print(options_.out, "{}: {}{}{}\n", label(), how, status.empty() ? "" : ", ", one_line(status));
-    std::fflush(options_.out);
+    print(fmt::format("{}: {}{}{}\n", label(), how, status.empty() ? "" : ", ", one_line(status)));
   }
 
   ProgressOptions options_;

@@ -12,12 +12,12 @@ struct Region {
   Vec3 low = Vec3::Zero(), high = Vec3::Zero();
   double volume() const { return (high - low).prod(); }
   /// Whether there is anything of it: a packing that is small beside the margin of inner_region has none.
-  bool is_empty() const { return !((high - low).minCoeff() > 0.0); }
+  bool is_empty() const { return !((high - low).array() > 0.0).all(); }
 };
 
 /// Share of the region's volume that cubes of half-edge h (m) fill; grains that the region's border cuts count with
 /// what lies inside: each cube is cut into `cuts`^3 parts, and a part counts where its middle is. Times the density of
-/// the grains it is the bulk density. Throws Error for a region without volume.
+/// the grains it is the bulk density. Throws Error for a region whose volume is not positive and finite.
 inline double solid_fraction(std::span<const Placement> grains, double half_edge, const Region& region, int cuts = 4) {
   if (region.is_empty()) {
     fail(
@@ -25,6 +25,7 @@ inline double solid_fraction(std::span<const Placement> grains, double half_edge
         "small for it, so use more or smaller grains",
         region.high.x() - region.low.x(), region.high.y() - region.low.y(), region.high.z() - region.low.z());
   }
+  require_positive(region.volume(), "volume of the region to measure in", "m^3");
   require_positive(half_edge, "half-edge of a grain", "m");
   require_within(cuts, 1, 64, "cuts of a cube");
   const double corner = std::sqrt(3.0) * half_edge;

@@ -5,6 +5,7 @@
 #include <dem/math/vector.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <numeric>
 #include <span>
@@ -33,10 +34,24 @@ struct Packing {
 /// Volume (m^3) of a grain: that of the solid cube of edge 2 h, which is also what gives it its mass.
 inline double cube_volume(double half_edge) { return 8.0 * half_edge * half_edge * half_edge; }
 
-/// The height (m) below which the given share of the grains' centres lie. Throws Error without grains.
+namespace detail {
+
+/// Throws Error unless all heights are finite: an order among numbers that are none is no order.
+inline void require_heights(std::span<const Placement> grains) {
+  for (std::size_t k = 0; k < grains.size(); ++k) {
+    const double z = grains[k].position.z();
+    if (!std::isfinite(z)) fail("grain {} of a packing is at the height {:g} m, but must be somewhere", k, z);
+  }
+}
+
+}  // namespace detail
+
+/// The height (m) below which the given share of the grains' centres lie. Throws Error without grains, or if one of
+/// them has no finite height.
 inline double height_percentile(std::span<const Placement> grains, double share) {
   require_within(share, 0.0, 1.0, "share of the grains");
   if (grains.empty()) fail("no grains, so there is no height to find; add some");
+  detail::require_heights(grains);
   std::vector<double> z;
   z.reserve(grains.size());
   for (const Placement& g : grains) z.push_back(g.position.z());
@@ -46,9 +61,10 @@ inline double height_percentile(std::span<const Placement> grains, double share)
 }
 
 /// Takes the highest grains off, a share of all of them, as a straight edge levels a specimen; the others keep their
-/// order. Throws Error for a share that is not from 0 to 1.
+/// order. Throws Error for a share that is not from 0 to 1, and a grain without a finite height.
 inline void strike_off(std::vector<Placement>& grains, double share) {
   require_within(share, 0.0, 1.0, "share of the grains to strike off");
+  detail::require_heights(grains);
   const auto kept = grains.size() - static_cast<std::size_t>(share * static_cast<double>(grains.size()));
   if (kept == grains.size()) return;
   std::vector<std::size_t> by_height(grains.size());

@@ -1,16 +1,20 @@
 #pragma once
 
 #include <dem/io/file.hpp>
+#include <dem/io/mesh_text.hpp>
 #include <dem/io/text.hpp>
 #include <dem/soil/packing.hpp>
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <filesystem>
 #include <iterator>
-#include <sstream>
+#include <optional>
 #include <string>
+#include <string_view>
 
 // Packings as text files, so that they can be read by any program:
 //
@@ -39,48 +43,54 @@ inline void save_packing(const Packing& p, const std::filesystem::path& path) {
   io::write_file(path, text);
 }
 
-/// Reads a packing. Throws Error, with what is wrong and where, for a file that is not one, is cut short, or holds
-/// numbers that make no sense.
+/// Reads a packing, in every locale. Throws Error, with what is wrong and where, for a file that is not one, is cut
+/// short, or holds numbers that make no sense.
 inline Packing load_packing(const std::filesystem::path& path) {
-  std::istringstream in(io::read_file(path));
+  const std::string text = io::read_file(path);
+  io::detail::Words words(text, path.string());
   const auto wrong = [&](const std::string& why) {
     fail("'{}' is no packing that can be read: {}; make one with save_packing", path.string(), why);
   };
-  const auto expect = [&](const char* word) {
-    std::string found;
-    if (!(in >> found) || found != word) wrong(fmt::format("'{}' is missing, '{}' stands there", word, found));
+  const auto expect = [&](std::string_view word) {
+    const std::string_view found = words.next();
+    if (found != word) wrong(fmt::format("'{}' is missing, '{}' stands there", word, io::detail::shown(found)));
+  };
+  const auto count_of = [&](std::string_view word) {
+    std::size_t count = 0;
+    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), count);
+    return error == std::errc() && end == word.data() + word.size() && !word.empty() ? std::optional(count)
+                                                                                     : std::nullopt;
   };
   Packing p;
-  int version = 0;
-  std::size_t count = 0;
   expect("dem-packing");
-  if (!(in >> version) || version != 1) wrong(fmt::format("its version is {}, known is 1", version));
-  std::string word;
-  if (in >> word && word == "shape") in >> p.shape >> word;
-  if (word != "half_edge") wrong(fmt::format("'half_edge' is missing, '{}' stands there", word));
-  in >> p.half_edge;
+  const std::string_view version = words.next();
+  if (count_of(version) != 1) wrong(fmt::format("its version is {}, known is 1", io::detail::shown(version)));
+  if (words.peek() == "shape") {
+    words.next();
+    p.shape = words.next();
+  }
+  expect("half_edge");
+  p.half_edge = words.number(words.next(), "half_edge");
   expect("box");
-  in >> p.length_x >> p.length_y;
+  p.length_x = words.number(words.next(), "the box's length");
+  p.length_y = words.number(words.next(), "the box's length");
   expect("note");
-  std::getline(in, p.note);  // which may be empty
-  p.note.erase(0, p.note.find_first_not_of(" \t"));
-  if (p.note.ends_with('\r')) p.note.pop_back();
+  p.note = words.rest_of_line();  // which may be empty
   expect("grains");
-  if (!(in >> count) || count > 100'000'000) wrong("the number of grains is missing or above 100 million");
+  const std::optional<std::size_t> count = count_of(words.next());
+  if (!count || *count > 100'000'000) wrong("the number of grains is missing or above 100 million");
   if (!(p.half_edge > 0.0 && p.length_x > 0.0 && p.length_y > 0.0)) wrong("half_edge or box is not positive");
-  p.grains.reserve(count);
-  for (std::size_t i = 0; i < count; ++i) {
-    Placement g;
-    double w, x, y, z;
-    if (!(in >> g.position.x() >> g.position.y() >> g.position.z() >> w >> x >> y >> z)) {
-      wrong(fmt::format("it ends at grain {} of {}, or has something else than a number there", i, count));
+  p.grains.reserve(std::min(*count, text.size() / 14));  // not more than the file can hold, whatever it says
+  for (std::size_t i = 0; i < *count; ++i) {
+    double numbers[7];
+    for (double& number : numbers) {
+      if (words.at_end()) wrong(fmt::format("it ends at grain {} of {}", i, *count));
+      number = words.number(words.next(), "a number of a grain");
     }
-    const Quaternion q(w, x, y, z);
-    if (!g.position.allFinite() || !(std::abs(q.norm() - 1.0) < 1e-6)) {
-      wrong(fmt::format("grain {} has no finite position or no unit quaternion", i));
-    }
-    g.rotation = q.normalized().toRotationMatrix();
-    p.grains.push_back(g);
+    const auto& [x, y, z, qw, qx, qy, qz] = numbers;
+    const Quaternion q(qw, qx, qy, qz);
+    if (!(std::abs(q.norm() - 1.0) < 1e-6)) wrong(fmt::format("the rotation of grain {} is no unit quaternion", i));
+    p.grains.push_back({{x, y, z}, q.normalized().toRotationMatrix()});
   }
   return p;
 }

@@ -144,7 +144,8 @@ void sample_surface_sensors(WorldState<Model>& w) {
   for (SurfaceSensor& s : w.surface_sensors) {
     const auto& surface = w.surfaces[s.surface.index()];
     Wrench load = {surface.force, surface.torque};
-    for (const coupling::BodyPair& pair : w.body_contacts.pairs) {
+    for (const std::uint32_t k : w.body_contacts.near) {
+      const coupling::BodyPair& pair = w.body_contacts.pairs[k];
       if (pair.a == s.surface) load = load + Wrench{pair.force, pair.torque_a};
       if (pair.b == s.surface) load = load + Wrench{-pair.force, pair.torque_b};
     }

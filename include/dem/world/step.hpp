@@ -68,7 +68,7 @@ void advance(WorldState<Model>& w) {
                                clean_rotations && last);
       if (last) w.chunks[c].commit();
     });
-    if (last) w.body_contacts.memories.commit();
+    if (last) w.body_contacts.commit();
     if (last) sample_surface_sensors(w);
     w.stopwatch.stop(Phase::motion);
   }

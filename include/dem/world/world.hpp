@@ -7,6 +7,8 @@
 #include <dem/world/thin_sheets.hpp>
 #include <dem/world/world_setup.hpp>
 
+#include <concepts>
+
 namespace dem {
 
 /// A simulation: grains, machine, and the laws between them, specialised at compile time for a Model. What is put into
@@ -28,6 +30,12 @@ class World : public WorldSetup<M> {
   /// constants are missing, the time step is too large, points would pass a two-sided sheet, or a prescribed motion
   /// would have to jump.
   void prepare() {
+    if (unfinished_) {
+      fail(
+          "the step after t = {:g} s was broken off by an exception, so this world stands between two steps: make a "
+          "new one",
+          time());
+    }
     if (!checked_ || !machine_is_initialised()) {
       state_.materials.check_complete();
       state_.materials.check_names(used_materials());
@@ -39,6 +47,7 @@ class World : public WorldSetup<M> {
       for (const auto& pair : state_.body_contacts.pairs) {
         state_.materials.check_pair(state_.surfaces[pair.a.index()].material, state_.surfaces[pair.b.index()].material);
       }
+      coupling::list_pairs(state_.body_contacts, std::span(std::as_const(state_.surfaces)), state_.materials);
       choose_time_step();
       checked_ = true;
     }
@@ -50,22 +59,43 @@ class World : public WorldSetup<M> {
     }
   }
   [[nodiscard]] StepReport step() { return run(1); }
-  /// Runs n steps, or fewer if a problem shows. A lost grain is reported once: a run may go on without it.
+  /// Runs n steps, or fewer if a problem shows. A lost grain is reported once: a run may go on without it. An exception
+  /// of a law, a shape or a function of your own arrives here, from whichever thread; the world may then be looked at,
+  /// but not run on.
   [[nodiscard]] StepReport run(std::uint64_t n) {
+    return run(n, [] { return true; });
+  }
+  /// The same, asking `goes_on()` after each step: false ends the run there, with all well.
+  template <std::predicate F>
+  [[nodiscard]] StepReport run(std::uint64_t n, F&& goes_on) {
     prepare();
     for (std::uint64_t k = 0; k < n; ++k) {
+      unfinished_ = true;
       advance(state_);
+      unfinished_ = false;
       if (StepReport report = find_problem(state_); !report) return report;
+      if (!goes_on()) break;
     }
     return ok();
   }
-  /// Runs for a time span (s) in whole steps; what a span leaves of a step counts in the next one.
+  /// Runs for a time span (s) in whole steps; what a span leaves of a step counts in the next one. Throws Error for
+  /// more steps than 9e15.
   [[nodiscard]] StepReport run_for(double seconds) {
+    return run_for(seconds, [] { return true; });
+  }
+  /// The same, asking `goes_on()` after each step: false ends the run there, with all well and nothing owed.
+  ///
+  ///     world.run_for(10.0, [] { return !io::interrupted(); });   // Ctrl-C ends it after the present step
+  template <std::predicate F>
+  [[nodiscard]] StepReport run_for(double seconds, F&& goes_on) {
     prepare();
-    owed_steps_ += require_non_negative(seconds, "time to run", "s") / time_step();
-    const double whole = std::max(0.0, std::round(owed_steps_));
-    owed_steps_ -= whole;
-    return run(static_cast<std::uint64_t>(whole));
+    const double owed = owed_steps_ + require_non_negative(seconds, "time to run", "s") / time_step();
+    if (!(owed <= 0x1.0p53)) {  // beyond it time stands still: t + dt = t
+      fail("time to run is {:g} s, {:g} steps of {:g} s, but must be at most 9e15 steps", seconds, owed, time_step());
+    }
+    const double whole = std::max(0.0, std::round(owed));
+    owed_steps_ = owed - whole;
+    return run(static_cast<std::uint64_t>(whole), goes_on);
   }
 
   double time() const { return state_.time; }
@@ -204,6 +234,7 @@ class World : public WorldSetup<M> {
   }
 
   double owed_steps_ = 0.0;  // by run_for: less than one
+  bool unfinished_ = false;  // while a step is under way
 };
 
 }  // namespace dem

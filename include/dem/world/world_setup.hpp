@@ -2,6 +2,8 @@
 
 #include <dem/world/state.hpp>
 
+#include <algorithm>
+#include <cstdint>
 #include <utility>
 
 namespace dem {
@@ -153,7 +155,7 @@ class WorldSetup {
            b.value);
     }
     if (w.body_contacts.pairs.size() >= coupling::BodyKey::most_pairs) {
-      fail("a world takes at most {} body contacts", coupling::BodyKey::most_pairs);
+      fail("a world takes at most {} pairs of surfaces that may touch", coupling::BodyKey::most_pairs);
     }
     w.body_contacts.pairs.push_back({a, b});
     checked_ = initialised_ = false;
@@ -161,29 +163,32 @@ class WorldSetup {
   }
   /// Lets all surfaces touch each other that were added so far, but for those of one body, of two fixed bodies without
   /// mass, or of bodies that a joint connects (one of kind `free` only measures); pairs that are known already are not
-  /// added again. Returns how many pairs were added.
+  /// added again. Any number of them costs little: only those whose bounding boxes meet are looked at. Returns how many
+  /// pairs were added.
   std::size_t add_body_contacts() {
     const auto& w = state_;
-    std::size_t added = 0;
+    const auto both = [](std::size_t a, std::size_t b) { return std::uint64_t{std::min(a, b)} << 32 | std::max(a, b); };
+    std::vector<std::uint64_t> joined, known_pairs;
+    for (const auto& joint : w.machine.parts().joints) {
+      if (joint.kind != mbd::JointKind::free) joined.push_back(both(joint.a, joint.b));
+    }
+    for (const auto& pair : w.body_contacts.pairs) known_pairs.push_back(both(pair.a.index(), pair.b.index()));
+    for (auto* list : {&joined, &known_pairs}) std::sort(list->begin(), list->end());
+    const auto holds = [](const auto& list, std::uint64_t k) {
+      return std::binary_search(list.begin(), list.end(), k);
+    };
+    const std::size_t before = w.body_contacts.pairs.size();
     for (std::size_t a = 0; a < w.surfaces.size(); ++a) {
       for (std::size_t b = a + 1; b < w.surfaces.size(); ++b) {
         const BodyId i = w.surfaces[a].body, j = w.surfaces[b].body;
         const Body &body_i = w.machine.body(i), &body_j = w.machine.body(j);
-        bool skip = i == j || (body_i.fixed && body_j.fixed && !(body_i.mass + body_j.mass > 0.0)) ||
-                    (!coupling::has_points(w.surfaces[a]) && !coupling::has_points(w.surfaces[b]));
-        for (const auto& joint : w.machine.parts().joints) {
-          if (joint.kind == mbd::JointKind::free) continue;
-          skip |= (joint.a == i.value && joint.b == j.value) || (joint.a == j.value && joint.b == i.value);
-        }
-        for (const auto& pair : w.body_contacts.pairs) {
-          skip |= (pair.a.index() == a && pair.b.index() == b) || (pair.a.index() == b && pair.b.index() == a);
-        }
-        if (skip) continue;
-        add_body_contact(SurfaceId(a), SurfaceId(b));
-        ++added;
+        const bool skip = i == j || (body_i.fixed && body_j.fixed && !(body_i.mass + body_j.mass > 0.0)) ||
+                          (!coupling::has_points(w.surfaces[a]) && !coupling::has_points(w.surfaces[b])) ||
+                          holds(joined, both(i.index(), j.index())) || holds(known_pairs, both(a, b));
+        if (!skip) add_body_contact(SurfaceId(a), SurfaceId(b));
       }
     }
-    return added;
+    return w.body_contacts.pairs.size() - before;
   }
   /// Force (N) on the body of the pair's first surface in the last force evaluation; the other body feels the opposite.
   Vec3 body_contact_force(BodyContactId c) const {

@@ -182,12 +182,44 @@ inline std::size_t remove_unused(IndexedMesh& mesh) {
   return unused;
 }
 
+/// Throws Error if vertices that lie beside each other became one in more than half of the triangles: a single corrupt
+/// coordinate makes a mesh so large that all else is a point beside it.
+inline void refuse_collapse(const IndexedMesh& given, const IndexedMesh& merged, double tolerance) {
+  std::size_t collapsed = 0;
+  for (std::size_t t = 0; t < merged.triangles.size(); ++t) {
+    const bool had_corners = given.corner(t, 0) != given.corner(t, 1) && given.corner(t, 1) != given.corner(t, 2) &&
+                             given.corner(t, 2) != given.corner(t, 0);
+    collapsed += had_corners && repeats_a_corner(merged.triangles[t]) ? 1 : 0;
+  }
+  if (2 * collapsed <= merged.triangles.size()) return;
+  const auto nearer = [](const Vec3& a, const Vec3& b) { return a.squaredNorm() < b.squaredNorm(); };
+  const Vec3 far = *std::max_element(merged.vertices.begin(), merged.vertices.end(), nearer);
+  fail(
+      "{} of the {} triangles of a mesh are smaller than {:.3g} m, 1e-9 of its size: the vertex at ({:g}, {:g}, {:g}) "
+      "m "
+      "seems to be corrupt; correct or export the mesh again, or give a tolerance",
+      collapsed, merged.triangles.size(), tolerance, far.x(), far.y(), far.z());
+}
+
+/// Throws Error for a triangle that looks nowhere, as are left where more lie in a line than can be joined.
+inline void refuse_without_area(const IndexedMesh& mesh) {
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    if (mesh.area_vector(t).norm() > 0.0) continue;
+    const Vec3 corner = mesh.corner(t, 0);
+    fail(
+        "a triangle of a mesh with a corner at ({:g}, {:g}, {:g}) m has no area and could not be joined to others; "
+        "correct or export the mesh again",
+        corner.x(), corner.y(), corner.z());
+  }
+}
+
 }  // namespace detail
 
 /// Checks a mesh and repairs what is safe to repair: merges vertices within `tolerance` (m; 0: 1e-9 of the diagonal),
 /// removes triangles without an area or there twice, drops unused vertices, and turns triangles that look the wrong
 /// way. Holes and edges of more than two triangles are left, and reported. Throws Error for indices out of range,
-/// coordinates that are not finite, and if no triangle is left.
+/// coordinates that are not finite or so far out that the other vertices are one beside them, triangles that have no
+/// area after the repair, and if no triangle is left.
 inline RepairedMesh repaired(const IndexedMesh& given, MeshFacing facing = MeshFacing::outward,
                              double tolerance = 0.0) {
   check_indices(given);
@@ -208,10 +240,12 @@ inline RepairedMesh repaired(const IndexedMesh& given, MeshFacing facing = MeshF
   }
   report.tolerance = std::max(tolerance, 1e-9 * size);
   report.merged_vertices = detail::merge_vertices(mesh, report.tolerance);
+  if (tolerance < report.tolerance) detail::refuse_collapse(given, mesh, report.tolerance);
   report.degenerate_triangles = detail::remove_degenerate(mesh, report.tolerance);
   report.duplicate_triangles = detail::remove_duplicates(mesh);
   report.unused_vertices += detail::remove_unused(mesh);
   if (mesh.triangles.empty()) fail("none of the {} triangles of a mesh has an area", given.triangles.size());
+  detail::refuse_without_area(mesh);
   std::tie(report.flipped_triangles, report.components) = detail::orient(mesh, facing);
   const MeshTopology topology = topology_of(mesh);
   report.vertices = mesh.vertices.size();

@@ -11,7 +11,8 @@ namespace dem::contact {
 ///   History<T>     what a contact has to remember between steps (empty if nothing): numbers, no vectors, as they
 ///                  are neither turned with the contact nor turned round where two grains change places;
 ///   force(parameters, state, history) -> T   the repulsive force in N (the world cuts off negative values only if the
-///                  law does; a law that pulls is allowed);
+///                  law does, with max(T(0), f): in this order a NaN stays one and is reported; a law that pulls is
+///                  allowed);
 ///   stiffness(parameters, state) -> double   the largest slope dF/d(overlap) in N/m, from which the stable time step
 ///                  follows;
 ///   check(parameters)   throws dem::Error, in words, if a constant makes no sense;

@@ -38,7 +38,8 @@ inline void carry(PrescribedMotion& p, integrator::Motion<double>& m, double tim
   }
   m.velocity = velocity + cross(spin, from_eigen(pose.rotation) * p.centre);
   m.angular_velocity = transpose_times(m.rotation, spin);
-  p.drive.value = m.position.x + m.position.y + m.position.z;  // only to tell whether it is a number
+  const V all = m.position + m.velocity + m.angular_velocity;
+  p.drive.value = all.x + all.y + all.z;  // only to tell whether all of it are numbers
 }
 
 /// Sets the position or the rotation of a fixed body.

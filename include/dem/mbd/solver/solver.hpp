@@ -116,10 +116,10 @@ class Solver {
   /// All is well, or which body blew up, when, and what to change.
   MachineReport report(const Mechanism& m) const {
     if (!bad_.valid()) return {true, time_, {}, {}};
-    const std::string text =
-        dem::text("body '{}' blew up at t = {:g} s: its speed is not finite or above largest_speed = {:g}. {}",
-                  m.parts().bodies[bad_.index()].name, bad_time_, m.largest_speed,
-                  cause_of_blow_up<I>(m.parts(), limit_at_start_, watch_, step_dt_, m.substeps));
+    const std::string text = dem::text(
+        "body '{}' blew up at t = {:g} s: its motion is not finite or its speed above largest_speed = {:g}. {}",
+        m.parts().bodies[bad_.index()].name, bad_time_, m.largest_speed,
+        cause_of_blow_up<I>(m.parts(), limit_at_start_, watch_, step_dt_, m.substeps));
     return {false, bad_time_, bad_, text};
   }
   bool has_blown_up() const { return bad_.valid(); }
@@ -221,8 +221,7 @@ class Solver {
     const bool tidy = ++steps_ % 256 == 0;
     for (std::size_t i = 0; i < parts.bodies.size(); ++i) {
       Body& b = parts.bodies[i];
-      if (b.fixed) continue;
-      if (tidy) b.motion.rotation = orthonormalised(b.motion.rotation);
+      if (tidy && !b.fixed) b.motion.rotation = orthonormalised(b.motion.rotation);
       watch_body(m, i);
     }
     if (tidy) settle_turns(parts);
@@ -231,12 +230,17 @@ class Solver {
     if (!bad_.valid()) watch_.follow(parts, dt, time_);
   }
 
+  /// Notes the first body that is too fast, or has anything in its motion that is not a number. Each sum of squares is
+  /// compared by itself: a maximum of several would drop a NaN in one of them.
   void watch_body(const Mechanism& m, std::size_t i) {
     const auto& motion = m.parts().bodies[i].motion;
-    const double speed2 =
-        max(dot(motion.velocity, motion.velocity), dot(motion.angular_velocity, motion.angular_velocity));
-    const double sum = speed2 + dot(motion.position, motion.position);
-    if (!(speed2 < m.largest_speed * m.largest_speed && sum < 1e300) && !bad_.valid()) [[unlikely]] {
+    const double limit = m.largest_speed * m.largest_speed, anywhere = 1e300;
+    const Matrix3<double>& r = motion.rotation;
+    const double turned = dot(r.row0, r.row0) + dot(r.row1, r.row1) + dot(r.row2, r.row2);
+    const bool is_well = dot(motion.velocity, motion.velocity) < limit &&
+                         dot(motion.angular_velocity, motion.angular_velocity) < limit &&
+                         dot(motion.position, motion.position) < anywhere && turned < anywhere;
+    if (!is_well && !bad_.valid()) [[unlikely]] {
       bad_ = BodyId(i);
       bad_time_ = time_;
     }

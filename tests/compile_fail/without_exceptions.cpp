@@ -1,0 +1,5 @@
+// expect: compile without -fno-exceptions
+// options: -fno-exceptions
+#include <dem/core/error.hpp>
+
+int main() {}
