@@ -21,7 +21,7 @@ class Function<Result(Args...)> {
     if constexpr (std::is_pointer_v<F> || requires { f.operator bool(); }) {
       if (!f) return;
     }
-    call_ = std::make_unique<Held<F>>(std::move(f));
+    call_.reset(new Held<F>(std::move(f)));  // make_unique would instantiate a second pointer type for each F
   }
   Function(const Function& other) : call_(other.call_ ? other.call_->copy() : nullptr) {}
   Function(Function&&) noexcept = default;
@@ -37,13 +37,13 @@ class Function<Result(Args...)> {
   struct Call {
     virtual ~Call() = default;
     virtual Result call(Args... args) = 0;
-    virtual std::unique_ptr<Call> copy() const = 0;
+    virtual Call* copy() const = 0;
   };
   template <class F>
   struct Held final : Call {
     explicit Held(F f) : function(std::move(f)) {}
     Result call(Args... args) override { return function(std::forward<Args>(args)...); }
-    std::unique_ptr<Call> copy() const override { return std::make_unique<Held>(function); }
+    Call* copy() const override { return new Held(function); }
     F function;
   };
 

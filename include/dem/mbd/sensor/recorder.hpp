@@ -42,27 +42,32 @@ class Recorder {
     const JointKind kind = m->joint(id).kind;
     for (const Dof f : dofs_of(kind)) {
       const bool rotation = is_rotation(f);
-      add(dem::text("{}_{}_{}", name, name_of(f), rotation ? "rad" : "m"), [m, id, f] { return m->coordinate(id, f); });
-      add(dem::text("{}_{}_speed_{}_per_s", name, name_of(f), rotation ? "rad" : "m"),
-          [m, id, f] { return m->speed(id, f); });
+      for (const bool moving : {false, true}) {
+        add(dem::text("{}_{}{}_{}{}", name, name_of(f), moving ? "_speed" : "", rotation ? "rad" : "m",
+                      moving ? "_per_s" : ""),
+            [m, id, f, moving] { return moving ? m->speed(id, f) : m->coordinate(id, f); });
+      }
     }
-    add(name + "_force_x_N", [m, id] { return m->reaction(id).force.x; });
-    add(name + "_force_y_N", [m, id] { return m->reaction(id).force.y; });
-    add(name + "_force_z_N", [m, id] { return m->reaction(id).force.z; });
-    add(name + "_torque_x_Nm", [m, id] { return m->reaction(id).torque.x; });
-    add(name + "_torque_y_Nm", [m, id] { return m->reaction(id).torque.y; });
-    add(name + "_torque_z_Nm", [m, id] { return m->reaction(id).torque.z; });
+    for (const bool torque : {false, true}) {
+      for (int k = 0; k < 3; ++k) {
+        add(dem::text("{}_{}_{}_{}", name, torque ? "torque" : "force", "xyz"[k], torque ? "Nm" : "N"),
+            [m, id, torque, k] {
+              const Wrench on_b = m->reaction(id);
+              return to_eigen(torque ? on_b.torque : on_b.force)[k];
+            });
+      }
+    }
     return *this;
   }
   /// Position and velocity of a body's centre of mass.
   Recorder& add(BodyId id) {
     const Mechanism* m = machine_;
     const std::string name = known_body(m->parts(), id, "a recorder").name;
-    for (int k = 0; k < 3; ++k) {
-      add(dem::text("{}_{}_m", name, "xyz"[k]), [m, id, k] { return m->body(id).position()[k]; });
-    }
-    for (int k = 0; k < 3; ++k) {
-      add(dem::text("{}_v{}_m_per_s", name, "xyz"[k]), [m, id, k] { return m->body(id).velocity()[k]; });
+    for (const bool moving : {false, true}) {
+      for (int k = 0; k < 3; ++k) {
+        add(dem::text("{}_{}{}_{}", name, moving ? "v" : "", "xyz"[k], moving ? "m_per_s" : "m"),
+            [m, id, moving, k] { return moving ? m->body(id).velocity()[k] : m->body(id).position()[k]; });
+      }
     }
     return *this;
   }
@@ -71,9 +76,10 @@ class Recorder {
     const Mechanism* m = machine_;
     if (id.index() >= m->parts().actuators.size()) fail("a recorder names an actuator that the machine does not have");
     const std::string name = m->actuator(id).spec.name;
-    add(name + "_coordinate", [m, id] { return m->actuator(id).coordinate; });
-    add(name + "_speed", [m, id] { return m->actuator(id).speed; });
-    add(name + "_force", [m, id] { return m->actuator(id).force; });
+    for (const auto& [what, value] : {std::pair("_coordinate", &Actuator::coordinate),
+                                      std::pair("_speed", &Actuator::speed), std::pair("_force", &Actuator::force)}) {
+      add(name + what, [m, id, value = value] { return m->actuator(id).*value; });
+    }
     return *this;
   }
 
