@@ -24,53 +24,88 @@ concept KnowsClose = requires(const S& s, const Vector3<double>& point) {
   { s.close(point, 1.0, true) } -> std::same_as<bool>;
 };
 
-/// False if a surface knows that no probe of grains of a shape in a sphere (global axes) touches it.
-template <class Shape, class Surface>
-bool is_close(const Surface& surface, const Vec3& centre, double radius) {
-  const Vector3<double> seen = transpose_times(surface.axes, from_eigen(centre) - surface.origin);
-  return std::visit(
-      [&]<class G>(const G& geometry) {
-        if constexpr (KnowsClose<G>) return geometry.close(seen, radius, shows_points<Shape>);
-        return true;
-      },
-      surface.geometry);
-}
+/// The grains of one chunk that meet the surfaces of machine parts.
+template <class Model>
+struct ChunkAtSurfaces {
+  using Shape = typename Model::Shape;
+  using Surface = MachineSurface<typename Model::Surfaces>;
+  using GrainParticles = Particles<Shape, typename Model::Integrator>;
 
-/// Hits of the grains of one chunk on one surface, up to a gap where cohesion acts at a distance (else NoGap).
-template <class Shape, class Particles, class Surface, class Gap>
-void probe_surface(std::size_t begin, std::size_t end, std::size_t number, const Surface& surface, const Particles& p,
-                   std::span<const Species<Shape>> species, double largest_radius, Gap gap, SurfaceScratch& s) {
+  std::size_t begin, end;  // rows
+  Chunk<Model>& chunk;
+  const GrainParticles& particles;
+  std::span<const Species<Shape>> species;
+  const Materials<Model>& materials;
+  std::span<const Surface> surfaces;
+  double largest_radius;  ///< m, of all grains
+  SurfaceScratch& scratch;
+
+  /// The gap (m) up to which cohesion acts at a distance, else NoGap.
+  auto gap() const {
+    if constexpr (cohesion::reaches<typename Model::Cohesion>) {
+      return materials.range();
+    } else {
+      return shape::NoGap{};
+    }
+  }
+  double reach() const { return shape::widened(largest_radius, gap()); }
+};
+
+/// Hits of a chunk's grains on one surface, whose geometry is a G. A world stores this function with each surface, so a
+/// program has the code of the kinds that it adds and of no others.
+template <class Model, class G>
+void find_hits_on(const ChunkAtSurfaces<Model>& at, std::size_t number) {
+  using Shape = typename Model::Shape;
+  const auto& surface = at.surfaces[number];
+  const G& geometry = *std::get_if<G>(&surface.geometry);
+  const auto gap = at.gap();
+  SurfaceScratch& s = at.scratch;
+  if constexpr (KnowsClose<G>) {
+    const Vec3 middle = 0.5 * (at.chunk.low + at.chunk.high);
+    const Vector3<double> seen = transpose_times(surface.axes, from_eigen(middle) - surface.origin);
+    const double radius = 0.5 * (at.chunk.high - at.chunk.low).norm() + at.reach();
+    if (!geometry.close(seen, radius, shows_points<Shape>)) return;
+  }
+  for (std::size_t k = 0; k < at.species.size(); ++k) {
+    s.law_of[k] = at.materials.row(at.species[k].material, surface.material);
+  }
+  const std::size_t first = s.hits.size();
+  const auto& p = at.particles;
   const Matrix3<Pack> axes = {{Pack(surface.axes.row0.x), Pack(surface.axes.row0.y), Pack(surface.axes.row0.z)},
                               {Pack(surface.axes.row1.x), Pack(surface.axes.row1.y), Pack(surface.axes.row1.z)},
                               {Pack(surface.axes.row2.x), Pack(surface.axes.row2.y), Pack(surface.axes.row2.z)}};
   const Vector3<Pack> origin = {Pack(surface.origin.x), Pack(surface.origin.y), Pack(surface.origin.z)};
-  std::visit(
-      [&](const auto& geometry) {
-        for (std::size_t pack = begin; pack < end; pack += static_cast<std::size_t>(pack_width)) {
-          const Vector3<Pack> seen = transpose_times(axes, p.position.pack(pack) - origin);
-          for (std::uint32_t near = bits(geometry.near(seen, Pack(shape::widened(largest_radius, gap)))); near != 0;
-               near &= near - 1) {
-            const std::size_t i = pack + static_cast<std::size_t>(std::countr_zero(near));
-            if (i >= end) break;
-            const Shape& grain = species[p.species[i]].shape;
-            const Vector3<double> centre = transpose_times(surface.axes, p.position[i] - surface.origin);
-            if (!geometry.near(centre, shape::widened(grain.bounding_radius(), gap))) continue;
-            // A shape of one probe asks the same question by touching.
-            if constexpr (Shape::has_orientation && KnowsClose<std::remove_cvref_t<decltype(geometry)>>) {
-              if (!geometry.close(centre, shape::widened(grain.bounding_radius(), gap), shows_points<Shape>)) continue;
-            }
-            const GrainAtSurface at = {static_cast<std::uint32_t>(i),
-                                       static_cast<std::uint32_t>(i - begin),
-                                       static_cast<std::uint32_t>(number),
-                                       s.law_of[p.species[i]],
-                                       p.pose_of(i),
-                                       centre};
-            shape::visit_kind(grain, [&](const auto& kind) { touch_surface(at, kind, surface, geometry, gap, s); });
-          }
-        }
-      },
-      surface.geometry);
+  for (std::size_t pack = at.begin; pack < at.end; pack += static_cast<std::size_t>(pack_width)) {
+    const Vector3<Pack> seen = transpose_times(axes, p.position.pack(pack) - origin);
+    for (std::uint32_t near = bits(geometry.near(seen, Pack(at.reach()))); near != 0; near &= near - 1) {
+      const std::size_t i = pack + static_cast<std::size_t>(std::countr_zero(near));
+      if (i >= at.end) break;
+      const Shape& grain = at.species[p.species[i]].shape;
+      const Vector3<double> centre = transpose_times(surface.axes, p.position[i] - surface.origin);
+      const double radius = shape::widened(grain.bounding_radius(), gap);
+      if (!geometry.near(centre, radius)) continue;
+      // A shape of one probe asks the same question by touching.
+      if constexpr (Shape::has_orientation && KnowsClose<G>) {
+        if (!geometry.close(centre, radius, shows_points<Shape>)) continue;
+      }
+      const GrainAtSurface one = {static_cast<std::uint32_t>(i),
+                                  static_cast<std::uint32_t>(i - at.begin),
+                                  static_cast<std::uint32_t>(number),
+                                  s.law_of[p.species[i]],
+                                  p.pose_of(i),
+                                  centre};
+      shape::visit_kind(grain, [&](const auto& kind) { touch_surface(one, kind, surface, geometry, gap, s); });
+    }
+  }
+  if constexpr (history_size < Model >> 0 && surface::NamesDirections<G>) {
+    follow_turns(std::span<const grain::Hit>(s.hits).subspan(first), at.chunk.surface_contacts.last,
+                 [](std::uint64_t key) { return grain::SurfaceKey::probe(key) != corner_probe; });
+  }
 }
+
+/// find_hits_on() of a surface's kind.
+template <class Model>
+using FindHits = void (*)(const ChunkAtSurfaces<Model>&, std::size_t);
 
 /// The touch of a grain's point on a surface: of shapes whose contacts may be patches it knows the others' shares.
 template <class Shape>
@@ -82,56 +117,26 @@ struct OnSurface {
 /// Contacts of the grains of one chunk with the surfaces of machine parts, and the load that the chunk puts on each
 /// surface. The chunk's bounding box selects the surfaces, anew each time, so fast parts need no neighbour list. Writes
 /// to the chunk and its own grains' sums only.
-template <class Model, class Particles, class Surface>
-void find_surface_contacts(std::size_t chunk_index, Chunk<Model>& chunk, const Particles& p,
-                           std::span<const Species<typename Model::Shape>> species, const Materials<Model>& materials,
-                           std::span<const Surface> surfaces, double largest_radius, double dt, grain::ForceSums& sums,
-                           SurfaceScratch& scratch) {
-  const std::size_t begin = chunk_index * chunk_size;
-  const std::size_t end = std::min(begin + chunk_size, p.count);
-  const auto gap = [&] {
-    if constexpr (cohesion::reaches<typename Model::Cohesion>) {
-      return materials.range();
-    } else {
-      return shape::NoGap{};
-    }
-  }();
-  const double reach = shape::widened(largest_radius, gap);
+template <class Model>
+void find_surface_contacts(const ChunkAtSurfaces<Model>& at, std::span<const FindHits<Model>> find_hits, double dt,
+                           grain::ForceSums& sums) {
+  using Shape = typename Model::Shape;
+  auto& [begin, end, chunk, p, species, materials, surfaces, largest_radius, scratch] = at;
+  const double reach = at.reach();
   const Vec3 low = chunk.low - filled(reach), high = chunk.high + filled(reach);
-  std::vector<grain::Hit>& hits = scratch.hits;
-  std::vector<std::uint32_t>& law_of = scratch.law_of;
-  hits.clear();
+  const std::vector<grain::Hit>& hits = scratch.hits;
+  scratch.hits.clear();
   scratch.touches.clear();
   scratch.total_share.clear();
   chunk.surface_loads.clear();
-  law_of.resize(species.size());
+  scratch.law_of.resize(species.size());
   for (std::size_t s = 0; s < surfaces.size(); ++s) {
-    const Surface& surface = surfaces[s];
-    if (!surface.active || !boxes_overlap(low, high, surface.low, surface.high)) {
-      continue;
-    }
-    if (!is_close<typename Model::Shape>(surface, 0.5 * (chunk.low + chunk.high),
-                                         0.5 * (chunk.high - chunk.low).norm() + reach)) {
-      continue;
-    }
-    for (std::size_t k = 0; k < species.size(); ++k) law_of[k] = materials.row(species[k].material, surface.material);
-    const std::size_t first = hits.size();
-    probe_surface(begin, end, s, surface, p, species, largest_radius, gap, scratch);
-    if constexpr (history_size < Model >> 0) {
-      std::visit(
-          [&]<class G>(const G&) {
-            if constexpr (surface::NamesDirections<G>) {
-              follow_turns(std::span<const grain::Hit>(hits).subspan(first), chunk.surface_contacts.last,
-                           [](std::uint64_t key) { return grain::SurfaceKey::probe(key) != corner_probe; });
-            }
-          },
-          surface.geometry);
-    }
+    const auto& surface = surfaces[s];
+    if (surface.active && boxes_overlap(low, high, surface.low, surface.high)) find_hits[s](at, s);
   }
 
-  using Shape = typename Model::Shape;
   if constexpr (shape::PatchShape<Shape>) scratch.total_share.resize(scratch.touches.size(), 1.0);
-  const auto touch_of = [&](std::size_t c) {
+  const auto touch_of = [&scratch = scratch](std::size_t c) {
     if constexpr (shape::PatchShape<Shape>) {
       return contact::PatchTouch<double>{scratch.touches[c], scratch.total_share[c]};
     } else {
@@ -141,8 +146,8 @@ void find_surface_contacts(std::size_t chunk_index, Chunk<Model>& chunk, const P
   grain::ContactEvaluator<Model, OnSurface<Shape>::template Touch> evaluator(materials.table(), dt);
   const grain::Deepest deepest = evaluator.run(
       hits, chunk.surface_contacts, scratch.forces, touch_of,
-      [&](std::size_t c) -> const PartnerView& { return p.view[hits[c].i]; },
-      [&](std::size_t c) -> const PartnerView& { return surfaces[hits[c].partner].view; });
+      [&](std::size_t c) -> const PartnerView& { return at.particles.view[hits[c].i]; },
+      [&](std::size_t c) -> const PartnerView& { return at.surfaces[hits[c].partner].view; });
   if (deepest.overlap > chunk.deepest.overlap) {
     chunk.deepest = {deepest.overlap, hits[deepest.hit].i, hits[deepest.hit].partner, true};
   }

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <concepts>
 #include <cstdint>
+#include <type_traits>
 #include <variant>
 
 namespace dem::surface {
@@ -85,5 +86,10 @@ constexpr void check_surface() {
 /// The kinds of surface that a model's machine parts may have.
 template <Surface... Kinds>
 using Set = std::variant<Kinds...>;
+
+template <class Kind, class Set>
+inline constexpr bool is_one_of = false;
+template <class Kind, class... Kinds>
+inline constexpr bool is_one_of<Kind, std::variant<Kinds...>> = (std::is_same_v<Kind, Kinds> || ...);
 
 }  // namespace dem::surface

@@ -3,6 +3,7 @@
 #include <dem/coupling/body_contacts.hpp>
 #include <dem/coupling/body_stability.hpp>
 #include <dem/coupling/machine_surface.hpp>
+#include <dem/coupling/surface_contacts.hpp>
 #include <dem/grain/materials.hpp>
 #include <dem/grain/neighbours.hpp>
 #include <dem/mbd/solver/solver.hpp>
@@ -53,8 +54,10 @@ struct WorldState {
   mbd::Mechanism machine;
   mbd::Solver<Integrator> machine_solver;
   std::vector<Surface> surfaces;
+  std::vector<coupling::FindHits<Model>> find_hits;  ///< of the surfaces: the code for their kinds
   std::vector<SurfaceSensor> surface_sensors;
   coupling::BodyContacts<Model> body_contacts;
+  void (*find_body_contacts)(WorldState&) = nullptr;  ///< set with the first pair: other programs are without that code
   typename Model::Executor executor;
   Stopwatch stopwatch;
 

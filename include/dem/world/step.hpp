@@ -24,17 +24,17 @@ void find_contacts(WorldState<Model>& w) {
     grain::find_pair_contacts<Model>(c, w.chunks[c], w.particles, w.species, w.materials, w.time_step, sums,
                                      pair_scratch);
     const double start = w.stopwatch.clock();
-    coupling::find_surface_contacts<Model>(c, w.chunks[c], w.particles, std::span(std::as_const(w.species)),
-                                           w.materials, std::span(std::as_const(w.surfaces)), w.largest_radius,
-                                           w.time_step, sums, surface_scratch);
+    coupling::find_surface_contacts<Model>(
+        {c * chunk_size, std::min((c + 1) * chunk_size, w.particles.count), w.chunks[c], w.particles, w.species,
+         w.materials, w.surfaces, w.largest_radius, surface_scratch},
+        w.find_hits, w.time_step, sums);
     w.chunks[c].surface_seconds += w.stopwatch.clock() - start;
     sums.write(c, w.particles);
   });
   w.stopwatch.stop(Phase::contacts);
   w.stopwatch.start();
   load_bodies(w);
-  coupling::find_body_contacts<Model>(w.body_contacts, std::span(std::as_const(w.surfaces)), w.materials,
-                                      std::span(w.machine.bodies()), w.time_step);
+  if (w.find_body_contacts) w.find_body_contacts(w);
   w.stopwatch.stop(Phase::machine);
 }
 

@@ -111,30 +111,18 @@ class WorldSetup {
 
   /// Gives a body a surface that grains feel. Its place is by default that in the body's reference frame, that of the
   /// drawing or the mesh that the body was made from.
+  template <class Kind>
+  requires surface::is_one_of<Kind, typename Model::Surfaces> SurfaceId add_surface(BodyId body, const Kind& geometry,
+                                                                                    const SurfaceOptions& o = {}) {
+    return place_surface(body, geometry, o, &coupling::find_hits_on<Model, Kind>);
+  }
+  /// The same of a kind that is known when the program runs.
   SurfaceId add_surface(BodyId body, const typename Model::Surfaces& geometry, const SurfaceOptions& o = {}) {
-    if (body.index() >= state_.machine.bodies().size()) {
-      fail("surface '{}' was given body {}, but the machine has {}", o.name, body.value,
-           state_.machine.bodies().size());
-    }
-    // Written such that a NaN fails as well: a wall whose place is not known would let everything through.
-    if (!is_finite(o.position) || !(distance_from_rotation(o.rotation) <= 1e-6)) {
-      fail(
-          "surface '{}' was given a position that is not finite or a rotation matrix that is no rotation (R^T R = I, "
-          "det R = 1)",
-          o.name);
-    }
-    if (state_.surfaces.size() >= 0xffff) fail("a world takes at most 65,535 surfaces");
-    Vec3 position = o.position;
-    Mat3 rotation = o.rotation;
-    if (o.frame == BodyFrame::reference) {
-      const mbd::BuiltBody& built = state_.machine.parts().built[body.index()];
-      position = built.reference_origin + built.reference_axes * o.position;
-      rotation = built.reference_axes * o.rotation;
-    }
-    typename WorldState<Model>::Surface s{o.name, body, state_.materials.id(o.material), geometry, position, rotation};
-    state_.surfaces.push_back(s);
-    checked_ = false;
-    return SurfaceId(state_.surfaces.size() - 1);
+    return place_surface(
+        body, geometry, o,
+        std::visit(
+            []<class Kind>(const Kind&) -> coupling::FindHits<Model> { return &coupling::find_hits_on<Model, Kind>; },
+            geometry));
   }
   /// Lets two surfaces of different bodies touch each other, with the contact constants of their materials. Each shows
   /// its points (corners, vertices, rims) to the other; a plane has none. Throws Error for surfaces of one body, of two
@@ -158,6 +146,10 @@ class WorldSetup {
       fail("a world takes at most {} pairs of surfaces that may touch", coupling::BodyKey::most_pairs);
     }
     w.body_contacts.pairs.push_back({a, b});
+    w.find_body_contacts = [](WorldState<Model>& s) {
+      coupling::find_body_contacts<Model>(s.body_contacts, std::span(std::as_const(s.surfaces)), s.materials,
+                                          std::span(s.machine.bodies()), s.time_step);
+    };
     checked_ = initialised_ = false;
     return BodyContactId(w.body_contacts.pairs.size() - 1);
   }
@@ -207,6 +199,33 @@ class WorldSetup {
   void set_active(SurfaceId s, bool active) { known(state_.surfaces, s, "surface").active = active; }
 
  protected:
+  SurfaceId place_surface(BodyId body, const typename Model::Surfaces& geometry, const SurfaceOptions& o,
+                          coupling::FindHits<Model> find_hits) {
+    if (body.index() >= state_.machine.bodies().size()) {
+      fail("surface '{}' was given body {}, but the machine has {}", o.name, body.value,
+           state_.machine.bodies().size());
+    }
+    // Written such that a NaN fails as well: a wall whose place is not known would let everything through.
+    if (!is_finite(o.position) || !(distance_from_rotation(o.rotation) <= 1e-6)) {
+      fail(
+          "surface '{}' was given a position that is not finite or a rotation matrix that is no rotation (R^T R = I, "
+          "det R = 1)",
+          o.name);
+    }
+    if (state_.surfaces.size() >= 0xffff) fail("a world takes at most 65,535 surfaces");
+    Vec3 position = o.position;
+    Mat3 rotation = o.rotation;
+    if (o.frame == BodyFrame::reference) {
+      const mbd::BuiltBody& built = state_.machine.parts().built[body.index()];
+      position = built.reference_origin + built.reference_axes * o.position;
+      rotation = built.reference_axes * o.rotation;
+    }
+    typename WorldState<Model>::Surface s{o.name, body, state_.materials.id(o.material), geometry, position, rotation};
+    state_.surfaces.push_back(s);
+    state_.find_hits.push_back(find_hits);
+    checked_ = false;
+    return SurfaceId(state_.surfaces.size() - 1);
+  }
   std::size_t row(ParticleId p) const {
     const std::uint32_t row = known(state_.particles.row_of, p, "grain");
     if (row == state_.particles.gone) fail("grain {} is asked for, but it was removed", p.value);
