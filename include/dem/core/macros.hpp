@@ -35,6 +35,10 @@
 #define DEM_FLATTEN
 #endif
 
+/// DEM_LAZY makes a function that is no template one, without a choice: only programs that call it compile what stands in
+/// it. For long work at set-up that few programs need, such as the repair of meshes.
+#define DEM_LAZY template <class DemLazy = void>
+
 /// DEM_ASSERT states an invariant of the library itself (never a check of user input, which throws dem::Error).
 /// Active unless NDEBUG is defined.
 #if defined(NDEBUG) || defined(__CUDA_ARCH__)

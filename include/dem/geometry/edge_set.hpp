@@ -30,7 +30,7 @@ void points_of_edge(const Vector3<double>& tail, const Vector3<double>& head, co
 class EdgeSet {
  public:
   EdgeSet() = default;
-  explicit EdgeSet(const std::vector<std::array<Vec3, 2>>& edges) {
+  DEM_LAZY explicit EdgeSet(const std::vector<std::array<Vec3, 2>>& edges) {
     std::vector<Bounds> boxes;
     for (const auto& [a, b] : edges) boxes.push_back({lower(a, b), upper(a, b)});
     tree_ = BoxTree(boxes);

@@ -10,7 +10,7 @@ namespace dem::surface {
 class PointSet {
  public:
   PointSet() = default;
-  explicit PointSet(const std::vector<Vec3>& points) {
+  DEM_LAZY explicit PointSet(const std::vector<Vec3>& points) {
     std::vector<Bounds> boxes;
     for (const Vec3& p : points) boxes.push_back({p, p});
     tree_ = BoxTree(boxes);

@@ -4,9 +4,15 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <initializer_list>
 #include <utility>
 
 namespace dem {
+
+/// Nothing is made of it; see WorldSetup's constructor.
+struct NoOptions {
+  NoOptions() = delete;
+};
 
 /// What a world is made of: everything that is added to it before it runs, or between runs. World adds the running.
 template <class M>
@@ -17,6 +23,8 @@ class WorldSetup {
   using Parameters = ContactParameters<Model>;
   static_assert(check_model<Model>());
 
+  /// All options as they are; `World<Sand> w({})` means it too, where the braces could else be a world to copy.
+  explicit WorldSetup(std::initializer_list<NoOptions>) : WorldSetup() {}
   /// Throws Error if an option is out of range.
   explicit WorldSetup(const WorldOptions& options = {}) {
     require_non_negative(options.time_step, "time step", "s (0 chooses one)");

@@ -18,7 +18,7 @@ class BoxTree {
   static constexpr std::uint32_t items_in_a_leaf = 2;
 
   BoxTree() = default;
-  explicit BoxTree(std::span<const Bounds> boxes) : order_(boxes.size()) {
+  DEM_LAZY explicit BoxTree(std::span<const Bounds> boxes) : order_(boxes.size()) {
     std::iota(order_.begin(), order_.end(), 0u);
     std::vector<Vec3> middle;
     for (const Bounds& b : boxes) middle.push_back(0.5 * (b.low + b.high));

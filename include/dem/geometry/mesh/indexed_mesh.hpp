@@ -57,7 +57,7 @@ struct IndexedMesh {
 };
 
 /// Throws Error if a triangle names a vertex that is not there, or a coordinate is not a finite number.
-inline void check_indices(const IndexedMesh& mesh) {
+DEM_LAZY inline void check_indices(const IndexedMesh& mesh) {
   for (std::size_t k = 0; k < mesh.vertices.size(); ++k) {
     if (!is_finite(mesh.vertices[k])) {
       fail("vertex {} of a mesh has a coordinate that is not a finite number; correct or remove it", k);

@@ -79,7 +79,7 @@ inline bool is_flat(const Vector3<double>& a, const Vector3<double>& b) {
   return dot(d, d) < 1e-24;
 }
 
-inline void find_vertices(MeshData& m) {
+DEM_LAZY inline void find_vertices(MeshData& m) {
   const std::size_t n = m.mesh.vertices.size();
   std::vector<Vec3> normal(n, Vec3::Zero());
   std::vector<std::pair<std::uint32_t, std::uint32_t>> edges;
@@ -123,7 +123,7 @@ inline void find_vertices(MeshData& m) {
 }
 
 /// Whether the surface bends away on all in all around a vertex, by more than rounding.
-inline bool is_convex(const MeshData& m, std::uint32_t v) {
+DEM_LAZY inline bool is_convex(const MeshData& m, std::uint32_t v) {
   double height = 0.0, length = 0.0;
   for (std::uint32_t k = m.ring_first[v]; k < m.ring_first[v + 1]; ++k) {
     const Vector3<double> along = m.vertices[m.ring[k]] - m.vertices[v];
@@ -135,7 +135,7 @@ inline bool is_convex(const MeshData& m, std::uint32_t v) {
 
 /// Sine of the angle by which the surface bends away at edge k of triangle t; 1 where it ends or turns by more than a
 /// right angle, 0 where it is flat or concave.
-inline double bend(const MeshData& m, std::uint32_t t, std::size_t k) {
+DEM_LAZY inline double bend(const MeshData& m, std::uint32_t t, std::size_t k) {
   const std::uint32_t other = m.topology.neighbour[t][k];
   if (other == MeshTopology::none) return 1.0;
   const Vector3<double>&n = m.faces[t].normal, &across = m.faces[other].normal;
@@ -152,7 +152,7 @@ inline bool is_ridge(double bend) { return bend > 0.02; }
 inline bool is_long_bend(double bend, double length, double width) {
   return bend > 1e-5 && bend * length > 0.25 * width;  // below is the rounding of single precision
 }
-inline void find_edges(MeshData& m) {
+DEM_LAZY inline void find_edges(MeshData& m) {
   std::vector<std::array<Vec3, 2>> edges, bends;
   for (std::uint32_t t = 0; t < m.faces.size(); ++t) {
     for (std::size_t k = 0; k < 3; ++k) {
@@ -175,7 +175,7 @@ inline void find_edges(MeshData& m) {
 
 /// Vertices, and points on sharp edges that are longer than the spacing (m; 0: none). Throws Error for more than the
 /// keys of contacts can tell apart.
-inline void find_points(MeshData& m, double spacing) {
+DEM_LAZY inline void find_points(MeshData& m, double spacing) {
   constexpr double most_points = 1 << 22;
   if (static_cast<double>(m.mesh.vertices.size()) > most_points) {
     fail("a mesh has {} vertices, but at most {:g} can be told apart; simplify it, or cut it into several surfaces",
@@ -213,8 +213,8 @@ inline void find_points(MeshData& m, double spacing) {
 }  // namespace detail
 
 /// Repairs a mesh and builds what queries need. Throws Error as `repaired` does.
-inline MeshData build_mesh(const IndexedMesh& given, MeshFacing facing, double smooth_angle, double point_spacing,
-                           double tolerance) {
+DEM_LAZY inline MeshData build_mesh(const IndexedMesh& given, MeshFacing facing, double smooth_angle,
+                                    double point_spacing, double tolerance) {
   RepairedMesh whole = repaired(given, facing, tolerance);
   MeshData m;
   m.report = whole.report;

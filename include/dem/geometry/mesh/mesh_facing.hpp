@@ -22,14 +22,15 @@ inline bool runs(const std::array<std::uint32_t, 3>& t, std::uint32_t from, std:
 }
 
 /// Six times the volume between a triangle and a point.
-inline double spanned(const IndexedMesh& mesh, std::uint32_t t, const Vec3& from) {
+DEM_LAZY inline double spanned(const IndexedMesh& mesh, std::uint32_t t, const Vec3& from) {
   return (mesh.corner(t, 0) - from).dot(cross(mesh.corner(t, 1) - from, mesh.corner(t, 2) - from));
 }
 
 /// How many times a closed piece goes round a point, as solid angles: 0 outside, 1 or -1 inside, something between on
 /// the surface (van Oosterom and Strackee 1983, doi:10.1109/TBME.1983.325207). Nothing hangs on a ray that meets an
 /// edge.
-inline double winding_number(const IndexedMesh& mesh, const std::vector<std::uint32_t>& piece, const Vec3& point) {
+DEM_LAZY inline double winding_number(const IndexedMesh& mesh, const std::vector<std::uint32_t>& piece,
+                                      const Vec3& point) {
   double sum = 0.0;
   for (const std::uint32_t t : piece) {
     const Vec3 a = mesh.corner(t, 0) - point, b = mesh.corner(t, 1) - point, c = mesh.corner(t, 2) - point;
@@ -42,8 +43,8 @@ inline double winding_number(const IndexedMesh& mesh, const std::vector<std::uin
 
 /// Whether closed piece b, which does not cross closed piece a, lies in it. Pieces may touch, so the middle of the
 /// first triangle of b that does not lie on a decides.
-inline bool encloses(const IndexedMesh& mesh, const std::vector<std::uint32_t>& a,
-                     const std::vector<std::uint32_t>& b) {
+DEM_LAZY inline bool encloses(const IndexedMesh& mesh, const std::vector<std::uint32_t>& a,
+                              const std::vector<std::uint32_t>& b) {
   for (const std::uint32_t t : b) {
     const Vec3 middle = (mesh.corner(t, 0) + mesh.corner(t, 1) + mesh.corner(t, 2)) / 3.0;
     const double turns = winding_number(mesh, a, middle);
@@ -56,7 +57,7 @@ inline bool encloses(const IndexedMesh& mesh, const std::vector<std::uint32_t>& 
 /// that lies in no other one is made to look as asked, and pieces inside it are turned with it. Returns how many
 /// triangles were turned, and how many pieces there are. A piece whose box lies in another's costs a sum over that
 /// one's triangles, of 0.1 us each (8 s for 1,000 pieces in a hull of 80,000); MeshFacing::as_given asks for none.
-inline std::pair<std::size_t, std::size_t> orient(IndexedMesh& mesh, MeshFacing facing) {
+DEM_LAZY inline std::pair<std::size_t, std::size_t> orient(IndexedMesh& mesh, MeshFacing facing) {
   const MeshTopology topology = topology_of(mesh);
   const std::size_t n = mesh.triangles.size();
   std::vector<std::uint32_t> piece(n, MeshTopology::none);

@@ -41,7 +41,7 @@ class UnionFind {
 /// sharper convex edges a contact moves on steadily too, so groups are joined there. A sharp concave edge, where a
 /// grain touches both sides at once, must part groups: two groups that meet in one, or that meet the same third group
 /// so (the flanks of a slot), stay apart.
-inline MeshGroups group_triangles(const IndexedMesh& mesh, const MeshTopology& topology, double smooth_angle) {
+DEM_LAZY inline MeshGroups group_triangles(const IndexedMesh& mesh, const MeshTopology& topology, double smooth_angle) {
   const auto n = static_cast<std::uint32_t>(mesh.triangles.size());
   MeshGroups result;
   result.group.resize(n);

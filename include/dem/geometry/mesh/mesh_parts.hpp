@@ -16,8 +16,8 @@ struct MeshCrossing {
 
 /// Where the way from tail to head (m) crosses the triangles of a mesh, ascending. What only lies in a triangle's plane
 /// does not cross it. A way through an edge crosses both its triangles.
-inline void find_crossings(const MeshData& m, const Vector3<double>& tail, const Vector3<double>& head,
-                           std::vector<MeshCrossing>& crossings) {
+DEM_LAZY inline void find_crossings(const MeshData& m, const Vector3<double>& tail, const Vector3<double>& head,
+                                    std::vector<MeshCrossing>& crossings) {
   // Of a triangle's heights, so that a way through an edge or a corner misses none of the triangles there.
   constexpr double slack = 1e-9;
   crossings.clear();

@@ -58,7 +58,7 @@ struct RepairedMesh {
 namespace detail {
 
 /// Merges vertices within the tolerance, through a grid of cells; a vertex goes to the first one near it.
-inline std::size_t merge_vertices(IndexedMesh& mesh, double tolerance) {
+DEM_LAZY inline std::size_t merge_vertices(IndexedMesh& mesh, double tolerance) {
   struct Hash {
     std::size_t operator()(const std::array<std::int64_t, 3>& c) const {
       return static_cast<std::size_t>(c[0] * 73856093 ^ c[1] * 19349663 ^ c[2] * 83492791);
@@ -105,7 +105,7 @@ inline bool repeats_a_corner(const std::array<std::uint32_t, 3>& t) {
 
 /// Removes triangles with a repeated corner. One whose corners lie in a line is joined to the neighbour at its longest
 /// edge: the two are cut the other way, which closes the surface again; it is removed if there is no neighbour.
-inline std::size_t remove_degenerate(IndexedMesh& mesh, double tolerance) {
+DEM_LAZY inline std::size_t remove_degenerate(IndexedMesh& mesh, double tolerance) {
   const std::size_t repeated = std::erase_if(mesh.triangles, repeats_a_corner);
   std::size_t fixed = 0;
   for (int round = 0; round < 8; ++round) {
@@ -151,7 +151,7 @@ inline std::size_t remove_degenerate(IndexedMesh& mesh, double tolerance) {
   return repeated + fixed;
 }
 
-inline std::size_t remove_duplicates(IndexedMesh& mesh) {
+DEM_LAZY inline std::size_t remove_duplicates(IndexedMesh& mesh) {
   std::vector<std::pair<std::array<std::uint32_t, 3>, std::uint32_t>> sorted;
   for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
     auto key = mesh.triangles[t];
@@ -165,7 +165,7 @@ inline std::size_t remove_duplicates(IndexedMesh& mesh) {
   return std::erase_if(mesh.triangles, [&](const auto&) { return dead[at++]; });
 }
 
-inline std::size_t remove_unused(IndexedMesh& mesh) {
+DEM_LAZY inline std::size_t remove_unused(IndexedMesh& mesh) {
   std::vector<std::uint32_t> target(mesh.vertices.size(), MeshTopology::none);
   std::vector<Vec3> kept;
   for (auto& t : mesh.triangles) {
@@ -184,7 +184,7 @@ inline std::size_t remove_unused(IndexedMesh& mesh) {
 
 /// Throws Error if vertices that lie beside each other became one in more than half of the triangles: a single corrupt
 /// coordinate makes a mesh so large that all else is a point beside it.
-inline void refuse_collapse(const IndexedMesh& given, const IndexedMesh& merged, double tolerance) {
+DEM_LAZY inline void refuse_collapse(const IndexedMesh& given, const IndexedMesh& merged, double tolerance) {
   std::size_t collapsed = 0;
   for (std::size_t t = 0; t < merged.triangles.size(); ++t) {
     const bool had_corners = given.corner(t, 0) != given.corner(t, 1) && given.corner(t, 1) != given.corner(t, 2) &&
@@ -202,7 +202,7 @@ inline void refuse_collapse(const IndexedMesh& given, const IndexedMesh& merged,
 }
 
 /// Throws Error for a triangle that looks nowhere, as are left where more lie in a line than can be joined.
-inline void refuse_without_area(const IndexedMesh& mesh) {
+DEM_LAZY inline void refuse_without_area(const IndexedMesh& mesh) {
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
     if (mesh.area_vector(t).norm() > 0.0) continue;
     const Vec3 corner = mesh.corner(t, 0);
@@ -220,8 +220,8 @@ inline void refuse_without_area(const IndexedMesh& mesh) {
 /// way. Holes and edges of more than two triangles are left, and reported. Throws Error for indices out of range,
 /// coordinates that are not finite or so far out that the other vertices are one beside them, triangles that have no
 /// area after the repair, and if no triangle is left.
-inline RepairedMesh repaired(const IndexedMesh& given, MeshFacing facing = MeshFacing::outward,
-                             double tolerance = 0.0) {
+DEM_LAZY inline RepairedMesh repaired(const IndexedMesh& given, MeshFacing facing = MeshFacing::outward,
+                                      double tolerance = 0.0) {
   check_indices(given);
   require_non_negative(tolerance, "tolerance of a mesh repair", "m (0 chooses one)");
   RepairedMesh result{given, {}};

@@ -24,7 +24,7 @@ struct MeshTopology {
 };
 
 /// Pairs the triangles' edges by sorting them: O(n log n).
-inline MeshTopology topology_of(const IndexedMesh& mesh) {
+DEM_LAZY inline MeshTopology topology_of(const IndexedMesh& mesh) {
   struct Use {
     std::uint32_t low, high, triangle;
     std::uint8_t edge;

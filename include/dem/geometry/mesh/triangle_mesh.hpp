@@ -48,7 +48,7 @@ class TriangleMesh {
 
   /// Repairs the mesh (geometry/mesh/mesh_repair.hpp). Throws Error if an option is out of range, and if a solid is not
   /// closed.
-  explicit TriangleMesh(const IndexedMesh& mesh, const MeshOptions& o = {}) : options_(o) {
+  DEM_LAZY explicit TriangleMesh(const IndexedMesh& mesh, const MeshOptions& o = {}) : options_(o) {
     require_within(o.smooth_angle, 0.0, 60.0, "smooth angle of a mesh in degrees");
     require_non_negative(o.depth, "depth of a mesh", "m (0 chooses one)");
     require_non_negative(o.point_spacing, "point spacing of a mesh", "m (0: only vertices)");

@@ -97,7 +97,7 @@ inline Joint make_joint(const Parts& parts, JointSpec& s) {
   V za = unit(s.axis_a, "the axis of " + who), zb = unit(s.axis_b, "the axis of " + who);
   // Points and axes that nearly meet are put in the middle: the joint starts at rest, not stretched by the gap.
   const bool has_one_axis = !traits.two_axes && traits.align != Align::nothing;
-  const auto differ = [](const V& a, const V& b) { return a.x != b.x || a.y != b.y || a.z != b.z; };
+  const auto differ = [](const V& p, const V& q) { return p.x != q.x || p.y != q.y || p.z != q.z; };
   const double crooked = norm(cross(za, zb)) + (dot(za, zb) < 0.0);
   const double angle = std::acos(std::clamp(dot(za, zb), -1.0, 1.0));
   if (has_one_axis && crooked <= s.tolerance && differ(za, zb)) za = zb = normalised(za + zb);
