@@ -27,6 +27,6 @@ check() {
 
 check README.md "# dem" "## Use it" examples/first_steps
 check README.md "## Use it" "## The direct shear test" tests/pages
-check ARCHITECTURE.md "\`with_restitution()\`" "**Your own law**" tests/pages
-check ARCHITECTURE.md "**Your own law**" "**Your own shape**" examples/own_law
-check ARCHITECTURE.md "**Your own shape**" "## The step" examples/own_shape
+check ARCHITECTURE.md "### Constants from measurements" "### Your own law" tests/pages
+check ARCHITECTURE.md "### Your own law" "### Your own shape" examples/own_law
+check ARCHITECTURE.md "### Your own shape" "## The step" examples/own_shape

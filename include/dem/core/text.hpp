@@ -1,7 +1,8 @@
 #pragma once
 
-// Texts made of numbers and names, in fmt's format language. Arguments lose their types before fmt sees them: a
-// template of fmt for each list of types would cost every program seconds of compiling for texts that it never prints.
+// Texts made of numbers and names, in fmt's format language. Arguments lose their types before fmt sees them. Otherwise
+// fmt would make a template for each list of types, and every program would spend seconds on compiling texts that it
+// never prints.
 
 // fmt 9 switches its constexpr off under nvcc, and then its own format strings do not compile.
 #if defined(__CUDACC__) && !defined(FMT_USE_CONSTEXPR)

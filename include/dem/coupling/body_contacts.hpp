@@ -30,7 +30,7 @@ struct BodyKey {
   }
 };
 
-/// Contacts of machine parts with each other and with the ground: their pairs, their memories, and lists for a step.
+/// Contacts of machine parts with each other and with the ground: their pairs, their histories, and lists for a step.
 template <class Model>
 struct BodyContacts {
   using Memories = ContactMemories<history_size<Model>>;
@@ -127,7 +127,7 @@ void fit_pair(std::size_t first, BodyContacts<Model>& c) {
   turn_round();
 }
 
-/// Finds the contacts of a pair, with the memories of its block.
+/// Finds the contacts of a pair, with the histories of its block.
 template <class Model, class Surface>
 void probe_pair(std::size_t k, std::span<const Surface> surfaces, const Materials<Model>& materials,
                 std::span<const Body> bodies, typename BodyContacts<Model>::Memories& memories,
@@ -184,10 +184,10 @@ void load_pairs(std::span<const Surface> surfaces, const Materials<Model>& mater
   }
 }
 
-/// Contacts between surfaces of machine parts, thesis section 2.2.4: the points of each surface of a pair against the
-/// other surface, weighted so that those that push one way are one whole contact, with the laws and memories of grains;
-/// adds the forces to the bodies. Pairs whose bounding boxes do not meet cost nothing. One thread does it in the order
-/// of pairs and points: the same sums in every run.
+/// Contacts between surfaces of machine parts (thesis section 2.2.4). The points of each surface of a pair are tried
+/// against the other surface. Points that push in one direction are weighted so that they are one whole contact. Laws
+/// and histories are those of grains. Forces are added to the bodies. Pairs whose bounding boxes do not meet cost
+/// nothing. One thread does it in the order of pairs and points, so sums are the same in every run.
 template <class Model, class Surface>
 void find_body_contacts(BodyContacts<Model>& c, std::span<const Surface> surfaces, const Materials<Model>& materials,
                         std::span<Body> bodies, double dt) {

@@ -53,8 +53,8 @@ class PointsTowards {
   }
 
  private:
-  /// Beyond the numbers of a surface's own points, ascending; of each rim as many as walls of the other surface can be
-  /// told apart.
+  /// Numbers of points that are found, beyond those of a surface's own points, ascending. Each rim has as many as there
+  /// are walls of the other surface that can be told apart.
   static constexpr std::uint32_t first_near = 1u << 20, of_a_rim = 1u << 18,
                                  first_of_mantle = first_near + 4 * of_a_rim;
   static constexpr std::uint32_t most_ways = 16;
@@ -89,7 +89,7 @@ class PointsTowards {
       sink(surface::family_of<Onto>(feature), transpose_times(a_.axes, b_.axes * normal), gap);
     });
   }
-  /// The ways in which a ball at p meets the other surface; the nearest ones if they are too many.
+  /// The directions in which a ball at p meets the other surface; the nearest ones if they are too many.
   Ways find_ways(const Vector3<double>& p, double radius) const {
     Ways ways;
     touch(p, radius, [&](std::uint32_t wall, const Vector3<double>& normal, double gap) {
@@ -121,8 +121,9 @@ class PointsTowards {
   void add(std::uint32_t number, const Vector3<double>& p, double weight = 1.0) {
     points_.push_back({number, p, 0.0, weight});
   }
-  /// Points that are spread over a round skin (the first ones listed) fade out near the one that is nearest to the
-  /// other surface, so that a body rolls evenly on that alone: within `third`, a third of the radius (m).
+  /// Sample points of a round surface (the first `spread` points of the list) lose their weight near p, the point that
+  /// is nearest to the other surface. So a body rolls evenly on that point alone. `third`: m, a third of the radius;
+  /// at this distance from p, across `way`, half of the weight is left.
   void fade(std::size_t spread, const Vector3<double>& p, const Vector3<double>& way, double third) {
     for (std::size_t k = 0; k < spread; ++k) {
       const Vector3<double> d = points_[k].place - p;
@@ -131,7 +132,8 @@ class PointsTowards {
     }
   }
 
-  /// The points of round edges that lie farthest in the ways in which a ball in the middle finds the other surface.
+  /// Points of rims. A ball in the middle of a rim finds the directions to the other surface; the point of the rim that
+  /// is farthest in each direction is taken.
   void list_rims(std::size_t spread) {
     from_.rims([&](std::uint32_t rim, const Vector3<double>& middle, double radius) {
       const Ways ways = find_ways(middle, radius);
@@ -145,9 +147,10 @@ class PointsTowards {
     });
   }
 
-  /// The line of a mantle that faces the other surface where the axis comes nearest to it: the middle of what of the
-  /// line lies inside, which is the deepest point of mantles that cross, and points near the ends of that part, which
-  /// count where it is as deep there: of mantles side by side.
+  /// Points of the lateral surface (mantle) of a cylinder: they lie on the line that faces the other surface where the
+  /// axis comes nearest to it. Part of this line lies inside the other surface. The middle of the part is the deepest
+  /// point of cylinders that cross. Points near its two ends count where the line is as deep there, as between
+  /// cylinders that lie side by side.
   void list_mantle() {
     if (!from_.has_points()) return;
     const double half = 0.5 * from_.length();
@@ -174,8 +177,8 @@ class PointsTowards {
     }
   }
 
-  /// Where straight edges pass through the other surface: the middle of each part inside. Two bodies that meet edge
-  /// across edge have no corner in each other.
+  /// Where a straight edge passes through the other surface, the middle of each part of the edge that lies inside it.
+  /// Two bodies that meet edge across edge have no corner in each other.
   void list_edges(const surface::Bounds& box) {
     from_.edges(box, [&](std::uint32_t number, const Vector3<double>& tail, const Vector3<double>& head) {
       const auto add_part = [&](double first, double last) {
@@ -198,9 +201,9 @@ class PointsTowards {
     });
   }
 
-  /// The point of a superquadric that lies deepest in the other surface: where it shares the normal of another
-  /// superquadric, else where descend() ends on each wall that is near. A wall that is met in several ways (a corner of
-  /// a mesh) has one for each, the point farthest along it.
+  /// The point of a superquadric that lies deepest in the other surface. On another superquadric it is where both share
+  /// a normal; on other surfaces it is where descend() ends, one for each wall that is near. A wall that is met in
+  /// several directions (a corner of a mesh) has one for each: the point farthest in that direction.
   void list_deepest(std::size_t spread) {
     if (!from_.grain()) return;
     const auto& grain = *from_.grain();
@@ -226,10 +229,11 @@ class PointsTowards {
   }
   static constexpr double upright[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
 
-  /// From a point of a convex skin to the one that lies deepest in a wall of the other surface, or comes nearest to it,
-  /// by the method of Frank and Wolfe (1956, doi:10.1002/nav.3800030109): over and over along the chord to the point
-  /// that lies farthest along the other's normal, to where the gap is least as its slopes at both ends tell. On a plane
-  /// the first point is the last; between round bodies the gap's error falls by a factor a step.
+  /// Moves from a point of a convex surface to the one that lies deepest in a wall of the other surface, or comes
+  /// nearest to it, by the method of Frank and Wolfe (1956, doi:10.1002/nav.3800030109). Each step goes along the chord
+  /// to the point that is farthest in the direction of the other's normal. It stops on the chord where the gap is
+  /// least, as the slopes of the gap at both ends tell. On a plane the first step is the last; between round bodies
+  /// each step reduces the error of the gap by a factor.
   template <class Grain>
   Vector3<double> descend(const Grain& grain, Vector3<double> p, std::uint32_t wall) const {
     const double reach = 2.0 * grain.bounding_radius(), near = 1e-10 * grain.mean_radius();

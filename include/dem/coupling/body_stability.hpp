@@ -25,8 +25,8 @@ double softness_of(const Surface& s, const Body& body, double lever) {
   return 1.0 / body.mass + lever * lever / body.inertia.minCoeff();
 }
 
-/// Throws Error for a pair whose cohesion law acts at a distance, but not between these two: points that are shares of
-/// one contact have no pull of their own, so one surface of the pair has to be a ball.
+/// Throws Error for a pair of surfaces whose cohesion law acts at a distance, if neither surface is a ball. Points that
+/// are shares of one contact have no pull of their own.
 template <class Model, class Surface>
 void check_body_cohesion(const Surface& a, const Surface& b, const Body& body_a, const Body& body_b,
                          const Materials<Model>& materials) {
@@ -42,11 +42,11 @@ void check_body_cohesion(const Surface& a, const Surface& b, const Body& body_a,
   }
 }
 
-/// Largest stable time step of the contacts between bodies. All points act at the farthest point of the surface from
-/// the centre of mass, in line:
+/// Largest stable time step of the contacts between bodies. All points are taken to act in line, at the point of the
+/// surface that is farthest from the centre of mass:
 ///   W = 1/m_a + 1/m_b + R_a^2/I_a + R_b^2/I_b in stable_step()
-/// The points of one side are one contact, but as the deeper ones take over weight, up to twice as stiff; and there may
-/// be two sides, as in a groove. A ball touches with one point. Throws Error as check_body_cohesion() does.
+/// The points of one side are one contact, but up to twice as stiff, as the deeper ones take over weight. There may be
+/// two sides, as in a groove. A ball touches with one point. Throws Error as check_body_cohesion() does.
 template <class Model, class Surface>
 StableTimeStep stable_time_step_of_bodies(std::span<const BodyPair> pairs, std::span<const Surface> surfaces,
                                           std::span<const Body> bodies, const Materials<Model>& materials,

@@ -11,9 +11,9 @@ namespace dem::coupling {
 
 namespace detail {
 
-/// Contacts that share all of their keys but the direction: hits of this step, and memories [first, end) of the last.
-/// Those whose key is found again stay. Of the others the two that point most alike become one, as long as there are
-/// two that are less than 60 degrees apart.
+/// Contacts whose keys are equal but for the direction: hits of this step, and histories [first, end) of the last.
+/// Those whose key is found again stay. Of the others the two that point most alike become one contact, as long as
+/// there are two that are less than 60 degrees apart.
 template <int Size>
 void follow_turns_of(std::span<const grain::Hit> hits, ContactMemory<Size>& last, int first, int end) {
   const auto key_of = [&](int c) -> std::uint64_t& { return last.key[static_cast<std::size_t>(c)]; };
@@ -58,9 +58,9 @@ void follow_turns_of(std::span<const grain::Hit> hits, ContactMemory<Size>& last
 
 }  // namespace detail
 
-/// Gives last step's contacts with a surface the names that they have now. A surface that names its contacts by
-/// direction (surface::NamesDirections) gives a contact that turns another name, as that of a ball that rolls in a
-/// drum; and a single name for all would be wrong: of two contacts, as in a groove, either may vanish and the other one
+/// Gives the contacts of the last step with a surface the keys that they have now. Some surfaces name a contact by its
+/// direction (surface::NamesDirections). Such a contact changes its key as it turns, for instance that of a ball that
+/// rolls in a drum. One name for all contacts would be wrong: in a groove either of two may vanish while the other one
 /// stays. `hits`: of this step with that surface, keys ascending; `has_direction(key)`: whether a key ends in a
 /// direction.
 template <int Size, class HasDirection>

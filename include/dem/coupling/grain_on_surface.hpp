@@ -98,9 +98,9 @@ void touch_with_probe(const GrainAtSurface& at, std::uint32_t index, const conta
   geometry.touch(seen, shape::widened(probe.radius, gap), add);
 }
 
-/// Where the surface is flat, a grain meets it first with its support point, which lies between the points of its skin.
-/// The ways to the surface are those that the grain's bounding sphere finds. `first`: of the touches of the grain's own
-/// points, which lose their weight near a support point.
+/// Where a surface is flat, a grain meets it first with its support point, which lies between its sample points. The
+/// bounding sphere of the grain finds the directions to the surface. `first`: number of the first touch of the grain's
+/// own points, which lose their weight near a support point.
 template <class Shape, class Surface, class Geometry, class Gap>
 void touch_with_supports(const GrainAtSurface& at, const Shape& grain, const Surface& surface, const Geometry& geometry,
                          std::size_t first, Gap gap, SurfaceScratch& s) {
@@ -130,8 +130,8 @@ void touch_with_supports(const GrainAtSurface& at, const Shape& grain, const Sur
   }
 }
 
-/// Corners and balls of a surface in a grain. A corner weighs as one of the grain's own probes does on average, a ball
-/// as a whole contact.
+/// Corners and balls of a surface in a grain. A corner has the mean weight of the grain's own sample points, a ball
+/// that of a whole contact.
 template <class Shape, class Surface, class Geometry, class Gap>
 void touch_with_corners(const GrainAtSurface& at, const Shape& grain, const Surface& surface, const Geometry& geometry,
                         Gap gap, SurfaceScratch& s) {

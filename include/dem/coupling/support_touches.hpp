@@ -9,9 +9,10 @@
 
 namespace dem::coupling {
 
-/// What the support points of a grain touch of one surface. There is one for each way to it, and a point that lies
-/// farthest along one way may reach another wall as well, as in a corner. Each wall is left to its own way, so what a
-/// wall remembers of the grain goes by the wall's name alone, whichever others are near.
+/// Contacts of the support points of a grain with one surface. Each direction in which the grain meets the surface has
+/// one support point: the point of the grain that is farthest in this direction. In a corner such a point may reach a
+/// second wall as well. Each wall takes the contact of its own direction only. So the history of a contact goes by the
+/// wall's name alone, whichever other walls are near.
 class SupportTouches {
  public:
   struct Way {
@@ -34,7 +35,8 @@ class SupportTouches {
   std::size_t way_count() const { return ways_.size(); }
   const Way& way(std::size_t k) const { return ways_[k]; }
 
-  /// A wall is of the way that is most along the normal there, one of its family if there is any.
+  /// Adds a touch of the support point of a way. Its wall belongs to the way whose direction is nearest to the normal
+  /// there; ways that found a wall of the same family go first.
   void add_touch(std::size_t way, std::uint32_t family, std::uint32_t feature,
                  const contact::SurfaceTouch<double>& touch) {
     const auto rank = [&](const Way& w) { return dot(w.along, touch.normal) + (w.family == family ? 4.0 : 0.0); };
@@ -43,7 +45,8 @@ class SupportTouches {
     touches_.push_back({feature, family, way, owner, touch});
   }
 
-  /// In the order of features, each with another number; without those of walls that their owner's point touches, too.
+  /// The touches in the order of their features, each with another number. Left out is a touch of a wall that the
+  /// support point of its own way touches too.
   const std::vector<Touch>& sorted() {
     if (ways_.size() < 2) return touches_;
     for (Touch& t : touches_) {

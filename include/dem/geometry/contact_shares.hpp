@@ -14,18 +14,20 @@ enum class Fit {
   if_more,  ///< where they are more than one; else they keep their weights
 };
 
-/// Weights points that are one contact, so that together they are as stiff as one. A point with weight w and overlap d
-/// gets w d / sum w d: the weights' sum is 1, and a point that only just touches counts nothing, so no force jumps when
-/// points come and go. Points whose normals are at an angle are different contacts: in a point's sum the others count
-/// with the square of the cosine, those at more than a right angle not at all. With Fit::if_more points count as
-/// N = (sum w d)^2 / sum w d^2, which is n w where n are equally deep; up to N = 1 they stay as they are, and from
-/// there to N = 2 one rule goes over into the other. `point(k)` gives touch k, one of the touch types. Across a gap
-/// (cohesion at a distance) the nearest point, which was the last to part, is the whole contact.
+/// Weights points so that together they are one contact, as stiff as one.
+/// - A point with weight w and overlap d gets w d / sum w d. The sum of the weights is 1. A point that only just
+/// touches counts nothing, so no force jumps when points come and go.
+/// - Points whose normals are at an angle are different contacts. In the sum of a point the others count with the
+/// square of the cosine of that angle, and not at all beyond a right angle.
+/// - With Fit::if_more points count as N = (sum w d)^2 / sum w d^2, which is n w for n points of equal depth. Up to N =
+/// 1 they keep their weights; from N = 1 to N = 2 one rule goes over into the other.
+/// - Across a gap (cohesion at a distance) the nearest point is the whole contact. It was the last one to part.
+/// `point(k)` gives touch k, one of the touch types.
 ///
-/// Such shares have no potential, and none could have one: n equal points are as stiff as one, so a second point that
+/// Such shares have no potential, and none could have one. n equal points are as stiff as one. So a second point that
 /// sinks to the depth of a first must do no work on the way, and yet push when it is there. Turning a body on its
-/// points therefore gains or loses energy, in a cycle a share of what the contact stores, whatever the stiffness.
-/// Dampers have to take more than that: see "Bodies against bodies" in ARCHITECTURE.md for how much.
+/// points therefore gains or loses energy: in each cycle a share of what the contact stores, whatever the stiffness.
+/// Dampers have to take more than that; "Why such contacts need damping" in ARCHITECTURE.md says how much.
 template <class Point>
 void fit_weights(std::size_t count, Fit fit, Point&& point) {
   // Points of flat faces have few normals, however many they are: their sums are over normals.

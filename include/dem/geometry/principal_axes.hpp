@@ -98,8 +98,8 @@ inline Mat3 nearest_axes(const Vec3& values, const Mat3& vectors) {
 
 /// Finds the principal axes, in the order and with the signs that turn the given axes least. A tensor that is diagonal
 /// already (to 1e-12) keeps its axes. Moments that differ by less than 1e-6 of the largest count as equal, as those of
-/// a wheel of single precision do, and their axes stay as near to the given ones as they can: a part that was drawn
-/// along its axes stays as drawn. Throws Error unless the tensor is finite and symmetric (to 1e-9).
+/// a wheel from a file of single precision. Their axes stay as near to the given ones as they can, so a part that was
+/// drawn along its axes stays as drawn. Throws Error unless the tensor is finite and symmetric (to 1e-9).
 inline PrincipalAxes principal_axes(const Mat3& inertia) {
   for (int k = 0; k < 9; ++k) {  // looked at first, as the largest of several numbers may leave a NaN out
     if (0.0 * inertia.data()[k] == 0.0) continue;

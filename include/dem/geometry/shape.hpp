@@ -66,7 +66,7 @@ concept BitShape = Shape<S> && requires(const S& shape, const double* pose, cons
   { S::touch(shape, pose, shape, pose, separation, 0u) } -> std::same_as<typename S::template PairTouch<double>>;
 };
 
-/// A shape whose search for contacts takes up where it stopped a step ago: PairMemory is what it keeps for each pair of
+/// A shape whose search for contacts starts from what the last step found. PairMemory is what it keeps for each pair of
 /// neighbours (empty when they are listed anew), and collide(a, pose_a, b, pose_b, separation, memory, sink) uses it.
 /// The memory belongs to the pair, not to a thread: results stay the same for any number of threads.
 template <class S>
@@ -108,7 +108,7 @@ constexpr void check_reaching_shape() {
                 "in m as a last argument and find pairs up to that far apart; or choose a cohesion without range()");
 }
 
-/// The memories of a list of pairs; nothing for shapes that keep none.
+/// What RememberingShapes keep for a list of pairs (PairMemory); nothing for other shapes.
 template <class S>
 struct PairMemories {
   void reset(std::size_t) {}

@@ -47,7 +47,7 @@ struct Chunk {
   double surface_seconds = 0.0;  ///< s, spent on contacts with surfaces while the stopwatch was on
   bool finite = true;            ///< no position or velocity is NaN or infinite
 
-  /// The contacts' memories of this step become the ones that the next step starts from.
+  /// The contact histories of this step become the ones that the next step starts from.
   void commit() {
     pair_contacts.commit();
     surface_contacts.commit();

@@ -49,8 +49,8 @@ class ContactEvaluator {
 
   ContactEvaluator(const std::vector<Parameters>& table, double dt) : table_(table), dt_(dt) { set_uniform(0); }
 
-  /// Fills this step's memories and the forces; touch_of(k) gives the raw numbers of contact k, view_i(k) and view_j(k)
-  /// its partners. Returns the deepest contact.
+  /// Fills the contact histories of this step and the forces; touch_of(k) gives the raw numbers of contact k, view_i(k)
+  /// and view_j(k) its partners. Returns the deepest contact.
   template <class TouchOf, class ViewI, class ViewJ>
   Deepest run(std::span<const Hit> hits, Memories& memories, ContactForces& forces, TouchOf&& touch_of, ViewI&& view_i,
               ViewJ&& view_j) {
@@ -151,8 +151,8 @@ class ContactEvaluator {
       cursor += known ? 1 : 0;
     }
   }
-  /// A new point of a patch that was there takes the mean of what the patch's points remember of friction and rolling,
-  /// and of the normal law's what that law says.
+  /// A new point in a patch that touched before starts with a history of its own: of friction and rolling the mean of
+  /// what the points of the patch remember; of the normal law what that law makes of the mean (its `inherited()`).
   template <class Memory>
   void inherit(const Memory& last, std::uint64_t key, int cursor, int lane, double overlap) {
     const auto pair_at = [&](int c) { return last.key[static_cast<std::size_t>(c)] >> 32; };

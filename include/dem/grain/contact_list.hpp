@@ -45,8 +45,8 @@ struct ContactMemory {
   }
 };
 
-/// The memories of all contacts of one chunk with one kind of partner (grains or surfaces): those of this step and
-/// those of the last committed one.
+/// The histories of all contacts of one chunk with one kind of partner (grains or surfaces): those of this step and the
+/// last ones that were committed.
 template <int HistorySize>
 struct ContactMemories {
   ContactMemory<HistorySize> now, last;
@@ -56,7 +56,7 @@ struct ContactMemories {
     const auto need = static_cast<std::size_t>(n + pack_width);
     if (now.key.size() < need) now.reserve((need + need / 4 + 15) / 16 * 16);
   }
-  /// This step's memories become the committed ones.
+  /// The histories of this step become the committed ones.
   void commit() { std::swap(now, last); }
   /// How many contacts the last committed step had: those of `last`.
   int committed() const { return last.count; }

@@ -12,8 +12,8 @@
 
 namespace dem::grain {
 
-/// A contact's memory on its way from one neighbour list to the next, named by the grains' ids, which re-sorting leaves
-/// alone.
+/// A contact history on its way from one neighbour list to the next. It is named by the ids of the grains, which
+/// sorting does not change.
 template <int HistorySize>
 struct Remembered {
   std::uint32_t i, j;     ///< id of the owner; id of the partner, or the upper half of a surface contact's key
@@ -40,7 +40,7 @@ void mirror_history(double* fields) {
   }
 }
 
-/// Turns a pair contact's memory round: seen from the other grain, vectors point the other way.
+/// Turns the history of a pair contact round: seen from the other grain, its vectors point the other way.
 template <class Model>
 void mirror(Remembered<history_size<Model>>& r) {
   std::swap(r.i, r.j);
@@ -50,7 +50,7 @@ void mirror(Remembered<history_size<Model>>& r) {
   mirror_history<typename Model::Rolling>(fields + friction_history_size<Model>);
 }
 
-/// Reads the committed memories of all contacts, pair contacts and surface contacts apart.
+/// Reads the committed histories of all contacts, those of pairs and those with surfaces apart.
 template <class Model, class Particles>
 void collect_memories(std::span<const Chunk<Model>> chunks, const Particles& p,
                       std::vector<Remembered<history_size<Model>>>& pairs,
@@ -131,7 +131,7 @@ void list_incoming(std::span<const Chunk<Model>> chunks, std::size_t grains, std
   for_each_foreign([&](std::uint32_t j, const Incoming& entry) { incoming[next[j]++] = entry; });
 }
 
-/// Drops the memories of grains that were removed.
+/// Drops the contact histories of grains that were removed.
 template <class Particles, class Entries>
 void forget_removed(const Particles& p, Entries& pairs, Entries& surfaces) {
   const auto is_gone = [&](std::uint32_t id) { return p.row_of[id] == p.gone; };
@@ -147,7 +147,7 @@ void remember(Memory& memory, std::uint64_t key, const Entry& entry) {
   for (std::size_t k = 0; k < entry.history.size(); ++k) memory.history[k][at] = entry.history[k];
 }
 
-/// Hands the memories to the chunks that own the contacts now, with the keys of the new candidate lists.
+/// Hands the contact histories to the chunks that own the contacts now, with the keys of the new candidate lists.
 template <class Model, class Particles>
 void return_memories(std::span<Chunk<Model>> chunks, const Particles& p,
                      std::vector<Remembered<history_size<Model>>>& pairs,

@@ -149,8 +149,8 @@ void find_hits_one_by_one(const Pairs& pairs, std::size_t close_count,
   }
 }
 
-/// Adds the contacts' forces to the chunk's own grains and keeps what partners in other chunks feel. Both is written
-/// for every contact, and what does not apply is overwritten or never read: whose a partner is, is a coin toss as well.
+/// Adds the forces of the contacts to the chunk's own grains and keeps what partners in other chunks feel. To avoid a
+/// branch that is a coin toss, both are written for every contact; what does not apply is overwritten or never read.
 template <class Model>
 void share_forces(std::size_t begin, Chunk<Model>& chunk, const PairScratch<Model>& s, ForceSums& sums) {
   chunk.partner_loads.resize(s.hits.size() + 1);

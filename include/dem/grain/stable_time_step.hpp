@@ -17,22 +17,22 @@ inline constexpr double contacts_in_line = 4.0;
 /// are sheared, with that of friction.
 inline constexpr double damped_share = 0.5;
 
-/// Largest stable time step of one law in contacts of stiffness k and damping c, already times the number that acts in
-/// line, between partners of mass m and inertia I with the lever arm R (bounding radius): with
+/// Largest stable time step of one law in contacts of stiffness k and damping c. Both are already times the number of
+/// contacts that act in line. The partners have mass m, inertia I and the lever arm R (bounding radius). With
 ///   omega^2 = k W,   B = c W/2,   W = 1/m_i + 1/m_j + R_i^2/I_i + R_j^2/I_j,
-/// explicit integration is stable while dt (sqrt(omega^2 + B^2) + B) stays under the integrator's limit: a force that
-/// is taken from the velocity of a step before makes a damper shorten the step (Belytschko, Liu and Moran 2000).
+/// explicit integration is stable while dt (sqrt(omega^2 + B^2) + B) stays under the integrator's limit. A damper
+/// shortens the step, as its force is taken from the velocity of a step before (Belytschko, Liu and Moran 2000).
 /// Rolling resistance acts on W = 1/I_i + 1/I_j instead.
 inline double stable_step(double limit, double k, double c, double w) {
   const double b = 0.5 * c * w, sum = std::sqrt(k * w + b * b) + b;
   return sum > 0.0 ? limit / sum : 1e300;
 }
 
-/// The springs of a pair's laws that swing apart from each other: those along the normal, and those of friction and
-/// rolling resistance, which turn the same grains and so add up. Calls limit(k, c, w, text) for each with stiffness k
-/// (N/m), damping c (N s/m), of which `acting` (a share) acts, and mobility w (1/kg); w_turning: 1/(kg m^2), of
-/// rotations; text() says which it is. Throws Error if a law tells a stiffness or damping that is negative or not
-/// finite, which would limit nothing.
+/// The springs of a pair's laws that swing separately: the one along the normal, and the sum of friction and rolling
+/// resistance, which turn the same grains. Calls limit(k, c, w, text) for each, with the stiffness k (N/m), the damping
+/// c (N s/m) and the inverse effective mass w (1/kg). `acting` is the share of the damping that acts; w_turning (1/(kg
+/// m^2)) is the inverse inertia of rotations; text() names the spring. Throws Error if a law tells a stiffness or
+/// damping that is negative or not finite, which would limit nothing.
 template <class Model, class Parameters, class Limit>
 void for_each_swing(const Parameters& p, const contact::NormalState<double>& deepest, double acting, double w,
                     double w_turning, Limit&& limit) {

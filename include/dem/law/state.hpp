@@ -6,12 +6,15 @@
 
 namespace dem::contact {
 
-/// What a normal law may read about one contact (T = double) or a pack of contacts (T = Pack). Laws are those of whole
-/// contacts. Where a contact is a patch of points, each with an area or a share (Geometry::area), the laws are
-/// evaluated at each point as if it were the whole contact, and what they give is multiplied by that area: eq. 25's A.
-/// Points whose shares add up to S < 1 are together a spring S K. Laws that make their damper from a damping ratio and
-/// the effective mass are then handed m/S, the mass that swings on the whole spring K as m does on S K: S c(m/S) is
-/// that share of the critical damping of S K and m, so the restitution is the one that was asked for.
+/// What a normal law may read about one contact (T = double) or a pack of contacts (T = Pack).
+///
+/// Laws describe whole contacts. A contact may be a patch of points, each with an area or a share (Geometry::area). The
+/// laws are then evaluated at each point as if it were the whole contact, and the result is multiplied by that area: A
+/// of eq. 25.
+///
+/// Points whose shares add up to S < 1 are together a spring S K. A law that makes its damper c(m) from a damping ratio
+/// and the effective mass m is then handed m/S. The mass m/S swings on K as m does on S K. So the damper S c(m/S) is
+/// the asked share of the critical damping of S K and m, and the restitution is the one that was asked for.
 template <class T>
 struct NormalState {
   T overlap;           ///< m, d of eq. 25; not negative where the bodies touch

@@ -10,11 +10,11 @@ struct DensityLimits {
   double densest;
 };
 
-/// Limits of shape::cube8 grains with the thesis's contact constants (mu = 0.4), measured by the direct shear rig with
-/// grains of half-edge 1.6 mm, away from walls, as shares of the solid cubes' volume (spheres of one cube reach between
-/// those of another, so values near 1 are possible). Loosest: a random cloud, rained and settled at full friction.
-/// Densest: friction off and shaken until the density changes by less than 0.001 in 0.2 s; the cubes are then largely
-/// in layers, so most of the way to 1 is order, not only density.
+/// Limits of shape::cube8 grains with the thesis's contact constants (mu = 0.4). They were measured by the direct shear
+/// rig with grains of half-edge 1.6 mm, away from walls. They are shares of the volume of the solid cubes. Spheres of
+/// one cube reach between those of another, so values near 1 are possible. Loosest: a random cloud, rained and settled
+/// at full friction. Densest: friction off and shaken until the density changes by less than 0.001 in 0.2 s. The cubes
+/// are then largely in layers, so most of the way to 1 is order, not only density.
 inline constexpr DensityLimits cube8_limits = {0.762, 0.960};
 /// The same of sharp cubes (shape::cube) and of cubes that are superquadrics with exponents of 8, with four times the
 /// thesis's K, C and cv, as a face of cube8 has on its four spheres.

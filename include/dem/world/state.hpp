@@ -73,7 +73,7 @@ bool neighbours_outdated(const WorldState<Model>& w) {
   return 4.0 * moved2 > w.list_skin * w.list_skin;
 }
 
-/// Sorts the grains in space, lists their neighbours, and carries the contacts' memories over.
+/// Sorts the grains in space, lists their neighbours, and carries the contact histories over.
 template <class Model>
 void rebuild_neighbours(WorldState<Model>& w) {
   auto& p = w.particles;

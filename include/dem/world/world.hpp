@@ -194,13 +194,13 @@ class World : public WorldSetup<M> {
     return limit;
   }
 
-  /// Chooses or checks the time step, with the machine laid out for it.
+  /// Chooses or checks the time step. What the machine's user left open is derived for this step.
   void choose_time_step() {
     const WorldOptions& o = state_.options;
     o.time_step == 0.0 ? choose_time_step_automatically() : check_time_step(o.time_step);
   }
   void choose_time_step_automatically() {
-    // What a machine derives is laid out for whatever step is chosen: only what is given limits it.
+    // A machine's derived stiffness suits whatever step is chosen, so only given stiffness limits the step.
     const double of_given = state_.machine_solver.stable_time_step_of_given(state_.machine).dt;
     const double limit = std::min(stable_time_step_of_contacts().dt, of_given);
     if (limit >= 1e300) fail("nothing in the world limits the time step; set time_step");

@@ -161,10 +161,10 @@ class WorldSetup {
     checked_ = initialised_ = false;
     return BodyContactId(w.body_contacts.pairs.size() - 1);
   }
-  /// Lets all surfaces touch each other that were added so far, but for those of one body, of two fixed bodies without
-  /// mass, or of bodies that a joint connects (one of kind `free` only measures); pairs that are known already are not
-  /// added again. Any number of them costs little: only those whose bounding boxes meet are looked at. Returns how many
-  /// pairs were added.
+  /// Lets all surfaces that were added so far touch each other. Left out are pairs of one body, of two fixed bodies
+  /// without mass, and of bodies that a joint connects (but not by one of kind `free`, which only measures). Pairs that
+  /// are known already are not added again. Any number of pairs costs little: only those whose bounding boxes meet are
+  /// looked at. Returns how many pairs were added.
   std::size_t add_body_contacts() {
     const auto& w = state_;
     const auto both = [](std::size_t a, std::size_t b) { return std::uint64_t{std::min(a, b)} << 32 | std::max(a, b); };

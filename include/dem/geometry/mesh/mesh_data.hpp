@@ -133,8 +133,8 @@ DEM_LAZY inline bool is_convex(const MeshData& m, std::uint32_t v) {
   return height < -1e-6 * length;
 }
 
-/// Sine of the angle by which the surface bends away at edge k of triangle t; 1 where it ends or turns by more than a
-/// right angle, 0 where it is flat or concave.
+/// Sine of the angle by which the surface bends away at edge k of triangle t. It is 1 where the surface ends or turns
+/// by more than a right angle, and 0 where it is flat or concave.
 DEM_LAZY inline double bend(const MeshData& m, std::uint32_t t, std::size_t k) {
   const std::uint32_t other = m.topology.neighbour[t][k];
   if (other == MeshTopology::none) return 1.0;
@@ -144,8 +144,9 @@ DEM_LAZY inline double bend(const MeshData& m, std::uint32_t t, std::size_t k) {
   if (!(height < 0.0)) return 0.0;
   return dot(n, across) < 0.0 ? 1.0 : norm(cross(n, across));
 }
-/// Whether the surface ends at an edge or bends away by more than 0.02 rad. A flat side of a grain that lies on an edge
-/// of a smaller turn meets the faces beside it before it has sunk by a hundredth of its half size.
+/// Whether the surface ends at an edge or bends away by more than 0.02 rad. At a smaller bend an edge needs no points
+/// of its own: the flat side of a grain on it reaches the faces beside it before it has sunk by a hundredth of its half
+/// size.
 inline bool is_ridge(double bend) { return bend > 0.02; }
 /// Whether an edge of a smaller turn is longer than a quarter of the radius of the bend, as those of a finely cut
 /// cylinder: its vertices are then too far apart to stand for it. `bend` as above, `width` of the narrower triangle.

@@ -37,10 +37,10 @@ class UnionFind {
 
 }  // namespace detail
 
-/// Triangles across an edge of a small turn (rad) are one group, whichever way it turns: a curved surface. Across
-/// sharper convex edges a contact moves on steadily too, so groups are joined there. A sharp concave edge, where a
-/// grain touches both sides at once, must part groups: two groups that meet in one, or that meet the same third group
-/// so (the flanks of a slot), stay apart.
+/// Groups triangles by their edges. A small turn (rad), convex or concave, is a curved surface: both triangles are in
+/// one group. Sharper convex edges join groups too, as a contact moves over them steadily. A sharp concave edge
+/// separates groups, as a grain touches both sides at once there. Two groups that meet at such an edge stay apart, and
+/// so do two groups that both meet a third one there (the flanks of a slot).
 DEM_LAZY inline MeshGroups group_triangles(const IndexedMesh& mesh, const MeshTopology& topology, double smooth_angle) {
   const auto n = static_cast<std::uint32_t>(mesh.triangles.size());
   MeshGroups result;

@@ -182,8 +182,8 @@ DEM_LAZY inline std::size_t remove_unused(IndexedMesh& mesh) {
   return unused;
 }
 
-/// Throws Error if vertices that lie beside each other became one in more than half of the triangles: a single corrupt
-/// coordinate makes a mesh so large that all else is a point beside it.
+/// Throws Error if more than half of the triangles have vertices that were merged although they are neighbours. A
+/// single corrupt coordinate does this: it makes the mesh so large that all else is a point beside it.
 DEM_LAZY inline void refuse_collapse(const IndexedMesh& given, const IndexedMesh& merged, double tolerance) {
   std::size_t collapsed = 0;
   for (std::size_t t = 0; t < merged.triangles.size(); ++t) {
@@ -201,7 +201,8 @@ DEM_LAZY inline void refuse_collapse(const IndexedMesh& given, const IndexedMesh
       collapsed, merged.triangles.size(), tolerance, far.x(), far.y(), far.z());
 }
 
-/// Throws Error for a triangle that looks nowhere, as are left where more lie in a line than can be joined.
+/// Throws Error for a triangle without an area, hence without a normal. Some are left if more vertices lie in a line
+/// than can be joined.
 DEM_LAZY inline void refuse_without_area(const IndexedMesh& mesh) {
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
     if (mesh.area_vector(t).norm() > 0.0) continue;
@@ -218,8 +219,8 @@ DEM_LAZY inline void refuse_without_area(const IndexedMesh& mesh) {
 /// Checks a mesh and repairs what is safe to repair: merges vertices within `tolerance` (m; 0: 1e-9 of the diagonal),
 /// removes triangles without an area or there twice, drops unused vertices, and turns triangles that look the wrong
 /// way. Holes and edges of more than two triangles are left, and reported. Throws Error for indices out of range,
-/// coordinates that are not finite or so far out that the other vertices are one beside them, triangles that have no
-/// area after the repair, and if no triangle is left.
+/// coordinates that are not finite or so far out that all other vertices merge, triangles that have no area after the
+/// repair, and a mesh without triangles.
 DEM_LAZY inline RepairedMesh repaired(const IndexedMesh& given, MeshFacing facing = MeshFacing::outward,
                                       double tolerance = 0.0) {
   check_indices(given);

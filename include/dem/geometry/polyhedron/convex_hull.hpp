@@ -137,8 +137,8 @@ class HullBuilder {
   }
   const Vec3& at(int k) const { return points_[static_cast<std::size_t>(k)]; }
 
-  /// The point for which f is largest. A little of a strictly convex function decides between points that are equally
-  /// far out, such that only true corners of the hull are ever taken, never points amid an edge or a face.
+  /// The point for which f is largest. A small strictly convex term decides between points that are equally far out. So
+  /// only true corners of the hull are taken, never points in the middle of an edge or a face.
   template <class F>
   int furthest(F&& f) const {
     int best = 0;

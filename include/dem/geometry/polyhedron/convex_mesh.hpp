@@ -83,9 +83,9 @@ inline DirectedEdges directed_edges(const std::vector<std::vector<int>>& faces) 
   return runs;
 }
 
-/// Joins the triangles of a hull to flat faces. A face starts as the largest triangle that is left, whose plane is the
-/// surest, and takes in one neighbour after the other. It asks its neighbours, not all corners near its plane, so every
-/// triangle ends up in one face, and the faces close since the triangles do, whatever rounding says about planes.
+/// Joins the triangles of a hull to flat faces. A face starts as the largest triangle that is left, as its plane is the
+/// surest, and takes in one neighbour after the other. Only neighbours are asked, not all corners near the plane. So
+/// every triangle ends up in one face, and the faces close as the triangles do, whatever rounding says about planes.
 class FaceGrower {
  public:
   /// `tolerance`: how far (m) a corner may be from a plane and still lie in it.
@@ -245,9 +245,9 @@ inline void check_faces(std::span<const Vec3> corners, std::vector<std::vector<i
 
 }  // namespace detail
 
-/// The convex hull of a cloud of points (m). What lies in one plane to within 1e-6 of the body's size is one face, so
-/// that a body whose corners were rounded, as in a file of single precision, has the faces it was drawn with. Throws
-/// Error if there are fewer than four points, one is not finite, or all lie in one plane.
+/// The convex hull of a cloud of points (m). Corners that lie in one plane to within 1e-6 of the body's size make one
+/// face. So a body from a file of single precision has the faces it was drawn with. Throws Error if there are fewer
+/// than four points, one is not finite, or all lie in one plane.
 inline ConvexMesh hull_mesh(std::span<const Vec3> points) {
   std::vector<std::vector<int>> triangles;
   for (const Triangle& t : convex_hull(points)) triangles.emplace_back(t.begin(), t.end());

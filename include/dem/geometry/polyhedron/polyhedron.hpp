@@ -13,12 +13,12 @@
 
 namespace dem::shape {
 
-/// A convex polyhedron with up to 64 corners. Its corners, faces and edges are kept once a species (copies share them);
-/// a grain adds its rotation, from which the contact code puts one body into the frame of the other, where faces do not
-/// move.
+/// A convex polyhedron with up to 64 corners. Its corners, faces and edges are kept once per species; copies share
+/// them. A grain adds its rotation. The contact code uses it to put one body into the frame of the other, where faces
+/// do not move.
 ///
-/// Contacts are patches of points with shares (FacePatch): contact::PointTouch::area is a point's share, without unit,
-/// so that a face on a face has the normal stiffness K of the law, however many points there are, an edge K/2 and a
+/// Contacts are patches of points with shares (FacePatch): contact::PointTouch::area is the share of a point, without
+/// unit. A face on a face has the normal stiffness K of the law, however many points there are, an edge K/2 and a
 /// corner K/3. The effective radius is r_i r_j/(r_i + r_j) of the spheres of the same volumes.
 class Polyhedron {
  public:

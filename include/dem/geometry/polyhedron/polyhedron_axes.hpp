@@ -4,9 +4,10 @@
 
 namespace dem::shape {
 
-// Separating axis test of two convex polyhedra: two of them overlap if and only if they do along the normals of all
-// faces and along the cross products of all edges of one with all of the other, and the axis of least overlap is among
-// these (S. Gottschalk, 1996; the pairs of edges that matter: D. Gregorius, Game Developers Conference 2013).
+// Separating axis test of two convex polyhedra. The axes are the normals of all faces, and the cross products of each
+// edge of one body with each edge of the other. The bodies overlap if and only if they overlap along all of these, and
+// the axis of least overlap is among them (S. Gottschalk, 1996; the pairs of edges that matter: D. Gregorius, Game
+// Developers Conference 2013).
 
 /// Where the points of body y are in the frame of body x: turn * p + shift.
 struct Placing {
@@ -116,9 +117,9 @@ struct EdgeColumns {
   }
 };
 
-/// Tries the listed edges of a with those of b. A pair makes a face of the difference of the bodies, and so an axis
-/// that matters, if the arcs between the normals of their faces cross on the unit sphere (b's turned round); parallel
-/// edges make none. False if an axis separates the bodies.
+/// Tries the listed edges of a with those of b. A pair of edges makes a face of the Minkowski difference of the bodies,
+/// and so an axis that matters, if the arcs between the normals of their faces cross on the unit sphere (those of b
+/// turned round). Parallel edges make none. False if an axis separates the bodies.
 inline bool test_edges(const PolyhedronTables& a, const int* list_a, int count_a, const PolyhedronTables& b,
                        const int* list_b, int count_b, const Placing& b_in_a, const SeenCorners& seen_b,
                        EdgeAxis& best) {

@@ -6,14 +6,14 @@
 
 namespace dem::shape {
 
-/// Cosine of the angle (0.05 rad) up to which two faces count as flat on each other, and up to which a face patch is
-/// preferred to a contact of two edges whose common normal is that close to the face's: a body that lies on another
-/// tilted by its elastic overlap does not teeter on single points.
+/// Cosine of 0.05 rad, an angle with two uses. Up to it, two faces count as flat on each other. Up to it, a face patch
+/// is preferred to a contact of two edges whose common normal is that close to the face's. So a body that lies on
+/// another one, tilted by its elastic overlap, does not teeter on single points.
 inline constexpr double flat_cosine = 0.99875;
 
-/// The contact of two polyhedra a and b. Along the axis of least overlap there is either a patch of points, where a
-/// face of one presses on the other (FacePatch), or one point, where two edges cross, with a corner's share of 1/3.
-/// What is found does not depend on which body is called a.
+/// The contact of two polyhedra a and b, along the axis of least overlap. Where a face of one presses on the other it
+/// is a patch of points (FacePatch). Where two edges cross it is one point, with a corner's share of 1/3. What is found
+/// does not depend on which body is called a.
 class PolyhedronContact {
  public:
   static constexpr int most_points = FacePatch::most_points;

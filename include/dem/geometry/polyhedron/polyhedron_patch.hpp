@@ -101,8 +101,8 @@ class FacePatch {
   };
   static std::size_t index(int k) { return static_cast<std::size_t>(k); }
 
-  /// A corner beyond a side by less than this share of the body's radius counts as on it, so that of bodies stacked
-  /// edge on edge the corners touch, in whichever way they breathe.
+  /// A corner beyond a side by less than this share of the body's radius counts as on it. So the corners of bodies that
+  /// are stacked edge on edge touch, although the bodies swing a little.
   static constexpr double slack = 1e-6;
 
   /// Keeps what lies at outward . p <= offset (Sutherland and Hodgman 1974, DOI 10.1145/360767.360802). `cutter`: the

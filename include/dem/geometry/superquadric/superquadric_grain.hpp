@@ -60,9 +60,9 @@ class SuperquadricGrain {
   /// Whether contacts are whole ones, of which points have shares.
   bool has_shares() const { return area_ == PointArea::share; }
   static constexpr contact::Fit shares_fit = contact::Fit::always;
-  /// The most points that may lie on a surface at once (of area 1 where they share it): of the three sides, those no
-  /// deeper behind the tangent plane than a tenth of the mean radius (the default overlap limit), weighted by the
-  /// square of the cosine of their normals.
+  /// The most points that may lie on a surface at once (of area 1 where they share it). On each of the three sides
+  /// these are the points no deeper behind the tangent plane than a tenth of the mean radius, the default overlap
+  /// limit. They are weighted by the square of the cosine of their normals. The largest of the three counts.
   contact::Patch surface_patch() const { return patch_; }
 
   DEM_HOT void orient(const Matrix3<double>& r, double* pose) const {
@@ -90,8 +90,8 @@ class SuperquadricGrain {
     solid_.support(transpose_times(r, direction), local);
     return r * local;
   }
-  /// As far out as support(), but beside it in the middle of what lies farthest along directions that differ by a few
-  /// milliradians: on a flat side, where rounding decides which point is the farthest, the middle of the side.
+  /// A point as far out as support(), but in the middle of what is farthest in directions that differ by a few
+  /// milliradians. On a flat side, where rounding decides which point is the farthest, it is the middle of the side.
   Vector3<double> even_support(const double* pose, const Vector3<double>& direction) const {
     const Matrix3<double> r = rotation(pose);
     const Vector3<double> n = transpose_times(r, direction);
@@ -105,9 +105,10 @@ class SuperquadricGrain {
     }
     return r * (middle + dot(farthest - middle, n) * n);
   }
-  /// What a point of the skin weighs beside the support point of a flat surface with that normal (all in m from the
-  /// grain's centre, global axes): almost nothing within a third of the mean radius, so that a round grain, which
-  /// touches over less than that, rests and rolls on its support point alone, and all of it on a flat side's far end.
+  /// The weight of a sample point beside the support point of a flat surface with that normal (all in m from the
+  /// grain's centre, global axes). Within a third of the mean radius it is almost nothing. A round grain touches over
+  /// less than that, so it rests and rolls on its support point alone. At the far end of a flat side it is the whole
+  /// weight.
   DEM_HOT double beside_support(const Vector3<double>& point, const Vector3<double>& support,
                                 const Vector3<double>& normal) const {
     const Vector3<double> d = point - support;

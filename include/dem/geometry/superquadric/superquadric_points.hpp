@@ -8,11 +8,11 @@
 
 namespace dem::shape {
 
-/// A superquadric grain after the thesis (section 2.2.4): points on the surface of each grain are tried against the
-/// implicit function of the other, both ways round, and every point inside is a contact with the area that belongs to
-/// it (A of eq. 25), or its share of a whole contact. Depth and normal are those of SuperquadricSolid::penetration,
-/// whose overestimate is of fourth order in the depth. Edges and corners that meet between points are felt late: the
-/// finer the points, the less so.
+/// A superquadric grain after the thesis (section 2.2.4). Sample points of the surface of each grain are tried against
+/// the implicit function of the other. Every point inside is a contact, with the area that belongs to it (A of eq. 25)
+/// or its share of a whole contact. Depth and normal are those of SuperquadricSolid::penetration, whose overestimate is
+/// of fourth order in the depth. Edges and corners that meet between sample points are felt late: the finer the points,
+/// the less so.
 class SuperquadricPoints : public SuperquadricGrain {
  public:
   static constexpr std::size_t most_contacts = 2 * 4096;

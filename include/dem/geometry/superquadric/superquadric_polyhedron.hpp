@@ -10,11 +10,13 @@
 
 namespace dem::shape {
 
-/// A superquadric of either kind and a polyhedron: points of the superquadric's skin, and the one that meets the
-/// nearest face first, in the polyhedron, corners of the polyhedron in the superquadric, and points of each edge, where
-/// it is nearest to the superquadric's centre and half a bounding radius on either side. They share one contact, or
-/// weigh as the superquadric's points do. What meets between these points is felt late. Feature: a point of the skin;
-/// 2^12 for that support point; from 2^13 on a corner, from 2^14 on three times an edge.
+/// A superquadric of either kind and a polyhedron. They touch by
+/// - sample points of the superquadric in the polyhedron (feature: the number of the point);
+/// - the support point of the superquadric, which meets the nearest face first (feature: 2^12);
+/// - corners of the polyhedron in the superquadric (features from 2^13 on);
+/// - three points of each edge: where it is nearest to the superquadric's centre, and half a bounding radius on either
+/// side (features from 2^14 on, three per edge).
+/// They share one contact, or weigh as the superquadric's points do. What meets between these points is felt late.
 template <std::derived_from<SuperquadricGrain> Rounded>
 struct PairContact<Rounded, Polyhedron> {
   template <class Sink>

@@ -7,9 +7,11 @@
 
 namespace dem::cohesion {
 
-/// A liquid bridge between wet grains: it forms when they touch and pulls with 4 pi R* g/(1 + 1.05 s + 2.5 s^2), s =
-/// gap sqrt(2 R*/V) (Willett et al. 2000, doi:10.1021/la000657y, with the Derjaguin radius 2 R*), until it breaks at
-/// the rupture distance. Each contact has the same volume of liquid; nothing evaporates or flows.
+/// A liquid bridge between wet grains. It forms when they touch and breaks at the rupture distance. Until then it pulls
+/// with
+///   4 pi R* g/(1 + 1.05 s + 2.5 s^2),   s = gap sqrt(2 R*/V)
+/// (Willett et al. 2000, doi:10.1021/la000657y, with the Derjaguin radius 2 R*). Each contact has the same volume of
+/// liquid; nothing evaporates or flows.
 struct LiquidBridge {
   template <class T>
   struct Parameters {

@@ -9,7 +9,7 @@ namespace dem::friction {
 /// asperities break, in parallel with a velocity ramp. `slip` is the vector from the anchor to the contact point.
 ///   spring   f = kt |slip|; where f > mu Fn the anchor moves until the spring keeps breaking_factor * mu Fn
 ///   ramp     min(cv |vt|, mu Fn) against the sliding velocity
-/// and the sum never exceeds mu Fn. A contact that sticks is damped by the whole ramp, so its slope counts in the
+/// The sum of both never exceeds mu Fn. A contact that sticks is damped by the whole ramp, so its slope counts in the
 /// stable time step.
 struct AsperitySpring {
   template <class T>

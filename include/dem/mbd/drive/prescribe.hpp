@@ -54,7 +54,7 @@ inline void carry_fixed(const PrescribedMotion& p, integrator::Motion<double>& m
   }
 }
 
-/// Samples the signals, and sets the bodies that give way to nothing.
+/// Samples the signals. Sets the bodies that no force moves: fixed ones, and those whose pose is prescribed.
 inline void sample_motions(Parts& parts, double time, double dt) {
   for (PrescribedMotion& p : parts.motions) {
     if (!p.spec.on) continue;

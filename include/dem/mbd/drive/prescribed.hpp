@@ -24,19 +24,19 @@ struct Pose {
 using PoseFunction = Function<Pose(double)>;  ///< of the time (s)
 
 /// A prescribed motion (eq. 19): the value and the speed of one coordinate, or a whole pose, are set exactly at the end
-/// of every stage, whatever force it takes; that force is reported.
+/// of every stage, whatever force it takes. That force is reported.
 ///
 /// A drive acts as a force would: along its axis at the joint's point, or as a torque, on one body and opposite on the
-/// other, so that momentum is kept (of rotation to the order of the time step) and joints carry what it leaves to them.
-/// All drives are met at once. Where two repeat or contradict each other the earlier one counts, and a body that is
-/// fixed or whose pose is prescribed gives way to none (of two motions of such a body the later one counts). A drive
-/// takes hold of its coordinate where that is: a value that is more than 1 mm or 1 mrad off when it is added, switched
-/// on or given another signal is refused. A speed is set within one step, and the force of that step is the jolt that
-/// this takes.
+/// other. So momentum is kept (of rotation to the order of the time step). Side effects of this force are carried by
+/// the joints. All drives are met at once. Where two repeat or contradict each other, the earlier one counts. A body
+/// that is fixed or whose pose is prescribed yields to no other drive; of two motions of such a body, the later one
+/// counts. A drive starts from the present value of its coordinate: a value that is more than 1 mm or 1 mrad off when
+/// the drive is added, switched on or given another signal is refused. A speed is set within one step, and the force of
+/// that step is the jolt that this takes.
 ///
-/// Two coordinates of joints cannot be prescribed: a bend, which has no direction where the joint is straight (a
-/// universal joint's bend_x and bend_y can), and the length of a distance joint, which the joint itself holds (drive
-/// the slide of a prismatic joint between two bodies, or use a linear_actuator without the joint).
+/// Two coordinates of joints cannot be prescribed. A bend has no direction where the joint is straight; bend_x and
+/// bend_y of a universal joint have one. The length of a distance joint is held by the joint itself: drive the slide of
+/// a prismatic joint between the two bodies instead, or use a linear_actuator without the joint.
 struct MotionSpec {
   enum class Target {
     position,  ///< displacement of a body's centre of mass along a global axis, from where it is when the motion is

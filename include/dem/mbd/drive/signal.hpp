@@ -65,9 +65,10 @@ class Signal {
     return Signal([curve = curve.held_outside()](double t, double) -> Sample { return {curve(t), curve.slope(t)}; });
   }
 
-  /// Any function of time. A rate that is not given is the mean one over the machine's time step, half of it before t
-  /// and half after: good to dt^2 where the function is smooth. Over the steps it sums up to what the function rises
-  /// by, so a jump of the set point gives a damper's whole impulse, c times the jump, whatever the time step is.
+  /// Any function of time. A rate that is not given is the mean one over the machine's time step, from half a step
+  /// before t to half a step after: good to dt^2 where the function is smooth. The rates of all steps sum up to the
+  /// rise of the function. So a jump of the set point gives the whole impulse of a damper, c times the jump, whatever
+  /// the time step is.
   static Signal function(Function<double(double)> value) {
     return Signal([value = std::move(value)](double t, double dt) -> Sample {
       const double h = dt > 0.0 ? 0.5 * dt : 1e-6;

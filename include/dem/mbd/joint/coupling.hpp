@@ -14,9 +14,9 @@ namespace dem::mbd {
 
 /// A linear constraint between joint coordinates, sum(ratio_i q_i) = value at assembly, held by a spring and a damper:
 /// gears, rack and pinion, differentials. Coordinate i is driven by ratio_i * lambda: a torque about the joint's axis
-/// where it turns, a force at the joint's point where it slides, on b and with the opposite sign on the body a that
-/// carries the joint. So momentum is kept and housings feel the torque that they hold. Teeth are not modelled: nothing
-/// presses gears apart or loads their bearings across the axis, there is no backlash and no loss.
+/// where it turns, a force at the joint's point where it slides. It acts on b, and with the opposite sign on the body a
+/// that carries the joint. So momentum is kept and housings feel the torque that they hold. Teeth are not modelled:
+/// nothing presses gears apart or loads their bearings across the axis, there is no backlash and no loss.
 struct CouplingSpec {
   enum class Moves { any, rotation, displacement };
   struct Term {

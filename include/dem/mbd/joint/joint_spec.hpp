@@ -45,8 +45,8 @@ struct JointFriction {
   std::optional<double> velocity_stiffness = {};  ///< N s/m; derived if not given
 };
 
-/// What a joint is made from. Each kind has a function that makes it (kinds.hpp); the `with_...` functions refine it.
-/// A stiffness or damping that is not given is derived when the machine learns its time step (see stability.hpp).
+/// What a joint is made from. Each kind has a function that makes it (kinds.hpp); the `with_...` functions refine it. A
+/// stiffness or damping that is not given is derived when the machine learns its time step (see solver/part_kind.hpp).
 struct JointSpec {
   std::string name;
   JointKind kind = {};

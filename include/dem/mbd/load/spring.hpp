@@ -35,8 +35,8 @@ inline SpringSpec spring(std::string name, BodyId a, const Vec3& at_a, BodyId b,
           .force_over_speed = damping > 0.0 ? Curve::line(0.0, -damping) : Curve{}};
 }
 /// A spring of free length (m) whose force (N) over its compression (m, positive when shorter) is a table. Beyond the
-/// table it goes on with the slope of its last piece, or keeps its last value if the curve is `held_outside`, as that
-/// of a bump stop does, which does not pull; its damper acts at every length.
+/// table the force goes on with the slope of its last piece. With a curve that is `held_outside` it keeps its last
+/// value instead: a bump stop is such a spring, which does not pull. The damper acts at every length.
 inline SpringSpec spring_table(std::string name, BodyId a, const Vec3& at_a, BodyId b, const Vec3& at_b,
                                double free_length, const Curve& force_over_compression, double damping = 0.0) {
   require_positive(free_length, "free length of a spring", "m");

@@ -17,8 +17,8 @@ inline void derive_stiffness(Parts& m, double dt) {
   }
 }
 
-/// The same machine with what its user gave alone: laid out for a step without end, all that is derived vanishes but
-/// for dampers that belong to a given stiffness.
+/// The same machine with only the stiffness and damping that its user gave. It derives for an endlessly long time step,
+/// for which every derived stiffness is 0. Dampers that are derived from a given stiffness stay.
 inline Parts without_derived(Parts m) {
   derive_stiffness(m, endless_step);
   return m;

@@ -8,12 +8,13 @@
 namespace dem::mbd {
 
 /// The forces of the grains over the sub-steps of a machine that is stiffer than they are. The grains are evaluated
-/// once a stage of the world's step.
+/// once in each stage of the world's step.
 ///
-/// With an integrator of one stage their forces are held over the step, and half of what they changed by since the last
-/// one is made up for by an impulse (catch_up): a free body then moves exactly as without sub-steps, so that energy is
-/// kept at any stable step. With two stages they run linearly in time: in the first on from their values at the start
-/// of the last step and of this one, in the second between the start and the predicted end of the step.
+/// With an integrator of one stage the forces are held over the step. They changed since the last step, and half of
+/// this change is made up for by an impulse (catch_up). A free body then moves exactly as without sub-steps, so energy
+/// is kept at any stable step. With two stages the forces are linear in time. In the first stage they are extrapolated
+/// from their values at the start of the last step and of this one. In the second they are interpolated between the
+/// start and the predicted end of the step.
 template <integrator::Integrator I>
 class HeldContacts {
  public:

@@ -7,14 +7,15 @@
 namespace dem::mbd {
 
 /// Keeps what was derived for one pose stable in others. A joint at a lever L of a body moves it by 1/m + L^2/I per
-/// newton, so a spring that was laid out for a short lever is too stiff for a long one. Every few steps such springs
-/// are lowered to what would be derived in the present pose, with their limits, friction and couplings; users' values
-/// are left alone. Nothing is raised again, as a strained spring that gets stiffer gains energy, while one that gets
+/// newton. So a spring that was derived for a short lever is too stiff for a long one. Every few steps such springs are
+/// lowered to what would be derived in the present pose, with their limits, friction and couplings. Values that users
+/// gave are left alone. Nothing is raised again: a strained spring that gets stiffer gains energy, while one that gets
 /// softer loses some.
 ///
-/// Laid out at omega dt = 0.7 and half of critical damping, a part stays stable until a newton moves its bodies 2.1
-/// times as far, with each of the integrators. So it is looked at again after a single step where it was found too
-/// stiff by a fifth, and each time twice as late, up to 64 steps, where it was by less than a twentieth.
+/// A part is derived for omega dt = 0.7 and half of critical damping. With each of the integrators it stays stable
+/// until a newton moves its bodies 2.1 times as far. So there is time. A part that was too stiff by more than a fifth
+/// is looked at again after one step. While the excess stays below a twentieth, the interval doubles each time, up to
+/// 64 steps.
 class Softening {
  public:
   Softening() = default;
