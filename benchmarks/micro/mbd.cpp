@@ -35,7 +35,11 @@ BENCHMARK(chain_step<integrator::VelocityVerlet>);
 BENCHMARK(chain_step<integrator::PredictorCorrector>);
 
 void joint_force(benchmark::State& state) {
-  const auto kind = static_cast<JointKind>(state.range(0));
+  constexpr JointKind kinds[] = {JointKind::fixed,         JointKind::spherical,         JointKind::revolute,
+                                 JointKind::cylindrical,   JointKind::prismatic,         JointKind::planar,
+                                 JointKind::universal,     JointKind::constant_velocity, JointKind::point_on_line,
+                                 JointKind::point_on_plane};
+  const JointKind kind = kinds[state.range(0)];
   Machine<integrator::SymplecticEuler> m;
   const BodyId a = m.add_body(given_body("a", 1.0, Vec3(1, 1, 1)));
   const BodyId b = m.add_body(given_body("b", 1.0, Vec3(1, 1, 1)).at({1, 0, 0}));

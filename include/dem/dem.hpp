@@ -25,6 +25,7 @@
 #include <dem/law/rolling/elastic_plastic.hpp>
 #include <dem/law/rolling/sum.hpp>
 #include <dem/law/rolling/torsion.hpp>
+#include <dem/mbd/body/mesh_body.hpp>
 #include <dem/mbd/mbd.hpp>
 #include <dem/parallel/serial.hpp>
 #include <dem/world/memory.hpp>

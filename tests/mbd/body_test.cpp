@@ -1,3 +1,5 @@
+#include <dem/mbd/body/mesh_body.hpp>
+
 #include <array>
 #include <vector>
 

@@ -1,11 +1,13 @@
 #pragma once
 
 #include <dem/core/error.hpp>
+#include <dem/core/macros.hpp>
 #include <dem/math/rotation.hpp>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 namespace dem {
 
@@ -24,7 +26,7 @@ struct SymmetricEigen {
   Vec3 values;
   Mat3 vectors;
 };
-inline SymmetricEigen eigen_of_symmetric(Mat3 m) {
+DEM_COLD inline SymmetricEigen eigen_of_symmetric(Mat3 m) {
   Mat3 v = Mat3::Identity();
   const auto rotate = [](double& x, double& y, double c, double s) {
     const double old = x;
@@ -52,7 +54,9 @@ inline SymmetricEigen eigen_of_symmetric(Mat3 m) {
     }
   }
   int order[3] = {0, 1, 2};
-  std::sort(order, order + 3, [&](int i, int j) { return m(i, i) < m(j, j); });
+  for (const auto& [i, j] : {std::pair{0, 1}, {1, 2}, {0, 1}}) {
+    if (m(order[j], order[j]) < m(order[i], order[i])) std::swap(order[i], order[j]);
+  }
   SymmetricEigen found;
   for (int k = 0; k < 3; ++k) {
     found.values[k] = m(order[k], order[k]);
@@ -63,7 +67,7 @@ inline SymmetricEigen eigen_of_symmetric(Mat3 m) {
 
 /// Of all frames along these eigenvectors (ascending eigenvalues) the one that turns the unit axes least. Eigenvectors
 /// of equal eigenvalues may be any in their plane.
-inline Mat3 nearest_axes(const Vec3& values, const Mat3& vectors) {
+DEM_COLD inline Mat3 nearest_axes(const Vec3& values, const Mat3& vectors) {
   const double equal = 1e-6 * std::max(std::fabs(values[0]), std::fabs(values[2]));
   const bool low = values[1] - values[0] < equal, high = values[2] - values[1] < equal;
   if (low && high) return Mat3::Identity();
@@ -100,7 +104,7 @@ inline Mat3 nearest_axes(const Vec3& values, const Mat3& vectors) {
 /// already (to 1e-12) keeps its axes. Moments that differ by less than 1e-6 of the largest count as equal, as those of
 /// a wheel from a file of single precision. Their axes stay as near to the given ones as they can, so a part that was
 /// drawn along its axes stays as drawn. Throws Error unless the tensor is finite and symmetric (to 1e-9).
-inline PrincipalAxes principal_axes(const Mat3& inertia) {
+DEM_COLD inline PrincipalAxes principal_axes(const Mat3& inertia) {
   for (int k = 0; k < 9; ++k) {  // looked at first, as the largest of several numbers may leave a NaN out
     if (0.0 * inertia.data()[k] == 0.0) continue;
     fail("an inertia tensor has moments {:g}, {:g}, {:g} and products {:g}, {:g}, {:g}, but all must be finite",

@@ -62,13 +62,13 @@ class Machine : public Mechanism {
 
   /// Derives what was left open (stiffness, damping) for a step of dt (s). Without it, step and run derive for the dt
   /// that they are given; after it, they keep what was derived, also for a smaller dt.
-  void design_for(double dt) {
+  DEM_COLD void design_for(double dt) {
     solver_.design_for(*this, dt);
     is_designed_ = true;
   }
   /// Evaluates the forces at the present state, at `time` (s), as the first step would. Throws Error if a stiffness has
   /// to be derived and design_for was not called, or a prescribed motion would have to jump.
-  void initialise(double time, const Vec3& g) {
+  DEM_COLD void initialise(double time, const Vec3& g) {
     gravity = g;
     solver_.initialise(*this, time, g, [] {});
   }
@@ -84,6 +84,11 @@ class Machine : public Mechanism {
   /// Before each step: what was added or changed since the last one counts, and is refused before anything moves.
   void prepare(double dt) {
     require_positive(dt, "time step", "s");
+    if (!is_initialised() || dt != accepted_dt_) accept(dt);
+    solver_.check_motions(*this);
+  }
+  /// Lays the machine out for steps of dt (s), as far as that is due. Throws Error if they are too large.
+  DEM_COLD void accept(double dt) {
     const bool same = is_initialised();
     if (!is_designed_ && (dt != solver_.design_step() || !same)) solver_.design_for(*this, dt);
     if (!same) {
@@ -96,10 +101,9 @@ class Machine : public Mechanism {
       solver_.note_stable_step(*this);  // what is derived is another one
     }
     accepted_dt_ = dt;
-    solver_.check_motions(*this);
   }
 
-  void check_time_step(double dt) const {
+  DEM_COLD void check_time_step(double dt) const {
     const StableTimeStep limit = stable_time_step();
     if (dt <= limit.dt || allow_unstable_time_step) return;
     fail(

@@ -1,16 +1,17 @@
 #pragma once
 
+#include <dem/core/macros.hpp>
 #include <dem/mbd/solver/parts.hpp>
 
 namespace dem::mbd::detail {
 
-inline BodyId add_body(Parts& parts, BuiltBody built) {
+DEM_COLD inline BodyId add_body(Parts& parts, BuiltBody built) {
   settle_name(built.body.name, parts.bodies, "body", "bodies", [](const Body& b) { return b.name; });
   parts.bodies.push_back(built.body);
   return keep<BodyId>(parts, parts.built, std::move(built));
 }
 
-inline ConnectionId add_connection(Parts& parts, std::string name, BodyId body, const Vec3& at) {
+DEM_COLD inline ConnectionId add_connection(Parts& parts, std::string name, BodyId body, const Vec3& at) {
   const std::string who = dem::text("connection point '{}'", name);
   const Body& b = known_body(parts, body, who);
   settle_name(name, parts.connections, "connection point", "connection points",

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <dem/core/error.hpp>
+#include <dem/core/macros.hpp>
 #include <dem/geometry/mass_properties.hpp>
 #include <dem/math/matrix3.hpp>
 
@@ -24,14 +25,14 @@ struct BodyMass {
 };
 
 /// Inertia of a point mass at r about the origin: m (r.r I - r r^T), the parallel axis theorem.
-inline Mat3 steiner(double mass, const Vec3& r) {
+DEM_COLD inline Mat3 steiner(double mass, const Vec3& r) {
   const Vector3<double> x = from_eigen(r);
   const double square = dot(x, x);
   return to_eigen(mass * (diagonal_matrix(square, square, square) - outer(x, x)));
 }
 
 /// Two bodies welded together; subtract one with a negative mass.
-inline BodyMass operator+(const BodyMass& a, const BodyMass& b) {
+DEM_COLD inline BodyMass operator+(const BodyMass& a, const BodyMass& b) {
   using V = Vector3<double>;
   const V ca = from_eigen(a.centre_of_mass), cb = from_eigen(b.centre_of_mass);
   const double mass = a.mass + b.mass;
@@ -43,20 +44,20 @@ inline BodyMass operator+(const BodyMass& a, const BodyMass& b) {
 }
 
 /// From volume integrals and a density (kg/m^3).
-inline BodyMass of_density(const MassProperties& volume, double density) {
+DEM_COLD inline BodyMass of_density(const MassProperties& volume, double density) {
   require_positive(density, "density", "kg/m^3");
   require_positive(volume.volume, "volume", "m^3");
   return {density * volume.volume, volume.centre, to_eigen(density * from_eigen(volume.inertia))};
 }
 
 /// A box with full edges `size` (m), centred on the origin; density in kg/m^3.
-inline BodyMass box_mass(const Vec3& size, double density) {
+DEM_COLD inline BodyMass box_mass(const Vec3& size, double density) {
   require_positive(std::min({size[0], size[1], size[2]}), "smallest edge of a box", "m");
   return of_density(box_mass_properties(size), density);
 }
 
 /// A full cylinder about the z axis, centred on the origin (m, kg/m^3).
-inline BodyMass cylinder_mass(double radius, double length, double density) {
+DEM_COLD inline BodyMass cylinder_mass(double radius, double length, double density) {
   require_positive(radius, "radius of a cylinder", "m");
   require_positive(length, "length of a cylinder", "m");
   const double m = require_positive(density, "density", "kg/m^3") * std::numbers::pi * radius * radius * length;
@@ -65,7 +66,7 @@ inline BodyMass cylinder_mass(double radius, double length, double density) {
 }
 
 /// A full sphere about the origin (m, kg/m^3).
-inline BodyMass sphere_mass(double radius, double density) {
+DEM_COLD inline BodyMass sphere_mass(double radius, double density) {
   require_positive(radius, "radius of a sphere", "m");
   return of_density(sphere_mass_properties(radius), density);
 }

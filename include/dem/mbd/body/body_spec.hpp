@@ -1,5 +1,6 @@
 #pragma once
 
+#include <dem/core/macros.hpp>
 #include <dem/geometry/principal_axes.hpp>
 #include <dem/mbd/body/body.hpp>
 #include <dem/mbd/body/body_mass.hpp>
@@ -52,18 +53,18 @@ BodySpec given_body(std::string name, double mass, const Eigen::MatrixBase<Deriv
   return {.name = std::move(name), .mass_properties = {mass, centre_of_mass, tensor}};
 }
 /// A box with full edges `size` (m), reference frame in its middle; density in kg/m^3.
-inline BodySpec box_body(std::string name, const Vec3& size, double density) {
+DEM_COLD inline BodySpec box_body(std::string name, const Vec3& size, double density) {
   return {.name = std::move(name), .mass_properties = box_mass(size, density)};
 }
 /// A full cylinder about the z axis of its reference frame, which sits in its middle (m, kg/m^3).
-inline BodySpec cylinder_body(std::string name, double radius, double length, double density) {
+DEM_COLD inline BodySpec cylinder_body(std::string name, double radius, double length, double density) {
   return {.name = std::move(name), .mass_properties = cylinder_mass(radius, length, density)};
 }
-inline BodySpec sphere_body(std::string name, double radius, double density) {
+DEM_COLD inline BodySpec sphere_body(std::string name, double radius, double density) {
   return {.name = std::move(name), .mass_properties = sphere_mass(radius, density)};
 }
 /// A body that stays where it is (or is moved by prescribed motion alone); it needs no mass.
-inline BodySpec fixed_body(std::string name, const Vec3& position = Vec3::Zero()) {
+DEM_COLD inline BodySpec fixed_body(std::string name, const Vec3& position = Vec3::Zero()) {
   return {.name = std::move(name), .position = position, .fixed = true};
 }
 
@@ -76,7 +77,7 @@ struct BuiltBody {
 
 /// Finds the principal axes and moves the reference frame's motion to the centre of mass. Throws Error if the body has
 /// no mass, an impossible inertia, a rotation that is not one, or a number that is not finite.
-inline BuiltBody build_body(const BodySpec& spec) {
+DEM_COLD inline BuiltBody build_body(const BodySpec& spec) {
   using V = Vector3<double>;
   const Matrix3<double> turn = from_eigen(spec.rotation);
   if (!(squared_norm(turn * transposed(turn) - diagonal_matrix(1, 1, 1)) <= 1e-18) || !(determinant(turn) > 0)) {

@@ -51,8 +51,9 @@ struct ActuatorSpec {
 };
 
 /// Between two points (eqs. 34-37): the coordinate is their distance (m), which must not become zero.
-inline ActuatorSpec linear_actuator(std::string name, BodyId a, const Vec3& at_a, BodyId b, const Vec3& at_b,
-                                    double position_gain, double speed_gain, std::optional<Signal> set_point = {}) {
+DEM_COLD inline ActuatorSpec linear_actuator(std::string name, BodyId a, const Vec3& at_a, BodyId b, const Vec3& at_b,
+                                             double position_gain, double speed_gain,
+                                             std::optional<Signal> set_point = {}) {
   return {.name = std::move(name),
           .a = a,
           .b = b,
@@ -63,8 +64,8 @@ inline ActuatorSpec linear_actuator(std::string name, BodyId a, const Vec3& at_a
           .set_point = std::move(set_point)};
 }
 /// On the coordinate of a joint: force on one that slides, torque on one that turns (eq. 38, over whole turns).
-inline ActuatorSpec joint_actuator(std::string name, JointId joint, double position_gain, double speed_gain,
-                                   std::optional<Signal> set_point = {}) {
+DEM_COLD inline ActuatorSpec joint_actuator(std::string name, JointId joint, double position_gain, double speed_gain,
+                                            std::optional<Signal> set_point = {}) {
   return {.name = std::move(name),
           .joint = joint,
           .position_gain = position_gain,
@@ -75,9 +76,9 @@ inline ActuatorSpec joint_actuator(std::string name, JointId joint, double posit
 /// positive about a x b at assembly. It is the turn of a free joint about that normal: give the bodies a joint that
 /// lets them turn about it, as a hinge does. Where they bend away from it, only the turn that is left is measured and
 /// driven.
-inline ActuatorSpec rotational_actuator(std::string name, BodyId a, const Vec3& corner, const Vec3& toward_a, BodyId b,
-                                        const Vec3& toward_b, double position_gain, double speed_gain,
-                                        std::optional<Signal> set_point = {}) {
+DEM_COLD inline ActuatorSpec rotational_actuator(std::string name, BodyId a, const Vec3& corner, const Vec3& toward_a,
+                                                 BodyId b, const Vec3& toward_b, double position_gain,
+                                                 double speed_gain, std::optional<Signal> set_point = {}) {
   return {.name = std::move(name),
           .a = a,
           .b = b,
@@ -92,7 +93,7 @@ inline ActuatorSpec rotational_actuator(std::string name, BodyId a, const Vec3& 
 }
 /// A motor on a joint: torque (N m) over speed (rad/s), times a throttle between -1 and 1 that is set while running.
 /// In reverse it is the same motor the other way round: torque = throttle curve(-speed).
-inline ActuatorSpec motor(std::string name, JointId joint, Curve torque_over_speed, double throttle = 1.0) {
+DEM_COLD inline ActuatorSpec motor(std::string name, JointId joint, Curve torque_over_speed, double throttle = 1.0) {
   if (torque_over_speed.empty()) fail("motor '{}' has no torque curve; give it points (speed, torque)", name);
   require_within(throttle, -1.0, 1.0, ("throttle of motor '" + name + "'").c_str());
   return {.name = std::move(name), .joint = joint, .torque_curve = std::move(torque_over_speed), .throttle = throttle};

@@ -2,6 +2,7 @@
 
 // Actuators: how they are added, and what the solver asks of them.
 
+#include <dem/core/macros.hpp>
 #include <dem/mbd/joint/joint_part.hpp>
 
 namespace dem::mbd::detail {
@@ -37,7 +38,7 @@ inline constexpr PartKind actuator_kind = {
       return {};
     }};
 
-inline void check_actuator(const ActuatorSpec& spec, const std::string& who) {
+DEM_COLD inline void check_actuator(const ActuatorSpec& spec, const std::string& who) {
   require_non_negative(spec.position_gain, ("position gain of " + who).c_str(), "N/m or N m/rad");
   require_non_negative(spec.speed_gain, ("speed gain of " + who).c_str(), "N s/m or N m s/rad");
   require_within(spec.throttle, -1.0, 1.0, ("throttle of " + who).c_str());
@@ -48,7 +49,7 @@ inline void check_actuator(const ActuatorSpec& spec, const std::string& who) {
 }
 
 /// A rotational actuator between three points acts on a free joint about the normal of their plane.
-inline JointId joint_on_three_points(Parts& parts, const ActuatorSpec& spec, const std::string& who) {
+DEM_COLD inline JointId joint_on_three_points(Parts& parts, const ActuatorSpec& spec, const std::string& who) {
   using V = Vector3<double>;
   const V to_a = unit(from_eigen(spec.toward_a) - from_eigen(spec.at_a), who);
   const V to_b = unit(from_eigen(spec.toward_b) - from_eigen(spec.at_b), who);
@@ -60,7 +61,7 @@ inline JointId joint_on_three_points(Parts& parts, const ActuatorSpec& spec, con
                               .starting_at(std::atan2(norm(normal), dot(to_a, to_b))));
 }
 
-inline ActuatorId add_actuator(Parts& parts, ActuatorSpec spec) {
+DEM_COLD inline ActuatorId add_actuator(Parts& parts, ActuatorSpec spec) {
   settle_name(spec.name, parts.actuators, "actuator", "actuators", name_in_spec);
   const std::string who = dem::text("actuator '{}'", spec.name);
   check_actuator(spec, who);

@@ -2,6 +2,7 @@
 
 // Prescribed motions: how they are added, and what the solver asks of them.
 
+#include <dem/core/macros.hpp>
 #include <dem/mbd/drive/check_holds.hpp>
 #include <dem/mbd/solver/part_kind.hpp>
 
@@ -15,7 +16,7 @@ inline constexpr PartKind motion_kind = {.rank = 7, .not_a_number = [](const Par
                                            return {};
                                          }};
 
-inline PrescribedMotion make_motion(const Parts& parts, MotionSpec spec) {
+DEM_COLD inline PrescribedMotion make_motion(const Parts& parts, MotionSpec spec) {
   const std::string who = dem::text("prescribed motion '{}'", spec.name);
   PrescribedMotion p;
   if (spec.target == MotionSpec::Target::joint) {
@@ -54,7 +55,7 @@ inline PrescribedMotion make_motion(const Parts& parts, MotionSpec spec) {
   return p;
 }
 
-inline MotionId add_motion(Parts& parts, MotionSpec spec) {
+DEM_COLD inline MotionId add_motion(Parts& parts, MotionSpec spec) {
   settle_name(spec.name, parts.motions, "prescribed motion", "prescribed motions", name_in_spec);
   use(parts, motion_kind);
   parts.apply_motions = &mbd::apply_motions;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <dem/core/macros.hpp>
 #include <dem/mbd/drive/signal.hpp>
 #include <dem/mbd/ids.hpp>
 #include <dem/mbd/joint/coordinate.hpp>
@@ -65,29 +66,29 @@ struct MotionSpec {
   }
 };
 
-inline MotionSpec prescribed_position(std::string name, BodyId body, const Vec3& axis, Signal metres) {
+DEM_COLD inline MotionSpec prescribed_position(std::string name, BodyId body, const Vec3& axis, Signal metres) {
   return {.name = std::move(name), .body = body, .axis = axis, .motion = std::move(metres)};
 }
-inline MotionSpec prescribed_rotation(std::string name, BodyId body, const Vec3& axis, Signal radians) {
+DEM_COLD inline MotionSpec prescribed_rotation(std::string name, BodyId body, const Vec3& axis, Signal radians) {
   return {.name = std::move(name),
           .target = MotionSpec::Target::rotation,
           .body = body,
           .axis = axis,
           .motion = std::move(radians)};
 }
-inline MotionSpec prescribed_joint(std::string name, JointId joint, Signal coordinate) {
+DEM_COLD inline MotionSpec prescribed_joint(std::string name, JointId joint, Signal coordinate) {
   return {
       .name = std::move(name), .target = MotionSpec::Target::joint, .joint = joint, .motion = std::move(coordinate)};
 }
 /// Prescribes the speed of a joint's coordinate (m/s or rad/s) and leaves its value as it comes: a driven wheel.
-inline MotionSpec prescribed_speed(std::string name, JointId joint, Signal speed) {
+DEM_COLD inline MotionSpec prescribed_speed(std::string name, JointId joint, Signal speed) {
   MotionSpec s = prescribed_joint(std::move(name), joint, speed.as_rate());
   s.by_speed = true;
   return s;
 }
 /// Prescribes where one of the body's frames is: by default the reference frame, as BodySpec::at does.
-inline MotionSpec prescribed_pose(std::string name, BodyId body, PoseFunction pose,
-                                  BodyFrame frame = BodyFrame::reference) {
+DEM_COLD inline MotionSpec prescribed_pose(std::string name, BodyId body, PoseFunction pose,
+                                           BodyFrame frame = BodyFrame::reference) {
   return {.name = std::move(name),
           .target = MotionSpec::Target::pose,
           .body = body,

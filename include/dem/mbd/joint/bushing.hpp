@@ -1,5 +1,6 @@
 #pragma once
 
+#include <dem/core/macros.hpp>
 #include <dem/mbd/joint/joint_spec.hpp>
 #include <dem/mbd/joint/penalty.hpp>
 
@@ -7,7 +8,7 @@ namespace dem::mbd {
 
 namespace detail {
 
-inline void check_bushing(const JointSpec& s, const std::string& who) {
+DEM_COLD inline void check_bushing(const JointSpec& s, const std::string& who) {
   if (s.has_stiffness_or_damping()) {
     fail(
         "{} was given a stiffness or damping with with_stiffness or with_damping, which it does not use: a bushing has "
@@ -22,7 +23,7 @@ inline void check_bushing(const JointSpec& s, const std::string& who) {
     fail("{} has no stiffness at all: give it bushing_stiffness (N/m) or bushing_rotational_stiffness (N m/rad)", who);
   }
 }
-inline void take_constants(Joint& j, const JointSpec& s, const Vector3<double>&, const std::string&) {
+DEM_COLD inline void take_constants(Joint& j, const JointSpec& s, const Vector3<double>&, const std::string&) {
   j.k3 = from_eigen(s.bushing_stiffness);
   j.c3 = from_eigen(s.bushing_damping);
   j.kr3 = from_eigen(s.bushing_rotational_stiffness);
@@ -40,8 +41,9 @@ inline constexpr JointTraits bushing_joint =
 inline constexpr JointKind JointKind::bushing{bushing_joint};
 
 /// Springs (N/m, N m/rad) and dampers (N s/m, N m s/rad) along and about the x, y, z axes of a frame with z along axis.
-inline JointSpec bushing(std::string name, BodyId a, BodyId b, const Vec3& at, const Vec3& axis, const Vec3& stiffness,
-                         const Vec3& damping, const Vec3& rotational_stiffness, const Vec3& rotational_damping) {
+DEM_COLD inline JointSpec bushing(std::string name, BodyId a, BodyId b, const Vec3& at, const Vec3& axis,
+                                  const Vec3& stiffness, const Vec3& damping, const Vec3& rotational_stiffness,
+                                  const Vec3& rotational_damping) {
   JointSpec s = joint(JointKind::bushing, std::move(name), a, b, at, axis);
   s.bushing_stiffness = stiffness;
   s.bushing_damping = damping;

@@ -33,22 +33,23 @@ struct CouplingSpec {
 
 /// Gears, between joints that turn: joint `out` turns `ratio` times as fast as joint `in`; negative where it turns the
 /// other way, as outer gears do (ratio = -teeth of `in` / teeth of `out`).
-inline CouplingSpec gear(std::string name, JointId in, JointId out, double ratio) {
+DEM_COLD inline CouplingSpec gear(std::string name, JointId in, JointId out, double ratio) {
   using enum CouplingSpec::Moves;
   return {std::move(name), {{in, ratio, Dof::own, rotation}, {out, -1.0, Dof::own, rotation}}};
 }
 /// Rack and pinion: the rack slides by pinion_radius (m) times the pinion's angle. The pinion's joint has to turn, the
 /// rack's to slide; of a cylindrical joint the coordinate that fits is taken.
-inline CouplingSpec rack_and_pinion(std::string name, JointId pinion, JointId rack, double pinion_radius) {
+DEM_COLD inline CouplingSpec rack_and_pinion(std::string name, JointId pinion, JointId rack, double pinion_radius) {
   using enum CouplingSpec::Moves;
   return {std::move(name), {{pinion, pinion_radius, Dof::own, rotation}, {rack, -1.0, Dof::own, displacement}}};
 }
 /// Screw: the nut slides by `lead` (m) for each turn. One cylindrical joint may be both.
-inline CouplingSpec screw(std::string name, JointId turning, JointId sliding, double lead) {
+DEM_COLD inline CouplingSpec screw(std::string name, JointId turning, JointId sliding, double lead) {
   return rack_and_pinion(std::move(name), turning, sliding, lead / (2.0 * std::numbers::pi));
 }
 /// Differential: the input turns `final_ratio` times as fast as the mean of the two outputs.
-inline CouplingSpec differential(std::string name, JointId in, JointId left, JointId right, double final_ratio) {
+DEM_COLD inline CouplingSpec differential(std::string name, JointId in, JointId left, JointId right,
+                                          double final_ratio) {
   using enum CouplingSpec::Moves;
   return {std::move(name),
           {{in, 1.0, Dof::own, rotation},

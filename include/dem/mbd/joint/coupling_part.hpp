@@ -2,13 +2,15 @@
 
 // Couplings: how they are added, and what the solver asks of them.
 
+#include <dem/core/macros.hpp>
 #include <dem/mbd/solver/effective_mass.hpp>
 #include <dem/mbd/solver/part_kind.hpp>
 
 namespace dem::mbd::detail {
 
 /// The degree of freedom that a term of a coupling names, or the one of the kind that the term needs.
-inline Dof dof_of(const CouplingSpec::Term& term, const Parts& parts, std::size_t number, const std::string& who) {
+DEM_COLD inline Dof dof_of(const CouplingSpec::Term& term, const Parts& parts, std::size_t number,
+                           const std::string& who) {
   using enum CouplingSpec::Moves;
   const Joint& j = known_joint(parts, term.joint, who);
   Dof dof = resolved(j.kind, term.dof);
@@ -30,7 +32,7 @@ inline Dof dof_of(const CouplingSpec::Term& term, const Parts& parts, std::size_
   return require_free_dof(j.kind, dof, who);
 }
 
-inline Coupling make_coupling(const Parts& parts, CouplingSpec spec) {
+DEM_COLD inline Coupling make_coupling(const Parts& parts, CouplingSpec spec) {
   const std::string who = dem::text("coupling '{}'", spec.name);
   if (spec.terms.size() < 2) fail("{} joins {} coordinates, but needs at least 2", who, spec.terms.size());
   for (std::size_t i = 0; i < spec.terms.size(); ++i) {
@@ -123,7 +125,7 @@ inline constexpr PartKind coupling_kind = {
                              [](const Coupling& g) { return g.spec.stiffness || g.spec.damping; });
         }};
 
-inline CouplingId add_coupling(Parts& parts, CouplingSpec spec) {
+DEM_COLD inline CouplingId add_coupling(Parts& parts, CouplingSpec spec) {
   settle_name(spec.name, parts.couplings, "coupling", "couplings", name_in_spec);
   use(parts, coupling_kind);
   return keep<CouplingId>(parts, parts.couplings, make_coupling(parts, std::move(spec)));

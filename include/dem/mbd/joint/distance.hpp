@@ -1,5 +1,6 @@
 #pragma once
 
+#include <dem/core/macros.hpp>
 #include <dem/mbd/joint/joint_spec.hpp>
 #include <dem/mbd/joint/penalty.hpp>
 
@@ -7,7 +8,7 @@ namespace dem::mbd {
 
 namespace detail {
 
-inline void take_length(Joint& j, const JointSpec& s, const Vector3<double>& gap, const std::string& who) {
+DEM_COLD inline void take_length(Joint& j, const JointSpec& s, const Vector3<double>& gap, const std::string& who) {
   const double apart = norm(gap);
   j.length = s.length ? require_positive(*s.length, ("length of " + who).c_str(), "m") : apart;
   if (!(std::abs(j.length - apart) <= s.tolerance)) {
@@ -33,7 +34,7 @@ inline constexpr JointTraits distance_joint =
 inline constexpr JointKind JointKind::distance{distance_joint};
 
 /// A massless rod between a point of a and a point of b.
-inline JointSpec distance(std::string name, BodyId a, const Vec3& at_a, BodyId b, const Vec3& at_b) {
+DEM_COLD inline JointSpec distance(std::string name, BodyId a, const Vec3& at_a, BodyId b, const Vec3& at_b) {
   JointSpec s = joint(JointKind::distance, std::move(name), a, b, at_a);
   s.at_b = at_b;
   return s;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <dem/core/macros.hpp>
 #include <dem/mbd/joint/joint_spec.hpp>
 #include <dem/mbd/joint/penalty.hpp>
 
@@ -7,7 +8,7 @@ namespace dem::mbd {
 
 namespace detail {
 
-inline void check_free(const JointSpec& s, const std::string& who) {
+DEM_COLD inline void check_free(const JointSpec& s, const std::string& who) {
   if (s.has_stiffness_or_damping()) {
     fail(
         "{} was given a stiffness or damping with with_stiffness or with_damping, which it does not use: it holds "
@@ -33,7 +34,7 @@ inline constexpr JointTraits free_joint_traits = {
 inline constexpr JointKind JointKind::free{free_joint_traits};
 
 /// Holds nothing; measures the rotation about and the displacement along an axis.
-inline JointSpec free_joint(std::string name, BodyId a, BodyId b, const Vec3& at, const Vec3& axis) {
+DEM_COLD inline JointSpec free_joint(std::string name, BodyId a, BodyId b, const Vec3& at, const Vec3& axis) {
   return joint(JointKind::free, std::move(name), a, b, at, axis);
 }
 

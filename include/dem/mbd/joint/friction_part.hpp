@@ -2,6 +2,7 @@
 
 // Friction of joints: how it is added, and what the solver asks of it.
 
+#include <dem/core/macros.hpp>
 #include <dem/mbd/joint/joint_spec.hpp>
 #include <dem/mbd/solver/effective_mass.hpp>
 #include <dem/mbd/solver/part_kind.hpp>
@@ -77,7 +78,7 @@ inline constexpr PartKind friction_kind = {
         }};
 
 /// Throws Error if the joint cannot rub, or its bearing's radius (m) is missing or is none.
-inline void check_friction(const JointSpec& s, const std::string& who) {
+DEM_COLD inline void check_friction(const JointSpec& s, const std::string& who) {
   const JointTraits& traits = traits_of(s.kind);
   if (traits.bearing == Bearing::none) {
     fail("{} has friction, but nothing in it slides; a bushing has dampers, and other kinds of joint have friction",
@@ -97,7 +98,7 @@ inline void check_friction(const JointSpec& s, const std::string& who) {
 }
 
 /// Adds the friction of joint number `joint`. Throws Error for what cannot be.
-inline void add_friction(Parts& parts, JointSpec& s, const Joint&, std::uint32_t joint) {
+DEM_COLD inline void add_friction(Parts& parts, JointSpec& s, const Joint&, std::uint32_t joint) {
   const std::string who = dem::text("{} '{}'", name_of(s.kind), s.name);
   check_friction(s, who);
   const JointFriction& f = *s.friction;
@@ -114,7 +115,7 @@ inline void add_friction(Parts& parts, JointSpec& s, const Joint&, std::uint32_t
 
 }  // namespace detail
 
-inline JointSpec JointSpec::with_friction(const JointFriction& f) const {
+DEM_COLD inline JointSpec JointSpec::with_friction(const JointFriction& f) const {
   JointSpec s = *this;
   s.friction = f;
   s.add_friction = detail::add_friction;

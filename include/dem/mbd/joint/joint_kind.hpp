@@ -4,6 +4,7 @@
 // such a joint; kinds.hpp has the list. A new kind is a file, a name in JointKind and a line in that list.
 
 #include <dem/core/error.hpp>
+#include <dem/core/macros.hpp>
 #include <dem/math/vector.hpp>
 #include <dem/mbd/joint/dof.hpp>
 
@@ -99,7 +100,7 @@ struct JointTraits {
 };
 
 constexpr const JointTraits& traits_of(JointKind kind) { return kind.traits(); }
-inline const char* name_of(JointKind kind) { return traits_of(kind).name; }
+DEM_COLD inline const char* name_of(JointKind kind) { return traits_of(kind).name; }
 
 /// The degrees of freedom that a kind of joint has, its own one first.
 constexpr const Dofs& dofs_of(JointKind kind) { return traits_of(kind).dofs; }
@@ -108,7 +109,7 @@ constexpr const Dofs& dofs_of(JointKind kind) { return traits_of(kind).dofs; }
 constexpr Dof resolved(JointKind kind, Dof dof) { return dof == Dof::own ? traits_of(kind).own : dof; }
 
 /// The degree of freedom's resolved name. Throws Error, with those that there are, unless joints of this kind have it.
-inline Dof known_dof(JointKind kind, Dof dof, const std::string& who) {
+DEM_COLD inline Dof known_dof(JointKind kind, Dof dof, const std::string& who) {
   dof = resolved(kind, dof);
   const Dofs& list = dofs_of(kind);
   if (list.has(dof)) return dof;
@@ -123,7 +124,7 @@ inline Dof known_dof(JointKind kind, Dof dof, const std::string& who) {
 }
 
 /// The same for what acts on a coordinate, which therefore has to be free.
-inline Dof require_free_dof(JointKind kind, Dof dof, const std::string& who) {
+DEM_COLD inline Dof require_free_dof(JointKind kind, Dof dof, const std::string& who) {
   dof = known_dof(kind, dof, who);
   if (dof == Dof::length) {
     fail("{} acts on the length of a distance joint, which the joint holds; use a linear_actuator or a spring instead",

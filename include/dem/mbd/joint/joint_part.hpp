@@ -2,6 +2,7 @@
 
 // Joints: how they are added, and what the solver asks of them.
 
+#include <dem/core/macros.hpp>
 #include <dem/mbd/joint/free.hpp>
 #include <dem/mbd/joint/make_joint.hpp>
 #include <dem/mbd/solver/effective_mass.hpp>
@@ -65,7 +66,7 @@ inline double soften_joints(Parts& m, const Derivation& derivation) {
   return worst;
 }
 
-inline std::string first_underived_joint(const Parts& m) {
+DEM_COLD inline std::string first_underived_joint(const Parts& m) {
   for (const JointSpec& s : m.joint_specs) {
     const JointTraits& traits = traits_of(s.kind);
     if (traits.stiffness != Stiffness::derived) continue;
@@ -105,7 +106,7 @@ inline constexpr PartKind joint_kind = {
           });
         }};
 
-inline JointId add_joint(Parts& parts, JointSpec spec) {
+DEM_COLD inline JointId add_joint(Parts& parts, JointSpec spec) {
   settle_name(spec.name, parts.joint_specs, "joint", "joints", [](const JointSpec& s) { return s.name; });
   const Joint j = make_joint(parts, spec);
   const auto number = static_cast<std::uint32_t>(parts.joints.size());

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <dem/core/error.hpp>
+#include <dem/core/macros.hpp>
 #include <dem/math/vector.hpp>
 #include <dem/mbd/ids.hpp>
 #include <dem/mbd/joint/joint_kind.hpp>
@@ -111,14 +112,14 @@ struct JointSpec {
 };
 
 /// A joint of any kind at a global point, with a global axis that both bodies share at assembly.
-inline JointSpec joint(JointKind kind, std::string name, BodyId a, BodyId b, const Vec3& at,
-                       const Vec3& axis = Vec3::UnitZ()) {
+DEM_COLD inline JointSpec joint(JointKind kind, std::string name, BodyId a, BodyId b, const Vec3& at,
+                                const Vec3& axis = Vec3::UnitZ()) {
   return {
       .name = std::move(name), .kind = kind, .a = a, .b = b, .at_a = at, .at_b = at, .axis_a = axis, .axis_b = axis};
 }
 /// A joint of any kind between two connection points, which have to meet.
-inline JointSpec joint(JointKind kind, std::string name, ConnectionId a, ConnectionId b,
-                       const Vec3& axis = Vec3::UnitZ()) {
+DEM_COLD inline JointSpec joint(JointKind kind, std::string name, ConnectionId a, ConnectionId b,
+                                const Vec3& axis = Vec3::UnitZ()) {
   return {.name = std::move(name), .kind = kind, .axis_a = axis, .axis_b = axis, .connection_a = a, .connection_b = b};
 }
 

@@ -2,6 +2,7 @@
 
 // Limits of joints: how they are added, and what the solver asks of them.
 
+#include <dem/core/macros.hpp>
 #include <dem/mbd/joint/joint_spec.hpp>
 #include <dem/mbd/solver/effective_mass.hpp>
 #include <dem/mbd/solver/part_kind.hpp>
@@ -76,7 +77,7 @@ inline constexpr PartKind limits_kind = {
         }};
 
 /// Adds the limits of a joint that is about to be added, as number `joint`.
-inline void add_limits(Parts& parts, JointSpec& s, const Joint& j, std::uint32_t joint) {
+DEM_COLD inline void add_limits(Parts& parts, JointSpec& s, const Joint& j, std::uint32_t joint) {
   const std::string who = dem::text("{} '{}'", name_of(s.kind), s.name);
   for (JointLimits& l : s.limits) {
     l.dof = require_free_dof(s.kind, l.dof, "a limit of " + who);
@@ -105,7 +106,7 @@ inline void add_limits(Parts& parts, JointSpec& s, const Joint& j, std::uint32_t
 
 }  // namespace detail
 
-inline JointSpec JointSpec::with_limits(const JointLimits& given) const {
+DEM_COLD inline JointSpec JointSpec::with_limits(const JointLimits& given) const {
   JointSpec s = *this;
   s.limits.push_back(given);
   s.add_limits = detail::add_limits;

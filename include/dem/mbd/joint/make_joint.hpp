@@ -3,6 +3,7 @@
 // Turns a joint as the user wrote it (in global coordinates at assembly) into what a step runs on (body coordinates),
 // and refuses what cannot work.
 
+#include <dem/core/macros.hpp>
 #include <dem/math/rotation.hpp>
 #include <dem/mbd/solver/parts.hpp>
 
@@ -13,7 +14,7 @@
 namespace dem::mbd::detail {
 
 /// x of a joint's frame; the choice is explained at JointSpec::with_x.
-inline Vector3<double> x_of_frame(const JointSpec& s, const Vector3<double>& z, const std::string& who) {
+DEM_COLD inline Vector3<double> x_of_frame(const JointSpec& s, const Vector3<double>& z, const std::string& who) {
   using V = Vector3<double>;
   const V given = s.x_axis ? unit(*s.x_axis, "the x axis of " + who) : std::abs(z.x) > 0.9 ? V{0, 1, 0} : V{1, 0, 0};
   const V x = given - dot(z, given) * z;
@@ -24,12 +25,12 @@ inline Vector3<double> x_of_frame(const JointSpec& s, const Vector3<double>& z, 
   return normalised(x);
 }
 
-inline Axes axes_in_body(const Body& b, const Vector3<double>& x, const Vector3<double>& z) {
+DEM_COLD inline Axes axes_in_body(const Body& b, const Vector3<double>& x, const Vector3<double>& z) {
   const auto in_body = [&](const Vector3<double>& v) { return transpose_times(b.motion.rotation, v); };
   return {in_body(x), in_body(cross(z, x)), in_body(z)};
 }
 
-inline void use_connections(const Parts& parts, JointSpec& s, const std::string& who) {
+DEM_COLD inline void use_connections(const Parts& parts, JointSpec& s, const std::string& who) {
   const auto resolve = [&](ConnectionId id, BodyId& body, Vec3& at) {
     if (!id.valid()) return;
     if (id.index() >= parts.connections.size()) {
@@ -44,7 +45,7 @@ inline void use_connections(const Parts& parts, JointSpec& s, const std::string&
   resolve(s.connection_b, s.b, s.at_b);
 }
 
-inline void check_penalty(const JointSpec& s, const std::string& who) {
+DEM_COLD inline void check_penalty(const JointSpec& s, const std::string& who) {
   const auto check = [&](const std::optional<double>& value, const char* what, const char* unit_name) {
     if (value) require_non_negative(*value, dem::text("{} of {}", what, who).c_str(), unit_name);
   };
@@ -56,7 +57,7 @@ inline void check_penalty(const JointSpec& s, const std::string& who) {
 }
 
 /// What the coordinates are said to be at assembly. Throws Error for those that are what they are.
-inline void set_starts(Joint& j, const JointSpec& s, const std::string& who) {
+DEM_COLD inline void set_starts(Joint& j, const JointSpec& s, const std::string& who) {
   for (const JointStart& start : s.starts) {
     const Dof dof = known_dof(s.kind, start.dof, "starting_at of " + who);
     if (dof != Dof::turn && dof != Dof::slide) {
@@ -72,7 +73,7 @@ inline void set_starts(Joint& j, const JointSpec& s, const std::string& who) {
   }
 }
 
-inline Joint make_joint(const Parts& parts, JointSpec& s) {
+DEM_COLD inline Joint make_joint(const Parts& parts, JointSpec& s) {
   if (!s.kind.valid()) fail("joint '{}' has no kind; make it with revolute(...) or another of its functions", s.name);
   if (!s.limits.empty() && !s.add_limits) fail("joint '{}' has limits of its own; give them with with_limits", s.name);
   if (s.friction && !s.add_friction) fail("joint '{}' has friction of its own; give it with with_friction", s.name);

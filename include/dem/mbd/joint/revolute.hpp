@@ -1,5 +1,6 @@
 #pragma once
 
+#include <dem/core/macros.hpp>
 #include <dem/mbd/joint/joint_spec.hpp>
 #include <dem/mbd/joint/penalty.hpp>
 
@@ -14,7 +15,7 @@ inline constexpr JointTraits revolute_joint =
 inline constexpr JointKind JointKind::revolute{revolute_joint};
 
 /// A hinge (thesis section 2.3.1): leaves the rotation about an axis.
-inline JointSpec revolute(std::string name, BodyId a, BodyId b, const Vec3& at, const Vec3& axis) {
+DEM_COLD inline JointSpec revolute(std::string name, BodyId a, BodyId b, const Vec3& at, const Vec3& axis) {
   return joint(JointKind::revolute, std::move(name), a, b, at, axis);
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <dem/core/error.hpp>
+#include <dem/core/macros.hpp>
 #include <dem/math/wrench.hpp>
 #include <dem/mbd/body/body.hpp>
 #include <dem/mbd/drive/signal.hpp>
@@ -31,10 +32,11 @@ struct LoadSpec {
   LoadLaw law = {};  ///< if given, it stands for direction, size and point
 };
 
-inline LoadSpec applied_force(std::string name, BodyId body, const Vec3& at, const Vec3& direction, Signal newtons) {
+DEM_COLD inline LoadSpec applied_force(std::string name, BodyId body, const Vec3& at, const Vec3& direction,
+                                       Signal newtons) {
   return {.name = std::move(name), .body = body, .direction = direction, .size = std::move(newtons), .at = at};
 }
-inline LoadSpec applied_torque(std::string name, BodyId body, const Vec3& axis, Signal newton_metres) {
+DEM_COLD inline LoadSpec applied_torque(std::string name, BodyId body, const Vec3& axis, Signal newton_metres) {
   return {
       .name = std::move(name), .body = body, .is_torque = true, .direction = axis, .size = std::move(newton_metres)};
 }
@@ -45,7 +47,7 @@ inline LoadSpec applied_torque(std::string name, BodyId body, const Vec3& axis, 
 /// Forces at a point x of the body have the torque (x - b.position()) x force. What the body carries so far in `force`
 /// and `torque` depends on the order of the parts. The stable time step does not know the law: keep its stiffness below
 /// m (0.5/dt)^2 and its damping below 0.5 m/dt. Velocity Verlet shows it the speed of half a step before (first order).
-inline LoadSpec custom_load(std::string name, BodyId body, LoadLaw law) {
+DEM_COLD inline LoadSpec custom_load(std::string name, BodyId body, LoadLaw law) {
   if (!law) fail("load '{}' was given no function; give one that returns the force and the torque", name);
   return {.name = std::move(name), .body = body, .law = std::move(law)};
 }

@@ -2,6 +2,7 @@
 
 // Loads: how they are added, and what the solver asks of them.
 
+#include <dem/core/macros.hpp>
 #include <dem/mbd/solver/part_kind.hpp>
 
 namespace dem::mbd::detail {
@@ -23,7 +24,7 @@ inline constexpr PartKind load_kind = {
       return {};
     }};
 
-inline LoadId add_load(Parts& parts, LoadSpec spec) {
+DEM_COLD inline LoadId add_load(Parts& parts, LoadSpec spec) {
   settle_name(spec.name, parts.loads, "load", "loads", name_in_spec);
   const std::string who = dem::text("load '{}'", spec.name);
   const Body& b = known_body(parts, spec.body, who);

@@ -21,8 +21,8 @@ struct SpringSpec {
 };
 
 /// A linear spring (N/m) of free length (m; the length at assembly if negative) with a linear damper (N s/m).
-inline SpringSpec spring(std::string name, BodyId a, const Vec3& at_a, BodyId b, const Vec3& at_b, double stiffness,
-                         double damping = 0.0, double free_length = -1.0) {
+DEM_COLD inline SpringSpec spring(std::string name, BodyId a, const Vec3& at_a, BodyId b, const Vec3& at_b,
+                                  double stiffness, double damping = 0.0, double free_length = -1.0) {
   require_non_negative(stiffness, "stiffness of a spring", "N/m");
   require_non_negative(damping, "damping of a spring", "N s/m");
   const double l0 = free_length < 0.0 ? norm(from_eigen(at_b) - from_eigen(at_a)) : free_length;
@@ -37,8 +37,8 @@ inline SpringSpec spring(std::string name, BodyId a, const Vec3& at_a, BodyId b,
 /// A spring of free length (m) whose force (N) over its compression (m, positive when shorter) is a table. Beyond the
 /// table the force goes on with the slope of its last piece. With a curve that is `held_outside` it keeps its last
 /// value instead: a bump stop is such a spring, which does not pull. The damper acts at every length.
-inline SpringSpec spring_table(std::string name, BodyId a, const Vec3& at_a, BodyId b, const Vec3& at_b,
-                               double free_length, const Curve& force_over_compression, double damping = 0.0) {
+DEM_COLD inline SpringSpec spring_table(std::string name, BodyId a, const Vec3& at_a, BodyId b, const Vec3& at_b,
+                                        double free_length, const Curve& force_over_compression, double damping = 0.0) {
   require_positive(free_length, "free length of a spring", "m");
   require_non_negative(damping, "damping of a spring", "N s/m");
   std::vector<std::pair<double, double>> points;

@@ -2,6 +2,7 @@
 
 // Springs: how they are added, and what the solver asks of them.
 
+#include <dem/core/macros.hpp>
 #include <dem/mbd/solver/effective_mass.hpp>
 #include <dem/mbd/solver/part_kind.hpp>
 
@@ -27,7 +28,7 @@ inline constexpr PartKind spring_kind = {
     .name_of = [](const Parts& m, std::size_t i) { return "spring '" + m.springs[i].spec.name + "'"; },
     .may_grow = [](const Parts& m) { return !m.springs.empty(); }};
 
-inline SpringId add_spring(Parts& parts, SpringSpec spec) {
+DEM_COLD inline SpringId add_spring(Parts& parts, SpringSpec spec) {
   settle_name(spec.name, parts.springs, "spring", "springs", name_in_spec);
   Spring s;
   attach_points(parts, s, spec, "spring '" + spec.name + "'");

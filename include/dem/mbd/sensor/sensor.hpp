@@ -1,6 +1,7 @@
 #pragma once
 
 #include <dem/core/error.hpp>
+#include <dem/core/macros.hpp>
 #include <dem/math/wrench.hpp>
 #include <dem/mbd/ids.hpp>
 
@@ -75,20 +76,20 @@ struct SensorSpec {
   double window = 0.0;  ///< s, over which the mean is taken
 };
 
-inline SensorSpec contact_sensor(std::string name, BodyId body, double window) {
+DEM_COLD inline SensorSpec contact_sensor(std::string name, BodyId body, double window) {
   return {std::move(name), SensorTarget::contacts, body.index(), window};
 }
 /// All forces on a body but its weight and the forces of prescribed motions (drive_sensor).
-inline SensorSpec total_force_sensor(std::string name, BodyId body, double window) {
+DEM_COLD inline SensorSpec total_force_sensor(std::string name, BodyId body, double window) {
   return {std::move(name), SensorTarget::total, body.index(), window};
 }
-inline SensorSpec joint_sensor(std::string name, JointId joint, double window) {
+DEM_COLD inline SensorSpec joint_sensor(std::string name, JointId joint, double window) {
   return {std::move(name), SensorTarget::joint, joint.index(), window};
 }
-inline SensorSpec actuator_sensor(std::string name, ActuatorId actuator, double window) {
+DEM_COLD inline SensorSpec actuator_sensor(std::string name, ActuatorId actuator, double window) {
   return {std::move(name), SensorTarget::actuator, actuator.index(), window};
 }
-inline SensorSpec drive_sensor(std::string name, MotionId motion, double window) {
+DEM_COLD inline SensorSpec drive_sensor(std::string name, MotionId motion, double window) {
   return {std::move(name), SensorTarget::drive, motion.index(), window};
 }
 

@@ -2,6 +2,7 @@
 
 // Sensors: how they are added, and how they are sampled.
 
+#include <dem/core/macros.hpp>
 #include <dem/mbd/solver/part_kind.hpp>
 
 namespace dem::mbd::detail {
@@ -23,7 +24,7 @@ inline void sample_sensors(Parts& m, double dt) {
 }
 
 /// Checks that what a sensor measures is there.
-inline void check_sensor(const Parts& parts, const SensorSpec& spec) {
+DEM_COLD inline void check_sensor(const Parts& parts, const SensorSpec& spec) {
   const std::size_t count = spec.target == SensorTarget::joint      ? parts.joints.size()
                             : spec.target == SensorTarget::actuator ? parts.actuators.size()
                             : spec.target == SensorTarget::drive    ? parts.motions.size()
@@ -44,7 +45,7 @@ inline void check_sensor(const Parts& parts, const SensorSpec& spec) {
   }
 }
 
-inline SensorId add_sensor(Parts& parts, SensorSpec spec) {
+DEM_COLD inline SensorId add_sensor(Parts& parts, SensorSpec spec) {
   settle_name(spec.name, parts.sensors, "sensor", "sensors", name_in_spec);
   check_sensor(parts, spec);
   WindowAverage average(spec.window);

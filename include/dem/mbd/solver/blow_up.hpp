@@ -1,5 +1,6 @@
 #pragma once
 
+#include <dem/core/macros.hpp>
 #include <dem/mbd/solver/step_watch.hpp>
 
 #include <cmath>
@@ -8,7 +9,7 @@
 namespace dem::mbd {
 
 /// The first function of a user that gave no number in the newest step, in words; empty if all did.
-inline std::string not_a_number(const Parts& parts) {
+DEM_COLD inline std::string not_a_number(const Parts& parts) {
   for (const detail::PartKind* kind : parts.kinds) {
     if (!kind->not_a_number) continue;
     if (std::string text = kind->not_a_number(parts); !text.empty()) return text;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <dem/core/macros.hpp>
 #include <dem/mbd/solver/part_kind.hpp>
 
 #include <string>
@@ -10,7 +11,7 @@ inline constexpr double endless_step = 1e30;  ///< s
 
 /// Fills in every stiffness and damping that the user left open, for a time step dt (s); the formula stands in
 /// part_kind.hpp. What the user gave stays.
-inline void derive_stiffness(Parts& m, double dt) {
+DEM_COLD inline void derive_stiffness(Parts& m, double dt) {
   const detail::Derivation derivation(m, dt);
   for (const detail::PartKind* kind : m.kinds) {
     if (kind->derive) kind->derive(m, derivation);
@@ -19,13 +20,13 @@ inline void derive_stiffness(Parts& m, double dt) {
 
 /// The same machine with only the stiffness and damping that its user gave. It derives for an endlessly long time step,
 /// for which every derived stiffness is 0. Dampers that are derived from a given stiffness stay.
-inline Parts without_derived(Parts m) {
+DEM_COLD inline Parts without_derived(Parts m) {
   derive_stiffness(m, endless_step);
   return m;
 }
 
 /// What has no stiffness yet: its name, or an empty text. Without a time step nothing can be derived.
-inline std::string first_underived(const Parts& m) {
+DEM_COLD inline std::string first_underived(const Parts& m) {
   for (const detail::PartKind* kind : m.kinds) {
     if (!kind->first_underived) continue;
     if (std::string open = kind->first_underived(m); !open.empty()) return open;

@@ -25,36 +25,36 @@ class Mechanism {
 
   // -------------------------------------------------------------------------------------------------- put together
 
-  BodyId add_body(const BodySpec& spec) { return detail::add_body(parts_, build_body(spec)); }
+  DEM_COLD BodyId add_body(const BodySpec& spec) { return detail::add_body(parts_, build_body(spec)); }
   /// A body that is given in its own frame: centre of mass and principal axes.
-  BodyId add_body(const Body& body) {
+  DEM_COLD BodyId add_body(const Body& body) {
     check_body(body);
     return detail::add_body(parts_, {body, Vec3::Zero(), Mat3::Identity()});
   }
-  BodyId add_fixed_body(std::string name, const Vec3& position = Vec3::Zero()) {
+  DEM_COLD BodyId add_fixed_body(std::string name, const Vec3& position = Vec3::Zero()) {
     return add_body(fixed_body(std::move(name), position));
   }
   /// The fixed body "ground" at the origin; made when first asked for, which adds a body.
-  BodyId ground() {
+  DEM_COLD BodyId ground() {
     if (!ground_.valid()) ground_ = add_fixed_body("ground");
     return ground_;
   }
   /// A connection point (section 2.3) at a global point.
-  ConnectionId add_connection(std::string name, BodyId body, const Vec3& at) {
+  DEM_COLD ConnectionId add_connection(std::string name, BodyId body, const Vec3& at) {
     return detail::add_connection(parts_, std::move(name), body, at);
   }
   /// A connection point at a point of the body's reference frame.
-  ConnectionId add_connection_in_reference(std::string name, BodyId body, const Vec3& point) {
+  DEM_COLD ConnectionId add_connection_in_reference(std::string name, BodyId body, const Vec3& point) {
     known_body(parts_, body, dem::text("connection point '{}'", name));
     return add_connection(std::move(name), body, reference_point(body, point));
   }
-  JointId add_joint(JointSpec spec) { return detail::add_joint(parts_, std::move(spec)); }
-  ActuatorId add_actuator(ActuatorSpec spec) { return detail::add_actuator(parts_, std::move(spec)); }
-  SpringId add_spring(SpringSpec spec) { return detail::add_spring(parts_, std::move(spec)); }
-  CouplingId add_coupling(CouplingSpec spec) { return detail::add_coupling(parts_, std::move(spec)); }
-  LoadId add_load(LoadSpec spec) { return detail::add_load(parts_, std::move(spec)); }
-  MotionId add_motion(MotionSpec spec) { return detail::add_motion(parts_, std::move(spec)); }
-  SensorId add_sensor(SensorSpec spec) { return detail::add_sensor(parts_, std::move(spec)); }
+  DEM_COLD JointId add_joint(JointSpec spec) { return detail::add_joint(parts_, std::move(spec)); }
+  DEM_COLD ActuatorId add_actuator(ActuatorSpec spec) { return detail::add_actuator(parts_, std::move(spec)); }
+  DEM_COLD SpringId add_spring(SpringSpec spec) { return detail::add_spring(parts_, std::move(spec)); }
+  DEM_COLD CouplingId add_coupling(CouplingSpec spec) { return detail::add_coupling(parts_, std::move(spec)); }
+  DEM_COLD LoadId add_load(LoadSpec spec) { return detail::add_load(parts_, std::move(spec)); }
+  DEM_COLD MotionId add_motion(MotionSpec spec) { return detail::add_motion(parts_, std::move(spec)); }
+  DEM_COLD SensorId add_sensor(SensorSpec spec) { return detail::add_sensor(parts_, std::move(spec)); }
 
   // ----------------------------------------------------------------------------------------------------- looked at
 
@@ -65,7 +65,7 @@ class Mechanism {
   Body& body(BodyId id) { return known(parts_.bodies, id, "body"); }
   const Body& body(BodyId id) const { return known(parts_.bodies, id, "body"); }
   /// The body of that name. Throws Error if there is none.
-  BodyId body_named(const std::string& name) const {
+  DEM_COLD BodyId body_named(const std::string& name) const {
     for (std::size_t i = 0; i < parts_.bodies.size(); ++i) {
       if (parts_.bodies[i].name == name) return BodyId(i);
     }

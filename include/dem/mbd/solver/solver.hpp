@@ -32,21 +32,21 @@ class Solver {
   double design_step() const { return design_dt_; }  ///< s, for which was derived what was left open; 0: not yet
 
   /// Derives what was left open (stiffness, damping) for a step of dt (s), all sub-steps together, in the present pose.
-  void design_for(Mechanism& m, double dt) {
+  DEM_COLD void design_for(Mechanism& m, double dt) {
     derive_stiffness(m.parts(), dt / checked_substeps(m));
     softening_ = Softening(m.parts(), dt / m.substeps);
     design_dt_ = dt;
   }
 
   /// The largest stable time step of the world, all sub-steps of the machine together, and the part that limits it.
-  StableTimeStep stable_time_step(const Mechanism& m) const {
+  DEM_COLD StableTimeStep stable_time_step(const Mechanism& m) const {
     StableTimeStep limit = stable_time_step_of<I>(m.parts());
     limit.dt *= checked_substeps(m);
     return limit;
   }
   /// The same with the stiffness and damping alone that were given: what a step may be chosen by before anything is
   /// derived for it. 1e300 if none limits it.
-  StableTimeStep stable_time_step_of_given(const Mechanism& m) const {
+  DEM_COLD StableTimeStep stable_time_step_of_given(const Mechanism& m) const {
     StableTimeStep limit = stable_time_step_of<I>(without_derived(m.parts()));
     if (limit.dt > 1e-3 * endless_step) return {};
     limit.dt *= checked_substeps(m);
@@ -71,7 +71,7 @@ class Solver {
   /// from outside (the grains) to the bodies. Throws Error if a stiffness has to be derived and no time step is known,
   /// or a prescribed motion would have to jump.
   template <class PutForces>
-  void initialise(Mechanism& m, double time, const Vec3& gravity, PutForces&& put_forces) {
+  DEM_COLD void initialise(Mechanism& m, double time, const Vec3& gravity, PutForces&& put_forces) {
     Parts& parts = m.parts();
     require_derived(parts);
     clear_forces(parts);
@@ -125,7 +125,7 @@ class Solver {
   bool has_blown_up() const { return bad_.valid(); }
 
   /// Remembers the largest stable step of this pose, for the report of a blow-up.
-  void note_stable_step(const Mechanism& m) {
+  DEM_COLD void note_stable_step(const Mechanism& m) {
     limit_at_start_ = stable_time_step(m);
     watch_ = StepWatch<I>(m.parts());
   }
@@ -135,7 +135,7 @@ class Solver {
     if (m.substeps < 1) fail("the machine's substeps are {}, but must be at least 1", m.substeps);
     return m.substeps;
   }
-  void require_derived(const Parts& parts) const {
+  DEM_COLD void require_derived(const Parts& parts) const {
     if (design_dt_ > 0.0) return;
     const std::string open = first_underived(parts);
     if (open.empty()) return;

@@ -2,11 +2,12 @@
 
 // What a machine is steered with while it runs: set points, brakes, switches.
 
+#include <dem/core/macros.hpp>
 #include <dem/mbd/solver/parts.hpp>
 
 namespace dem::mbd::detail {
 
-inline void set_friction_preload(Parts& parts, JointId id, double newtons) {
+DEM_COLD inline void set_friction_preload(Parts& parts, JointId id, double newtons) {
   for (JointFrictionState& e : parts.friction) {
     if (e.joint == id.value) {
       e.preload = require_non_negative(newtons, "preload of a joint's friction", "N");
@@ -16,16 +17,16 @@ inline void set_friction_preload(Parts& parts, JointId id, double newtons) {
   fail("joint '{}' has no friction to preload; add it with with_friction", known(parts.joint_specs, id, "joint").name);
 }
 
-inline void set_target(ActuatorSpec& s, Signal signal) {
+DEM_COLD inline void set_target(ActuatorSpec& s, Signal signal) {
   if (!s.torque_curve.empty()) fail("actuator '{}' is a motor, which has no set point; use set_throttle", s.name);
   s.set_point = std::move(signal);
 }
-inline void set_throttle(ActuatorSpec& s, double throttle) {
+DEM_COLD inline void set_throttle(ActuatorSpec& s, double throttle) {
   if (s.torque_curve.empty()) fail("actuator '{}' is no motor, so it has no throttle; use set_target", s.name);
   s.throttle = require_within(throttle, -1.0, 1.0, "throttle of a motor");
 }
 
-inline void switch_on(Parts& parts, PrescribedMotion& p, bool on) {
+DEM_COLD inline void switch_on(Parts& parts, PrescribedMotion& p, bool on) {
   Body& b = parts.bodies[p.spec.body.index()];
   if (!on && p.spec.on && b.fixed && p.spec.target != MotionSpec::Target::joint) {
     b.motion.velocity = b.motion.angular_velocity = {0, 0, 0};
@@ -34,7 +35,7 @@ inline void switch_on(Parts& parts, PrescribedMotion& p, bool on) {
   p.spec.on = on;
 }
 
-inline void set_fixed(Parts& parts, Body& b, bool fixed) {
+DEM_COLD inline void set_fixed(Parts& parts, Body& b, bool fixed) {
   if (b.fixed == fixed) return;
   b.fixed = fixed;
   try {
@@ -47,21 +48,21 @@ inline void set_fixed(Parts& parts, Body& b, bool fixed) {
   ++parts.revision;
 }
 
-inline void set_load(LoadSpec& s, Signal size) {
+DEM_COLD inline void set_load(LoadSpec& s, Signal size) {
   if (s.law) {
     fail("load '{}' has a law of its own and no size; let the law give other forces, or switch it off", s.name);
   }
   s.size = std::move(size);
 }
 
-inline void set_motion(PrescribedMotion& p, Signal motion) {
+DEM_COLD inline void set_motion(PrescribedMotion& p, Signal motion) {
   if (p.spec.target == MotionSpec::Target::pose) {
     fail("prescribed motion '{}' is a whole pose, which no signal gives; use set_pose", p.spec.name);
   }
   p.spec.motion = p.spec.by_speed ? motion.as_rate() : std::move(motion);
   p.has_hold = false;
 }
-inline void set_motion(PrescribedMotion& p, double value, double rate) {
+DEM_COLD inline void set_motion(PrescribedMotion& p, double value, double rate) {
   if (p.spec.by_speed) {
     fail("prescribed motion '{}' is one of speed and takes no value with a rate; use set_motion(id, speed)",
          p.spec.name);
@@ -71,7 +72,7 @@ inline void set_motion(PrescribedMotion& p, double value, double rate) {
   p.has_hold = has_hold;
 }
 
-inline void set_pose(PrescribedMotion& p, PoseFunction pose) {
+DEM_COLD inline void set_pose(PrescribedMotion& p, PoseFunction pose) {
   if (p.spec.target != MotionSpec::Target::pose) {
     fail("prescribed motion '{}' is that of one coordinate, not of a pose; use set_motion", p.spec.name);
   }
