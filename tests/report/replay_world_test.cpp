@@ -1,9 +1,9 @@
 #include "catch.hpp"
 #include "core/error_of.hpp"
 
+#include <dem/geometry/polyhedron/polyhedron.hpp>
 #include <dem/report/replay_encode.hpp>
 #include <dem/report/replay_world.hpp>
-#include <dem/geometry/polyhedron/polyhedron.hpp>
 #include <dem/world/world.hpp>
 
 #include <numbers>

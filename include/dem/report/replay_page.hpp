@@ -1,8 +1,8 @@
 #pragma once
 // The replay as parts of a page.
 
-#include <dem/report/base64.hpp>
 #include <dem/io/escape.hpp>
+#include <dem/report/base64.hpp>
 #include <dem/report/replay_encode.hpp>
 #include <dem/report/replay_script_camera.hpp>
 #include <dem/report/replay_script_data.hpp>

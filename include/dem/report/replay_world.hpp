@@ -1,10 +1,11 @@
 #pragma once
 // Records worlds for the replay of a report.
 
-#include <dem/io/drawn_surface.hpp>
-#include <dem/io/vtk_machine.hpp>
-#include <dem/report/replay_recorder.hpp>
 #include <dem/geometry/mixed.hpp>
+#include <dem/io/drawn_body.hpp>
+#include <dem/io/drawn_surface.hpp>
+#include <dem/io/grain_mesh.hpp>
+#include <dem/report/replay_recorder.hpp>
 
 #include <cstddef>
 #include <numbers>
@@ -93,7 +94,7 @@ bool record_world(Replay& replay, const World& world, const std::vector<io::Draw
   const auto& surfaces = world.state().surfaces;
   for (std::size_t k = 0; k < surfaces.size(); ++k) {
     const auto& s = surfaces[k];
-    const Body& b = machine.body(s.body);
+    const auto& b = machine.body(s.body);
     poses[known.surfaces[k]] = {b.point(s.position), b.rotation() * s.rotation, s.active};
   }
   for (std::size_t k = 0; k < bodies.size(); ++k) {
