@@ -91,7 +91,7 @@ call Runtime.evaluate "{\"expression\":$(awk '
   BEGIN { printf "\"" } { gsub(/\\/, "\\\\"); gsub(/"/, "\\\""); printf "%s\\n", $0 } END { print "\"" }' "$probe")}"
 evaluate 'tryControls()'
 printf '%b' "$(field value)" > "$output/probe.txt"
-expect 'frame of the start 0' 'frame of the slider 15' 'clock 0.240 s' 'grains are seen true' 'shades are many true' \
+expect 'right grains 50 and 50, wrong 0' 'right turns 100' 'frame of the start 0' 'frame of the slider 15' 'clock 0.240 s' 'grains are seen true' 'shades are many true' \
   'the same without a change true' 'sand is yellow true' 'legend is hidden true' 'cut hides grains true' \
   'not moved without a button true' 'play advances true' 'pause stops true' 'play ends true' 'requests 0' \
   'parts floor|bottom box|top box|wheel <of tin>' 'end true'

@@ -22,6 +22,42 @@ async function look() {
   return {hash, solid: solid / copy.width / copy.height, colours: colours.size, mean: sum.map((x) => x / solid)};
 }
 
+// How many grains are where replay_page.cpp has put them, and as fast: from frame 5 (0.08 s), when all have landed, to the
+// last one (0.4 s) the lower half rests and the upper half goes 3 mm along x. Numbers are good to the steps in which
+// they are kept.
+function rightGrains() {
+  const {head, frames} = figure.demReplay, grains = head.grains, last = frames.count - 1;
+  const step = [0, 1, 2].map((axis) => (head.high[axis] - head.low[axis]) / 65535), right = {lower: 0, upper: 0, wrong: 0};
+  for (let g = 0; g < grains; ++g) {
+    const before = 5 * grains + g, after = last * grains + g;
+    const moved = step.map((size, axis) => size * (frames.place[3 * after + axis] - frames.place[3 * before + axis]));
+    const speed = head.speed * (frames.scalar[2 * after] / 255) ** 2;
+    const goes = (far, fast) => Math.abs(moved[0] - far) <= step[0] && moved[1] === 0 && moved[2] === 0 &&
+        Math.abs(speed - fast) <= Math.sqrt(fast * head.speed) / 255 + head.speed / 260100 && frames.turn[before] === frames.turn[after];
+    ++right[goes(0, 0) ? "lower" : goes(3e-3, 3e-3 / 0.32) ? "upper" : "wrong"];
+  }
+  return `${right.lower} and ${right.upper}, wrong ${right.wrong}`;
+}
+
+// How many grains of frame 0 are turned as replay_page.cpp has them, within the 4.9e-3 rad to which turns are kept.
+function rightTurns() {
+  let right = 0;
+  for (const shape of [0, 1]) {
+    const turns = figure.demReplay.grains[shape].attributes[1].array;
+    for (let n = 0, row = 0; n < 100; ++n) {
+      if ((n % 3 === 0) !== (shape === 1)) continue;
+      const [i, j, k] = [n % 5, Math.floor(n / 5) % 5, Math.floor(n / 25)];
+      const half = (0.2 * Math.sin(2.4 * n) + 30 * Math.min(0.08, 0.03 + 0.006 * k)) / 2, axis = [Math.cos(i), Math.sin(j), 1];
+      const expected = [...axis.map((x) => Math.sin(half) * x / Math.hypot(...axis)), Math.cos(half)];
+      const away = (sign) => Math.hypot(...expected.map((x, c) => x - sign * turns[4 * row + c] / 32767));
+      // By the distance of the quaternions, which is half the angle; 16 bits a component leave out 3e-5 of it.
+      right += 2 * Math.min(away(1), away(-1)) < 4.9e-3 + 6e-5 ? 1 : 0;
+      ++row;
+    }
+  }
+  return right;
+}
+
 async function tryControls() {
   let lines = "";
   const note = (name, value) => lines += `${name} ${value}\n`;
@@ -44,6 +80,8 @@ async function tryControls() {
     return before = after;
   };
 
+  note("right grains", rightGrains());
+  note("right turns", rightTurns());
   note("the same without a change", (await look()).hash === before.hash);
   note("frame of the start", figure.dataset.frame);
   await changes("time", () => set(time, 15));

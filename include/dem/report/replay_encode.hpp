@@ -29,8 +29,8 @@ struct ReplayTable {
 };
 
 /// What a page holds of a replay. `head` is JSON; it says how to read `bytes`, a zlib stream of numbers, their lowest
-/// byte first. For 9,600 cubes that fall and are pushed about in 100 frames it has 2.2 MB, 2.9 MB as text in a page,
-/// where plain numbers would take 16 MB.
+/// byte first. As text in a page 9,584 cubes that fall into a box and are pushed about in 100 frames take 2.9 MB, and
+/// 10,000 balls that all shake and tumble all the time 8 MB; packed numbers without differences would take 15 MB.
 struct EncodedReplay {
   std::string head, bytes;
 };

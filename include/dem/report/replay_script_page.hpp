@@ -175,6 +175,7 @@ async function start(figure) {
     new ResizeObserver(() => view.resize()).observe(frame);
     view.resize();
     view.orbit.reset();
+    figure.demReplay = view;  // for whoever wants to look into it
     figure.dataset.state = "ready";
   } catch (error) {
     const text = figure.isConnected && message.isConnected ? message : figure.querySelector(".view");

@@ -14,7 +14,7 @@ uniform vec3 sun;
 uniform mat4 toShadow;
 uniform sampler2D shadow;
 varying vec3 at, n;
-float sunAt(vec3 n) {
+float sunAt(vec3 at, vec3 n) {
   vec3 place = (toShadow * vec4(at, 1.0)).xyz * 0.5 + 0.5;
   float slope = 1.0 - max(dot(n, sun), 0.0), seen = 0.0;
   for (int i = 0; i < 4; ++i) {
@@ -23,11 +23,12 @@ float sunAt(vec3 n) {
     float depth = dot(packed, vec4(1.0, 1.0 / 255.0, 1.0 / 65025.0, 1.0 / 16581375.0));
     seen += place.z < depth + 0.001 + 0.003 * slope ? 0.25 : 0.0;
   }
-  return max(dot(n, sun), 0.0) * seen;
+  vec3 outside = max(-place, place - 1.0);  // of what the sun has looked at, where nothing throws a shadow
+  return max(dot(n, sun), 0.0) * (max(outside.x, max(outside.y, outside.z)) > 0.0 ? 1.0 : seen);
 }
-vec3 lit(vec3 base, vec3 n) {
+vec3 lit(vec3 base, vec3 at, vec3 n) {
   vec3 toEye = normalize(cameraPosition - at);
-  float direct = sunAt(n), shine = pow(max(dot(n, normalize(sun + toEye)), 0.0), 30.0) * min(1.0, 4.0 * direct);
+  float direct = sunAt(at, n), shine = pow(max(dot(n, normalize(sun + toEye)), 0.0), 30.0) * min(1.0, 4.0 * direct);
   return base * (0.22 + 0.2 * (0.5 + 0.5 * n.z) + 0.25 * max(dot(n, toEye), 0.0) + 0.55 * direct) + vec3(0.08 * shine);
 }`;
 // What the sun sees: how far away it is, in four bytes.
@@ -68,9 +69,13 @@ varying float value;
 void main() {
   if (dot(cut.xyz, at) > cut.w) discard;
   vec3 base = mix(plain, texture2D(colours, vec2(value * 255.0 / 256.0 + 0.5 / 256.0, 0.5)).rgb, coloured);
-  // What shows of the inside where a grain is cut looks like the face of the cut.
-  vec3 facing = gl_FrontFacing ? normalize(n) : cut.xyz;
-  gl_FragColor = vec4(lit(base, facing), 1.0);
+  if (gl_FrontFacing) {
+    gl_FragColor = vec4(lit(base, at, normalize(n)), 1.0);
+    return;
+  }
+  // What shows of the inside where a grain is cut looks like the face of the cut in front of it.
+  vec3 toEye = cameraPosition - at;
+  gl_FragColor = vec4(lit(base, at + (cut.w - dot(cut.xyz, at)) / dot(cut.xyz, toEye) * toEye, cut.xyz), 1.0);
 }`;
 const PART_VERTEX = `
 varying vec3 at, n;
@@ -85,7 +90,7 @@ uniform vec3 plain;
 uniform float opacity;
 void main() {
   vec3 facing = normalize(gl_FrontFacing ? n : -n);
-  gl_FragColor = vec4(lit(plain, facing), opacity);
+  gl_FragColor = vec4(lit(plain, at, facing), opacity);
 }`;
 
 // 256 colours from violet over red to yellow: in OKLab (B. Ottosson, 2020) lightness and hue grow by the same amount

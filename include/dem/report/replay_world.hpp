@@ -19,7 +19,7 @@ namespace dem::report {
 
 /// The balls of a sphere or cluster.
 template <shape::BallShape S>
-[[nodiscard]] ReplayShape replay_shape(const S& shape) {
+[[nodiscard]] ReplayShape replay_shape(const S& shape, int = 0) {
   alignas(64) double pose[S::pose_size + 1] = {};
   shape.orient(Matrix3<double>::identity(), pose);
   ReplayShape result;
@@ -33,17 +33,17 @@ template <shape::BallShape S>
 /// The mesh of any other shape, by its grain_mesh(shape, divisions), which own shapes need beside them. Polyhedra,
 /// whose faces are polygons, keep their edges; other meshes are shaded round.
 template <class S>
-[[nodiscard]] ReplayShape replay_shape(const S& shape) {
+[[nodiscard]] ReplayShape replay_shape(const S& shape, int divisions = 6) {
   using io::grain_mesh;
-  io::SurfaceMesh mesh = grain_mesh(shape, 4);
+  io::SurfaceMesh mesh = grain_mesh(shape, divisions);
   const double smooth = mesh.polygons.empty() ? std::numbers::pi : 0.0;
   return {.balls = {}, .mesh = std::move(mesh), .smooth_angle = smooth};
 }
 
 /// What the kind of a mixed grain looks like.
 template <class... Kinds>
-[[nodiscard]] ReplayShape replay_shape(const shape::Mixed<Kinds...>& mixed) {
-  return std::visit([](const auto& kind) { return replay_shape(kind); }, mixed.kind());
+[[nodiscard]] ReplayShape replay_shape(const shape::Mixed<Kinds...>& mixed, int divisions = 6) {
+  return std::visit([&](const auto& kind) { return replay_shape(kind, divisions); }, mixed.kind());
 }
 
 namespace detail {
@@ -53,8 +53,9 @@ template <class World>
 void meet_world(Replay& replay, const World& world, const std::vector<io::DrawnBody>& bodies) {
   Replay::OfWorld& known = replay.of_world();
   const auto& state = world.state();
+  const int divisions = world.particle_count() > 5000 ? 4 : 6;  // 192 or 432 triangles for a superquadric
   while (known.species.size() < state.species.size()) {
-    known.species.push_back(replay.add_shape(replay_shape(state.species[known.species.size()].shape)));
+    known.species.push_back(replay.add_shape(replay_shape(state.species[known.species.size()].shape, divisions)));
   }
   const auto name_of = [&](const std::string& own, BodyId body) {
     return own.empty() ? world.machine().body(body).name : own;
