@@ -6,7 +6,7 @@ set -euo pipefail
 packages=(
   g++ cmake ninja-build        # compiler and build
   libeigen3-dev libfmt-dev     # the library
-  libcli11-dev gnuplot-nox     # examples: command lines, plots
+  libcli11-dev gnuplot-nox libjs-three  # examples: command lines, plots, replays
   catch2 clang-format          # tests
   libbenchmark-dev             # benchmarks
   "$@"

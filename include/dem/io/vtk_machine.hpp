@@ -1,6 +1,7 @@
 #pragma once
 // Machines for ParaView (.vtp): bodies as meshes, all surfaces of a world, and frames of grains and machine together.
 
+#include <dem/io/drawn_body.hpp>
 #include <dem/io/drawn_surface.hpp>
 #include <dem/io/vtk_grains.hpp>
 #include <dem/io/vtk_series.hpp>
@@ -13,15 +14,6 @@
 #include <vector>
 
 namespace dem::io {
-
-/// A mesh that shows a body of a machine. It is given in the body's reference frame, that of the drawing or the mesh
-/// that the body was made from, and stays the caller's.
-struct DrawnBody {
-  BodyId body = {};
-  const SurfaceMesh* mesh = nullptr;
-  Vec3 position = Vec3::Zero();      ///< of the mesh's origin, in the reference frame [m]
-  Mat3 rotation = Mat3::Identity();  ///< from the mesh's frame to the reference frame
-};
 
 namespace detail {
 

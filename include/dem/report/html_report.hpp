@@ -19,8 +19,8 @@
 
 namespace dem::io {
 
-/// Builds one HTML file with no script and no link to anything outside. All texts are plain and get escaped. Methods
-/// return the report, so that calls can be chained.
+/// Builds one HTML file with no link to anything outside, and no script unless there is a replay in it. All texts are
+/// plain and get escaped. Methods return the report, so that calls can be chained.
 ///
 ///     HtmlReport report("Direct shear test");
 ///     report.paragraph("Four normal stresses.")
@@ -95,14 +95,26 @@ class HtmlReport {
     return picture_data("image/svg+xml", text, caption);
   }
 
+  /// A recorded run to be turned and watched; `caption` stands below it. Takes a dem::report::Replay, and needs
+  /// <dem/report/replay.hpp>. Where three.js is not installed the page says so in its place. Throws dem::Error when no
+  /// frame was recorded.
+  template <class Replay>
+  HtmlReport& replay(const Replay& replay, std::string_view caption = "") {
+    const auto page = replay_page(replay, caption);
+    body_ += page.figure;
+    style_ = page.style;
+    if (!page.scripts.empty()) scripts_ = page.scripts;
+    return *this;
+  }
+
   /// The whole page.
   [[nodiscard]] std::string html() const {
     return fmt::format(
         "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
         "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
-        "<title>{0}</title>\n<style>\n{1}</style>\n</head>\n<body>\n<main>\n<h1>{0}</h1>\n{2}</main>\n</body>\n</"
-        "html>\n",
-        escape_xml(title_), detail::kHtmlStyle, body_);
+        "<title>{0}</title>\n<style>\n{1}{3}</style>\n</head>\n<body>\n<main>\n<h1>{0}</h1>\n{2}</main>\n{4}"
+        "</body>\n</html>\n",
+        escape_xml(title_), detail::kHtmlStyle, body_, style_, scripts_);
   }
 
   /// Writes the page, complete or not at all. Throws dem::Error when that is not possible.
@@ -130,6 +142,7 @@ class HtmlReport {
   }
 
   std::string title_, body_;
+  std::string style_, scripts_;  // of replays
 };
 
 }  // namespace dem::io

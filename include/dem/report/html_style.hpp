@@ -5,7 +5,7 @@
 
 namespace dem::io::detail {
 
-inline constexpr std::string_view kHtmlStyle = R"(:root { color-scheme: light; }
+inline constexpr std::string_view kHtmlStyle = R"(:root { color-scheme: light dark; }
 * { box-sizing: border-box; }
 body { margin: 0; background: #fff; color: #222;
   font: 16px/1.55 system-ui, "Segoe UI", "Helvetica Neue", Arial, sans-serif; }
@@ -32,6 +32,14 @@ td.right { white-space: nowrap; }
 figure { margin: 1.6rem 0; }
 img { max-width: 100%; height: auto; display: block; }
 figcaption { margin-top: .4rem; color: #555; font-size: .9rem; }
+@media (prefers-color-scheme: dark) {
+  body { background: #1b2027; color: #dde2e8; }
+  h2, th, td, dl div { border-color: #3a434e; }
+  pre, tbody tr:hover { background: #242b33; }
+  thead th { border-color: #aab3bd; }
+  dt, caption, figcaption { color: #aab3bd; }
+  img { background: #fff; }
+}
 @media print { main { max-width: none; padding: 0; } figure, tr { break-inside: avoid; } }
 )";
 

@@ -1,5 +1,6 @@
 #pragma once
-// What a run shows: progress and Ctrl-C, tables on the terminal, plots, HTML reports. POSIX.
+// What a run shows: progress and Ctrl-C, tables on the terminal, plots, HTML reports. POSIX. The replay of a report,
+// which knows about a World, is in <dem/report/replay.hpp>.
 
 #include <dem/report/ascii_table.hpp>
 #include <dem/report/columns.hpp>

@@ -1,0 +1,192 @@
+#pragma once
+// Records what moves, for the replay of a report.
+
+#include <dem/core/error.hpp>
+#include <dem/report/quantise.hpp>
+#include <dem/report/replay_data.hpp>
+#include <dem/report/replay_mesh.hpp>
+#include <dem/report/replay_thinning.hpp>
+#include <dem/report/three_js.hpp>
+
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+namespace dem::report {
+
+/// Keeps frames of grains and machine parts, to be turned and watched in a report:
+///
+///     Replay replay({.frames = 100});
+///     while (...) {
+///       world.run_for(0.01);
+///       replay.record(world);              // with <dem/report/replay_world.hpp>
+///     }
+///     html_report.replay(replay, "The bed while it is sheared.");
+///
+/// It needs 28 bytes a grain and frame. Without a world: add_shape, add_part, and the other record().
+class Replay {
+ public:
+  /// Throws dem::Error for options outside of their ranges, and when a file of three.js is named that is not there.
+  explicit Replay(ReplayOptions options = {})
+      : options_(std::move(options)), ticks_(options_.interval), sample_(options_.grains) {
+    if (options_.frames < 2 || options_.frames > 10'000) {
+      fail("a replay was given {} frames, but takes 2 to 10000; some 100 make a page of a few megabytes",
+           options_.frames);
+    }
+    require_non_negative(options_.interval, "time between frames of a replay", "s");
+    require_positive(options_.plane_size, "edge of a plane in a replay", "m");
+    if (options_.grains < 1) fail("a replay was told to draw 0 grains; let ReplayOptions::grains be at least 1");
+    check_three_js(options_.three_js);
+  }
+
+  /// Adds a look of grains and returns its number. Throws dem::Error for a radius that is not positive, and a mesh
+  /// that has no faces or names a vertex that it has not.
+  std::size_t add_shape(ReplayShape shape) {
+    for (const ReplayBall& ball : shape.balls) require_positive(ball.radius, "radius of a ball in a replay", "m");
+    if (shape.balls.empty()) detail::check_replay_mesh(shape.mesh, fmt::format("shape {}", shapes_.size()));
+    shapes_.push_back(std::move(shape));
+    return shapes_.size() - 1;
+  }
+
+  /// Adds a part of a machine and returns its number. Throws dem::Error for a mesh as above.
+  std::size_t add_part(std::string name, io::SurfaceMesh mesh) {
+    if (name.empty()) name = fmt::format("part {}", parts_.size() + 1);
+    detail::check_replay_mesh(mesh, "part '" + name + "'");
+    parts_.push_back({std::move(name), std::move(mesh)});
+    return parts_.size() - 1;
+  }
+
+  /// Whether record() at this time (s) would make a frame.
+  [[nodiscard]] bool due(double time) const { return frames_.empty() || (time > last_time_ && ticks_.due(time)); }
+
+  /// Makes a frame, if one is due, of all grains that are there and of all parts, a pose each. Returns whether one was
+  /// made; a time that was recorded before is passed over. Throws dem::Error for a time that is not finite or goes
+  /// back, a shape that was never added or is not that of earlier frames, and another number of poses than parts.
+  bool record(double time, std::span<const ReplayGrain> grains, std::span<const ReplayPose> poses = {}) {
+    check_frame(time, grains, poses);
+    if (!frames_.empty() && time == last_time_) return false;
+    if (due(time) && frames_.size() == static_cast<std::size_t>(options_.frames)) drop_every_second();
+    const bool is_due = due(time);
+    if (is_due) keep(time, grains, poses);
+    ticks_.count(time);
+    last_time_ = time;
+    return is_due;
+  }
+
+  /// Counts a call of record() at a time (s) at which none is due, without looking at anything.
+  void pass(double time) {
+    if (frames_.empty() || !(time > last_time_)) return;
+    ticks_.count(time);
+    last_time_ = time;
+  }
+
+  /// Makes a frame of a world as it is now, if one is due: its grains, its active surfaces, and bodies as meshes.
+  /// Include <dem/report/replay_world.hpp>, which says more.
+  template <class World, class... Bodies>
+  requires std::is_class_v<World>
+  bool record(const World& world, const Bodies&... bodies) { return record_world(*this, world, bodies...); }
+
+  [[nodiscard]] const ReplayOptions& options() const { return options_; }
+  [[nodiscard]] const std::vector<KeptFrame>& frames() const { return frames_; }
+  [[nodiscard]] const std::vector<ReplayShape>& shapes() const { return shapes_; }
+  [[nodiscard]] const std::vector<ReplayPart>& parts() const { return parts_; }
+  /// Which grains there were, and which of them are drawn. Frames may still hold some that no longer are.
+  [[nodiscard]] const GrainSample& sample() const { return sample_; }
+  /// What positions are kept relative to (m): the middle of the first frame.
+  [[nodiscard]] const Vec3& origin() const { return origin_; }
+
+  /// Which shapes and parts a world's species, surfaces and bodies are, by their indices; for record(world).
+  struct OfWorld {
+    std::vector<std::size_t> species, surfaces, bodies;
+  };
+  [[nodiscard]] OfWorld& of_world() { return of_world_; }
+
+ private:
+  void check_frame(double time, std::span<const ReplayGrain> grains, std::span<const ReplayPose> poses) const {
+    if (!std::isfinite(time)) fail("replay: the time of a frame is {}; give a finite time in seconds", time);
+    if (!frames_.empty() && time < last_time_) {
+      fail("replay: a frame at {:g} s after one at {:g} s; record in the order of time", time, last_time_);
+    }
+    if (poses.size() != parts_.size()) {
+      fail("replay: a frame has {} poses, but there are {} parts; give one for each, in the order of add_part",
+           poses.size(), parts_.size());
+    }
+    for (const ReplayGrain& g : grains) {
+      if (g.shape >= shapes_.size()) {
+        fail("replay: grain {} has shape {}, but {} were added (from 0 on); use what add_shape returned", g.number,
+             g.shape, shapes_.size());
+      }
+      if (g.number >= GrainSample::kUnmet) fail("replay: a grain has the number {}; number them from 0 on", g.number);
+      const std::uint32_t before = sample_.shape_of(g.number);
+      if (before != GrainSample::kUnmet && before != g.shape) {
+        fail("replay: grain {} has shape {}, but had {} before; give a grain of another shape another number", g.number,
+             g.shape, before);
+      }
+    }
+  }
+
+  /// Those that stay are as far apart as all later ones will be.
+  void drop_every_second() {
+    for (std::size_t k = 1; 2 * k < frames_.size(); ++k) frames_[k] = std::move(frames_[2 * k]);
+    frames_.resize((frames_.size() + 1) / 2);
+    ticks_.halve();
+  }
+
+  void find_origin(std::span<const ReplayGrain> grains, std::span<const ReplayPose> poses) {
+    Vec3 sum = Vec3::Zero();
+    double count = 0.0;
+    const auto add = [&](const auto& items) {
+      for (const auto& item : items) {
+        if (!item.position.allFinite()) continue;
+        sum += item.position;
+        count += 1.0;
+      }
+    };
+    add(grains);
+    if (count == 0.0) add(poses);
+    if (count > 0.0) origin_ = sum / count;
+  }
+
+  void keep(double time, std::span<const ReplayGrain> grains, std::span<const ReplayPose> poses) {
+    if (frames_.empty()) find_origin(grains, poses);
+    KeptFrame frame{.time = time, .grains = {}, .poses = {}};
+    for (const ReplayGrain& g : grains) sample_.meet(g.number, g.shape);
+    for (const ReplayGrain& g : grains) {
+      if (!sample_.draws(g.number)) continue;
+      const Vec3 x = g.position - origin_;
+      if (!x.allFinite() || !g.rotation.allFinite() || !std::isfinite(g.speed) || !std::isfinite(g.force)) continue;
+      frame.grains.push_back({static_cast<std::uint32_t>(g.number), single(x), pack_rotation(quaternion_of(g.rotation)),
+                              static_cast<float>(g.speed), static_cast<float>(g.force)});
+    }
+    for (const ReplayPose& p : poses) {
+      const Vec3 x = p.position - origin_;
+      const auto q = quaternion_of(p.rotation);
+      const auto [a, b, c] = single(x);
+      const bool shown = p.shown && x.allFinite() && p.rotation.allFinite();
+      frame.poses.push_back(shown ? KeptPose{a, b, c, static_cast<float>(q[0]), static_cast<float>(q[1]),
+                                             static_cast<float>(q[2]), static_cast<float>(q[3])}
+                                  : KeptPose{});
+    }
+    frames_.push_back(std::move(frame));
+  }
+  static std::array<float, 3> single(const Vec3& x) {
+    return {static_cast<float>(x.x()), static_cast<float>(x.y()), static_cast<float>(x.z())};
+  }
+
+  ReplayOptions options_;
+  FrameTicks ticks_;
+  GrainSample sample_;
+  std::vector<ReplayShape> shapes_;
+  std::vector<ReplayPart> parts_;
+  std::vector<KeptFrame> frames_;
+  Vec3 origin_ = Vec3::Zero();
+  double last_time_ = 0.0;
+  OfWorld of_world_;
+};
+
+}  // namespace dem::report
