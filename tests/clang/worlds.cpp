@@ -1,5 +1,6 @@
 // Worlds that clang compiles without a warning: the default one, and one with a choice of everything.
 #include <dem/dem.hpp>
+#include <dem/geometry/shapes.hpp>
 
 namespace {
 

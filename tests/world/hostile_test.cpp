@@ -170,7 +170,7 @@ TEST_CASE("a floor that turns by a NaN is reported before anything falls through
     const BodyId floor = w.machine().add_body(dem::mbd::box_body("floor", {1, 1, 0.1}, 1000).at({0, 0, -0.2}));
     if (!alone) w.add_surface(floor, dem::surface::Box({1, 1, 0.1}));
     w.machine().add_load(dem::mbd::custom_load("twist", floor, [](double t, const dem::Body&) {
-      return dem::mbd::Wrench{{0, 0, 0}, {0, 0, t > 5e-6 ? no_number : 0.0}};
+      return dem::Wrench{{0, 0, 0}, {0, 0, t > 5e-6 ? no_number : 0.0}};
     }));
     const dem::StepReport report = w.run(20);
     CHECK(report.problem == Problem::machine);
