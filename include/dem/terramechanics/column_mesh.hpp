@@ -9,9 +9,9 @@
 namespace dem::terramechanics {
 
 /// A machine part of triangles, in the mesh's own frame: a wheel with grousers, a track shoe, a blade. Rays are cast
-/// upwards through `rays` x `rays` points of each column. The share of them that meets the mesh below the soil's
-/// surface is the share of the column under it; height and normal are those of the ray next to the column's point.
-/// Faces steeper than 84 degrees are passed through.
+/// upwards through `rays` x `rays` points of each column. The share of them that meets the mesh, up to two columns'
+/// edges above the soil, is the share of the column under it; height and normal are those of the ray next to the
+/// column's point. Faces steeper than 84 degrees are passed through.
 class ColumnMesh final : public ColumnShape {
  public:
   /// `width` (m) is b of the pressure law: the smaller side of what presses on the soil. Throws Error unless it is
@@ -36,23 +36,31 @@ class ColumnMesh final : public ColumnShape {
     const double bottom =
         pose.position.z + dot(pose.rotation.row2, middle_) - reach(pose.rotation.row2) - 1e-3 * place.spacing;
     if (!(bottom < top)) return false;
-    int hits = 0;
-    double nearest = 1e300;
+    const double high = top + 2.0 * place.spacing, pitch = place.spacing / rays_;
+    const auto cast = [&](int kx, int ky, ColumnTouch& hit) {
+      hit.point = {place.x + pitch * (kx + 0.5) - 0.5 * place.spacing,
+                   place.y + pitch * (ky + 0.5) - 0.5 * place.spacing, 0.0};
+      return lowest(pose, bottom, high, hit);
+    };
+    const auto next_to = [&](double from_middle) {
+      return std::clamp(static_cast<int>(std::floor(from_middle / pitch + 0.5 * rays_)), 0, rays_ - 1);
+    };
+    const int own_x = next_to(place.at_x - place.x), own_y = next_to(place.at_y - place.y);
+    // Most columns that are asked lie before or behind what presses: one ray settles that.
+    int hits = cast(own_x, own_y, touch) ? 1 : 0;
+    if (hits == 1 && !(touch.point.z < top)) return false;
+    double nearest = hits == 1 ? 0.0 : 1e300;
     for (int k = 0; k < rays_ * rays_; ++k) {
-      const double pitch = place.spacing / rays_, x = place.x + pitch * (k % rays_ + 0.5) - 0.5 * place.spacing,
-                   y = place.y + pitch * (k / rays_ + 0.5) - 0.5 * place.spacing;
-      Vector3<double> normal;
-      double z = 0.0;
-      if (!lowest(pose, x, y, bottom, top, z, normal)) continue;
+      ColumnTouch hit;
+      if ((k % rays_ == own_x && k / rays_ == own_y) || !cast(k % rays_, k / rays_, hit)) continue;
       ++hits;
-      const double dx = x - place.at_x, dy = y - place.at_y, distance = dx * dx + dy * dy;
+      const double dx = hit.point.x - place.at_x, dy = hit.point.y - place.at_y, distance = dx * dx + dy * dy;
       if (distance >= nearest) continue;
       nearest = distance;
-      touch.point = {x, y, z};
-      touch.normal = normal;
+      touch = hit;
     }
     touch.share = static_cast<double>(hits) / (rays_ * rays_);
-    return hits > 0;
+    return hits > 0 && touch.point.z < top;
   }
   double width() const override { return width_; }
 
@@ -60,12 +68,12 @@ class ColumnMesh final : public ColumnShape {
   double reach(const Vector3<double>& row) const {
     return std::abs(row.x) * half_.x + std::abs(row.y) * half_.y + std::abs(row.z) * half_.z;
   }
-  /// The first face above (x, y) between two heights (m), and its normal, turned downwards.
-  bool lowest(const ShapePose& pose, double x, double y, double bottom, double top, double& z,
-              Vector3<double>& normal) const {
+  /// The first face above a point's x and y between two heights (m): sets its height and normal, turned downwards.
+  bool lowest(const ShapePose& pose, double bottom, double top, ColumnTouch& touch) const {
     constexpr double slack = 1e-9;  // of a triangle's heights, so that a ray through an edge meets it
     const surface::MeshData& m = mesh_.data();
-    const Vector3<double> tail = transpose_times(pose.rotation, Vector3<double>{x, y, bottom} - pose.position);
+    const Vector3<double> tail =
+        transpose_times(pose.rotation, Vector3<double>{touch.point.x, touch.point.y, bottom} - pose.position);
     const Vector3<double> up = transpose_times(pose.rotation, Vector3<double>{0, 0, 1}), way = (top - bottom) * up;
     double nearest = 1.0;
     const surface::Face* found = nullptr;
@@ -83,9 +91,9 @@ class ColumnMesh final : public ColumnShape {
       found = &f;
     });
     if (!found) return false;
-    z = bottom + nearest * (top - bottom);
+    touch.point.z = bottom + nearest * (top - bottom);
     const Vector3<double> n = pose.rotation * found->normal;
-    normal = n.z < 0.0 ? n : -n;
+    touch.normal = n.z < 0.0 ? n : -n;
     return true;
   }
 

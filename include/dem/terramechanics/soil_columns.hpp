@@ -23,8 +23,9 @@ namespace dem::terramechanics {
 /// The width b of the pressure law is a constant of each part, not taken from the columns that it happens to touch, and
 /// columns at an edge count with the share under the part: so forces do not depend on the grid, but for its error.
 /// Shear is counted by soil, not by rim: a column below a wheel was slid over 1/(1 - s) cos(theta) times the way that
-/// eq. 11 has for the rim there. Walls that stand upright feel nothing. Forces are summed column by column in the order
-/// of the rows, so results are the same bits for any number of threads.
+/// eq. 11 has for the rim there. Walls that stand upright feel nothing: blades are not pushed, and grousers leave
+/// prints but do not pull; take a cylinder of the radius at which the soil shears off for their thrust. Forces are
+/// summed column by column in the order of the rows, so results are the same bits for any number of threads.
 class SoilColumns {
  public:
   /// Throws Error, in words, for a field that cannot be (check_columns).
