@@ -1,4 +1,4 @@
-#include <dem/math/mesh_shapes.hpp>
+#include <dem/geometry/mesh/mesh_shapes.hpp>
 #include <dem/math/rotation.hpp>
 #include <dem/terramechanics/column_mesh.hpp>
 #include <dem/terramechanics/column_shapes.hpp>

@@ -1,7 +1,7 @@
 #pragma once
 
-#include <dem/surface/mesh_data.hpp>
-#include <dem/surface/triangle_mesh.hpp>
+#include <dem/geometry/mesh/mesh_data.hpp>
+#include <dem/geometry/mesh/triangle_mesh.hpp>
 #include <dem/terramechanics/column_shape.hpp>
 
 #include <memory>

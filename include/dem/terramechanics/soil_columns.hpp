@@ -1,6 +1,6 @@
 #pragma once
 
-#include <dem/exec/openmp.hpp>
+#include <dem/parallel/openmp.hpp>
 #include <dem/terramechanics/bulldozing.hpp>
 #include <dem/terramechanics/column_force.hpp>
 #include <dem/terramechanics/columns_spec.hpp>
