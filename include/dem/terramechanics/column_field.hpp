@@ -1,0 +1,77 @@
+#pragma once
+
+#include <dem/core/error.hpp>
+#include <dem/terramechanics/column_law.hpp>
+#include <dem/terramechanics/column_shape.hpp>
+#include <dem/terramechanics/column_shear.hpp>
+
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace dem::terramechanics {
+
+/// A field of soil columns on a square grid; column (ix, iy) has its middle at low + (ix + 1/2, iy + 1/2) spacing.
+struct ColumnGrid {
+  double low_x = 0.0, low_y = 0.0;  ///< m, the corner
+  double spacing = 0.01;            ///< m
+  std::size_t nx = 0, ny = 0;
+
+  std::size_t size() const { return nx * ny; }
+  std::size_t row(std::size_t ix, std::size_t iy) const { return iy * nx + ix; }
+  double x(std::size_t ix) const { return low_x + (static_cast<double>(ix) + 0.5) * spacing; }
+  double y(std::size_t iy) const { return low_y + (static_cast<double>(iy) + 0.5) * spacing; }
+  /// The column's square, and its point: moved along x by a fraction that changes from row to row, along y from file to
+  /// file, in the order 0, 4, 2, 6, 1, 5, 3, 7 of eighths.
+  ColumnPlace place(std::size_t ix, std::size_t iy) const {
+    const auto fraction = [](std::size_t k) {
+      return static_cast<double>((k & 1) << 2 | (k & 2) | (k & 4) >> 2) / 8.0 - 7.0 / 16.0;
+    };
+    return {x(ix), y(iy), spacing, x(ix) + fraction(iy) * spacing, y(iy) + fraction(ix) * spacing};
+  }
+  double area() const { return spacing * spacing; }  ///< m^2, of a column
+};
+
+/// What the columns remember, an array each; by ColumnGrid::row.
+struct ColumnField {
+  ColumnGrid grid;
+  std::vector<double> ground;    ///< m, height that sinkage counts from
+  std::vector<double> deepest;   ///< m, greatest sinkage under `modulus`
+  std::vector<double> modulus;   ///< k, Pa/m^n, of the curve that `deepest` belongs to; 0: never loaded
+  std::vector<double> sunk;      ///< m, sinkage that stays when the load is gone
+  std::vector<double> heap;      ///< m, loose soil on top, pushed there; part of `ground`
+  std::vector<double> pressure;  ///< Pa, when the column was touched last
+  std::vector<ShearMemory> shear;
+  std::vector<std::uint32_t> touched;    ///< number of the step that touched the column last
+  std::vector<std::int32_t> touched_by;  ///< part of that step; -1: none yet
+
+  /// m, height of the soil's surface without load.
+  double surface(std::size_t row) const { return ground[row] - sunk[row]; }
+
+  void resize(double height) {
+    const std::size_t n = grid.size();
+    ground.assign(n, height);
+    for (auto* column : {&deepest, &modulus, &sunk, &heap, &pressure}) column->assign(n, 0.0);
+    shear.assign(n, {});
+    touched.assign(n, 0);
+    touched_by.assign(n, -1);
+  }
+};
+
+/// What happened to a column in a step, before it is kept.
+struct ColumnChange {
+  std::size_t row = 0;
+  std::int32_t part = -1;
+  double deepest = 0.0, modulus = 0.0, sunk = 0.0, pressure = 0.0;
+  ShearMemory shear;
+  bool on_base = false;
+};
+
+/// m, the deepest sinkage of a column for a curve of another modulus: that which leaves the same rut.
+inline double deepest_for(const ColumnField& field, std::size_t row, const ColumnLaw& law) {
+  if (field.modulus[row] == law.curve.modulus || field.deepest[row] == 0.0) return field.deepest[row];
+  return law.deepest_of(field.sunk[row]);
+}
+
+}  // namespace dem::terramechanics

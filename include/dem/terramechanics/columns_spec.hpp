@@ -1,0 +1,73 @@
+#pragma once
+
+#include <dem/integrator/motion.hpp>
+#include <dem/terramechanics/column_field.hpp>
+
+#include <memory>
+#include <string>
+
+namespace dem::terramechanics {
+
+/// A field of soil columns, as it is asked for.
+struct ColumnsSpec {
+  double low_x = 0.0, low_y = 0.0;        ///< m, a corner of the field
+  double length_x = 1.0, length_y = 1.0;  ///< m; rounded up to whole columns
+  double spacing = 0.01;                  ///< m, edge of a column
+  double height = 0.0;                    ///< m, of the level surface
+  double thickness = 0.0;                 ///< m, of the soil over hard ground; 0: without end
+  Soil soil;
+  double damping = 0.0;          ///< Pa s/m, against sinking and rising
+  double bulldozing = 0.0;       ///< share of the compacted volume that appears beside the rut
+  double angle_of_repose = 0.6;  ///< rad, of that soil
+};
+
+/// Throws Error, in words, for a field that cannot be.
+inline void check_columns(const ColumnsSpec& spec) {
+  check_soil(spec.soil);
+  require_positive(spec.spacing, "spacing of soil columns", "m");
+  require_positive(spec.length_x, "length of the soil along x", "m");
+  require_positive(spec.length_y, "length of the soil along y", "m");
+  require_non_negative(spec.thickness, "thickness of the soil", "m (0: without end)");
+  require_non_negative(spec.damping, "damping of soil columns", "Pa s/m");
+  require_within(spec.bulldozing, 0.0, 2.0, "share of the soil that is pushed aside");
+  require_within(spec.angle_of_repose, 0.0, 1.4, "angle of repose of soil that is pushed aside, in rad");
+  require_within(spec.height, -1e6, 1e6, "height of the soil in m");
+  require_within(spec.low_x, -1e6, 1e6, "corner of the soil in m");
+  require_within(spec.low_y, -1e6, 1e6, "corner of the soil in m");
+  const double columns = (spec.length_x / spec.spacing) * (spec.length_y / spec.spacing);
+  if (!(columns < 2e8)) {
+    fail(
+        "{:g} m x {:g} m of soil in columns of {:g} m are {:.3g} columns, but at most 2e8 are taken; raise the spacing",
+        spec.length_x, spec.length_y, spec.spacing, columns);
+  }
+}
+
+/// A part of a machine on soil columns, as it moves now.
+struct ColumnPart {
+  std::shared_ptr<const ColumnShape> shape;
+  integrator::Motion<double> body;       ///< of the body that carries it; forces count about its position
+  Vector3<double> position = {0, 0, 0};  ///< m, of the shape in the body's frame
+  Matrix3<double> rotation = Matrix3<double>::identity();  ///< shape -> body
+  double width = 0.0;                                      ///< b of the pressure law, m; 0: the shape's
+
+  ShapePose pose() const { return {body.position + body.rotation * position, body.rotation * rotation}; }
+};
+
+/// What the soil puts on a part's body.
+struct ColumnLoad {
+  Vector3<double> force = {0, 0, 0};   ///< N, global axes
+  Vector3<double> torque = {0, 0, 0};  ///< N m, about the body's position
+  double stiffness = 0.0;              ///< N/m, of the soil under it against rising and sinking
+  std::size_t columns = 0;             ///< that press
+};
+
+/// What became of a step.
+struct ColumnsReport {
+  bool ok = true;
+  std::size_t columns = 0;  ///< that press on anything
+  std::size_t on_base = 0;  ///< of them squeezed against the hard ground
+  std::string text;         ///< what went wrong and what to change; empty if all is well
+  explicit operator bool() const { return ok; }
+};
+
+}  // namespace dem::terramechanics

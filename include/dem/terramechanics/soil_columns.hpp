@@ -1,0 +1,293 @@
+#pragma once
+
+#include <dem/parallel/openmp.hpp>
+#include <dem/terramechanics/bulldozing.hpp>
+#include <dem/terramechanics/column_force.hpp>
+#include <dem/terramechanics/columns_spec.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <span>
+#include <vector>
+
+namespace dem::terramechanics {
+
+/// Soil as a field of columns with memory: the dynamic Bekker method (thesis section 1.2.2). Each column follows the
+/// pressure law when it is pressed deeper than ever, springs back along a straight line, keeps its rut, and remembers
+/// how far it was sheared. Machine parts of any shape press on it; the lowest part over a column has it.
+///
+///     SoilColumns soil({.length_x = 2, .length_y = 1, .spacing = 0.01, .soil = melanz_sand});
+///     soil.apply(parts, dt);  // parts: where they are and how they move now
+///     soil.loads()[0].force;  // what the first one feels
+///
+/// The width b of the pressure law is a constant of each part, not taken from the columns that it happens to touch, and
+/// columns at an edge count with the share under the part: so forces do not depend on the grid, but for its error.
+/// Shear is counted by soil, not by rim: a column below a wheel was slid over 1/(1 - s) cos(theta) times the way that
+/// eq. 11 has for the rim there. Walls that stand upright feel nothing: blades are not pushed, and grousers leave
+/// prints but do not pull; take a cylinder of the radius at which the soil shears off for their thrust. Forces are
+/// summed column by column in the order of the rows, so results are the same bits for any number of threads.
+class SoilColumns {
+ public:
+  /// Throws Error, in words, for a field that cannot be (check_columns).
+  explicit SoilColumns(const ColumnsSpec& spec) : spec_((check_columns(spec), spec)) {
+    ColumnGrid& g = field_.grid;
+    const auto count = [&](double length) {
+      return static_cast<std::size_t>(std::ceil(length / spec.spacing * (1.0 - 1e-9)));
+    };
+    g = {spec.low_x, spec.low_y, spec.spacing, count(spec.length_x), count(spec.length_y)};
+    field_.resize(spec.height);
+    claim_.assign(g.size(), free);
+    claim_height_.assign(g.size(), 0.0);
+    top_ = spec.height;
+    bulldozing_.share = spec.bulldozing;
+    bulldozing_.steepest = std::tan(spec.angle_of_repose);
+    threads_.set_threads(1);
+  }
+
+  /// Threads that share the rows of columns; 1 unless set. Worth it from some thousand columns under a machine.
+  void set_threads(int n) { threads_.set_threads(n); }
+
+  /// Gives the untouched soil a surface: height(x, y) in m. Throws Error if a height is not finite.
+  template <class F>
+  void shape_ground(F&& height) {
+    const ColumnGrid& g = field_.grid;
+    top_ = -1e300;
+    for (std::size_t iy = 0; iy < g.ny; ++iy) {
+      for (std::size_t ix = 0; ix < g.nx; ++ix) {
+        const double z = height(g.x(ix), g.y(iy));
+        if (!std::isfinite(z))
+          fail("the soil's height at ({:g}, {:g}) m is {:g}, but must be finite", g.x(ix), g.y(iy), z);
+        field_.ground[g.row(ix, iy)] = z;
+        top_ = std::max(top_, z);
+      }
+    }
+  }
+
+  /// A step of dt (s): the loads on the parts where they are now, and what the columns keep of it. Never throws for
+  /// what happens while running; a part that is not fit to be used (no shape, no width) throws Error.
+  ColumnsReport apply(std::span<const ColumnPart> parts, double dt) {
+    ColumnsReport report = evaluate(parts, dt);
+    commit();
+    return report;
+  }
+
+  /// The loads of a step of dt (s) on from the last one that was kept, without keeping it: for integrators that look at
+  /// a step more than once.
+  ColumnsReport evaluate(std::span<const ColumnPart> parts, double dt);
+  /// Keeps what the last evaluation found.
+  void commit();
+
+  /// What each part felt in the last evaluation, in their order.
+  const std::vector<ColumnLoad>& loads() const { return loads_; }
+  const ColumnField& field() const { return field_; }
+  const ColumnsSpec& spec() const { return spec_; }
+  /// Steps that were kept.
+  std::uint32_t steps() const { return step_; }
+
+ private:
+  static constexpr std::int32_t free = -1;
+
+  struct Hit {
+    std::size_t row;
+    ColumnTouch touch;
+  };
+  /// A row of columns under a part: the unit of work for threads and of sums.
+  struct Strip {
+    std::int32_t part;
+    std::size_t iy, from, to;
+    std::vector<Hit> hits;
+    std::vector<ColumnChange> changes;
+    ColumnLoad load;
+  };
+
+  bool lay_out(std::span<const ColumnPart> parts, ColumnsReport& report);
+  void look(const ColumnPart& part, Strip& strip) const;
+  void claim(std::size_t parts);
+  void press(const ColumnPart& part, const ColumnLaw& law, double dt, bool shared, Strip& strip) const;
+
+  ColumnsSpec spec_;
+  ColumnField field_;
+  Bulldozing bulldozing_;
+  exec::OpenMP threads_;
+  double top_ = 0.0;  ///< m, no column is higher
+  std::uint32_t step_ = 0;
+  std::vector<Strip> strips_;
+  std::size_t strip_count_ = 0;
+  std::vector<ColumnLaw> laws_;
+  std::vector<ColumnLoad> loads_;
+  std::vector<Vector3<double>> velocity_;  ///< of the parts' bodies
+  std::vector<std::int32_t> claim_;        ///< the part that has a column, while an evaluation runs
+  std::vector<double> claim_height_;
+  std::vector<std::size_t> rows_;
+};
+
+/// Strips of columns that may be under the parts. False if nothing can be computed.
+inline bool SoilColumns::lay_out(std::span<const ColumnPart> parts, ColumnsReport& report) {
+  const ColumnGrid& g = field_.grid;
+  strip_count_ = 0;
+  laws_.clear();
+  velocity_.clear();
+  loads_.assign(parts.size(), {});
+  for (std::size_t p = 0; p < parts.size(); ++p) {
+    const ColumnPart& part = parts[p];
+    if (!part.shape) fail("part {} on soil columns has no shape; give it one, such as a ColumnCylinder", p);
+    const double width = part.width > 0.0 ? part.width : part.shape->width();
+    if (!(width > 0.0)) {
+      fail("part {} on soil columns has no width, which the pressure law asks for; set width to its smaller side", p);
+    }
+    laws_.emplace_back(spec_.soil, width, spec_.thickness);
+    velocity_.push_back(part.body.velocity);
+    const ShapePose pose = part.pose();
+    const Vector3<double> spin = part.body.rotation * part.body.angular_velocity;
+    const double sum =
+        dot(pose.position, pose.position) + dot(part.body.velocity, part.body.velocity) + dot(spin, spin);
+    if (!(sum < 1e300)) {
+      report = {
+          .ok = false,
+          .columns = 0,
+          .on_base = 0,
+          .text = fmt::format(
+              "part {} on soil columns is nowhere: its position or velocity is not finite; lower the time step", p)};
+      return false;
+    }
+    const PlanBox box = part.shape->shadow(pose, top_);
+    if (box.empty()) continue;
+    const auto index = [&](double at, double low, std::size_t n) {
+      return static_cast<std::size_t>(std::clamp(std::floor((at - low) / g.spacing), 0.0, static_cast<double>(n - 1)));
+    };
+    const double high_x = g.low_x + g.spacing * static_cast<double>(g.nx),
+                 high_y = g.low_y + g.spacing * static_cast<double>(g.ny);
+    if (box.low_x < g.low_x || box.high_x > high_x || box.low_y < g.low_y || box.high_y > high_y) {
+      report.ok = false;
+      report.text = fmt::format(
+          "part {} on soil columns leaves the soil at ({:g}, {:g}) m: there is none outside of x {:g} to {:g} and y "
+          "{:g} "
+          "to {:g} m; enlarge the field",
+          p, pose.position.x, pose.position.y, g.low_x, high_x, g.low_y, high_y);
+      if (box.high_x < g.low_x || box.low_x > high_x || box.high_y < g.low_y || box.low_y > high_y) continue;
+    }
+    const double h = 0.5 * g.spacing;  // a column whose middle is a spacing away holds a point half of one away
+    const std::size_t x0 = index(box.low_x - h, g.low_x, g.nx), x1 = index(box.high_x + h, g.low_x, g.nx);
+    const std::size_t y0 = index(box.low_y - h, g.low_y, g.ny), y1 = index(box.high_y + h, g.low_y, g.ny);
+    for (std::size_t iy = y0; iy <= y1; ++iy) {
+      if (strip_count_ == strips_.size()) strips_.emplace_back();
+      Strip& s = strips_[strip_count_++];
+      s.part = static_cast<std::int32_t>(p);
+      s.iy = iy;
+      s.from = x0;
+      s.to = x1;
+    }
+  }
+  return true;
+}
+
+/// What of a strip lies under its part, ascending.
+inline void SoilColumns::look(const ColumnPart& part, Strip& s) const {
+  const ColumnGrid& g = field_.grid;
+  const ShapePose pose = part.pose();
+  s.hits.clear();
+  for (std::size_t ix = s.from; ix <= s.to; ++ix) {
+    Hit hit{g.row(ix, s.iy), {}};
+    const double top = field_.surface(hit.row);
+    if (part.shape->touch(pose, g.place(ix, s.iy), top, hit.touch)) s.hits.push_back(hit);
+  }
+}
+
+/// Where several parts are over a column the lowest one has it; of two at one height the first.
+inline void SoilColumns::claim(std::size_t parts) {
+  if (parts < 2) return;
+  for (std::size_t k = 0; k < strip_count_; ++k) {
+    for (const Hit& hit : strips_[k].hits) {
+      if (claim_[hit.row] != free && claim_height_[hit.row] <= hit.touch.point.z) continue;
+      claim_[hit.row] = strips_[k].part;
+      claim_height_[hit.row] = hit.touch.point.z;
+    }
+  }
+}
+
+/// The forces of a strip, summed along it.
+inline void SoilColumns::press(const ColumnPart& part, const ColumnLaw& law, double dt, bool shared, Strip& s) const {
+  s.changes.clear();
+  s.load = {};
+  const Vector3<double> spin = part.body.rotation * part.body.angular_velocity;
+  for (const Hit& hit : s.hits) {
+    if (shared && claim_[hit.row] != s.part) continue;
+    const Vector3<double> arm = hit.touch.point - part.body.position, velocity = part.body.velocity + cross(spin, arm);
+    const bool in_contact = step_ > 0 && field_.touched[hit.row] == step_ && field_.touched_by[hit.row] == s.part;
+    ColumnChange change{.row = hit.row, .part = s.part, .shear = {}};
+    const ColumnForce f =
+        column_force(field_, law, spec_.soil.shear, spec_.damping, hit.touch, velocity, dt, in_contact, change);
+    if (!f.acts) continue;
+    s.changes.push_back(change);
+    s.load.force += f.force;
+    s.load.torque += cross(arm, f.force);
+    s.load.stiffness += f.stiffness;
+    ++s.load.columns;
+  }
+}
+
+inline ColumnsReport SoilColumns::evaluate(std::span<const ColumnPart> parts, double dt) {
+  ColumnsReport report;
+  if (!lay_out(parts, report)) {
+    strip_count_ = 0;
+    return report;
+  }
+  threads_.for_each(strip_count_,
+                    [&](std::size_t k) { look(parts[static_cast<std::size_t>(strips_[k].part)], strips_[k]); });
+  claim(parts.size());
+  threads_.for_each(strip_count_, [&](std::size_t k) {
+    const auto p = static_cast<std::size_t>(strips_[k].part);
+    press(parts[p], laws_[p], dt, parts.size() > 1, strips_[k]);
+  });
+  for (std::size_t k = 0; k < strip_count_; ++k) {
+    const Strip& s = strips_[k];
+    ColumnLoad& load = loads_[static_cast<std::size_t>(s.part)];
+    load.force += s.load.force;
+    load.torque += s.load.torque;
+    load.stiffness += s.load.stiffness;
+    load.columns += s.load.columns;
+    report.columns += s.load.columns;
+    for (const ColumnChange& change : s.changes) report.on_base += change.on_base ? 1 : 0;
+    for (const Hit& hit : s.hits) claim_[hit.row] = free;
+  }
+  return report;
+}
+
+inline void SoilColumns::commit() {
+  ++step_;
+  const ColumnGrid& g = field_.grid;
+  std::size_t x0 = g.nx, x1 = 0, y0 = g.ny, y1 = 0;
+  for (std::size_t k = 0; k < strip_count_; ++k) {
+    for (const ColumnChange& c : strips_[k].changes) {
+      field_.touched[c.row] = step_;
+      field_.touched_by[c.row] = c.part;
+    }
+  }
+  for (std::size_t k = 0; k < strip_count_;) {
+    const std::int32_t part = strips_[k].part;
+    double risen = 0.0;
+    rows_.clear();
+    for (; k < strip_count_ && strips_[k].part == part; ++k) {
+      for (const ColumnChange& c : strips_[k].changes) {
+        risen += c.sunk - field_.sunk[c.row];
+        field_.deepest[c.row] = c.deepest;
+        field_.modulus[c.row] = c.modulus;
+        field_.sunk[c.row] = c.sunk;
+        field_.pressure[c.row] = c.pressure;
+        field_.shear[c.row] = c.shear;
+        field_.heap[c.row] = 0.0;  // pressed into the soil
+        rows_.push_back(c.row);
+        x0 = std::min(x0, c.row % g.nx), x1 = std::max(x1, c.row % g.nx);
+        y0 = std::min(y0, c.row / g.nx), y1 = std::max(y1, c.row / g.nx);
+      }
+    }
+    const Vector3<double>& v = velocity_[static_cast<std::size_t>(part)];
+    bulldozing_.deposit(field_, rows_, risen * g.area(), v.x, v.y, step_);
+  }
+  if (bulldozing_.share > 0.0 && x0 <= x1) {
+    top_ = std::max(top_, bulldozing_.roll(field_, x0, x1, y0, y1, step_));
+  }
+  strip_count_ = 0;
+}
+
+}  // namespace dem::terramechanics

@@ -1,0 +1,150 @@
+#pragma once
+
+#include <dem/terramechanics/soil_text.hpp>
+
+#include <charconv>
+#include <cmath>
+#include <cstddef>
+#include <cstdio>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace dem::terramechanics {
+
+namespace detail {
+
+/// One line `name = value` of a soil file.
+struct SoilLine {
+  std::string name, value;
+  std::size_t line;
+  bool is_text;
+};
+
+inline std::string_view trimmed(std::string_view text) {
+  const auto space = [](char c) { return c == ' ' || c == '\t' || c == '\r'; };
+  while (!text.empty() && space(text.front())) text.remove_prefix(1);
+  while (!text.empty() && space(text.back())) text.remove_suffix(1);
+  return text;
+}
+
+inline std::vector<SoilLine> soil_lines(std::string_view text, const std::string& where) {
+  std::vector<SoilLine> lines;
+  for (std::size_t number = 1; !text.empty(); ++number) {
+    const std::size_t end = text.find('\n');
+    std::string_view row = trimmed(text.substr(0, end));
+    text = end == std::string_view::npos ? std::string_view() : text.substr(end + 1);
+    if (row.empty() || row.front() == '#') continue;
+    const std::size_t equals = row.find('=');
+    if (equals == std::string_view::npos) fail("'{}', line {}: no '='; write name = value", where, number);
+    SoilLine line{std::string(trimmed(row.substr(0, equals))), {}, number, false};
+    std::string_view value = trimmed(row.substr(equals + 1));
+    if (!value.empty() && value.front() == '"') {
+      line.is_text = true;
+      std::size_t k = 1;
+      for (; k < value.size() && value[k] != '"'; ++k) {
+        if (value[k] == '\\' && k + 1 < value.size()) ++k;
+        line.value += value[k];
+      }
+      const std::string_view rest = k < value.size() ? trimmed(value.substr(k + 1)) : "?";
+      if (!rest.empty() && rest.front() != '#') {
+        fail("'{}', line {}: the text of {} does not end in a quote; write name = \"text\"", where, number, line.name);
+      }
+    } else {
+      line.value = trimmed(value.substr(0, value.find('#')));
+    }
+    for (const SoilLine& other : lines) {
+      if (other.name == line.name) {
+        fail("'{}', line {}: {} was already given in line {}; remove one", where, number, line.name, other.line);
+      }
+    }
+    lines.push_back(std::move(line));
+  }
+  return lines;
+}
+
+}  // namespace detail
+
+/// The soil that a text describes, in the form that to_text writes; `where` names the text in messages. What has a
+/// default may be left out. Throws Error, with the line, for names that no soil has, numbers that are none, what is
+/// missing, and soils that check_soil refuses.
+inline NamedSoil read_soil(std::string_view text, const std::string& where = "soil") {
+  const auto lines = detail::soil_lines(text, where);
+  NamedSoil named;
+  std::string form;
+  for (const auto& line : lines) {
+    std::string* target = line.name == "name"       ? &named.name
+                          : line.name == "source"   ? &named.source
+                          : line.name == "pressure" ? &form
+                                                    : nullptr;
+    if (line.is_text != (target != nullptr)) {
+      fail("'{}', line {}: {} takes {}", where, line.line, line.name,
+           target ? "a text in quotes" : "a number; texts are name, source and pressure");
+    }
+    if (target) *target = line.value;
+  }
+  Soil& soil = named.soil;
+  if (form == "bekker") {
+    soil.pressure = Bekker{};
+  } else if (form == "reece") {
+    soil.pressure = Reece{};
+  } else if (form == "wong-reece") {
+    soil.pressure = WongReece{};
+  } else {
+    fail("'{}': pressure is \"{}\", but must be \"bekker\", \"reece\" or \"wong-reece\"", where, form);
+  }
+  double angles[2] = {0.0, 0.0};
+  const detail::SoilNumbers numbers(soil, angles);
+  std::vector<bool> found(numbers.count, false);
+  for (const auto& line : lines) {
+    if (line.is_text) continue;
+    std::size_t k = 0;
+    while (k < numbers.count && line.name != numbers.rows[k].name) ++k;
+    if (k == numbers.count) {
+      std::string known;
+      for (std::size_t j = 0; j < numbers.count; ++j) known += std::string(j ? ", " : "") + numbers.rows[j].name;
+      fail("'{}', line {}: a soil with pressure \"{}\" has no {}; it has {}", where, line.line, form, line.name, known);
+    }
+    const char *begin = line.value.data(), *end = begin + line.value.size();
+    const auto [stop, error] = std::from_chars(begin, end, *numbers.rows[k].value);
+    if (error != std::errc() || stop != end || !std::isfinite(*numbers.rows[k].value)) {
+      fail("'{}', line {}: {} is '{}', but must be a finite number with a decimal point", where, line.line, line.name,
+           line.value);
+    }
+    found[k] = true;
+  }
+  for (std::size_t k = 0; k < numbers.required; ++k) {
+    if (!found[k]) fail("'{}': {} is missing; add {} = ...", where, numbers.rows[k].name, numbers.rows[k].name);
+  }
+  soil.shear.friction_angle = radians(angles[0]);
+  soil.exit_angle = radians(angles[1]);
+  if (auto* reece = std::get_if<Reece>(&soil.pressure)) reece->cohesion = soil.shear.cohesion;
+  check_soil(soil);
+  return named;
+}
+
+/// Reads a soil file. Throws Error as read_soil does, and if the file cannot be read.
+inline NamedSoil load_soil(const std::string& path) {
+  std::FILE* file = std::fopen(path.c_str(), "rb");
+  std::string text;
+  char part[4096];
+  for (std::size_t n = 1; file && n > 0;) {
+    n = std::fread(part, 1, sizeof part, file);
+    text.append(part, n);
+  }
+  const bool bad = !file || std::ferror(file) != 0;
+  if (file) std::fclose(file);
+  if (bad) fail("cannot read the soil file '{}'; check that it exists and may be read", path);
+  return read_soil(text, path);
+}
+
+/// Writes a soil file. Throws Error for a soil that check_soil refuses, and if the file cannot be written.
+inline void save_soil(const std::string& path, const NamedSoil& named) {
+  const std::string text = to_text(named);
+  std::FILE* file = std::fopen(path.c_str(), "wb");
+  const bool written = file && std::fwrite(text.data(), 1, text.size(), file) == text.size();
+  const bool closed = file && std::fclose(file) == 0;
+  if (!written || !closed) fail("cannot write the soil file '{}'; check that the folder exists and has room", path);
+}
+
+}  // namespace dem::terramechanics
