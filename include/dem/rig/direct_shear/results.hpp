@@ -1,17 +1,14 @@
 #pragma once
 
-#include "settings.hpp"
-
+#include <dem/rig/samples.hpp>
 #include <dem/soil/packing.hpp>
-#include <dem/terramechanics/mohr_coulomb.hpp>
 
+#include <cmath>
 #include <limits>
-#include <optional>
-#include <span>
 #include <string>
 #include <vector>
 
-namespace direct_shear {
+namespace dem::rig::direct_shear {
 
 inline constexpr double not_known = std::numeric_limits<double>::quiet_NaN();
 
@@ -26,6 +23,15 @@ struct Sample {
   double plane_stress;  ///< Pa, what the bottom box carries, less the grains in it, over the area
 };
 
+/// The columns of the file of a load.
+inline constexpr Column<Sample> sample_columns[] = {{"time_s", &Sample::time},
+                                                    {"displacement_m", &Sample::displacement},
+                                                    {"shear_stress_Pa", &Sample::stress},
+                                                    {"drive_stress_Pa", &Sample::drive_stress},
+                                                    {"lid_rise_m", &Sample::lid_rise},
+                                                    {"lid_stress_Pa", &Sample::lid_stress},
+                                                    {"plane_normal_stress_Pa", &Sample::plane_stress}};
+
 /// The test at one load.
 struct LoadResult {
   double load = 0.0;                      ///< kg
@@ -34,7 +40,9 @@ struct LoadResult {
   double height = not_known;              ///< m, of the lid before shearing
   double consolidation_time = not_known;  ///< s, simulated
   double inertial_number = not_known;
-  bool finished = false;  ///< the whole travel was done
+  double time_step = 0.0;            ///< s
+  std::string time_step_limit = {};  ///< what limits the stable one
+  bool finished = false;             ///< the whole travel was done
   std::vector<Sample> samples = {};
 
   // Of the samples, by evaluate()
@@ -51,7 +59,7 @@ struct LoadResult {
 
 /// The specimen before any load.
 struct PackingResult {
-  dem::soil::Packing packing = {};
+  soil::Packing packing = {};
   double solid_fraction = not_known;  ///< inside of the packing, away from walls
   double height = not_known;          ///< m, where 95 % of the grains' centres are below, plus half an edge
   double asked_density = not_known;   ///< relative, that it was densified towards
@@ -62,13 +70,6 @@ struct PackingResult {
 struct Campaign {
   PackingResult packing = {};
   std::vector<LoadResult> loads = {};
-  double time_step = 0.0;  ///< s
-  std::string time_step_limit = {};
-  double wall_time = 0.0;  ///< s
-  double grain_steps = 0.0;
-  bool interrupted = false;
-  std::string problem = {};         ///< why it ended early; empty if it did not
-  std::string frames_problem = {};  ///< why files for ParaView are missing; empty if none are
 };
 
 /// Table 3.3 of the thesis: normal and maximum shear stress (Pa), and the angle (deg); and the experiment's range.
@@ -79,22 +80,11 @@ inline constexpr Reference thesis[] = {{16895.0, 13483.0278}, {44145.0, 33794.44
 inline constexpr double thesis_angle_deg = 38.043, experiment_low_deg = 34.2, experiment_high_deg = 43.5;
 
 /// The thesis's maximum shear stress (Pa) at a normal stress that it has (within 0.5 %), else NaN.
-double thesis_maximum(double normal_stress);
+inline double thesis_maximum(double normal_stress) {
+  for (const Reference& r : thesis) {
+    if (std::abs(normal_stress / r.normal_stress - 1.0) < 0.005) return r.maximum;
+  }
+  return not_known;
+}
 
-/// Means of `values` over a window (m) of displacement about each sample.
-std::vector<double> smoothed(std::span<const Sample> samples, double Sample::*values, double window);
-
-/// Finds maximum, residual and dilation in the samples; what they are too few for stays not known.
-void evaluate(LoadResult& r, const Settings& s);
-
-/// Relative density between the limits of the grains' shape; not known for what is no solid fraction, as of grains
-/// pressed together.
-double relative_density(const Settings& s, double solid_fraction);
-
-/// Mohr-Coulomb lines of the loads that were sheared to their end; empty where there are too few for one.
-struct Fits {
-  std::optional<dem::terramechanics::MohrCoulomb> free, origin, residual;
-};
-Fits fit(const Campaign& c);
-
-}  // namespace direct_shear
+}  // namespace dem::rig::direct_shear

@@ -2,14 +2,23 @@
 
 #include <dem/soil/relative_density.hpp>
 
-#include <array>
 #include <cstdint>
-#include <filesystem>
+#include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
-namespace direct_shear {
+namespace dem::rig::direct_shear {
+
+/// What a kind of grain is called, and the defaults that suit it.
+struct GrainKind {
+  std::string name = {};                            ///< one word: of --shape and of packing files
+  std::string plural = "grains";                    ///< for the report
+  double stiffness = 2e4;                           ///< K, N/m, of what grains_of() makes
+  double damping = 0.015;                           ///< C and cv, N s/m, likewise
+  double relative_density = 0.0;                    ///< of a packing
+  double strike_off = 0.0;                          ///< share of the highest grains that are taken off
+  soil::DensityLimits limits = soil::cube8_limits;  ///< that relative densities are counted between
+};
 
 /// Everything that can be chosen. A value of 0 where it says "0: by size" is filled in by resolve(). Units: SI, as
 /// given on the command line too, except where a name says otherwise.
@@ -18,9 +27,10 @@ struct Settings {
 
   /// Of the cubical grains: cube8 (eight spheres), polyhedron (sharp edges), superquadric (rounded).
   std::string shape = "cube8";
+  std::optional<GrainKind> own_kind = {};  ///< of grains of your own; `shape` then says nothing
 
   // Specimen and box (thesis section 3.2: 60 x 60 x 50 mm, 14,256 cubes of half-edge 0.9 mm)
-  double half_edge = 0.0;       ///< m; 0: by size
+  double half_edge = 0.0;       ///< m, half the edge of the cube that a grain fills about; 0: by size
   std::uint64_t grains = 0;     ///< 0: as many as fill the box as high as 14,256 of half-edge 0.9 mm do
   double box_length = 0.06;     ///< m, along the shearing direction
   double box_width = 0.06;      ///< m
@@ -83,7 +93,7 @@ struct Settings {
   int threads = 0;         ///< 0: all, but not more than one for each 1000 grains
 
   // Output
-  std::filesystem::path output = "direct_shear_output";
+  std::string output = "direct_shear_output";
   bool vtk = true;
   bool vtk_spheres = false;   ///< also the eight spheres of each grain
   double vtk_interval = 0.0;  ///< m of travel between two frames; 0: a twentieth of the travel
@@ -96,26 +106,4 @@ struct Settings {
   double normal_stress(double load, double displacement = 0.0) const { return 9.81 * load / area(displacement); }
 };
 
-/// Reads the command line and, with --config, a TOML file, whose every key must be an option. Returns false when only
-/// help was asked for; throws dem::Error when something makes no sense or an option is given that would do nothing,
-/// CLI::ParseError never. `config` becomes a TOML file that repeats the run: every option that counts in it.
-bool read_settings(int argc, char** argv, Settings& settings, std::string& config);
-
-/// Fills in what depends on the size and checks every option against its range. Throws dem::Error.
-void resolve(Settings& s);
-
-/// What a coarser grain's stiffness is multiplied by (its square: damping). Overlap/size under a stress P is P d/K and
-/// the damping ratio is C/sqrt(K m), so that K ~ d and C ~ d^2 keep both: a coarse specimen deforms as the fine one
-/// does. 1 for the full size.
-double contact_scale(const Settings& s);
-
-/// The loosest and the densest state of the grains' shape, which relative densities are counted between.
-const dem::soil::DensityLimits& density_limits(const Settings& s);
-
-/// What the files of a load (kg) are called, by its normal stress.
-std::string load_name(const Settings& s, double load);
-
-/// Names and values for the report.
-std::vector<std::pair<std::string, std::string>> list_settings(const Settings& s);
-
-}  // namespace direct_shear
+}  // namespace dem::rig::direct_shear

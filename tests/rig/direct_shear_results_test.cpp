@@ -1,16 +1,12 @@
 #include "catch.hpp"
 
-#include <dem/io/file.hpp>
-#include <direct_shear/old_results.hpp>
-#include <direct_shear/results.hpp>
+#include <dem/rig/direct_shear/evaluate.hpp>
 
 #include <cmath>
 #include <numbers>
 
-#include <unistd.h>
-
 using Catch::Approx;
-using namespace direct_shear;
+using namespace dem::rig::direct_shear;
 
 namespace {
 
@@ -188,43 +184,4 @@ TEST_CASE("relative density is counted between the limits of the grains' shape")
     CHECK(relative_density(s, limits.loosest) == Approx(0.0).margin(1e-12));
     CHECK(relative_density(s, limits.densest) == Approx(1.0));
   }
-}
-
-TEST_CASE("what an earlier run left is removed, and nothing else") {
-  namespace fs = std::filesystem;
-  const fs::path folder = fs::temp_directory_path() / ("dem_old_results_test_" + std::to_string(::getpid()));
-  fs::remove_all(folder);
-  CHECK_NOTHROW(remove_old_results(folder));  // there is none yet
-  CHECK(find_old_results(folder).empty());
-  const std::vector<std::string> old = {"results.csv",
-                                        "report.html",
-                                        "shear_stress.gp",
-                                        "dilation.svg",
-                                        "mohr_coulomb.png",
-                                        "load_16.9kPa.csv",
-                                        "load_16.9kPa.pvd",
-                                        "load_16.9kPa/grains_000000.vtp",
-                                        "load_16.9kPa/polyhedra_1000000.vtp",
-                                        "load_44.1kPa/boxes_000001.vtp"};
-  const std::vector<std::string> others = {"settings.toml",     "packing.txt",         "load_16.9kPa.csv.bak",
-                                           "load_cell.csv",     "my_results.csv",      "load_44.1kPa/notes.txt",
-                                           "load_a/grains.txt", "sub/load_1.0kPa.csv", "shear_stress.txt"};
-  for (const auto& name : old) dem::io::write_file(folder / name, "old");
-  for (const auto& name : others) dem::io::write_file(folder / name, "mine");
-  std::vector<std::string> found;
-  for (const auto& path : find_old_results(folder)) found.push_back(path.filename().string());
-  CHECK(found == std::vector<std::string>{"dilation.svg", "load_16.9kPa.csv", "load_16.9kPa.pvd", "mohr_coulomb.png",
-                                          "report.html", "results.csv", "shear_stress.gp"});
-  remove_old_results(folder);
-  CHECK(find_old_results(folder).empty());
-  for (const auto& name : old) {
-    INFO(name);
-    CHECK_FALSE(fs::exists(folder / name));
-  }
-  CHECK_FALSE(fs::exists(folder / "load_16.9kPa"));
-  for (const auto& name : others) {
-    INFO(name);
-    CHECK(fs::exists(folder / name));
-  }
-  fs::remove_all(folder);
 }

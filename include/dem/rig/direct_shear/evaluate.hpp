@@ -1,36 +1,25 @@
-#include "results.hpp"
+#pragma once
 
 #include <dem/core/error.hpp>
+#include <dem/rig/direct_shear/grain_kind.hpp>
+#include <dem/rig/direct_shear/results.hpp>
+#include <dem/terramechanics/mohr_coulomb.hpp>
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
+#include <span>
+#include <vector>
 
-namespace direct_shear {
+namespace dem::rig::direct_shear {
 
-double thesis_maximum(double normal_stress) {
-  for (const Reference& r : thesis) {
-    if (std::abs(normal_stress / r.normal_stress - 1.0) < 0.005) return r.maximum;
-  }
-  return not_known;
+/// Means of `values` over a window (m) of displacement about each sample.
+inline std::vector<double> smoothed(std::span<const Sample> samples, double Sample::*values, double window) {
+  return rig::smoothed(samples, &Sample::displacement, values, window);
 }
 
-std::vector<double> smoothed(std::span<const Sample> samples, double Sample::*values, double window) {
-  std::vector<double> mean(samples.size());
-  std::size_t from = 0, to = 0;
-  for (std::size_t i = 0; i < samples.size(); ++i) {
-    // The window shrinks towards both ends, so that it stays in the middle of its samples.
-    const double x = samples[i].displacement;
-    const double half = std::min({0.5 * window, x - samples.front().displacement, samples.back().displacement - x});
-    while (from < i && samples[from].displacement < x - half) ++from;
-    while (to < samples.size() && samples[to].displacement <= x + half) ++to;
-    double sum = 0.0;
-    for (std::size_t k = from; k < std::max(to, i + 1); ++k) sum += samples[k].*values;
-    mean[i] = sum / static_cast<double>(std::max(to, i + 1) - from);
-  }
-  return mean;
-}
-
-void evaluate(LoadResult& r, const Settings& s) {
+/// Finds maximum, residual and dilation in the samples; what they are too few for stays not known.
+inline void evaluate(LoadResult& r, const Settings& s) {
   if (r.samples.empty()) return;
   const auto stress = smoothed(r.samples, &Sample::stress, s.smoothing);
   const auto drive = smoothed(r.samples, &Sample::drive_stress, s.smoothing);
@@ -64,12 +53,18 @@ void evaluate(LoadResult& r, const Settings& s) {
   r.lid_share = lid / static_cast<double>(stress.size());
 }
 
-double relative_density(const Settings& s, double solid_fraction) {
+/// Relative density between the limits of the grains' shape; not known for what is no solid fraction, as of grains
+/// pressed together.
+inline double relative_density(const Settings& s, double solid_fraction) {
   if (!(solid_fraction > 1e-6 && solid_fraction <= 1.0)) return not_known;
-  return dem::soil::relative_density(solid_fraction, density_limits(s));
+  return soil::relative_density(solid_fraction, density_limits(s));
 }
 
-Fits fit(const Campaign& c) {
+/// Mohr-Coulomb lines of the loads that were sheared to their end; empty where there are too few for one.
+struct Fits {
+  std::optional<terramechanics::MohrCoulomb> free, origin, residual;
+};
+inline Fits fit(const Campaign& c) {
   std::vector<double> sigma, maximum, residual_sigma, residual;
   for (const LoadResult& r : c.loads) {
     if (!r.finished) continue;
@@ -78,12 +73,12 @@ Fits fit(const Campaign& c) {
     residual_sigma.push_back(r.normal_at_residual);
     residual.push_back(r.residual);
   }
-  using dem::terramechanics::Intercept;
+  using terramechanics::Intercept;
   const auto line = [](std::span<const double> x, std::span<const double> y,
-                       Intercept intercept) -> std::optional<dem::terramechanics::MohrCoulomb> {
+                       Intercept intercept) -> std::optional<terramechanics::MohrCoulomb> {
     try {
-      return dem::terramechanics::fit_mohr_coulomb(x, y, intercept);
-    } catch (const dem::Error&) {  // too few loads: no reason to lose the rest of the report
+      return terramechanics::fit_mohr_coulomb(x, y, intercept);
+    } catch (const Error&) {  // too few loads: no reason to lose the rest of the report
       return std::nullopt;
     }
   };
@@ -92,4 +87,4 @@ Fits fit(const Campaign& c) {
           .residual = line(residual_sigma, residual, Intercept::zero)};
 }
 
-}  // namespace direct_shear
+}  // namespace dem::rig::direct_shear

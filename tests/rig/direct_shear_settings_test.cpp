@@ -2,8 +2,10 @@
 
 #include <dem/core/error.hpp>
 #include <dem/io/file.hpp>
-#include <direct_shear/option_names.hpp>
-#include <direct_shear/settings.hpp>
+#include <dem/rig/command_line.hpp>
+#include <dem/rig/direct_shear/list_settings.hpp>
+#include <dem/rig/direct_shear/options.hpp>
+#include <dem/rig/direct_shear/resolve.hpp>
 
 #include <filesystem>
 #include <string>
@@ -13,7 +15,8 @@
 
 using Catch::Approx;
 using Catch::Matchers::ContainsSubstring;
-using direct_shear::Settings;
+using dem::rig::direct_shear::Settings;
+namespace direct_shear = dem::rig::direct_shear;
 
 namespace {
 
@@ -35,9 +38,16 @@ Parsed read(std::vector<std::string> arguments) {
   std::vector<char*> argv;
   for (auto& a : arguments) argv.push_back(a.data());
   Parsed p;
+  dem::rig::Options options;
+  declare(options, p.settings);
   // Not within REQUIRE, which would take the exceptions that tests expect.
-  const bool run = direct_shear::read_settings(static_cast<int>(argv.size()), argv.data(), p.settings, p.config);
+  const bool run = dem::rig::read_command_line({}, static_cast<int>(argv.size()), argv.data(), options);
   REQUIRE(run);
+  dem::rig::IdleOptions idle;
+  find_idle(idle, p.settings);
+  refuse_idle(options, idle);
+  p.config = settings_text(options, idle);
+  resolve(p.settings);
   return p;
 }
 
@@ -51,6 +61,7 @@ Parsed read_file(const std::string& text) {
 TEST_CASE("settings.toml repeats the run") {
   const auto first = read({"--size", "smoke", "--no-vtk", "--loads", "6.2,16.2", "--stiffness", "2000",
                            "--area-correction", "true", "--seed", "7", "--output", "some where"});
+  CHECK(first.settings.output == "some where");
   const auto again = read_file(first.config);
   CHECK(again.config == first.config);
   CHECK(again.settings.size == "smoke");
@@ -62,6 +73,18 @@ TEST_CASE("settings.toml repeats the run") {
   CHECK(again.settings.relative_density == 0.18);
   CHECK(again.settings.seed == 7);
   CHECK(again.settings.output == "some where");
+}
+
+TEST_CASE("settings.toml repeats a run in any folder, on any packing") {
+  for (const char* path : {"a#b", "a\"b", "\"a", "it's", "'a'", "a\\b", "two\nlines", "a\tb", "x\x01y", "1e5", "true",
+                           "[a,b]", "a, b", " a ", "ä", "o", "#", "a = b", "\r"}) {
+    INFO(path);
+    const auto first = read({std::string("--output=") + path, std::string("--packing-file=") + path + "/p.txt"});
+    const auto again = read_file(first.config);
+    CHECK(again.settings.output == path);
+    CHECK(again.settings.packing_file == std::string(path) + "/p.txt");
+    CHECK(again.config == first.config);
+  }
 }
 
 TEST_CASE("settings.toml names every option that counts, and no other") {
@@ -160,7 +183,7 @@ TEST_CASE("the report lists a seed only of a packing that has one") {
 }
 
 TEST_CASE("what the library complains of is called by its option") {
-  using direct_shear::in_options;
+  const auto in_options = [](const char* text) { return dem::rig::in_own_words(text, direct_shear::words); };
   CHECK(in_options("more than overlap_limit 1; raise the normal stiffness, lower time_step (now 1e-5 s)") ==
         "more than --overlap-limit 1; raise --stiffness, lower --time-step (now 1e-5 s)");
   CHECK(in_options("lower time_step or set allow_unstable_time_step, or time_step_safety") ==
@@ -168,6 +191,13 @@ TEST_CASE("what the library complains of is called by its option") {
   CHECK(in_options("make one with save_packing") == "make one with --save-packing");
   CHECK(in_options("close the walls, lower time_step, or enlarge domain") == "lower --time-step");
   CHECK(in_options("no option in here") == "no option in here");
+  CHECK(in_options("cannot open 'time_step/save_packing.txt' (lower time_step)") ==
+        "cannot open 'time_step/save_packing.txt' (lower --time-step)");
+  CHECK(in_options("my_time_step, /tmp/time_step.txt and a-time_step") ==
+        "my_time_step, /tmp/time_step.txt and a-time_step");
+  CHECK(in_options("raise time_step.") == "raise --time-step.");
+  CHECK(in_options("the grain's time_step, 'unfinished time_step") ==
+        "the grain's --time-step, 'unfinished --time-step");
 }
 
 TEST_CASE("files for ParaView are written unless switched off, in whichever way") {
@@ -268,7 +298,12 @@ TEST_CASE("every option is checked by its own name") {
     for (const char* value : {"nan", "inf"}) refused(automatic_if_negative, value);
   }
   refused("--threads", "-1");
-  refused("--grains", "-1");
+  for (const char* whole : {"--grains", "--seed"}) {
+    for (const char* value : {"-1", "1.5", "1e300", "184467440737095516160", "five"}) refused(whole, value);
+  }
+  CHECK_THROWS_WITH(read({"--seed=-1"}), ContainsSubstring("--seed is -1, but must be a whole number from 0"));
+  CHECK(read({"--seed=18446744073709551615"}).settings.seed == 18446744073709551615ULL);
+  CHECK(read({"--grains=1e3"}).settings.grains == 1000);
 }
 
 TEST_CASE("options are checked against each other") {
@@ -278,6 +313,12 @@ TEST_CASE("options are checked against each other") {
   CHECK_THROWS_WITH(read({"--seam-height=0.05"}), ContainsSubstring("box height, 0.05 m"));
   CHECK_THROWS_WITH(read({"--ramp-time=0.31"}), ContainsSubstring("at most what the travel takes"));
   CHECK_THROWS_WITH(read({"--shape=superquadric", "--integrator=euler"}), ContainsSubstring("verlet only"));
+}
+
+TEST_CASE("grains that nothing could hold are refused, however they are asked for") {
+  CHECK_THROWS_WITH(read({"--half-edge=1e-15"}), ContainsSubstring("change --half-edge, or give --grains"));
+  CHECK_THROWS_WITH(read({"--half-edge=1e-5"}), ContainsSubstring("change --half-edge, or give --grains"));
+  CHECK_THROWS_WITH(read({"--grains=100000001"}), ContainsSubstring("--grains"));
 }
 
 TEST_CASE("loads must have names, and so files, of their own") {
