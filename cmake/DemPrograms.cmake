@@ -33,6 +33,12 @@ function(dem_includes out regex)
   endforeach()
 endfunction()
 
+# dem_needs_cli11(<out> <source>...): whether one of the sources includes a header that needs CLI11.
+function(dem_needs_cli11 out)
+  dem_includes(needs "CLI/CLI\\.hpp|dem/rig/(command_line|program)\\.hpp" ${ARGN})
+  set(${out} ${needs} PARENT_SCOPE)
+endfunction()
+
 # dem_with(<package> <purpose>): an optional package. Afterwards DEM_WITH_<PACKAGE> says whether it is used: the
 # user did not switch it off, and it was found.
 macro(dem_with package purpose)

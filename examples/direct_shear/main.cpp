@@ -18,6 +18,6 @@ int main(int argc, char** argv) {
       .about = "Direct shear test of cubical sand grains: shear strength at several normal stresses",
       .footer = dem::rig::exit_codes};
   dem::rig::direct_shear::ShearRig rig(
-      worlds(), "direct_shear_all has: build it with cmake --build build/release --target direct_shear_all");
+      worlds(), "direct_shear_all has them: cmake --build build/release --target direct_shear_all");
   return dem::rig::run_program(text, rig, argc, argv);
 }

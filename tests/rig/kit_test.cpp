@@ -117,7 +117,7 @@ TEST_CASE("rows become columns of a file") {
 
 namespace {
 
-struct Report {
+struct Ending {
   std::string text;
   explicit operator bool() const { return text.empty(); }
 };
@@ -126,7 +126,7 @@ struct Report {
 struct Counted {
   void prepare() {}
   double time_step() const { return 1e-3; }
-  Report step() {
+  Ending step() {
     if (++steps == interrupt_at) std::raise(SIGTERM);
     return {steps == fail_at ? "step " + std::to_string(steps) : ""};
   }

@@ -26,6 +26,7 @@ inline void run_to_end(Rig& rig, Session& session) {
   try {
     rig.run(session);
     if (!session.has_begun()) fail("the rig has run no stage: run() did not call begin_run()");
+    session.finish();
   } catch (const Interrupted&) {
     session.outcome.interrupted = true;
   } catch (const InAnotherProgram&) {
