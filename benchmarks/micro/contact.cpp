@@ -1,8 +1,8 @@
 // Contact kernels: the laws, one pack of contacts at a time, and the narrow phase of two cubes of eight spheres.
 
 #include <dem/dem.hpp>
-#include <dem/geometry/shapes.hpp>
 #include <dem/geometry/polyhedron/polyhedra.hpp>
+#include <dem/geometry/shapes.hpp>
 
 #include <benchmark/benchmark.h>
 

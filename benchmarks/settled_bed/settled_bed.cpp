@@ -3,8 +3,8 @@
 // linear spring and dashpot, restitution 0.3, friction 0.4 with history.
 
 #include <dem/dem.hpp>
-#include <dem/geometry/shapes.hpp>
 #include <dem/geometry/polyhedron/polyhedra.hpp>
+#include <dem/geometry/shapes.hpp>
 #include <dem/report/ascii_table.hpp>
 
 #include <CLI/CLI.hpp>

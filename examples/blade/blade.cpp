@@ -67,8 +67,8 @@ struct Pusher {
     drive = machine.add_sensor(actuator_sensor("drive", push, 0.02));
   }
   World<Soil>::Machine& machine;
-  mbd::JointId rail;
-  mbd::SensorId soil, drive;
+  JointId rail;
+  SensorId soil, drive;
 };
 
 struct Sample {

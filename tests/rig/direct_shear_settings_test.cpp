@@ -183,7 +183,7 @@ TEST_CASE("the report lists a seed only of a packing that has one") {
 }
 
 TEST_CASE("what the library complains of is called by its option") {
-  const auto in_options = [](const char* text) { return dem::rig::in_own_words(text, direct_shear::words); };
+  const auto in_options = [](const char* text) { return dem::rig::in_own_words(text, direct_shear::own_words); };
   CHECK(in_options("more than overlap_limit 1; raise the normal stiffness, lower time_step (now 1e-5 s)") ==
         "more than --overlap-limit 1; raise --stiffness, lower --time-step (now 1e-5 s)");
   CHECK(in_options("lower time_step or set allow_unstable_time_step, or time_step_safety") ==

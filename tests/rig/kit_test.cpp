@@ -75,7 +75,7 @@ TEST_CASE("values of options are read whole or not at all, in any locale") {
   CHECK(i == -3);
   CHECK_THROWS_WITH(read(&n, {"-3"}), ContainsSubstring("--it is -3, but must be a whole number from 0"));
   CHECK_THROWS_WITH(read(&n, {"0.5"}), ContainsSubstring("whole number"));
-  CHECK_THROWS_WITH(read(&i, {"3e9"}), ContainsSubstring("between -2147483648 and 2147483647"));
+  CHECK_THROWS_WITH(read(&i, {"3e9"}), ContainsSubstring("from -2147483648 to 2147483647"));
   CHECK_FALSE(read(&n, {"x"}));
   CHECK(read(&b, {"On"}));
   CHECK(b);
@@ -126,9 +126,14 @@ struct Ending {
 struct Counted {
   void prepare() {}
   double time_step() const { return 1e-3; }
-  Ending step() {
-    if (++steps == interrupt_at) std::raise(SIGTERM);
-    return {steps == fail_at ? "step " + std::to_string(steps) : ""};
+  template <class GoesOn>
+  Ending run(std::uint64_t n, GoesOn&& goes_on) {
+    for (std::uint64_t k = 0; k < n; ++k) {
+      if (++steps == interrupt_at) std::raise(SIGTERM);
+      if (steps == fail_at) return {"step " + std::to_string(steps)};
+      if (!goes_on()) break;
+    }
+    return {""};
   }
   int steps = 0, fail_at = -1, interrupt_at = -1;
 };

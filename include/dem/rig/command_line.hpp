@@ -5,7 +5,6 @@
 #include <dem/rig/settings_file.hpp>
 #include <dem/rig/tell.hpp>
 
-#include <fmt/format.h>
 #include <CLI/CLI.hpp>
 
 #include <filesystem>

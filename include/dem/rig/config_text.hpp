@@ -11,8 +11,6 @@
 
 #include <dem/core/error.hpp>
 
-#include <fmt/format.h>
-
 #include <cstddef>
 #include <string>
 #include <string_view>
@@ -28,16 +26,16 @@ struct ConfigLine {
   int line = 0;
 };
 
-/// `text` as a value that read_config() reads back as the very same.
-[[nodiscard]] inline std::string toml_text(std::string_view text) {
+/// A text as a value that read_config() reads back as the very same.
+[[nodiscard]] inline std::string toml_text(std::string_view value) {
   std::string q = "\"";
-  for (const char c : text) {
+  for (const char c : value) {
     const auto byte = static_cast<unsigned char>(c);
     if (c == '"' || c == '\\') q += '\\';
     if (c == '\n') q += "\\n";
     else if (c == '\t') q += "\\t";
     else if (c == '\r') q += "\\r";
-    else if (byte < 0x20U) q += fmt::format("\\u{:04X}", byte);
+    else if (byte < 0x20U) q += text("\\u{:04X}", static_cast<int>(byte));
     else q += c;
   }
   return q + '"';
@@ -55,7 +53,7 @@ class ConfigReader {
     for (skip_empty(); !at_end(); skip_empty()) {
       lines.push_back(read_line());
       skip_blanks();
-      if (!at_line_end()) wrong(fmt::format("'{}' stands behind the value", rest_of_line()));
+      if (!at_line_end()) wrong(text("'{}' stands behind the value", rest_of_line()));
     }
     return lines;
   }
@@ -104,7 +102,7 @@ class ConfigReader {
     skip_blanks();
     if (at_line_end()) result.values = {"true"};
     else {
-      if (now() != '=') wrong(fmt::format("'{}' stands where '=' should", rest_of_line()));
+      if (now() != '=') wrong(text("'{}' stands where '=' should", rest_of_line()));
       take();
       skip_blanks();
       read_values(result);
@@ -117,14 +115,14 @@ class ConfigReader {
   }
 
   void read_values(ConfigLine& result) {
-    if (at_line_end()) wrong(fmt::format("'{}' has no value", result.key));
+    if (at_line_end()) wrong(text("'{}' has no value", result.key));
     if (now() == '[') {
       take();
       for (skip_empty(true); now() != ']'; skip_empty(true)) {
         result.values.push_back(read_value());
         skip_empty(true);
         if (now() == ',') take();
-        else if (now() != ']') wrong(fmt::format("'{}' stands where a comma or ']' should", rest_of_line()));
+        else if (now() != ']') wrong(text("'{}' stands where a comma or ']' should", rest_of_line()));
       }
       take();
       return;
@@ -147,7 +145,7 @@ class ConfigReader {
     while (!at_end() && now() != '\n' && ends.find(now()) == std::string_view::npos) ++at_;
     std::string_view bare = text_.substr(start, at_ - start);
     while (!bare.empty() && (bare.back() == ' ' || bare.back() == '\t' || bare.back() == '\r')) bare.remove_suffix(1);
-    if (bare.empty()) wrong(fmt::format("'{}' stands where a name or a value should", rest_of_line()));
+    if (bare.empty()) wrong(text("'{}' stands where a name or a value should", rest_of_line()));
     return std::string(bare);
   }
 
@@ -173,7 +171,7 @@ class ConfigReader {
       case 'f': return '\f';
       case 'r': return '\r';
       case 'u': return read_code();
-      default: wrong(fmt::format("'\\{}' is no character; a backslash is written twice", c));
+      default: wrong(text("'\\{}' is no character; a backslash is written twice", c));
     }
   }
 

@@ -96,13 +96,13 @@ class DirectShear {
     result.time_step_limit = rig.world.stable_time_step().limited_by;
     rig.world.prepare();
     result.time_step = rig.world.time_step();
-    stages.begin(fmt::format("consolidate {:.1f} kPa", 1e-3 * result.normal_stress), 1.0);
+    stages.begin(text("consolidate {:.1f} kPa", 1e-3 * result.normal_stress), 1.0);
     consolidate(rig, settings_, stages);
     result.consolidation_time = rig.world.time();
     result.height = rig.lid_low();
     result.solid_fraction = inner_fraction(rig, settings_, result.height);
     if (!std::isfinite(result.solid_fraction)) warn_of_no_density("under the lid", settings_, stages);
-    stages.begin(fmt::format("shear at {:.1f} kPa", 1e-3 * result.normal_stress), settings_.travel);
+    stages.begin(text("shear at {:.1f} kPa", 1e-3 * result.normal_stress), settings_.travel);
     look(std::as_const(rig), Moment::start);
     shear(rig, settings_, result, stages, [&] { look(std::as_const(rig), Moment::sample); });
     look(std::as_const(rig), Moment::end);

@@ -3,8 +3,6 @@
 
 #include <dem/core/error.hpp>
 
-#include <fmt/format.h>
-
 #include <cerrno>
 #include <cstring>
 #include <string>
@@ -32,9 +30,9 @@ class FolderLock {
       : path_((folder.empty() ? "." : folder) + "/" + file_name) {
     while (!try_lock(folder)) {
     }
-    const std::string text = fmt::format("process {} ({})\n", ::getpid(), program);
+    const std::string line = text("process {} ({})\n", ::getpid(), program);
     if (file_ >= 0 && ::ftruncate(file_, 0) == 0) {
-      [[maybe_unused]] const auto written = ::write(file_, text.data(), text.size());
+      [[maybe_unused]] const auto written = ::write(file_, line.data(), line.size());
     }
   }
   FolderLock(FolderLock&& other) noexcept : file_(std::exchange(other.file_, -1)), path_(std::move(other.path_)) {}

@@ -6,13 +6,14 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <limits>
 #include <system_error>
 
 namespace dem::rig {
 
 /// The value as text that read_value() reads back as the very same.
 [[nodiscard]] inline std::string text_of(const Option& option) {
-  const auto text = [&](const auto* v) -> std::string {
+  const auto write = [&](const auto* v) -> std::string {
     using T = std::remove_cvref_t<decltype(*v)>;
     if constexpr (std::same_as<T, std::string>) {
       return *v;
@@ -20,13 +21,13 @@ namespace dem::rig {
       return option.is_flag ? (*v ? "true" : "false") : (*v ? "1" : "0");
     } else if constexpr (std::same_as<T, std::vector<double>>) {
       std::string all;
-      for (const double x : *v) all += (all.empty() ? "" : ",") + fmt::format("{}", x);
+      for (const double x : *v) all += (all.empty() ? "" : ",") + text("{}", x);
       return all;
     } else {
-      return fmt::format("{}", *v);
+      return text("{}", *v);
     }
   };
-  return std::visit(text, option.value);
+  return std::visit(write, option.value);
 }
 
 namespace detail {
@@ -55,10 +56,8 @@ bool read_whole_number(const std::string& name, std::string_view text, T& value)
     value = static_cast<T>(number);
     return true;
   }
-  fail("{} is {}, but must be a whole number {}", name, text,
-       std::is_signed_v<T>
-           ? fmt::format("between {} and {}", std::numeric_limits<T>::min(), std::numeric_limits<T>::max())
-           : fmt::format("from 0 to {}", std::numeric_limits<T>::max()));
+  fail("{} is {}, but must be a whole number from {} to {}", name, text, std::numeric_limits<T>::min(),
+       std::numeric_limits<T>::max());
 }
 
 inline bool read_switch(std::string text, bool& value) {

@@ -59,7 +59,7 @@ class Report {
       html.picture(drawn.svg, caption);
     } else {
       not_drawn_ = drawn.reason;
-      html.paragraph(fmt::format("{}: not drawn ({})", caption, drawn.reason));
+      html.paragraph(text("{}: not drawn ({})", caption, drawn.reason));
     }
   }
 

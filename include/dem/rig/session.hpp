@@ -94,7 +94,7 @@ class Session final : public Stages {
   /// Files for ParaView of `what` cannot be written: it is said, and noted for the report.
   void give_up_frames(const std::string& why, const char* what) {
     outcome.frames_problem = why;
-    message(fmt::format("warning: no more files for ParaView of {}: {}", what, why));
+    message(text("warning: no more files for ParaView of {}: {}", what, why));
   }
 
   /// Notes the end of a run that has begun; `problem` is empty if there is none.

@@ -46,7 +46,7 @@ inline void refuse_idle(const Options& options, const IdleOptions& idle) {
 /// The text of a settings file that repeats the run: every option that counts, as given or with its default. Empty
 /// texts and lists are defaults and are left out.
 [[nodiscard]] inline std::string settings_text(const Options& options, const IdleOptions& idle) {
-  std::string text;
+  std::string lines;
   for (const Option& option : options.all()) {
     std::vector<std::string> values = option.given;
     if (values.empty() && !option.default_text.empty()) values = {option.default_text};
@@ -54,9 +54,9 @@ inline void refuse_idle(const Options& options, const IdleOptions& idle) {
     const bool is_text = std::holds_alternative<std::string*>(option.value);
     std::string joined;
     for (const std::string& v : values) joined += (joined.empty() ? "" : ", ") + (is_text ? toml_text(v) : v);
-    text += fmt::format("{}={}\n", option.key(), values.size() > 1 ? "[" + joined + "]" : joined);
+    lines += text("{}={}\n", option.key(), values.size() > 1 ? "[" + joined + "]" : joined);
   }
-  return text;
+  return lines;
 }
 
 }  // namespace dem::rig

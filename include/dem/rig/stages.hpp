@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <stdexcept>
 #include <string_view>
 
@@ -42,10 +43,10 @@ template <class World>
 void run(World& world, double duration) {
   world.prepare();
   const double steps = std::max(1.0, std::round(duration / world.time_step()));
-  for (double k = 0.0; k < steps; k += 1.0) {
-    if (const auto report = world.step(); !report) throw Stopped(report.text);
-    if (io::interrupted()) throw Interrupted{};
-  }
+  require_within(steps, 1.0, 0x1.0p53, "number of steps of a stage");
+  const auto report = world.run(static_cast<std::uint64_t>(steps), [] { return !io::interrupted(); });
+  if (!report) throw Stopped(report.text);
+  if (io::interrupted()) throw Interrupted{};
 }
 
 }  // namespace dem::rig

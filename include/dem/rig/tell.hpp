@@ -1,18 +1,16 @@
 #pragma once
 
-#include <fmt/format.h>
+#include <dem/core/text.hpp>
+#include <dem/report/terminal.hpp>
 
 #include <cstdio>
-#include <utility>
 
 namespace dem::rig {
 
-/// Prints to stderr or stdout what nobody may be there to read: a terminal that is gone is no error.
+/// Says something to stderr or stdout that nobody may be there to read: a terminal that is gone is no error.
 template <class... Args>
-void tell(std::FILE* out, fmt::format_string<Args...> text, Args&&... args) {
-  const std::string line = fmt::format(text, std::forward<Args>(args)...);
-  std::fwrite(line.data(), 1, line.size(), out);
-  std::fflush(out);
+void tell(std::FILE* out, TextFormat<std::type_identity_t<Args>...> format, const Args&... arguments) {
+  io::show_text(out, text(format, arguments...));
 }
 
 }  // namespace dem::rig

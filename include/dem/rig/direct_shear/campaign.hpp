@@ -18,17 +18,17 @@ inline void compare_density(const PackingResult& p, const Settings& s, Stages& s
   const double reached = relative_density(s, p.solid_fraction);
   if (!(std::abs(reached - p.asked_density) > 0.02)) return;  // also if either is not known
   stages.message(
-      fmt::format("warning: the packing has relative density {:.2f}, but {:g} was asked for; change "
-                  "--relative-density, --densify-time or --seed if that matters",
-                  reached, p.asked_density));
+      text("warning: the packing has relative density {:.2f}, but {:g} was asked for; change "
+           "--relative-density, --densify-time or --seed if that matters",
+           reached, p.asked_density));
 }
 
 inline void warn_of_speed(const LoadResult& r, const Settings& s, Stages& stages) {
   if (!(r.inertial_number > 1e-3)) return;
   stages.message(
-      fmt::format("warning: at {:.1f} kPa the inertial number is {:.2g}, above 1e-3: not slow any more; "
-                  "lower --shear-speed to {:.3g} m/s",
-                  1e-3 * r.normal_stress, r.inertial_number, s.shear_speed * 1e-3 / r.inertial_number));
+      text("warning: at {:.1f} kPa the inertial number is {:.2g}, above 1e-3: not slow any more; "
+           "lower --shear-speed to {:.3g} m/s",
+           1e-3 * r.normal_stress, r.inertial_number, s.shear_speed * 1e-3 / r.inertial_number));
 }
 
 /// Checks all that can be checked before the run, and returns what it starts from: the packing of --packing-file, or
@@ -107,15 +107,14 @@ void run_campaign(const DirectShear<Model>& shear, Campaign& campaign, Session& 
   shear.measure(packing);
   if (!std::isfinite(packing.solid_fraction)) warn_of_no_density("of the packing", s, session);
   if (making > 0) {
-    session.finish(std::isfinite(packing.solid_fraction) ? fmt::format("solid fraction {:.3f}", packing.solid_fraction)
-                                                         : "");
+    session.finish(std::isfinite(packing.solid_fraction) ? text("solid fraction {:.3f}", packing.solid_fraction) : "");
   }
   detail::compare_density(packing, s, session);
   for (const double load : s.loads) {
     LoadResult& r = campaign.loads.emplace_back(shear.of_load(load));
     detail::warn_of_speed(r, s, session);
     detail::test_load(shear, packing, r, session);
-    session.finish(fmt::format("maximum {:.1f} kPa", 1e-3 * r.maximum));
+    session.finish(text("maximum {:.1f} kPa", 1e-3 * r.maximum));
   }
 }
 

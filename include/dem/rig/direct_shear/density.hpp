@@ -5,8 +5,6 @@
 #include <dem/rig/stages.hpp>
 #include <dem/soil/bulk_density.hpp>
 
-#include <fmt/format.h>
-
 #include <span>
 
 namespace dem::rig::direct_shear {
@@ -30,9 +28,9 @@ double inner_fraction(const Apparatus<Model>& rig, const Settings& s, double lid
 /// Says that a density could not be measured.
 inline void warn_of_no_density(const char* where, const Settings& s, Stages& stages) {
   stages.message(
-      fmt::format("warning: the density {} is not known: the specimen is too small to measure it {:g} mm away from "
-                  "walls, floor and top; take more --grains or a smaller --half-edge if that matters",
-                  where, 1e3 * measuring_margin(s)));
+      text("warning: the density {} is not known: the specimen is too small to measure it {:g} mm away from "
+           "walls, floor and top; take more --grains or a smaller --half-edge if that matters",
+           where, 1e3 * measuring_margin(s)));
 }
 
 /// m, how high the solid of the grains would fill the box without gaps.

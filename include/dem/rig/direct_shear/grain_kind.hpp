@@ -3,8 +3,6 @@
 #include <dem/core/error.hpp>
 #include <dem/rig/direct_shear/settings.hpp>
 
-#include <fmt/format.h>
-
 namespace dem::rig::direct_shear {
 
 /// The kinds of grain that --shape names. Throws Error for another name.
@@ -33,7 +31,7 @@ inline double contact_scale(const Settings& s) { return s.scale_contacts ? s.hal
 
 /// What the files of a load (kg) are called, by its normal stress.
 inline std::string load_name(const Settings& s, double load) {
-  return fmt::format("load_{:.1f}kPa", 1e-3 * s.normal_stress(load));
+  return text("load_{:.1f}kPa", 1e-3 * s.normal_stress(load));
 }
 
 }  // namespace dem::rig::direct_shear

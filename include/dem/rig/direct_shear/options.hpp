@@ -127,7 +127,7 @@ inline void find_idle(IdleOptions& idle, const Settings& s) {
 }
 
 /// What the library calls otherwise than these options.
-inline constexpr OwnWord words[] = {
+inline constexpr OwnWord own_words[] = {
     {"allow_unstable_time_step", "--allow-unstable-time-step"},
     {"time_step_safety", "--stable-share"},
     {"time_step", "--time-step"},

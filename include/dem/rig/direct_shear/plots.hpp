@@ -17,7 +17,7 @@ inline io::Plot curves(const Settings& s, const Campaign& c, double Sample::*val
                 .x_range = {.min = 0.0, .max = 1e3 * s.travel}};
   int color = 0;
   for (const LoadResult& r : c.loads) {
-    io::Series line{.name = fmt::format("{:.1f} kPa", 1e-3 * r.normal_stress), .color = color};
+    io::Series line{.name = text("{:.1f} kPa", 1e-3 * r.normal_stress), .color = color};
     const auto y = smoothed(r.samples, values, s.smoothing);
     for (std::size_t i = 0; i < y.size(); ++i) {
       line.x.push_back(1e3 * r.samples[i].displacement);
@@ -70,7 +70,7 @@ inline io::Plot mohr_coulomb_plot(const Campaign& c, const Fits& f) {
   };
   const auto& best = f.free ? f.free : f.origin;
   if (best) {
-    line(fmt::format("fit: {:.1f}°, c = {:.2f} kPa", degrees * best->friction_angle, 1e-3 * best->cohesion),
+    line(text("fit: {:.1f}°, c = {:.2f} kPa", degrees * best->friction_angle, 1e-3 * best->cohesion),
          degrees * best->friction_angle, 1e-3 * best->cohesion, io::SeriesStyle::Line, 0);
   }
   plot.series.push_back(std::move(points));

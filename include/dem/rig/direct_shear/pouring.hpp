@@ -5,8 +5,6 @@
 #include <dem/soil/coordination.hpp>
 #include <dem/soil/rest.hpp>
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -25,13 +23,13 @@ void settle(Apparatus<Model>& rig, const Settings& s, Stages& stages, Done&& don
   for (double speed = 1e300; !at_rest(rig.world.time(), speed);) {
     if (rig.world.time() - start > s.settle_limit) {
       throw Stopped(
-          fmt::format("the grains are not at rest after {:g} s: their r.m.s. speed is {:.3g} mm/s, rest is below "
-                      "{:.3g}; raise --settle-limit or --damping",
-                      s.settle_limit, 1e3 * speed, 1e3 * limit));
+          text("the grains are not at rest after {:g} s: their r.m.s. speed is {:.3g} mm/s, rest is below "
+               "{:.3g}; raise --settle-limit or --damping",
+               s.settle_limit, 1e3 * speed, 1e3 * limit));
     }
     run(rig.world, 2e-3);
     speed = soil::rms_speed(rig.world);
-    stages.update(done(), fmt::format("{:.2f} s, grains at {:.2g} mm/s", rig.world.time(), 1e3 * speed));
+    stages.update(done(), text("{:.2f} s, grains at {:.2g} mm/s", rig.world.time(), 1e3 * speed));
   }
 }
 
@@ -79,9 +77,9 @@ void densify(Apparatus<Model>& rig, const Settings& s, Stages& stages) {
     const double fraction = inner_fraction(rig, s);
     if (std::isfinite(fraction)) return fraction;
     throw Stopped(
-        fmt::format("the grains lie too flat to measure their density {:g} mm away from floor and top; take more "
-                    "--grains or a smaller --half-edge, or let them be as they settle (--relative-density 0)",
-                    1e3 * measuring_margin(s)));
+        text("the grains lie too flat to measure their density {:g} mm away from floor and top; take more "
+             "--grains or a smaller --half-edge, or let them be as they settle (--relative-density 0)",
+             1e3 * measuring_margin(s)));
   };
   shake(rig, shaking(s, start));
   const double first = measure();
@@ -100,7 +98,7 @@ void densify(Apparatus<Model>& rig, const Settings& s, Stages& stages) {
     }
     // Of the two ways for it to end, the one that is nearer.
     stages.update(std::clamp(std::max(1.0 - share, (fraction - first) / (wanted - first)), 0.0, 1.0),
-                  fmt::format("solid {:.3f} of {:.3f}, mu {:.2f}", fraction, wanted, rig.friction()));
+                  text("solid {:.3f} of {:.3f}, mu {:.2f}", fraction, wanted, rig.friction()));
   }
   rig.set_friction(1.0);
   end_shaking(rig, s, start);
@@ -145,13 +143,12 @@ PackingResult make_packing(const Settings& s, const Grains<Model>& kind, std::sp
 
   PackingResult result;
   if (!poured && s.relative_density > 0.0) result.asked_density = s.relative_density;
-  result.packing = {
-      s.half_edge,
-      s.box_length,
-      s.box_width,
-      fmt::format("{}, friction {:g}{}", s.packing, rig.friction(), poured ? "" : fmt::format(", seed {}", s.seed)),
-      soil::placements(rig.world),
-      kind_of(s).name};
+  result.packing = {s.half_edge,
+                    s.box_length,
+                    s.box_width,
+                    text("{}, friction {:g}{}", s.packing, rig.friction(), poured ? "" : text(", seed {}", s.seed)),
+                    soil::placements(rig.world),
+                    kind_of(s).name};
   result.coordination = soil::coordination(rig.world).mean();
   return result;
 }

@@ -28,7 +28,7 @@ class ShearRig : public Rig {
   std::string output() const override { return settings.output; }
   ResultNames results() const override { return result_names(); }
   std::vector<OwnWord> words() const override {
-    return {std::begin(direct_shear::words), std::end(direct_shear::words)};
+    return {std::begin(direct_shear::own_words), std::end(direct_shear::own_words)};
   }
 
   void run(Session& session) override {
@@ -37,8 +37,8 @@ class ShearRig : public Rig {
         return world.run(settings, campaign, session);
       }
     }
-    throw InAnotherProgram(fmt::format("this program has no grains of --shape {} with --integrator {}; {}",
-                                       settings.shape, settings.integrator, elsewhere_));
+    throw InAnotherProgram(text("this program has no grains of --shape {} with --integrator {}; {}", settings.shape,
+                                settings.integrator, elsewhere_));
   }
 
   bool report(Report& report) const override { return direct_shear::report(report, settings, campaign); }

@@ -5,8 +5,6 @@
 #include <dem/rig/stages.hpp>
 #include <dem/soil/rest.hpp>
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 
@@ -27,12 +25,12 @@ void consolidate(Apparatus<Model>& rig, const Settings& s, Stages& stages) {
     const bool is_loaded = loaded(now, std::abs(force / weight - 1.0));
     done = is_slow && is_loaded;
     stages.update(std::clamp(force / weight, 0.0, 1.0),
-                  fmt::format("{:.1f} kPa, lid {:.3g} mm/s", 1e-3 * force / s.area(), 1e3 * rig.lid_speed()));
+                  text("{:.1f} kPa, lid {:.3g} mm/s", 1e-3 * force / s.area(), 1e3 * rig.lid_speed()));
     if (!done && now - start > s.consolidation_limit) {
       throw Stopped(
-          fmt::format("the lid is not at rest after {:g} s: it carries {:.4g} N of {:.4g} N and moves at {:.3g} "
-                      "mm/s; raise --consolidation-limit, --rest-speed or --damping",
-                      s.consolidation_limit, force, weight, 1e3 * rig.lid_speed()));
+          text("the lid is not at rest after {:g} s: it carries {:.4g} N of {:.4g} N and moves at {:.3g} "
+               "mm/s; raise --consolidation-limit, --rest-speed or --damping",
+               s.consolidation_limit, force, weight, 1e3 * rig.lid_speed()));
     }
   }
   rig.world.machine().switch_on(rig.lid_drive, false);
@@ -73,7 +71,7 @@ void shear(Apparatus<Model>& rig, const Settings& s, LoadResult& result, Stages&
     result.samples.push_back({rig.world.time(), u, on_bottom.x / area, drive / area, rig.lid_low() - lid_at_start,
                               rig.lid_force() / area, (-on_bottom.z - below) / area});
     look();
-    stages.update(u, fmt::format("{:.1f} kPa", 1e-3 * on_bottom.x / area));
+    stages.update(u, text("{:.1f} kPa", 1e-3 * on_bottom.x / area));
   }
   result.finished = true;
 }

@@ -47,7 +47,7 @@ inline void check_amount(const Settings& s, double volume) {
   }
   // A place, the state of a grain, and the contacts of a bed: what spheres take at the least.
   constexpr double bytes = 1000.0;
-  require_memory(bytes * static_cast<double>(s.grains), fmt::format("{} grains", s.grains).c_str(),
+  require_memory(bytes * static_cast<double>(s.grains), text("{} grains", s.grains).c_str(),
                  "take fewer --grains, or larger ones (--half-edge)");
   if (s.packing != "random" || s.relative_density == 0.0) return;
   // Nine tenths of the centres lie below the top of the region. Densifying starts from the loosest.

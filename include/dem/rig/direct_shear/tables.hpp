@@ -4,8 +4,6 @@
 #include <dem/report/table.hpp>
 #include <dem/rig/direct_shear/evaluate.hpp>
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -19,7 +17,7 @@ namespace dem::rig::direct_shear {
 inline constexpr double degrees = 180.0 / std::numbers::pi;
 
 inline std::string number(double value, const char* format = "{:.2f}") {
-  return std::isfinite(value) ? fmt::format(fmt::runtime(format), value) : "-";
+  return std::isfinite(value) ? text(format, value) : "-";
 }
 
 /// Pa, the normal stress that belongs to the maximum; before there is one, the nominal stress.
@@ -46,7 +44,7 @@ inline std::string coarseness_text(const Settings& s, const Campaign& c) {
   constexpr double of_thesis = 0.9e-3;
   const bool any = std::any_of(c.loads.begin(), c.loads.end(), [](const LoadResult& r) { return r.finished; });
   if (!any || kind_of(s).name != "cube8" || s.half_edge <= 1.01 * of_thesis) return {};
-  return fmt::format(
+  return text(
       "The grains are of half-edge {:g} mm. Those of table 3.3, of {:g} mm (--size full), are weaker in the same box, "
       "most of all at light loads.",
       1e3 * s.half_edge, 1e3 * of_thesis);
@@ -76,8 +74,8 @@ inline io::Table angle_table(const Fits& f) {
   add("maximum shear, through the origin", f.origin);
   add("residual shear, through the origin", f.residual);
   t.row("thesis, simulated", number(thesis_angle_deg), "-", "0", "-", "-");
-  t.row("experiment, low to high density", fmt::format("{:.1f} to {:.1f}", experiment_low_deg, experiment_high_deg),
-        "-", "-", "-", "-");
+  t.row("experiment, low to high density", text("{:.1f} to {:.1f}", experiment_low_deg, experiment_high_deg), "-", "-",
+        "-", "-");
   t.align.assign(t.header.size(), io::Align::Right);
   t.align.front() = io::Align::Left;
   return t;
@@ -87,15 +85,15 @@ inline std::string packing_text(const Settings& s, const Campaign& c) {
   const PackingResult& p = c.packing;
   if (!std::isfinite(p.height)) return "The packing was not finished.";
   const auto& limits = density_limits(s);
-  std::string text = fmt::format(
+  std::string words = text(
       "Packing before loading: {} grains, bulk density {} kg/m³ (solid fraction {}), relative density {}{}, "
       "height {:.1f} mm",
       p.packing.grains.size(), number(s.density * p.solid_fraction, "{:.0f}"), number(p.solid_fraction, "{:.3f}"),
       number(relative_density(s, p.solid_fraction)),
-      std::isfinite(p.asked_density) ? fmt::format(" ({:g} asked for)", p.asked_density) : "", 1e3 * p.height);
-  if (std::isfinite(p.coordination)) text += fmt::format(", {:.2f} neighbours a grain", p.coordination);
-  return text +
-         fmt::format(
+      std::isfinite(p.asked_density) ? text(" ({:g} asked for)", p.asked_density) : "", 1e3 * p.height);
+  if (std::isfinite(p.coordination)) words += text(", {:.2f} neighbours a grain", p.coordination);
+  return words +
+         text(
              ". Relative density counts from solid fraction {:.3f}, the loosest of this shape, to {:.3f}, the densest.",
              limits.loosest, limits.densest);
 }
@@ -105,9 +103,8 @@ inline std::string speed_text(const Campaign& c, double wall_time) {
   const std::string wall = io::format_duration(wall_time) + " of wall time.";
   if (c.loads.empty() || !(c.loads.back().time_step > 0.0)) return wall;
   const LoadResult& last = c.loads.back();
-  return fmt::format("Time step {:.3g} s{}. {}", last.time_step,
-                     last.time_step_limit.empty() ? "" : " (the stable one is limited by " + last.time_step_limit + ")",
-                     wall);
+  return text("Time step {:.3g} s{}. {}", last.time_step,
+              last.time_step_limit.empty() ? "" : " (the stable one is limited by " + last.time_step_limit + ")", wall);
 }
 
 /// Whether there is anything to draw.
