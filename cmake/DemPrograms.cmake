@@ -21,15 +21,22 @@ function(dem_subfolders out pattern)
   set(${out} ${files} PARENT_SCOPE)
 endfunction()
 
-# dem_includes(<out> <header> <source>...): whether one of the sources includes the header, as in `#include <header>`.
-function(dem_includes out header)
+# dem_includes(<out> <regex> <source>...): whether one of the sources includes a header that matches, as in
+# `#include <header>`.
+function(dem_includes out regex)
   set(${out} FALSE PARENT_SCOPE)
   foreach(source IN LISTS ARGN)
-    file(STRINGS "${source}" lines REGEX "^#include <${header}>")
+    file(STRINGS "${source}" lines REGEX "^#include <(${regex})>")
     if(lines)
       set(${out} TRUE PARENT_SCOPE)
     endif()
   endforeach()
+endfunction()
+
+# dem_needs_cli11(<out> <source>...): whether one of the sources includes a header that needs CLI11.
+function(dem_needs_cli11 out)
+  dem_includes(needs "CLI/CLI\\.hpp|dem/rig/(command_line|program)\\.hpp" ${ARGN})
+  set(${out} ${needs} PARENT_SCOPE)
 endfunction()
 
 # dem_with(<package> <purpose>): an optional package. Afterwards DEM_WITH_<PACKAGE> says whether it is used: the

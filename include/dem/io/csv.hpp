@@ -6,7 +6,6 @@
 #include <dem/io/file.hpp>
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <concepts>
@@ -104,8 +103,10 @@ class CsvWriter {
   void begin_row(std::size_t cells) {
     line_.clear();
     if (cells != columns_.size()) {
+      std::string names;
+      for (const auto& name : columns_) names += (names.empty() ? "" : ", ") + name;
       fail("csv file '{}': a row has {} cells, but there are {} columns ({}); give one cell a column", path().string(),
-           cells, columns_.size(), fmt::join(columns_, ", "));
+           cells, columns_.size(), names);
     }
   }
 

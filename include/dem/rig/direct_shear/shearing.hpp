@@ -1,0 +1,79 @@
+#pragma once
+
+#include <dem/rig/direct_shear/apparatus.hpp>
+#include <dem/rig/direct_shear/results.hpp>
+#include <dem/rig/stages.hpp>
+#include <dem/soil/rest.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+// The stages of the test: the lid is lowered until the grains carry it, and the top box is moved.
+
+namespace dem::rig::direct_shear {
+
+/// Lowers the lid, by its actuator, until it is at rest and the grains carry the load within 1 % (both for 20 ms); then
+/// switches the actuator off. From there on the lid is a dead load.
+template <class Model>
+void consolidate(Apparatus<Model>& rig, const Settings& s, Stages& stages) {
+  const double start = rig.world.time(), weight = rig.lid_weight();
+  soil::StaysBelow slow(s.rest_speed, 0.02), loaded(0.01, 0.02);
+  for (bool done = false; !done;) {
+    run(rig.world, 1e-3);
+    const double now = rig.world.time(), force = rig.lid_force();
+    const bool is_slow = slow(now, std::abs(rig.lid_speed()));
+    const bool is_loaded = loaded(now, std::abs(force / weight - 1.0));
+    done = is_slow && is_loaded;
+    stages.update(std::clamp(force / weight, 0.0, 1.0),
+                  text("{:.1f} kPa, lid {:.3g} mm/s", 1e-3 * force / s.area(), 1e3 * rig.lid_speed()));
+    if (!done && now - start > s.consolidation_limit) {
+      throw Stopped(
+          text("the lid is not at rest after {:g} s: it carries {:.4g} N of {:.4g} N and moves at {:.3g} "
+               "mm/s; raise --consolidation-limit, --rest-speed or --damping",
+               s.consolidation_limit, force, weight, 1e3 * rig.lid_speed()));
+    }
+  }
+  rig.world.machine().switch_on(rig.lid_drive, false);
+}
+
+/// The way of the top box: smoothly to full speed within the ramp time, then on.
+inline mbd::Signal shearing_motion(const Settings& s, double t0) {
+  const double v = s.shear_speed, ramp = std::max(s.ramp_time, 1e-9);
+  return mbd::Signal::function(
+      [=](double t) {
+        const double x = std::clamp((t - t0) / ramp, 0.0, 1.0);
+        return v * ramp * x * x * x * (1.0 - 0.5 * x) + v * std::max(0.0, t - t0 - ramp);
+      },
+      [=](double t) {
+        const double x = std::clamp((t - t0) / ramp, 0.0, 1.0);
+        return v * x * x * (3.0 - 2.0 * x);
+      });
+}
+
+/// Moves the top box with the lid over the bottom box, and samples. Calls `look()` after each sample.
+template <class Model, class Look>
+void shear(Apparatus<Model>& rig, const Settings& s, LoadResult& result, Stages& stages, Look&& look) {
+  auto& machine = rig.world.machine();
+  const double start = rig.world.time(), lid_at_start = rig.lid_low(), interval = 1e-5 / s.shear_speed;
+  // Weight of the grains in the bottom box: they hang on it, but not on the plane of shear.
+  double below = 0.0;
+  for (const ParticleId p : rig.world.particles()) {
+    below += rig.world.position(p).z() < rig.height().seam ? 1.0 : 0.0;
+  }
+  below *= 9.81 * s.density * rig.grain_volume();
+  machine.set_target(rig.shearing, shearing_motion(s, start));
+  while (rig.top_displacement() < s.travel) {
+    run(rig.world, interval);
+    const double u = rig.top_displacement();
+    const double area = s.area(u);
+    const auto& on_bottom = machine.sensor(rig.bottom_sensor).mean().force;
+    const double drive = machine.sensor(rig.shearing_sensor).mean().force.x;
+    result.samples.push_back({rig.world.time(), u, on_bottom.x / area, drive / area, rig.lid_low() - lid_at_start,
+                              rig.lid_force() / area, (-on_bottom.z - below) / area});
+    look();
+    stages.update(u, text("{:.1f} kPa", 1e-3 * on_bottom.x / area));
+  }
+  result.finished = true;
+}
+
+}  // namespace dem::rig::direct_shear

@@ -1,0 +1,81 @@
+#pragma once
+// The program of a rig. Needs CLI11.
+
+#include <dem/rig/command_line.hpp>
+#include <dem/rig/rig.hpp>
+
+#include <csignal>
+#include <exception>
+#include <new>
+
+namespace dem::rig {
+
+/// What run_program() returns, for --help.
+inline constexpr const char* exit_codes =
+    "Ends with 0 when all was done, 1 when the run ended early or a part of the report could not be made, 2 when the "
+    "settings make no sense (results of an earlier run are then still there), 130 after Ctrl-C. What was found by then "
+    "is saved and reported.";
+
+namespace detail {
+
+inline const char* const no_memory = "there is not enough memory for so many grains; take fewer";
+
+/// Runs the rig until its end or to where it is stopped. Throws what it throws before the run has begun.
+inline void run_to_end(Rig& rig, Session& session) {
+  std::string problem;
+  try {
+    rig.run(session);
+    if (!session.has_begun()) fail("the rig has run no stage: run() did not call begin_run()");
+    session.finish();
+  } catch (const Interrupted&) {
+    session.outcome.interrupted = true;
+  } catch (const InAnotherProgram&) {
+    throw;
+  } catch (const std::bad_alloc&) {
+    problem = no_memory;
+  } catch (const std::exception& error) {
+    problem = error.what();
+  }
+  if (!session.has_begun()) throw Error(session.in_own_words(problem));
+  session.end(problem);
+}
+
+}  // namespace detail
+
+/// Reads the settings of a rig, checks them, runs it and makes its report. Returns what main() returns: see
+/// exit_codes; 3 when the settings ask for what another program has (InAnotherProgram).
+inline int run_program(const ProgramText& program, Rig& rig, int argc, const char* const* argv) {
+  std::signal(SIGPIPE, SIG_IGN);  // whoever read the messages is gone: no reason to lose the results
+  try {
+    Options options;
+    rig.declare(options);
+    if (!read_command_line(program, argc, argv, options)) return 0;
+    IdleOptions idle;
+    rig.find_idle(idle);
+    refuse_idle(options, idle);
+    const std::string config = settings_text(options, idle);
+    rig.resolve();
+    Session session({program.name, rig.output(), config, rig.results(), rig.words()});
+    detail::run_to_end(rig, session);
+
+    Report report(session, program.title);
+    bool has_frames = false;
+    report.part("the report", [&] { has_frames = rig.report(report); });
+    const bool is_complete = report.finish(has_frames);
+    const Outcome& outcome = session.outcome;
+    if (!outcome.problem.empty()) tell(stderr, "{}: {}\n", program.name, outcome.problem);
+    if (outcome.interrupted) return 130;
+    return is_complete && outcome.problem.empty() ? 0 : 1;
+  } catch (const InAnotherProgram& error) {
+    tell(stderr, "{}: {}\n", program.name, error.what());
+    return 3;
+  } catch (const std::bad_alloc&) {
+    tell(stderr, "{}: {}\n", program.name, detail::no_memory);
+    return 2;
+  } catch (const std::exception& error) {
+    tell(stderr, "{}: {}\n", program.name, error.what());
+    return 2;
+  }
+}
+
+}  // namespace dem::rig

@@ -1,0 +1,103 @@
+#pragma once
+// What a rig's program shows at its end: tables, files, plots and one page.
+
+#include <dem/report/ascii_table.hpp>
+#include <dem/report/html_report.hpp>
+#include <dem/report/plot.hpp>
+#include <dem/rig/session.hpp>
+#include <dem/rig/tell.hpp>
+
+#include <exception>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace dem::rig {
+
+/// The report of a run, also of one that ended early. What was computed for hours is worth saving in whatever ways
+/// still work: a part that fails is named on stderr and keeps no other from being made.
+class Report {
+ public:
+  Report(const Session& session, std::string title) : session_(session), title_(std::move(title)) {}
+
+  [[nodiscard]] std::filesystem::path folder() const { return session_.folder(); }
+  [[nodiscard]] const Outcome& outcome() const { return session_.outcome; }
+
+  /// Makes a part: calls make(), which may throw.
+  template <class Make>
+  void part(const char* name, Make&& make) {
+    try {
+      make();
+    } catch (const std::exception& error) {
+      tell(stderr, "{}: {} could not be made: {}\n", session_.program(), name, error.what());
+      is_complete_ = false;
+    }
+  }
+
+  /// Makes report.html: the status of the run if it did not end well, what write(page) adds, the settings by name and
+  /// value, and the settings file.
+  template <class Write>
+  void page(const std::vector<std::pair<std::string, std::string>>& settings, Write&& write) {
+    part("report.html", [&] {
+      io::HtmlReport html(title_);
+      if (const auto status = status_text(); !status.empty()) html.paragraph(status);
+      write(html);
+      // The interactive replay of the frames stands here: html.replay(...).
+      html.heading("Settings").settings(settings);
+      html.heading("settings.toml", 3)
+          .paragraph("What repeats the run: " + session_.program() + " --config settings.toml");
+      html.preformatted(session_.config());
+      html.save(folder() / "report.html");
+    });
+  }
+
+  /// Draws a plot into the folder, as <name>.svg and <name>.png beside the script <name>.gp, and into the page.
+  void plot(io::HtmlReport& html, const io::Plot& plot, const char* name, const char* caption) {
+    has_plots_ = true;
+    const auto drawn = io::render_plot(plot, folder() / name);
+    if (drawn) {
+      html.picture(drawn.svg, caption);
+    } else {
+      not_drawn_ = drawn.reason;
+      html.paragraph(text("{}: not drawn ({})", caption, drawn.reason));
+    }
+  }
+
+  /// Says what there is and what is missing. `has_frames`: there are files for ParaView. Returns whether all parts were
+  /// made; that gnuplot is not there is no failure.
+  bool finish(bool has_frames) {
+    if (!not_drawn_.empty()) {
+      tell(stderr, "{}: the plots were not drawn ({}); their data and gnuplot scripts are there\n", session_.program(),
+           not_drawn_);
+    }
+    if (!outcome().frames_problem.empty()) {
+      tell(stderr, "{}: {}\n", session_.program(), frames_text());
+      is_complete_ = false;
+    }
+    if (is_complete_) {
+      tell(stdout, "Report, {}tables{}: {}\n", has_plots_ && not_drawn_.empty() ? "plots, " : "",
+           has_frames ? " and ParaView files" : "", folder().string());
+    }
+    return is_complete_;
+  }
+
+ private:
+  [[nodiscard]] std::string frames_text() const {
+    return "Files for ParaView are missing: " + outcome().frames_problem;
+  }
+
+  [[nodiscard]] std::string status_text() const {
+    const Outcome& o = outcome();
+    if (!o.problem.empty()) return "The run ended early: " + o.problem;
+    if (o.interrupted) return "The run was interrupted; this is what was there by then.";
+    if (!o.frames_problem.empty()) return frames_text();
+    return {};
+  }
+
+  const Session& session_;
+  std::string title_;
+  std::string not_drawn_;  // why; empty if all plots were
+  bool has_plots_ = false, is_complete_ = true;
+};
+
+}  // namespace dem::rig

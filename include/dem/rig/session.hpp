@@ -1,0 +1,124 @@
+#pragma once
+// One run of a rig's program, from its checked start to what is known at its end.
+
+#include <dem/io/duration.hpp>
+#include <dem/io/file.hpp>
+#include <dem/report/interrupt.hpp>
+#include <dem/report/progress.hpp>
+#include <dem/rig/folder_lock.hpp>
+#include <dem/rig/old_results.hpp>
+#include <dem/rig/own_words.hpp>
+#include <dem/rig/stages.hpp>
+#include <dem/rig/tell.hpp>
+
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace dem::rig {
+
+/// How a run ended.
+struct Outcome {
+  bool interrupted = false;
+  std::string problem = {};         ///< why it ended early; empty if it did not
+  std::string frames_problem = {};  ///< why files for ParaView are missing; empty if none are
+  double wall_time = 0.0;           ///< s
+};
+
+/// A run with its output folder. What it starts from is checked first; then begin() makes the folder the run's own and
+/// shows the progress of the stages.
+class Session final : public Stages {
+ public:
+  /// What stays the same from the start to the end of a run.
+  struct Set {
+    std::string program = {};         ///< its name, which messages begin with
+    std::string output = {};          ///< folder
+    std::string config = {};          ///< text of settings.toml
+    ResultNames results = {};         ///< of this rig
+    std::vector<OwnWord> words = {};  ///< for what the library calls otherwise than the program
+  };
+
+  explicit Session(Set set) : set_(std::move(set)) {}
+
+  [[nodiscard]] std::filesystem::path folder() const { return set_.output; }
+  [[nodiscard]] const std::string& program() const { return set_.program; }
+  [[nodiscard]] const std::string& config() const { return set_.config; }
+  [[nodiscard]] std::string in_own_words(std::string_view text) const { return rig::in_own_words(text, set_.words); }
+
+  /// Throws Error unless a file can be written there, and is none of the run's own; an older one stays as it is.
+  /// `option` is what sets the path.
+  void require_writable(const std::filesystem::path& file, const char* option) {
+    lock();
+    if (std::filesystem::is_directory(file)) {
+      fail("'{}' is a folder, but a file is to be written there; give another path", file.string());
+    }
+    if (is_own_file(file, folder(), set_.results)) {
+      fail("{} is '{}', but the run writes a result of its own there; give another path", option, file.string());
+    }
+    io::AtomicFile{file};  // is gone again, for it is not committed
+  }
+
+  /// The check of the start is over: `stages` will follow. Results of an earlier run in the folder go, and it is said
+  /// which; `also` is what else will be replaced later. The settings file is written. From here on Ctrl-C and SIGTERM
+  /// end the run after the present step. Throws Error, and leaves earlier results as they are, if the folder cannot be
+  /// written to or another process runs in it.
+  void begin_run(int stages, const std::string& also = {}) {
+    lock();
+    const auto settings = folder() / "settings.toml";
+    io::AtomicFile{settings};
+    if (const auto old = find_old_results(folder(), set_.results); !old.empty()) {
+      const bool same = std::filesystem::exists(settings) && io::read_file(settings) == set_.config;
+      std::string names;
+      for (const auto& path : old) names += (names.empty() ? "" : ", ") + path.filename().string();
+      tell(stderr, "Replacing what an earlier run with {} settings left in '{}': {}{}. Another --output keeps it.\n",
+           same ? "the same" : "other", set_.output, names, also);
+    }
+    io::write_file(settings, set_.config);
+    remove_old_results(folder(), set_.results);
+    guard_ = std::make_unique<io::InterruptGuard>();
+    start_ = io::steady_seconds();
+    io::ProgressOptions options;
+    options.stages = stages;
+    progress_.emplace(options);
+  }
+  [[nodiscard]] bool has_begun() const { return progress_.has_value(); }
+
+  void begin(std::string_view name, double total = unknown) override { progress_->begin(name, total); }
+  void update(double done, std::string_view status = {}) override { progress_->update(done, status); }
+  void finish(std::string_view result = {}) override { progress_->finish(result); }
+  void message(std::string_view text) override { progress_->message(text); }
+
+  /// Files for ParaView of `what` cannot be written: it is said, and noted for the report.
+  void give_up_frames(const std::string& why, const char* what) {
+    outcome.frames_problem = why;
+    message(text("warning: no more files for ParaView of {}: {}", what, why));
+  }
+
+  /// Notes the end of a run that has begun; `problem` is empty if there is none.
+  void end(const std::string& problem = {}) {
+    outcome.problem = in_own_words(problem);
+    progress_->stop(outcome.problem);
+    outcome.wall_time = io::steady_seconds() - start_;
+    guard_.reset();
+  }
+
+  Outcome outcome;
+
+ private:
+  void lock() {
+    if (lock_) return;
+    io::make_folder_of(folder() / "settings.toml");
+    lock_.emplace(set_.output, set_.program);
+  }
+
+  Set set_;
+  std::optional<FolderLock> lock_;
+  std::unique_ptr<io::InterruptGuard> guard_;
+  std::optional<io::Progress> progress_;
+  double start_ = 0.0;
+};
+
+}  // namespace dem::rig
