@@ -35,8 +35,8 @@
 #define DEM_FLATTEN
 #endif
 
-/// DEM_LAZY makes a function that is no template one, without a choice: only programs that call it compile what stands in
-/// it. For long work at set-up that few programs need, such as the repair of meshes.
+/// DEM_LAZY makes a function that is no template one, without a choice: only programs that call it compile what stands
+/// in it. For long work at set-up that few programs need, such as the repair of meshes.
 #define DEM_LAZY template <class DemLazy = void>
 
 /// DEM_COLD: set-up, which is compiled for size and never inlined into what runs: it costs a compiler half as much.
