@@ -137,7 +137,7 @@ void find_points_deep_enough(WorldState<Model>& w) {
 
 /// Surfaces go where their bodies are.
 template <class Model>
-void follow_bodies(WorldState<Model>& w) {
+void place_surfaces(WorldState<Model>& w) {
   for (auto& s : w.surfaces) s.follow(w.machine.bodies()[s.body.index()]);
 }
 
