@@ -13,9 +13,11 @@ function(dem_program target)
   target_link_libraries(${target} PRIVATE dem::dem dem_warnings $<$<BOOL:${DEM_NATIVE}>:dem::native>)
 endfunction()
 
-# dem_subfolders(<out> <pattern>): the names of the folders here that hold a file that matches, in order.
+# dem_subfolders(<out> <pattern> [<folder>]): the names of the folders here, or in that folder, that hold a file that
+# matches, in order.
 function(dem_subfolders out pattern)
-  file(GLOB files CONFIGURE_DEPENDS RELATIVE "${CMAKE_CURRENT_SOURCE_DIR}" "*/${pattern}")
+  cmake_path(ABSOLUTE_PATH ARGV2 OUTPUT_VARIABLE base)
+  file(GLOB files CONFIGURE_DEPENDS RELATIVE "${base}" "${base}/*/${pattern}")
   list(TRANSFORM files REPLACE "/.*" "")
   list(REMOVE_DUPLICATES files)
   set(${out} ${files} PARENT_SCOPE)

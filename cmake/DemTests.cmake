@@ -18,15 +18,24 @@ file(CONFIGURE OUTPUT "${CMAKE_CURRENT_BINARY_DIR}/precompiled.cpp" CONTENT "// 
 add_library(test_headers OBJECT "${CMAKE_CURRENT_BINARY_DIR}/precompiled.cpp")
 dem_program(test_headers)
 target_link_libraries(test_headers PRIVATE test_main)
-target_precompile_headers(test_headers PRIVATE "${CMAKE_CURRENT_SOURCE_DIR}/catch.hpp" <dem/world/world.hpp>)
+target_precompile_headers(test_headers PRIVATE "${CMAKE_CURRENT_SOURCE_DIR}/catch.hpp"
+                                               "${CMAKE_CURRENT_SOURCE_DIR}/worlds.hpp")
+
+# The worlds that tests share. A program links those that it names.
+file(GLOB sources CONFIGURE_DEPENDS worlds/*.cpp)
+add_library(test_worlds STATIC ${sources})
+target_include_directories(test_worlds PRIVATE "${CMAKE_CURRENT_SOURCE_DIR}")
+dem_program(test_worlds)
+target_link_libraries(test_worlds PRIVATE test_main)
+target_precompile_headers(test_worlds REUSE_FROM test_headers)
 
 # dem_add_catch_tests(<name> <label> <source>...): the program test_<name>, and a test per TEST_CASE in it. Sources are
-# compiled a few at a time, as most of the work is the worlds that they share.
+# compiled a few at a time, as most of the work is what they share.
 function(dem_add_catch_tests name label)
   add_executable(test_${name} ${ARGN})
-  target_include_directories(test_${name} PRIVATE "${CMAKE_CURRENT_SOURCE_DIR}")
+  target_include_directories(test_${name} PRIVATE "${CMAKE_CURRENT_SOURCE_DIR}" "${CMAKE_CURRENT_SOURCE_DIR}/unit")
   dem_program(test_${name})
-  target_link_libraries(test_${name} PRIVATE test_main)
+  target_link_libraries(test_${name} PRIVATE test_worlds test_main)
   set_target_properties(test_${name} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 4)
   target_precompile_headers(test_${name} REUSE_FROM test_headers)
   catch_discover_tests(test_${name} TEST_PREFIX "${name}." PROPERTIES LABELS ${label})
@@ -42,6 +51,17 @@ function(dem_drop_cli11 list)
     endif()
   endforeach()
   set(${list} ${${list}} PARENT_SCOPE)
+endfunction()
+
+# dem_add_state_hash_test(<name> <option>...): the program test_<name> runs equivalence/state_hash_test.cpp, compiled with
+# these options. It shares nothing with other tests: whether products and sums are fused is left to no compiler here.
+function(dem_add_state_hash_test name)
+  add_executable(test_${name} equivalence/state_hash_test.cpp)
+  target_include_directories(test_${name} PRIVATE "${CMAKE_CURRENT_SOURCE_DIR}")
+  dem_program(test_${name})
+  target_link_libraries(test_${name} PRIVATE test_main)
+  target_compile_options(test_${name} PRIVATE -ffp-contract=off ${ARGN})
+  catch_discover_tests(test_${name} TEST_PREFIX "${name}." PROPERTIES LABELS equivalence)
 endfunction()
 
 # dem_add_header_checks(<include dir>): every header compiles when it is the first and only one, and is guarded. A header

@@ -1,0 +1,130 @@
+#include "catch.hpp"
+#include "core/error_of.hpp"
+#include "files.hpp"
+#include "worlds.hpp"
+
+#include <dem/io/vtk_machine.hpp>
+#include <dem/mbd/machine.hpp>
+#include <dem/report/columns.hpp>
+#include <dem/world/world.hpp>
+
+#include <cstring>
+#include <fstream>
+#include <sstream>
+
+using Catch::Approx;
+using Catch::Matchers::Contains;
+using dem::BodyId;
+using dem::Vec3;
+
+namespace {
+
+std::string text_of(const std::filesystem::path& path) {
+  std::ostringstream text;
+  text << std::ifstream(path, std::ios::binary).rdbuf();
+  return text.str();
+}
+
+/// The numbers of an array of a VTK file.
+template <class T>
+std::vector<T> array_of(const std::string& file, const std::string& name) {
+  const std::size_t tag = file.find("Name=\"" + name + "\"");
+  REQUIRE(tag != std::string::npos);
+  const std::string key = "offset=\"";
+  const std::size_t offset = std::stoul(file.substr(file.find(key, tag) + key.size()));
+  const std::string start = "encoding=\"raw\">\n_";
+  const char* data = file.data() + file.find(start) + start.size() + offset;
+  std::uint64_t bytes;
+  std::memcpy(&bytes, data, sizeof bytes);
+  std::vector<T> values(bytes / sizeof(T));
+  std::memcpy(values.data(), data + sizeof bytes, bytes);
+  return values;
+}
+
+}  // namespace
+
+TEST_CASE("bodies of a machine are drawn in their reference frames, with their motion") {
+  // A part whose centre of mass and principal axes are not those of its drawing.
+  const dem::Mat3 askew = Eigen::AngleAxisd(0.7, Vec3(1, 2, 3).normalized()).toRotationMatrix();
+  const dem::Mat3 tensor = askew * Vec3(1.0, 2.0, 2.5).asDiagonal() * askew.transpose();
+  dem::mbd::Machine<dem::integrator::PredictorCorrector> m;
+  m.ground();
+  const BodyId part = m.add_body(
+      dem::mbd::given_body("part", 1.0, tensor, {0.1, 0.2, 0.3}).at({1, 2, 3}, askew).moving({4, 5, 6}, {0, 0, 2}));
+  const dem::io::SurfaceMesh mesh = dem::io::rectangle_mesh(2, 4);
+  const TempFolder folder;
+  dem::io::write_vtk_machine(folder / "part.vtp", m, {{.body = part, .mesh = &mesh, .position = {0, 0, 0.5}}});
+  const std::string file = text_of(folder / "part.vtp");
+  const auto points = array_of<double>(file, "Points");
+  REQUIRE(points.size() == 12);
+  for (std::size_t k = 0; k < 4; ++k) {
+    const Vec3 expected = Vec3(1, 2, 3) + askew * (mesh.vertices[k] + Vec3(0, 0, 0.5));
+    CHECK((Vec3(points[3 * k], points[3 * k + 1], points[3 * k + 2]) - expected).norm() < 1e-14);
+  }
+  CHECK(array_of<std::int32_t>(file, "machine_part") == std::vector<std::int32_t>{1});
+  CHECK(array_of<double>(file, "angular_velocity_rad_s")[2] == Approx(2.0));
+  const Vec3 v = m.body(part).velocity();
+  CHECK(array_of<double>(file, "velocity_m_s") == std::vector<double>{v.x(), v.y(), v.z()});
+  CHECK(array_of<double>(file, "contact_force_N") == std::vector<double>{0, 0, 0});
+  check_refused([&] { dem::io::write_vtk_machine(folder / "no.vtp", m, {{.body = BodyId(7), .mesh = &mesh}}); },
+                "body 7 was asked for");
+  check_refused([&] { dem::io::write_vtk_machine(folder / "no.vtp", m, {{.body = part}}); }, "has no mesh");
+}
+
+TEST_CASE("a frame of a world shows its grains, and its surfaces of every kind with what the grains press") {
+  dem::World<models::CorrectedBalls> world({.gravity = {0, 0, -9.81}});
+  world.set_contact({{2000.0, 0.5, 1.0}, {0.4, 2000.0, 0.015, 0.975}});
+  const auto species = world.add_species(dem::shape::Sphere(1e-3));
+  const auto plane = world.add_surface(world.ground(), dem::surface::Plane{});
+  const BodyId lift = world.machine().add_fixed_body("lift", {0, 0, 0.1});
+  world.machine().add_motion(
+      dem::mbd::prescribed_position("up", lift, Vec3::UnitZ(), dem::mbd::Signal::ramp(0.0, 0.01)));
+  world.add_surface(lift, dem::surface::Box({0.1, 0.1, 0.01}));
+  const auto hidden = world.add_surface(lift, dem::surface::Sphere(0.01));
+  world.set_active(hidden, false);
+  world.add_particle({.species = species, .position = {0, 0, 1e-3}});
+  REQUIRE(world.run_for(0.1));
+
+  const TempFolder folder;
+  dem::io::VtkSeries series(folder / "run.pvd");
+  dem::io::add_vtk_frame(series, world, {.divisions = 2, .plane_size = 0.2});
+  const std::string pvd = text_of(folder / "run.pvd");
+  CHECK_THAT(pvd, Contains("run/grains_000000.vtp") && Contains("run/surfaces_000000.vtp"));
+  dem::io::write_vtk_surfaces(folder / "s.vtp", world, {}, 0.2);
+  const std::string file = text_of(folder / "s.vtp");
+  // The plane's square and the six faces of the box; a surface that touches nothing is not shown.
+  const auto part = array_of<std::int32_t>(file, "machine_part");
+  CHECK(part == std::vector<std::int32_t>{0, 1, 1, 1, 1, 1, 1});
+  const auto points = array_of<double>(file, "Points");
+  CHECK(points.size() == 3 * (4 + 8));
+  CHECK(std::abs(points[0]) == Approx(0.1));
+  const auto force = array_of<double>(file, "force_of_grains_N");
+  CHECK(force[2] == world.surface_force(plane).z());
+  CHECK(force[2] < 0.0);
+  CHECK(array_of<double>(file, "velocity_m_s")[5] == Approx(0.01));
+
+  // A body as a mesh of its own, at the same time of the same series.
+  const dem::io::SurfaceMesh mesh = dem::io::box_mesh({1, 1, 1});
+  dem::io::add_vtk_frame(series, world.time(), world.machine(), {{.body = lift, .mesh = &mesh}}, "lift");
+  const std::string both = text_of(folder / "run.pvd");
+  CHECK_THAT(both, Contains("run/lift_000000.vtp") && Contains("run/grains_000000.vtp"));
+  const auto time_of = [&](const std::string& part) {
+    const std::size_t at = both.rfind("timestep=", both.find(part));
+    return both.substr(at, both.find('"', at + 10) - at);
+  };
+  CHECK(time_of("lift_000000") == time_of("grains_000000"));
+}
+
+TEST_CASE("rows under named columns become curves") {
+  dem::io::Columns rows({"time_s", "angle_rad"});
+  for (int k = 0; k < 3; ++k) rows.row(std::vector<double>{0.1 * k, 2.0 * k});
+  CHECK(rows.rows() == 3);
+  const dem::io::Series s = rows.series("time_s", "angle_rad", {.style = dem::io::SeriesStyle::Points});
+  CHECK(s.name == "angle_rad");
+  CHECK(s.x == std::vector<double>{0.0, 0.1, 0.2});
+  CHECK(s.y == std::vector<double>{0.0, 2.0, 4.0});
+  CHECK(s.style == dem::io::SeriesStyle::Points);
+  CHECK(rows.series("angle_rad", "time_s", {.name = "turned round"}).name == "turned round");
+  check_refused([&] { (void)rows.column("speed"); }, "no column is named 'speed'", "time_s, angle_rad");
+  check_refused([&] { rows.row(std::vector<double>{1.0}); }, "row of 1 numbers", "2 columns");
+}

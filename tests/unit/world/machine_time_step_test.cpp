@@ -1,0 +1,147 @@
+// How a world chooses and checks its time step where it has a machine, and that a refused motion leaves it as it was.
+
+#include "catch.hpp"
+#include "core/error_of.hpp"
+#include "worlds.hpp"
+
+#include <dem/dem.hpp>
+#include <dem/mbd/mbd.hpp>
+
+namespace {
+
+using dem::BodyId;
+using dem::Vec3;
+
+using models::Balls, models::CorrectedBalls, models::VerletBalls;
+
+template <class World>
+void set_sand(World& world, double mu, double stiffness = 2000.0) {
+  world.set_contact(
+      {.normal = {.stiffness = stiffness, .damping = 0.015, .separation_factor = 0.05},
+       .friction = {.coefficient = mu, .stiffness = stiffness, .velocity_stiffness = 0.015, .breaking_factor = 0.975}});
+}
+
+/// A rod of 10 kg that hangs from a hinge at the origin, released horizontal.
+template <class Machine>
+BodyId add_rod(Machine& m) {
+  const BodyId rod = m.add_body(dem::mbd::box_body("rod", {1.0, 0.1, 0.1}, 1000.0).at({0.5, 0.0, 0.0}));
+  m.add_joint(dem::mbd::revolute("hinge", m.ground(), rod, {0, 0, 0}, {0, 1, 0}));
+  return rod;
+}
+
+}  // namespace
+
+TEMPLATE_TEST_CASE("an automatic time step stays, whatever is changed that does not limit it", "", CorrectedBalls,
+                   Balls, VerletBalls) {
+  dem::World<TestType> world;
+  set_sand(world, 0.4);
+  const auto species = world.add_species(dem::shape::Sphere(1e-3));
+  world.add_particle({.species = species, .position = {0, 0, 10}});
+  const BodyId rod = add_rod(world.machine());
+  const BodyId post = world.machine().add_body(dem::mbd::box_body("post", {0.1, 0.1, 0.1}, 1000.0).at({5, 0, 0}));
+  REQUIRE(world.run(3));
+  const double dt = world.time_step();
+  // Of the grains alone: what is derived for the hinge fits whatever step is chosen.
+  dem::World<TestType> grains;
+  set_sand(grains, 0.4);
+  grains.add_species(dem::shape::Sphere(1e-3));
+  CHECK(dt == 0.5 * grains.stable_time_step().dt);
+  set_sand(world, 0.3);
+  REQUIRE(world.run(1));
+  world.add_particle({.species = species, .position = {0, 0, 11}});
+  REQUIRE(world.run(1));
+  for (int k = 0; k < 10; ++k) {
+    world.machine().set_fixed(k % 4 < 2 ? rod : post, k % 2 == 0);
+    REQUIRE(world.run(2));
+    CHECK(world.time_step() == dt);
+  }
+  // Four times as stiff grains halve it, and the hinge is laid out for that.
+  const double k = world.machine().joint(dem::JointId(0)).k;
+  set_sand(world, 0.3, 8000.0);
+  REQUIRE(world.run(1));
+  CHECK(world.time_step() < 0.6 * dt);
+  // k as 1/dt^2; the rod has turned by less than 1e-6 rad meanwhile.
+  CHECK(world.machine().joint(dem::JointId(0)).k ==
+        Catch::Approx(k * std::pow(dt / world.time_step(), 2)).epsilon(1e-6));
+}
+
+TEST_CASE("a given stiffness limits the automatic time step, together with what is derived on the same body") {
+  // A block on a bushing of 1e4 N/m, without any margin: alone the bushing would be stable up to 2/omega, but the joint
+  // that is derived on the same body adds to it.
+  dem::World<Balls> world({.time_step_safety = 1.0});
+  auto& m = world.machine();
+  const BodyId block = m.add_body(dem::mbd::given_body("block", 1.0, Vec3(0.1, 0.1, 0.1)).moving({1e-3, 0, 0}));
+  m.add_joint(dem::mbd::bushing("mount", m.ground(), block, {0, 0, 0}, {0, 0, 1}, {1e4, 0, 0}, {0, 0, 0}, {0, 0, 0},
+                                {0, 0, 0}));
+  m.add_joint(dem::mbd::point_on_plane("slot", m.ground(), block, {0, 0, 0}, {1, 0, 0}));
+  REQUIRE(world.run(2000));
+  CHECK(world.time_step() < 2.0 / 100.0);
+  CHECK(world.time_step() > 0.5 / 100.0);
+  CHECK(world.stable_time_step().dt >= world.time_step());
+  CHECK(std::abs(m.body(block).velocity().x()) <= 1e-3);  // the kick has not grown in 2000 steps
+}
+
+TEST_CASE("a world judges its machine with what is derived for the step, as a machine alone does") {
+  // One direction of a body is held by a given bushing at omega dt = 1.9 and by a derived joint: each alone is stable,
+  // both together are not (Euler: omega dt < 2).
+  const double dt = 1e-3, k = std::pow(1.9 / dt, 2);
+  const auto build = [&](auto& m) {
+    const BodyId block = m.add_body(dem::mbd::given_body("block", 1.0, Vec3(0.1, 0.1, 0.1)));
+    m.add_joint(dem::mbd::bushing("mount", m.ground(), block, {0, 0, 0}, {0, 0, 1}, {k, 0, 0}, {0, 0, 0}, {0, 0, 0},
+                                  {0, 0, 0}));
+    m.add_joint(dem::mbd::point_on_plane("slot", m.ground(), block, {0, 0, 0}, {1, 0, 0}));
+  };
+  dem::mbd::Machine<dem::integrator::SymplecticEuler> alone;
+  build(alone);
+  check_refused([&] { (void)alone.step(dt); }, "bushing 'mount'", "raise substeps (now 1)");
+  dem::World<Balls> world({.time_step = dt});
+  build(world.machine());
+  check_refused([&] { (void)world.step(); }, "time step 0.001 s", "bushing 'mount'", "raise machine().substeps (now 1)",
+                "allow_unstable_time_step");
+  world.machine().substeps = 2;
+  CHECK(world.run(100));
+}
+
+TEST_CASE("a world that refuses its time step for a joint of given stiffness names the joint") {
+  dem::World<Balls> world({.time_step = 1e-3});
+  auto& m = world.machine();
+  const BodyId block = m.add_body(dem::mbd::given_body("block", 1.0, Vec3(0.1, 0.1, 0.1)));
+  m.add_joint(dem::mbd::spherical("pin", m.ground(), block, {0, 0, 0}).with_stiffness(1e8, 0).with_damping(0, 0));
+  check_refused([&] { world.prepare(); }, "spherical joint 'pin'", "0.0002 s", "raise machine().substeps");
+  m.substeps = 8;
+  CHECK(world.run(10));
+}
+
+TEMPLATE_TEST_CASE("a world survives a refused motion unchanged", "", CorrectedBalls, Balls, VerletBalls) {
+  const int substeps = GENERATE(1, 3);
+  const auto build = [&](dem::World<TestType>& world) {
+    set_sand(world, 0.4);
+    const auto species = world.add_species(dem::shape::Sphere(1e-3));
+    world.add_particle({.species = species, .position = {0, 0, 1}, .velocity = {0.1, 0, 0}});
+    auto& m = world.machine();
+    m.substeps = substeps;
+    const BodyId rod = add_rod(m);
+    m.add_sensor(dem::mbd::total_force_sensor("on the rod", rod, 0.0));
+    REQUIRE(world.run(10));
+  };
+  dem::World<TestType> world({.time_step = 1e-5}), other({.time_step = 1e-5});
+  build(world);
+  build(other);
+  auto& m = world.machine();
+  const auto motion = m.add_motion(dem::mbd::prescribed_joint("jump", dem::JointId(0), 0.3));
+  const Vec3 grain = world.position(dem::ParticleId(0)), rod = m.body(BodyId(0)).position();
+  for (int again = 0; again < 2; ++again) {
+    check_refused([&] { (void)world.run(5); }, "motion 'jump' is 0.3", "let its signal start there");
+    CHECK(world.position(dem::ParticleId(0)) == grain);
+    CHECK(m.body(BodyId(0)).position() == rod);
+    CHECK(m.parts().sensors.size() == 1);
+  }
+  // Switched off, it is as if it had never been there.
+  m.switch_on(motion, false);
+  REQUIRE(world.run(5));
+  REQUIRE(other.run(5));
+  CHECK(world.time() == other.time());
+  CHECK(world.position(dem::ParticleId(0)) == other.position(dem::ParticleId(0)));
+  CHECK(m.body(BodyId(0)).position() == other.machine().body(BodyId(0)).position());
+  CHECK(m.sensor(dem::SensorId(0)).latest().force.z == other.machine().sensor(dem::SensorId(0)).latest().force.z);
+}

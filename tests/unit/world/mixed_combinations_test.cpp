@@ -1,0 +1,7 @@
+#include "world/combinations.hpp"
+
+TEMPLATE_PRODUCT_TEST_CASE("mixed grains come to rest under every law and weigh what they weigh", "",
+                           (combinations::ElasticGrains, combinations::StickyGrains, combinations::PlasticGrains),
+                           (combinations::SeveralKinds, combinations::SeveralOfPoints)) {
+  combinations::pour<TestType>();
+}
