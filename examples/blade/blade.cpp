@@ -13,6 +13,8 @@
 #include <dem/soil/packing.hpp>
 
 #include <random>
+#include <string>
+#include <vector>
 
 using namespace dem;
 
@@ -52,8 +54,9 @@ void pour_bed(World<Soil>& world) {
 /// The machine: ground - rail - carriage - guide - blade, which stands just above a bed of this height (m). It goes
 /// down by a prescribed motion until the time `down`, and then along by an actuator that follows a position.
 struct Pusher {
-  Pusher(World<Soil>& world, double level, double depth, double speed, double down) : machine(world.machine()) {
+  Pusher(World<Soil>& world, double level, double depth, double speed, double down) {
     using namespace mbd;
+    auto& machine = world.machine();
     const double clear = 3 * grain_radius;
     const Vec3 at(blade_start, 0, level + clear + blade_edges.z() / 2);
     const BodyId carriage = machine.add_body(box_body("carriage", {0.02, 0.02, 0.01}, 7800).at({blade_start, 0, 0.1}));
@@ -66,7 +69,6 @@ struct Pusher {
     soil = machine.add_sensor(contact_sensor("soil", blade, 0.02));
     drive = machine.add_sensor(actuator_sensor("drive", push, 0.02));
   }
-  World<Soil>::Machine& machine;
   JointId rail;
   SensorId soil, drive;
 };
@@ -81,7 +83,15 @@ constexpr rig::Column<Sample> columns[] = {{"time_s", &Sample::time},
                                            {"soil_z_N", &Sample::soil_z}};
 
 class Blade : public rig::Rig {
+  std::string size = "quick", folder = "blade";
+  double depth = 0.012, speed = 0.1, travel = 0.0, frame_time = 0.02;
+  bool vtk = true;
+  std::size_t grains = 0;
+  std::vector<Sample> samples;
+
  public:
+  // ---- settings
+
   void declare(rig::Options& options) override {
     options.add("--size", size, "smoke (a short way), quick or full (a long one)");
     options.add("--depth", depth, "of the blade in the bed [m]");
@@ -89,23 +99,25 @@ class Blade : public rig::Rig {
     options.add("--travel", travel, "[m]; 0: by size");
     options.add("--output", folder, "folder for the results");
     options.flag("--vtk", vtk, "files for ParaView").off("--no-vtk");
-    options.add("--vtk-interval", vtk_interval, "[s]");
+    options.add("--frame-time", frame_time, "between two frames for ParaView [s]");
   }
   void find_idle(rig::IdleOptions& idle) const override {
-    idle.unless(vtk, "with files for ParaView, without --no-vtk", {"--vtk-interval"});
+    idle.unless(vtk, "with files for ParaView, without --no-vtk", {"--frame-time"});
   }
   void resolve() override {
-    rig::fill(travel, rig::BySize<double>{.smoke = 0.01, .quick = 0.05, .full = 0.07}[rig::size_named(size)]);
+    const rig::BySize<double> travels = {.smoke = 0.01, .quick = 0.05, .full = 0.07};
+    rig::fill(travel, travels[rig::size_named(size)]);
     require_within(depth, 0.0, 0.02, "--depth (m)");
     require_within(speed, 1e-3, 1.0, "--speed (m/s)");
     require_within(travel, 1e-3, 0.07, "--travel (m)");
-    require_positive(vtk_interval, "--vtk-interval", "s");
+    require_positive(frame_time, "--frame-time", "s");
   }
   std::string output() const override { return folder; }
   rig::ResultNames results() const override {
-    return {.files = {"blade.csv", "report.html", "blade.pvd", "push.gp", "push.svg", "push.png"},
-            .frames = {"grains", "surfaces"}};
+    return {.files = {"blade.csv", "blade.pvd"}, .plots = {"push"}, .frames = {"grains", "surfaces"}};
   }
+
+  // ---- world, stages and samples
 
   void run(rig::Session& session) override {
     World<Soil> world({.gravity = {0, 0, -9.81}});
@@ -117,55 +129,50 @@ class Blade : public rig::Rig {
     rig::run(world, 0.4);
     const double level = soil::height_percentile(soil::placements(world), 0.95) + grain_radius;
 
-    const double down = world.time() + 0.3, end = down + travel / speed;
+    const double start = world.time(), down = start + 0.3, end = down + travel / speed;
     const Pusher pusher(world, level, depth, speed, down);
-    rig::Frames frames(session, vtk ? "blade" : "", vtk_interval);
-    session.begin("lower", 0.3);
-    while (world.time() < end) {
-      if (world.time() >= down && samples.back().time < down) session.begin("push", travel);
+    rig::Frames frames(session, vtk ? "blade" : "", frame_time);
+    const auto go_on = [&] {  // for a millisecond
       rig::run(world, 1e-3);
-      const auto& pressed = pusher.machine.sensor(pusher.soil).mean().force;
-      samples.push_back({world.time(), pusher.machine.coordinate(pusher.rail),
-                         pusher.machine.sensor(pusher.drive).mean().force.x, pressed.x, pressed.z});
+      const auto& machine = world.machine();
+      const auto &push = machine.sensor(pusher.drive).mean().force, &soil = machine.sensor(pusher.soil).mean().force;
+      samples.push_back({world.time(), machine.coordinate(pusher.rail), push.x, soil.x, soil.z});
       frames.show(world.time(), [&](io::VtkSeries& series) { io::add_vtk_frame(series, world); });
-      session.update(world.time() < down ? 0.3 - (down - world.time()) : samples.back().travel,
-                     fmt::format("{:.2f} N", samples.back().push));
-    }
+    };
+    session.begin("lower", down - start);
+    while (world.time() < down) go_on(), session.update(world.time() - start);
+    session.begin("push", travel);
+    while (world.time() < end) go_on(), session.update(samples.back().travel, text("{:.2f} N", samples.back().push));
   }
+
+  // ---- report
 
   bool report(rig::Report& report) const override {
     report.part("blade.csv", [&] { rig::save_samples<Sample>(report.folder() / "blade.csv", samples, columns, 0); });
-    // Means over the way from a third on, where the forces are steady.
     double push = 0.0, soil = 0.0, count = 0.0;
     for (const Sample& s : samples) {
-      if (s.travel < 0.3 * travel) continue;
+      if (s.travel < 0.3 * travel) continue;  // until there the forces rise
       push += s.push;
       soil -= s.soil_x;
       count += 1.0;
     }
+    io::Table table{.caption = "Mean forces", .header = {"push [N]", "soil on the blade [N]", "ratio"}};
+    table.row(text("{:.3f}", push / count), text("{:.3f}", soil / count), text("{:.3f}", push / soil));
     report.part("the printed report", [&] {
       fmt::print("{} grains, blade {:.0f} mm deep and {:.0f} mm wide, {:.0f} mm/s\n", grains, 1e3 * depth,
                  1e3 * blade_edges.y(), 1e3 * speed);
       fmt::print("push {:.3f} N, soil on the blade {:.3f} N, ratio {:.3f}\n", push / count, soil / count, push / soil);
     });
-    report.page({{"depth", fmt::format("{:g} mm", 1e3 * depth)}, {"speed", fmt::format("{:g} mm/s", 1e3 * speed)}},
+    report.page({{"depth", text("{:g} mm", 1e3 * depth)}, {"speed", text("{:g} mm/s", 1e3 * speed)}},
                 [&](io::HtmlReport& page) {
-                  io::Table table{.caption = "Mean forces", .header = {"push [N]", "soil on the blade [N]"}};
-                  page.table(table.row(push / count, soil / count));
                   io::Series line{.name = "push"};
                   for (const Sample& s : samples) line.x.push_back(1e3 * s.travel), line.y.push_back(s.push);
+                  page.table(table);
                   report.plot(page, {.x_label = "travel [mm]", .y_label = "force [N]", .series = {line}}, "push",
                               "Force on the blade over its way.");
                 });
     return vtk;
   }
-
- private:
-  std::string size = "quick", folder = "blade";
-  double depth = 0.012, speed = 0.1, travel = 0.0, vtk_interval = 0.02;
-  bool vtk = true;
-  std::size_t grains = 0;
-  std::vector<Sample> samples;
 };
 
 int main(int argc, char** argv) {

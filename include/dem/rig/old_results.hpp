@@ -12,9 +12,10 @@
 
 namespace dem::rig {
 
-/// What the files of a rig are called, as patterns (see matches()), but for settings.toml and for what it is given.
+/// What the files of a rig are called, as patterns (see matches()), besides report.html and settings.toml.
 struct ResultNames {
   std::vector<std::string> files = {};   ///< "results.csv"; beside a "load_#+.pvd" frames may be in a folder "load_#+"
+  std::vector<std::string> plots = {};   ///< "shear_stress", of which there may be .gp, .svg and .png
   std::vector<std::string> frames = {};  ///< parts of the frames: "grains"
 };
 
@@ -22,7 +23,11 @@ namespace detail {
 
 inline bool is_result(std::string_view name, const ResultNames& names) {
   if (name.ends_with(".tmp")) name.remove_suffix(4);  // of a run that was killed while it wrote
-  return std::any_of(names.files.begin(), names.files.end(), [&](const auto& p) { return matches(name, p); });
+  const auto is_plot = [&](const std::string& plot) {
+    return matches(name, plot + ".gp") || matches(name, plot + ".svg") || matches(name, plot + ".png");
+  };
+  return name == "report.html" || std::any_of(names.plots.begin(), names.plots.end(), is_plot) ||
+         std::any_of(names.files.begin(), names.files.end(), [&](const auto& p) { return matches(name, p); });
 }
 
 inline bool is_frame_folder(std::string_view name, const ResultNames& names) {

@@ -29,9 +29,7 @@ struct Scripted : Rig {
     if (load > 100.0) dem::fail("--load is {:g} N, but must be at most 100", load);
   }
   std::string output() const override { return folder; }
-  ResultNames results() const override {
-    return {.files = {"rows.csv", "report.html", "bed.pvd"}, .frames = {"grains"}};
-  }
+  ResultNames results() const override { return {.files = {"rows.csv", "bed.pvd"}, .frames = {"grains"}}; }
   std::vector<OwnWord> words() const override { return {{"time_step", "--step"}}; }
   void run(Session& session) override { script(session); }
   bool report(Report& report) const override {

@@ -6,9 +6,8 @@ namespace dem::rig::direct_shear {
 
 /// What the files of a run are called.
 inline ResultNames result_names() {
-  return {.files = {"results.csv", "report.html", "load_#+.#kPa.csv", "load_#+.#kPa.pvd", "shear_stress.gp",
-                    "shear_stress.svg", "shear_stress.png", "dilation.gp", "dilation.svg", "dilation.png",
-                    "mohr_coulomb.gp", "mohr_coulomb.svg", "mohr_coulomb.png"},
+  return {.files = {"results.csv", "load_#+.#kPa.csv", "load_#+.#kPa.pvd"},
+          .plots = {"shear_stress", "dilation", "mohr_coulomb"},
           .frames = {"grains", "boxes", "spheres", "superquadrics", "polyhedra", "meshes"}};
 }
 
