@@ -72,6 +72,8 @@ class Machine : public Mechanism {
     gravity = g;
     solver_.initialise(*this, time, g, [] {});
   }
+  /// All is well, or which body blew up, when, and what to change.
+  MachineReport report() const { return solver_.report(*this); }
   /// False before the first step or initialise, and after something was added or `substeps` was changed since.
   bool is_initialised() const { return solver_.is_initialised(*this); }
 
