@@ -16,7 +16,7 @@ endfunction()
 # dem_subfolders(<out> <pattern> [<folder>]): the names of the folders here, or in that folder, that hold a file that
 # matches, in order.
 function(dem_subfolders out pattern)
-  cmake_path(ABSOLUTE_PATH ARGV2 OUTPUT_VARIABLE base)
+  set(base "${CMAKE_CURRENT_SOURCE_DIR}/${ARGN}")
   file(GLOB files CONFIGURE_DEPENDS RELATIVE "${base}" "${base}/*/${pattern}")
   list(TRANSFORM files REPLACE "/.*" "")
   list(REMOVE_DUPLICATES files)
