@@ -47,6 +47,17 @@ grep -q 'the plots were not drawn' "$log" || fail "It does not say that plots ar
 grep -q '^Report, tables: ' "$log" || fail "It promises plots, or ParaView files, that are not there"
 [ -s "$output/plain/shear_stress.gp" ] || fail "The scripts of the plots are missing"
 
+# A terminal that is gone, or full, costs nothing.
+gone=$output/gone
+short=(--size smoke --travel 1e-4 --smoothing 1e-5 --ramp-time 0.002 --packing-file "$packing" --no-vtk --output "$gone")
+for stream in '2>&-' '2> /dev/full' '< /dev/null >&- 2>&-'; do
+  rm -rf "$gone"
+  echo "$stream" > "$log"
+  eval "\"\$rig\" \"\${short[@]}\" > \"$output/printed.txt\" $stream" || fail "It ends with $? when its terminal is gone"
+  [ -s "$gone/report.html" ] && [ "$(grep -c ',1$' "$gone/results.csv")" = 1 ] || fail "It loses results with its terminal"
+  ! grep -q 'consolidate' "$gone"/*.csv "$gone/settings.toml" || fail "It prints into its files"
+done
+
 # A packing alone has nothing to draw, and misses nothing.
 "$rig" --size smoke --packing-only --relative-density 0 --output "$output/packed" > "$log" 2>&1 || fail "No packing was made"
 grep -q '^Report, tables: ' "$log" || fail "It promises plots, or ParaView files, that are not there"

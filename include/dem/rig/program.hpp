@@ -8,6 +8,8 @@
 #include <exception>
 #include <new>
 
+#include <fcntl.h>
+
 namespace dem::rig {
 
 /// What run_program() returns, for --help.
@@ -17,6 +19,15 @@ inline constexpr const char* exit_codes =
     "is saved and reported.";
 
 namespace detail {
+
+/// Opens the standard streams that this process was started without (2>&-): the next file that it opens would take
+/// their numbers, and get what is printed.
+inline void open_standard_streams() {
+  for (int number = 0; number <= 2; ++number) {
+    if (::fcntl(number, F_GETFD) != -1) continue;
+    if (::open("/dev/null", O_RDWR) != number) return;
+  }
+}
 
 inline const char* const no_memory = "there is not enough memory for so many grains; take fewer";
 
@@ -45,6 +56,7 @@ inline void run_to_end(Rig& rig, Session& session) {
 /// Reads the settings of a rig, checks them, runs it and makes its report. Returns what main() returns: see
 /// exit_codes; 3 when the settings ask for what another program has (InAnotherProgram).
 inline int run_program(const ProgramText& program, Rig& rig, int argc, const char* const* argv) {
+  detail::open_standard_streams();
   std::signal(SIGPIPE, SIG_IGN);  // whoever read the messages is gone: no reason to lose the results
   try {
     Options options;
