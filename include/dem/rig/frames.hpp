@@ -150,7 +150,6 @@ class Frames {
   }
 
  private:
-  // Every frame passes here: what an interactive replay keeps of the world is kept here.
   template <class Write>
   void add(double now, Write&& write) {
     if (!series_) return;

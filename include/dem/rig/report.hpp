@@ -42,7 +42,6 @@ class Report {
       io::HtmlReport html(title_);
       if (const auto status = status_text(); !status.empty()) html.paragraph(status);
       write(html);
-      // The interactive replay of the frames stands here: html.replay(...).
       html.heading("Settings").settings(settings);
       html.heading("settings.toml", 3)
           .paragraph("What repeats the run: " + session_.program() + " --config settings.toml");

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <dem/report/replay_world.hpp>
 #include <dem/rig/direct_shear.hpp>
 #include <dem/rig/direct_shear/packing_of_run.hpp>
 #include <dem/rig/frames.hpp>
@@ -52,9 +53,16 @@ soil::Packing start(const DirectShear<Model>& shear, Session& session) {
   return packing;
 }
 
-/// One load on the packing, with its frames and its file of samples.
+/// Whether a replay can show grains of a shape: those of your own need a grain_mesh(shape, divisions) beside them.
+template <class Shape>
+concept HasReplay = requires(const Shape& shape) {
+  report::replay_shape(shape, 4);
+};
+
+/// One load on the packing, with its frames and its file of samples, and a replay if one is to be recorded.
 template <class Model>
-void test_load(const DirectShear<Model>& shear, const PackingResult& packing, LoadResult& r, Session& session) {
+void test_load(const DirectShear<Model>& shear, const PackingResult& packing, LoadResult& r, report::Replay* replay,
+               Session& session) {
   const Settings& s = shear.settings();
   const std::string name = load_name(s, r.load);
   const auto save = [&] {
@@ -74,6 +82,9 @@ void test_load(const DirectShear<Model>& shear, const PackingResult& packing, Lo
       if (moment == Moment::start) frames->show(0.0, write);  // where it is but for its spring
       else if (moment == Moment::sample) frames->show(rig.top_displacement(), write);
       else frames->finish(rig.top_displacement(), write);
+      if constexpr (HasReplay<typename Model::Shape>) {
+        if (replay && replay->due(rig.world.time())) replay->record(rig.world);
+      }
     });
   } catch (...) {
     save();
@@ -113,7 +124,11 @@ void run_campaign(const DirectShear<Model>& shear, Campaign& campaign, Session& 
   for (const double load : s.loads) {
     LoadResult& r = campaign.loads.emplace_back(shear.of_load(load));
     detail::warn_of_speed(r, s, session);
-    detail::test_load(shear, packing, r, session);
+    const bool in_the_middle = campaign.loads.size() - 1 == s.loads.size() / 2;
+    if (s.replay && in_the_middle) {
+      campaign.replay.emplace(report::ReplayOptions{.frames = 100, .interval = s.travel / s.shear_speed / 80.0});
+    }
+    detail::test_load(shear, packing, r, s.replay && in_the_middle ? &*campaign.replay : nullptr, session);
     session.finish(text("maximum {:.1f} kPa", 1e-3 * r.maximum));
   }
 }

@@ -87,6 +87,10 @@ inline void add_test_options(Options& options, Settings& s) {
   add("--threads", s.threads, "0: all, at least 1000 grains for each");
   options.group("Output");
   add("--output", s.output, "folder; results of an earlier run in it are replaced");
+  options
+      .flag("--replay", s.replay,
+            "replay of the load in the middle in the report (--replay=true) or none (--no-replay)")
+      .off("--no-replay");
   options.flag("--vtk", s.vtk, "files for ParaView (--vtk=true) or none (--no-vtk)").off("--no-vtk");
   options.flag("--vtk-spheres", s.vtk_spheres, "ParaView files also with the eight spheres of each grain");
   add("--vtk-interval", s.vtk_interval, "travel between two frames [m]; 0: a twentieth of the travel");

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <dem/io/csv.hpp>
+#include <dem/report/replay_page.hpp>
 #include <dem/rig/direct_shear/list_settings.hpp>
 #include <dem/rig/direct_shear/plots.hpp>
 #include <dem/rig/report.hpp>
@@ -52,6 +53,9 @@ inline bool report(Report& report, const Settings& s, const Campaign& c) {
       report.plot(page, curves(s, c, &Sample::lid_rise, 1e3, "Dilation", "lid rise [mm]"), "dilation",
                   "Rise of the lid while shearing.");
       report.plot(page, mohr_coulomb_plot(c, fits), "mohr_coulomb", "Maximum shear stress over normal stress.");
+    }
+    if (c.replay && c.replay->frames().size() > 1) {
+      page.heading("Replay").replay(*c.replay, "The load in the middle, while it is sheared.");
     }
     page.heading("Checks").table(check_table(c)).paragraph(speed_text(c, report.outcome().wall_time));
   });

@@ -1,10 +1,12 @@
 #pragma once
 
+#include <dem/report/replay_recorder.hpp>
 #include <dem/rig/samples.hpp>
 #include <dem/soil/packing.hpp>
 
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -70,6 +72,7 @@ struct PackingResult {
 struct Campaign {
   PackingResult packing = {};
   std::vector<LoadResult> loads = {};
+  std::optional<report::Replay> replay = {};  ///< of the load in the middle
 };
 
 /// Table 3.3 of the thesis: normal and maximum shear stress (Pa), and the angle (deg); and the experiment's range.

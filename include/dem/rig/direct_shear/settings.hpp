@@ -94,6 +94,7 @@ struct Settings {
 
   // Output
   std::string output = "direct_shear_output";
+  bool replay = true;  ///< of the load in the middle, in the report
   bool vtk = true;
   bool vtk_spheres = false;   ///< also the eight spheres of each grain
   double vtk_interval = 0.0;  ///< m of travel between two frames; 0: a twentieth of the travel
