@@ -64,6 +64,18 @@ function(dem_add_state_hash_test name)
   catch_discover_tests(test_${name} TEST_PREFIX "${name}." PROPERTIES LABELS equivalence)
 endfunction()
 
+# dem_add_width_1_test(<source>...): the program test_width_1 runs these sources where a pack is a single double, as it is
+# with compilers and on devices without vector extensions. It shares nothing with tests whose packs are wider.
+function(dem_add_width_1_test)
+  add_executable(test_width_1 ${ARGN})
+  target_include_directories(test_width_1 PRIVATE "${CMAKE_CURRENT_SOURCE_DIR}" "${CMAKE_CURRENT_SOURCE_DIR}/unit")
+  dem_program(test_width_1)
+  target_link_libraries(test_width_1 PRIVATE test_main)
+  target_compile_definitions(test_width_1 PRIVATE DEM_NO_SIMD)
+  set_target_properties(test_width_1 PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 0)
+  catch_discover_tests(test_width_1 TEST_PREFIX width_1. PROPERTIES LABELS unit)
+endfunction()
+
 # Include options for a compiler that is called by hand. It knows /usr/include itself, and must find it last.
 string(CONCAT packages "$<TARGET_PROPERTY:Eigen3::Eigen,INTERFACE_INCLUDE_DIRECTORIES>$<SEMICOLON>"
                        "$<TARGET_PROPERTY:fmt::fmt,INTERFACE_INCLUDE_DIRECTORIES>")
