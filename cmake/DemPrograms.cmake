@@ -1,12 +1,13 @@
 # What dem's own programs (tests, examples, benchmarks) share. Nothing here reaches a user of the library.
 
 # dem's headers are compiled with these as well: dem::dem is not a system target inside this project.
+set(DEM_WARNINGS -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion)
+if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")  # g++ 12 warns of its own AVX-512 intrinsics (its bug 105593).
+  list(APPEND DEM_WARNINGS -Wno-maybe-uninitialized -Wno-uninitialized)
+endif()
 add_library(dem_warnings INTERFACE)
-target_compile_options(
-  dem_warnings INTERFACE $<$<COMPILE_LANG_AND_ID:CXX,GNU,Clang,AppleClang>:-Wall;-Wextra;-Wpedantic;-Wshadow;-Wconversion;-Wno-sign-conversion>
-                         # g++ 12 warns of its own AVX-512 intrinsics (its bug 105593).
-                         $<$<COMPILE_LANG_AND_ID:CXX,GNU>:-Wno-maybe-uninitialized;-Wno-uninitialized>
-)
+target_compile_options(dem_warnings
+                       INTERFACE "$<$<COMPILE_LANG_AND_ID:CXX,GNU,Clang,AppleClang>:${DEM_WARNINGS}>")
 
 # dem_program(<target>): links what every program of dem links.
 function(dem_program target)

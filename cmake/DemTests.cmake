@@ -64,6 +64,79 @@ function(dem_add_state_hash_test name)
   catch_discover_tests(test_${name} TEST_PREFIX "${name}." PROPERTIES LABELS equivalence)
 endfunction()
 
+# dem_add_width_1_test(<source>...): the program test_width_1 runs these sources where a pack is a single double, as it is
+# with compilers and on devices without vector extensions. It shares nothing with tests whose packs are wider.
+function(dem_add_width_1_test)
+  add_executable(test_width_1 ${ARGN})
+  target_include_directories(test_width_1 PRIVATE "${CMAKE_CURRENT_SOURCE_DIR}" "${CMAKE_CURRENT_SOURCE_DIR}/unit")
+  dem_program(test_width_1)
+  target_link_libraries(test_width_1 PRIVATE test_main)
+  target_compile_definitions(test_width_1 PRIVATE DEM_NO_SIMD)
+  set_target_properties(test_width_1 PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 0)
+  catch_discover_tests(test_width_1 TEST_PREFIX width_1. PROPERTIES LABELS unit)
+endfunction()
+
+# Include options for a compiler that is called by hand. It knows /usr/include itself, and must find it last.
+string(CONCAT packages "$<TARGET_PROPERTY:Eigen3::Eigen,INTERFACE_INCLUDE_DIRECTORIES>$<SEMICOLON>"
+                       "$<TARGET_PROPERTY:fmt::fmt,INTERFACE_INCLUDE_DIRECTORIES>")
+set(packages "$<FILTER:${packages},EXCLUDE,^/usr/include$>")
+set(system "-isystem$<SEMICOLON>")
+set(DEM_INCLUDES "-I${PROJECT_SOURCE_DIR}/include" "${system}$<JOIN:${packages},$<SEMICOLON>${system}>")
+
+# What is only looked at is compiled without the code behind it, by this.
+set(DEM_LOOK ${CMAKE_CXX_COMPILER} -std=c++20 -fopenmp -DDEM_CHECK_TEXTS ${DEM_WARNINGS} ${DEM_INCLUDES} -fsyntax-only)
+
+# Headers that many others stand on, the heaviest first: a source that includes one of them anyway may be given it
+# precompiled, which changes nothing but the time that it takes. g++ alone does it by -include.
+set(DEM_PRECOMPILED)
+if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+  set(DEM_PRECOMPILED dem/world/world.hpp dem/world/model.hpp dem/mbd/solver/mechanism.hpp dem/math/vector.hpp)
+endif()
+set(outputs)
+foreach(header IN LISTS DEM_PRECOMPILED)
+  set(copy "${CMAKE_CURRENT_BINARY_DIR}/precompiled/${header}")
+  file(CONFIGURE OUTPUT "${copy}" CONTENT "#include <${header}>\n")
+  add_custom_command(
+    OUTPUT "${copy}.gch"
+    COMMAND ${CMAKE_CXX_COMPILER} -std=c++20 -fopenmp -DDEM_CHECK_TEXTS ${DEM_WARNINGS} ${DEM_INCLUDES} -x c++-header "${copy}" -o
+            "${copy}.gch" -MD -MF "${copy}.d" -MT "${copy}.gch"
+    DEPFILE "${copy}.d"
+    COMMENT "Precompiling ${header}"
+    COMMAND_EXPAND_LISTS VERBATIM)
+  list(APPEND outputs "${copy}.gch")
+endforeach()
+add_custom_target(precompiled_headers ALL DEPENDS ${outputs})
+
+# dem_includes_of(<out> <file>): what it includes in angle brackets.
+function(dem_includes_of out file)
+  file(STRINGS "${file}" lines REGEX "^#include <.*>")
+  list(TRANSFORM lines REPLACE "^#include <(.*)>.*$" "\\1")
+  set(${out} ${lines} PARENT_SCOPE)
+endfunction()
+
+# dem_standing_on(<out> <header>): the headers that include this one, themselves or by others. Reads includes_of_<header>
+# of all `headers`.
+function(dem_standing_on out header)
+  set(found "${header}")
+  set(rest ${headers})
+  list(REMOVE_ITEM rest "${header}")
+  set(last "")
+  while(NOT found STREQUAL last)
+    set(last "${found}")
+    foreach(other IN LISTS rest)
+      foreach(included IN LISTS "includes_of_${other}")
+        if(included IN_LIST found)
+          list(APPEND found "${other}")
+          list(REMOVE_ITEM rest "${other}")
+          break()
+        endif()
+      endforeach()
+    endforeach()
+  endwhile()
+  list(REMOVE_ITEM found "${header}")
+  set(${out} ${found} PARENT_SCOPE)
+endfunction()
+
 # dem_add_header_checks(<include dir>): every header compiles when it is the first and only one, and is guarded. A header
 # that another one includes before anything else is compiled first there, so only the others are compiled for
 # themselves. Built as part of `all`; CUDA headers (*.cuh) are left to nvcc.
@@ -76,7 +149,7 @@ function(dem_add_header_checks include_dir)
   list(TRANSFORM headers REPLACE "^${include_dir}/" "")
   set(tried_in_others "")
   foreach(header IN LISTS headers)
-    # Its first include may change.
+    # What it includes may change.
     set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS "${include_dir}/${header}")
     file(STRINGS "${include_dir}/${header}" directives REGEX "^[ \t]*#" LIMIT_COUNT 2)
     list(POP_FRONT directives guard first)
@@ -86,35 +159,65 @@ function(dem_add_header_checks include_dir)
     if(first MATCHES "^#include <(dem/.*)>$")
       list(APPEND tried_in_others "${CMAKE_MATCH_1}")
     endif()
+    dem_includes_of("includes_of_${header}" "${include_dir}/${header}")
   endforeach()
-  list(REMOVE_ITEM headers ${tried_in_others})
-  add_library(header_self_containment OBJECT)
-  dem_program(header_self_containment)
+  foreach(precompiled IN LISTS DEM_PRECOMPILED)
+    dem_standing_on("on_${precompiled}" "${precompiled}")
+  endforeach()
+
+  set(cli11)
   if(CLI11_FOUND)
-    target_link_libraries(header_self_containment PRIVATE CLI11::CLI11)
+    set(cli11 "$<FILTER:$<TARGET_PROPERTY:CLI11::CLI11,INTERFACE_INCLUDE_DIRECTORIES>,EXCLUDE,^/usr/include$>")
+    set(cli11 "$<$<BOOL:${cli11}>:-isystem$<SEMICOLON>$<JOIN:${cli11},$<SEMICOLON>-isystem$<SEMICOLON>>>")
   endif()
-  target_compile_options(header_self_containment PRIVATE -O0)
+  list(REMOVE_ITEM headers ${tried_in_others})
+  set(stamps)
   foreach(header IN LISTS headers)
-    set(source "${CMAKE_CURRENT_BINARY_DIR}/header_self_containment/${header}.cpp")
-    file(CONFIGURE OUTPUT "${source}" CONTENT "#include <${header}>\n")
-    target_sources(header_self_containment PRIVATE "${source}")
+    set(given)
+    set(depends)
+    foreach(precompiled IN LISTS DEM_PRECOMPILED)
+      if(header IN_LIST "on_${precompiled}")
+        set(given -include "${CMAKE_CURRENT_BINARY_DIR}/precompiled/${precompiled}")
+        set(depends "${CMAKE_CURRENT_BINARY_DIR}/precompiled/${precompiled}.gch")
+        break()
+      endif()
+    endforeach()
+    set(stamp "${CMAKE_CURRENT_BINARY_DIR}/header_self_containment/${header}.ok")
+    cmake_path(GET stamp PARENT_PATH folder)
+    file(MAKE_DIRECTORY "${folder}")
+    add_custom_command(
+      OUTPUT "${stamp}"
+      COMMAND ${DEM_LOOK} $<$<BOOL:${CMAKE_COMPILE_WARNING_AS_ERROR}>:-Werror> ${cli11} ${given}
+              -include "${include_dir}/${header}" -x c++ /dev/null -MD -MF "${stamp}.d" -MT "${stamp}"
+      COMMAND ${CMAKE_COMMAND} -E touch "${stamp}"
+      DEPENDS "${include_dir}/${header}" ${depends}
+      DEPFILE "${stamp}.d"
+      COMMENT "Header ${header}"
+      COMMAND_EXPAND_LISTS VERBATIM)
+    list(APPEND stamps "${stamp}")
   endforeach()
+  add_custom_target(header_self_containment ALL DEPENDS ${stamps})
 endfunction()
 
-# Include options for a compiler that is called by hand. It knows /usr/include itself, and must find it last.
-string(CONCAT packages "$<TARGET_PROPERTY:Eigen3::Eigen,INTERFACE_INCLUDE_DIRECTORIES>$<SEMICOLON>"
-                       "$<TARGET_PROPERTY:fmt::fmt,INTERFACE_INCLUDE_DIRECTORIES>")
-set(packages "$<FILTER:${packages},EXCLUDE,^/usr/include$>")
-set(system "-isystem$<SEMICOLON>")
-set(DEM_INCLUDES "-I${PROJECT_SOURCE_DIR}/include" "${system}$<JOIN:${packages},$<SEMICOLON>${system}>")
+# dem_precompiled_of(<out> <source>): options that give the source the first of the precompiled headers that it includes.
+function(dem_precompiled_of out source)
+  dem_includes_of(includes "${source}")
+  set(${out} PARENT_SCOPE)
+  foreach(precompiled IN LISTS DEM_PRECOMPILED)
+    if(precompiled IN_LIST includes)
+      set(${out} -include "${CMAKE_CURRENT_BINARY_DIR}/precompiled/${precompiled}" PARENT_SCOPE)
+      return()
+    endif()
+  endforeach()
+endfunction()
 
 # dem_add_compile_fail_test(<source>): the source is refused, in the words of its line `// expect: <regex>`.
 function(dem_add_compile_fail_test source)
   cmake_path(GET source STEM name)
+  dem_precompiled_of(given "${source}")
   add_test(
     NAME compile_fail.${name}
-    COMMAND ${CMAKE_COMMAND} "-DSOURCE=${source}" -P "${DEM_SCRIPTS}/CompileFail.cmake" --
-            ${CMAKE_CXX_COMPILER} -std=c++20 -fopenmp -fsyntax-only ${DEM_INCLUDES}
+    COMMAND ${CMAKE_COMMAND} "-DSOURCE=${source}" -P "${DEM_SCRIPTS}/CompileFail.cmake" -- ${DEM_LOOK} ${given}
     COMMAND_EXPAND_LISTS)
   set_tests_properties(compile_fail.${name} PROPERTIES LABELS static)
 endfunction()
@@ -138,9 +241,10 @@ function(dem_add_benchmark_compile_test benchmark)
   file(GLOB sources CONFIGURE_DEPENDS "${PROJECT_SOURCE_DIR}/benchmarks/${benchmark}/*.cpp")
   foreach(source IN LISTS sources)
     cmake_path(GET source STEM name)
+    dem_precompiled_of(given "${source}")
     add_test(
       NAME benchmark_compile.${benchmark}.${name}
-      COMMAND ${CMAKE_CXX_COMPILER} -std=c++20 -fopenmp -fsyntax-only ${DEM_INCLUDES}
+      COMMAND ${DEM_LOOK} ${given}
               "$<$<BOOL:${includes}>:${system}$<JOIN:${includes},$<SEMICOLON>${system}>>"
               "-I${PROJECT_SOURCE_DIR}/benchmarks" "${source}"
       COMMAND_EXPAND_LISTS)

@@ -1,3 +1,4 @@
+#include "scale.hpp"
 #include "world/scenes.hpp"
 
 #include <bit>
@@ -92,12 +93,12 @@ TEMPLATE_TEST_CASE("the state is the same to the last bit on any number of threa
                    dem::integrator::VelocityVerlet, dem::integrator::SymplecticEuler,
                    dem::integrator::PredictorCorrector) {
   // 3,000 steps, and fewer with the scheme that costs twice as much (it shares everything but the integrator).
-  const int steps = TestType::stages > 1 ? 1000 : 3000;
+  const int steps = scaled(TestType::stages > 1 ? 1000 : 3000);
   Poured<TestType> one(1);
   one.run(steps);
   const std::uint64_t expected = state_hash(one.world);
-  CHECK(one.world.state().rebuilds > 10);      // lists were made anew, and grains re-sorted, many times
-  CHECK(one.world.state().chunks.size() > 2);  // there is something to share out
+  CHECK(one.world.state().rebuilds > 10 * test_scale());  // lists were made anew, and grains re-sorted, many times
+  CHECK(one.world.state().chunks.size() > 2);             // there is something to share out
   for (const int threads : {2, 3, 8}) {
     Poured<TestType> many(threads);
     many.run(steps);
@@ -109,15 +110,16 @@ TEMPLATE_TEST_CASE("the state is the same to the last bit on any number of threa
 }
 
 TEST_CASE("a machine among grains is the same to the last bit on any number of threads") {
+  const auto steps = static_cast<std::uint64_t>(scaled(8000));
   Stirred one(1);
-  REQUIRE(one.world.run(8000));
+  REQUIRE(one.world.run(steps));
   const std::uint64_t expected = state_hash(one.world);
   REQUIRE(one.world.state().chunks.size() > 1);
-  CHECK(one.world.state().rebuilds > 10);
-  CHECK(std::abs(one.world.machine().coordinate(one.hinge)) > 0.01);  // the grains do swing the flap
+  CHECK(one.world.state().rebuilds > 10 * test_scale());
+  CHECK(std::abs(one.world.machine().coordinate(one.hinge)) > 0.01 * test_scale());  // the grains do swing the flap
   for (const int threads : {2, 3, 8}) {
     Stirred many(threads);
-    REQUIRE(many.world.run(8000));
+    REQUIRE(many.world.run(steps));
     CAPTURE(threads);
     CHECK(many.world.threads() == threads);
     CHECK(state_hash(many.world) == expected);

@@ -75,7 +75,7 @@ struct Numbers {
 
 /// A rotation by Cayley's formula, which needs no function of libm.
 dem::Mat3 turn(Numbers& number) {
-  const double x = number() - 0.5, y = number() - 0.5, z = number() - 0.5;
+  const double z = number() - 0.5, y = number() - 0.5, x = number() - 0.5;
   const double s = 2.0 / (1.0 + x * x + y * y + z * z);
   dem::Mat3 k;
   k << 0, -z, y, z, 0, -x, -y, x, 0;
@@ -108,7 +108,7 @@ void pour(World& world, dem::SpeciesId grain, int n, int per_row, double pitch, 
     dem::Vec3 x = corner;
     for (int i = 0; i < 3; ++i) x[i] += pitch * (cell[i] + 0.1 * (number() - 0.5));
     const dem::Mat3 r = turn(number);
-    const double u = 0.2 * number(), v = -0.1 * number();
+    const double v = -0.1 * number(), u = 0.2 * number();
     world.add_particle({.species = grain, .position = x, .velocity = {u, v, 0}, .rotation = r});
   }
 }

@@ -9,14 +9,16 @@
 using dem::MaterialId;
 
 namespace {
-using Materials = dem::Materials<dem::Model>;
+using ModelMaterials = dem::Materials<dem::Model>;
 
-Materials::Parameters with_mu(double mu) { return {{2000.0, 0.0, 1.0}, {mu, 1000.0, 0.0, 0.0}}; }
-double mu_of(const Materials& m, MaterialId a, MaterialId b) { return m.table()[m.row(a, b)].friction.coefficient; }
+ModelMaterials::Parameters with_mu(double mu) { return {{2000.0, 0.0, 1.0}, {mu, 1000.0, 0.0, 0.0}}; }
+double mu_of(const ModelMaterials& m, MaterialId a, MaterialId b) {
+  return m.table()[m.row(a, b)].friction.coefficient;
+}
 }  // namespace
 
 TEST_CASE("a pair of materials has one set of constants, whichever is named first") {
-  Materials m;
+  ModelMaterials m;
   const MaterialId sand = m.id("sand"), steel = m.id("steel");
   m.set_default(with_mu(0.1));
   m.set("steel", "sand", with_mu(0.3));
@@ -31,7 +33,7 @@ TEST_CASE("a pair of materials has one set of constants, whichever is named firs
 }
 
 TEST_CASE("materials that come later leave the pairs that were set alone") {
-  Materials m;
+  ModelMaterials m;
   m.set_default(with_mu(0.1));
   m.set("a", "b", with_mu(0.2));
   for (const auto* name : {"c", "d", "e", "f"}) m.set(name, "a", with_mu(0.3));
@@ -47,7 +49,7 @@ TEST_CASE("materials that come later leave the pairs that were set alone") {
 }
 
 TEST_CASE("two materials that may meet need constants") {
-  Materials m;
+  ModelMaterials m;
   const MaterialId sand = m.id("sand");
   m.id("steel");
   m.id("rubber");
@@ -61,7 +63,7 @@ TEST_CASE("two materials that may meet need constants") {
 }
 
 TEST_CASE("a default serves every pair") {
-  Materials m;
+  ModelMaterials m;
   m.mark_as_grain(m.id("sand"));
   m.id("steel");
   m.set_default(with_mu(0.5));
@@ -69,7 +71,7 @@ TEST_CASE("a default serves every pair") {
 }
 
 TEST_CASE("constants that make no sense are refused where they are set") {
-  Materials m;
+  ModelMaterials m;
   check_refused([&] { m.set_default({{-1.0, 0.0, 1.0}, {0.1, 1.0, 0.0, 0.0}}); }, "normal stiffness is -1");
   check_refused([&] { m.set("a", "b", {{1.0, 0.0, 1.0}, {-0.1, 1.0, 0.0, 0.0}}); }, "friction coefficient is -0.1");
 }

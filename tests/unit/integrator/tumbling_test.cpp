@@ -6,7 +6,7 @@ using dem::integrator::PredictorCorrector;
 using dem::integrator::SymplecticEuler;
 using dem::integrator::VelocityVerlet;
 
-// Whole worlds, and the other schemes, are in tests/world/tumbling_test.cpp.
+// Whole worlds, and the other schemes, are in tests/unit/world/tumbling_test.cpp.
 
 TEST_CASE("the predictor-corrector keeps energy and angular momentum of a tumbling body") {
   const Tumbling body = {{1.0, 2.0, 2.5}};
