@@ -40,14 +40,19 @@ struct ColumnField {
   std::vector<double> deepest;   ///< m, greatest sinkage under `modulus`
   std::vector<double> modulus;   ///< k, Pa/m^n, of the curve that `deepest` belongs to; 0: never loaded
   std::vector<double> sunk;      ///< m, sinkage that stays when the load is gone
-  std::vector<double> heap;      ///< m, loose soil on top, pushed there; part of `ground`
+  std::vector<double> heap;      ///< m, loose soil on top, pushed there; see resting()
   std::vector<double> pressure;  ///< Pa, when the column was touched last
   std::vector<ShearMemory> shear;
   std::vector<std::uint32_t> touched;    ///< number of the step that touched the column last
   std::vector<std::int32_t> touched_by;  ///< part of that step; -1: none yet
 
   /// m, height of the soil's surface without load.
-  double surface(std::size_t row) const { return ground[row] - sunk[row]; }
+  double surface(std::size_t row) const { return ground[row] - sunk[row] + heap[row]; }
+  /// m, height that a column's sinkage counts from: with the loose soil on top where none was pressed before. In a rut
+  /// loose soil gives way to what was compacted.
+  double reference(std::size_t row) const { return deepest[row] > 0.0 ? ground[row] : ground[row] + heap[row]; }
+  /// m, height at which a column begins to resist.
+  double resting(std::size_t row) const { return reference(row) - sunk[row]; }
 
   void resize(double height) {
     const std::size_t n = grid.size();

@@ -19,7 +19,7 @@ inline ColumnForce column_force(const ColumnField& field, const ColumnLaw& law, 
                                 double damping, const ColumnTouch& touch, const Vector3<double>& velocity, double dt,
                                 bool in_contact, ColumnChange& change) {
   const std::size_t row = change.row;
-  const double sinkage = field.ground[row] - touch.point.z;
+  const double sinkage = field.reference(row) - touch.point.z;
   if (!(sinkage > field.sunk[row])) return {};
   const double before = deepest_for(field, row, law);
   const ColumnStress stress = law.at(sinkage, before);

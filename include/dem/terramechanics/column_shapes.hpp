@@ -51,7 +51,7 @@ class ColumnCylinder final : public ColumnShape {
     if (height >= radius_) return PlanBox::nothing();
     const double reach = height > 0.0 && std::abs(a.z) < 0.7 ? std::sqrt(radius_ * radius_ - height * height) : radius_;
     // Of a disc of radius `reach` across the axis, moved along it by the half width; a tilted wheel's disc leans.
-    const auto extent = [&](double along) { return std::sqrt(1.0 - along * along); };
+    const auto extent = [&](double along) { return std::sqrt(std::max(0.0, 1.0 - along * along)); };
     const double lean = std::abs(a.z) < 0.7 ? std::abs(a.z) * radius_ : 0.0;
     const double ex = reach * extent(a.x) + half_ * std::abs(a.x) + lean,
                  ey = reach * extent(a.y) + half_ * std::abs(a.y) + lean;

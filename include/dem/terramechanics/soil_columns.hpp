@@ -139,15 +139,16 @@ inline bool SoilColumns::lay_out(std::span<const ColumnPart> parts, ColumnsRepor
     velocity_.push_back(part.body.velocity);
     const ShapePose pose = part.pose();
     const Vector3<double> spin = part.body.rotation * part.body.angular_velocity;
+    const Matrix3<double>& r = pose.rotation;
+    const double axes = dot(r.row0, r.row0) + dot(r.row1, r.row1) + dot(r.row2, r.row2);  // 3 but for rounding
     const double sum =
         dot(pose.position, pose.position) + dot(part.body.velocity, part.body.velocity) + dot(spin, spin);
-    if (!(sum < 1e300)) {
-      report = {
-          .ok = false,
-          .columns = 0,
-          .on_base = 0,
-          .text = fmt::format(
-              "part {} on soil columns is nowhere: its position or velocity is not finite; lower the time step", p)};
+    if (!(sum < 1e300 && std::abs(axes - 3.0) < 1e-3)) {
+      report.ok = false;
+      report.text = fmt::format(
+          "part {} on soil columns is nowhere: its position or velocity is not finite, or its rotation is none; lower "
+          "the time step",
+          p);
       return false;
     }
     const PlanBox box = part.shape->shadow(pose, top_);
@@ -188,7 +189,7 @@ inline void SoilColumns::look(const ColumnPart& part, Strip& s) const {
   s.hits.clear();
   for (std::size_t ix = s.from; ix <= s.to; ++ix) {
     Hit hit{g.row(ix, s.iy), {}};
-    const double top = field_.surface(hit.row);
+    const double top = field_.resting(hit.row);
     if (part.shape->touch(pose, g.place(ix, s.iy), top, hit.touch)) s.hits.push_back(hit);
   }
 }
@@ -270,12 +271,13 @@ inline void SoilColumns::commit() {
     for (; k < strip_count_ && strips_[k].part == part; ++k) {
       for (const ColumnChange& c : strips_[k].changes) {
         risen += c.sunk - field_.sunk[c.row];
+        field_.ground[c.row] = field_.reference(c.row);  // loose soil is pressed in, or becomes soil like any other
+        field_.heap[c.row] = 0.0;
         field_.deepest[c.row] = c.deepest;
         field_.modulus[c.row] = c.modulus;
         field_.sunk[c.row] = c.sunk;
         field_.pressure[c.row] = c.pressure;
         field_.shear[c.row] = c.shear;
-        field_.heap[c.row] = 0.0;  // pressed into the soil
         rows_.push_back(c.row);
         x0 = std::min(x0, c.row % g.nx), x1 = std::max(x1, c.row % g.nx);
         y0 = std::min(y0, c.row / g.nx), y1 = std::max(y1, c.row / g.nx);

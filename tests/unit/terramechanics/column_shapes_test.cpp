@@ -101,6 +101,14 @@ TEST_CASE("a cambered wheel and one that lies on its side press with what is low
   CHECK(flat.volume == Approx(std::acos(-1.0) * 0.13 * 0.13 * 0.01).epsilon(0.01));
 }
 
+TEST_CASE("a wheel whose rotation is one but for rounding has a shadow") {
+  const ColumnCylinder wheel(0.13, 0.16);
+  for (const double off : {-4e-16, 0.0, 4e-16}) {
+    const Matrix3<double> turn = {{1, 1e-9, 0}, {-1e-9, 1.0 + off, 1e-9}, {0, -1e-9, 1.0}};
+    CHECK(!wheel.shadow({{0, 0, 0.12}, turn}, 0.0).empty());
+  }
+}
+
 TEST_CASE("a ball displaces its cap and is pushed straight up") {
   const ColumnBall ball(0.1);
   const Sums s = sums(ball, {{0.001, 0.002, 0.08}, turned(0.1, 0.2, 0.3)}, 0.002);

@@ -148,6 +148,30 @@ TEST_CASE("each pass in the rut sinks less further than the last, and meets less
   CHECK(thrust * second.torque - second.pull < 0.6 * (thrust * first.torque - first.pull));
 }
 
+TEST_CASE("soil that is pushed aside lies beside the rut, and changes no force") {
+  double top[2] = {}, spacing = 0.01;
+  const auto bare = rolled(melanz_sand, {.slip = 0.3}, 0.01);
+  for (double& highest : top) {
+    ColumnsSpec spec = lane(melanz_sand, spacing, 0.2);
+    spec.low_y = -0.2, spec.length_y = 0.4;
+    spec.bulldozing = 1.0;
+    SoilColumns columns(spec);
+    RollingWheel wheel{.slip = 0.3};
+    const auto mean = wheel.roll(columns, 0.2);
+    CHECK(mean.pull == Approx(bare.pull).epsilon(0.01));
+    CHECK(mean.sinkage == Approx(bare.sinkage).epsilon(0.01));
+    const ColumnField& f = columns.field();
+    for (std::size_t row = 0; row < f.grid.size(); ++row) {
+      highest = std::max(highest, f.heap[row]);
+      const double y = f.grid.y(row / f.grid.nx);
+      // It rolls back over the edge of the rut, but not to its middle.
+      if (std::abs(y) < 0.04) CHECK(f.heap[row] == 0.0);
+    }
+    spacing *= 0.5;
+  }
+  CHECK(top[0] == Approx(top[1]).epsilon(0.2));
+}
+
 TEST_CASE("results are the same bits for any number of threads") {
   const auto run = [](int threads) {
     ColumnsSpec spec = lane(mojave_martian_simulant, 0.01, 0.1);

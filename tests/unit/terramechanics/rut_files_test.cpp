@@ -21,7 +21,6 @@ ColumnField small() {
   f.sunk[f.grid.row(2, 0)] = 0.04;
   f.pressure[f.grid.row(2, 0)] = 5e4;
   f.shear[f.grid.row(2, 0)].mobilised = {0.3, 0.4, 0.0};
-  f.ground[f.grid.row(0, 1)] += 0.01;
   f.heap[f.grid.row(0, 1)] += 0.01;
   return f;
 }

@@ -258,6 +258,9 @@ TEST_CASE("parts that leave the soil or are nowhere are reported, not thrown") {
   CHECK(soil.apply(above, 1e-3).ok);
   const ColumnsReport lost = soil.apply(nowhere, 1e-3);
   CHECK_THAT(lost.text, ContainsSubstring("is nowhere"));
+  std::array<ColumnPart, 1> bent = {part(wheel, {0, 0, 0.12})};
+  bent[0].body.rotation = {{1, 0, 0}, {0, 2, 0}, {0, 0, 1}};
+  CHECK(!soil.apply(bent, 1e-3).ok);
 }
 
 TEST_CASE("fields and parts that cannot be are refused in words") {

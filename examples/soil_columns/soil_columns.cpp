@@ -1,0 +1,155 @@
+// A rigid wheel on soil columns (dynamic Bekker): pull, torque and sinkage over slip, beside the semi-empirical curves
+// of the same soil, and the rut that it leaves.
+//
+//   soil_columns --load 130 --soil sand.toml --output out/soil_columns
+//
+// prints a table, and writes it as CSV, plots, and the rut as CSV, PGM picture and ParaView surface.
+
+#include <dem/integrator/velocity_verlet.hpp>
+#include <dem/io/csv.hpp>
+#include <dem/math/rotation.hpp>
+#include <dem/mbd/machine.hpp>
+#include <dem/report/ascii_table.hpp>
+#include <dem/report/plot.hpp>
+#include <dem/terramechanics/column_shapes.hpp>
+#include <dem/terramechanics/machine_columns.hpp>
+#include <dem/terramechanics/rut_files.hpp>
+#include <dem/terramechanics/rut_vtk.hpp>
+#include <dem/terramechanics/soil_reader.hpp>
+#include <dem/terramechanics/wheel_load.hpp>
+
+#include <CLI/CLI.hpp>
+
+#include <ctime>
+#include <numbers>
+
+using namespace dem;
+using namespace dem::terramechanics;
+
+struct Settings {
+  NamedSoil soil = {"sand P1", "D. Melanz", melanz_sand};
+  Wheel wheel = {.radius = 0.13, .width = 0.16};
+  double load = 130.0, spacing = 0.01, travel = 0.3, dt = 2.5e-4, spin = radians(17.0);
+};
+struct Result {
+  double pull = 0.0, torque = 0.0, sinkage = 0.0;
+};
+
+/// The wheel on a hub that slides up and down on a carriage, which is moved along. Slip is 1 - v/(omega r). Joints are
+/// springs as stiff as the masses at them and the time step allow: so nearly all of the load is the hub's.
+Result roll(const Settings& s, double slip, ColumnField& field) {
+  const double r = s.wheel.radius, v = s.spin * r * (1.0 - slip), wheel_mass = 1.5;
+  mbd::Machine<integrator::VelocityVerlet> machine;
+  const BodyId carriage = machine.add_fixed_body("carriage", {0, 0, 3 * r});
+  const double hub_density = (s.load / 9.81 - wheel_mass) / (0.3 * 0.3 * 0.3);
+  const BodyId hub = machine.add_body(mbd::box_body("hub", {0.3, 0.3, 0.3}, hub_density).at({0, 0, r}));
+  const double density = wheel_mass / (std::numbers::pi * r * r * s.wheel.width);
+  const Mat3 axle_along_y = to_eigen(rotation_from_vector(Vector3<double>{-std::numbers::pi / 2, 0, 0}));
+  const BodyId wheel =
+      machine.add_body(mbd::cylinder_body("wheel", r, s.wheel.width, density).at({0, 0, r}, axle_along_y));
+  machine.add_joint(mbd::prismatic("slide", carriage, hub, {0, 0, r}, Vec3::UnitZ()));
+  const auto axle = machine.add_joint(mbd::revolute("axle", hub, wheel, {0, 0, r}, Vec3::UnitY()));
+  machine.add_motion(mbd::prescribed_position("travel", carriage, Vec3::UnitX(), mbd::Signal::ramp(0.0, v)));
+  machine.add_motion(mbd::prescribed_joint("spin", axle, mbd::Signal::ramp(0.0, s.spin)));
+
+  const double margin = 1.2 * r, width = s.wheel.width + 0.16;
+  MachineColumns soil(machine, {.low_x = -margin,
+                                .low_y = -0.5 * width,
+                                .length_x = s.travel + 2 * margin,
+                                .length_y = width,
+                                .spacing = s.spacing,
+                                .soil = s.soil.soil,
+                                .bulldozing = 0.5});
+  soil.add(wheel, std::make_shared<ColumnCylinder>(r, s.wheel.width), machine.body(wheel).position());
+
+  Result mean;
+  double count = 0.0;
+  const auto report = machine.run(s.travel / v, s.dt, [&] {
+    if (machine.time() < 0.5 * s.travel / v) return;  // set down and settled
+    mean.pull += soil.loads()[0].force.x;
+    mean.torque -= soil.loads()[0].torque.y;
+    mean.sinkage += r - machine.body(wheel).position().z();
+    ++count;
+  });
+  if (!report) fail("{}", report.text);
+  if (!soil.report()) fail("{}", soil.report().text);
+  field = soil.soil().field();
+  return {mean.pull / count, mean.torque / count, mean.sinkage / count};
+}
+
+int main(int argc, char** argv) {
+  Settings s;
+  std::string soil_file, output = "soil_columns";
+  CLI::App app("A rigid wheel on soil columns, beside the semi-empirical curves");
+  app.add_option("--soil", soil_file, "file of a soil; without, the sand P1");
+  app.add_option("--load", s.load, "on the wheel [N]")->capture_default_str()->check(CLI::Range(20.0, 1e4));
+  app.add_option("--spacing", s.spacing, "of the columns [m]")->capture_default_str()->check(CLI::Range(1e-3, 0.05));
+  app.add_option("--travel", s.travel, "[m]")->capture_default_str()->check(CLI::Range(0.05, 10.0));
+  app.add_option("--output", output, "folder for the results")->capture_default_str();
+  CLI11_PARSE(app, argc, argv);
+
+  try {
+    if (!soil_file.empty()) s.soil = load_soil(soil_file);
+    // The same assumptions as columns make: pressure largest at the lowest point, shear along the way that the rim
+    // slides.
+    Soil plain = s.soil.soil;
+    plain.a0 = plain.a1 = 0.0;
+    const WheelModel one_path = {.braked = BrakedShear::one_path};
+    io::Table table{
+        .caption = fmt::format("{}, {} N; columns / thesis eqs. 1-11 / the same with a0 = a1 = 0", s.soil.name, s.load),
+        .header = {"slip", "pull [N]", "eqs.", "plain", "torque [N m]", "eqs.", "plain", "sinkage [mm]", "eqs.",
+                   "plain"},
+        .digits = 4};
+    io::CsvWriter csv(output + "/wheel.csv", {"slip", "pull_N", "torque_Nm", "sinkage_m", "eqs_pull_N", "eqs_torque_Nm",
+                                              "eqs_sinkage_m", "plain_pull_N", "plain_torque_Nm", "plain_sinkage_m"});
+    const char* names[3] = {"columns", "thesis eqs. 1-11", "eqs. with a0 = a1 = 0, one path"};
+    io::Plot plots[3] = {{.title = "Drawbar pull", .y_label = "pull [N]"},
+                         {.title = "Torque", .y_label = "torque [N m]"},
+                         {.title = "Sinkage", .y_label = "sinkage [mm]"}};
+    for (io::Plot& plot : plots) {
+      plot.x_label = "slip 1 - v/(ωr)";
+      for (const char* name : names) plot.series.push_back({.name = name, .style = io::SeriesStyle::LinePoints});
+    }
+    const std::clock_t start = std::clock();
+    double simulated = 0.0;
+    ColumnField field;
+    for (const double slip : {-0.7, -0.5, -0.3, -0.2, -0.1, -0.05, 0.0, 0.05, 0.1, 0.2, 0.3, 0.5, 0.7}) {
+      const Result c = roll(s, slip, field);
+      simulated += s.travel / (s.spin * s.wheel.radius * (1.0 - slip));
+      const WheelForces eqs = wheel_under_load(s.wheel, s.soil.soil, {slip}, s.load),
+                        p = wheel_under_load(s.wheel, plain, {slip}, s.load, one_path);
+      table.row(slip, c.pull, eqs.pull, p.pull, c.torque, eqs.torque, p.torque, 1e3 * c.sinkage, 1e3 * eqs.sinkage,
+                1e3 * p.sinkage);
+      csv.row(slip, c.pull, c.torque, c.sinkage, eqs.pull, eqs.torque, eqs.sinkage, p.pull, p.torque, p.sinkage);
+      const double values[3][3] = {{c.pull, eqs.pull, p.pull},
+                                   {c.torque, eqs.torque, p.torque},
+                                   {1e3 * c.sinkage, 1e3 * eqs.sinkage, 1e3 * p.sinkage}};
+      for (int k = 0; k < 9; ++k) {
+        plots[k / 3].series[k % 3].x.push_back(slip);
+        plots[k / 3].series[k % 3].y.push_back(values[k / 3][k % 3]);
+      }
+    }
+    const double seconds = static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
+    fmt::print("{}", io::to_text(table));
+    fmt::print("{:.1f} s of rolling took {:.2f} s of one core: {:.1f} times real time\n", simulated, seconds,
+               simulated / seconds);
+    // The last rut, across its middle.
+    io::Plot across{.title = "Rut behind the wheel at slip 0.7", .x_label = "across [mm]", .y_label = "height [mm]"};
+    across.series.push_back({.name = "surface"});
+    const std::size_t middle = field.grid.nx / 2;
+    for (std::size_t iy = 0; iy < field.grid.ny; ++iy) {
+      across.series[0].x.push_back(1e3 * field.grid.y(iy));
+      across.series[0].y.push_back(1e3 * field.surface(field.grid.row(middle, iy)));
+    }
+    const char* files[3] = {"/pull", "/torque", "/sinkage"};
+    for (int k = 0; k < 3; ++k) io::render_plot(plots[k], output + files[k]);
+    io::render_plot(across, output + "/rut_across");
+    write_rut_csv(output + "/rut.csv", field);
+    write_rut_pgm(output + "/rut.pgm", field);
+    write_rut_vtk(output + "/rut.vtp", field);
+    fmt::print("results in {}\n", output);
+  } catch (const dem::Error& e) {
+    fmt::print(stderr, "{}\n", e.what());
+    return 1;
+  }
+}
