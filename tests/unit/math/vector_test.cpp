@@ -68,9 +68,9 @@ TEST_CASE("a pack holds one number a lane") {
   for (int k = 0; k < dem::pack_width; ++k) {
     const double x = k + 1.0, y = 2.0 * k - 1.0;
     CHECK(dem::lane(a, k) == x);
-    CHECK(dem::lane(min(a, b), k) == std::min(x, y));
-    CHECK(dem::lane(max(a, b), k) == std::max(x, y));
-    CHECK(dem::lane(sqrt(a), k) == std::sqrt(x));
+    CHECK(dem::lane(dem::min(a, b), k) == std::min(x, y));
+    CHECK(dem::lane(dem::max(a, b), k) == std::max(x, y));
+    CHECK(dem::lane(dem::sqrt(a), k) == std::sqrt(x));
     CHECK(dem::lane(dem::select(a < b, a, b), k) == (x < y ? x : y));
     CHECK((dem::bits(a < b) >> k & 1u) == (x < y ? 1u : 0u));
   }
