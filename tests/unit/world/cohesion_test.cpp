@@ -74,7 +74,7 @@ struct OnPlane {
     } else {
       world.add_surface(world.ground(), surface::Plane{}, o);
     }
-    id = world.add_particle(grain({0, 0, r + gap}, velocity));
+    id = world.add_particle(grain_at({0, 0, r + gap}, velocity));
   }
   double gap() const { return world.position(id).z() - r; }
   double speed() const { return world.velocity(id).z(); }
@@ -170,8 +170,8 @@ TEMPLATE_TEST_CASE("grains find partners as far away as bridges reach, whatever 
     w.set_contact(wet<Model>(1.0));
     w.add_species(shape, {"grain", density});
     const double reach = shape.bounding_radius(), start = joined ? -1e-6 : 1e-9;
-    const auto a = w.add_particle(grain({0, 0, 0}));
-    const auto b = w.add_particle(grain({2 * reach + start, 0, 0}, {0.3, 0, 0}));
+    const auto a = w.add_particle(grain_at({0, 0, 0}));
+    const auto b = w.add_particle(grain_at({2 * reach + start, 0, 0}, {0.3, 0, 0}));
     const Vec3 p = momentum(w);
     const auto gap = [&] { return (w.position(b) - w.position(a)).norm() - 2 * reach; };
     // Spheres of radius r each: R* = r/2.
@@ -225,7 +225,7 @@ TEST_CASE("a bridge between a sphere and a ball of a cluster pulls as between tw
                cube = w.add_species(shape::cube8(2 * r), {"grain", density});
     const Vec3 diagonal = Vec3::Ones().normalized();
     const double apart = std::sqrt(3.0) * r + 2 * r;  // of the centres when they touch
-    NewParticle grains[] = {grain({0, 0, 0}), grain((apart - 1e-6) * diagonal, 0.3 * diagonal)};
+    NewParticle grains[] = {grain_at({0, 0, 0}), grain_at((apart - 1e-6) * diagonal, 0.3 * diagonal)};
     grains[0].species = cube;
     grains[1].species = ball;
     const auto first = w.add_particle(grains[cube_first ? 0 : 1]), second = w.add_particle(grains[cube_first ? 1 : 0]);
@@ -254,7 +254,7 @@ TEST_CASE("a bridge between an ellipsoid and a floor is one contact") {
   w.set_contact(wet<Model>(1.0));
   w.add_species(egg, {"grain", density});
   w.add_surface(w.ground(), surface::Plane{});
-  const auto id = w.add_particle(grain({0, 0, 0.9 * r - 1e-6}, {0, 0, 0.2}));
+  const auto id = w.add_particle(grain_at({0, 0, 0.9 * r - 1e-6}, {0, 0, 0.2}));
   int seen = 0;
   for (double gap = 0.0; gap < 0.9 * water.rupture; ++seen) {
     REQUIRE(w.run(10));

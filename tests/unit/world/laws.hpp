@@ -25,7 +25,7 @@ using models::LinearModel;
 using PlasticModel = Laws<contact::Hysteretic, friction::CoulombViscous>;
 
 /// A grain at a place with a motion.
-inline NewParticle grain(const Vec3& position, const Vec3& velocity = {0, 0, 0}, const Vec3& spin = {0, 0, 0}) {
+inline NewParticle grain_at(const Vec3& position, const Vec3& velocity = {0, 0, 0}, const Vec3& spin = {0, 0, 0}) {
   NewParticle n;
   n.species = SpeciesId(0);
   n.position = position;

@@ -37,7 +37,7 @@ struct OnPlane {
     const auto species = world.add_species(Sphere(r), {"grain", 2500.0});
     world.add_surface(world.ground(), surface::Plane{});
     const double depth = world.species(species).mass * g * std::cos(angle) / stiffness;
-    id = world.add_particle(grain({0, 0, r - depth}, velocity, spin));
+    id = world.add_particle(grain_at({0, 0, r - depth}, velocity, spin));
   }
   double speed() const { return world.velocity(id).x(); }
   Vec3 spin() const { return world.angular_velocity(id); }
@@ -124,7 +124,7 @@ TEMPLATE_TEST_CASE("a ball that cannot roll sticks below atan(mu) and slides abo
       depth = std::pow(0.75 * weight / (soft.modulus * std::sqrt(r)), 2.0 / 3.0);
     }
     w.add_surface(w.ground(), surface::Plane{});
-    const auto ball = w.add_particle(grain({0, 0, r - depth}));
+    const auto ball = w.add_particle(grain_at({0, 0, r - depth}));
     for (int k = 1; k <= 100; ++k) {  // tilted slowly, so that nothing swings
       w.set_gravity({g * std::sin(angle * k / 100), 0, -g * std::cos(angle * k / 100)});
       REQUIRE(w.run(50));
@@ -150,8 +150,8 @@ TEST_CASE("torques of rolling and torsion are equal and opposite") {
   w.set_contact(constants<SpringModel>(0.4));
   w.add_species(Sphere(r));
   w.add_species(Sphere(0.6 * r));
-  w.add_particle(grain({0, 0, 0}, {0.1, 0.02, 0}, {5, -20, 30}));
-  NewParticle other = grain({1.59 * r, 0.1 * r, 0}, {-0.2, 0, 0.05}, {-40, 10, 20});
+  w.add_particle(grain_at({0, 0, 0}, {0.1, 0.02, 0}, {5, -20, 30}));
+  NewParticle other = grain_at({1.59 * r, 0.1 * r, 0}, {-0.2, 0, 0.05}, {-40, 10, 20});
   other.species = SpeciesId(1);
   w.add_particle(other);
   const Vec3 p = momentum(w), l = angular_momentum(w), spin = w.angular_velocity(ParticleId(0));
