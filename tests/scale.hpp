@@ -13,4 +13,7 @@ inline double test_scale() {
 }
 
 /// So many steps, or that share of them: for tests that ask the same of a shorter run.
-inline int scaled(int steps) { return std::max(1, static_cast<int>(std::lround(test_scale() * steps))); }
+template <class N>
+N scaled(N steps) {
+  return std::max(N(1), static_cast<N>(std::lround(test_scale() * static_cast<double>(steps))));
+}

@@ -97,8 +97,9 @@ TEMPLATE_TEST_CASE("the state is the same to the last bit on any number of threa
   Poured<TestType> one(1);
   one.run(steps);
   const std::uint64_t expected = state_hash(one.world);
-  CHECK(one.world.state().rebuilds > 10 * test_scale());  // lists were made anew, and grains re-sorted, many times
-  CHECK(one.world.state().chunks.size() > 2);             // there is something to share out
+  // Lists were made anew, and grains re-sorted, many times, and there is something to share out.
+  CHECK(one.world.state().rebuilds > scaled<std::uint64_t>(10));
+  CHECK(one.world.state().chunks.size() > 2);
   for (const int threads : {2, 3, 8}) {
     Poured<TestType> many(threads);
     many.run(steps);
@@ -110,12 +111,12 @@ TEMPLATE_TEST_CASE("the state is the same to the last bit on any number of threa
 }
 
 TEST_CASE("a machine among grains is the same to the last bit on any number of threads") {
-  const auto steps = static_cast<std::uint64_t>(scaled(8000));
+  const auto steps = scaled<std::uint64_t>(8000);
   Stirred one(1);
   REQUIRE(one.world.run(steps));
   const std::uint64_t expected = state_hash(one.world);
   REQUIRE(one.world.state().chunks.size() > 1);
-  CHECK(one.world.state().rebuilds > 10 * test_scale());
+  CHECK(one.world.state().rebuilds > scaled<std::uint64_t>(10));
   CHECK(std::abs(one.world.machine().coordinate(one.hinge)) > 0.01 * test_scale());  // the grains do swing the flap
   for (const int threads : {2, 3, 8}) {
     Stirred many(threads);

@@ -6,6 +6,8 @@
 #include <dem/geometry/sphere/sphere_surface.hpp>
 #include <dem/geometry/superquadric/superquadric_surface.hpp>
 
+namespace round_surfaces {  // whose names are those of grains elsewhere
+
 using Catch::Approx;
 using dem::Vec3;
 using dem::surface::Cylinder;
@@ -212,3 +214,5 @@ TEST_CASE("round surfaces of impossible sizes are refused") {
   check_refused([] { Cylinder::tube(1.0, 0.9, 1.0); }, "outer radius of a tube is 0.9 m", "exceed the inner one, 1 m");
   check_refused([] { Superquadric({1, 1, 1}, {2, 1.5, 2}); }, "exponent of a superquadric is 1.5", "between 2 and 32");
 }
+
+}  // namespace round_surfaces

@@ -4,6 +4,7 @@
 #include <dem/geometry/mesh/mesh_shapes.hpp>
 #include <dem/geometry/superquadric/superquadric_surface.hpp>
 #include <dem/law/normal/linear_spring_dashpot.hpp>
+#include <dem/mbd/body/mesh_body.hpp>
 
 using Catch::Approx;
 using dem::BodyId;
