@@ -1,6 +1,7 @@
 #pragma once
 
-#include <dem/mbd/assembly.hpp>
+#include <dem/mbd/load/load.hpp>
+#include <dem/mbd/solver/mechanism.hpp>
 #include <dem/terramechanics/soil_columns.hpp>
 
 #include <limits>
@@ -22,7 +23,7 @@ namespace dem::terramechanics {
 class MachineColumns {
  public:
   /// Throws Error for a field that cannot be (check_columns).
-  MachineColumns(mbd::Assembly& machine, const ColumnsSpec& spec)
+  MachineColumns(mbd::Mechanism& machine, const ColumnsSpec& spec)
       : machine_(&machine), state_(std::make_shared<State>(machine, spec)) {}
 
   /// A shape fixed to a body: where its frame is now (m, global) and how it is turned. `width` (m) is b of the pressure
@@ -66,7 +67,7 @@ class MachineColumns {
 
  private:
   struct State {
-    State(mbd::Assembly& m, const ColumnsSpec& spec) : machine(&m), soil(spec) {}
+    State(mbd::Mechanism& m, const ColumnsSpec& spec) : machine(&m), soil(spec) {}
 
     /// The first of the loads does it for all.
     void evaluate(double time) {
@@ -78,15 +79,15 @@ class MachineColumns {
       report = soil.evaluate(parts, kept >= 0.0 && time > kept ? time - kept : 0.0);
       evaluated = time;
     }
-    mbd::Wrench load_on(BodyId body) const {
-      mbd::Wrench sum;
+    Wrench load_on(BodyId body) const {
+      Wrench sum;
       for (std::size_t k = 0; k < soil.loads().size(); ++k) {
-        if (bodies[k] == body) sum = sum + mbd::Wrench{soil.loads()[k].force, soil.loads()[k].torque};
+        if (bodies[k] == body) sum = sum + Wrench{soil.loads()[k].force, soil.loads()[k].torque};
       }
       return sum;
     }
 
-    mbd::Assembly* machine;
+    mbd::Mechanism* machine;
     SoilColumns soil;
     std::vector<ColumnPart> parts;
     std::vector<BodyId> bodies;  ///< of the parts
@@ -94,7 +95,7 @@ class MachineColumns {
     double evaluated = -1.0, kept = -1.0;  ///< s, of the newest evaluation and of what is kept
   };
 
-  mbd::Assembly* machine_;
+  mbd::Mechanism* machine_;
   std::shared_ptr<State> state_;
 };
 

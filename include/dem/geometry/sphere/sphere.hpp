@@ -1,5 +1,6 @@
 #pragma once
 
+#include <dem/core/error.hpp>
 #include <dem/geometry/shape.hpp>
 
 namespace dem::shape {
