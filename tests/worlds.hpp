@@ -57,7 +57,7 @@ using HertzModel = Laws<dem::contact::Hertz, dem::friction::Mindlin>;
 
 // What of a world takes the time: its class, and the functions of a step.
 #define TEST_WORLD(declare, M)                                                \
-  declare template void dem::evaluate_contacts<M>(dem::WorldState<M>&);           \
+  declare template void dem::evaluate_contacts<M>(dem::WorldState<M>&);       \
   declare template void dem::advance<M>(dem::WorldState<M>&);                 \
   declare template void dem::initialise<M>(dem::WorldState<M>&);              \
   declare template void dem::rebuild_neighbours<M>(dem::WorldState<M>&);      \
