@@ -309,7 +309,7 @@ function(dem_add_clang_test)
   add_test(
     NAME clang.build
     COMMAND ${DEM_CLANG} -std=c++20 -O1 -march=native -fno-math-errno -fno-trapping-math -w ${DEM_INCLUDES}
-            "-I${CMAKE_CURRENT_SOURCE_DIR}" ${ARGN}
+            "-I${CMAKE_CURRENT_SOURCE_DIR}" "-I${CMAKE_CURRENT_SOURCE_DIR}/unit" ${ARGN}
             "${CMAKE_CURRENT_SOURCE_DIR}/main.cpp" -o ${program} $<TARGET_FILE:fmt::fmt>
     COMMAND_EXPAND_LISTS)
   add_test(NAME clang.run COMMAND ${program})
