@@ -40,9 +40,14 @@ line() {
   for ((k = 0; k < repeats; ++k)); do
     /usr/bin/time -f '%U %S %M' -o "$work/time" "$compiler" "${flags[@]}" "$2" -c "$5" -o "$work/object"
     read -r user system kilobytes < "$work/time"
-    read -r seconds megabytes < <(awk -v u="$user" -v s="$system" -v m="$kilobytes" -v best="$seconds" -v most="$megabytes" \
-      'BEGIN { t = u + s; m = m / 1000
-               printf "%.2f %.0f\n", best == "" || t < best ? t : best, most == "" || m > most ? m : most }')
+    read -r seconds megabytes < <(awk -v u="$user" -v s="$system" -v m="$kilobytes" -v best="$seconds" -v most="$megabytes" '
+      BEGIN {
+        t = u + s
+        m /= 1000
+        if (best == "" || t < best) best = t
+        if (most == "" || m > most) most = m
+        printf "%.2f %.0f\n", best, most
+      }')
   done
   echo "| $1 | \`$2\` | $seconds | $3 | $megabytes | $4 |"
 }
