@@ -128,8 +128,8 @@ int main(int argc, char** argv) {
       }
     }
     const double seconds = static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
-    fmt::print("{}{:.1f} s of rolling took {:.2f} s of one core: {:.1f} times real time\n", io::to_text(table),
-               simulated, seconds, simulated / seconds);
+    fmt::print("{}{:.0f} s of rolling took {:.2f} s of one core: {:.1f} times real time; results in {}\n",
+               io::to_text(table), simulated, seconds, simulated / seconds, output);
     // The last rut, across its middle.
     io::Plot across{.title = "Rut behind the wheel at slip 0.7", .x_label = "across [mm]", .y_label = "height [mm]"};
     across.series.push_back({.name = "surface"});
