@@ -3,7 +3,7 @@
 //
 //   soil_columns --load 130 --soil sand.toml --output out/soil_columns
 //
-// prints a table, and writes it as CSV, plots, and the rut as CSV, PGM picture and ParaView surface.
+// prints a table, and writes it as CSV, plots, and the last rut as CSV, PGM picture and ParaView surface.
 
 #include <dem/integrator/velocity_verlet.hpp>
 #include <dem/io/csv.hpp>
@@ -20,18 +20,18 @@
 
 #include <CLI/CLI.hpp>
 
+#include <array>
 #include <ctime>
 #include <numbers>
 
 using namespace dem;
 using namespace dem::terramechanics;
-
 struct Settings {
   NamedSoil soil = {"sand P1", "D. Melanz", melanz_sand};
   Wheel wheel = {.radius = 0.13, .width = 0.16};
   double load = 130.0, spacing = 0.01, travel = 0.3, dt = 2.5e-4, spin = radians(17.0);
 };
-struct Result {
+struct Result {  // N, N m, m
   double pull = 0.0, torque = 0.0, sinkage = 0.0;
 };
 
@@ -51,7 +51,6 @@ Result roll(const Settings& s, double slip, ColumnField& field) {
   const auto axle = machine.add_joint(mbd::revolute("axle", hub, wheel, {0, 0, r}, Vec3::UnitY()));
   machine.add_motion(mbd::prescribed_position("travel", carriage, Vec3::UnitX(), mbd::Signal::ramp(0.0, v)));
   machine.add_motion(mbd::prescribed_joint("spin", axle, mbd::Signal::ramp(0.0, s.spin)));
-
   const double margin = 1.2 * r, width = s.wheel.width + 0.16;
   MachineColumns soil(machine, {.low_x = -margin,
                                 .low_y = -0.5 * width,
@@ -61,7 +60,6 @@ Result roll(const Settings& s, double slip, ColumnField& field) {
                                 .soil = s.soil.soil,
                                 .bulldozing = 0.5});
   soil.add(wheel, std::make_shared<ColumnCylinder>(r, s.wheel.width), machine.body(wheel).position());
-
   Result mean;
   double count = 0.0;
   const auto report = machine.run(s.travel / v, s.dt, [&] {
@@ -87,52 +85,51 @@ int main(int argc, char** argv) {
   app.add_option("--travel", s.travel, "[m]")->capture_default_str()->check(CLI::Range(0.05, 10.0));
   app.add_option("--output", output, "folder for the results")->capture_default_str();
   CLI11_PARSE(app, argc, argv);
-
   try {
     if (!soil_file.empty()) s.soil = load_soil(soil_file);
-    // The same assumptions as columns make: pressure largest at the lowest point, shear along the way that the rim
-    // slides.
+    // What columns assume: pressure largest at the lowest point, shear along the way that the rim slides.
     Soil plain = s.soil.soil;
     plain.a0 = plain.a1 = 0.0;
     const WheelModel one_path = {.braked = BrakedShear::one_path};
-    io::Table table{
-        .caption = fmt::format("{}, {} N; columns / thesis eqs. 1-11 / the same with a0 = a1 = 0", s.soil.name, s.load),
-        .header = {"slip", "pull [N]", "eqs.", "plain", "torque [N m]", "eqs.", "plain", "sinkage [mm]", "eqs.",
-                   "plain"},
-        .digits = 4};
-    io::CsvWriter csv(output + "/wheel.csv", {"slip", "pull_N", "torque_Nm", "sinkage_m", "eqs_pull_N", "eqs_torque_Nm",
-                                              "eqs_sinkage_m", "plain_pull_N", "plain_torque_Nm", "plain_sinkage_m"});
-    const char* names[3] = {"columns", "thesis eqs. 1-11", "eqs. with a0 = a1 = 0, one path"};
-    io::Plot plots[3] = {{.title = "Drawbar pull", .y_label = "pull [N]"},
-                         {.title = "Torque", .y_label = "torque [N m]"},
-                         {.title = "Sinkage", .y_label = "sinkage [mm]"}};
-    for (io::Plot& plot : plots) {
-      plot.x_label = "slip 1 - v/(ωr)";
-      for (const char* name : names) plot.series.push_back({.name = name, .style = io::SeriesStyle::LinePoints});
+    const char* quantities[3] = {"pull [N]", "torque [N m]", "sinkage [mm]"};
+    const char* models[3] = {"columns", "thesis eqs. 1-11", "eqs. with a0 = a1 = 0, one path"};
+    io::Table table{.caption = fmt::format("{}, {} N: columns / thesis eqs. 1-11 / the same with a0 = a1 = 0, one path",
+                                           s.soil.name, s.load),
+                    .header = {"slip"},
+                    .digits = 4};
+    io::Plot plots[3];
+    for (int q = 0; q < 3; ++q) {
+      plots[q] = {.title = fmt::format("Wheel on {}, {} N", s.soil.name, s.load),
+                  .x_label = "slip 1 - v/(ωr)",
+                  .y_label = quantities[q]};
+      for (const char* model : models) {
+        plots[q].series.push_back({.name = model, .style = io::SeriesStyle::LinePoints});
+        table.header.push_back(model == models[0] ? quantities[q] : model == models[1] ? "eqs." : "plain");
+      }
     }
+    io::CsvWriter csv(output + "/wheel.csv",
+                      {"slip", "pull_N", "eqs_pull_N", "plain_pull_N", "torque_Nm", "eqs_torque_Nm", "plain_torque_Nm",
+                       "sinkage_mm", "eqs_sinkage_mm", "plain_sinkage_mm"});
     const std::clock_t start = std::clock();
     double simulated = 0.0;
     ColumnField field;
     for (const double slip : {-0.7, -0.5, -0.3, -0.2, -0.1, -0.05, 0.0, 0.05, 0.1, 0.2, 0.3, 0.5, 0.7}) {
       const Result c = roll(s, slip, field);
       simulated += s.travel / (s.spin * s.wheel.radius * (1.0 - slip));
-      const WheelForces eqs = wheel_under_load(s.wheel, s.soil.soil, {slip}, s.load),
+      const WheelForces e = wheel_under_load(s.wheel, s.soil.soil, {slip}, s.load),
                         p = wheel_under_load(s.wheel, plain, {slip}, s.load, one_path);
-      table.row(slip, c.pull, eqs.pull, p.pull, c.torque, eqs.torque, p.torque, 1e3 * c.sinkage, 1e3 * eqs.sinkage,
-                1e3 * p.sinkage);
-      csv.row(slip, c.pull, c.torque, c.sinkage, eqs.pull, eqs.torque, eqs.sinkage, p.pull, p.torque, p.sinkage);
-      const double values[3][3] = {{c.pull, eqs.pull, p.pull},
-                                   {c.torque, eqs.torque, p.torque},
-                                   {1e3 * c.sinkage, 1e3 * eqs.sinkage, 1e3 * p.sinkage}};
-      for (int k = 0; k < 9; ++k) {
+      const std::vector<double> row = {slip,     c.pull,   e.pull,          p.pull,          c.torque,
+                                       e.torque, p.torque, 1e3 * c.sinkage, 1e3 * e.sinkage, 1e3 * p.sinkage};
+      table.row(row[0], row[1], row[2], row[3], row[4], row[5], row[6], row[7], row[8], row[9]);
+      csv.row(row);
+      for (std::size_t k = 0; k < 9; ++k) {
         plots[k / 3].series[k % 3].x.push_back(slip);
-        plots[k / 3].series[k % 3].y.push_back(values[k / 3][k % 3]);
+        plots[k / 3].series[k % 3].y.push_back(row[k + 1]);
       }
     }
     const double seconds = static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
-    fmt::print("{}", io::to_text(table));
-    fmt::print("{:.1f} s of rolling took {:.2f} s of one core: {:.1f} times real time\n", simulated, seconds,
-               simulated / seconds);
+    fmt::print("{}{:.0f} s of rolling took {:.2f} s of one core: {:.1f} times real time; results in {}\n",
+               io::to_text(table), simulated, seconds, simulated / seconds, output);
     // The last rut, across its middle.
     io::Plot across{.title = "Rut behind the wheel at slip 0.7", .x_label = "across [mm]", .y_label = "height [mm]"};
     across.series.push_back({.name = "surface"});
@@ -141,13 +138,11 @@ int main(int argc, char** argv) {
       across.series[0].x.push_back(1e3 * field.grid.y(iy));
       across.series[0].y.push_back(1e3 * field.surface(field.grid.row(middle, iy)));
     }
-    const char* files[3] = {"/pull", "/torque", "/sinkage"};
-    for (int k = 0; k < 3; ++k) io::render_plot(plots[k], output + files[k]);
+    for (int q = 0; q < 3; ++q) io::render_plot(plots[q], output + std::array{"/pull", "/torque", "/sinkage"}[q]);
     io::render_plot(across, output + "/rut_across");
     write_rut_csv(output + "/rut.csv", field);
     write_rut_pgm(output + "/rut.pgm", field);
     write_rut_vtk(output + "/rut.vtp", field);
-    fmt::print("results in {}\n", output);
   } catch (const dem::Error& e) {
     fmt::print(stderr, "{}\n", e.what());
     return 1;
