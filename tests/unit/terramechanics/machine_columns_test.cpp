@@ -43,7 +43,7 @@ struct Rig {
     wheel =
         machine.add_body(mbd::cylinder_body("wheel", same.radius, same.width, density).at({0, 0, same.radius}, turn));
     machine.add_joint(mbd::prismatic("slide", carriage, hub, {0, 0, same.radius}, Vec3::UnitZ()));
-    const JointId axle = machine.add_joint(mbd::revolute("axle", hub, wheel, {0, 0, same.radius}, Vec3::UnitY()));
+    const auto axle = machine.add_joint(mbd::revolute("axle", hub, wheel, {0, 0, same.radius}, Vec3::UnitY()));
     machine.add_motion(mbd::prescribed_position("travel", carriage, Vec3::UnitX(), mbd::Signal::ramp(0.0, v)));
     machine.add_motion(mbd::prescribed_joint("spin", axle, mbd::Signal::ramp(0.0, same.spin)));
   }
