@@ -51,10 +51,15 @@ struct Bulldozing {
     }
   }
 
-  /// Lets loose soil roll around a rectangle of touched columns, ends included, over columns that are not touched in
-  /// this step. Returns the greatest height (m) from which sinkage counts there.
-  double roll(ColumnField& field, std::size_t x0, std::size_t x1, std::size_t y0, std::size_t y1, std::uint32_t step) {
+  /// Lets loose soil roll around the rows that a part touches (at least one), over columns that none touches in this
+  /// step. Returns the greatest height (m) from which sinkage counts there.
+  double roll(ColumnField& field, std::span<const std::size_t> rows, std::uint32_t step) {
     const ColumnGrid& g = field.grid;
+    std::size_t x0 = g.nx, x1 = 0, y0 = g.ny, y1 = 0;
+    for (const std::size_t row : rows) {
+      x0 = std::min(x0, row % g.nx), x1 = std::max(x1, row % g.nx);
+      y0 = std::min(y0, row / g.nx), y1 = std::max(y1, row / g.nx);
+    }
     x0 -= std::min(x0, margin_), y0 -= std::min(y0, margin_);
     x1 = std::min(x1 + margin_, g.nx - 1), y1 = std::min(y1 + margin_, g.ny - 1);
     const std::size_t width = x1 - x0 + 1;
@@ -64,17 +69,18 @@ struct Bulldozing {
       for (std::size_t ix = x0; ix <= x1; ++ix) {
         const std::size_t row = g.row(ix, iy), here = width * (iy - y0) + (ix - x0);
         if (!(field.heap[row] > 0.0) || field.touched[row] == step) continue;
-        full |= ix == x0 || ix == x1 || iy == y0 || iy == y1;
         const double height = field.surface(row) - steepest * g.spacing;
         std::array<double, 4> flow{};
-        const auto excess = [&](bool inside, std::size_t other) {
-          // A fifth of it is stable with four neighbours.
-          return inside && field.touched[other] != step ? std::max(0.0, 0.2 * (height - field.surface(other))) : 0.0;
+        const auto excess = [&](bool inside, bool on_grid, std::size_t other) {
+          if (!on_grid || field.touched[other] == step) return 0.0;
+          const double over = height - field.surface(other);
+          full |= !inside && over > 1e-3 * g.spacing;
+          return inside ? std::max(0.0, 0.2 * over) : 0.0;  // a fifth is stable with four neighbours
         };
-        flow[0] = excess(ix > x0, row - 1);
-        flow[1] = excess(ix < x1, row + 1);
-        flow[2] = excess(iy > y0, row - g.nx);
-        flow[3] = excess(iy < y1, row + g.nx);
+        flow[0] = excess(ix > x0, ix > 0, row - 1);
+        flow[1] = excess(ix < x1, ix + 1 < g.nx, row + 1);
+        flow[2] = excess(iy > y0, iy > 0, row - g.nx);
+        flow[3] = excess(iy < y1, iy + 1 < g.ny, row + g.nx);
         const double sum = flow[0] + flow[1] + flow[2] + flow[3];
         if (!(sum > 0.0)) continue;
         const double scale = std::min(1.0, field.heap[row] / sum);
@@ -93,8 +99,8 @@ struct Bulldozing {
         top = std::max(top, field.reference(row));
       }
     }
-    // The next step looks further where soil has come to the edge of what was looked at.
-    if (full && margin_ < 200) margin_ += 2;
+    // The next step looks further where soil would roll out of what was looked at.
+    if (full && margin_ < 50) ++margin_;
     return top;
   }
 

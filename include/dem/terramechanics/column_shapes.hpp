@@ -62,14 +62,17 @@ class ColumnCylinder final : public ColumnShape {
     const Vector3<double> a = axis(pose);
     const double level2 = 1.0 - a.z * a.z;
     Vector3<double> q = {place.at_x - pose.position.x, place.at_y - pose.position.y, 0.0};
-    if (level2 > 1e-12) {
+    // Most columns that are asked lie before or behind what presses. Along the axis the height changes by its slope.
+    const bool low = level2 > 1e-12 && mantle(a, level2, q) &&
+                     pose.position.z + q.z < top + 2.0 * place.spacing * std::abs(a.z) / level2;
+    if (low) {
       // The share along the axis is the whole column's, the height that of its point.
       Vector3<double> centre = {place.x - pose.position.x, place.y - pose.position.y, 0.0};
       const double extent = place.spacing * (std::abs(a.x) + std::abs(a.y));
       if (mantle(a, level2, centre)) {
         double middle = 0.0;
         const double share = detail::covered(dot(a, centre), extent, half_, middle);
-        bool found = share > 0.0 && mantle(a, level2, q);
+        bool found = share > 0.0;
         if (found && share < 1.0) {
           const double along = dot(a, q);
           q.x += (middle - along) * a.x / level2;

@@ -256,8 +256,6 @@ inline ColumnsReport SoilColumns::evaluate(std::span<const ColumnPart> parts, do
 
 inline void SoilColumns::commit() {
   ++step_;
-  const ColumnGrid& g = field_.grid;
-  std::size_t x0 = g.nx, x1 = 0, y0 = g.ny, y1 = 0;
   for (std::size_t k = 0; k < strip_count_; ++k) {
     for (const ColumnChange& c : strips_[k].changes) {
       field_.touched[c.row] = step_;
@@ -279,15 +277,12 @@ inline void SoilColumns::commit() {
         field_.pressure[c.row] = c.pressure;
         field_.shear[c.row] = c.shear;
         rows_.push_back(c.row);
-        x0 = std::min(x0, c.row % g.nx), x1 = std::max(x1, c.row % g.nx);
-        y0 = std::min(y0, c.row / g.nx), y1 = std::max(y1, c.row / g.nx);
       }
     }
+    if (!(bulldozing_.share > 0.0) || rows_.empty()) continue;
     const Vector3<double>& v = velocity_[static_cast<std::size_t>(part)];
-    bulldozing_.deposit(field_, rows_, risen * g.area(), v.x, v.y, step_);
-  }
-  if (bulldozing_.share > 0.0 && x0 <= x1) {
-    top_ = std::max(top_, bulldozing_.roll(field_, x0, x1, y0, y1, step_));
+    bulldozing_.deposit(field_, rows_, risen * field_.grid.area(), v.x, v.y, step_);
+    top_ = std::max(top_, bulldozing_.roll(field_, rows_, step_));
   }
   strip_count_ = 0;
 }
