@@ -221,7 +221,7 @@ function(dem_add_compile_fail_test source)
     NAME compile_fail.${name}
     COMMAND ${CMAKE_COMMAND} "-DSOURCE=${source}" -P "${DEM_SCRIPTS}/CompileFail.cmake" -- ${DEM_LOOK} ${given}
     COMMAND_EXPAND_LISTS)
-  set_tests_properties(compile_fail.${name} PROPERTIES LABELS static)
+  set_tests_properties(compile_fail.${name} PROPERTIES LABELS checks)
 endfunction()
 
 # dem_add_benchmark_compile_test(<benchmark>): its sources are valid C++, where benchmarks are not built. Without the code
@@ -250,7 +250,7 @@ function(dem_add_benchmark_compile_test benchmark)
               "$<$<BOOL:${includes}>:${system}$<JOIN:${includes},$<SEMICOLON>${system}>>"
               "-I${PROJECT_SOURCE_DIR}/benchmarks" "${source}"
       COMMAND_EXPAND_LISTS)
-    set_tests_properties(benchmark_compile.${benchmark}.${name} PROPERTIES LABELS static)
+    set_tests_properties(benchmark_compile.${benchmark}.${name} PROPERTIES LABELS checks)
   endforeach()
 endfunction()
 
@@ -272,7 +272,7 @@ function(dem_add_cuda_compile_test source)
     COMMAND ${DEM_NVCC} -std=c++20 -arch=sm_75 --expt-relaxed-constexpr -Werror cross-execution-space-call -diag-suppress
             20012 -ccbin ${CMAKE_CXX_COMPILER} ${DEM_INCLUDES} -c "${source}" -o "${CMAKE_CURRENT_BINARY_DIR}/${name}.cu.o"
     COMMAND_EXPAND_LISTS)
-  set_tests_properties(cuda_compile.${name} PROPERTIES LABELS static)
+  set_tests_properties(cuda_compile.${name} PROPERTIES LABELS checks)
 endfunction()
 
 # dem_add_clang_test(<source>...): these unit tests pass when clang has compiled them for this machine as well, without
@@ -282,7 +282,7 @@ function(dem_add_clang_test)
   if(NOT DEM_CLANG OR NOT CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
     # Seen in the list of tests as not run, not passed over in silence.
     add_test(NAME clang COMMAND ${CMAKE_COMMAND} -E echo "no clang++ besides g++")
-    set_tests_properties(clang PROPERTIES LABELS static SKIP_REGULAR_EXPRESSION "no clang")
+    set_tests_properties(clang PROPERTIES LABELS checks SKIP_REGULAR_EXPRESSION "no clang")
     return()
   endif()
   execute_process(COMMAND ${DEM_CLANG} -fopenmp -include omp.h -fsyntax-only -x c++ /dev/null
@@ -298,7 +298,7 @@ function(dem_add_clang_test)
     COMMAND ${DEM_CLANG} -std=c++20 -march=native ${openmp} -fsyntax-only -Wall -Wextra -Wpedantic -Werror
             ${DEM_INCLUDES} "${CMAKE_CURRENT_SOURCE_DIR}/clang/worlds.cpp"
     COMMAND_EXPAND_LISTS)
-  set_tests_properties(clang.world PROPERTIES LABELS static)
+  set_tests_properties(clang.world PROPERTIES LABELS checks)
 
   if(Catch2_VERSION VERSION_GREATER_EQUAL 3)  # has no main function that a compiler's command line could name
     message(STATUS "Catch2 3: going without the tests clang.build and clang.run")
@@ -313,8 +313,8 @@ function(dem_add_clang_test)
             "${CMAKE_CURRENT_SOURCE_DIR}/main.cpp" -o ${program} $<TARGET_FILE:fmt::fmt>
     COMMAND_EXPAND_LISTS)
   add_test(NAME clang.run COMMAND ${program})
-  set_tests_properties(clang.build PROPERTIES FIXTURES_SETUP clang LABELS static)
-  set_tests_properties(clang.run PROPERTIES FIXTURES_REQUIRED clang LABELS static)
+  set_tests_properties(clang.build PROPERTIES FIXTURES_SETUP clang LABELS checks)
+  set_tests_properties(clang.run PROPERTIES FIXTURES_REQUIRED clang LABELS checks)
 endfunction()
 
 # dem_add_consumer_test(<way> <option>...): configures, builds and runs the project consumers/<way>.
@@ -326,16 +326,19 @@ function(dem_add_consumer_test way)
       "${CMAKE_CURRENT_BINARY_DIR}/consumers/${way}" --build-generator "${CMAKE_GENERATOR}" --build-project consumer
       --build-options "-DCMAKE_CXX_COMPILER=${CMAKE_CXX_COMPILER}" -DCMAKE_BUILD_TYPE=Debug ${ARGN} --test-command
       consumer ${PROJECT_VERSION})
-  set_tests_properties(consumer.${way} PROPERTIES LABELS packaging)
+  set_tests_properties(consumer.${way} PROPERTIES LABELS checks)
 endfunction()
 
 # dem_add_example_test(<example> [NAME <name>] [ARGS <arg>...] [FILES <file>...] [EXPECT <regex>...]): the example runs
 # with these arguments and `--output <folder>`, leaves these files there, and its output matches every regex. Test and
 # folder are called as the example, unless it has several tests with names of their own.
 function(dem_add_example_test example)
-  cmake_parse_arguments(arg "" "NAME" "ARGS;FILES;EXPECT" ${ARGN})
+  cmake_parse_arguments(arg "" "NAME;LABEL" "ARGS;FILES;EXPECT" ${ARGN})
   if(NOT arg_NAME)
     set(arg_NAME ${example})
+  endif()
+  if(NOT arg_LABEL)
+    set(arg_LABEL example)
   endif()
   if(NOT TARGET ${example})
     message(STATUS "${example} is not built, going without: the test example.${arg_NAME}")
@@ -345,5 +348,8 @@ function(dem_add_example_test example)
     NAME example.${arg_NAME}
     COMMAND ${CMAKE_COMMAND} "-DOUTPUT=${CMAKE_CURRENT_BINARY_DIR}/${arg_NAME}" "-DFILES=${arg_FILES}"
             "-DEXPECT=${arg_EXPECT}" -P "${DEM_SCRIPTS}/RunExample.cmake" -- $<TARGET_FILE:${example}> ${arg_ARGS})
-  set_tests_properties(example.${arg_NAME} PROPERTIES LABELS example)
+  set_tests_properties(example.${arg_NAME} PROPERTIES LABELS ${arg_LABEL})
+  if(NOT arg_LABEL STREQUAL "checks")
+    add_dependencies(fast_tests ${example})
+  endif()
 endfunction()
