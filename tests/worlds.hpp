@@ -22,7 +22,7 @@ using Cube8 = dem::shape::SphereCluster<8>;
 
 /// The default laws.
 template <class S, class I = dem::integrator::SymplecticEuler, class B = dem::broadphase::UniformGrid,
-          class E = dem::exec::OpenMP>
+          class E = dem::exec::Threads>
 struct Grains : dem::Model {
   using Shape = S;
   using Integrator = I;

@@ -27,6 +27,7 @@
 #include <dem/law/rolling/torsion.hpp>
 #include <dem/mbd/body/mesh_body.hpp>
 #include <dem/mbd/mbd.hpp>
+#include <dem/parallel/openmp.hpp>
 #include <dem/parallel/serial.hpp>
 #include <dem/world/memory.hpp>
 #include <dem/world/world.hpp>

@@ -12,8 +12,10 @@
 
 namespace dem::exec {
 
-/// OpenMP threads; runs on one thread when the compiler has no OpenMP. Unless a number is set, it uses as many threads
-/// as OpenMP offers, but gives each at least a few pieces of work: waking a thread costs more than a small piece.
+/// OpenMP's threads, for programs that use OpenMP themselves and want no others; runs on one thread when the compiler
+/// has no OpenMP. Its threads have equal shares and spin while they wait, unless OMP_WAIT_POLICY=passive: exec::Threads
+/// is the better choice where other programs run. Unless a number is set, it uses as many threads as OpenMP offers, but
+/// gives each at least a few pieces of work: waking a thread costs more than a small piece.
 ///
 /// An exception of a piece is thrown on when the others are done; of several, that of the lowest piece.
 class OpenMP {
@@ -36,7 +38,7 @@ class OpenMP {
 #pragma omp parallel for schedule(static) num_threads(team)
       for (std::ptrdiff_t k = 0; k < count; ++k) {
         try {
-          f(static_cast<std::size_t>(k));
+          call_piece(f, static_cast<std::size_t>(k), omp_get_thread_num());
         } catch (...) {  // an exception must not leave a thread of OpenMP
           thrown.keep(k);
         }
@@ -45,7 +47,7 @@ class OpenMP {
       return;
     }
 #endif
-    for (std::ptrdiff_t k = 0; k < count; ++k) f(static_cast<std::size_t>(k));
+    for (std::ptrdiff_t k = 0; k < count; ++k) call_piece(f, static_cast<std::size_t>(k), 0);
   }
 
  private:

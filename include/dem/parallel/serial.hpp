@@ -10,12 +10,12 @@ class Serial {
  public:
   int threads() const { return 1; }
   void set_threads(int n) {
-    if (n != 1) fail("exec::Serial runs 1 thread, not {}; choose exec::OpenMP in the model for more", n);
+    if (n != 1) fail("exec::Serial runs 1 thread, not {}; choose exec::Threads in the model for more", n);
   }
 
   template <class F>
   void for_each(std::size_t n, F&& f) const {
-    for (std::size_t k = 0; k < n; ++k) f(k);
+    for (std::size_t k = 0; k < n; ++k) call_piece(f, k, 0);
   }
 };
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <dem/parallel/openmp.hpp>
+#include <dem/parallel/threads.hpp>
 #include <dem/terramechanics/bulldozing.hpp>
 #include <dem/terramechanics/column_force.hpp>
 #include <dem/terramechanics/columns_spec.hpp>
@@ -108,7 +108,7 @@ class SoilColumns {
   ColumnsSpec spec_;
   ColumnField field_;
   Bulldozing bulldozing_;
-  exec::OpenMP threads_;
+  exec::Threads threads_;
   double top_ = 0.0;  ///< m, no column is higher
   std::uint32_t step_ = 0;
   std::vector<Strip> strips_;

@@ -12,7 +12,7 @@
 #include <dem/law/friction/asperity_spring.hpp>
 #include <dem/law/normal/penalty.hpp>
 #include <dem/law/rolling/none.hpp>
-#include <dem/parallel/openmp.hpp>
+#include <dem/parallel/threads.hpp>
 
 namespace dem {
 
@@ -30,7 +30,7 @@ struct Model {
   using Cohesion = cohesion::None;
   using BroadPhase = broadphase::UniformGrid;
   using Integrator = integrator::PredictorCorrector;
-  using Executor = exec::OpenMP;
+  using Executor = exec::Threads;
 };
 
 template <class... Kinds>

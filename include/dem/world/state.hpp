@@ -6,6 +6,7 @@
 #include <dem/coupling/surface_contacts.hpp>
 #include <dem/grain/materials.hpp>
 #include <dem/grain/neighbours.hpp>
+#include <dem/grain/pair_contacts.hpp>
 #include <dem/mbd/solver/solver.hpp>
 #include <dem/world/model.hpp>
 #include <dem/world/options.hpp>
@@ -21,6 +22,13 @@ using SurfaceSensorId = Id<struct SurfaceSensorTag>;  ///< measures the grains' 
 struct SurfaceSensor {
   SurfaceId surface;
   mbd::WindowAverage average;
+};
+
+/// What a thread writes down while it finds contacts.
+template <class Model>
+struct ContactScratch {
+  grain::PairScratch<Model> pairs;
+  coupling::SurfaceScratch surfaces;
 };
 
 /// Everything a world consists of. Only World and the functions of the step see it.
@@ -59,6 +67,7 @@ struct WorldState {
   coupling::BodyContacts<Model> body_contacts;
   void (*find_body_contacts)(WorldState&) = nullptr;  ///< set with the first pair: other programs are without that code
   typename Model::Executor executor;
+  std::vector<ContactScratch<Model>> scratch;  ///< of the executor's threads
   Stopwatch stopwatch;
 
   double skin() const { return options.skin > 0.0 ? options.skin : 0.1 * largest_radius; }

@@ -10,16 +10,14 @@ namespace dem {
 /// Contacts of one chunk's grains with each other and with surfaces. Their forces stay with the chunk, for
 /// gather_forces.
 template <class Model>
-void find_chunk_contacts(WorldState<Model>& w, std::size_t c) {
-  thread_local grain::PairScratch<Model> pair_scratch;
-  thread_local coupling::SurfaceScratch surface_scratch;
+void find_chunk_contacts(WorldState<Model>& w, std::size_t c, ContactScratch<Model>& scratch) {
   const std::size_t begin = c * chunk_size, end = std::min(begin + chunk_size, w.particles.count);
   Chunk<Model>& chunk = w.chunks[c];
   grain::ForceSums sums;
-  grain::find_pair_contacts<Model>(c, chunk, w.particles, w.species, w.materials, w.time_step, sums, pair_scratch);
+  grain::find_pair_contacts<Model>(c, chunk, w.particles, w.species, w.materials, w.time_step, sums, scratch.pairs);
   const double start = w.stopwatch.clock();
   coupling::find_surface_contacts<Model>(
-      {begin, end, chunk, w.particles, w.species, w.materials, w.surfaces, w.largest_radius, surface_scratch},
+      {begin, end, chunk, w.particles, w.species, w.materials, w.surfaces, w.largest_radius, scratch.surfaces},
       w.find_hits, w.time_step, sums);
   chunk.surface_seconds += w.stopwatch.clock() - start;
   sums.write(c, w.particles);
@@ -34,7 +32,10 @@ void evaluate_contacts(WorldState<Model>& w) {
 
   w.stopwatch.start();
   place_surfaces(w);
-  w.executor.for_each(w.chunks.size(), [&](std::size_t c) { find_chunk_contacts(w, c); });
+  w.scratch.resize(static_cast<std::size_t>(w.executor.threads()));
+  w.executor.for_each(w.chunks.size(), [&](std::size_t c, int thread) {
+    find_chunk_contacts(w, c, w.scratch[static_cast<std::size_t>(thread)]);
+  });
   w.stopwatch.stop(Phase::contacts);
 
   w.stopwatch.start();

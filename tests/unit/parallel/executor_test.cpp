@@ -2,14 +2,18 @@
 
 #include <dem/parallel/openmp.hpp>
 #include <dem/parallel/serial.hpp>
+#include <dem/parallel/threads.hpp>
+
+#include <sys/wait.h>
 
 #include <atomic>
+#include <concepts>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
-TEST_CASE("every index is called once, on any number of threads") {
-  dem::exec::OpenMP executor;
+TEMPLATE_TEST_CASE("every index is called once, on any number of threads", "", dem::exec::Threads, dem::exec::OpenMP) {
+  TestType executor;
   for (const int threads : {1, 2, 3, 8}) {
     executor.set_threads(threads);
     CHECK(executor.threads() == threads);
@@ -22,23 +26,46 @@ TEST_CASE("every index is called once, on any number of threads") {
   }
 }
 
+TEMPLATE_TEST_CASE("a piece is told which thread runs it, and no two run on one at once", "", dem::exec::Threads,
+                   dem::exec::OpenMP, dem::exec::Serial) {
+  TestType executor;
+  for (const int threads : {1, 4}) {
+    if (!std::same_as<TestType, dem::exec::Serial>) executor.set_threads(threads);
+    std::vector<std::atomic<int>> running(static_cast<std::size_t>(executor.threads()));
+    std::atomic<int> wrong = 0;
+    for (int repeat = 0; repeat < 200; ++repeat) {
+      executor.for_each(100, [&](std::size_t, int thread) {
+        if (thread < 0 || thread >= executor.threads()) {
+          ++wrong;
+        } else {
+          auto& mine = running[static_cast<std::size_t>(thread)];
+          if (mine.fetch_add(1) != 0) ++wrong;
+          mine.fetch_sub(1);
+        }
+      });
+    }
+    CHECK(wrong == 0);
+  }
+}
+
 TEST_CASE("the serial executor goes through in order") {
   std::vector<std::size_t> seen;
   dem::exec::Serial().for_each(5, [&](std::size_t k) { seen.push_back(k); });
   CHECK(seen == std::vector<std::size_t>{0, 1, 2, 3, 4});
 }
 
-TEST_CASE("a wrong number of threads is refused") {
-  dem::exec::OpenMP many;
+TEMPLATE_TEST_CASE("a wrong number of threads is refused", "", dem::exec::Threads, dem::exec::OpenMP) {
+  TestType many;
   check_refused([&] { many.set_threads(0); }, "threads is 0", "at least 1");
   check_refused([&] { many.set_threads(-2); }, "threads is -2");
   dem::exec::Serial one;
   one.set_threads(1);
-  check_refused([&] { one.set_threads(4); }, "1 thread, not 4", "OpenMP");
+  check_refused([&] { one.set_threads(4); }, "1 thread, not 4", "Threads");
 }
 
-TEST_CASE("an exception of a piece of work arrives, that of the lowest one, on any number of threads") {
-  dem::exec::OpenMP executor;
+TEMPLATE_TEST_CASE("an exception of a piece of work arrives, that of the lowest one, on any number of threads", "",
+                   dem::exec::Threads, dem::exec::OpenMP) {
+  TestType executor;
   for (const int threads : {1, 2, 3, 8}) {
     executor.set_threads(threads);
     for (int repeat = 0; repeat < 20; ++repeat) {
@@ -55,4 +82,65 @@ TEST_CASE("an exception of a piece of work arrives, that of the lowest one, on a
     CHECK(after == 1);
   }
   CHECK_THROWS_WITH(dem::exec::Serial().for_each(9, [](std::size_t) { throw std::runtime_error("one"); }), "one");
+}
+
+// Ten thousand calls with little in them meet threads that are just coming, waiting, or falling asleep.
+TEST_CASE("threads lose no piece and call none twice, however short the work is") {
+  dem::exec::Threads executor;
+  executor.set_threads(5);
+  std::vector<int> calls(16);
+  for (int repeat = 0; repeat < 10000; ++repeat) {
+    executor.for_each(calls.size(), [&](std::size_t k) { ++calls[k]; });
+  }
+  CHECK(calls == std::vector<int>(16, 10000));
+}
+
+TEST_CASE("threads share the work as it comes: one long piece does not keep the others") {
+  dem::exec::Threads executor;
+  executor.set_threads(2);
+  // The first piece ends when all others have: with equal shares it would wait for its own thread for ever.
+  std::atomic<int> done = 0;
+  executor.for_each(64, [&](std::size_t k) {
+    if (k == 0) {
+      while (done != 63) std::this_thread::yield();
+    } else {
+      ++done;
+    }
+  });
+  CHECK(done == 63);
+}
+
+TEST_CASE("threads within threads: the inner work is done by the one that asks for it") {
+  dem::exec::Threads executor;
+  executor.set_threads(3);
+  std::vector<int> calls(30);
+  executor.for_each(3, [&](std::size_t k) { executor.for_each(10, [&](std::size_t j) { ++calls[10 * k + j]; }); });
+  CHECK(calls == std::vector<int>(30, 1));
+}
+
+TEST_CASE("copies of threads work side by side, and so does a process that was forked off") {
+  dem::exec::Threads executor;
+  executor.set_threads(3);
+  std::atomic<int> sum = 0;
+  const auto add = [&](std::size_t k) { sum += static_cast<int>(k); };
+  executor.for_each(10, add);
+  dem::exec::Threads copy = executor;
+  CHECK(copy.threads() == 3);
+  copy.for_each(10, add);
+  dem::exec::Threads moved = std::move(copy);
+  moved.for_each(10, add);
+  CHECK(sum == 3 * 45);
+
+  const pid_t child = fork();
+  if (child == 0) {
+    alarm(20);
+    sum = 0;
+    executor.for_each(10, add);
+    _exit(sum == 45 ? 0 : 1);
+  }
+  int status = -1;
+  REQUIRE(waitpid(child, &status, 0) == child);
+  CHECK((WIFEXITED(status) && WEXITSTATUS(status) == 0));
+  executor.for_each(10, add);
+  CHECK(sum == 4 * 45);
 }

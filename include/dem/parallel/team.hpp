@@ -1,0 +1,133 @@
+#pragma once
+
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <thread>
+#include <vector>
+
+#include <unistd.h>
+
+namespace dem::exec {
+
+/// Threads that wait for work and share it as it comes.
+///
+/// Each member has a range of the pieces, so that it meets the same memory in each phase of a step; who is done with
+/// its own range helps with the others'. Nobody waits for a member that has not begun: where another program has its
+/// processor, the rest do its share. Members spin for a tenth of a millisecond for the next work, and sleep after that.
+class Team {
+ public:
+  using Piece = void (*)(void* work, std::size_t piece, int thread);
+
+  /// The calling thread is member 0.
+  explicit Team(int members)
+      : ranges_(new Range[static_cast<std::size_t>(members)]),
+        members_(members),
+        spins_(static_cast<unsigned>(members) <= std::thread::hardware_concurrency() ? 4000 : 0) {
+    for (int k = 1; k < members; ++k) {
+      threads_.emplace_back([this, k] { serve(k); });
+    }
+  }
+  ~Team() {
+    if (process_ != getpid()) {  // a fork has none of the threads: there is nobody to wait for
+      for (std::thread& t : threads_) t.detach();
+      return;
+    }
+    stop_ = true;
+    call();
+    for (std::thread& t : threads_) t.join();
+  }
+  Team(const Team&) = delete;
+  Team& operator=(const Team&) = delete;
+
+  int members() const { return members_; }
+  /// False in a process that was forked off: threads stay behind.
+  bool is_of_this_process() const { return process_ == getpid(); }
+
+  /// Calls `piece` for 0 ... n-1; `piece` must not throw. Returns when all are done.
+  void run(std::size_t n, Piece piece, void* work) {
+    const auto m = static_cast<std::size_t>(members_);
+    for (std::size_t k = 0; k < m; ++k) {
+      ranges_[k].next.store(n * k / m, std::memory_order_relaxed);
+      ranges_[k].end = n * (k + 1) / m;
+    }
+    piece_ = piece;
+    work_ = work;
+    call();
+    take_part(0);
+    // All pieces are taken. Who has not begun need not, and the others end theirs.
+    std::uint32_t inside = gate_.fetch_and(~open) & ~open;
+    for (int spins = 0; inside != 0; inside = gate_.load()) {
+      if (++spins < spins_) {
+        pause();
+      } else {
+        gate_.wait(inside);
+      }
+    }
+  }
+
+ private:
+  static constexpr std::uint32_t open = 1U << 31;  // of the gate; the rest of it counts who is inside
+
+  /// Alone in its cache lines, as others write to theirs.
+  struct alignas(128) Range {
+    std::atomic<std::size_t> next = 0;
+    std::size_t end = 0;
+  };
+
+  static void pause() {
+#if defined(__x86_64__) || defined(__i386__)
+    __builtin_ia32_pause();
+#endif
+  }
+  void call() {
+    gate_.store(open);
+    call_.fetch_add(1);
+    call_.notify_all();
+  }
+  void take_part(int member) {
+    for (int k = 0; k < members_; ++k) {
+      Range& range = ranges_[static_cast<std::size_t>((member + k) % members_)];
+      // Looked at first: adding to what is used up already would only take it from others' caches.
+      while (range.next.load(std::memory_order_relaxed) < range.end) {
+        const std::size_t piece = range.next.fetch_add(1, std::memory_order_relaxed);
+        if (piece < range.end) piece_(work_, piece, member);
+      }
+    }
+  }
+  void serve(int member) {
+    for (std::uint32_t seen = 0;;) {
+      int spins = 0;
+      while (call_.load() == seen) {
+        if (++spins < spins_) {
+          pause();
+        } else {
+          call_.wait(seen);
+        }
+      }
+      seen = call_.load();
+      if (stop_) return;
+      // In through the gate, if it is still open.
+      std::uint32_t gate = gate_.load();
+      while ((gate & open) != 0 && !gate_.compare_exchange_weak(gate, gate + 1)) {
+      }
+      if ((gate & open) == 0) continue;
+      take_part(member);
+      if (gate_.fetch_sub(1) == 1) gate_.notify_all();
+    }
+  }
+
+  std::unique_ptr<Range[]> ranges_;
+  int members_;
+  int spins_;  // before a member sleeps; none where there are more members than processors
+  Piece piece_ = nullptr;
+  void* work_ = nullptr;
+  std::atomic<bool> stop_ = false;
+  const pid_t process_ = getpid();
+  alignas(128) std::atomic<std::uint32_t> call_ = 0;  // counts the calls to work
+  alignas(128) std::atomic<std::uint32_t> gate_ = 0;
+  std::vector<std::thread> threads_;
+};
+
+}  // namespace dem::exec

@@ -1,0 +1,101 @@
+#pragma once
+
+#include <dem/core/error.hpp>
+#include <dem/core/macros.hpp>
+#include <dem/parallel/executor.hpp>
+#include <dem/parallel/team.hpp>
+
+#include <algorithm>
+#include <exception>
+#include <type_traits>
+
+#if defined(_OPENMP)
+#include <omp.h>
+#endif
+
+namespace dem::exec {
+
+/// Threads of its own, that share the work as it comes and sleep when there is none. The other programs of a machine
+/// hardly slow it down, nor does it them. Unless a number is set, it uses as many threads as OpenMP offers (so
+/// OMP_NUM_THREADS counts; without OpenMP, as many as the machine has processors), but gives each at least a few pieces
+/// of work: waking a thread costs more than a small piece.
+///
+/// An exception of a piece is thrown on when the others are done; of several, that of the lowest piece. A piece that
+/// calls for_each itself runs the inner one alone. A copy makes threads of its own.
+class Threads {
+ public:
+  Threads() = default;
+  Threads(const Threads& other) : threads_(other.threads_), least_pieces_(other.least_pieces_) {}
+  Threads& operator=(const Threads& other) {
+    threads_ = other.threads_;
+    least_pieces_ = other.least_pieces_;
+    return *this;
+  }
+  Threads(Threads&&) = default;
+  Threads& operator=(Threads&&) = default;
+
+  int threads() const { return threads_; }
+  /// Exactly n threads. Throws Error unless n >= 1.
+  void set_threads(int n) {
+    if (n < 1) fail("number of threads is {}, but must be at least 1", n);
+    threads_ = n;
+    least_pieces_ = 1;
+  }
+
+  template <class F>
+  void for_each(std::size_t n, F&& f) {
+    const auto members = static_cast<int>(std::min(static_cast<std::size_t>(threads_), n / least_pieces_));
+    if (members < 2 || busy_) {
+      for (std::size_t k = 0; k < n; ++k) call_piece(f, k, 0);
+      return;
+    }
+    if (!team_ || team_->members() != members || !team_->is_of_this_process()) team_ = std::make_unique<Team>(members);
+    Work<std::remove_reference_t<F>> work{&f};
+    busy_ = true;
+    team_->run(n, &Work<std::remove_reference_t<F>>::call, &work);
+    busy_ = false;
+    if (work.exception) std::rethrow_exception(work.exception);
+  }
+
+ private:
+  template <class F>
+  struct Work {
+    F* f;
+    std::exception_ptr exception = nullptr;  // of the lowest piece, whichever thread comes to it first
+    std::size_t thrown_by = 0;
+    std::atomic_flag taken = {};
+
+    static void call(void* work, std::size_t piece, int thread) {
+      auto& w = *static_cast<Work*>(work);
+      try {
+        call_piece(*w.f, piece, thread);
+      } catch (...) {
+        w.keep(piece);
+      }
+    }
+    DEM_COLD void keep(std::size_t piece) {
+      while (taken.test_and_set(std::memory_order_acquire)) {
+      }
+      if (!exception || piece < thrown_by) {
+        exception = std::current_exception();
+        thrown_by = piece;
+      }
+      taken.clear(std::memory_order_release);
+    }
+  };
+
+  static int offered() {
+#if defined(_OPENMP)
+    return omp_get_max_threads();
+#else
+    return static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+#endif
+  }
+
+  int threads_ = offered();
+  std::size_t least_pieces_ = 4;
+  bool busy_ = false;  // within a for_each
+  std::unique_ptr<Team> team_;
+};
+
+}  // namespace dem::exec
