@@ -5,6 +5,7 @@
 #include <dem/grain/partner_view.hpp>
 #include <dem/mbd/body/body.hpp>
 
+#include <cstring>
 #include <string>
 
 namespace dem {
@@ -25,6 +26,7 @@ struct MachineSurface {
   Vector3<double> origin = {0, 0, 0};
   Matrix3<double> axes = Matrix3<double>::identity();
   Vec3 low = Vec3::Zero(), high = Vec3::Zero();  ///< m, bounding box in global axes
+  bool moved = true;                             ///< since the evaluation before
 
   PartnerView view = {};  ///< of the body
 
@@ -35,8 +37,12 @@ struct MachineSurface {
   void follow(const Body& b) {
     view = {b.motion.position, 0.0, b.motion.velocity, b.fixed ? 0.0 : 1.0 / b.mass,
             b.motion.rotation * b.motion.angular_velocity};
+    const Vector3<double> last_origin = origin;
+    const Matrix3<double> last_axes = axes;
     origin = b.motion.position + b.motion.rotation * from_eigen(position);
     axes = b.motion.rotation * from_eigen(rotation);
+    moved =
+        std::memcmp(&origin, &last_origin, sizeof(origin)) != 0 || std::memcmp(&axes, &last_axes, sizeof(axes)) != 0;
     const surface::Bounds local = std::visit([](const auto& kind) { return kind.bounds(); }, geometry);
     // Half sizes along the global axes: |R| times the local half sizes. The origin comes last: added to the middle of
     // a half space, 1e150 m away, it would be lost.

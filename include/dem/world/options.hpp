@@ -2,6 +2,7 @@
 
 #include <dem/core/ids.hpp>
 #include <dem/geometry/surface.hpp>
+#include <dem/grain/sleep_options.hpp>
 #include <dem/math/vector.hpp>
 #include <dem/mbd/body/body.hpp>
 
@@ -20,6 +21,7 @@ struct WorldOptions {
   double overlap_limit = 0.5;  ///< overlap, in effective diameters 2 Ri Rj/(Ri + Rj), that is reported as a problem
   std::optional<surface::Bounds> domain = {};  ///< a grain whose centre leaves it is reported as lost
   int threads = 0;                             ///< 0: as many as the executor offers
+  std::optional<SleepOptions> sleep = {};      ///< lets grains at rest sleep, so that they cost next to nothing
 };
 
 /// A grain to be added.

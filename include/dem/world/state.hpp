@@ -7,6 +7,7 @@
 #include <dem/grain/materials.hpp>
 #include <dem/grain/neighbours.hpp>
 #include <dem/grain/pair_contacts.hpp>
+#include <dem/grain/sleep.hpp>
 #include <dem/mbd/solver/solver.hpp>
 #include <dem/world/model.hpp>
 #include <dem/world/options.hpp>
@@ -58,6 +59,7 @@ struct WorldState {
   std::uint64_t rebuilds = 0;            ///< neighbour lists made
   std::set<std::uint32_t> known_lost;    ///< ids of grains that were reported as lost
   std::vector<std::uint32_t> to_remove;  ///< ids of grains that leave when the next list is made
+  grain::Sleepers sleepers;
 
   mbd::Mechanism machine;
   mbd::Solver<Integrator> machine_solver;

@@ -3,7 +3,7 @@
 #include <dem/coupling/surface_contacts.hpp>
 #include <dem/grain/move.hpp>
 #include <dem/grain/pair_contacts.hpp>
-#include <dem/world/state.hpp>
+#include <dem/world/sleep.hpp>
 
 namespace dem {
 
@@ -21,20 +21,30 @@ void find_chunk_contacts(WorldState<Model>& w, std::size_t c, ContactScratch<Mod
       w.find_hits, w.time_step, sums);
   chunk.surface_seconds += w.stopwatch.clock() - start;
   sums.write(c, w.particles);
+  if (w.sleepers.measuring) {
+    const std::span<double> borne(&w.sleepers.borne[begin], chunk_size);
+    std::fill(borne.begin(), borne.end(), 0.0);
+    grain::add_borne(begin, scratch.pairs.hits, scratch.pairs.forces, true, borne);
+    grain::add_borne(begin, scratch.surfaces.hits, scratch.surfaces.forces, false, borne);
+  }
 }
 
 /// All contacts at the present state, and the loads that they put on bodies, whose sums of forces are clear.
 template <class Model>
 void evaluate_contacts(WorldState<Model>& w) {
   w.stopwatch.start();
-  if (neighbours_outdated(w)) rebuild_neighbours(w);
+  if (neighbours_outdated(w)) {
+    rebuild_neighbours(w);
+    find_sleeping_chunks(w);
+  }
   w.stopwatch.stop(Phase::neighbours);
 
   w.stopwatch.start();
   place_surfaces(w);
   w.scratch.resize(static_cast<std::size_t>(w.executor.threads()));
-  w.executor.for_each(w.chunks.size(), [&](std::size_t c, int thread) {
-    find_chunk_contacts(w, c, w.scratch[static_cast<std::size_t>(thread)]);
+  choose_working_chunks(w);
+  w.executor.for_each(w.sleepers.working.size(), [&](std::size_t k, int thread) {
+    find_chunk_contacts(w, w.sleepers.working[k], w.scratch[static_cast<std::size_t>(thread)]);
   });
   w.stopwatch.stop(Phase::contacts);
 
@@ -49,10 +59,13 @@ void evaluate_contacts(WorldState<Model>& w) {
 template <class Model>
 void move_grains(WorldState<Model>& w, int stage, bool last) {
   const bool clean_rotations = last && w.step % grain::steps_between_orthonormalisations == 0;
-  w.executor.for_each(w.chunks.size(), [&](std::size_t c) {
+  w.executor.for_each(w.sleepers.working.size(), [&](std::size_t k) {
+    const std::size_t c = w.sleepers.working[k];
     grain::gather_forces<Model>(c, w.chunks, w.particles, w.incoming_first, w.incoming);
-    grain::move_chunk<Model>(c, w.chunks[c], w.particles, w.species, w.inertia, w.options.gravity, stage, w.time_step,
-                             clean_rotations);
+    if (!w.chunks[c].asleep) {
+      grain::move_chunk<Model>(c, w.chunks[c], w.particles, w.species, w.inertia, w.options.gravity, stage, w.time_step,
+                               clean_rotations);
+    }
     if (last) w.chunks[c].commit();
   });
   if (last) w.body_contacts.commit();
@@ -63,11 +76,14 @@ void move_grains(WorldState<Model>& w, int stage, bool last) {
 template <class Model>
 void advance(WorldState<Model>& w) {
   using Integrator = typename Model::Integrator;
+  w.sleepers.measuring = w.options.sleep && (w.step + 1) % static_cast<std::uint64_t>(w.options.sleep->window) == 0;
   for (int stage = 0; stage < Integrator::stages; ++stage) {
     const bool last = stage + 1 == Integrator::stages;
     if constexpr (Integrator::predicts_before_forces) {
-      w.executor.for_each(w.chunks.size(), [&](std::size_t c) {
-        grain::predict_chunk<Model>(c, w.chunks[c], w.particles, w.species, stage, w.time_step);
+      w.executor.for_each(w.sleepers.working.size(), [&](std::size_t k) {
+        const std::size_t c = w.sleepers.working[k];
+        if (!w.chunks[c].asleep)
+          grain::predict_chunk<Model>(c, w.chunks[c], w.particles, w.species, stage, w.time_step);
       });
     }
     // The machine's stage clears the bodies' sums, calls for the contacts, adds joints and drives, and moves the
@@ -85,6 +101,7 @@ void advance(WorldState<Model>& w) {
     if (last) sample_surface_sensors(w);
     w.stopwatch.stop(Phase::motion);
   }
+  wake_and_put_to_sleep(w);
   w.time += w.time_step;
   ++w.step;
 }
@@ -93,6 +110,7 @@ void advance(WorldState<Model>& w) {
 /// that remember an acceleration take their first one.
 template <class Model>
 void initialise(WorldState<Model>& w) {
+  w.sleepers.all_work = true;
   if (w.list_valid) {
     w.executor.for_each(w.chunks.size(),
                         [&](std::size_t c) { grain::refresh_chunk<Model>(c, w.chunks[c], w.particles, w.species); });

@@ -112,6 +112,16 @@ class World : public WorldSetup<M> {
   void set_gravity(const Vec3& g) {
     require_finite(g, "gravity");
     state_.options.gravity = g;
+    wake_all(state_);
+    initialised_ = false;
+  }
+
+  /// Lets grains at rest sleep from now on, or wakes all for good. Throws Error if a setting makes no sense.
+  void set_sleep(const std::optional<SleepOptions>& sleep) {
+    Setup::check_sleep(sleep);
+    wake_all(state_);
+    state_.options.sleep = sleep;
+    state_.list_valid = false;
     initialised_ = false;
   }
 
@@ -133,23 +143,39 @@ class World : public WorldSetup<M> {
   /// Contact force (N) and torque (N m) on a grain in the last force evaluation.
   Vec3 force(ParticleId p) const { return to_eigen(state_.particles.force[row(p)]); }
   Vec3 torque(ParticleId p) const { return to_eigen(state_.particles.torque[row(p)]); }
+  /// Whether a grain sleeps (WorldOptions::sleep).
+  bool is_asleep(ParticleId p) const {
+    const std::size_t r = row(p), c = r / chunk_size;
+    return state_.options.sleep && c < state_.chunks.size() && state_.chunks[c].asleep;
+  }
+  /// How many grains sleep.
+  std::size_t asleep_count() const {
+    std::size_t count = 0;
+    for (std::size_t c = 0; c < state_.chunks.size(); ++c) {
+      if (state_.chunks[c].asleep) count += std::min(chunk_size, state_.particles.count - c * chunk_size);
+    }
+    return count;
+  }
   SpeciesId species_of(ParticleId p) const { return SpeciesId(state_.particles.species[row(p)]); }
   const Species<Shape>& species(SpeciesId s) const { return known(state_.species, s, "species"); }
 
   void set_velocity(ParticleId p, const Vec3& v) {
     require_finite(v, "velocity of a grain");
+    wake_around(state_, row(p));
     state_.particles.velocity.set(row(p), from_eigen(v));
     initialised_ = false;
   }
   /// rad/s, global axes.
   void set_angular_velocity(ParticleId p, const Vec3& w) {
     require_finite(w, "angular velocity of a grain");
+    wake_around(state_, row(p));
     state_.particles.spin.set(row(p), from_eigen(Vec3(rotation(p).transpose() * w)));
     initialised_ = false;
   }
   /// Puts a grain elsewhere; its contacts there start without friction, those that it still has go on.
   void set_position(ParticleId p, const Vec3& x) {
     require_finite(x, "position of a grain");
+    wake_around(state_, row(p));
     state_.particles.position.set(row(p), from_eigen(x));
     touched();
   }

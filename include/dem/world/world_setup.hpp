@@ -1,6 +1,6 @@
 #pragma once
 
-#include <dem/world/state.hpp>
+#include <dem/world/sleep.hpp>
 
 #include <algorithm>
 #include <cstdint>
@@ -32,6 +32,7 @@ class WorldSetup {
     require_non_negative(options.skin, "skin", "m (0 chooses one)");
     require_positive(options.overlap_limit, "overlap limit", "effective diameters");
     require_finite(options.gravity, "gravity");
+    check_sleep(options.sleep);
     if (const auto& d = options.domain; d && !all_below(d->low, d->high)) {
       fail("the domain's lower corner ({:g}, {:g}, {:g}) m is not below its upper one, ({:g}, {:g}, {:g}) m",
            d->low.x(), d->low.y(), d->low.z(), d->high.x(), d->high.y(), d->high.z());
@@ -67,11 +68,13 @@ class WorldSetup {
   /// Contact constants for every pair of materials that has none of its own. Throws Error if one makes no sense.
   void set_contact(const Parameters& p) {
     state_.materials.set_default(p);
+    wake_all(state_);
     checked_ = false;
   }
   /// Contact constants for one pair of materials.
   void set_contact(std::string_view a, std::string_view b, const Parameters& p) {
     state_.materials.set(a, b, p);
+    wake_all(state_);
     checked_ = false;
   }
 
@@ -106,7 +109,7 @@ class WorldSetup {
 
   /// Takes a grain out of the world, at the start of the next step; its id is not given again. The ids of others stay.
   void remove_particle(ParticleId p) {
-    row(p);
+    wake_around(state_, row(p));
     state_.to_remove.push_back(p.value);
     touched();
   }
@@ -204,7 +207,11 @@ class WorldSetup {
   }
 
   /// Lets a surface touch grains and bodies, or not.
-  void set_active(SurfaceId s, bool active) { known(state_.surfaces, s, "surface").active = active; }
+  void set_active(SurfaceId s, bool active) {
+    auto& surface = known(state_.surfaces, s, "surface");
+    if (surface.active != active) wake_all(state_);
+    surface.active = active;
+  }
 
  protected:
   SurfaceId place_surface(BodyId body, const typename Model::Surfaces& geometry, const SurfaceOptions& o,
@@ -255,6 +262,12 @@ class WorldSetup {
           "than the sum of the others; check the mass properties that the shape was given",
           moments.x(), moments.y(), moments.z());
     }
+  }
+  static void check_sleep(const std::optional<SleepOptions>& s) {
+    if (!s) return;
+    require_within(s->share, 1e-9, 1.0, "share of what a grain bears that leaves it asleep");
+    require_positive(s->motion, "motion in a window that leaves a grain asleep", "radii");
+    if (s->window < 1) fail("the window after which grains may sleep is {} steps, but must be at least 1", s->window);
   }
   static void require_finite(const Vec3& v, const char* what) {
     if (!is_finite(v)) fail("{} is ({:g}, {:g}, {:g}), but must be finite", what, v.x(), v.y(), v.z());

@@ -1,0 +1,19 @@
+#pragma once
+
+namespace dem {
+
+/// When grains fall asleep, and what wakes them (WorldOptions::sleep).
+///
+/// A grain bears its weight or the sum of the magnitudes of its contact forces, whichever is larger. It is at rest when
+/// in a window of steps it moves by less than `motion` of its radius, what it bears changes by less than `share` of
+/// itself, and what is left of all forces on it and of all torques is less than that share. A chunk of grains that are
+/// at rest for two windows sleeps: it is not moved, and its contacts are not looked at, but what they bear counts on.
+/// Contacts with grains that are awake and with surfaces that move are looked at on; when they change the sum of the
+/// forces or torques on a grain by more than the share since it fell asleep, its chunk wakes.
+struct SleepOptions {
+  double share = 0.01;   ///< of what a grain bears; a bed passes on changes of load up to about this share late
+  double motion = 1e-4;  ///< of a grain's bounding radius
+  int window = 100;      ///< steps
+};
+
+}  // namespace dem

@@ -1,0 +1,173 @@
+#include "scenes.hpp"
+
+#include "core/error_of.hpp"
+
+using Catch::Approx;
+
+namespace {
+
+/// Towers of cubes in three chunks, which come to rest within some hundredths of a second: 64 towers of 9 cubes, face
+/// on face, with clearance between towers.
+struct Towers {
+  static constexpr double half = 1e-3, pitch = 2.2e-3;
+  static constexpr int across = 8, high = 9;
+  dem::World<models::VerletCubes> w;
+  SurfaceId floor;
+  std::vector<ParticleId> grains;
+  double weight = 0.0;  // N, of all grains
+
+  explicit Towers(bool sleep, int threads = 1) : w(with(sleep, threads)) {
+    // The damper is a third of the critical one.
+    w.set_contact({{500.0, 0.06, 1.0}, {0.4, 500.0, 0.05, 0.975}});
+    const auto cube = w.add_species(dem::shape::cube8(half));
+    floor = w.add_surface(w.ground(), dem::surface::Plane{});
+    for (int i = 0; i < across; ++i) {
+      for (int j = 0; j < across; ++j) {
+        for (int k = 0; k < high; ++k) {
+          grains.push_back(w.add_particle({cube, Vec3(pitch * i, pitch * j, half + 2 * half * k)}));
+        }
+      }
+    }
+    weight = static_cast<double>(grains.size()) * w.species(cube).mass * g;
+  }
+  static dem::WorldOptions with(bool sleep, int threads) {
+    dem::WorldOptions o = options({0, 0, -g});
+    if (sleep) o.sleep = dem::SleepOptions{};
+    o.threads = threads;
+    return o;
+  }
+  double on_floor() const { return -w.surface_force(floor).z(); }
+};
+
+}  // namespace
+
+TEST_CASE("a bed falls asleep, weighs what it weighs, and its grains stay where they are") {
+  Towers bed(true), awake(false);
+  REQUIRE(bed.w.run_for(0.07));
+  REQUIRE(awake.w.run_for(0.07));
+  CHECK(bed.w.asleep_count() == bed.grains.size());
+  CHECK(awake.w.asleep_count() == 0);
+  CHECK(bed.w.state().sleepers.working.empty());
+  // What is left of the forces on a grain is at most 0.01 of what it bears, in a tower 9 weights on average. Towers
+  // that swing in step fall asleep in step, so nothing but the swing's place makes the sum smaller: 0.003 was seen.
+  CHECK(bed.on_floor() == Approx(bed.weight).epsilon(0.01));
+  // The contacts of a tower are off by 0.01 (2 k - 1) m g/(4 K) in layer k from the top: 9e-8 m in all.
+  for (const ParticleId p : bed.grains) CHECK((bed.w.position(p) - awake.w.position(p)).norm() < 9e-8);
+  CHECK(bed.w.velocity(bed.grains[0]).norm() == 0.0);
+}
+
+TEST_CASE("no grain hangs in the air when what it stands on is taken away") {
+  Towers bed(true);
+  REQUIRE(bed.w.run_for(0.07));
+  REQUIRE(bed.w.asleep_count() == bed.grains.size());
+  const double time = 0.01;  // a fall by an edge takes 0.02 s
+  SECTION("a floor that is switched off") {
+    bed.w.set_active(bed.floor, false);
+    REQUIRE(bed.w.run_for(time));
+    // All of them fall freely.
+    for (const ParticleId p : bed.grains) CHECK(bed.w.velocity(p).z() < -0.9 * g * time);
+  }
+  SECTION("the lowest grain of each tower") {
+    for (std::size_t k = 0; k < bed.grains.size(); k += Towers::high) bed.w.remove_particle(bed.grains[k]);
+    REQUIRE(bed.w.run_for(time));
+    for (std::size_t k = 0; k < bed.grains.size(); ++k) {
+      if (k % Towers::high != 0) CHECK(bed.w.velocity(bed.grains[k]).z() < -0.9 * g * time);
+    }
+  }
+  SECTION("gravity that points elsewhere") {
+    bed.w.set_gravity({0, 0, g});
+    REQUIRE(bed.w.run_for(time));
+    for (const ParticleId p : bed.grains) CHECK(bed.w.velocity(p).z() > 0.9 * g * time);
+  }
+}
+
+TEST_CASE("a floor that sinks under a sleeping bed takes it along") {
+  dem::World<models::VerletCubes> w(Towers::with(true, 1));
+  w.set_contact({{500.0, 0.06, 1.0}, {0.4, 500.0, 0.05, 0.975}});
+  const auto cube = w.add_species(dem::shape::cube8(1e-3));
+  const auto table = w.machine().add_fixed_body("table", Vec3::Zero());
+  w.add_surface(table, dem::surface::Plane{});
+  w.machine().add_motion(
+      dem::mbd::prescribed_position("sink", table, Vec3::UnitZ(), dem::mbd::Signal::function([](double t) {
+                                      return t < 0.07 ? 0.0 : -0.02 * (t - 0.07);  // m
+                                    })));
+  std::vector<ParticleId> grains;
+  for (int k = 0; k < 384; ++k) {
+    grains.push_back(w.add_particle({cube, Vec3(2.2e-3 * (k % 8), 2.2e-3 * (k / 8 % 8), 1e-3 + 2e-3 * (k / 64))}));
+  }
+  REQUIRE(w.run_for(0.06));
+  REQUIRE(w.asleep_count() == grains.size());
+  REQUIRE(w.run_for(0.06));
+  // 1 mm down; the contacts of a tower of 6 give by less than 3e-6 m in all.
+  for (std::size_t k = 0; k < grains.size(); ++k) {
+    CHECK(w.position(grains[k]).z() == Approx(1e-3 + 2e-3 * static_cast<double>(k / 64) - 1e-3).margin(1e-5));
+  }
+}
+
+TEST_CASE("a grain that lands wakes its surroundings, and is held") {
+  Towers bed(true);
+  REQUIRE(bed.w.run_for(0.07));
+  const double top = 2e-3 * Towers::high;
+  const auto visitor = bed.w.add_particle({SpeciesId(0), Vec3(0, 0, top + 2e-3), {0, 0, -0.2}});
+  std::size_t least_asleep = bed.grains.size();
+  for (int k = 0; k < 20; ++k) {
+    REQUIRE(bed.w.run_for(0.005));
+    least_asleep = std::min(least_asleep, bed.w.asleep_count());
+  }
+  // Its chunk wakes, and perhaps those around it, but not the whole bed at once.
+  CHECK(least_asleep < bed.grains.size());
+  CHECK(bed.w.asleep_count() == bed.grains.size() + 1);
+  CHECK(bed.w.position(visitor).z() > top);
+  CHECK(bed.on_floor() == Approx(bed.weight * (1.0 + 1.0 / static_cast<double>(bed.grains.size()))).epsilon(0.01));
+}
+
+TEST_CASE("sleeping worlds are the same bits on any number of threads") {
+  std::vector<std::vector<Vec3>> positions;
+  std::vector<std::size_t> asleep;
+  for (const int threads : {1, 2, 3}) {
+    Towers bed(true, threads);
+    // Towers that start at different heights fall asleep at different times.
+    for (std::size_t k = 0; k < bed.grains.size(); ++k) {
+      bed.w.set_position(bed.grains[k], bed.w.position(bed.grains[k]) + Vec3(0, 0, 1e-5 * double(k / 30)));
+    }
+    REQUIRE(bed.w.run_for(0.05));
+    asleep.push_back(bed.w.asleep_count());
+    positions.emplace_back();
+    for (const ParticleId p : bed.grains) positions.back().push_back(bed.w.position(p));
+  }
+  CHECK(asleep[0] == asleep[1]);
+  CHECK(asleep[0] == asleep[2]);
+  for (std::size_t t : {1, 2}) {
+    for (std::size_t k = 0; k < positions[0].size(); ++k) CHECK(positions[t][k] == positions[0][k]);
+  }
+}
+
+TEST_CASE("a load that grows slowly reaches the floor through a bed that sleeps") {
+  Towers bed(true);
+  REQUIRE(bed.w.run_for(0.07));
+  auto& m = bed.w.machine();
+  const double top = 2e-3 * Towers::high, edge = 2.4e-3 * Towers::across;
+  const dem::BodyId lid = m.add_fixed_body("lid", Vec3(0.5 * edge, 0.5 * edge, top + 5e-4));
+  bed.w.add_surface(lid, dem::surface::Box(Vec3(2 * edge, 2 * edge, 1e-3)), {.name = "lid"});
+  // Presses by 4e-5 m in 0.1 s. Each tower is 10 contacts of 4 K in a row and has sunk by 45 m g/(4 K) = 5e-6 m, so
+  // 0.45 N in all, 3.7 times the bed's weight.
+  m.add_motion(dem::mbd::prescribed_position("press", lid, -Vec3::UnitZ(), dem::mbd::Signal::ramp(0.0, 4e-4, 0.07)));
+  double worst = 0.0;
+  for (int k = 0; k < 10; ++k) {
+    REQUIRE(bed.w.run_for(0.01));
+    const double press = bed.w.surface_force(SurfaceId(1)).z();
+    worst = std::max(worst, std::abs(bed.on_floor() - press - bed.weight) / bed.on_floor());
+  }
+  CHECK(bed.w.surface_force(SurfaceId(1)).z() == Approx(0.45).epsilon(0.1));
+  // Each layer of chunks may pass on what it bears a share of 0.01 late; there are two or three of them.
+  CHECK(worst < 0.03);
+}
+
+TEST_CASE("settings of sleep that make no sense are refused") {
+  auto o = Towers::with(true, 1);
+  o.sleep->share = 0.0;
+  check_refused([&] { dem::World<models::VerletCubes> w(o); }, "share of what a grain bears", "0");
+  o = Towers::with(true, 1);
+  o.sleep->window = 0;
+  check_refused([&] { dem::World<models::VerletCubes> w(o); }, "0 steps", "at least 1");
+}
