@@ -11,8 +11,8 @@ using SpringId = Id<struct SpringTag>;          ///< a spring-damper element bet
 using CouplingId = Id<struct CouplingTag>;      ///< a gear, rack or differential between joint coordinates
 using ClutchId = Id<struct ClutchTag>;          ///< a clutch or a brake
 using BrakeId = ClutchId;
-using LoadId = Id<struct LoadTag>;              ///< an applied force or torque
-using MotionId = Id<struct MotionTag>;          ///< a prescribed motion
-using SensorId = Id<struct SensorTag>;          ///< a force sensor
+using LoadId = Id<struct LoadTag>;      ///< an applied force or torque
+using MotionId = Id<struct MotionTag>;  ///< a prescribed motion
+using SensorId = Id<struct SensorTag>;  ///< a force sensor
 
 }  // namespace dem
