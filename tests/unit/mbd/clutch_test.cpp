@@ -80,6 +80,12 @@ TEMPLATE_TEST_CASE("a clutch brings two shafts to one speed, and the heat is tha
   const double together = w1 / (T * (1 / I1 + 1 / I2));  // 0.3 s
   REQUIRE(m.run(0.5 * together, dt));
   CHECK(m.clutch(c).speed == Approx(-0.5 * w1).epsilon(1e-3));
+  CHECK(m.slip_speed(d) == Approx(-0.5 * w1).epsilon(1e-3));
+  Recorder rows(m);
+  rows.add(c);
+  CHECK(rows.columns() ==
+        std::vector<std::string>{"dry clutch_capacity", "dry clutch_torque", "dry clutch_slip_speed"});
+  CHECK(rows.sample()[1] == Approx(-T));
   REQUIRE(m.run(0.6 * together, dt));
   const double common = I1 * w1 / (I1 + I2), reduced = I1 * I2 / (I1 + I2);
   CHECK(m.speed(in) == Approx(common).epsilon(1e-9));

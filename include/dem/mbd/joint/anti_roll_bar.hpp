@@ -40,6 +40,9 @@ DEM_COLD inline CouplingId add_anti_roll_bar(Parts& parts, const AntiRollBarSpec
   known_body(parts, s.chassis, who);
   known_body(parts, s.left, who);
   known_body(parts, s.right, who);
+  finite_point(s.at_left, "the left point of " + who);
+  finite_point(s.at_right, "the right point of " + who);
+  unit(s.up, who);
   for (const BodyId b : {s.left, s.right}) {
     if (b == s.chassis) fail("{} ties its chassis '{}' to itself", who, parts.bodies[b.index()].name);
   }

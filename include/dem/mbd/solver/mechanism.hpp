@@ -137,6 +137,8 @@ class Mechanism {
   const Actuator& actuator(ActuatorId id) const { return known(parts_.actuators, id, "actuator"); }
   const Clutch& clutch(ClutchId id) const { return known(parts_.clutches, id, "clutch or brake"); }
   const Clutch& brake(BrakeId id) const { return clutch(id); }
+  /// Rate (rad/s, m/s) at which a clutch or brake slips, also while it is open.
+  double slip_speed(ClutchId id) const { return slip_of(clutch(id), parts_.joints, parts_.bodies).rate; }
   const Load& load(LoadId id) const { return known(parts_.loads, id, "load"); }
   const Spring& spring(SpringId id) const { return known(parts_.springs, id, "spring"); }
   const Coupling& coupling(CouplingId id) const { return known(parts_.couplings, id, "coupling"); }
