@@ -7,4 +7,5 @@
 #include <dem/integrator/velocity_verlet.hpp>
 #include <dem/mbd/machine.hpp>
 #include <dem/mbd/sensor/energy.hpp>
+#include <dem/mbd/sensor/energy_balance.hpp>
 #include <dem/mbd/sensor/recorder.hpp>

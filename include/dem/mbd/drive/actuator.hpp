@@ -5,6 +5,7 @@
 #include <dem/mbd/ids.hpp>
 #include <dem/mbd/joint/coordinate.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -31,7 +32,10 @@ struct ActuatorSpec {
   Curve torque_curve = {};  ///< a motor: N m over rad/s (or N over m/s) at full throttle
   double throttle = 0.0;    ///< -1 .. 1; below 0 the motor runs the other way, with the mirrored curve
   bool on = true;
-  Dof dof = Dof::own;  ///< the joint's coordinate that it drives
+  Dof dof = Dof::own;                                     ///< the joint's coordinate that it drives
+  std::vector<std::pair<double, Curve>> engine_map = {};  ///< an engine: N m over rad/s for each throttle, 0 to 1
+  double idle_speed = 0.0, idle_gain = 0.0;               ///< rad/s, 1/(rad/s); see idling_at
+  bool has_throttle() const { return !torque_curve.empty() || !engine_map.empty(); }
 
   ActuatorSpec along(Dof f) const {
     ActuatorSpec s = *this;
@@ -43,6 +47,7 @@ struct ActuatorSpec {
     s.max_force = f;
     return s;
   }
+  ActuatorSpec idling_at(double speed, double gain = 0.05) const;
   ActuatorSpec switched_off() const {
     ActuatorSpec s = *this;
     s.on = false;
@@ -111,6 +116,30 @@ struct Actuator {
   double power() const { return force * speed; }  ///< W, delivered to the bodies
 };
 
+/// The torque (N m) of an engine at a throttle and a speed (rad/s), governor included.
+inline double torque_of_engine(const ActuatorSpec& s, double speed) {
+  const auto& map = s.engine_map;
+  const double wanted = std::max(s.throttle, std::clamp(s.idle_gain * (s.idle_speed - speed), 0.0, 1.0));
+  std::size_t i = 1;
+  while (i + 1 < map.size() && map[i].first < wanted) ++i;
+  const double share = (wanted - map[i - 1].first) / (map[i].first - map[i - 1].first);
+  return (1.0 - share) * map[i - 1].second(speed) + share * map[i].second(speed);
+}
+/// N m s/rad, at most: of the steepest table, and of the governor where the tables differ most from the first one.
+inline double steepest_of_engine(const ActuatorSpec& s) {
+  double slope = 0.0, rise = 0.0;
+  for (const auto& [throttle, curve] : s.engine_map) slope = std::max(slope, curve.steepest());
+  for (std::size_t i = 1; i < s.engine_map.size(); ++i) {
+    const auto &low = s.engine_map[i - 1], &high = s.engine_map[i];
+    const double between = high.first - low.first;
+    for (const auto& [speed, torque] : high.second.points()) {
+      if (speed <= s.idle_speed) rise = std::max(rise, std::abs(torque - low.second(speed)) / between);
+    }
+    rise = std::max(rise, std::abs(high.second(s.idle_speed) - low.second(s.idle_speed)) / between);
+  }
+  return slope + s.idle_gain * rise;
+}
+
 /// The coordinate that an actuator acts on.
 inline Coordinate coordinate_of(const Actuator& u, const std::vector<Joint>& joints, const Body& a, const Body& b) {
   return u.spec.joint.valid() ? coordinate_of(joints[u.spec.joint.index()], a, b, u.spec.dof)
@@ -125,7 +154,9 @@ inline void apply_actuator(Actuator& u, const std::vector<Joint>& joints, std::v
   u.speed = q.speed;
   u.force = 0.0;
   if (!u.spec.on) return;
-  if (u.spec.torque_curve.empty()) {
+  if (!u.spec.engine_map.empty()) {
+    u.force = torque_of_engine(u.spec, q.speed);
+  } else if (u.spec.torque_curve.empty()) {
     u.target = (*u.spec.set_point)(time, dt);
     u.force = -u.spec.position_gain * (q.value - u.target.value) - u.spec.speed_gain * (q.speed - u.target.rate);
   } else {

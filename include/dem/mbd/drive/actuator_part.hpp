@@ -20,7 +20,9 @@ inline constexpr PartKind actuator_kind = {
             const Body &a = m.bodies[u.a], &b = m.bodies[u.b];
             const auto w = u.spec.joint.valid() ? inverse_mass_along(m.joints[u.spec.joint.index()], a, b, u.spec.dof)
                                                 : inverse_mass_of_line(u.point_a, u.point_b, a, b);
-            const double c = u.spec.torque_curve.empty() ? u.spec.speed_gain : u.spec.torque_curve.steepest();
+            const double c = !u.spec.engine_map.empty()    ? steepest_of_engine(u.spec)
+                             : u.spec.torque_curve.empty() ? u.spec.speed_gain
+                                                           : u.spec.torque_curve.steepest();
             add_element(list, actuator_kind, i, u.a, u.b, w, u.spec.position_gain, c);
           }
         },

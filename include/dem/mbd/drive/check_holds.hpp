@@ -7,11 +7,18 @@
 namespace dem::mbd {
 
 /// Throws Error if a motion that is on would have to jump at `time` (s) to take hold of its coordinate, which would
-/// tear the machine apart.
+/// tear the machine apart. To be called before each step.
 inline void check_holds(Parts& parts, double time) {
   constexpr double tolerance = 1e-3;  // m or rad
   for (PrescribedMotion& p : parts.motions) {
-    if (!p.spec.on || p.has_hold) continue;
+    if (!p.spec.on) continue;
+    if (p.spec.by_speed) {  // it starts from where its coordinate is
+      p.drive.start = p.drive.reached = detail::coordinate_of_drive(parts, p);
+      p.drive.time = time;
+      p.drive.moves = false;
+      p.has_hold = true;
+    }
+    if (p.has_hold) continue;
     const integrator::Motion<double>& m = parts.bodies[p.spec.body.index()].motion;
     double off = 0.0;
     if (p.spec.target == MotionSpec::Target::pose) {
@@ -24,7 +31,7 @@ inline void check_holds(Parts& parts, double time) {
         off = p.start + p.drive.value - dot(m.position, p.axis);
       } else if (p.spec.target == MotionSpec::Target::rotation) {
         off = norm(detail::rotation_off(p, m));
-      } else if (!p.spec.by_speed) {
+      } else {
         const Joint& j = parts.joints[p.spec.joint.index()];
         off = p.drive.value - coordinate_of(j, parts.bodies[j.a], parts.bodies[j.b], p.spec.dof).value;
       }

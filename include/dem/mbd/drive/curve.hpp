@@ -63,11 +63,41 @@ class Curve {
     }
     return s;
   }
+  /// The integral of y from x = a to b: exact, over every piece and what goes on outside. Negative where b < a.
+  double integral(double a, double b) const {
+    if (b < a) return -integral(b, a);
+    double sum = 0.0, x = a;
+    const auto area_to = [&](double to) {
+      sum += 0.5 * ((*this)(x) + (*this)(to)) * (to - x);
+      x = to;
+    };
+    for (const Point& p : points_) {
+      if (p.first > x && p.first < b) area_to(p.first);
+    }
+    area_to(b);
+    return sum;
+  }
+  /// Where the curve is 0: the first place within it, or beyond its ends as far as it goes on. `otherwise` if nowhere.
+  double zero_or(double otherwise) const {
+    for (std::size_t i = 1; i < points_.size(); ++i) {
+      const Point &p = points_[i - 1], &q = points_[i];
+      if (p.second == 0.0) return p.first;
+      if ((p.second < 0.0) != (q.second < 0.0) || q.second == 0.0) return crossing(p, q);
+    }
+    if (held_ || points_.empty()) return otherwise;
+    const auto n = points_.size();
+    const double below = crossing(points_[0], points_[1]), above = crossing(points_[n - 2], points_[n - 1]);
+    if (above > points_.back().first && std::isfinite(above)) return above;
+    return below < points_.front().first && std::isfinite(below) ? below : otherwise;
+  }
   bool empty() const { return points_.empty(); }
   const std::vector<std::pair<double, double>>& points() const { return points_; }
 
  private:
   using Point = std::pair<double, double>;
+  static double crossing(const Point& p, const Point& q) {
+    return p.first - p.second * (q.first - p.first) / (q.second - p.second);
+  }
   std::pair<const Point&, const Point&> piece(double x) const {
     const auto above = std::upper_bound(points_.begin() + 1, points_.end() - 1, x,
                                         [](double value, const Point& p) { return value < p.first; });

@@ -55,8 +55,8 @@ inline void add_held_rows(Parts& parts, JacobianRow row, const Joint& j) {
   });
 }
 
-/// Lists the driven coordinates of bodies that give way, as they are now. For a correction of values those that are
-/// driven by speed want to stay where they are, and what the driven joints hold is listed too.
+/// Lists the driven coordinates of bodies that give way, as they are now. For a correction of values what the driven
+/// joints hold is listed too.
 inline void fill_rows(Parts& parts, bool of_speed) {
   parts.rows.clear();
   for (std::size_t i = 0; i < parts.motions.size(); ++i) {
@@ -72,7 +72,6 @@ inline void fill_rows(Parts& parts, bool of_speed) {
       const Joint& j = parts.joints[p.spec.joint.index()];
       row.a = j.a;
       row.now = coordinate_of(j, parts.bodies[j.a], parts.bodies[j.b], p.spec.dof);
-      if (p.spec.by_speed) row.value = row.now.value;
       parts.rows.push_back(row);
       if (!of_speed) add_held_rows(parts, row, j);
     } else if (x.fixed) {

@@ -10,7 +10,7 @@ namespace dem::mbd::detail {
 
 inline constexpr PartKind motion_kind = {.rank = 7, .not_a_number = [](const Parts& m) -> std::string {
                                            for (const PrescribedMotion& p : m.motions) {
-                                             if (std::isnan(p.drive.value + p.drive.rate))
+                                             if (std::isnan((p.spec.by_speed ? 0.0 : p.drive.value) + p.drive.rate))
                                                return "The value of motion '" + p.spec.name + "'";
                                            }
                                            return {};
@@ -52,6 +52,7 @@ DEM_COLD inline PrescribedMotion make_motion(const Parts& parts, MotionSpec spec
     p.centre = -(p.axes * from_eigen(built.reference_origin));
   }
   p.spec = std::move(spec);
+  if (p.spec.by_speed) p.drive.reached = coordinate_of_drive(parts, p);
   return p;
 }
 

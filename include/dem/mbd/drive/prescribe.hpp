@@ -54,6 +54,27 @@ inline void carry_fixed(const PrescribedMotion& p, integrator::Motion<double>& m
   }
 }
 
+/// Where a motion by speed is when it is not yet set, or has been set for a time.
+inline double coordinate_of_drive(const Parts& parts, const PrescribedMotion& p) {
+  const Joint& j = parts.joints[p.spec.joint.index()];
+  return coordinate_of(j, parts.bodies[j.a], parts.bodies[j.b], p.spec.dof).value;
+}
+
+/// The value of a motion by speed at the end of a step of dt (s): that at its start, and the integral of its speed. All
+/// stages of a step ask for the same time. The start is where the coordinate was, not where it should have been: what
+/// another drive or a user moved is not made up for.
+inline double integrated(PrescribedMotion& p, double time, double dt, double rate) {
+  PrescribedMotion::Drive& d = p.drive;
+  if (time != d.time) {
+    d.start = d.reached;
+    d.time = time;
+    d.moves = true;
+  }
+  if (!d.moves || dt <= 0.0) return d.start;
+  const double at_start = p.spec.motion(time - dt, dt).rate, half_way = p.spec.motion(time - 0.5 * dt, dt).rate;
+  return d.start + dt / 6.0 * (at_start + 4.0 * half_way + rate);
+}
+
 /// Samples the signals. Sets the bodies that no force moves: fixed ones, and those whose pose is prescribed.
 inline void sample_motions(Parts& parts, double time, double dt) {
   for (PrescribedMotion& p : parts.motions) {
@@ -64,8 +85,8 @@ inline void sample_motions(Parts& parts, double time, double dt) {
       continue;
     }
     const Signal::Sample s = p.spec.motion(time, dt);
-    p.drive.value = s.value;
     p.drive.rate = s.rate;
+    p.drive.value = p.spec.by_speed ? integrated(p, time, dt, s.rate) : s.value;
     if (x.fixed && p.spec.target != MotionSpec::Target::joint) carry_fixed(p, x.motion);
   }
 }
@@ -139,6 +160,9 @@ inline void apply_motions(Parts& parts, double time, double dt, bool is_over) {
   if (parts.motions.empty()) return;
   detail::sample_motions(parts, time, dt);
   detail::correct_values(parts);
+  for (PrescribedMotion& p : parts.motions) {
+    if (p.spec.by_speed) p.drive.reached = detail::coordinate_of_drive(parts, p);
+  }
   detail::fill_rows(parts, true);
   std::vector<double>& x = parts.drive_errors;
   x.clear();

@@ -53,7 +53,7 @@ struct MotionSpec {
   Dof dof = Dof::own;         ///< the joint's coordinate that is prescribed
   Vec3 axis = Vec3::UnitX();  ///< global; made a unit vector
   Signal motion = 0.0;        ///< m or rad
-  bool by_speed = false;      ///< only the signal's rate counts, the coordinate goes where that takes it
+  bool by_speed = false;      ///< only the signal's rate counts; the coordinate grows by its integral over each step
   PoseFunction pose = {};
   BodyFrame frame = BodyFrame::reference;  ///< of the body, which the pose is that of
   bool on = true;
@@ -80,7 +80,9 @@ DEM_COLD inline MotionSpec prescribed_joint(std::string name, JointId joint, Sig
   return {
       .name = std::move(name), .target = MotionSpec::Target::joint, .joint = joint, .motion = std::move(coordinate)};
 }
-/// Prescribes the speed of a joint's coordinate (m/s or rad/s) and leaves its value as it comes: a driven wheel.
+/// Prescribes the speed of a joint's coordinate (m/s or rad/s), from whatever value it has: a driven wheel. In each
+/// step the value grows by the integral of the signal over the step (Simpson's rule, exact for cubics), whatever the
+/// load is.
 DEM_COLD inline MotionSpec prescribed_speed(std::string name, JointId joint, Signal speed) {
   MotionSpec s = prescribed_joint(std::move(name), joint, speed.as_rate());
   s.by_speed = true;
@@ -106,6 +108,10 @@ struct PrescribedMotion {
   Matrix3<double> axes = Matrix3<double>::identity();  ///< body frame -> frame of the poses
   struct Drive {
     double value = 0.0, rate = 0.0;  ///< what was set last
+    double start = 0.0;              ///< of a motion by speed: its coordinate at the start of the step, m or rad
+    double reached = 0.0;            ///< of a motion by speed: its coordinate when it was set last, m or rad
+    double time = 0.0;               ///< s, that `value` belongs to
+    bool moves = false;              ///< of a motion by speed: `time` is that of the end of a step
     double impulse = 0.0;            ///< N s or N m s, given since the force was reported
     double force = 0.0;              ///< N or N m, makes the coordinate grow (not for a pose)
   } drive;

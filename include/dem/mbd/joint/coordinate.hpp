@@ -130,12 +130,16 @@ struct Violation {
   double rotation = 0.0;
 };
 
-inline Violation violation_of(const Joint& j, const Body& a, const Body& b) {
+/// The same of what a joint would hold if it were on.
+inline Violation gap_of(const Joint& j, const Body& a, const Body& b) {
   const JointTraits& traits = traits_of(j.kind);
   const Matrix3<double>&A = a.motion.rotation, &B = b.motion.rotation;
   const Vector3<double> d = b.motion.position + B * j.point_b - a.motion.position - A * j.point_a;
   const detail::FrameOfA at{j, A};
   return {detail::opening(j, traits.hold, at, d), detail::misalignment(j, traits.align, at, B)};
+}
+inline Violation violation_of(const Joint& j, const Body& a, const Body& b) {
+  return j.on ? gap_of(j, a, b) : Violation{};
 }
 
 }  // namespace dem::mbd

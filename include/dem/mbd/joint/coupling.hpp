@@ -29,6 +29,13 @@ struct CouplingSpec {
   std::vector<Term> terms;
   std::optional<double> stiffness = {};  ///< per unit of the sum; derived if not given
   std::optional<double> damping = {};
+  bool on = true;
+
+  CouplingSpec switched_off() const {
+    CouplingSpec s = *this;
+    s.on = false;
+    return s;
+  }
 };
 
 /// Gears, between joints that turn: joint `out` turns `ratio` times as fast as joint `in`; negative where it turns the
@@ -76,6 +83,8 @@ inline double coupling_sum(const CouplingSpec& spec, const std::vector<Joint>& j
 }
 
 inline void apply_coupling(Coupling& g, const std::vector<Joint>& joints, std::vector<Body>& bodies) {
+  g.error = g.multiplier = 0.0;
+  if (!g.spec.on) return;
   double sum = 0.0, rate = 0.0;
   for (const auto& term : g.spec.terms) {
     const Joint& j = joints[term.joint.index()];

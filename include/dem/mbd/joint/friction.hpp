@@ -40,6 +40,11 @@ constexpr Dofs rubbing_dofs(Bearing bearing) {
 /// times `slip_time` (0 in a stage at the start of the step); the history is committed only where `commit` says so.
 inline void apply_friction(JointFrictionState& e, const Joint& j, Body& a, Body& b, double slip_time, bool commit) {
   using V = Vector3<double>;
+  e.force = e.torque = {0, 0, 0};
+  if (!j.on) {
+    e.committed = {};
+    return;
+  }
   const Matrix3<double>&A = a.motion.rotation, &B = b.motion.rotation;
   const V wa = A * a.motion.angular_velocity, wb = B * b.motion.angular_velocity;
   const V w = wb - wa;

@@ -4,6 +4,8 @@
 #include <dem/mbd/body/body.hpp>
 #include <dem/mbd/joint/joint_kind.hpp>
 
+#include <memory>
+
 namespace dem::mbd {
 
 /// Joint axes in a body's frame.
@@ -11,16 +13,20 @@ struct Axes {
   Vector3<double> x, y, z;
 };
 
+struct BushingTables;
+
 /// What a step needs of a joint.
 struct Joint {
   std::uint32_t a, b;
   JointKind kind;
   bool turns = false;                ///< has a rotation about z, followed over whole turns
+  bool on = true;                    ///< false: it holds nothing for now
   Vector3<double> point_a, point_b;  ///< m, body frames
   Axes axes_a, axes_b;               ///< body frames
   double k = 0, c = 0;               ///< N/m, N s/m
   double kr = 0, cr = 0;             ///< N m/rad, N m s/rad
   Vector3<double> k3 = {0, 0, 0}, c3 = {0, 0, 0}, kr3 = {0, 0, 0}, cr3 = {0, 0, 0};  ///< bushing, along joint axes
+  std::shared_ptr<const BushingTables> tables = {};                                  ///< of a bushing with tables
   double length = 0;                                                                 ///< m, of a distance joint
   double angle_offset = 0, slide_offset = 0;
   double angle_estimate = 0;  ///< rad, sum of speed dt: good to half a turn, says how many turns were made

@@ -5,6 +5,7 @@
 
 #include <dem/core/error.hpp>
 #include <dem/core/macros.hpp>
+#include <dem/math/matrix3.hpp>
 #include <dem/math/vector.hpp>
 #include <dem/mbd/joint/dof.hpp>
 
@@ -18,8 +19,10 @@ namespace dem::mbd {
 
 struct Joint;
 struct JointSpec;
-
 struct JointTraits;
+namespace detail {
+struct FrameOfA;
+}
 
 /// What a joint leaves free. Joint frame: origin in the joint's point, z along its axis. Each kind is defined in a file
 /// of its own, with its traits; a kind of your own is a JointKind of your own traits.
@@ -33,12 +36,15 @@ class JointKind {
   static const JointKind planar;       ///< sliding along x and y, rotation about z
   static const JointKind universal;    ///< rotation about x of body a and y of body b, the arms of its cross
   static const JointKind
-      constant_velocity;                  ///< bending in any direction; carries the rotation about the shafts unchanged
-  static const JointKind point_on_line;   ///< all rotations and sliding along z
-  static const JointKind point_on_plane;  ///< all rotations and sliding along x and y
-  static const JointKind distance;        ///< all but the distance of two points
-  static const JointKind bushing;         ///< everything, against springs and dampers along and about x, y, z
-  static const JointKind free;            ///< everything; measures a rotation and a displacement
+      constant_velocity;  ///< bending in any direction; carries the rotation about the shafts unchanged
+  /// As constant_velocity; the point of shaft b slides along shaft a.
+  static const JointKind plunging_constant_velocity;
+  static const JointKind point_on_line;        ///< all rotations and sliding along z
+  static const JointKind point_on_plane;       ///< all rotations and sliding along x and y
+  static const JointKind distance;             ///< all but the distance of two points
+  static const JointKind bushing;              ///< everything, against springs and dampers along and about x, y, z
+  static const JointKind bushing_with_tables;  ///< likewise, against tables of load over displacement
+  static const JointKind free;                 ///< everything; measures a rotation and a displacement
 
   constexpr JointKind() = default;  ///< none: a joint of it is refused
   constexpr explicit JointKind(const JointTraits& traits) : traits_(&traits) {}
@@ -94,6 +100,11 @@ struct JointTraits {
   /// which the joint's turns are followed: the time step in the last stage of a step, else 0.
   void (*force)(Joint& joint, Body& a, Body& b, const Vector3<double>& wa, const Vector3<double>& wb,
                 double dt) = nullptr;
+
+  /// J in its springs, of kinds whose springs are not those of `hold` and `align`; d (m) is the way between the points,
+  /// `b` the rotation of body b.
+  double (*energy)(const Joint& joint, const detail::FrameOfA& at, const Matrix3<double>& b,
+                   const Vector3<double>& d) = nullptr;
 
   /// Whether its own coordinate is a rotation about z, which is followed over whole turns.
   constexpr bool turns() const { return own == Dof::turn; }

@@ -10,6 +10,7 @@
 
 namespace dem::mbd::detail {
 
+/// One that is switched off may be switched on again, so it counts as if it were on.
 inline void list_joint(const Parts& m, std::size_t index, const PartKind& kind, std::vector<Element>& list) {
   const Joint& j = m.joints[index];
   const Stiffness stiffness = traits_of(j.kind).stiffness;
@@ -82,7 +83,11 @@ inline constexpr PartKind joint_kind = {
     .add_forces =
         [](Parts& m, const Evaluation& now) {
           for (Joint& j : m.joints) {
-            traits_of(j.kind).force(j, m.bodies[j.a], m.bodies[j.b], m.spin[j.a], m.spin[j.b], now.followed());
+            if (j.on) [[likely]] {
+              traits_of(j.kind).force(j, m.bodies[j.a], m.bodies[j.b], m.spin[j.a], m.spin[j.b], now.followed());
+            } else if (j.turns) {
+              follow_turns(j, m.bodies[j.a], m.bodies[j.b], m.spin[j.a], m.spin[j.b], now.followed());
+            }
           }
         },
     .list_elements =

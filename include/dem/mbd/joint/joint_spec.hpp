@@ -7,6 +7,7 @@
 #include <dem/mbd/joint/joint_kind.hpp>
 
 #include <limits>
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
@@ -15,6 +16,7 @@
 namespace dem::mbd {
 
 struct Parts;
+struct BushingTables;
 
 /// A limit at each end of a coordinate of a joint (rad for rotations, m for slides).
 struct JointLimits {
@@ -39,8 +41,9 @@ struct JointFriction {
   /// need it; a planar joint with a radius rubs its rotation too, without one its sliding alone; guides (prismatic,
   /// point on line or plane) rub their sliding alone and have none.
   double radius = 0.0;
-  double preload = 0.0;  ///< N, added to the normal force; a brake is a joint with a preload
-  double lever = 0.0;    ///< m, distance of the bearings: adds torque/lever; 0: left out
+  double preload =
+      0.0;             ///< N, added to the normal force; for a brake, which no load on the bearing tightens, see brake
+  double lever = 0.0;  ///< m, distance of the bearings: adds torque/lever; 0: left out
   double breaking_factor = 0.975;
   std::optional<double> stiffness = {};           ///< N/m; derived if not given
   std::optional<double> velocity_stiffness = {};  ///< N s/m; derived if not given
@@ -62,6 +65,7 @@ struct JointSpec {
   std::optional<double> rotational_damping = {};        ///< N m s/rad
   Vec3 bushing_stiffness = Vec3::Zero(), bushing_damping = Vec3::Zero();                        ///< N/m, N s/m
   Vec3 bushing_rotational_stiffness = Vec3::Zero(), bushing_rotational_damping = Vec3::Zero();  ///< N m/rad, N m s/rad
+  std::shared_ptr<const BushingTables> bushing_tables = {};  ///< of a bushing with tables
   std::optional<double> length = {};     ///< m, of a distance joint, within `tolerance`; that at assembly if not given
   std::vector<JointStart> starts = {};   ///< of coordinates that are not 0 at assembly
   std::vector<JointLimits> limits = {};  ///< one for each coordinate that is limited; see with_limits

@@ -17,8 +17,9 @@ struct JointLimitState {
 
 /// A limit pushes back with a spring and, on the way in, a damper; it never pulls.
 inline void apply_limits(JointLimitState& e, const Joint& j, Body& a, Body& b) {
-  const Coordinate q = coordinate_of(j, a, b, e.dof);
   e.force = 0.0;
+  if (!j.on) return;
+  const Coordinate q = coordinate_of(j, a, b, e.dof);
   if (q.value >= e.lower && q.value <= e.upper) return;
   // Compared such that a NaN stays one and reaches the report.
   const double side = q.value < e.lower ? 1.0 : -1.0;

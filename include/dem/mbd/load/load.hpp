@@ -18,6 +18,10 @@ namespace dem::mbd {
 /// (s) and a state of the body.
 using LoadLaw = Function<Wrench(double time, const Body& body)>;
 
+/// A force law between two bodies: force (N) and torque (N m, about b's centre of mass) that b feels, in global axes.
+/// Body a feels the opposite, at the same place, so momentum and angular momentum are kept.
+using PairLoadLaw = Function<Wrench(double time, const Body& a, const Body& b)>;
+
 /// A force (N) at a point of a body, or a torque (N m), along a direction that stays in space or turns with the body;
 /// or whatever a law gives.
 struct LoadSpec {
@@ -29,7 +33,10 @@ struct LoadSpec {
   Vec3 at = Vec3::Zero();          ///< m, global at assembly
   bool follows_body = false;       ///< the direction turns with the body
   bool on = true;
-  LoadLaw law = {};  ///< if given, it stands for direction, size and point
+  LoadLaw law = {};           ///< if given, it stands for direction, size and point
+  BodyId a = {};              ///< the other body of a law between two
+  PairLoadLaw pair_law = {};  ///< likewise, between body a and `body`
+  bool has_law() const { return law || pair_law; }
 };
 
 DEM_COLD inline LoadSpec applied_force(std::string name, BodyId body, const Vec3& at, const Vec3& direction,
@@ -52,6 +59,18 @@ DEM_COLD inline LoadSpec custom_load(std::string name, BodyId body, LoadLaw law)
   return {.name = std::move(name), .body = body, .law = std::move(law)};
 }
 
+/// The same between two bodies: a tyre on a road that moves, a torque converter, a field between two magnets. The law
+/// gives what body b feels, about its centre of mass; body a feels the opposite.
+///
+///     custom_load("converter", pump, turbine, [=](double, const Body& a, const Body& b) {
+///       const double slip = axis.dot(a.angular_velocity() - b.angular_velocity());
+///       return Wrench{{0, 0, 0}, from_eigen(Vec3(c * slip * axis))};
+///     })
+DEM_COLD inline LoadSpec custom_load(std::string name, BodyId a, BodyId b, PairLoadLaw law) {
+  if (!law) fail("load '{}' was given no function; give one that returns the force and the torque", name);
+  return {.name = std::move(name), .body = b, .a = a, .pair_law = std::move(law)};
+}
+
 struct Load {
   LoadSpec spec;
   Vector3<double> point = {};      ///< m, body frame
@@ -66,6 +85,11 @@ inline void apply_load(Load& load, std::vector<Body>& bodies, double time, doubl
   Body& b = bodies[load.spec.body.index()];
   if (load.spec.law) {
     load.wrench = load.spec.law(time, b);
+  } else if (load.spec.pair_law) {
+    Body& a = bodies[load.spec.a.index()];
+    load.wrench = load.spec.pair_law(time, a, b);
+    a.force -= load.wrench.force;
+    a.torque -= load.wrench.torque + cross(b.motion.position - a.motion.position, load.wrench.force);
   } else {
     const Matrix3<double>& r = b.motion.rotation;
     load.size = load.spec.size(time, dt).value;

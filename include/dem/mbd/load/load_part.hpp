@@ -17,7 +17,7 @@ inline constexpr PartKind load_kind = {
       for (const Load& l : m.loads) {
         if (std::isnan(l.size)) return "The size of load '" + l.spec.name + "'";
         const Wrench& w = l.wrench;
-        if (l.spec.law && std::isnan(dot(w.force, {1, 1, 1}) + dot(w.torque, {1, 1, 1}))) {
+        if (l.spec.has_law() && std::isnan(dot(w.force, {1, 1, 1}) + dot(w.torque, {1, 1, 1}))) {
           return "The force or torque of load '" + l.spec.name + "'";
         }
       }
@@ -28,6 +28,9 @@ DEM_COLD inline LoadId add_load(Parts& parts, LoadSpec spec) {
   settle_name(spec.name, parts.loads, "load", "loads", name_in_spec);
   const std::string who = dem::text("load '{}'", spec.name);
   const Body& b = known_body(parts, spec.body, who);
+  if (spec.pair_law && known_body(parts, spec.a, who).name == b.name) {
+    fail("{} acts between body '{}' and itself; give it two different bodies", who, b.name);
+  }
   const Vector3<double> n = unit(spec.direction, who);
   Load load;
   load.point = to_body(b, finite_point(spec.at, "the point of " + who));

@@ -11,13 +11,26 @@
 
 namespace dem::mbd {
 
-/// A spring and damper between two points: force over length from a table or a stiffness and a free length.
+/// A spring and damper between two points, or on a coordinate of a joint: force over length (or torque over angle) from
+/// a table or a stiffness and a free length.
 struct SpringSpec {
   std::string name;
   BodyId a = {}, b = {};
   Vec3 at_a = Vec3::Zero(), at_b = Vec3::Zero();  ///< m, global at assembly
-  Curve force_over_length = {};                   ///< N over m; positive pushes the points apart
-  Curve force_over_speed = {};                    ///< N over m/s of lengthening; positive pushes the points apart
+  Curve force_over_length = {};                   ///< N over m (or N m over rad); positive pushes the points apart
+  Curve force_over_speed = {};                    ///< N over m/s of lengthening (or N m over rad/s); likewise
+  bool on = true;
+  bool on_joint = false;  ///< acts on a joint's coordinate, not between two points
+  JointId joint = {};
+  Dof dof = Dof::own;
+  bool from_start = false;  ///< the table counts from what the joint's coordinate is when the spring is added
+
+  /// Acts on one of dofs_of(the joint's kind) instead of the joint's own coordinate.
+  SpringSpec along(Dof f) const {
+    SpringSpec s = *this;
+    s.dof = f;
+    return s;
+  }
 };
 
 /// A linear spring (N/m) of free length (m; the length at assembly if negative) with a linear damper (N s/m).
@@ -53,20 +66,62 @@ DEM_COLD inline SpringSpec spring_table(std::string name, BodyId a, const Vec3& 
           .force_over_speed = damping > 0.0 ? Curve::line(0.0, -damping) : Curve{}};
 }
 
+/// On a coordinate of a joint, a torsion bar or a coil spring on a slide: a linear spring (N m/rad where it turns, N/m
+/// where it slides) with a linear damper (N m s/rad, N s/m), free where the coordinate is when it is added.
+DEM_COLD inline SpringSpec joint_spring(std::string name, JointId joint, double stiffness, double damping = 0.0) {
+  require_non_negative(stiffness, "stiffness of a spring", "N m/rad or N/m");
+  require_non_negative(damping, "damping of a spring", "N m s/rad or N s/m");
+  return {.name = std::move(name),
+          .force_over_length = Curve::line(0.0, -stiffness),
+          .force_over_speed = damping > 0.0 ? Curve::line(0.0, -damping) : Curve{},
+          .on_joint = true,
+          .joint = joint,
+          .from_start = true};
+}
+/// The same, free at a given value (rad or m) of the coordinate.
+DEM_COLD inline SpringSpec joint_spring(std::string name, JointId joint, double stiffness, double damping,
+                                        double free_at) {
+  SpringSpec s = joint_spring(std::move(name), joint, stiffness, damping);
+  s.force_over_length = Curve::line(stiffness * free_at, -stiffness);
+  s.from_start = false;
+  return s;
+}
+/// The same from a table of torque (N m) over the coordinate (rad), or of force (N) over it (m): positive drives the
+/// coordinate up, so a spring that holds its middle has a falling table. Beyond the table its last slope goes on,
+/// unless the curve is held_outside().
+DEM_COLD inline SpringSpec joint_spring_table(std::string name, JointId joint, Curve torque_over_coordinate,
+                                              double damping = 0.0) {
+  require_non_negative(damping, "damping of a spring", "N m s/rad or N s/m");
+  return {.name = std::move(name),
+          .force_over_length = std::move(torque_over_coordinate),
+          .force_over_speed = damping > 0.0 ? Curve::line(0.0, -damping) : Curve{},
+          .on_joint = true,
+          .joint = joint};
+}
+
 struct Spring {
   SpringSpec spec;
+  std::uint32_t a = 0, b = 0;
   Vector3<double> point_a = {}, point_b = {};  ///< m, body frames
-  double length = 0.0, speed = 0.0;            ///< m, m/s
-  double force = 0.0;                          ///< N, positive pushes the points apart
+  double start = 0.0;                          ///< m or rad, that the table counts from
+  double length = 0.0, speed = 0.0;            ///< m, m/s (or rad, rad/s)
+  double force = 0.0;                          ///< N (or N m), positive pushes the points apart
 };
 
-inline void apply_spring(Spring& s, std::vector<Body>& bodies) {
-  Body &a = bodies[s.spec.a.index()], &b = bodies[s.spec.b.index()];
-  const Coordinate q = distance_of(s.point_a, s.point_b, a, b);
+/// The coordinate that a spring acts on.
+inline Coordinate coordinate_of(const Spring& s, const std::vector<Joint>& joints, const Body& a, const Body& b) {
+  return s.spec.joint.valid() ? coordinate_of(joints[s.spec.joint.index()], a, b, s.spec.dof)
+                              : distance_of(s.point_a, s.point_b, a, b);
+}
+
+inline void apply_spring(Spring& s, const std::vector<Joint>& joints, std::vector<Body>& bodies) {
+  Body &a = bodies[s.a], &b = bodies[s.b];
+  const Coordinate q = coordinate_of(s, joints, a, b);
   s.length = q.value;
   s.speed = q.speed;
   s.force = 0.0;
-  if (!s.spec.force_over_length.empty()) s.force += s.spec.force_over_length(q.value);
+  if (!s.spec.on) return;
+  if (!s.spec.force_over_length.empty()) s.force += s.spec.force_over_length(q.value - s.start);
   if (!s.spec.force_over_speed.empty()) s.force += s.spec.force_over_speed(q.speed);
   q.apply(s.force, a, b);
 }

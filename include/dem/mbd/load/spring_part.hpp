@@ -12,16 +12,17 @@ inline constexpr PartKind spring_kind = {
     .rank = 5,
     .add_forces =
         [](Parts& m, const Evaluation&) {
-          for (Spring& s : m.springs) apply_spring(s, m.bodies);
+          for (Spring& s : m.springs) apply_spring(s, m.joints, m.bodies);
         },
     .list_elements =
         [](const Parts& m, std::vector<Element>& list) {
           for (std::size_t i = 0; i < m.springs.size(); ++i) {
             const Spring& s = m.springs[i];
-            const std::uint32_t a = s.spec.a.value, b = s.spec.b.value;
-            const auto w = inverse_mass_of_line(s.point_a, s.point_b, m.bodies[a], m.bodies[b]);
+            const Body &a = m.bodies[s.a], &b = m.bodies[s.b];
+            const auto w = s.spec.joint.valid() ? inverse_mass_along(m.joints[s.spec.joint.index()], a, b, s.spec.dof)
+                                                : inverse_mass_of_line(s.point_a, s.point_b, a, b);
             const auto steepest = [](const Curve& c) { return c.empty() ? 0.0 : c.steepest(); };
-            add_element(list, spring_kind, i, a, b, w, steepest(s.spec.force_over_length),
+            add_element(list, spring_kind, i, s.a, s.b, w, steepest(s.spec.force_over_length),
                         steepest(s.spec.force_over_speed));
           }
         },
@@ -31,8 +32,19 @@ inline constexpr PartKind spring_kind = {
 DEM_COLD inline SpringId add_spring(Parts& parts, SpringSpec spec) {
   settle_name(spec.name, parts.springs, "spring", "springs", name_in_spec);
   Spring s;
-  attach_points(parts, s, spec, "spring '" + spec.name + "'");
+  const std::string who = "spring '" + spec.name + "'";
+  if (spec.on_joint) {
+    const Joint& j = known_joint(parts, spec.joint, who);
+    spec.dof = require_free_dof(j.kind, spec.dof, who);
+    s.a = j.a;
+    s.b = j.b;
+  } else {
+    attach_points(parts, s, spec, who);
+    s.a = spec.a.value;
+    s.b = spec.b.value;
+  }
   s.spec = std::move(spec);
+  if (s.spec.from_start) s.start = coordinate_of(s, parts.joints, parts.bodies[s.a], parts.bodies[s.b]).value;
   use(parts, spring_kind);
   return keep<SpringId>(parts, parts.springs, std::move(s));
 }

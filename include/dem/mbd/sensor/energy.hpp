@@ -18,20 +18,57 @@ inline Vec3 angular_momentum(const Body& b) {
   return to_eigen(b.mass * cross(b.motion.position, b.motion.velocity) + b.motion.rotation * spin);
 }
 
-/// J, stored in a joint's penalty springs.
+/// J, stored in a joint's penalty springs, or those of a bushing.
 inline double elastic_energy(const Joint& j, const Body& a, const Body& b) {
+  if (!j.on) return 0.0;
   const JointTraits& traits = traits_of(j.kind);
   const Matrix3<double>&A = a.motion.rotation, &B = b.motion.rotation;
   const Vector3<double> d = b.motion.position + B * j.point_b - a.motion.position - A * j.point_a;
   const detail::FrameOfA at{j, A};
+  if (traits.energy) return traits.energy(j, at, B, d);
   return detail::holding_energy(j, traits.hold, at, d) + detail::aligning_energy(j, traits.align, at, B);
 }
 
-/// The energies of a machine in J: of motion, of height (against gravity, from the origin) and in its joints. Springs,
-/// actuators, couplings, limits and the springs of friction are not counted.
+/// J, stored in a coupling's spring.
+inline double elastic_energy(const Coupling& g, const std::vector<Joint>& joints, const std::vector<Body>& bodies) {
+  if (!g.spec.on) return 0.0;
+  const double error = coupling_sum(g.spec, joints, bodies) - g.offset;
+  return 0.5 * g.k * error * error;
+}
+
+/// J, stored in a spring: 0 where its force is 0, or at the start of its table if it is 0 nowhere.
+inline double elastic_energy(const Spring& s, const std::vector<Joint>& joints, const std::vector<Body>& bodies) {
+  const Curve& c = s.spec.force_over_length;
+  if (!s.spec.on || c.empty()) return 0.0;
+  const double x = coordinate_of(s, joints, bodies[s.a], bodies[s.b]).value - s.start;
+  return -c.integral(c.zero_or(c.points().front().first), x);
+}
+
+/// J, stored in a limit that is pressed.
+inline double elastic_energy(const JointLimitState& e, const std::vector<Joint>& joints,
+                             const std::vector<Body>& bodies) {
+  const Joint& j = joints[e.joint];
+  if (!j.on) return 0.0;
+  const double q = coordinate_of(j, bodies[j.a], bodies[j.b], e.dof).value;
+  const double depth = q < e.lower ? e.lower - q : q > e.upper ? q - e.upper : 0.0;
+  return 0.5 * e.stiffness * depth * depth;
+}
+
+/// J, in the asperities of a joint's friction.
+inline double elastic_energy(const JointFrictionState& e) {
+  return 0.5 * e.law.stiffness * dot(e.committed.slip, e.committed.slip);
+}
+
+/// The energies of a machine in J: of motion, of height (against gravity, from the origin), in the penalty springs of
+/// its joints and their limits, and in what else gives way: couplings, springs, clutches and brakes that stick, and
+/// friction of joints. What is stored in the contacts of grains is theirs (see EnergyBalance). Fixed bodies count none.
 struct Energy {
-  double kinetic = 0.0, potential = 0.0, elastic = 0.0;
-  double sum() const { return kinetic + potential + elastic; }
+  double kinetic = 0.0, potential = 0.0;
+  double elastic = 0.0;  ///< in joints and their limits
+  double springs = 0.0;  ///< in springs
+  double couplings = 0.0;
+  double friction = 0.0;  ///< in clutches, brakes and the friction of joints, while they stick
+  double sum() const { return kinetic + potential + elastic + springs + couplings + friction; }
 };
 
 inline Energy energy_of(const Parts& m, const Vec3& gravity) {
@@ -42,6 +79,11 @@ inline Energy energy_of(const Parts& m, const Vec3& gravity) {
     e.potential -= b.mass * dot(from_eigen(gravity), b.motion.position);
   }
   for (const Joint& j : m.joints) e.elastic += elastic_energy(j, m.bodies[j.a], m.bodies[j.b]);
+  for (const JointLimitState& l : m.limits) e.elastic += elastic_energy(l, m.joints, m.bodies);
+  for (const Spring& s : m.springs) e.springs += elastic_energy(s, m.joints, m.bodies);
+  for (const Coupling& g : m.couplings) e.couplings += elastic_energy(g, m.joints, m.bodies);
+  for (const Clutch& u : m.clutches) e.friction += u.elastic_energy();
+  for (const JointFrictionState& f : m.friction) e.friction += elastic_energy(f);
   return e;
 }
 

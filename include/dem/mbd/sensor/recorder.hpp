@@ -83,6 +83,15 @@ class Recorder {
     return *this;
   }
 
+  /// Capacity and torque (N m, or N) of a clutch or brake, and the rate of its slip (rad/s, or m/s).
+  Recorder& add(ClutchId id) {
+    const Mechanism* m = machine_;
+    const std::string name = m->clutch(id).spec.name;
+    add(name + "_capacity", [m, id] { return m->clutch(id).capacity; });
+    add(name + "_torque", [m, id] { return m->clutch(id).torque; });
+    return add(name + "_slip_speed", [m, id] { return m->slip_speed(id); });
+  }
+
   const std::vector<std::string>& columns() const { return columns_; }
 
   /// The row of the present state; valid until the next call.

@@ -66,6 +66,8 @@ class SavedState {
     turns_.resize(parts.joints.size());
     for (std::size_t i = 0; i < parts.joints.size(); ++i) turns_[i] = parts.joints[i].angle_estimate;
     friction_ = parts.friction;
+    clutches_.resize(parts.clutches.size());
+    for (std::size_t i = 0; i < parts.clutches.size(); ++i) clutches_[i] = parts.clutches[i].history;
     drives_.resize(parts.motions.size());
     for (std::size_t i = 0; i < parts.motions.size(); ++i) drives_[i] = parts.motions[i].drive;
   }
@@ -75,6 +77,7 @@ class SavedState {
     for (std::size_t i = 0; i < parts.bodies.size(); ++i) parts.bodies[i].motion = motions_[i];
     for (std::size_t i = 0; i < parts.joints.size(); ++i) parts.joints[i].angle_estimate = turns_[i];
     parts.friction = friction_;
+    for (std::size_t i = 0; i < parts.clutches.size(); ++i) parts.clutches[i].history = clutches_[i];
     for (std::size_t i = 0; i < parts.motions.size(); ++i) parts.motions[i].drive = drives_[i];
     return time_;
   }
@@ -85,6 +88,7 @@ class SavedState {
   std::vector<integrator::Motion<double>> motions_;
   std::vector<double> turns_;
   std::vector<JointFrictionState> friction_;
+  std::vector<Clutch::History> clutches_;
   std::vector<PrescribedMotion::Drive> drives_;
 };
 

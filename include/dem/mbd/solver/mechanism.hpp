@@ -2,7 +2,10 @@
 
 #include <dem/mbd/body/add_body.hpp>
 #include <dem/mbd/drive/actuator_part.hpp>
+#include <dem/mbd/drive/clutch_part.hpp>
+#include <dem/mbd/drive/engine.hpp>
 #include <dem/mbd/drive/motion_part.hpp>
+#include <dem/mbd/joint/anti_roll_bar.hpp>
 #include <dem/mbd/joint/coupling_part.hpp>
 #include <dem/mbd/joint/friction_part.hpp>
 #include <dem/mbd/joint/kinds.hpp>
@@ -52,6 +55,9 @@ class Mechanism {
   DEM_COLD ActuatorId add_actuator(ActuatorSpec spec) { return detail::add_actuator(parts_, std::move(spec)); }
   DEM_COLD SpringId add_spring(SpringSpec spec) { return detail::add_spring(parts_, std::move(spec)); }
   DEM_COLD CouplingId add_coupling(CouplingSpec spec) { return detail::add_coupling(parts_, std::move(spec)); }
+  DEM_COLD CouplingId add_anti_roll_bar(const AntiRollBarSpec& spec) { return detail::add_anti_roll_bar(parts_, spec); }
+  DEM_COLD ClutchId add_clutch(ClutchSpec spec) { return detail::add_clutch(parts_, std::move(spec)); }
+  DEM_COLD BrakeId add_brake(ClutchSpec spec) { return detail::add_clutch(parts_, std::move(spec)); }
   DEM_COLD LoadId add_load(LoadSpec spec) { return detail::add_load(parts_, std::move(spec)); }
   DEM_COLD MotionId add_motion(MotionSpec spec) { return detail::add_motion(parts_, std::move(spec)); }
   DEM_COLD SensorId add_sensor(SensorSpec spec) { return detail::add_sensor(parts_, std::move(spec)); }
@@ -84,6 +90,17 @@ class Mechanism {
   Mat3 reference_rotation(BodyId id) const {
     return to_eigen(body(id).motion.rotation * from_eigen(known(parts_.built, id, "body").reference_axes));
   }
+  /// Global velocity (m/s) of a point (m) of the body's reference frame.
+  Vec3 reference_point_velocity(BodyId id, const Vec3& point) const {
+    const Body& b = body(id);
+    return b.point_velocity(to_eigen(to_body(b, from_eigen(reference_point(id, point)))));
+  }
+  /// Global velocity (m/s) of the origin of the body's reference frame.
+  Vec3 reference_velocity(BodyId id) const { return reference_point_velocity(id, Vec3::Zero()); }
+  Vec3 connection_velocity(ConnectionId id) const {
+    const Connection& c = known(parts_.connections, id, "connection point");
+    return body(c.body).point_velocity(c.point);
+  }
   Vec3 connection_position(ConnectionId id) const {
     const Connection& c = known(parts_.connections, id, "connection point");
     return body(c.body).point(c.point);
@@ -96,6 +113,12 @@ class Mechanism {
   /// The slide along z (m, m/s), e.g. the second coordinate of a cylindrical joint.
   double slide(JointId id) const { return coordinate(id, Dof::slide); }
   double slide_speed(JointId id) const { return speed(id, Dof::slide); }
+  /// What a joint would be strained by (m, rad) if it were switched on without taking the bodies as they are.
+  Violation gap(JointId id) const {
+    const Joint& j = joint(id);
+    return gap_of(j, parts_.bodies[j.a], parts_.bodies[j.b]);
+  }
+  /// How far (m, rad) a joint is from holding what it should; 0 while it is switched off.
   Violation violation(JointId id) const {
     const Joint& j = joint(id);
     return violation_of(j, parts_.bodies[j.a], parts_.bodies[j.b]);
@@ -112,6 +135,10 @@ class Mechanism {
   const JointFrictionState* friction(JointId id) const { return friction_of(parts_, id); }
 
   const Actuator& actuator(ActuatorId id) const { return known(parts_.actuators, id, "actuator"); }
+  const Clutch& clutch(ClutchId id) const { return known(parts_.clutches, id, "clutch or brake"); }
+  const Clutch& brake(BrakeId id) const { return clutch(id); }
+  /// Rate (rad/s, m/s) at which a clutch or brake slips, also while it is open.
+  double slip_speed(ClutchId id) const { return slip_of(clutch(id), parts_.joints, parts_.bodies).rate; }
   const Load& load(LoadId id) const { return known(parts_.loads, id, "load"); }
   const Spring& spring(SpringId id) const { return known(parts_.springs, id, "spring"); }
   const Coupling& coupling(CouplingId id) const { return known(parts_.couplings, id, "coupling"); }
@@ -122,7 +149,13 @@ class Mechanism {
 
   // ------------------------------------------------------------------------------------------------------- steered
 
-  /// Sets the preload (N) of a joint's friction while running: a brake. Throws Error if the joint has no friction.
+  /// Sets the torque (N m; N where it slides) that a brake or clutch can hold, a number or a function of time.
+  void set_capacity(ClutchId id, Signal capacity) {
+    known(parts_.clutches, id, "clutch or brake").spec.capacity = std::move(capacity);
+  }
+  void switch_on(ClutchId id, bool on = true) { known(parts_.clutches, id, "clutch or brake").spec.on = on; }
+  /// Sets the preload (N) of a joint's friction while running: a tighter bearing. Throws Error if the joint has no
+  /// friction.
   void set_friction_preload(JointId id, double newtons) { detail::set_friction_preload(parts_, id, newtons); }
   /// Sets the set point (m or rad) and its rate from outside, for instance every step. Throws Error unless finite, and
   /// for a motor, which has a throttle instead.
@@ -130,6 +163,7 @@ class Mechanism {
   void set_target(ActuatorId id, Signal signal) {
     detail::set_target(known(parts_.actuators, id, "actuator").spec, std::move(signal));
   }
+  /// Throttle of a motor, -1 to 1, or of an engine, 0 to 1.
   void set_throttle(ActuatorId id, double throttle) {
     detail::set_throttle(known(parts_.actuators, id, "actuator").spec, throttle);
   }
@@ -138,6 +172,23 @@ class Mechanism {
   void switch_on(MotionId id, bool on = true) {
     detail::switch_on(parts_, known(parts_.motions, id, "prescribed motion"), on);
   }
+  /// A coupling that is switched on takes hold of its coordinates where they are: gears that mesh at any angle. Shafts
+  /// that differ in speed are brought to one by its damper within some steps, which is a jolt: open a clutch before.
+  void switch_on(CouplingId id, bool on = true) {
+    detail::switch_on(parts_, known(parts_.couplings, id, "coupling"), on);
+  }
+  /// Gives a coupling's term (0 is the first one) another ratio from the present pose on, without a jump of its
+  /// multiplier: another gear. Of gear(...) and rack_and_pinion(...) term 0 has the ratio and the radius. Throws Error
+  /// for 0: neutral is a coupling that is switched off.
+  void set_ratio(CouplingId id, double ratio, std::size_t term = 0) {
+    detail::set_ratio(parts_, known(parts_.couplings, id, "coupling"), term, ratio);
+  }
+  /// A joint that is switched off holds nothing, and neither do its limits and its friction; its coordinates can still
+  /// be read, driven and coupled. One that is switched on takes the bodies as they are: what it holds is held in the
+  /// present pose from there on, so that it starts unstrained. gap(id) tells how far they are from where it held them
+  /// before.
+  void switch_on(JointId id, bool on = true) { detail::switch_on(parts_, id, on); }
+  void switch_on(SpringId id, bool on = true) { known(parts_.springs, id, "spring").spec.on = on; }
   void switch_on(LoadId id, bool on = true) { known(parts_.loads, id, "load").spec.on = on; }
   /// Stops and fixes a body where it is, or sets it free; what is derived from masses is derived again.
   void set_fixed(BodyId id, bool fixed = true) { detail::set_fixed(parts_, body(id), fixed); }

@@ -2,6 +2,7 @@
 
 #include <dem/mbd/body/body_spec.hpp>
 #include <dem/mbd/drive/actuator.hpp>
+#include <dem/mbd/drive/clutch.hpp>
 #include <dem/mbd/drive/prescribed.hpp>
 #include <dem/mbd/joint/coupling.hpp>
 #include <dem/mbd/joint/friction.hpp>
@@ -48,6 +49,7 @@ struct Parts {
   std::vector<JointLimitState> limits;       ///< of the coordinates that have them
   std::vector<JointFrictionState> friction;  ///< of the joints that have friction
   std::vector<Coupling> couplings;
+  std::vector<Clutch> clutches;  ///< and brakes
   std::vector<Actuator> actuators;
   std::vector<Spring> springs;
   std::vector<Load> loads;

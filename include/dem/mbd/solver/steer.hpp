@@ -3,6 +3,7 @@
 // What a machine is steered with while it runs: set points, brakes, switches.
 
 #include <dem/core/macros.hpp>
+#include <dem/mbd/joint/take_hold.hpp>
 #include <dem/mbd/solver/parts.hpp>
 
 namespace dem::mbd::detail {
@@ -18,12 +19,13 @@ DEM_COLD inline void set_friction_preload(Parts& parts, JointId id, double newto
 }
 
 DEM_COLD inline void set_target(ActuatorSpec& s, Signal signal) {
-  if (!s.torque_curve.empty()) fail("actuator '{}' is a motor, which has no set point; use set_throttle", s.name);
+  if (s.has_throttle()) fail("actuator '{}' is a motor, which has no set point; use set_throttle", s.name);
   s.set_point = std::move(signal);
 }
 DEM_COLD inline void set_throttle(ActuatorSpec& s, double throttle) {
-  if (s.torque_curve.empty()) fail("actuator '{}' is no motor, so it has no throttle; use set_target", s.name);
-  s.throttle = require_within(throttle, -1.0, 1.0, "throttle of a motor");
+  if (!s.has_throttle()) fail("actuator '{}' is no motor, so it has no throttle; use set_target", s.name);
+  s.throttle = s.engine_map.empty() ? require_within(throttle, -1.0, 1.0, "throttle of a motor")
+                                    : require_within(throttle, 0.0, 1.0, "throttle of an engine");
 }
 
 DEM_COLD inline void switch_on(Parts& parts, PrescribedMotion& p, bool on) {
@@ -33,6 +35,14 @@ DEM_COLD inline void switch_on(Parts& parts, PrescribedMotion& p, bool on) {
   }
   p.has_hold &= on && p.spec.on;
   p.spec.on = on;
+}
+
+/// A joint that is switched on holds the bodies as they are now; one that is off holds nothing.
+DEM_COLD inline void switch_on(Parts& parts, JointId id, bool on) {
+  Joint& j = known(parts.joints, id, "joint");
+  if (on && !j.on) take_hold(j, parts.bodies[j.a], parts.bodies[j.b]);
+  j.on = on;
+  if (!on) j.force = j.torque = {0, 0, 0};
 }
 
 DEM_COLD inline void set_fixed(Parts& parts, Body& b, bool fixed) {
@@ -49,7 +59,7 @@ DEM_COLD inline void set_fixed(Parts& parts, Body& b, bool fixed) {
 }
 
 DEM_COLD inline void set_load(LoadSpec& s, Signal size) {
-  if (s.law) {
+  if (s.has_law()) {
     fail("load '{}' has a law of its own and no size; let the law give other forces, or switch it off", s.name);
   }
   s.size = std::move(size);
