@@ -70,12 +70,15 @@ class Materials {
   std::size_t count() const { return names_.size(); }
 
   /// The largest gap (m) at which partners of that effective radius or less may still act on each other: 0 unless the
-  /// cohesion law acts at a distance. World finds it when it is prepared.
+  /// cohesion law acts at a distance. World finds it when it is prepared. Throws Error if the law tells a range that is
+  /// negative or not finite.
   void find_range(double radius) {
     range_ = 0.0;
     if constexpr (cohesion::reaches<typename Model::Cohesion>) {
       for (const Parameters& p : table_) {
-        if (&p != table_.data() || has_default_) range_ = std::max(range_, Model::Cohesion::range(p.cohesion, radius));
+        if (&p == table_.data() && !has_default_) continue;
+        const double range = Model::Cohesion::range(p.cohesion, radius);
+        range_ = std::max(range_, require_non_negative(range, "range that a cohesion law tells", "m"));
       }
     }
   }

@@ -8,9 +8,29 @@
 
 #if defined(_OPENMP)
 #include <omp.h>
+#if __has_include(<pthread.h>)
+#include <pthread.h>
+#endif
 #endif
 
 namespace dem::exec {
+
+#if defined(_OPENMP)
+namespace detail {
+
+/// Whether this process was forked from one that had run on several threads. The fork has none of them, and GNU's
+/// OpenMP would wait for them for ever.
+inline bool is_without_threads = false;
+
+/// To be called before the first work on several threads.
+inline void watch_for_forks() {
+#if __has_include(<pthread.h>)
+  [[maybe_unused]] static const int once = ::pthread_atfork(nullptr, nullptr, [] { is_without_threads = true; });
+#endif
+}
+
+}  // namespace detail
+#endif
 
 /// OpenMP's threads, for programs that use OpenMP themselves and want no others; runs on one thread when the compiler
 /// has no OpenMP. Its threads have equal shares and spin while they wait, unless OMP_WAIT_POLICY=passive: exec::Threads
@@ -18,6 +38,9 @@ namespace dem::exec {
 /// gives each at least a few pieces of work: waking a thread costs more than a small piece.
 ///
 /// An exception of a piece is thrown on when the others are done; of several, that of the lowest piece.
+///
+/// A process that is forked after work on several threads goes on with one (POSIX): the results are the same. What else
+/// uses OpenMP in such a process may hang, as GNU's OpenMP does not outlive a fork.
 class OpenMP {
  public:
   int threads() const { return threads_; }
@@ -33,7 +56,8 @@ class OpenMP {
     const auto count = static_cast<std::ptrdiff_t>(n);
 #if defined(_OPENMP)
     const int team = static_cast<int>(std::min<std::ptrdiff_t>(threads_, count / least_pieces_));
-    if (team > 1) {
+    if (team > 1 && !detail::is_without_threads) {
+      detail::watch_for_forks();
       Thrown thrown;
 #pragma omp parallel for schedule(static) num_threads(team)
       for (std::ptrdiff_t k = 0; k < count; ++k) {

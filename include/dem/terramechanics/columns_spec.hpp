@@ -3,6 +3,7 @@
 #include <dem/integrator/motion.hpp>
 #include <dem/terramechanics/column_field.hpp>
 
+#include <algorithm>
 #include <memory>
 #include <string>
 
@@ -34,7 +35,8 @@ inline void check_columns(const ColumnsSpec& spec) {
   require_within(spec.height, -1e6, 1e6, "height of the soil in m");
   require_within(spec.low_x, -1e6, 1e6, "corner of the soil in m");
   require_within(spec.low_y, -1e6, 1e6, "corner of the soil in m");
-  const double columns = (spec.length_x / spec.spacing) * (spec.length_y / spec.spacing);
+  // At least one across: a strip may be thinner than a column.
+  const double columns = std::max(1.0, spec.length_x / spec.spacing) * std::max(1.0, spec.length_y / spec.spacing);
   if (!(columns < 2e8)) {
     fail(
         "{:g} m x {:g} m of soil in columns of {:g} m are {:.3g} columns, but at most 2e8 are taken; raise the spacing",

@@ -14,6 +14,8 @@
 #include <dem/law/rolling/none.hpp>
 #include <dem/parallel/threads.hpp>
 
+#include <type_traits>
+
 namespace dem {
 
 /// The policies of a world. Derive from it and name those that differ:
@@ -39,9 +41,19 @@ constexpr bool check_surfaces(const std::variant<Kinds...>*) {
   return true;
 }
 
+/// Within `struct Rolling : Model` the name Rolling means the struct itself, and no policy.
+template <class M, class... Policies>
+constexpr void check_name() {
+  static_assert(!(std::is_same_v<M, Policies> || ...),
+                "Model: your model is called like one of its policies (Shape, Surfaces, Normal, Friction, Rolling, "
+                "Cohesion, BroadPhase, Integrator or Executor), so that name means the model itself; rename the model");
+}
+
 /// Refuses a wrong policy in words, at compile time.
 template <class M>
 constexpr bool check_model() {
+  check_name<M, typename M::Shape, typename M::Surfaces, typename M::Normal, typename M::Friction, typename M::Rolling,
+             typename M::Cohesion, typename M::BroadPhase, typename M::Integrator, typename M::Executor>();
   shape::check_shape<typename M::Shape>();
   check_surfaces(static_cast<typename M::Surfaces*>(nullptr));
   contact::check_normal_law<typename M::Normal>();

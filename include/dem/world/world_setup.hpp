@@ -41,9 +41,12 @@ class WorldSetup {
     if (options.threads != 0) state_.executor.set_threads(options.threads);
   }
 
-  /// A kind of grain. Throws Error unless the density is positive.
+  /// A kind of grain. Throws Error unless the density is positive, and for a shape whose volume, radius or moments of
+  /// inertia are none.
   SpeciesId add_species(const Shape& shape, const SpeciesOptions& o = {}) {
     require_positive(o.density, "density of a species", "kg/m^3");
+    require_positive(shape.volume(), "volume of a species' shape", "m^3");
+    require_positive(shape.bounding_radius(), "bounding radius of a species' shape", "m");
     const MaterialId material = state_.materials.id(o.material);
     state_.materials.mark_as_grain(material);
     const Species<Shape> s = {shape,

@@ -101,6 +101,21 @@ TEST_CASE("constants of rolling and cohesion are checked, and the farthest reach
   STATIC_REQUIRE(sizeof(dem::ContactParameters<dem::Model>) == 7 * sizeof(double));
 }
 
+TEST_CASE("a cohesion law that tells a range which is none is refused") {
+  struct Odd : dem::cohesion::LiquidBridge {
+    static double range(const Parameters<double>& p, double) { return p.rupture; }
+    static void check(const Parameters<double>&) {}
+  };
+  struct Model : dem::Model {
+    using Cohesion = Odd;
+  };
+  for (const double told : {std::nan(""), HUGE_VAL, -1e-3}) {
+    dem::Materials<Model> m;
+    m.set_default({{2000, 0, 1}, {0.4, 1000, 0, 0}, {}, {0.07, 1e-12, told}});
+    check_refused([&] { m.find_range(1e-3); }, "range that a cohesion law tells");
+  }
+}
+
 TEST_CASE("a body that cannot be integrated is refused") {
   dem::Body b;
   b.name = "rod";

@@ -5,6 +5,7 @@
 #include <dem/parallel/threads.hpp>
 
 #include <sys/wait.h>
+#include <unistd.h>
 
 #include <atomic>
 #include <concepts>
@@ -143,4 +144,25 @@ TEST_CASE("copies of threads work side by side, and so does a process that was f
   CHECK((WIFEXITED(status) && WEXITSTATUS(status) == 0));
   executor.for_each(10, add);
   CHECK(sum == 4 * 45);
+}
+
+TEST_CASE("a process that is forked after work on OpenMP's threads works on") {
+  dem::exec::OpenMP executor;
+  executor.set_threads(4);
+  const auto sum_of = [&](std::size_t n) {
+    std::atomic<std::size_t> sum = 0;
+    executor.for_each(n, [&](std::size_t k) { sum += k; });
+    return sum.load();
+  };
+  REQUIRE(sum_of(100) == 4950);  // from here on there are four threads
+  const pid_t child = ::fork();
+  if (child == 0) {
+    ::alarm(20);  // ends it where it hangs
+    ::_exit(sum_of(100) == 4950 && sum_of(1000) == 499500 ? 0 : 1);
+  }
+  int status = 0;
+  REQUIRE(::waitpid(child, &status, 0) == child);
+  CHECK(WIFEXITED(status));
+  CHECK(status == 0);
+  CHECK(sum_of(100) == 4950);  // the parent has its threads still
 }

@@ -278,6 +278,8 @@ TEST_CASE("fields and parts that cannot be are refused in words") {
   CHECK_THROWS_WITH(SoilColumns(refused([](auto& s) { s.soil.shear.displacement = 0.0; })), ContainsSubstring("K of"));
   CHECK_THROWS_WITH(SoilColumns(refused([](auto& s) { s.height = std::nan(""); })),
                     ContainsSubstring("height of the soil"));
+  CHECK_THROWS_WITH(SoilColumns(refused([](auto& s) { s.length_x = 1e12, s.length_y = 1e-9; })),
+                    ContainsSubstring("raise the spacing"));
   SoilColumns soil(field(sand()));
   const std::array<ColumnPart, 1> bare = {part(nullptr, {0, 0, 0})},
                                   ball = {part(std::make_shared<ColumnBall>(0.1), {})};

@@ -95,4 +95,8 @@ TEST_CASE("a shape without inertia is refused") {
   const dem::Ball ball = {Vec3::Zero(), 1e-3};
   const dem::MassProperties given = {.volume = 4e-9, .centre = Vec3::Zero(), .inertia = dem::Mat3::Zero()};
   check_refused([&] { w.add_species(Cube8(std::span(&ball, 1), given)); }, "moments of inertia of a species are 0");
+  for (const double volume : {std::nan(""), HUGE_VAL, 0.0, -4e-9}) {
+    const dem::MassProperties odd = {.volume = volume, .centre = Vec3::Zero(), .inertia = dem::Mat3::Identity()};
+    check_refused([&] { w.add_species(Cube8(std::span(&ball, 1), odd)); }, "volume of");
+  }
 }

@@ -12,7 +12,8 @@ namespace dem::rolling {
 /// mu_r R* Fn (type C of Ai et al. 2011, doi:10.1016/j.powtec.2010.09.030). It holds a ball on every slope below
 /// atan(mu_r). The spring is kr = k R*^2: k = kt, the tangential stiffness, is the choice of Wensrich and Katterfeld
 /// (2012, doi:10.1016/j.powtec.2011.10.057), k = 2.25 mu_r^2 kn that of Jiang et al. as Ai et al. use it. Spring and
-/// dashpot together never exceed the limit, as in friction.
+/// dashpot together never exceed the limit, as in friction. It does not resist a turn about the normal, by which single
+/// balls pivot on a floor for ever: rolling::Sum<ElasticPlastic, Torsion> stops that as well.
 struct ElasticPlastic {
   template <class T>
   struct Parameters {

@@ -9,7 +9,8 @@ namespace dem::rolling {
 
 /// Resistance against twisting about the normal: a spring k R*^2 and a dashpot that slip at the torque mu_t R* Fn. For
 /// a contact circle of radius a pressed as Hertz says, friction mu slips at 3 pi/16 mu a Fn (Johnson, Contact
-/// Mechanics, 1985, section 7.4): mu_t = 3 pi/16 mu a/R*.
+/// Mechanics, 1985, section 7.4): mu_t = 3 pi/16 mu a/R*. Laws of friction and rolling resistance leave this motion
+/// free: without torsion a single ball pivots about the vertical for ever.
 struct Torsion {
   template <class T>
   struct Parameters {

@@ -65,8 +65,8 @@ enum class SensorTarget {
   contacts,  ///< force and torque on a body from outside the machine (the grains), about its centre of mass
   total,     ///< force and torque on a body from everything but gravity, about its centre of mass
   joint,     ///< force and torque of a joint on its body b with its limits and friction, about the joint's point
-  actuator,  ///< force of an actuator in force.x
-  drive      ///< force of a prescribed motion's drive in force.x
+  actuator,  ///< force (N) or, where it turns something, torque (N m) of an actuator, in force.x: see drive_effort
+  drive      ///< the same of a prescribed motion's drive
 };
 
 struct SensorSpec {

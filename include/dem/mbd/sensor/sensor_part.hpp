@@ -23,6 +23,15 @@ inline void sample_sensors(Parts& m, double dt) {
   }
 }
 
+/// The mean force (N) or torque (N m) that an actuator or a drive puts on its coordinate.
+DEM_COLD inline double drive_effort(const Sensor& s) {
+  if (s.spec.target == SensorTarget::actuator || s.spec.target == SensorTarget::drive) return s.average.mean().force.x;
+  fail(
+      "sensor '{}' measures no actuator and no drive, so it has a force and a torque in space; read "
+      "sensor(id).mean().force and torque",
+      s.spec.name);
+}
+
 /// Checks that what a sensor measures is there.
 DEM_COLD inline void check_sensor(const Parts& parts, const SensorSpec& spec) {
   const std::size_t count = spec.target == SensorTarget::joint      ? parts.joints.size()

@@ -144,6 +144,9 @@ class Mechanism {
   const Coupling& coupling(CouplingId id) const { return known(parts_.couplings, id, "coupling"); }
   const PrescribedMotion& motion(MotionId id) const { return known(parts_.motions, id, "prescribed motion"); }
   const WindowAverage& sensor(SensorId id) const { return known(parts_.sensors, id, "sensor").average; }
+  /// The mean of an actuator_sensor or a drive_sensor: the force (N) on a coordinate that slides, the torque (N m) on
+  /// one that turns. Throws Error for a sensor of anything else, which has no single one.
+  double drive_effort(SensorId id) const { return detail::drive_effort(known(parts_.sensors, id, "sensor")); }
   const Parts& parts() const { return parts_; }
   Parts& parts() { return parts_; }
 

@@ -69,13 +69,15 @@ template <class Model>
 void check_time_step(Settings s, const Grains<Model>& kind) {
   const bool insisted = s.allow_unstable_time_step;
   s.allow_unstable_time_step = true;  // the world takes it, and is asked
-  const auto check = [&](double lid_mass, double duration) {
+  const auto check = [&](double lid_mass, double duration, const char* what, const char* what_to_change) {
     Apparatus<Model> rig(
         s, kind, {.seam = 0.5 * s.box_height, .wall_top = s.box_height, .lid_mass = lid_mass, .lid_low = s.box_height},
         {});
     rig.world.prepare();
-    require_steps(duration, rig.world.time_step(), "the test",
-                  "take larger grains (--half-edge), a longer --time-step, a lower --stiffness or less --travel");
+    require_steps(duration, rig.world.time_step(), what,
+                  text("take larger grains (--half-edge), a longer --time-step, a lower --stiffness or {}",
+                       what_to_change)
+                      .c_str());
     const auto limit = rig.world.stable_time_step();
     if (insisted || rig.world.time_step() <= limit.dt) return;
     fail(
@@ -83,8 +85,13 @@ void check_time_step(Settings s, const Grains<Model>& kind) {
         "it out for a share of the stable one, or insist with --allow-unstable-time-step",
         s.time_step, limit.dt, limit.limited_by);
   };
-  if (s.packing_file.empty()) check(Height{}.lid_mass, 0.1);  // pouring takes a tenth of a second at the least
-  for (const double load : s.loads) check(load, s.travel / s.shear_speed);
+  if (s.packing_file.empty()) {
+    const bool shaken = s.packing == "poured", made_denser = !shaken && s.relative_density > 0.0;
+    const double pouring = 0.1;  // s, at the least
+    check(Height{}.lid_mass, pouring + (shaken ? s.shake_time : made_denser ? s.densify_time : 0.0), "the packing",
+          shaken ? "less --shake-time" : made_denser ? "less --densify-time" : "fewer --grains");
+  }
+  for (const double load : s.loads) check(load, s.travel / s.shear_speed, "the test", "less --travel");
 }
 
 }  // namespace dem::rig::direct_shear
