@@ -2,6 +2,7 @@
 // A levelled bed of grains in an open box, as options of a rig.
 
 #include <dem/rig/bed/grain_settings.hpp>
+#include <dem/rig/own_words.hpp>
 
 #include <cstdint>
 #include <string>
@@ -65,6 +66,16 @@ inline void find_idle(IdleOptions& idle, const BedSettings& s) {
   if (!made) return;
   idle.unless(s.relative_density != 0.0, "with a --relative-density above 0, for which a bed is shaken",
               {"--densify-time", "--shake-amplitude", "--shake-frequency"});
+}
+
+/// What the library calls otherwise than the options of grains and beds.
+inline std::vector<OwnWord> bed_words() {
+  return {{"time_step_safety", "--stable-share"},
+          {"raise the normal stiffness", "raise --stiffness"},
+          {"the stiffness, or raise the damping", "--stiffness, or raise --damping"},
+          {"close the walls, ", ""},
+          {", or enlarge domain", ""},
+          {"raise machine().substeps", "lower --stiffness"}};
 }
 
 /// Fills in what was left open, and checks every option against its range. `output` is the folder of the run. Throws

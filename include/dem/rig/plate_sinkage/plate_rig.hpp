@@ -7,16 +7,6 @@
 
 namespace dem::rig::plate_sinkage {
 
-/// What the library calls otherwise than these options.
-inline std::vector<OwnWord> own_words() {
-  return {{"time_step_safety", "--stable-share"},
-          {"raise the normal stiffness", "raise --stiffness"},
-          {"the stiffness, or raise the damping", "--stiffness, or raise --damping"},
-          {"close the walls, ", ""},
-          {", or enlarge domain", ""},
-          {"raise machine().substeps", "lower --stiffness"}};
-}
-
 /// The plate pressure-sinkage test as a program. `run` is run_campaign() with a world, compiled beside it.
 class PlateRig : public Rig {
  public:
@@ -36,7 +26,7 @@ class PlateRig : public Rig {
     }
     return names;
   }
-  [[nodiscard]] std::vector<OwnWord> words() const override { return own_words(); }
+  [[nodiscard]] std::vector<OwnWord> words() const override { return bed_words(); }
   void run(Session& session) override { run_(settings, campaign, session); }
 
   bool report(Report& report) const override {

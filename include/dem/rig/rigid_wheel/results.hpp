@@ -78,7 +78,10 @@ inline void evaluate(SlipResult& r, double level, const Settings& s) {
   if (first >= r.samples.size()) return;
   r.is_steady = a.is_steady && b.is_steady;
   r.window_from = r.samples[first].time;
-  const auto mean = [&](double Sample::*value) { return mean_of(std::span(all(value)).subspan(first)); };
+  const auto mean = [&](double Sample::*value) {
+    const auto values = all(value);
+    return mean_of(std::span(values).subspan(first));
+  };
   r.pull = mean(&Sample::pull);
   r.torque = mean(&Sample::torque);
   r.sinkage = mean(&Sample::sinkage);
