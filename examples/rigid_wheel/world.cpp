@@ -14,5 +14,6 @@ struct Sand : dem::Model {
 };
 
 void roll_wheel(const wheels::Settings& settings, wheels::Campaign& campaign, dem::rig::Session& session) {
-  wheels::run_campaign<Sand>(settings, [](double half_edge) { return dem::shape::cube8(half_edge); }, campaign, session);
+  wheels::run_campaign<Sand>(
+      settings, [](double half_edge) { return dem::shape::cube8(half_edge); }, campaign, session);
 }

@@ -75,11 +75,13 @@ class RigidWheel {
       const double force = m.sensor(stand.grains).mean().force.z, speed = m.body(stand.shaft).velocity().z();
       const bool is_slow = slow(world.time(), std::abs(speed));
       done = loaded(world.time(), std::abs(force / s.load - 1.0)) && is_slow;
-      stages.update(std::clamp(force / s.load, 0.0, 1.0), text("{:.1f} N, {:.2f} mm deep", force, 1e3 * sinkage(stand)));
+      stages.update(std::clamp(force / s.load, 0.0, 1.0),
+                    text("{:.1f} N, {:.2f} mm deep", force, 1e3 * sinkage(stand)));
       if (!done && world.time() - start > s.bed.stage_limit) {
-        throw Stopped(text("the wheel is not at rest after {:g} s: the grains carry {:.4g} N of {:.4g} N; raise "
-                           "--stage-limit or --damping",
-                           s.bed.stage_limit, force, s.load));
+        throw Stopped(
+            text("the wheel is not at rest after {:g} s: the grains carry {:.4g} N of {:.4g} N; raise "
+                 "--stage-limit or --damping",
+                 s.bed.stage_limit, force, s.load));
       }
     }
     world.machine().switch_on(stand.servo, false);
@@ -172,8 +174,8 @@ class RigidWheel {
     stand.axle = m.add_joint(mbd::revolute("axle", stand.shaft, stand.wheel, at, Vec3::UnitY()));
     // Stiff against pulls and torques of some 100 N and 20 N m: 0.1 mm and 0.2 mrad. Damped critically.
     const double k = 1e6, turn = 1e5, inertia = 0.5 * wheel_mass * s.radius * s.radius;
-    stand.drive = m.add_actuator(
-        mbd::joint_actuator("drive", stand.rail, k, 2.0 * std::sqrt(k * (mass + carriage_mass))));
+    stand.drive =
+        m.add_actuator(mbd::joint_actuator("drive", stand.rail, k, 2.0 * std::sqrt(k * (mass + carriage_mass))));
     stand.motor = m.add_actuator(mbd::joint_actuator("motor", stand.axle, turn, 2.0 * std::sqrt(turn * inertia)));
     stand.servo = m.add_actuator(mbd::joint_actuator("load servo", stand.guide, 0.0, s.load / s.set_down_speed));
     const double window = s.sample_interval();

@@ -10,8 +10,8 @@
 
 namespace dem::rig::rigid_wheel {
 
-/// The run of a program: a bed, the wheel set down on it, and all slips from there, side by side, one a thread. What can
-/// be refused is refused before session.begin_run(). `campaign` is filled as the run goes.
+/// The run of a program: a bed, the wheel set down on it, and all slips from there, side by side, one a thread. What
+/// can be refused is refused before session.begin_run(). `campaign` is filled as the run goes.
 template <class Model, class ShapeOf>
 void run_campaign(const Settings& settings, ShapeOf&& shape_of, Campaign& campaign, Session& session) {
   const RigidWheel<Model> test(settings, shape_of);

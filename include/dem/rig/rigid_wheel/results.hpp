@@ -56,10 +56,10 @@ struct SlipResult {
 
 /// Everything that a run finds.
 struct Campaign {
-  double level = not_known;           ///< m
+  double level = not_known;  ///< m
   double solid_fraction = not_known;
   std::size_t grains = 0;
-  double time_step = not_known;       ///< s
+  double time_step = not_known;         ///< s
   double set_down_sinkage = not_known;  ///< m, of the wheel at rest
   std::vector<SlipResult> slips = {};
   std::optional<report::Replay> replay = {};

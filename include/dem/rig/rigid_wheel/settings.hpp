@@ -36,8 +36,8 @@ struct Settings {
   bool replay = true;
   bool vtk = true;
 
-  [[nodiscard]] double spin() const { return spin_deg * std::numbers::pi / 180.0; }    ///< rad/s
-  [[nodiscard]] double rim_speed() const { return spin() * radius; }                   ///< m/s
+  [[nodiscard]] double spin() const { return spin_deg * std::numbers::pi / 180.0; }       ///< rad/s
+  [[nodiscard]] double rim_speed() const { return spin() * radius; }                      ///< m/s
   [[nodiscard]] double duration() const { return path / rim_speed() + 0.5 * ramp_time; }  ///< s
   /// m, that the carriage travels at a slip.
   [[nodiscard]] double travel(double slip) const { return (1.0 - slip) * path; }
@@ -85,7 +85,8 @@ inline void declare(Options& options, Settings& s) {
 inline void find_idle(IdleOptions& idle, const Settings& s) {
   rig::find_idle(idle, s.grains);
   rig::find_idle(idle, s.bed);
-  idle.unless(s.wheel == "grousers", "with --wheel grousers", {"--grousers", "--grouser-height", "--grouser-thickness"});
+  idle.unless(s.wheel == "grousers", "with --wheel grousers",
+              {"--grousers", "--grouser-height", "--grouser-thickness"});
 }
 
 /// Fills in what depends on the size, and checks every option against its range. Throws Error.
@@ -96,17 +97,21 @@ inline void resolve(Settings& s) {
     std::vector<double> slips;
   };
   // quick and smoke turn faster, on coarser grains and a smaller bed. full has the slips of table 5.3.
-  const auto by_size = BySize<Defaults>{
-      .smoke = {{0.30, 0.18, 0.03}, 6e-3, 90.0, 0.03, {0.3}},
-      .quick = {{0.38, 0.26, 0.055}, 4e-3, 45.0, 0.11, {-0.5, -0.1, 0.1, 0.3, 0.7}},
-      .full = {{0.50, 0.40, 0.04}, 1.2e-3, 17.0, 0.20, {-0.7, -0.5, -0.3, -0.1, 0.0, 0.1, 0.3, 0.5, 0.7}}}[size_named(
-      s.size)];
+  const auto by_size =
+      BySize<Defaults>{.smoke = {{0.30, 0.18, 0.03}, 6e-3, 90.0, 0.03, {0.3}},
+                       .quick = {{0.38, 0.26, 0.055}, 4e-3, 45.0, 0.11, {-0.5, -0.1, 0.1, 0.3, 0.7}},
+                       .full = {{0.50, 0.40, 0.04},
+                                1.2e-3,
+                                17.0,
+                                0.20,
+                                {-0.7, -0.5, -0.3, -0.1, 0.0, 0.1, 0.3, 0.5, 0.7}}}[size_named(s.size)];
   rig::resolve(s.grains, by_size.half_edge);
   rig::resolve(s.bed, by_size.bed, s.output);
   fill(s.spin_deg, by_size.spin_deg);
   fill(s.path, by_size.path);
   if (s.slips.empty()) s.slips = by_size.slips;
-  if (s.wheel_friction < 0.0) s.wheel_friction = s.wheel == "smooth" ? 0.2 : s.wheel == "rough" ? 0.8 : s.grains.friction;
+  if (s.wheel_friction < 0.0)
+    s.wheel_friction = s.wheel == "smooth" ? 0.2 : s.wheel == "rough" ? 0.8 : s.grains.friction;
   std::sort(s.slips.begin(), s.slips.end());
   for (std::size_t k = 0; k < s.slips.size(); ++k) {
     require_within(s.slips[k], -5.0, 1.0, "a slip of --slips (1 - v/(omega r))");

@@ -114,7 +114,8 @@ io::Plot slip_plot(const Settings& s, const Campaign& c, MeanAndDeviation SlipRe
 }
 
 /// A value over the time of every run: what the steady windows were found in.
-inline io::Plot time_plot(const Campaign& c, double Sample::*value, double scale, const char* title, const char* label) {
+inline io::Plot time_plot(const Campaign& c, double Sample::*value, double scale, const char* title,
+                          const char* label) {
   io::Plot plot{.title = title, .x_label = "time [s]", .y_label = label};
   int color = 0;
   for (const SlipResult& r : c.slips) {
@@ -148,14 +149,16 @@ inline std::string bed_text(const Settings& s, const Campaign& c) {
   const double fraction = c.solid_fraction;
   const double density = std::isfinite(fraction) ? soil::relative_density(fraction, soil::cube8_limits) : not_known;
   return text(
-      "Bed: {} grains of half-edge {:g} mm, {} mm deep, solid fraction {} (relative density {}). Time step {:.3g} s. The "
+      "Bed: {} grains of half-edge {:g} mm, {} mm deep, solid fraction {} (relative density {}). Time step {:.3g} s. "
+      "The "
       "wheel, set down by the load servo, rests {} mm deep.",
       c.grains, 1e3 * s.grains.half_edge, number(1e3 * c.level, "{:.1f}"), number(fraction, "{:.3f}"), number(density),
       c.time_step, number(1e3 * c.set_down_sinkage));
 }
 
 inline constexpr const char* window_text =
-    "The steady window of a run begins where both pull and sinkage are steady by the marginal standard error rule MSER-5: as "
+    "The steady window of a run begins where both pull and sinkage are steady by the marginal standard error rule "
+    "MSER-5: as "
     "much of the start is left out as makes the standard error of the mean of the rest least, at most half of the run.";
 
 }  // namespace dem::rig::rigid_wheel

@@ -68,17 +68,20 @@ class WheelRig : public Rig {
     const Campaign& c = campaign;
     page.heading("Plots");
     report.plot(page,
-                slip_plot(s, c, &SlipResult::pull, 1.0, [](const WheelForces& f) { return f.pull; }, "Drawbar pull",
-                          "drawbar pull [N]"),
+                slip_plot(
+                    s, c, &SlipResult::pull, 1.0, [](const WheelForces& f) { return f.pull; }, "Drawbar pull",
+                    "drawbar pull [N]"),
                 "pull", "Drawbar pull over slip.");
-    report.plot(page,
-                slip_plot(s, c, &SlipResult::torque, 1.0, [](const WheelForces& f) { return f.torque; }, "Torque",
-                          "torque [N m]"),
-                "torque", "Torque that drives the wheel over slip.");
-    report.plot(page,
-                slip_plot(s, c, &SlipResult::sinkage, 1e3, [](const WheelForces& f) { return f.sinkage; }, "Sinkage",
-                          "sinkage [mm]"),
-                "sinkage", "Sinkage over slip.");
+    report.plot(
+        page,
+        slip_plot(
+            s, c, &SlipResult::torque, 1.0, [](const WheelForces& f) { return f.torque; }, "Torque", "torque [N m]"),
+        "torque", "Torque that drives the wheel over slip.");
+    report.plot(
+        page,
+        slip_plot(
+            s, c, &SlipResult::sinkage, 1e3, [](const WheelForces& f) { return f.sinkage; }, "Sinkage", "sinkage [mm]"),
+        "sinkage", "Sinkage over slip.");
     report.plot(page, time_plot(c, &Sample::pull, 1.0, "Drawbar pull over time", "drawbar pull [N]"), "pull_over_time",
                 "Drawbar pull of every run.");
     report.plot(page, time_plot(c, &Sample::sinkage, 1e3, "Sinkage over time", "sinkage [mm]"), "sinkage_over_time",
