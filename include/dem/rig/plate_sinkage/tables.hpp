@@ -14,7 +14,7 @@
 namespace dem::rig::plate_sinkage {
 
 inline std::string number(double value, const char* format = "{:.2f}") {
-  return std::isfinite(value) ? text_of(format, {value}) : "-";
+  return std::isfinite(value) ? dem::text_of(format, {value}) : "-";
 }
 
 /// P3 under a plate: the surrogate of the thesis's measured curves, which are lost.

@@ -15,7 +15,7 @@
 namespace dem::rig::rigid_wheel {
 
 inline std::string number(double value, const char* format = "{:.2f}") {
-  return std::isfinite(value) ? text_of(format, {value}) : "-";
+  return std::isfinite(value) ? dem::text_of(format, {value}) : "-";
 }
 
 /// A soil that curves are drawn of by Bekker and Wong.
