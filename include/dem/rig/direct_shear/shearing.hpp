@@ -2,6 +2,7 @@
 
 #include <dem/rig/direct_shear/apparatus.hpp>
 #include <dem/rig/direct_shear/results.hpp>
+#include <dem/rig/smooth_start.hpp>
 #include <dem/rig/stages.hpp>
 #include <dem/soil/rest.hpp>
 
@@ -36,20 +37,6 @@ void consolidate(Apparatus<Model>& rig, const Settings& s, Stages& stages) {
   rig.world.machine().switch_on(rig.lid_drive, false);
 }
 
-/// The way of the top box: smoothly to full speed within the ramp time, then on.
-inline mbd::Signal shearing_motion(const Settings& s, double t0) {
-  const double v = s.shear_speed, ramp = std::max(s.ramp_time, 1e-9);
-  return mbd::Signal::function(
-      [=](double t) {
-        const double x = std::clamp((t - t0) / ramp, 0.0, 1.0);
-        return v * ramp * x * x * x * (1.0 - 0.5 * x) + v * std::max(0.0, t - t0 - ramp);
-      },
-      [=](double t) {
-        const double x = std::clamp((t - t0) / ramp, 0.0, 1.0);
-        return v * x * x * (3.0 - 2.0 * x);
-      });
-}
-
 /// Moves the top box with the lid over the bottom box, and samples. Calls `look()` after each sample.
 template <class Model, class Look>
 void shear(Apparatus<Model>& rig, const Settings& s, LoadResult& result, Stages& stages, Look&& look) {
@@ -61,7 +48,7 @@ void shear(Apparatus<Model>& rig, const Settings& s, LoadResult& result, Stages&
     below += rig.world.position(p).z() < rig.height().seam ? 1.0 : 0.0;
   }
   below *= 9.81 * s.density * rig.grain_volume();
-  machine.set_target(rig.shearing, shearing_motion(s, start));
+  machine.set_target(rig.shearing, smooth_start(s.shear_speed, s.ramp_time, start));
   while (rig.top_displacement() < s.travel) {
     run(rig.world, interval);
     const double u = rig.top_displacement();

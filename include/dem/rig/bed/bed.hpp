@@ -1,0 +1,157 @@
+#pragma once
+// A box of grains with a lid that levels them: what the rigs that press, roll or cut stand on.
+
+#include <dem/geometry/box/box.hpp>
+#include <dem/rig/affordable.hpp>
+#include <dem/rig/bed/bed_settings.hpp>
+#include <dem/soil/bulk_density.hpp>
+#include <dem/world/world.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <span>
+#include <string>
+
+namespace dem::rig {
+
+/// Grains of one shape in an open box: the floor's upper side is z = 0, its middle is x = y = 0. Walls are solid boxes,
+/// as high as the grains need while they are rained. The box is one fixed body, or two halves on slides along x, as
+/// those of the direct shear test, that actuators hold. A copy of a bed is the same bed, to the last bit, with its
+/// contact histories: several tests may start from one.
+template <class M>
+class Bed {
+ public:
+  using Model = M;
+  using World = dem::World<Model>;
+  using Shape = typename Model::Shape;
+
+  /// How the box is built.
+  struct Box {
+    bool halves = false;    ///< a bottom and a top box on slides; else one fixed body
+    double wall_top = 0.0;  ///< m
+  };
+
+  Bed(const BedSettings& bed, const GrainSettings& grains, const Shape& shape, const Box& box,
+      std::span<const soil::Placement> places)
+      : world({.time_step_safety = bed.stable_share,
+               .overlap_limit = 1.0,
+               .domain = surface::Bounds{Vec3(-0.5 * bed.length - bed.wall_thickness,
+                                              -0.5 * bed.width - bed.wall_thickness, -bed.wall_thickness),
+                                         Vec3(0.5 * bed.length + bed.wall_thickness,
+                                              0.5 * bed.width + bed.wall_thickness, box.wall_top + 0.1)},
+               .threads = bed.threads > 0 ? bed.threads : threads_for(places.size())}),
+        bed_(bed),
+        grains_(grains),
+        grain_volume_(shape.volume()) {
+    species_ = world.add_species(shape, {.material = "grain", .density = grains.density});
+    set_friction(1.0);
+    build_box(box);
+    for (const auto& p : places) {
+      world.add_particle({.species = species_, .position = p.position, .rotation = p.rotation});
+    }
+  }
+
+  [[nodiscard]] const BedSettings& settings() const { return bed_; }
+  [[nodiscard]] const GrainSettings& grains() const { return grains_; }
+  [[nodiscard]] double grain_volume() const { return grain_volume_; }     ///< m^3
+  [[nodiscard]] double area() const { return bed_.length * bed_.width; }  ///< m^2
+  [[nodiscard]] double margin() const {
+    return 3.0 * grains_.half_edge;
+  }  ///< m, from walls and top to where density is measured
+
+  /// This share of the friction of grains on grains and on walls acts from the next step on.
+  void set_friction(double share) {
+    world.set_contact("grain", "grain", grain_contact<Model>(grains_, share * grains_.friction));
+    world.set_contact("grain", "wall", grain_contact<Model>(grains_, share * grains_.wall_friction));
+  }
+
+  /// Solid fraction of the inside of the bed; NaN of one that has no inside. `surface` (m) is the height of
+  /// the level, if there is one.
+  [[nodiscard]] double solid_fraction(double surface = -1.0) const {
+    const auto places = soil::placements(world);
+    const auto region = soil::inner_region(places, bed_.length, bed_.width, margin(), surface);
+    if (region.is_empty()) return std::nan("");
+    return soil::solid_fraction(places, grains_.half_edge, region) * grain_volume_ /
+           soil::cube_volume(grains_.half_edge);
+  }
+  [[nodiscard]] static double relative_density(double solid_fraction) {
+    return std::isfinite(solid_fraction) ? soil::relative_density(solid_fraction, soil::cube8_limits) : solid_fraction;
+  }
+
+  /// Puts a lid over the grains (bed/level.hpp lowers it), by a slide and a drive. The drive is a damper under which
+  /// the lid's weight sinks at the lid speed, ever slower as the grains take up the load.
+  void add_lid() {
+    auto& m = world.machine();
+    const double gap = 0.125 * grains_.half_edge, thickness = 0.01;
+    const Vec3 edges(bed_.length - 2.0 * gap, bed_.width - 2.0 * gap, thickness);
+    double highest = 0.0;
+    for (const auto p : world.particles()) highest = std::max(highest, world.position(p).z());
+    const double z = highest + world.species(species_).shape.bounding_radius() + 0.5 * thickness;
+    const double weight = lid_weight();
+    lid = m.add_body(mbd::box_body("lid", edges, weight / 9.81 / edges.prod()).at(Vec3(0.0, 0.0, z)));
+    lid_surface = world.add_surface(lid, surface::Box(edges), {.name = "lid"});
+    lid_slide = m.add_joint(mbd::prismatic("lid slide", top, lid, {0.0, 0.0, z}, Vec3::UnitZ()));
+    lid_drive = m.add_actuator(mbd::joint_actuator("lid drive", lid_slide, 0.0, weight / bed_.lid_speed));
+    lid_sensor = m.add_sensor(mbd::contact_sensor("grains on the lid", lid, 5e-3));
+  }
+  [[nodiscard]] double lid_weight() const { return bed_.lid_pressure * area(); }                     ///< N
+  [[nodiscard]] double lid_low() const { return world.machine().body(lid).position().z() - 0.005; }  ///< m, underside
+
+  /// Takes the lid off: it stays where it is, but touches nothing any more.
+  void take_lid_off() {
+    auto& m = world.machine();
+    m.add_motion(mbd::prescribed_joint("held lid", lid_slide, m.coordinate(lid_slide)));
+    world.set_active(lid_surface, false);
+  }
+
+  World world;
+  double level = std::nan("");  ///< m, of the levelled surface
+  BodyId bottom, top, lid;      ///< a fixed box is both bottom and top
+  JointId lid_slide;
+  ActuatorId lid_drive;
+  SensorId lid_sensor;
+  SurfaceId lid_surface;
+
+ private:
+  void add_walls(BodyId body, const std::string& name, double low, double high, double z) {
+    const double lx = bed_.length, ly = bed_.width, t = bed_.wall_thickness, middle = 0.5 * (low + high) - z;
+    for (const double side : {-1.0, 1.0}) {
+      const char* sign = side < 0.0 ? "-" : "+";
+      world.add_surface(body, surface::Box(Vec3(t, ly + 2.0 * t, high - low)),
+                        {.name = name + sign + "x", .position = {side * 0.5 * (lx + t), 0.0, middle}});
+      world.add_surface(body, surface::Box(Vec3(lx, t, high - low)),
+                        {.name = name + sign + "y", .position = {0.0, side * 0.5 * (ly + t), middle}});
+    }
+  }
+
+  void build_box(const Box& box) {
+    auto& m = world.machine();
+    const double t = bed_.wall_thickness, seam = box.halves ? 0.5 * bed_.depth : box.wall_top;
+    const Vec3 outer(bed_.length + 2.0 * t, bed_.width + 2.0 * t, t);
+    constexpr double mass = 2.0;  // kg, of a half; it does not move
+    const auto half = [&](const char* name, double height) {
+      return m.add_body(mbd::box_body(name, outer, mass / outer.prod()).at(Vec3(0.0, 0.0, height)));
+    };
+    bottom = box.halves ? half("bottom box", 0.0) : m.add_body(mbd::fixed_body("bottom box"));
+    world.add_surface(bottom, surface::Box(outer), {.name = "floor", .position = {0.0, 0.0, -0.5 * t}});
+    add_walls(bottom, "wall ", 0.0, seam, 0.0);
+    top = bottom;
+    if (!box.halves) return;
+    top = half("top box", seam);
+    add_walls(top, "top wall ", seam, box.wall_top, seam);
+    const double k = 1e7, c = 2.0 * std::sqrt(k * mass);
+    for (const BodyId body : {bottom, top}) {
+      const std::string name = m.body(body).name;
+      const JointId slide = m.add_joint(
+          mbd::prismatic(name + " slide", m.ground(), body, Vec3(0.0, 0.0, body == top ? seam : 0.0), Vec3::UnitX()));
+      m.add_actuator(mbd::joint_actuator(name + " drive", slide, k, c));
+    }
+  }
+
+  BedSettings bed_;
+  GrainSettings grains_;
+  double grain_volume_;
+  SpeciesId species_;
+};
+
+}  // namespace dem::rig

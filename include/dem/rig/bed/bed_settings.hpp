@@ -1,0 +1,128 @@
+#pragma once
+// A levelled bed of grains in an open box, as options of a rig.
+
+#include <dem/rig/bed/grain_settings.hpp>
+#include <dem/rig/own_words.hpp>
+
+#include <cstdint>
+#include <string>
+
+namespace dem::rig {
+
+/// A bed that is rained into a box, made as dense as asked for, and levelled by a lid. SI units.
+struct BedSettings {
+  double length = 0.0;            ///< m, inner length of the box along x; 0: by size
+  double width = 0.0;             ///< m, along y; 0: by size
+  double depth = 0.0;             ///< m, of the bed as it settles at relative density 0; 0: by size
+  double relative_density = 0.0;  ///< 0: as it settles
+  double densify_time = 0.5;      ///< s, in which friction goes to zero while the bed is shaken
+  double shake_amplitude = 2e-4;  ///< m
+  double shake_frequency = 25.0;  ///< Hz
+  double strike_off = 0.02;       ///< share of the grains, the highest, that are taken off before the lid comes
+  double lid_pressure = 1000.0;   ///< Pa, of the lid's weight
+  double lid_speed = 0.1;         ///< m/s, at which the lid comes down
+  double stage_limit = 3.0;       ///< s; a stage that has not come to rest by then ends the run
+  double wall_thickness = 0.01;   ///< m
+  double stable_share = 0.8;      ///< time step, in largest stable ones
+  std::uint64_t seed = 1;         ///< of the rain
+  int threads = 0;                ///< 0: all, at least 1000 grains for each
+  std::string file;               ///< read instead of made
+  std::string save;               ///< empty: <output>/bed.txt
+};
+
+/// What the sizes of a rig differ in.
+struct BedBySize {
+  double length, width, depth;  ///< m
+};
+
+/// Names the options of a bed, in a group of their own.
+inline void add_bed_options(Options& options, BedSettings& s) {
+  const auto add = [&](const char* name, auto& value, const char* text) { options.add(name, value, text); };
+  options.group("Bed");
+  add("--bed-length", s.length, "inner length of the box, along x [m]; 0: by size");
+  add("--bed-width", s.width, "inner width [m]; 0: by size");
+  add("--bed-depth", s.depth, "of the bed as it settles [m]; 0: by size");
+  add("--relative-density", s.relative_density, "0 (as it settles) to 1 (the densest)");
+  add("--densify-time", s.densify_time, "friction goes to zero in this time while the bed is shaken [s]");
+  add("--shake-amplitude", s.shake_amplitude, "[m]");
+  add("--shake-frequency", s.shake_frequency, "[Hz]");
+  add("--strike-off", s.strike_off, "share of the grains, the highest, taken off before the lid comes");
+  add("--lid-pressure", s.lid_pressure, "of the lid that levels the bed [Pa]");
+  add("--lid-speed", s.lid_speed, "[m/s]");
+  add("--stage-limit", s.stage_limit, "a bed or a lid must be at rest by then [s]");
+  add("--stable-share", s.stable_share, "time step, as a share of the largest stable one");
+  add("--seed", s.seed, "of the rain");
+  add("--threads", s.threads, "0: all, at least 1000 grains for each");
+  add("--bed-file", s.file, "read the grains from this file instead of raining them");
+  add("--save-bed", s.save, "file for the levelled bed; empty: bed.txt in the output folder");
+}
+
+/// Those that change nothing with a bed from a file, or one that is not shaken.
+inline void find_idle(IdleOptions& idle, const BedSettings& s) {
+  const bool made = s.file.empty();
+  idle.unless(made, "without --bed-file, which fixes the grains",
+              {"--bed-depth", "--relative-density", "--densify-time", "--shake-amplitude", "--shake-frequency",
+               "--strike-off", "--seed", "--save-bed"});
+  if (!made) return;
+  idle.unless(s.relative_density != 0.0, "with a --relative-density above 0, for which a bed is shaken",
+              {"--densify-time", "--shake-amplitude", "--shake-frequency"});
+}
+
+/// What the library calls otherwise than the options of grains and beds.
+inline std::vector<OwnWord> bed_words() {
+  return {{"time_step_safety", "--stable-share"},
+          {"raise the normal stiffness", "raise --stiffness"},
+          {"the stiffness, or raise the damping", "--stiffness, or raise --damping"},
+          {"close the walls, ", ""},
+          {", or enlarge domain", ""},
+          {"raise machine().substeps", "lower --stiffness"}};
+}
+
+/// Fills in what was left open, and checks every option against its range. `output` is the folder of the run. Throws
+/// Error.
+inline void resolve(BedSettings& s, const BedBySize& by_size, const std::string& output) {
+  fill(s.length, by_size.length);
+  fill(s.width, by_size.width);
+  fill(s.depth, by_size.depth);
+  if (s.save.empty()) s.save = (output.empty() ? "" : output + "/") + "bed.txt";
+  require_positive(s.length, "--bed-length", "m (0: by size)");
+  require_positive(s.width, "--bed-width", "m (0: by size)");
+  require_positive(s.depth, "--bed-depth", "m (0: by size)");
+  require_within(s.relative_density, 0.0, 1.0, "--relative-density");
+  require_positive(s.densify_time, "--densify-time", "s");
+  require_within(s.shake_amplitude, 0.0, 0.01, "--shake-amplitude (m)");
+  require_within(s.shake_frequency, 0.1, 1000.0, "--shake-frequency (Hz)");
+  require_within(s.strike_off, 0.0, 0.9, "--strike-off");
+  require_positive(s.lid_pressure, "--lid-pressure", "Pa");
+  require_positive(s.lid_speed, "--lid-speed", "m/s");
+  require_positive(s.stage_limit, "--stage-limit", "s");
+  require_within(s.stable_share, 1e-3, 1.0, "--stable-share");
+  require_within(s.threads, 0.0, 4096.0, "--threads (0: all)");
+}
+
+/// How many grains of `volume` (m^3) fill the box to its depth as they settle. Throws Error for none, and for more than
+/// 10^8.
+inline std::uint64_t grains_in(const BedSettings& s, double volume) {
+  const double count =
+      std::round(s.length * s.width * s.depth * soil::solid_fraction_at(0.0, soil::cube8_limits) / volume);
+  if (count >= 1.0 && count <= 1e8) return static_cast<std::uint64_t>(count);
+  fail(
+      "{:.4g} grains fill a bed of {:g} x {:g} x {:g} m, but there must be 1 to 10^8; change --half-edge, "
+      "--bed-length, "
+      "--bed-width or --bed-depth",
+      count, s.length, s.width, s.depth);
+}
+
+/// Adds names and values for a report.
+inline void list_settings(NamesAndValues& list, const BedSettings& s) {
+  const std::string name = s.file.substr(s.file.rfind('/') + 1);
+  list.insert(list.end(),
+              {{"box", text("{:g} x {:g} mm", 1e3 * s.length, 1e3 * s.width)},
+               {"bed", s.file.empty() ? text("{:g} mm deep as it settles, seed {}, relative density {:g} asked "
+                                             "for",
+                                             1e3 * s.depth, s.seed, s.relative_density)
+                                      : "from " + name},
+               {"levelled by a lid of", text("{:g} kPa", 1e-3 * s.lid_pressure)}});
+}
+
+}  // namespace dem::rig

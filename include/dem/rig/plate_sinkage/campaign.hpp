@@ -1,0 +1,91 @@
+#pragma once
+
+#include <dem/report/replay_world.hpp>
+#include <dem/rig/bed/bed_file.hpp>
+#include <dem/rig/frames.hpp>
+#include <dem/rig/plate_sinkage.hpp>
+#include <dem/rig/samples_file.hpp>
+#include <dem/rig/session.hpp>
+
+namespace dem::rig::plate_sinkage {
+
+namespace detail {
+
+/// One plate of a variant, with its file, and for the run itself frames and perhaps a replay.
+template <class Model>
+void press(const PlateSinkage<Model>& test, const Bed<Model>& bed, const Variant& variant, PlateResult& r,
+           report::Replay* replay, Session& session) {
+  const Settings& s = test.settings();
+  const std::string plate = text("plate_{:.0f}mm", 1e3 * r.width);
+  const auto save = [&] {
+    evaluate(r, s);
+    if (r.samples.empty()) return;
+    const std::string file = (variant.name.empty() ? "" : variant.name + "_") + plate + ".csv";
+    save_samples<Sample>(session.folder() / file, r.samples, sample_columns);
+  };
+  try {
+    Frames frames(session, s.vtk && variant.name.empty() ? plate : "", s.sinkage / 20.0, "this plate");
+    test.press(bed, r, session, [&](const auto& world, double travel) {
+      frames.show(travel, [&](io::VtkSeries& series) {
+        add_grains(series, world);
+        add_surfaces(series, world);
+      });
+      if (replay != nullptr && replay->due(world.time())) replay->record(world);
+    });
+  } catch (...) {
+    save();
+    throw;
+  }
+  save();
+  session.finish(r.fit ? text("n {:.2f}", r.fit->curve.exponent) : "");
+}
+
+}  // namespace detail
+
+/// The run of a program: a bed and all plates, and those of the study. What can be refused is refused before
+/// session.begin_run(). `campaign` is filled as the run goes.
+template <class Model, class ShapeOf>
+void run_campaign(const Settings& settings, ShapeOf&& shape_of, Campaign& campaign, Session& session) {
+  const PlateSinkage<Model> test(settings, shape_of);
+  const auto& shape = test.shape();
+  const auto start_of = [&](const Settings& s) {
+    return start_of_bed(s.bed, s.grains, shape.volume(), shape.bounding_radius());
+  };
+  const auto all = variants(test.settings());
+  int stages = 0;
+  for (const Variant& v : all) {
+    if (v.settings.study != "none" && v.settings.study != "speed" && !v.settings.bed.file.empty()) {
+      fail("--study {} needs other beds than the one of --bed-file; leave --bed-file out", v.settings.study);
+    }
+    stages += static_cast<int>(v.settings.widths.size()) + (v.name == "slow" ? 0 : bed_stages(v.settings.bed));
+  }
+  soil::Packing start = start_of(test.settings());
+  const bool made = settings.bed.file.empty();
+  if (made) session.require_writable(settings.bed.save, "--save-bed");
+  session.begin_run(stages);
+
+  std::optional<Bed<Model>> bed;
+  for (const Variant& v : all) {
+    VariantResult& result = campaign.variants.emplace_back(VariantResult{.variant = v});
+    const PlateSinkage<Model> variant(v.settings, shape_of);
+    if (v.name != "slow") {
+      bed.emplace(variant.make_bed(v.name.empty() ? start : start_of(v.settings), session));
+      if (made && v.name.empty()) soil::save_packing(packing_of(*bed), settings.bed.save);
+    }
+    result.level = bed->level;
+    result.solid_fraction = bed->solid_fraction(bed->level);
+    result.grains = bed->world.particle_count();
+    result.time_step = bed->world.time_step();
+    session.finish(text("{:.1f} mm deep, solid fraction {:.3f}", 1e3 * result.level, result.solid_fraction));
+    for (std::size_t k = 0; k < v.settings.widths.size(); ++k) {
+      PlateResult& r = result.plates.emplace_back(PlateResult{.width = v.settings.widths[k]});
+      const bool shown = settings.replay && v.name.empty() && k == v.settings.widths.size() / 2;
+      if (shown)
+        campaign.replay.emplace(
+            report::ReplayOptions{.frames = 80, .interval = settings.sinkage / settings.speed / 60.0});
+      detail::press(variant, *bed, v, r, shown ? &*campaign.replay : nullptr, session);
+    }
+  }
+}
+
+}  // namespace dem::rig::plate_sinkage

@@ -1,0 +1,92 @@
+#pragma once
+
+#include <dem/io/csv.hpp>
+#include <dem/report/replay_page.hpp>
+#include <dem/rig/plate_sinkage/tables.hpp>
+#include <dem/rig/rig.hpp>
+
+namespace dem::rig::plate_sinkage {
+
+/// The plate pressure-sinkage test as a program. `run` is run_campaign() with a world, compiled beside it.
+class PlateRig : public Rig {
+ public:
+  using Run = void(const Settings&, Campaign&, Session&);
+  explicit PlateRig(Run* run) : run_(run) {}
+
+  void declare(Options& options) override { plate_sinkage::declare(options, settings); }
+  void find_idle(IdleOptions& idle) const override { plate_sinkage::find_idle(idle, settings); }
+  void resolve() override { plate_sinkage::resolve(settings); }
+  [[nodiscard]] std::string output() const override { return settings.output; }
+  [[nodiscard]] ResultNames results() const override {
+    ResultNames names{.files = {"results.csv", "plate_#+mm.pvd", "plate_#+mm.csv"},
+                      .plots = {"pressure", "fits"},
+                      .frames = {"grains", "surfaces"}};
+    for (const char* variant : {"wide", "deep", "slow", "second", "third"}) {
+      names.files.push_back(std::string(variant) + "_plate_#+mm.csv");
+    }
+    return names;
+  }
+  [[nodiscard]] std::vector<OwnWord> words() const override { return bed_words(); }
+  void run(Session& session) override { run_(settings, campaign, session); }
+
+  bool report(Report& report) const override {
+    if (campaign.variants.empty()) {
+      report.page(list_settings(settings), [](io::HtmlReport&) {});
+      return false;
+    }
+    const VariantResult& v = campaign.variants.front();
+    report.part("results.csv", [&] { write_results(report.folder() / "results.csv"); });
+    report.part("the printed report", [&] {
+      fmt::print("\n{}\n{}\n\n", bed_text(v), finding_text(v));
+      for (const auto& table : tables()) {
+        io::print(table);
+        fmt::print("\n");
+      }
+      fmt::print("{} of wall time.\n", io::format_duration(report.outcome().wall_time));
+    });
+    report.page(list_settings(settings), [&](io::HtmlReport& page) {
+      page.paragraph(bed_text(v)).paragraph(finding_text(v));
+      for (const auto& table : tables()) page.table(table);
+      page.heading("Plots");
+      report.plot(page, pressure_plot(v), "pressure",
+                  "Pressure on the plates over their sinkage; dashed: P3, Mojave Martian Simulant.");
+      report.plot(page, fit_plot(v), "fits", "The same in logarithms; dotted: p = k z^n of each plate.");
+      if (campaign.replay && campaign.replay->frames().size() > 1) {
+        page.heading("Replay").replay(*campaign.replay, "The plate in the middle.");
+      }
+    });
+    return settings.vtk && !v.plates.empty();
+  }
+
+  Settings settings;
+  Campaign campaign;
+
+ private:
+  [[nodiscard]] std::vector<io::Table> tables() const {
+    const VariantResult& v = campaign.variants.front();
+    std::vector<io::Table> list{pressure_table(v), fit_table(v)};
+    if (auto constants = constants_table(v); !constants.rows.empty()) list.push_back(std::move(constants));
+    list.push_back(study_table(campaign));
+    return list;
+  }
+
+  void write_results(const std::filesystem::path& path) const {
+    io::CsvWriter csv(path, {"run", "plate_m", "k_Pa_per_m^n", "k_error", "n", "n_error", "mean_pressure_Pa",
+                             "solid_fraction", "grains", "finished"});
+    const auto cell = [](double value) { return std::isfinite(value) ? text("{}", value) : ""; };
+    for (const VariantResult& v : campaign.variants) {
+      for (const PlateResult& r : v.plates) {
+        const bool f = r.fit.has_value();
+        csv.row(v.variant.text, r.width, cell(f ? r.fit->curve.modulus : not_known),
+                cell(f ? r.fit->modulus_error : not_known), cell(f ? r.fit->curve.exponent : not_known),
+                cell(f ? r.fit->exponent_error : not_known), cell(mean_pressure(r, v.variant.settings)),
+                cell(v.solid_fraction), v.grains, r.finished);
+      }
+    }
+    csv.flush();
+  }
+
+  Run* run_;
+};
+
+}  // namespace dem::rig::plate_sinkage

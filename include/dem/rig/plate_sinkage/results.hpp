@@ -1,0 +1,104 @@
+#pragma once
+
+#include <dem/report/replay_recorder.hpp>
+#include <dem/rig/plate_sinkage/settings.hpp>
+#include <dem/rig/samples.hpp>
+#include <dem/terramechanics/bevameter_fit.hpp>
+
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <vector>
+
+namespace dem::rig::plate_sinkage {
+
+inline constexpr double not_known = std::numeric_limits<double>::quiet_NaN();
+
+/// One row of a plate: forces are means over the interval before it.
+struct Sample {
+  double time;      ///< s, since the plate started
+  double travel;    ///< m, downwards, since the plate started
+  double sinkage;   ///< m, from where the pressure first is the threshold; set by evaluate()
+  double pressure;  ///< Pa, upward force of the grains on the plate over its area
+  double force;     ///< N, that force
+  double drive;     ///< N, of the plate's actuator, downwards: the cross-check
+};
+
+inline constexpr Column<Sample> sample_columns[] = {{"time_s", &Sample::time},       {"travel_m", &Sample::travel},
+                                                    {"sinkage_m", &Sample::sinkage}, {"pressure_Pa", &Sample::pressure},
+                                                    {"force_N", &Sample::force},     {"drive_N", &Sample::drive}};
+
+/// One plate.
+struct PlateResult {
+  double width = 0.0;  ///< m
+  bool finished = false;
+  std::vector<Sample> samples = {};
+
+  // Of the samples, by evaluate()
+  terramechanics::PlateCurve curve = {};                   ///< smoothed, from zero sinkage on
+  std::optional<terramechanics::PlateConstants> fit = {};  ///< none if there are too few points
+};
+
+/// All plates on a bed.
+struct VariantResult {
+  Variant variant;
+  double level = not_known;           ///< m, height of the levelled bed
+  double solid_fraction = not_known;  ///< of its inside, before the plates
+  std::size_t grains = 0;
+  double time_step = not_known;  ///< s
+  std::vector<PlateResult> plates = {};
+};
+
+/// Everything that a run finds.
+struct Campaign {
+  std::vector<VariantResult> variants = {};
+  std::optional<report::Replay> replay = {};  ///< of the plate in the middle
+};
+
+/// The pressure (Pa) at a sinkage (m), between the points of a curve; NaN outside of them.
+inline double pressure_at(const terramechanics::PlateCurve& c, double sinkage) {
+  for (std::size_t i = 1; i < c.sinkage.size(); ++i) {
+    if (c.sinkage[i - 1] <= sinkage && sinkage <= c.sinkage[i] && c.sinkage[i] > c.sinkage[i - 1]) {
+      const double share = (sinkage - c.sinkage[i - 1]) / (c.sinkage[i] - c.sinkage[i - 1]);
+      return c.pressure[i - 1] + share * (c.pressure[i] - c.pressure[i - 1]);
+    }
+  }
+  return not_known;
+}
+
+/// The part of a curve that is fitted: from a share of the sinkage on.
+inline terramechanics::PlateCurve fitted_part(const PlateResult& r, const Settings& s) {
+  return terramechanics::within(r.curve, s.fit_from * s.sinkage, s.sinkage);
+}
+
+/// Finds where sinkage begins, the curve from there on, and k and n of p = k z^n (weighted logarithms).
+inline void evaluate(PlateResult& r, const Settings& s) {
+  const auto pressure = smoothed<Sample>(r.samples, &Sample::travel, &Sample::pressure, s.smoothing * s.sinkage);
+  terramechanics::PlateCurve raw{.width = r.width, .sinkage = {}, .pressure = pressure};
+  bool carries = false;
+  for (std::size_t i = 0; i < r.samples.size(); ++i) {
+    raw.sinkage.push_back(r.samples[i].travel);
+    carries = carries || pressure[i] >= s.threshold;
+  }
+  if (!carries) return;
+  r.curve = terramechanics::zeroed(raw, s.threshold);
+  const double zero = raw.sinkage.back() - r.curve.sinkage.back();
+  for (Sample& sample : r.samples) sample.sinkage = sample.travel - zero;
+  const auto part = fitted_part(r, s);
+  if (part.sinkage.size() < 10 || part.sinkage.back() < 2.0 * part.sinkage.front()) return;
+  for (const double p : part.pressure) {
+    if (!(p > 0.0)) return;
+  }
+  r.fit = terramechanics::fit_plate(part, terramechanics::PlateFit::weighted_logarithms);
+}
+
+/// The curves of the plates that can be fitted.
+inline std::vector<terramechanics::PlateCurve> fitted_curves(const VariantResult& v) {
+  std::vector<terramechanics::PlateCurve> curves;
+  for (const PlateResult& r : v.plates) {
+    if (r.fit) curves.push_back(fitted_part(r, v.variant.settings));
+  }
+  return curves;
+}
+
+}  // namespace dem::rig::plate_sinkage

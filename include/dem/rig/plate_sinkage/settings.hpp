@@ -1,0 +1,148 @@
+#pragma once
+
+#include <dem/rig/bed/bed_settings.hpp>
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+namespace dem::rig::plate_sinkage {
+
+/// Everything that can be chosen, in SI units. A value of 0 where it says "0: by size" is filled in by resolve().
+struct Settings {
+  std::string size = "quick";                      ///< smoke, quick or full
+  GrainSettings grains{.constants_for = 1.86e-3};  ///< of thesis table 4.2
+  BedSettings bed;
+
+  // Plates (thesis section 4.2: 130 mm x 30, 50, 70 mm x 10 mm, of aluminium, at 10 mm/s)
+  std::vector<double> widths;   ///< m, the smaller sides; empty: by size
+  double length = 0.0;          ///< m; 0: by size
+  double thickness = 0.01;      ///< m
+  double plate_friction = 0.0;  ///< mu, grain on plate
+  double speed = 0.0;           ///< m/s; 0: by size
+  double ramp_time = 0.01;      ///< s, of the smooth start
+  double sinkage = 0.0;         ///< m, from where the pressure first is `threshold`; 0: by size
+  double threshold = 1000.0;    ///< Pa, at which sinkage begins
+  double smoothing = 0.02;      ///< of the sinkage, over which pressures are averaged
+  double fit_from = 0.1;        ///< of the sinkage: points before are not fitted
+
+  std::string study = "none";  ///< none, box, speed or seeds
+  std::string output = "plate_sinkage_output";
+  bool replay = true;
+  bool vtk = true;
+
+  [[nodiscard]] double sample_interval() const { return sinkage / 400.0 / speed; }  ///< s
+};
+
+/// A bed and a speed that the plates are pressed with, and what it is called: the run itself, or one of a study.
+struct Variant {
+  std::string name = {};  ///< of files; empty: the run itself
+  std::string text = "as set";
+  Settings settings = {};
+};
+
+/// Names every option and the place of its value.
+inline void declare(Options& options, Settings& s) {
+  const auto add = [&](const char* name, auto& value, const char* text) { return options.add(name, value, text); };
+  add("--size", s.size, "smoke (seconds), quick (minutes) or full (the thesis's 209664 grains: many hours)");
+  options.group("Plates");
+  add("--plates", s.widths, "widths of the plates [m], e.g. 0.03,0.05,0.07");
+  add("--plate-length", s.length, "[m]; 0: by size");
+  add("--plate-thickness", s.thickness, "[m]");
+  add("--plate-friction", s.plate_friction, "mu, grain on plate");
+  add("--speed", s.speed, "[m/s]; 0: by size");
+  add("--ramp-time", s.ramp_time, "smooth start of a plate [s]");
+  add("--sinkage", s.sinkage, "[m], from where it begins; 0: by size");
+  add("--threshold", s.threshold, "pressure at which sinkage begins [Pa]");
+  add("--smoothing", s.smoothing, "share of the sinkage over which pressures are averaged");
+  add("--fit-from", s.fit_from, "share of the sinkage from which points are fitted");
+  add("--study", s.study, "also: a bed twice as wide and one twice as deep (box), half the speed, or two other seeds")
+      .one_of({"none", "box", "speed", "seeds"});
+  add_grain_options(options, s.grains);
+  add_bed_options(options, s.bed);
+  options.group("Output");
+  add("--output", s.output, "folder; results of an earlier run in it are replaced");
+  options.flag("--replay", s.replay, "replay of a plate in the report (--replay=true) or none (--no-replay)")
+      .off("--no-replay");
+  options.flag("--vtk", s.vtk, "files for ParaView (--vtk=true) or none (--no-vtk)").off("--no-vtk");
+}
+
+inline void find_idle(IdleOptions& idle, const Settings& s) {
+  rig::find_idle(idle, s.grains);
+  rig::find_idle(idle, s.bed);
+}
+
+/// Fills in what depends on the size, and checks every option against its range. Throws Error.
+inline void resolve(Settings& s) {
+  struct Defaults {
+    BedBySize bed;
+    double half_edge, length, speed, sinkage;
+    std::vector<double> widths;
+  };
+  // quick and smoke press faster, on coarser grains and smaller beds.
+  const auto by_size =
+      BySize<Defaults>{.smoke = {{0.10, 0.06, 0.04}, 4e-3, 0.05, 0.10, 4e-3, {0.03}},
+                       .quick = {{0.20, 0.16, 0.12}, 3e-3, 0.13, 0.05, 0.02, {0.03, 0.05, 0.07}},
+                       .full = {{0.25, 0.20, 0.33}, 1.86e-3, 0.13, 0.01, 0.03, {0.03, 0.05, 0.07}}}[size_named(s.size)];
+  rig::resolve(s.grains, by_size.half_edge);
+  rig::resolve(s.bed, by_size.bed, s.output);
+  fill(s.length, by_size.length);
+  fill(s.speed, by_size.speed);
+  fill(s.sinkage, by_size.sinkage);
+  if (s.widths.empty()) s.widths = by_size.widths;
+  require_within(s.length, 1e-3, s.bed.length, "--plate-length (m, within the bed)");
+  std::sort(s.widths.begin(), s.widths.end());
+  for (const double w : s.widths) require_within(w, 1e-3, s.bed.width, "a width of --plates (m, within the bed)");
+  for (std::size_t k = 1; k < s.widths.size(); ++k) {
+    if (s.widths[k] - s.widths[k - 1] >= 1e-3) continue;
+    fail("two --plates have widths of {:g} and {:g} m, but must differ by a millimetre; leave one out", s.widths[k - 1],
+         s.widths[k]);
+  }
+  require_within(s.thickness, 1e-3, 1.0, "--plate-thickness (m)");
+  require_non_negative(s.plate_friction, "--plate-friction", "(no unit)");
+  require_within(s.speed, 1e-4, 1.0, "--speed (m/s)");
+  require_within(s.sinkage, 1e-4, 0.5 * s.bed.depth, "--sinkage (m, at most half the bed's depth)");
+  require_within(s.ramp_time, 0.0, s.sinkage / s.speed, "--ramp-time (s, at most what the sinkage takes)");
+  require_positive(s.threshold, "--threshold", "Pa");
+  require_within(s.smoothing, 0.0, 0.5, "--smoothing");
+  require_within(s.fit_from, 1e-3, 0.9, "--fit-from");
+}
+
+/// The run itself, and those of the study.
+inline std::vector<Variant> variants(const Settings& s) {
+  std::vector<Variant> list{{.settings = s}};
+  const auto add = [&](const char* name, std::string text, auto&& change) {
+    Variant v{name, std::move(text), s};
+    change(v.settings);
+    list.push_back(std::move(v));
+  };
+  if (s.study == "box") {
+    add("wide", "bed twice as wide", [](Settings& x) { x.bed.width *= 2.0; });
+    add("deep", "bed twice as deep", [](Settings& x) { x.bed.depth *= 2.0; });
+  } else if (s.study == "speed") {
+    add("slow", "half the speed", [](Settings& x) { x.speed *= 0.5; });
+  } else if (s.study == "seeds") {
+    add("second", "the next seed", [](Settings& x) { x.bed.seed += 1; });
+    add("third", "the seed after it", [](Settings& x) { x.bed.seed += 2; });
+  }
+  return list;
+}
+
+/// Names and values for the report.
+inline NamesAndValues list_settings(const Settings& s) {
+  NamesAndValues list{{"size", s.size}};
+  std::string widths;
+  for (const double w : s.widths) widths += (widths.empty() ? "" : ", ") + text("{:g}", 1e3 * w);
+  rig::list_settings(list, s.grains);
+  rig::list_settings(list, s.bed);
+  list.insert(
+      list.end(),
+      {{"plates", text("{:g} mm x {} mm x {:g} mm", 1e3 * s.length, widths, 1e3 * s.thickness)},
+       {"friction, grain on plate", text("{:g}", s.plate_friction)},
+       {"speed", text("{:g} mm/s", 1e3 * s.speed)},
+       {"sinkage", text("{:g} mm, from where the pressure first is {:g} kPa", 1e3 * s.sinkage, 1e-3 * s.threshold)},
+       {"study", s.study}});
+  return list;
+}
+
+}  // namespace dem::rig::plate_sinkage

@@ -1,0 +1,192 @@
+#pragma once
+
+#include <dem/geometry/mesh/mesh_shapes.hpp>
+#include <dem/rig/bed/make_bed.hpp>
+#include <dem/rig/rigid_wheel/results.hpp>
+#include <dem/rig/smooth_start.hpp>
+
+#include <utility>
+
+namespace dem::rig {
+
+/// The rigid wheel of thesis chapter 5 (table 5.2: bottom box, lid, carriage, shaft, wheel; prismatic joints of lid,
+/// carriage and shaft, a revolute one of the wheel; linear actuators of lid and carriage, a rotary one of the wheel) on
+/// grains of a Model, which has the thesis's laws and surface::Box, Cylinder and TriangleMesh among its Surfaces. The
+/// carriage moves along +x and the wheel turns about +y, both at given speeds; shaft and wheel are a dead load.
+///
+/// One actuator more than in the table sets the wheel down, a load servo: a damper under which the load sinks at
+/// the set-down speed, ever slower as the grains take it up. All slips start from copies of the bed with the wheel at
+/// rest on it. Slip is s = 1 - v/(omega r).
+///
+///     dem::rig::rigid_wheel::Settings settings;
+///     settings.size = "smoke";
+///     dem::rig::RigidWheel<Sand> test(settings, [](double h) { return dem::shape::cube8(h); });
+///     const auto stand = test.set_down(test.make_bed());
+///     const auto run = test.roll(stand, 0.3);
+///     run.pull.mean;                                    // N
+template <class M>
+class RigidWheel {
+ public:
+  using Model = M;
+  using Settings = rigid_wheel::Settings;
+  using Shape = typename Model::Shape;
+
+  /// A bed with the machine on it. A copy is the same one, to the last bit.
+  struct Stand {
+    Bed<Model> bed;
+    BodyId carriage = {}, shaft = {}, wheel = {};
+    JointId rail = {}, guide = {}, axle = {};
+    ActuatorId drive = {}, servo = {}, motor = {};
+    SensorId grains = {}, drive_sensor = {}, motor_sensor = {};
+  };
+
+  /// `shape_of(half_edge)` makes the shape of the grains (m). Throws Error for settings that make no sense.
+  template <class ShapeOf>
+  RigidWheel(Settings settings, ShapeOf&& shape_of) : RigidWheel(resolved(std::move(settings)), shape_of, 0) {}
+
+  [[nodiscard]] const Settings& settings() const { return settings_; }
+  [[nodiscard]] const Shape& shape() const { return shape_; }
+
+  /// The levelled bed, of these grains, by default rained ones.
+  [[nodiscard]] Bed<Model> make_bed(const soil::Packing& start, Stages& stages) const {
+    return rig::make_bed<Model>(settings_.bed, settings_.grains, shape_, false, start, stages);
+  }
+  [[nodiscard]] Bed<Model> make_bed() const {
+    Stages quiet;
+    return make_bed(bed_grains(settings_.bed, settings_.grains, shape_.volume(), shape_.bounding_radius()), quiet);
+  }
+
+  /// Puts the machine over a bed and lowers the wheel, until the grains carry it within 2 % and it rests (both for 10
+  /// ms). Then the servo is off.
+  [[nodiscard]] Stand set_down(Bed<Model> bed) const {
+    Stages quiet;
+    return set_down(std::move(bed), quiet);
+  }
+  [[nodiscard]] Stand set_down(Bed<Model> bed, Stages& stages) const {
+    const Settings& s = settings_;
+    Stand stand = build(std::move(bed));
+    auto& world = stand.bed.world;
+    const auto& m = world.machine();
+    stages.begin("set down", 1.0);
+    const double start = world.time();
+    soil::StaysBelow slow(0.01 * s.set_down_speed, 0.01), loaded(0.02, 0.01);
+    for (bool done = false; !done;) {
+      run(world, 1e-3);
+      const double force = m.sensor(stand.grains).mean().force.z, speed = m.body(stand.shaft).velocity().z();
+      const bool is_slow = slow(world.time(), std::abs(speed));
+      done = loaded(world.time(), std::abs(force / s.load - 1.0)) && is_slow;
+      stages.update(std::clamp(force / s.load, 0.0, 1.0),
+                    text("{:.1f} N, {:.2f} mm deep", force, 1e3 * sinkage(stand)));
+      if (!done && world.time() - start > s.bed.stage_limit) {
+        throw Stopped(
+            text("the wheel is not at rest after {:g} s: the grains carry {:.4g} N of {:.4g} N; raise "
+                 "--stage-limit or --damping",
+                 s.bed.stage_limit, force, s.load));
+      }
+    }
+    world.machine().switch_on(stand.servo, false);
+    return stand;
+  }
+
+  /// Depth (m) of the wheel's lowest point, without grousers, below the level of the bed.
+  [[nodiscard]] double sinkage(const Stand& stand) const {
+    return stand.bed.level - (stand.bed.world.machine().body(stand.wheel).position().z() - settings_.radius);
+  }
+
+  /// Rolls the wheel at a slip, on one thread, and evaluates its samples.
+  [[nodiscard]] rigid_wheel::SlipResult roll(const Stand& stand, double slip) const {
+    rigid_wheel::SlipResult result{.slip = slip};
+    roll(stand, result, [](const auto&, double) {});
+    rigid_wheel::evaluate(result, stand.bed.level, settings_);
+    return result;
+  }
+
+  /// The same with look(world, share of the run) after each sample. `result` is filled as the run goes; its samples are
+  /// not evaluated.
+  template <class Look>
+  void roll(Stand stand, rigid_wheel::SlipResult& result, Look&& look) const {
+    const Settings& s = settings_;
+    auto& world = stand.bed.world;
+    world.set_threads(1);
+    auto& m = world.machine();
+    const double start = world.time(), interval = s.sample_interval(), speed = (1.0 - result.slip) * s.rim_speed();
+    m.set_target(stand.drive, smooth_start(speed, s.ramp_time, start, m.coordinate(stand.rail)));
+    m.set_target(stand.motor, smooth_start(s.spin(), s.ramp_time, start, m.coordinate(stand.axle)));
+    const double from = m.coordinate(stand.rail), duration = s.duration();
+    while (world.time() - start < duration) {
+      run(world, interval);
+      const auto& grains = m.sensor(stand.grains).mean();
+      const double rim = m.speed(stand.axle) * s.radius, way = m.speed(stand.rail);
+      result.samples.push_back({world.time() - start, 1.0 - way / rim, m.coordinate(stand.rail) - from, grains.force.x,
+                                -grains.torque.y, sinkage(stand), grains.force.z,
+                                -m.sensor(stand.drive_sensor).mean().force.x,
+                                m.sensor(stand.motor_sensor).mean().force.x});
+      look(std::as_const(world), (world.time() - start) / duration);
+    }
+    // Behind the wheel, and not where it was set down.
+    const double chord = std::sqrt(2.0 * s.radius * std::max(sinkage(stand), s.grains.edge()));
+    rigid_wheel::find_rut(soil::placements(world), s, s.start(), s.start() + m.coordinate(stand.rail) - chord, result);
+    result.finished = true;
+  }
+
+ private:
+  template <class ShapeOf>
+  RigidWheel(Settings settings, ShapeOf&& shape_of, int)
+      : settings_(std::move(settings)), shape_(shape_of(settings_.grains.half_edge)) {}
+  static Settings resolved(Settings s) {
+    rigid_wheel::resolve(s);
+    return s;
+  }
+
+  [[nodiscard]] Stand build(Bed<Model> bed) const {
+    const Settings& s = settings_;
+    Stand stand{.bed = std::move(bed)};
+    auto& world = stand.bed.world;
+    auto& m = world.machine();
+    double top = stand.bed.level;
+    for (const auto p : world.particles()) top = std::max(top, world.position(p).z() + shape_.bounding_radius());
+    const Vec3 at(s.start(), 0.0, top + s.outer_radius());
+    Mat3 about_y;  // the wheel's axis, z of its own frame, along y
+    about_y << 1, 0, 0, 0, 0, 1, 0, -1, 0;
+    const double mass = s.load / 9.81, wheel_mass = 0.6 * mass, carriage_mass = 5.0;
+    const double volume = std::numbers::pi * s.radius * s.radius * s.width;
+    const auto box = [&](const char* name, double kg) {
+      const Vec3 edges(0.05, 0.05, 0.05);
+      return m.add_body(mbd::box_body(name, edges, kg / edges.prod()).at(at));
+    };
+    stand.carriage = box("carriage", carriage_mass);
+    stand.shaft = box("shaft", mass - wheel_mass);
+    stand.wheel = m.add_body(mbd::cylinder_body("wheel", s.radius, s.width, wheel_mass / volume).at(at, about_y));
+    world.set_contact("grain", "wheel", grain_contact<Model>(s.grains, s.wheel_friction));
+    const SurfaceOptions as_wheel = {.material = "wheel", .name = "wheel"};
+    if (s.wheel == "grousers") {
+      const mesh::Wheel shape = {.radius = s.radius,
+                                 .width = s.width,
+                                 .grousers = s.grousers,
+                                 .grouser_height = s.grouser_height,
+                                 .grouser_thickness = s.grouser_thickness};
+      world.add_surface(stand.wheel, surface::TriangleMesh(mesh::wheel(shape)), as_wheel);
+    } else {
+      world.add_surface(stand.wheel, surface::Cylinder(s.radius, s.width), as_wheel);
+    }
+    stand.rail = m.add_joint(mbd::prismatic("rail", m.ground(), stand.carriage, at, Vec3::UnitX()));
+    stand.guide = m.add_joint(mbd::prismatic("guide", stand.carriage, stand.shaft, at, Vec3::UnitZ()));
+    stand.axle = m.add_joint(mbd::revolute("axle", stand.shaft, stand.wheel, at, Vec3::UnitY()));
+    // Stiff against pulls and torques of some 100 N and 20 N m: 0.1 mm and 0.2 mrad. Damped critically.
+    const double k = 1e6, turn = 1e5, inertia = 0.5 * wheel_mass * s.radius * s.radius;
+    stand.drive =
+        m.add_actuator(mbd::joint_actuator("drive", stand.rail, k, 2.0 * std::sqrt(k * (mass + carriage_mass))));
+    stand.motor = m.add_actuator(mbd::joint_actuator("motor", stand.axle, turn, 2.0 * std::sqrt(turn * inertia)));
+    stand.servo = m.add_actuator(mbd::joint_actuator("load servo", stand.guide, 0.0, s.load / s.set_down_speed));
+    const double window = s.sample_interval();
+    stand.grains = m.add_sensor(mbd::contact_sensor("grains on the wheel", stand.wheel, window));
+    stand.drive_sensor = m.add_sensor(mbd::actuator_sensor("force of the drive", stand.drive, window));
+    stand.motor_sensor = m.add_sensor(mbd::actuator_sensor("torque of the motor", stand.motor, window));
+    return stand;
+  }
+
+  Settings settings_;
+  Shape shape_;
+};
+
+}  // namespace dem::rig

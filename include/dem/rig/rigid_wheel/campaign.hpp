@@ -1,0 +1,72 @@
+#pragma once
+
+#include <dem/report/replay_world.hpp>
+#include <dem/rig/bed/bed_file.hpp>
+#include <dem/rig/frames.hpp>
+#include <dem/rig/rigid_wheel.hpp>
+#include <dem/rig/samples_file.hpp>
+#include <dem/rig/session.hpp>
+#include <dem/rig/side_by_side.hpp>
+
+namespace dem::rig::rigid_wheel {
+
+/// The run of a program: a bed, the wheel set down on it, and all slips from there, side by side, one a thread. What
+/// can be refused is refused before session.begin_run(). `campaign` is filled as the run goes.
+template <class Model, class ShapeOf>
+void run_campaign(const Settings& settings, ShapeOf&& shape_of, Campaign& campaign, Session& session) {
+  const RigidWheel<Model> test(settings, shape_of);
+  const Settings& s = test.settings();
+  const bool made = s.bed.file.empty();
+  const soil::Packing start = start_of_bed(s.bed, s.grains, test.shape().volume(), test.shape().bounding_radius());
+  if (made) session.require_writable(s.bed.save, "--save-bed");
+  session.begin_run(bed_stages(s.bed) + 2);
+
+  Bed<Model> bed = test.make_bed(start, session);
+  if (made) soil::save_packing(packing_of(bed), s.bed.save);
+  campaign.level = bed.level;
+  campaign.solid_fraction = bed.solid_fraction(bed.level);
+  campaign.grains = bed.world.particle_count();
+  campaign.time_step = bed.world.time_step();
+  session.finish(text("{:.1f} mm deep, solid fraction {:.3f}", 1e3 * bed.level, campaign.solid_fraction));
+  const auto stand = test.set_down(std::move(bed), session);
+  campaign.set_down_sinkage = test.sinkage(stand);
+  session.finish(text("{:.2f} mm deep", 1e3 * campaign.set_down_sinkage));
+
+  for (const double slip : s.slips) campaign.slips.push_back({.slip = slip});
+  // The slip that is shown: that of the greatest number up to 0.3.
+  std::size_t shown = 0;
+  for (std::size_t k = 0; k < s.slips.size(); ++k) shown = s.slips[k] <= 0.301 ? k : shown;
+  if (s.replay) campaign.replay.emplace(report::ReplayOptions{.frames = 80, .interval = s.duration() / 60.0});
+  const int threads = s.bed.threads > 0 ? s.bed.threads : std::max(1, omp_get_max_threads());
+  session.begin("roll", static_cast<double>(s.slips.size()));
+  side_by_side(s.slips.size(), threads, session, [&](std::size_t k, SharedStages& stages) {
+    SlipResult& r = campaign.slips[k];
+    const std::string name = slip_name(r.slip);
+    const auto save = [&] {
+      evaluate(r, campaign.level, s);
+      if (!r.samples.empty()) save_samples<Sample>(session.folder() / (name + ".csv"), r.samples, sample_columns);
+    };
+    std::optional<Frames> frames;
+    stages.alone([&] { frames.emplace(session, s.vtk && k == shown ? name : "", 0.05, "this slip"); });
+    try {
+      test.roll(stand, r, [&](const auto& world, double share) {
+        if (k == shown) {
+          stages.alone([&] {
+            frames->show(share, [&](io::VtkSeries& series) {
+              add_grains(series, world);
+              add_surfaces(series, world);
+            });
+          });
+          if (campaign.replay && campaign.replay->due(world.time())) campaign.replay->record(world);
+        }
+        stages.update(k, std::min(1.0, share), text("slip {:g}: pull {:.1f} N", r.slip, r.samples.back().pull));
+      });
+    } catch (...) {
+      save();
+      throw;
+    }
+    save();
+  });
+}
+
+}  // namespace dem::rig::rigid_wheel

@@ -1,0 +1,125 @@
+#pragma once
+
+#include <dem/report/replay_recorder.hpp>
+#include <dem/rig/rigid_wheel/settings.hpp>
+#include <dem/rig/samples.hpp>
+#include <dem/rig/steady_window.hpp>
+#include <dem/soil/packing.hpp>
+
+#include <limits>
+#include <optional>
+#include <vector>
+
+namespace dem::rig::rigid_wheel {
+
+inline constexpr double not_known = std::numeric_limits<double>::quiet_NaN();
+
+/// One row of a run: forces are means over the interval before it.
+struct Sample {
+  double time;          ///< s, since the wheel started
+  double slip;          ///< 1 - v/(omega r), of the speeds as they were
+  double travel;        ///< m, of the carriage
+  double pull;          ///< N, drawbar pull: forward force of the grains on the wheel
+  double torque;        ///< N m, that drives the wheel: minus that of the grains on it
+  double sinkage;       ///< m, of the wheel's lowest point (without grousers) below the level of the bed
+  double carried;       ///< N, upward force of the grains on the wheel
+  double drive_force;   ///< N, of the carriage's actuator, backwards: what pulls
+  double motor_torque;  ///< N m, of the wheel's actuator
+};
+
+/// The slip's definition stands in its name: s = 1 - v/(omega r).
+inline constexpr Column<Sample> sample_columns[] = {{"time_s", &Sample::time},
+                                                    {"slip_1-v/(omega*r)", &Sample::slip},
+                                                    {"travel_m", &Sample::travel},
+                                                    {"drawbar_pull_N", &Sample::pull},
+                                                    {"torque_Nm", &Sample::torque},
+                                                    {"sinkage_m", &Sample::sinkage},
+                                                    {"carried_N", &Sample::carried},
+                                                    {"drive_force_N", &Sample::drive_force},
+                                                    {"motor_torque_Nm", &Sample::motor_torque}};
+
+/// The run at one slip.
+struct SlipResult {
+  double slip = 0.0;  ///< 1 - v/(omega r), as asked for
+  bool finished = false;
+  std::vector<Sample> samples = {};
+  std::vector<double> rut_y = {}, rut_z = {};  ///< m: height of the surface behind the wheel, across; empty: no rut yet
+
+  // Of the samples, by evaluate()
+  double window_from = not_known;  ///< s, where the steady window begins
+  bool is_steady = false;
+  MeanAndDeviation pull = {}, torque = {}, sinkage = {}, carried = {};
+  double efficiency = not_known;  ///< pull v/(torque omega), thesis eq. 44; known where the wheel drives and pulls
+  double rut_depth = not_known;   ///< m, below the level: the mean over the middle half of the wheel's width
+  double rut_width = not_known;   ///< m, where the surface is lower than half of that depth
+};
+
+/// Everything that a run finds.
+struct Campaign {
+  double level = not_known;  ///< m
+  double solid_fraction = not_known;
+  std::size_t grains = 0;
+  double time_step = not_known;         ///< s
+  double set_down_sinkage = not_known;  ///< m, of the wheel at rest
+  std::vector<SlipResult> slips = {};
+  std::optional<report::Replay> replay = {};
+};
+
+/// Means over the steady window: the values after the time from which both pull and sinkage are steady by MSER-5.
+inline void evaluate(SlipResult& r, double level, const Settings& s) {
+  const auto all = [&](double Sample::*value) {
+    std::vector<double> v;
+    for (const Sample& x : r.samples) v.push_back(x.*value);
+    return v;
+  };
+  const auto pull = all(&Sample::pull), sinkage = all(&Sample::sinkage);
+  const SteadyWindow a = steady_window(pull), b = steady_window(sinkage);
+  const std::size_t first = std::max(a.first, b.first);
+  if (first >= r.samples.size()) return;
+  r.is_steady = a.is_steady && b.is_steady;
+  r.window_from = r.samples[first].time;
+  const auto mean = [&](double Sample::*value) {
+    const auto values = all(value);
+    return mean_of(std::span(values).subspan(first));
+  };
+  r.pull = mean(&Sample::pull);
+  r.torque = mean(&Sample::torque);
+  r.sinkage = mean(&Sample::sinkage);
+  r.carried = mean(&Sample::carried);
+  if (r.pull.mean > 0.0 && r.torque.mean > 0.0) {
+    r.efficiency = r.pull.mean * (1.0 - r.slip) * s.radius / r.torque.mean;
+  }
+  double sum = 0.0, count = 0.0, wide = 0.0;
+  for (std::size_t k = 0; k < r.rut_y.size(); ++k) {
+    if (std::abs(r.rut_y[k]) < 0.25 * s.width) sum += level - r.rut_z[k], count += 1.0;
+  }
+  if (count == 0.0) return;
+  r.rut_depth = sum / count;
+  for (const double z : r.rut_z) wide += level - z > 0.5 * r.rut_depth ? r.rut_y[1] - r.rut_y[0] : 0.0;
+  r.rut_width = wide;
+}
+
+/// The surface of a bed across y (m), in strips as wide as a grain is long: the mean, over cells of that size along x
+/// between two places (m), of the highest grain's middle plus its half-edge. A cell without grains is the floor. Sets y
+/// and z.
+inline void find_rut(std::span<const soil::Placement> grains, const Settings& s, double from, double to,
+                     SlipResult& r) {
+  const double edge = s.grains.edge();
+  const auto nx = static_cast<std::size_t>(std::max(0.0, (to - from) / edge));
+  const auto ny = static_cast<std::size_t>(std::max(0.0, s.bed.width / edge));
+  if (nx < 2 || ny < 2) return;
+  std::vector<double> highest(nx * ny, 0.0);
+  const double cell = s.bed.width / static_cast<double>(ny);
+  for (const auto& g : grains) {
+    const double x = (g.position.x() - from) / edge, y = (g.position.y() + 0.5 * s.bed.width) / cell;
+    if (!(x >= 0.0 && x < static_cast<double>(nx) && y >= 0.0 && y < static_cast<double>(ny))) continue;
+    double& z = highest[static_cast<std::size_t>(y) * nx + static_cast<std::size_t>(x)];
+    z = std::max(z, g.position.z() + s.grains.half_edge);
+  }
+  for (std::size_t j = 0; j < ny; ++j) {
+    r.rut_y.push_back((static_cast<double>(j) + 0.5) * cell - 0.5 * s.bed.width);
+    r.rut_z.push_back(mean_of(std::span(highest).subspan(j * nx, nx)).mean);
+  }
+}
+
+}  // namespace dem::rig::rigid_wheel

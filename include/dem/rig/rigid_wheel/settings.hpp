@@ -1,0 +1,158 @@
+#pragma once
+
+#include <dem/rig/bed/bed_settings.hpp>
+
+#include <algorithm>
+#include <numbers>
+#include <string>
+#include <vector>
+
+namespace dem::rig::rigid_wheel {
+
+/// Everything that can be chosen, in SI units. A value of 0 where it says "0: by size" is filled in by resolve(). Slip
+/// is that of thesis table 5.3, s = 1 - v/(omega r): positive for a wheel that drives.
+struct Settings {
+  std::string size = "quick";                     ///< smoke, quick or full
+  GrainSettings grains{.constants_for = 1.2e-3};  ///< of thesis table 5.1
+  BedSettings bed;
+
+  // Wheel (thesis chapter 5: 0.13 m x 0.16 m, 17 deg/s, 130 N)
+  double radius = 0.13;              ///< r, m, without grousers
+  double width = 0.16;               ///< m
+  std::string wheel = "rough";       ///< smooth, rough or grousers
+  double wheel_friction = -1.0;      ///< mu, grain on wheel; negative: by the kind of wheel
+  int grousers = 16;                 ///< of a wheel with grousers
+  double grouser_height = 0.01;      ///< m
+  double grouser_thickness = 0.004;  ///< m
+  double load = 130.0;               ///< N, the weight of wheel and shaft
+  double spin_deg = 0.0;             ///< deg/s; 0: by size
+  std::vector<double> slips;         ///< empty: by size
+  double path = 0.0;                 ///< m, that the rim turns in a run; 0: by size
+  double ramp_time = 0.05;           ///< s, of the smooth start
+  double set_down_speed = 0.05;      ///< m/s
+
+  std::string soil;  ///< file of a soil, whose Bekker-Wong curves are drawn too
+  std::string output = "rigid_wheel_output";
+  bool replay = true;
+  bool vtk = true;
+
+  [[nodiscard]] double spin() const { return spin_deg * std::numbers::pi / 180.0; }       ///< rad/s
+  [[nodiscard]] double rim_speed() const { return spin() * radius; }                      ///< m/s
+  [[nodiscard]] double duration() const { return path / rim_speed() + 0.5 * ramp_time; }  ///< s
+  /// m, that the carriage travels at a slip.
+  [[nodiscard]] double travel(double slip) const { return (1.0 - slip) * path; }
+  /// m, where all runs start: the longest one ends as far from the middle of the bed.
+  [[nodiscard]] double start() const { return -0.5 * travel(slips.front()); }
+  [[nodiscard]] double sample_interval() const { return duration() / 400.0; }  ///< s
+  /// m, of the wheel with its grousers.
+  [[nodiscard]] double outer_radius() const { return radius + (wheel == "grousers" ? grouser_height : 0.0); }
+};
+
+/// What the files of a slip are called: slip_30 or slip_m30, in percent.
+inline std::string slip_name(double slip) {
+  return text("slip_{}{:.0f}", slip < -0.005 ? "m" : "", std::abs(100.0 * slip));
+}
+
+/// Names every option and the place of its value.
+inline void declare(Options& options, Settings& s) {
+  const auto add = [&](const char* name, auto& value, const char* text) { return options.add(name, value, text); };
+  add("--size", s.size, "smoke (seconds), quick (minutes) or full (the thesis's 231264 grains: many hours)");
+  options.group("Wheel");
+  add("--wheel", s.wheel, "smooth, rough (its surface has more friction) or grousers (a mesh)")
+      .one_of({"smooth", "rough", "grousers"});
+  add("--radius", s.radius, "without grousers [m]");
+  add("--width", s.width, "[m]");
+  add("--wheel-friction", s.wheel_friction, "mu, grain on wheel; negative: smooth 0.2, rough 0.8, grousers as grains");
+  add("--grousers", s.grousers, "how many");
+  add("--grouser-height", s.grouser_height, "[m]");
+  add("--grouser-thickness", s.grouser_thickness, "[m]");
+  add("--load", s.load, "weight of wheel and shaft [N]");
+  add("--spin", s.spin_deg, "[deg/s]; 0: by size");
+  add("--slips", s.slips, "s = 1 - v/(omega r), e.g. -0.3,0,0.1,0.3; table 5.3 of the thesis has -0.7 to 0.7");
+  add("--path", s.path, "that the rim turns in a run [m]; 0: by size");
+  add("--ramp-time", s.ramp_time, "smooth start of a run [s]");
+  add("--set-down-speed", s.set_down_speed, "of the load servo [m/s]");
+  add("--soil", s.soil, "file of a soil as the bevameter writes it: its Bekker-Wong curves are drawn too");
+  add_grain_options(options, s.grains);
+  add_bed_options(options, s.bed);
+  options.group("Output");
+  add("--output", s.output, "folder; results of an earlier run in it are replaced");
+  options.flag("--replay", s.replay, "replay of a slip in the report (--replay=true) or none (--no-replay)")
+      .off("--no-replay");
+  options.flag("--vtk", s.vtk, "files for ParaView (--vtk=true) or none (--no-vtk)").off("--no-vtk");
+}
+
+inline void find_idle(IdleOptions& idle, const Settings& s) {
+  rig::find_idle(idle, s.grains);
+  rig::find_idle(idle, s.bed);
+  idle.unless(s.wheel == "grousers", "with --wheel grousers",
+              {"--grousers", "--grouser-height", "--grouser-thickness"});
+}
+
+/// Fills in what depends on the size, and checks every option against its range. Throws Error.
+inline void resolve(Settings& s) {
+  struct Defaults {
+    BedBySize bed;
+    double half_edge, spin_deg, path;
+    std::vector<double> slips;
+  };
+  // quick and smoke turn faster, on coarser grains and a smaller bed. full has the slips of table 5.3.
+  const auto by_size =
+      BySize<Defaults>{.smoke = {{0.30, 0.18, 0.03}, 6e-3, 90.0, 0.03, {0.3}},
+                       .quick = {{0.38, 0.26, 0.055}, 4e-3, 45.0, 0.11, {-0.5, -0.1, 0.1, 0.3, 0.7}},
+                       .full = {{0.50, 0.40, 0.04},
+                                1.2e-3,
+                                17.0,
+                                0.20,
+                                {-0.7, -0.5, -0.3, -0.1, 0.0, 0.1, 0.3, 0.5, 0.7}}}[size_named(s.size)];
+  rig::resolve(s.grains, by_size.half_edge);
+  rig::resolve(s.bed, by_size.bed, s.output);
+  fill(s.spin_deg, by_size.spin_deg);
+  fill(s.path, by_size.path);
+  if (s.slips.empty()) s.slips = by_size.slips;
+  if (s.wheel_friction < 0.0)
+    s.wheel_friction = s.wheel == "smooth" ? 0.2 : s.wheel == "rough" ? 0.8 : s.grains.friction;
+  std::sort(s.slips.begin(), s.slips.end());
+  for (std::size_t k = 0; k < s.slips.size(); ++k) {
+    require_within(s.slips[k], -5.0, 1.0, "a slip of --slips (1 - v/(omega r))");
+    if (k == 0 || slip_name(s.slips[k]) != slip_name(s.slips[k - 1])) continue;
+    fail("two --slips are {:g} and {:g}, but must differ by a hundredth; leave one out", s.slips[k - 1], s.slips[k]);
+  }
+  require_within(s.radius, 0.01, 10.0, "--radius (m)");
+  require_within(s.width, 0.01, s.bed.width, "--width (m, within the bed)");
+  require_within(s.grousers, 1, 400, "--grousers");
+  require_within(s.grouser_height, 1e-3, 0.5 * s.radius, "--grouser-height (m)");
+  require_within(s.grouser_thickness, 1e-3, 0.5 * s.radius, "--grouser-thickness (m)");
+  require_within(s.load, 0.1, 1e6, "--load (N)");
+  require_within(s.spin_deg, 0.1, 3600.0, "--spin (deg/s)");
+  require_within(s.path, 1e-3, 100.0, "--path (m)");
+  require_within(s.ramp_time, 0.0, s.path / s.rim_speed(), "--ramp-time (s, at most what the path takes)");
+  require_within(s.set_down_speed, 1e-3, 1.0, "--set-down-speed (m/s)");
+  const double needed = s.travel(s.slips.front()) + s.radius;
+  if (!(s.bed.length > needed)) {
+    fail(
+        "a bed {:g} m long is too short for a wheel that travels {:g} m at slip {:g}, and needs half its radius before "
+        "and behind it; give --bed-length {:.3g}, or a shorter --path",
+        s.bed.length, s.travel(s.slips.front()), s.slips.front(), 1.01 * needed);
+  }
+}
+
+/// Names and values for the report.
+inline NamesAndValues list_settings(const Settings& s) {
+  NamesAndValues list{{"size", s.size}};
+  rig::list_settings(list, s.grains);
+  rig::list_settings(list, s.bed);
+  list.insert(list.end(),
+              {{"wheel", text("{}, {:g} m x {:g} m", s.wheel, s.radius, s.width) +
+                             (s.wheel == "grousers" ? text(", {} grousers {:g} mm high and {:g} mm thick", s.grousers,
+                                                           1e3 * s.grouser_height, 1e3 * s.grouser_thickness)
+                                                    : "")},
+               {"friction, grain on wheel", text("{:g}", s.wheel_friction)},
+               {"load", text("{:g} N", s.load)},
+               {"spin", text("{:g} deg/s: the rim at {:g} mm/s", s.spin_deg, 1e3 * s.rim_speed())},
+               {"slip is", "s = 1 - v/(omega r), as in table 5.3"},
+               {"path of the rim", text("{:g} mm", 1e3 * s.path)}});
+  return list;
+}
+
+}  // namespace dem::rig::rigid_wheel

@@ -1,0 +1,110 @@
+#pragma once
+
+#include <dem/io/csv.hpp>
+#include <dem/report/replay_page.hpp>
+#include <dem/rig/rig.hpp>
+#include <dem/rig/rigid_wheel/tables.hpp>
+
+#include <algorithm>
+
+namespace dem::rig::rigid_wheel {
+
+/// The rigid wheel as a program. `run` is run_campaign() with a world, compiled beside it.
+class WheelRig : public Rig {
+ public:
+  using Run = void(const Settings&, Campaign&, Session&);
+  explicit WheelRig(Run* run) : run_(run) {}
+
+  void declare(Options& options) override { rigid_wheel::declare(options, settings); }
+  void find_idle(IdleOptions& idle) const override { rigid_wheel::find_idle(idle, settings); }
+  void resolve() override {
+    rigid_wheel::resolve(settings);
+    references(settings);  // refuses a soil that cannot be read before anything runs
+  }
+  [[nodiscard]] std::string output() const override { return settings.output; }
+  [[nodiscard]] ResultNames results() const override {
+    return {.files = {"results.csv", "rut.csv", "slip_#+.csv", "slip_m#+.csv", "slip_#+.pvd", "slip_m#+.pvd"},
+            .plots = {"pull", "torque", "sinkage", "pull_over_time", "sinkage_over_time", "rut"},
+            .frames = {"grains", "surfaces"}};
+  }
+  [[nodiscard]] std::vector<OwnWord> words() const override { return bed_words(); }
+  void run(Session& session) override { run_(settings, campaign, session); }
+
+  bool report(Report& report) const override {
+    const Settings& s = settings;
+    report.part("results.csv", [&] { write_results(report.folder() / "results.csv"); });
+    const std::vector<io::Table> tables{slip_table(s, campaign), reference_table(s, campaign), rut_table(campaign)};
+    report.part("the printed report", [&] {
+      fmt::print("\n{}\n{}\n\n", bed_text(s, campaign), window_text);
+      for (const auto& table : tables) {
+        io::print(table);
+        fmt::print("\n");
+      }
+      fmt::print("{} of wall time.\n", io::format_duration(report.outcome().wall_time));
+    });
+    report.page(list_settings(s), [&](io::HtmlReport& page) {
+      page.paragraph(bed_text(s, campaign)).paragraph(window_text);
+      for (const auto& table : tables) page.table(table);
+      if (any_rolled()) add_plots(report, page);
+      if (campaign.replay && campaign.replay->frames().size() > 1) {
+        page.heading("Replay").replay(*campaign.replay, "The wheel at the largest slip up to 0.3.");
+      }
+    });
+    return s.vtk && any_rolled();
+  }
+
+  Settings settings;
+  Campaign campaign;
+
+ private:
+  [[nodiscard]] bool any_rolled() const {
+    return std::any_of(campaign.slips.begin(), campaign.slips.end(),
+                       [](const SlipResult& r) { return r.samples.size() > 1; });
+  }
+
+  void add_plots(Report& report, io::HtmlReport& page) const {
+    using terramechanics::WheelForces;
+    const Settings& s = settings;
+    const Campaign& c = campaign;
+    page.heading("Plots");
+    report.plot(page,
+                slip_plot(
+                    s, c, &SlipResult::pull, 1.0, [](const WheelForces& f) { return f.pull; }, "Drawbar pull",
+                    "drawbar pull [N]"),
+                "pull", "Drawbar pull over slip.");
+    report.plot(
+        page,
+        slip_plot(
+            s, c, &SlipResult::torque, 1.0, [](const WheelForces& f) { return f.torque; }, "Torque", "torque [N m]"),
+        "torque", "Torque that drives the wheel over slip.");
+    report.plot(
+        page,
+        slip_plot(
+            s, c, &SlipResult::sinkage, 1e3, [](const WheelForces& f) { return f.sinkage; }, "Sinkage", "sinkage [mm]"),
+        "sinkage", "Sinkage over slip.");
+    report.plot(page, time_plot(c, &Sample::pull, 1.0, "Drawbar pull over time", "drawbar pull [N]"), "pull_over_time",
+                "Drawbar pull of every run.");
+    report.plot(page, time_plot(c, &Sample::sinkage, 1e3, "Sinkage over time", "sinkage [mm]"), "sinkage_over_time",
+                "Sinkage of every run.");
+    if (auto rut = rut_plot(c); !rut.series.empty()) {
+      report.plot(page, rut, "rut", "Height of the surface behind the wheel, across its way.");
+    }
+  }
+
+  void write_results(const std::filesystem::path& path) const {
+    io::CsvWriter csv(path, {"slip_1-v/(omega*r)", "drawbar_pull_N", "pull_deviation_N", "torque_Nm",
+                             "torque_deviation_Nm", "sinkage_m", "sinkage_deviation_m", "efficiency", "carried_N",
+                             "steady_from_s", "steady", "rut_depth_m", "rut_width_m", "finished"});
+    const auto cell = [](double value) { return std::isfinite(value) ? text("{}", value) : ""; };
+    for (const SlipResult& r : campaign.slips) {
+      csv.row(r.slip, cell(r.pull.mean), cell(r.pull.deviation), cell(r.torque.mean), cell(r.torque.deviation),
+              cell(r.sinkage.mean), cell(r.sinkage.deviation), cell(r.efficiency), cell(r.carried.mean),
+              cell(r.window_from), r.is_steady, cell(r.rut_depth), cell(r.rut_width), r.finished);
+    }
+    csv.flush();
+  }
+
+  Run* run_;
+};
+
+}  // namespace dem::rig::rigid_wheel

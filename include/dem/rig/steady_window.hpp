@@ -1,0 +1,54 @@
+#pragma once
+// Where a run has become steady, and means over that part.
+
+#include <cmath>
+#include <cstddef>
+#include <span>
+
+namespace dem::rig {
+
+/// A mean and the standard deviation of what it is the mean of.
+struct MeanAndDeviation {
+  double mean = std::nan(""), deviation = std::nan("");
+};
+inline MeanAndDeviation mean_of(std::span<const double> values) {
+  if (values.empty()) return {};
+  double sum = 0.0, squares = 0.0;
+  for (const double v : values) sum += v;
+  const double n = static_cast<double>(values.size()), mean = sum / n;
+  for (const double v : values) squares += (v - mean) * (v - mean);
+  return {mean, std::sqrt(squares / n)};
+}
+
+/// The steady end of a run.
+struct SteadyWindow {
+  std::size_t first = 0;   ///< value that it begins with
+  bool is_steady = false;  ///< false: the rule finds no steady part, and the window is the last half
+};
+
+/// The marginal standard error rule MSER-5 (K. P. White, Simulation 69, 1997, 323-334): means of 5 values each; as many
+/// of them are left out at the start as make the standard error of the mean of the others least, at most half of all.
+/// Where that least is at the half, the run has not become steady. So has none of less than 50 values.
+inline SteadyWindow steady_window(std::span<const double> values) {
+  constexpr std::size_t batch = 5;
+  const std::size_t count = values.size() / batch;
+  if (count < 10) return {values.size() / 2, false};
+  std::size_t best = 0;
+  double least = 1e300;
+  for (std::size_t d = 0; d <= count / 2; ++d) {
+    double sum = 0.0, squares = 0.0;
+    for (std::size_t j = d; j < count; ++j) {
+      const double m = mean_of(values.subspan(batch * j, batch)).mean;
+      sum += m;
+      squares += m * m;
+    }
+    const double n = static_cast<double>(count - d), error = (squares - sum * sum / n) / (n * n);
+    if (error < least) {
+      least = error;
+      best = d;
+    }
+  }
+  return {batch * best, best < count / 2};
+}
+
+}  // namespace dem::rig

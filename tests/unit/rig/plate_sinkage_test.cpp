@@ -1,0 +1,116 @@
+#include "catch.hpp"
+#include "worlds.hpp"
+
+#include <dem/rig/plate_sinkage.hpp>
+
+#include <cmath>
+
+using Catch::Approx;
+using namespace dem::rig;
+
+namespace {
+
+/// A plate of 30 x 30 mm on some eighty coarse grains: fast to make.
+plate_sinkage::Settings small() {
+  plate_sinkage::Settings s;
+  s.size = "smoke";
+  s.grains.half_edge = 5e-3;
+  s.grains.damping = 0.1;  // comes to rest soon
+  s.grains.separation_factor = 1.0;
+  s.bed.length = s.bed.width = 0.06;
+  s.bed.depth = 0.025;
+  s.bed.threads = 1;
+  s.widths = {0.03};
+  s.length = 0.03;
+  s.sinkage = 2e-3;
+  return s;
+}
+
+PlateSinkage<models::VerletCubes> small_test() {
+  return {small(), [](double h) { return dem::shape::cube8(h); }};
+}
+
+}  // namespace
+
+TEST_CASE("a plate's fit finds the k and n that its pressures were made of, counted from where they begin") {
+  plate_sinkage::Settings s;
+  s.sinkage = 0.02;
+  s.threshold = 1e-3;  // as good as none: the curve begins 5e-9 m after its first point
+  s.smoothing = 0.0;
+  plate_sinkage::PlateResult r{.width = 0.03};
+  for (int i = 0; i <= 450; ++i) {
+    const double travel = 5e-5 * i, z = std::max(0.0, travel - 2e-3), p = 5e6 * std::pow(z, 1.2);
+    r.samples.push_back({0.0, travel, 0.0, p, p, p});
+  }
+  plate_sinkage::evaluate(r, s);
+  REQUIRE(r.fit);
+  CHECK(r.fit->curve.modulus == Approx(5e6).epsilon(1e-4));
+  CHECK(r.fit->curve.exponent == Approx(1.2).epsilon(1e-4));
+  CHECK(r.samples.back().sinkage == Approx(450 * 5e-5 - 2e-3).epsilon(1e-5));
+  CHECK(plate_sinkage::pressure_at(r.curve, 0.01) == Approx(5e6 * std::pow(0.01, 1.2)).epsilon(1e-4));
+  CHECK(std::isnan(plate_sinkage::pressure_at(r.curve, 0.03)));
+}
+
+TEST_CASE("a plate that carries nothing has no curve and no fit") {
+  plate_sinkage::Settings s;
+  s.sinkage = 0.02;
+  plate_sinkage::PlateResult r{.width = 0.03};
+  for (int i = 0; i <= 450; ++i) r.samples.push_back({0.0, 5e-5 * i, 0.0, 10.0, 0.0, 0.0});
+  plate_sinkage::evaluate(r, s);
+  CHECK_FALSE(r.fit);
+  CHECK(r.curve.sinkage.empty());
+}
+
+TEST_CASE("settings of plates that make no sense are refused by the names of their options") {
+  const auto refuses = [](auto&& change, const char* option) {
+    auto s = small();
+    change(s);
+    CHECK_THROWS_WITH(plate_sinkage::resolve(s), Catch::Contains(option));
+  };
+  refuses([](auto& s) { s.sinkage = 0.02; }, "--sinkage");
+  refuses([](auto& s) { s.widths = {0.07}; }, "--plates");
+  refuses([](auto& s) { s.widths = {0.03, 0.0301}; }, "--plates");
+  refuses([](auto& s) { s.length = 0.07; }, "--plate-length");
+  refuses([](auto& s) { s.bed.relative_density = 1.5; }, "--relative-density");
+  refuses([](auto& s) { s.grains.half_edge = -1.0; }, "--half-edge");
+}
+
+TEST_CASE("a study changes what it says, and nothing else") {
+  auto s = small();
+  s.study = "box";
+  const auto box = plate_sinkage::variants(s);
+  REQUIRE(box.size() == 3);
+  CHECK(box[1].settings.bed.width == Approx(2.0 * s.bed.width));
+  CHECK(box[1].settings.bed.depth == s.bed.depth);
+  CHECK(box[2].settings.bed.depth == Approx(2.0 * s.bed.depth));
+  s.study = "speed";
+  CHECK(plate_sinkage::variants(s).at(1).settings.speed == Approx(0.5 * s.speed));
+  s.study = "none";
+  CHECK(plate_sinkage::variants(s).size() == 1);
+}
+
+TEST_CASE(
+    "a plate in a levelled bed: the machine of table 4.1, the weight on the floor, and the same again from a copy") {
+  const auto test = small_test();
+  const auto bed = test.make_bed();
+  const auto& m = bed.world.machine();
+  CHECK(m.bodies().size() == 4);  // ground, bottom box, top box, lid; the plate comes with its test
+  CHECK(m.parts().joints.size() == 3);
+  CHECK(m.parts().actuators.size() == 3);
+
+  // At rest the box carries the grains: friction holds no part of them but against the box itself.
+  double up = 0.0;
+  for (std::size_t k = 0; k < 9; ++k) up -= bed.world.surface_force(dem::SurfaceId(k)).z();  // floor and 8 walls
+  const double weight = 9.81 * 2650.0 * bed.grain_volume() * static_cast<double>(bed.world.particle_count());
+  CHECK(up == Approx(weight).epsilon(0.02));  // rest is a speed below 3 mm/s, not a force
+
+  const auto first = test.press(bed, 0.03), second = test.press(bed, 0.03);
+  REQUIRE(first.finished);
+  REQUIRE(first.samples.size() == second.samples.size());
+  bool same = true;
+  for (std::size_t i = 0; i < first.samples.size(); ++i) same &= first.samples[i].force == second.samples[i].force;
+  CHECK(same);
+  CHECK(first.curve.sinkage.back() >= 2e-3 * 0.99);
+  // Pressure rises: the last quarter of the sinkage carries more than the first.
+  CHECK(plate_sinkage::pressure_at(first.curve, 1.9e-3) > plate_sinkage::pressure_at(first.curve, 4e-4));
+}

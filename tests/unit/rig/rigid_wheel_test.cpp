@@ -1,0 +1,108 @@
+#include "catch.hpp"
+#include "worlds.hpp"
+
+#include <dem/rig/rigid_wheel.hpp>
+
+#include <cmath>
+
+using Catch::Approx;
+using namespace dem::rig;
+
+namespace {
+
+/// A small wheel on some hundred and fifty coarse grains.
+rigid_wheel::Settings small() {
+  rigid_wheel::Settings s;
+  s.size = "smoke";
+  s.grains.half_edge = 4e-3;
+  s.grains.damping = 0.1;  // comes to rest soon
+  s.grains.separation_factor = 1.0;
+  s.bed.length = 0.12;
+  s.bed.width = 0.05;
+  s.bed.depth = 0.018;
+  s.bed.threads = 1;
+  s.radius = 0.04;
+  s.width = 0.03;
+  s.load = 5.0;
+  s.spin_deg = 180.0;
+  s.path = 0.02;
+  s.slips = {0.3};
+  return s;
+}
+
+}  // namespace
+
+TEST_CASE("means of a wheel are those after its transient, and efficiency is pull v over torque omega") {
+  rigid_wheel::Settings s = small();
+  rigid_wheel::SlipResult r{.slip = 0.25};
+  for (int i = 0; i < 400; ++i) {
+    const double t = 0.01 * i, noise = i % 10 < 5 ? 0.5 : -0.5, late = i < 60 ? 1.0 - i / 60.0 : 0.0;
+    r.samples.push_back(
+        {t, 0.25, 0.0, 20.0 * (1.0 - late) + noise, 2.0, 0.01 * (1.0 - late) + 1e-4 * noise, 5.0, 0.0, 0.0});
+  }
+  rigid_wheel::evaluate(r, 0.05, s);
+  CHECK(r.is_steady);
+  CHECK(r.window_from >= 0.4);
+  CHECK(r.window_from <= 1.0);
+  CHECK(r.pull.mean == Approx(20.0).margin(0.2));  // what is left of the ramp in its last part
+  CHECK(r.pull.deviation == Approx(0.5).margin(0.3));
+  CHECK(r.efficiency == Approx(r.pull.mean * 0.75 * s.radius / 2.0));
+}
+
+TEST_CASE("a groove in a flat surface is found with its depth and width") {
+  rigid_wheel::Settings s = small();
+  s.bed.width = 0.16;
+  s.width = 0.06;
+  std::vector<dem::soil::Placement> grains;
+  for (int i = 0; i < 10; ++i) {
+    for (int j = 0; j < 20; ++j) {
+      const double y = (j + 0.5) * 8e-3 - 0.08;
+      grains.push_back({dem::Vec3((i + 0.5) * 8e-3, y, std::abs(y) < 0.03 ? 0.020 : 0.026)});
+    }
+  }
+  rigid_wheel::SlipResult r{.slip = 0.0};
+  rigid_wheel::find_rut(grains, s, 0.0, 0.08, r);
+  for (int i = 0; i < 400; ++i) r.samples.push_back({0.01 * i, 0, 0, 1.0, 1.0, 0.0, 0, 0, 0});
+  rigid_wheel::evaluate(r, 0.030, s);
+  CHECK(r.rut_depth == Approx(6e-3));
+  CHECK(r.rut_width == Approx(8 * 8e-3));  // the eight strips whose middles lie within 30 mm
+}
+
+TEST_CASE("settings of wheels that make no sense are refused by the names of their options") {
+  const auto refuses = [](auto&& change, const char* option) {
+    auto s = small();
+    change(s);
+    CHECK_THROWS_WITH(rigid_wheel::resolve(s), Catch::Contains(option));
+  };
+  refuses([](auto& s) { s.path = 0.2; }, "--bed-length");
+  refuses([](auto& s) { s.slips = {0.1, 0.101}; }, "--slips");
+  refuses([](auto& s) { s.slips = {1.5}; }, "--slips");
+  refuses([](auto& s) { s.width = 0.06; }, "--width");
+  refuses([](auto& s) { s.load = 0.0; }, "--load");
+  CHECK(rigid_wheel::slip_name(-0.3) == "slip_m30");
+  CHECK(rigid_wheel::slip_name(0.3) == "slip_30");
+}
+
+TEST_CASE("a wheel is set down gently, carries its load, and keeps its slip") {
+  const RigidWheel<models::VerletCubes> test(small(), [](double h) { return dem::shape::cube8(h); });
+  const auto stand = test.set_down(test.make_bed());
+  const auto& m = stand.bed.world.machine();
+  CHECK(m.bodies().size() == 6);                                              // ground and the five of table 5.2
+  CHECK(m.parts().joints.size() == 4);                                        // three slides and an axle
+  CHECK(m.parts().actuators.size() == 4);                                     // those of the table, and the load servo
+  CHECK(m.sensor(stand.grains).mean().force.z == Approx(5.0).epsilon(0.03));  // the servo ends within 2 %
+
+  const auto run = test.roll(stand, 0.3), again = test.roll(stand, 0.3);
+  REQUIRE(run.finished);
+  bool same = run.samples.size() == again.samples.size();
+  for (std::size_t i = 0; same && i < run.samples.size(); ++i) same = run.samples[i].pull == again.samples[i].pull;
+  CHECK(same);
+  const auto& last = run.samples.back();
+  CHECK(last.slip == Approx(0.3).margin(0.01));  // the actuators give by 0.1 mm, their speeds swing
+  CHECK(last.travel == Approx(0.7 * 0.02).epsilon(0.05));
+  // A dead load: what the grains carry swings about it as grains give way. Over the run the wheel's vertical momentum
+  // changes by less than its mass times 20 mm/s, 4 % of the load over 0.16 s.
+  double carried = 0.0;
+  for (const auto& x : run.samples) carried += x.carried / static_cast<double>(run.samples.size());
+  CHECK(carried == Approx(5.0).epsilon(0.08));
+}

@@ -1,0 +1,71 @@
+#include "catch.hpp"
+
+#include <dem/rig/side_by_side.hpp>
+#include <dem/rig/steady_window.hpp>
+
+#include <cmath>
+#include <stdexcept>
+#include <vector>
+
+using Catch::Approx;
+using namespace dem::rig;
+
+TEST_CASE("mean and standard deviation are those of the values, and not known without any") {
+  const std::vector<double> values{1.0, 2.0, 3.0, 6.0};
+  const auto m = mean_of(values);
+  CHECK(m.mean == Approx(3.0));
+  CHECK(m.deviation == Approx(std::sqrt(3.5)));  // (4 + 1 + 0 + 9)/4
+  CHECK(std::isnan(mean_of({}).mean));
+}
+
+TEST_CASE("the steady window leaves a transient out and keeps what is steady") {
+  // An exponential of 20 values' decay under noise of 0.1: after 5 decays, 100 values, 0.7 % of it are left, less than
+  // the noise of a batch. Before 2 decays it is above the noise.
+  std::vector<double> values;
+  for (int i = 0; i < 400; ++i) values.push_back(std::exp(-i / 20.0) + (i % 2 == 0 ? 0.1 : -0.1));
+  const auto window = steady_window(values);
+  CHECK(window.is_steady);
+  CHECK(window.first >= 40);
+  CHECK(window.first <= 160);
+}
+
+TEST_CASE("noise alone is steady from the start on, and what goes on rising is not steady") {
+  std::vector<double> noise, rising;
+  for (int i = 0; i < 400; ++i) {
+    noise.push_back(i % 10 < 5 ? 1.0 : -1.0);  // a batch of 5 is one or the other
+    rising.push_back(i);
+  }
+  CHECK(steady_window(noise).is_steady);
+  CHECK(steady_window(noise).first <= 5);
+  const auto window = steady_window(rising);
+  CHECK_FALSE(window.is_steady);
+  CHECK(window.first == 200);
+  CHECK_FALSE(steady_window(std::vector<double>(49, 1.0)).is_steady);  // too few to tell
+}
+
+TEST_CASE("runs side by side share the progress of their stage, and each is run once") {
+  struct Told : Stages {
+    void update(double done, std::string_view) override { last = done; }
+    double last = 0.0;
+  } told;
+  std::vector<int> runs(7, 0);
+  side_by_side(runs.size(), 3, told, [&](std::size_t k, SharedStages& stages) {
+    ++runs[k];
+    stages.update(k, 0.5, "");
+    stages.update(k, 1.0, "");
+  });
+  CHECK(runs == std::vector<int>(7, 1));
+  CHECK(told.last == Approx(7.0));
+}
+
+TEST_CASE("a run that fails ends those beside it, and its problem is thrown") {
+  Stages quiet;
+  int begun = 0;
+  const auto run = [&](std::size_t k, SharedStages& stages) {
+    ++begun;
+    if (k == 1) throw Stopped("the second one");
+    for (int i = 0; i < 10; ++i) stages.update(k, 0.1 * i, "");
+  };
+  CHECK_THROWS_WITH(side_by_side(5, 1, quiet, run), "the second one");
+  CHECK(begun == 2);
+}
