@@ -18,7 +18,7 @@ struct Soil : Model {
 constexpr double half_edge = 1.2e-3;  // m
 
 struct Settings {
-  double length = 0.12, width = 0.06, height = 0.06, settle = 0.25, travel = 0.01, speed = 0.05, share = 0.01;
+  double length = 0.12, width = 0.06, height = 0.06, settle = 0.4, travel = 0.01, speed = 0.05, share = 0.01;
   int seeds = 3, threads = 1;
 };
 
@@ -33,7 +33,7 @@ struct Bed {
     const auto wall = [&](const Vec3& middle, const Vec3& edges) {
       world.add_surface(world.ground(), surface::Box(edges), {.position = middle});
     };
-    const double t = 0.02, high = 2 * s.height;
+    const double t = 0.02, high = 3 * s.height;
     wall({0, 0, -t / 2}, {s.length + 2 * t, s.width + 2 * t, t});
     for (const double side : {-1.0, 1.0}) {
       wall({side * (s.length + t) / 2, 0, high / 2}, {t, s.width + 2 * t, high});
@@ -44,12 +44,12 @@ struct Bed {
     const BodyId body = world.machine().add_fixed_body("blade", Vec3(x, 0, 0.75 * s.height + edges.z() / 2));
     blade = world.add_surface(body, surface::Box(edges), {.name = "blade"});
     world.machine().add_motion(
-        mbd::prescribed_position("draw", body, Vec3::UnitX(), mbd::Signal::ramp(0.0, s.speed, s.settle)));
+        mbd::prescribed_position("draw", body, Vec3::UnitX(), mbd::Signal::ramp(0.0, s.speed, s.settle + 0.02)));
     const SpeciesId cube = world.add_species(shape::cube8(half_edge), {.density = 2650});
     std::mt19937 random(seed);
     std::uniform_real_distribution<double> turn(-1.0, 1.0), shift(-1e-4, 1e-4);
     const double pitch = 2.9 * half_edge;
-    for (double z = pitch / 2; z < 1.3 * s.height; z += pitch) {
+    for (double z = pitch / 2; z < 1.9 * s.height; z += pitch) {
       for (double gx = -s.length / 2 + pitch / 2; gx < s.length / 2 - pitch / 3; gx += pitch) {
         for (double y = -s.width / 2 + pitch / 2; y < s.width / 2 - pitch / 3; y += pitch) {
           if (std::abs(gx - x) < 2e-3 + pitch && std::abs(y) < 0.25 * s.width + pitch && z > 0.75 * s.height - pitch) {
@@ -76,7 +76,7 @@ struct Drawn {
 /// The second half of the travel counts for the forces, all of it for the time.
 Drawn draw(World<Soil> world, SurfaceId blade, const Settings& s, bool sleep) {
   if (sleep) world.set_sleep(SleepOptions{.share = s.share});
-  if (const StepReport report = world.run_for(0.02); !report) fail("{}", report.text);  // falls asleep, and begins
+  if (const StepReport report = world.run_for(0.02); !report) fail("{}", report.text);  // time to fall asleep
   Drawn d;
   const std::clock_t start = std::clock();
   const int samples = 200;

@@ -24,11 +24,13 @@ void write_vtk_grains(const std::filesystem::path& path, const World& world, int
     grains.push_back({&meshes[species], world.position(p), world.rotation(p)});
     kinds.push_back(static_cast<std::int32_t>(species));
     speeds.push_back(world.velocity(p).norm());
-    asleep.push_back(world.is_asleep(p) ? 1 : 0);
+    if constexpr (requires { world.is_asleep(p); }) asleep.push_back(world.is_asleep(p) ? 1 : 0);
   }
   std::vector<BodyData> arrays = {{"species", 1, std::span<const std::int32_t>(kinds)},
                                   {"speed", 1, std::span<const double>(speeds)}};
-  if (world.state().options.sleep) arrays.push_back({"asleep", 1, std::span<const std::int32_t>(asleep)});
+  if constexpr (requires { world.state().options.sleep; }) {
+    if (world.state().options.sleep) arrays.push_back({"asleep", 1, std::span<const std::int32_t>(asleep)});
+  }
   write_vtk_bodies(path, grains, arrays, options);
 }
 

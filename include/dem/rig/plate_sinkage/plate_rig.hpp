@@ -7,11 +7,11 @@
 
 namespace dem::rig::plate_sinkage {
 
-/// The plate pressure-sinkage test as a program. `run` is run_campaign() with a world, compiled beside it.
+/// The plate pressure-sinkage test as a program. `campaign_run` is run_campaign() with a world, compiled beside it.
 class PlateRig : public Rig {
  public:
   using Run = void(const Settings&, Campaign&, Session&);
-  explicit PlateRig(Run* run) : run_(run) {}
+  explicit PlateRig(Run* campaign_run) : run_(campaign_run) {}
 
   void declare(Options& options) override { plate_sinkage::declare(options, settings); }
   void find_idle(IdleOptions& idle) const override { plate_sinkage::find_idle(idle, settings); }

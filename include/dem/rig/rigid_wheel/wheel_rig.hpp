@@ -9,11 +9,11 @@
 
 namespace dem::rig::rigid_wheel {
 
-/// The rigid wheel as a program. `run` is run_campaign() with a world, compiled beside it.
+/// The rigid wheel as a program. `campaign_run` is run_campaign() with a world, compiled beside it.
 class WheelRig : public Rig {
  public:
   using Run = void(const Settings&, Campaign&, Session&);
-  explicit WheelRig(Run* run) : run_(run) {}
+  explicit WheelRig(Run* campaign_run) : run_(campaign_run) {}
 
   void declare(Options& options) override { rigid_wheel::declare(options, settings); }
   void find_idle(IdleOptions& idle) const override { rigid_wheel::find_idle(idle, settings); }
