@@ -40,3 +40,19 @@ TEST_CASE("signals know their rate") {
   CHECK(Signal::ramp(0.3, 0.5, 1, 1)(2.0).value == 0.3);
   CHECK_THAT(message_of([] { Signal::smooth_step(0, 1, 2, 2); }), Contains("must end after its start"));
 }
+
+TEST_CASE("the integral of a curve is exact within it and beyond, and its zero is found where it is") {
+  const Curve c = {{0.0, 2.0}, {1.0, 0.0}, {3.0, -4.0}};
+  CHECK(c.integral(0.0, 3.0) == Approx(1.0 - 4.0));
+  CHECK(c.integral(3.0, 0.0) == Approx(3.0));
+  CHECK(c.integral(0.5, 0.75) == Approx(0.25 * 0.75));
+  CHECK(c.integral(-1.0, 4.0) == Approx(3.0 + 1.0 - 4.0 - 5.0));  // the slopes of the ends go on
+  CHECK(c.held_outside().integral(-1.0, 4.0) == Approx(2.0 + 1.0 - 4.0 - 4.0));
+  CHECK(c.integral(5.0, 7.0) == Approx(-2.0 * (8.0 + 12.0) / 2));
+  CHECK(c.zero_or(9.0) == 1.0);
+  CHECK(Curve({{0.0, 3.0}, {1.0, -1.0}}).zero_or(9.0) == Approx(0.75));
+  CHECK(Curve::line(6.0, -2.0).zero_or(9.0) == Approx(3.0));  // beyond its end
+  CHECK(Curve::line(6.0, 2.0).zero_or(9.0) == Approx(-3.0));  // before its start
+  CHECK(Curve::line(6.0, 0.0).zero_or(9.0) == 9.0);           // nowhere
+  CHECK(Curve::line(6.0, -2.0).held_outside().zero_or(9.0) == 9.0);
+}
