@@ -33,13 +33,14 @@ class Outlet {
  public:
   /// Everywhere.
   Outlet() : Outlet({filled(-HUGE_VAL), filled(HUGE_VAL)}, {.name = "everywhere"}) {}
-  /// A box, which may be without end: corners may be infinite. Throws Error for a box that is none, and a window that is
-  /// negative.
+  /// A box, which may be without end: corners may be infinite. Throws Error for a box that is none, and a window that
+  /// is negative.
   Outlet(const surface::Bounds& region, const OutletOptions& o) : name_(o.name), region_(region), flow_(o.window) {
     if (all_below(region.low, region.high)) return;
     const Vec3 &a = region.low, &b = region.high;
-    fail("outlet '{}' has the lower corner ({:g}, {:g}, {:g}) m, which is not below its upper one, ({:g}, {:g}, {:g}) m",
-         name_, a.x(), a.y(), a.z(), b.x(), b.y(), b.z());
+    fail(
+        "outlet '{}' has the lower corner ({:g}, {:g}, {:g}) m, which is not below its upper one, ({:g}, {:g}, {:g}) m",
+        name_, a.x(), a.y(), a.z(), b.x(), b.y(), b.z());
   }
 
   const std::string& name() const { return name_; }

@@ -24,7 +24,8 @@ void take_out_row(WorldState<Model>& w, std::size_t row) {
 template <class Model>
 void take_out(WorldState<Model>& w) {
   const bool ends = w.options.domain && w.options.beyond_domain == BeyondDomain::remove;
-  if (w.outlets.empty() && !ends) [[likely]] return;
+  if (w.outlets.empty() && !ends) [[likely]]
+    return;
   const auto& p = w.particles;
   const auto take = [&](Outlet& outlet, auto&& reaches, auto&& holds) {
     for (std::size_t c = 0; c < w.chunks.size(); ++c) {

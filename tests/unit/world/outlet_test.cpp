@@ -107,7 +107,8 @@ TEST_CASE("a domain reports, removes, or lets go on") {
     CHECK(report.problem == (what == BeyondDomain::report ? Problem::lost : Problem::none));
     CHECK(w.particle_count() == (what == BeyondDomain::remove ? 0U : 300U));
     CHECK(w.beyond_domain().grains() == (what == BeyondDomain::remove ? 300U : 0U));
-    CHECK(w.beyond_domain().mass() == Approx(static_cast<double>(w.beyond_domain().grains()) * w.species(SpeciesId(0)).mass));
+    CHECK(w.beyond_domain().mass() ==
+          Approx(static_cast<double>(w.beyond_domain().grains()) * w.species(SpeciesId(0)).mass));
     if (what == BeyondDomain::report) continue;
     CHECK(w.time() == Approx(0.1));
     if (what == BeyondDomain::go_on) CHECK(w.position(ParticleId(0)).z() == Approx(-0.5 * g * 0.01).epsilon(1e-3));
@@ -148,8 +149,11 @@ TEST_CASE("outlets take the same grains on every number of threads, with few new
 
 TEST_CASE("an outlet that is no box, or measures over no time, is refused") {
   auto w = balls();
-  check_refused([&] { w.add_outlet({Vec3(0, 0, 0), Vec3(1, 0, 1)}, {.name = "slot"}); }, "outlet 'slot'",
-                "(0, 0, 0) m, which is not below");
+  check_refused(
+      [&] {
+        w.add_outlet({Vec3(0, 0, 0), Vec3(1, 0, 1)}, {.name = "slot"});
+      },
+      "outlet 'slot'", "(0, 0, 0) m, which is not below");
   check_refused([&] { w.add_outlet({Vec3(0, 0, std::nan("")), Vec3(1, 1, 1)}); }, "lower corner");
   check_refused([&] { w.add_outlet(below_the_floor, {.window = -1.0}); }, "averaging window is -1 s");
   check_refused([&] { w.outlet(dem::OutletId(0)); }, "outlet 0 is asked for, but this world has 0");
