@@ -65,6 +65,8 @@ refuse '--seed is -1, but must be a whole number' --seed -1
 refuse '--grains is -5, but must be a whole number' --grains -5
 refuse 'change --half-edge, or give --grains' --half-edge 1e-15
 refuse 'take larger grains (--half-edge)' --half-edge 1e-15 --grains 385 --relative-density 0
+refuse 'or less --shake-time' --packing poured --shake-time 1e9
+refuse 'or less --densify-time' --densify-time 1e9
 if (($(awk '/^MemTotal:/ { print $2 }' /proc/meminfo 2> /dev/null || echo 0) < 90000000)); then
   refuse 'GB of memory, but this machine has' --half-edge 5e-5 --grains 1e8
 fi

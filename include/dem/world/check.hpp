@@ -37,10 +37,11 @@ StepReport find_problem(WorldState<Model>& w) {
       }
     }
     if (const auto& domain = w.options.domain;
-        domain && !(none_below(chunk.low, domain->low) && none_below(domain->high, chunk.high))) [[unlikely]] {
+        domain && w.options.beyond_domain == BeyondDomain::report &&
+        !(none_below(chunk.low, domain->low) && none_below(domain->high, chunk.high))) [[unlikely]] {
       for (std::size_t i = begin; i < end; ++i) {
         const Vec3 x = to_eigen(p.position[i]);
-        if (none_below(x, domain->low) && none_below(domain->high, x)) continue;
+        if ((none_below(x, domain->low) && none_below(domain->high, x)) || p.row_of[p.id[i]] == p.gone) continue;
         if (!w.known_lost.insert(p.id[i]).second) continue;
         return problem(
             StepReport::Problem::lost, i,

@@ -5,6 +5,7 @@
 #include <dem/grain/sleep_options.hpp>
 #include <dem/math/vector.hpp>
 #include <dem/mbd/body/body.hpp>
+#include <dem/world/outlet.hpp>
 
 #include <optional>
 #include <string>
@@ -19,9 +20,10 @@ struct WorldOptions {
   bool allow_unstable_time_step = false;  ///< accept a time step above the stable one
   double skin = 0.0;                      ///< m, reach of the neighbour list; 0: a tenth of the largest bounding radius
   double overlap_limit = 0.5;  ///< overlap, in effective diameters 2 Ri Rj/(Ri + Rj), that is reported as a problem
-  std::optional<surface::Bounds> domain = {};  ///< a grain whose centre leaves it is reported as lost
-  int threads = 0;                             ///< 0: as many as the executor offers
-  std::optional<SleepOptions> sleep = {};      ///< lets grains at rest sleep, so that they cost next to nothing
+  std::optional<surface::Bounds> domain = {};         ///< where grains are expected; none: anywhere
+  BeyondDomain beyond_domain = BeyondDomain::report;  ///< what becomes of a grain whose centre leaves it
+  int threads = 0;                                    ///< 0: as many as the executor offers
+  std::optional<SleepOptions> sleep = {};             ///< lets grains at rest sleep, so that they cost next to nothing
 };
 
 /// A grain to be added.

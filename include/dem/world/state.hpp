@@ -58,7 +58,10 @@ struct WorldState {
   bool list_valid = false;               ///< false after grains were added or moved by hand
   std::uint64_t rebuilds = 0;            ///< neighbour lists made
   std::set<std::uint32_t> known_lost;    ///< ids of grains that were reported as lost
-  std::vector<std::uint32_t> to_remove;  ///< ids of grains that leave when the next list is made
+  std::vector<std::uint32_t> to_remove;  ///< ids of grains that are gone, but whose rows are there until the next list
+  std::uint64_t remove_by = 0;           ///< the step in which that list is due, if there are any
+  std::vector<Outlet> outlets;
+  Outlet beyond_domain;  ///< of a domain that removes what leaves it
   grain::Sleepers sleepers;
 
   mbd::Mechanism machine;

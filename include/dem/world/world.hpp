@@ -72,6 +72,7 @@ class World : public WorldSetup<M> {
     for (std::uint64_t k = 0; k < n; ++k) {
       unfinished_ = true;
       advance(state_);
+      take_out(state_);
       unfinished_ = false;
       if (StepReport report = find_problem(state_); !report) return report;
       if (!goes_on()) break;
@@ -127,7 +128,7 @@ class World : public WorldSetup<M> {
 
   // ---- looking -----------------------------------------------------------------------------------------------------
 
-  std::size_t particle_count() const { return state_.particles.count; }
+  std::size_t particle_count() const { return state_.particles.count - state_.to_remove.size(); }
   /// All grains that are there, in the order in which they were added.
   std::vector<ParticleId> particles() const {
     std::vector<ParticleId> ids;
@@ -179,6 +180,11 @@ class World : public WorldSetup<M> {
     state_.particles.position.set(row(p), from_eigen(x));
     touched();
   }
+
+  /// What an outlet took so far, and its mass flow.
+  const Outlet& outlet(OutletId o) const { return known(state_.outlets, o, "outlet"); }
+  /// The same of the grains that left a domain which removes them (BeyondDomain::remove), over the last 0.1 s.
+  const Outlet& beyond_domain() const { return state_.beyond_domain; }
 
   /// Force (N) that the grains exert on a surface, from the last force evaluation; body_contact_force tells what
   /// another body's surface does.

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <dem/world/sleep.hpp>
+#include <dem/world/take_out.hpp>
 
 #include <algorithm>
 #include <cstdint>
@@ -110,11 +110,18 @@ class WorldSetup {
     return ParticleId(id);
   }
 
-  /// Takes a grain out of the world, at the start of the next step; its id is not given again. The ids of others stay.
+  /// Takes a grain out of the world; its id is not given again. The ids of others stay.
   void remove_particle(ParticleId p) {
-    wake_around(state_, row(p));
-    state_.to_remove.push_back(p.value);
+    take_out_row(state_, row(p));
     touched();
+  }
+  /// A box that takes grains out while the world runs, and counts them: an outlet of a silo, the end of a conveyor. It
+  /// may be without end: {{-1, -1, -HUGE_VAL}, {1, 1, -0.1}} takes what falls below z = -0.1 m. A grain that is taken
+  /// is gone at once for who looks; others feel it for up to 16 steps more, until the next neighbour list. Throws Error
+  /// for a box that is none.
+  OutletId add_outlet(const surface::Bounds& region, const OutletOptions& o = {}) {
+    state_.outlets.emplace_back(region, o);
+    return OutletId(state_.outlets.size() - 1);
   }
 
   /// Bodies, joints, actuators, sensors. The world moves them.

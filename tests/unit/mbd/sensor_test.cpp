@@ -65,7 +65,8 @@ TEST_CASE("what a drive that turns something gives is a torque, and is called so
   m.gravity.setZero();
   const BodyId wheel = m.add_body(given_body("wheel", 2.0, Vec3(0.1, 0.1, 0.5)));
   const JointId axle = m.add_joint(revolute("axle", m.ground(), wheel, {0, 0, 0}, Z));
-  const MotionId drive = m.add_motion(prescribed_joint("drive", axle, Signal::function([](double t) { return t * t; })));
+  const MotionId drive =
+      m.add_motion(prescribed_joint("drive", axle, Signal::function([](double t) { return t * t; })));
   const SensorId torque = m.add_sensor(drive_sensor("torque", drive, 0.05));
   REQUIRE(m.run(0.2, 1e-4));
   CHECK(m.drive_effort(torque) == Approx(0.5 * 2.0).epsilon(1e-6));  // the moment of inertia times 2 rad/s^2

@@ -74,10 +74,10 @@ void check_time_step(Settings s, const Grains<Model>& kind) {
         s, kind, {.seam = 0.5 * s.box_height, .wall_top = s.box_height, .lid_mass = lid_mass, .lid_low = s.box_height},
         {});
     rig.world.prepare();
-    require_steps(duration, rig.world.time_step(), what,
-                  text("take larger grains (--half-edge), a longer --time-step, a lower --stiffness or {}",
-                       what_to_change)
-                      .c_str());
+    require_steps(
+        duration, rig.world.time_step(), what,
+        text("take larger grains (--half-edge), a longer --time-step, a lower --stiffness or {}", what_to_change)
+            .c_str());
     const auto limit = rig.world.stable_time_step();
     if (insisted || rig.world.time_step() <= limit.dt) return;
     fail(
@@ -88,8 +88,14 @@ void check_time_step(Settings s, const Grains<Model>& kind) {
   if (s.packing_file.empty()) {
     const bool shaken = s.packing == "poured", made_denser = !shaken && s.relative_density > 0.0;
     const double pouring = 0.1;  // s, at the least
-    check(Height{}.lid_mass, pouring + (shaken ? s.shake_time : made_denser ? s.densify_time : 0.0), "the packing",
-          shaken ? "less --shake-time" : made_denser ? "less --densify-time" : "fewer --grains");
+    check(Height{}.lid_mass,
+          pouring + (shaken        ? s.shake_time
+                     : made_denser ? s.densify_time
+                                   : 0.0),
+          "the packing",
+          shaken        ? "less --shake-time"
+          : made_denser ? "less --densify-time"
+                        : "fewer --grains");
   }
   for (const double load : s.loads) check(load, s.travel / s.shear_speed, "the test", "less --travel");
 }
