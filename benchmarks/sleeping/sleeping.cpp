@@ -18,7 +18,7 @@ struct Soil : Model {
 constexpr double half_edge = 1.2e-3;  // m
 
 struct Settings {
-  double length = 0.12, width = 0.06, height = 0.06, settle = 0.4, travel = 0.01, speed = 0.05, share = 0.01;
+  double length = 0.12, width = 0.06, height = 0.06, settle = 0.7, travel = 0.01, speed = 0.05, share = 0.01;
   int seeds = 3, threads = 1;
 };
 
@@ -52,7 +52,7 @@ struct Bed {
     for (double z = pitch / 2; z < 1.9 * s.height; z += pitch) {
       for (double gx = -s.length / 2 + pitch / 2; gx < s.length / 2 - pitch / 3; gx += pitch) {
         for (double y = -s.width / 2 + pitch / 2; y < s.width / 2 - pitch / 3; y += pitch) {
-          if (std::abs(gx - x) < 2e-3 + pitch && std::abs(y) < 0.25 * s.width + pitch && z > 0.75 * s.height - pitch) {
+          if (std::abs(gx - x) < 2e-3 + 0.6 * pitch && std::abs(y) < 0.25 * s.width + 0.6 * pitch && z > 0.75 * s.height - pitch) {
             continue;  // here stands the blade
           }
           const Quaternion q = Quaternion(1, 0.3 * turn(random), 0.3 * turn(random), 0.3 * turn(random)).normalized();
