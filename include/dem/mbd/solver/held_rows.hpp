@@ -6,6 +6,7 @@
 
 #include <dem/core/macros.hpp>
 #include <dem/mbd/drive/jacobian.hpp>
+#include <dem/mbd/joint/locked_shafts.hpp>
 
 #include <cstdint>
 #include <vector>
@@ -70,11 +71,11 @@ DEM_COLD inline std::vector<HeldRow> held_rows(Parts& m) {
   for (const JacobianRow& r : m.rows) rows.push_back(row_of(r.now, r.a, r.b, r.rate));
   for (std::size_t i = 0; i < m.joints.size(); ++i) {
     const JointSpec& s = m.joint_specs[i];
-    if (traits_of(s.kind).stiffness != Stiffness::derived) continue;
+    if (traits_of(s.kind).stiffness != Stiffness::derived || !is_on(m.joints[i])) continue;
     add_rows(m, m.joints[i], !s.stiffness, !s.rotational_stiffness, rows);
   }
   for (const Coupling& g : m.couplings) {
-    if (g.spec.stiffness) continue;
+    if (g.spec.stiffness || !is_on(g.spec)) continue;
     HeldRow row;
     for (const auto& term : g.spec.terms) {
       const Joint& j = m.joints[term.joint.index()];

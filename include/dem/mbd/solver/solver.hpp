@@ -1,5 +1,6 @@
 #pragma once
 
+#include <dem/mbd/joint/locked_shafts.hpp>
 #include <dem/mbd/solver/assembly.hpp>
 #include <dem/mbd/solver/blow_up.hpp>
 #include <dem/mbd/solver/close_joints.hpp>
@@ -138,6 +139,7 @@ class Solver {
   DEM_COLD void initialise(Mechanism& m, double time, const Vec3& gravity, PutForces&& put_forces) {
     Parts& parts = m.parts();
     require_derived(parts);
+    if (!parts.couplings.empty()) detail::check_locked(parts);
     clear_forces(parts);
     put_forces();
     time_ = time;
