@@ -163,6 +163,7 @@ TEST_CASE("bodies and joints can be added while a machine runs") {
 TEST_CASE("a body that is set free or fixed while a machine runs has its joints derived anew") {
   // The weld of 10 kg to a fixed anvil of 10 g is far too stiff once the anvil is free: kept, it would blow up.
   Machine<SymplecticEuler> m;
+  m.joint_tolerance = 1.0;  // the weld of the anvil that falls gives way, as its derived stiffness is that of 10 g
   const BodyId anvil = m.add_body(given_body("anvil", 0.01, Vec3(1e-5, 1e-5, 1e-5)));
   const BodyId block = m.add_body(given_body("block", 10.0, Vec3(0.1, 0.1, 0.1)).at({0.1, 0, 0}));
   m.set_fixed(anvil);
