@@ -1,7 +1,8 @@
 #pragma once
 
 // Six mechanisms with answers that do not come from this library: published, in closed form, or from their equations in
-// the fewest coordinates, integrated by Runge and Kutta's rule of fourth order in steps so short that they do not count.
+// the fewest coordinates, integrated by Runge and Kutta's rule of fourth order in steps so short that they do not
+// count.
 
 #include <dem/mbd/mbd.hpp>
 
@@ -234,8 +235,9 @@ struct Governor {
       const Vec3 along(side * std::sin(start), 0, -std::cos(start));
       const Mat3 pose = Eigen::AngleAxisd(-side * start, Y).toRotationMatrix();
       const std::string which = side > 0 ? "right" : "left";
-      const BodyId arm = m.add_body(
-          given_body(which + " arm", ball, Vec3(across, across, axial)).at(reach * along, pose).moving(w.cross(reach * along), w));
+      const BodyId arm = m.add_body(given_body(which + " arm", ball, Vec3(across, across, axial))
+                                        .at(reach * along, pose)
+                                        .moving(w.cross(reach * along), w));
       hinge = m.add_joint(revolute(which + " hinge", axle, arm, {0, 0, 0}, -side * Y).starting_at(start));
       m.add_spring(mbd::spring(which + " spring", ring, low, arm, at * along, k, c, free));
     }

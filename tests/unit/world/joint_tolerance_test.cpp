@@ -95,9 +95,8 @@ TEST_CASE("sub-steps of a machine are raised while it runs, as the load on a joi
   auto& m = world.machine();
   const BodyId cart = m.add_body(dem::mbd::given_body("cart", 1.0, Vec3(0.1, 0.1, 0.1)));
   const JointId guide = m.add_joint(dem::mbd::prismatic("guide", m.ground(), cart, {0, 0, 0}, X));
-  m.add_load(dem::mbd::applied_force("pull", cart, {0, 0, 0}, Z, dem::mbd::Signal::function([](double t) {
-                                       return 1e5 * std::min(1.0, t / 0.1);
-                                     })));
+  m.add_load(dem::mbd::applied_force(
+      "pull", cart, {0, 0, 0}, Z, dem::mbd::Signal::function([](double t) { return 1e5 * std::min(1.0, t / 0.1); })));
   const double allowed = 1e-4 * 2.0 * std::sqrt(0.3);  // the diagonal of a cube of +- 0.316 m
   double worst = 0.0;
   const auto report = world.run(300, [&] {

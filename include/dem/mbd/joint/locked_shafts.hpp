@@ -19,8 +19,8 @@ constexpr bool is_on(const T& part) {
   else return true;
 }
 
-/// Throws Error if couplings together lock a coordinate: two gears of different ratio between the same two shafts. Those
-/// of given stiffness are springs and lock nothing; one that repeats another is no harm.
+/// Throws Error if couplings together lock a coordinate: two gears of different ratio between the same two shafts.
+/// Those of given stiffness are springs and lock nothing; one that repeats another is no harm.
 DEM_COLD inline void check_locked(const Parts& m) {
   using Column = std::pair<std::uint32_t, Dof>;
   std::vector<Column> columns;
@@ -84,7 +84,8 @@ DEM_COLD inline void check_locked(const Parts& m) {
     }
     fail(
         "the couplings on joint '{}' ({}) leave it no {}: together with the others they hold it where it is, as two "
-        "gears of different ratio between the same two shafts do; remove one, check the ratios, or give one a stiffness",
+        "gears of different ratio between the same two shafts do; remove one, check the ratios, or give one a "
+        "stiffness",
         m.joint_specs[columns[alone].first].name, names, name_of(columns[alone].second));
   }
 }

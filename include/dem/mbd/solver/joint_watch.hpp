@@ -6,8 +6,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace dem::mbd {
@@ -62,7 +62,8 @@ class JointWatch {
     for (const Watched& w : watched_) {
       const Joint& j = m.joints[w.joint];
       const double f = 0.5 * w.displacement * j.k, t = 0.5 * w.rotation * j.kr;
-      if (dot(j.force, j.force) > f * f || dot(j.torque, j.torque) > t * t) [[unlikely]] look(m, w, time);
+      if (dot(j.force, j.force) > f * f || dot(j.torque, j.torque) > t * t) [[unlikely]]
+        look(m, w, time);
     }
     if (--steps_left_ > 0) return;
     steps_left_ = 64;

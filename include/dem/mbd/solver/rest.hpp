@@ -14,7 +14,7 @@
 namespace dem::mbd {
 
 struct RestOptions {
-  double tolerance = 1e-9;     ///< of the residuals, as a share of the weight of the machine or of its largest force
+  double tolerance = 1e-9;  ///< of the residuals, as a share of the weight of the machine or of its largest force
   int most_iterations = 300;
 };
 
@@ -22,12 +22,12 @@ struct RestOptions {
 struct RestReport {
   bool ok = false;
   int iterations = 0;
-  double force = 0.0;        ///< N, the largest that is left on a body
-  double torque = 0.0;       ///< N m, the largest that is left, about a centre of mass
-  double share = 0.0;        ///< the residual as a share of the weight or of the largest force
-  double moved = 0.0;        ///< m, the farthest that a body was moved
-  std::string body;          ///< with the largest residual
-  std::string text;          ///< in words, if it was not found
+  double force = 0.0;   ///< N, the largest that is left on a body
+  double torque = 0.0;  ///< N m, the largest that is left, about a centre of mass
+  double share = 0.0;   ///< the residual as a share of the weight or of the largest force
+  double moved = 0.0;   ///< m, the farthest that a body was moved
+  std::string body;     ///< with the largest residual
+  std::string text;     ///< in words, if it was not found
   explicit operator bool() const { return ok; }
 };
 
@@ -84,7 +84,8 @@ class RestSearch {
     }
     if (!report.ok) {
       report.text = dem::text(
-          "no rest was found in {} iterations: {:.3g} N and {:.3g} N m are left, {:.3g} of the weight or of the largest "
+          "no rest was found in {} iterations: {:.3g} N and {:.3g} N m are left, {:.3g} of the weight or of the "
+          "largest "
           "force, most on body '{}'. It may have nothing to rest on, or a load that never comes to rest; hold it, or "
           "start nearer to rest",
           report.iterations, report.force, report.torque, report.share, report.body);
@@ -224,9 +225,7 @@ RestReport find_rest(Machine<I>& machine, double dt, const RestOptions& options 
   }
   const RestReport report =
       detail::RestSearch(parts, machine.gravity, machine.time(), dt / machine.substeps).run(options);
-  for (Joint& j : parts.joints) {
-    if (j.turns) j.angle_estimate = rotation_of(j, parts.bodies[j.a], parts.bodies[j.b]).value - j.angle_offset;
-  }
+  settle_turns(parts);
   machine.initialise(machine.time(), machine.gravity);
   return report;
 }

@@ -1,11 +1,13 @@
 #pragma once
 
 #include <dem/mbd/joint/locked_shafts.hpp>
+#include <dem/mbd/solver/accepted_time_step.hpp>
 #include <dem/mbd/solver/assembly.hpp>
 #include <dem/mbd/solver/blow_up.hpp>
 #include <dem/mbd/solver/close_joints.hpp>
 #include <dem/mbd/solver/forces.hpp>
 #include <dem/mbd/solver/held_contacts.hpp>
+#include <dem/mbd/solver/machine_report.hpp>
 #include <dem/mbd/solver/mechanism.hpp>
 #include <dem/mbd/solver/softening.hpp>
 
@@ -15,17 +17,6 @@
 #include <vector>
 
 namespace dem::mbd {
-
-/// What became of a step or a run.
-struct MachineReport {
-  bool ok = true;
-  double time = 0.0;  ///< s, reached
-  BodyId body = {};   ///< the body that went wrong
-  JointId joint = {}; ///< the joint that opened beyond joint_tolerance
-  std::string text;   ///< what happened and which setting to change; empty if all is well
-  std::string note;   ///< what the library changed of what was given, in words; empty if nothing
-  explicit operator bool() const { return ok; }
-};
 
 /// What moves a mechanism: a world calls it with the grains' forces, Machine without any. It belongs to one mechanism,
 /// which is handed to each call.
@@ -47,8 +38,8 @@ class Solver {
     design_dt_ = dt;
   }
 
-  /// After design_for: raises the machine's sub-steps, and derives for them, until the weight of all bodies that a joint
-  /// is joined with opens none beyond joint_tolerance.
+  /// After design_for: raises the machine's sub-steps, and derives for them, until the weight of all bodies that a
+  /// joint is joined with opens none beyond joint_tolerance.
   DEM_COLD void carry_weight(Mechanism& m, const Vec3& gravity) {
     const JointWatch watch(m.parts(), m.joint_tolerance);
     const double share = opening_under_weight(m.parts(), watch, gravity);
@@ -74,9 +65,7 @@ class Solver {
   }
   /// After close_joints: all is well, or which joint has opened beyond joint_tolerance though the sub-steps are as many
   /// as they may be. Each joint is told once.
-  MachineReport newly_opened(const Mechanism& m) {
-    return report_of(m, std::exchange(newly_opened_, {}));
-  }
+  MachineReport newly_opened(const Mechanism& m) { return report_of(m, std::exchange(newly_opened_, {})); }
 
   /// The largest stable time step of the world, all sub-steps of the machine together, and the part that limits it.
   DEM_COLD StableTimeStep stable_time_step(const Mechanism& m) const {
@@ -93,29 +82,9 @@ class Solver {
     return limit;
   }
 
-  /// The largest time step (s) below dt at which the machine is stable with what would be derived for that step.
+  /// The largest time step (s) up to dt at which the machine is stable with what would be derived for that step.
   DEM_COLD StableTimeStep accepted_time_step(const Mechanism& m, double dt) const {
-    Parts parts = m.parts();
-    const int n = checked_substeps(m);
-    StableTimeStep limit;
-    const auto is_stable_at = [&](double step) {
-      derive_stiffness(parts, step / n);
-      limit = stable_time_step_of<I>(parts);
-      limit.dt *= n;
-      return limit.dt >= step;
-    };
-    double low = dt, high = dt;
-    std::string limited_by;
-    for (int k = 0; k < 60 && !is_stable_at(low); ++k) {
-      limited_by = limit.limited_by;
-      high = low;
-      low = std::min(0.5 * low, limit.dt);
-    }
-    for (int k = 0; k < 12; ++k) {  // to 2e-4 of it
-      const double middle = 0.5 * (low + high);
-      (is_stable_at(middle) ? low : high) = middle;
-    }
-    return {low, limited_by};
+    return accepted_time_step_of<I>(m.parts(), dt, checked_substeps(m));
   }
 
   /// False before initialise, and after a body, a joint or a coupling was added or `substeps` was changed since:
@@ -200,13 +169,8 @@ class Solver {
   MachineReport report_of_joints(const Mechanism& m) const { return report_of(m, joints_.worst()); }
   /// What was changed of what the user gave: sub-steps, velocities at the start. Empty if nothing.
   DEM_COLD std::string note(const Mechanism& m) const {
-    std::string text = assembly_.has_changed() ? assembly_.text() : "";
-    if (raised_to_ == m.substeps && raised_to_ > raised_from_) {
-      text += dem::text("{}The machine takes {} substeps instead of {}, to keep its joints within joint_tolerance.",
-                        text.empty() ? "" : " ", raised_to_, raised_from_);
-      if (joints_.is_exceeded()) text += dem::text(" Before they were raised, {}.", in_words(m.parts(), joints_.worst()));
-    }
-    return text;
+    const bool raised = raised_to_ == m.substeps && raised_to_ > raised_from_;
+    return note_of(m.parts(), assembly_, joints_, raised ? raised_from_ : 0, raised_to_);
   }
   /// What became of the velocities that were given, at the start.
   const AssemblyReport& assembly() const { return assembly_; }
@@ -234,17 +198,9 @@ class Solver {
         open);
   }
 
-
   MachineReport report_of(const Mechanism& m, const JointOpening& worst) const {
     if (!(worst.share > 1.0)) return {true, time_, {}, {}, {}, {}};
-    const int n = substeps_for(m.substeps, worst.share, 0.5, 1 << 30);  // half: what swings opens twice as far
-    const std::string text = dem::text(
-        "{} (joint_tolerance, {}): the stiffness that is derived for the time step gives way under its load. A time "
-        "step of {:g} s, or {} substeps (now {}), keeps it; or raise joint_tolerance",
-        in_words(m.parts(), worst),
-        m.joint_tolerance > 0.0 ? dem::text("{:g} m", m.joint_tolerance) : "1e-4 of the machine's size",
-        rounded_down(step_dt_ * m.substeps / n), n, m.substeps);
-    return {false, time_, {}, worst.joint, text, {}};
+    return report_of_opening(m.parts(), worst, m.joint_tolerance, step_dt_, m.substeps, time_);
   }
 
   /// While running, between two steps of the world.
@@ -358,14 +314,6 @@ class Solver {
     if (!is_well && !bad_.valid()) [[unlikely]] {
       bad_ = BodyId(i);
       bad_time_ = time_;
-    }
-  }
-
-  /// Turn counts are sums of speed times dt; now and then they are set to the exact angles.
-  static void settle_turns(Parts& parts) {
-    for (Joint& j : parts.joints) {
-      if (!j.turns) continue;
-      j.angle_estimate = rotation_of(j, parts.bodies[j.a], parts.bodies[j.b]).value - j.angle_offset;
     }
   }
 
