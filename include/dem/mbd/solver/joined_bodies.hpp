@@ -43,7 +43,7 @@ DEM_COLD inline JoinedBodies joined_bodies(const Parts& m) {
   for (const Joint& j : m.joints) {
     if (traits_of(j.kind).stiffness != Stiffness::none) connect(j.a, j.b);
   }
-  for (const Spring& s : m.springs) connect(s.spec.a.value, s.spec.b.value);
+  for (const Spring& s : m.springs) connect(s.a, s.b);
 
   JoinedBodies all;
   all.machine_of.assign(n, JoinedBodies::none);

@@ -99,7 +99,7 @@ class JointWatch {
     for (std::size_t i = 0; i < m.joints.size(); ++i) {
       const Joint& j = m.joints[i];
       const JointTraits& traits = traits_of(j.kind);
-      if (traits.stiffness != Stiffness::derived || traits.align == Align::nothing) continue;
+      if (!j.on || traits.stiffness != Stiffness::derived || traits.align == Align::nothing) continue;
       const Matrix3<double>&A = m.bodies[j.a].motion.rotation, &B = m.bodies[j.b].motion.rotation;
       const double shafts = dot(A * j.axes_a.z, B * j.axes_b.z);
       const double around = traits.align == Align::locked ? dot(A * j.axes_a.x, B * j.axes_b.x) : 1.0;
