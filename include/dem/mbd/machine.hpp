@@ -29,7 +29,7 @@ class Machine : public Mechanism {
   [[nodiscard]] MachineReport step(double dt) {
     prepare(dt);
     solver_.step(*this, dt, gravity);
-    return solver_.report(*this);
+    return report();
   }
 
   /// Steps of dt (s) for a duration (s; the number of steps is rounded). Stops at the first body that blows up. Throws
@@ -57,7 +57,7 @@ class Machine : public Mechanism {
         after_step();
       }
     }
-    return solver_.report(*this);
+    return report();
   }
 
   /// Derives what was left open (stiffness, damping) for a step of dt (s). Without it, step and run derive for the dt
@@ -72,8 +72,21 @@ class Machine : public Mechanism {
     gravity = g;
     solver_.initialise(*this, time, g, [] {});
   }
-  /// All is well, or which body blew up, when, and what to change.
-  MachineReport report() const { return solver_.report(*this); }
+  /// All is well; or which body blew up, when, and what to change; or which joint opened beyond joint_tolerance since
+  /// the machine was last laid out, and the time step that keeps it closed. The run went on to its end with it.
+  MachineReport report() const {
+    MachineReport report = solver_.report(*this);
+    if (report) report = solver_.report_of_joints(*this);
+    report.note = solver_.note(*this);
+    return report;
+  }
+  /// What was changed of the velocities that were given, at the start: see given_velocities.
+  const AssemblyReport& assembly() const { return solver_.assembly(); }
+  /// Does that now: velocities that joints do not allow are changed, as given_velocities says.
+  DEM_COLD const AssemblyReport& assemble() {
+    solver_.assemble(*this);
+    return solver_.assembly();
+  }
   /// False before the first step or initialise, and after something was added or `substeps` was changed since.
   bool is_initialised() const { return solver_.is_initialised(*this); }
 
@@ -106,12 +119,13 @@ class Machine : public Mechanism {
   }
 
   DEM_COLD void check_time_step(double dt) const {
-    const StableTimeStep limit = stable_time_step();
-    if (dt <= limit.dt || allow_unstable_time_step) return;
+    if (dt <= stable_time_step().dt || allow_unstable_time_step) return;
+    // What is derived is derived anew for a smaller step: the one that is named is accepted when it is taken.
+    const StableTimeStep limit = is_designed_ ? stable_time_step() : solver_.accepted_time_step(*this, dt);
     fail(
-        "time step {:g} s of a machine is above the largest stable one, {:.4g} s ({}); lower the time step or the "
+        "time step {:g} s of a machine is above the largest stable one, {:g} s ({}); lower the time step or the "
         "stiffness there, raise substeps (now {}), or set allow_unstable_time_step",
-        dt, limit.dt, limit.limited_by, substeps);
+        dt, rounded_down(limit.dt), limit.limited_by, substeps);
   }
 
   Solver<I> solver_;

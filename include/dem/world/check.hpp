@@ -19,7 +19,7 @@ template <class Model>
 StepReport find_problem(WorldState<Model>& w) {
   const auto& p = w.particles;
   const auto problem = [&](StepReport::Problem kind, std::size_t row, std::string text) {
-    return StepReport{kind, w.time, w.step, row < p.count ? ParticleId(p.id[row]) : ParticleId{}, std::move(text)};
+    return StepReport{kind, w.time, w.step, row < p.count ? ParticleId(p.id[row]) : ParticleId{}, std::move(text), {}};
   };
   const auto when = [&] { return dem::text("at t = {:.6g} s (step {})", w.time, w.step); };
   for (std::size_t c = 0; c < w.chunks.size(); ++c) {
@@ -75,7 +75,10 @@ StepReport find_problem(WorldState<Model>& w) {
   if (const auto report = w.machine_solver.report(w.machine); !report) {
     return problem(StepReport::Problem::machine, p.count, report.text);
   }
-  return {StepReport::Problem::none, w.time, w.step, {}, {}};
+  if (const auto report = w.machine_solver.newly_opened(w.machine); !report) {
+    return problem(StepReport::Problem::joint, p.count, report.text);
+  }
+  return {StepReport::Problem::none, w.time, w.step, {}, {}, {}};
 }
 
 }  // namespace dem

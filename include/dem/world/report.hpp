@@ -10,13 +10,14 @@ namespace dem {
 /// How a step or a run ended. Converts to true if all is well; otherwise `text` says which grain or body, when, and
 /// which setting to change.
 struct StepReport {
-  enum class Problem { none, not_finite, lost, overlap, machine };
+  enum class Problem { none, not_finite, lost, overlap, machine, joint };
 
   Problem problem = Problem::none;
   double time = 0.0;       ///< s, at which it was found
   std::uint64_t step = 0;  ///< steps done
   ParticleId particle;     ///< the grain, if it is one
   std::string text;
+  std::string note;  ///< what the library changed of what was given, in words; empty if nothing
 
   explicit operator bool() const { return problem == Problem::none; }
 };

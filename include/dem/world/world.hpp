@@ -74,6 +74,7 @@ class World : public WorldSetup<M> {
       advance(state_);
       take_out(state_);
       unfinished_ = false;
+      state_.machine_solver.close_joints(state_.machine);
       if (StepReport report = find_problem(state_); !report) return report;
       if (!goes_on()) break;
     }
@@ -209,7 +210,9 @@ class World : public WorldSetup<M> {
   }
   bool machine_is_initialised() const { return state_.machine_solver.is_initialised(state_.machine); }
   StableTimeStep stable_time_step_of_machine() const { return state_.machine_solver.stable_time_step(state_.machine); }
-  StepReport ok() const { return {StepReport::Problem::none, state_.time, state_.step, {}, {}}; }
+  StepReport ok() const {
+    return {StepReport::Problem::none, state_.time, state_.step, {}, {}, state_.machine_solver.note(state_.machine)};
+  }
 
   /// Of grains with each other and with surfaces, and of bodies with each other.
   StableTimeStep stable_time_step_of_contacts() const {
@@ -245,13 +248,16 @@ class World : public WorldSetup<M> {
   }
   void check_time_step(double dt) {
     design_machine(dt);
-    const StableTimeStep limit = stable_time_step();
+    StableTimeStep limit = stable_time_step();
     if (dt > limit.dt && !state_.options.allow_unstable_time_step) {
-      const bool by_machine = stable_time_step_of_machine().dt <= limit.dt;
+      // What is derived is derived anew for a smaller step: the one that is named is accepted when it is taken.
+      const StableTimeStep machine = state_.machine_solver.accepted_time_step(state_.machine, dt);
+      const bool by_machine = stable_time_step_of_machine().dt < dt && machine.dt <= stable_time_step_of_contacts().dt;
+      if (by_machine) limit = machine;
       fail(
-          "time step {:g} s is above the largest stable one, {:.4g} s ({}); lower time_step or the stiffness, {}or set "
+          "time step {:g} s is above the largest stable one, {:g} s ({}); lower time_step or the stiffness, {}or set "
           "allow_unstable_time_step",
-          dt, limit.dt, limit.limited_by,
+          dt, rounded_down(limit.dt), limit.limited_by,
           by_machine ? dem::text("raise machine().substeps (now {}), ", state_.machine.substeps) : "");
     }
     state_.time_step = dt;
@@ -262,6 +268,7 @@ class World : public WorldSetup<M> {
     const bool is_designed = state_.machine_solver.is_designed_for(state_.machine, dt);
     if (is_designed && stable_time_step_of_machine().dt >= dt) return;
     state_.machine_solver.design_for(state_.machine, dt);
+    state_.machine_solver.carry_weight(state_.machine, state_.options.gravity);
     initialised_ = false;
   }
 

@@ -35,7 +35,7 @@ TEST_CASE("wrong assemblies are refused in words") {
   CHECK_THAT(refused(universal("cross", a, b, X, X, -X)), Contains("bent by 180 deg"));
   CHECK_THAT(refused(fixed("weld", a, b, X).with_stiffness(-1.0, 1.0)),
              Contains("stiffness of fixed joint 'weld' is -1 N/m"));
-  CHECK_THAT(refused(fixed("weld", a, b, X).with_friction({.coefficient = 0.1})), Contains("nothing in it slides"));
+  CHECK_THAT(refused(fixed("weld", a, b, X).with_friction({.coefficient = 0.1})), Contains("no bearing surface"));
   CHECK_THAT(refused(bushing("rubber", a, b, X, Z, X, X, X, X).with_stiffness(1e5, 1e3)),
              Contains("bushing 'rubber' was given a stiffness or damping") && Contains("give them to bushing(...)"));
   CHECK_THAT(refused(free_joint("gauge", a, b, X, Z).with_damping(1.0, 1.0)),
@@ -163,6 +163,7 @@ TEST_CASE("bodies and joints can be added while a machine runs") {
 TEST_CASE("a body that is set free or fixed while a machine runs has its joints derived anew") {
   // The weld of 10 kg to a fixed anvil of 10 g is far too stiff once the anvil is free: kept, it would blow up.
   Machine<SymplecticEuler> m;
+  m.joint_tolerance = 1.0;  // the weld of the anvil that falls gives way, as its derived stiffness is that of 10 g
   const BodyId anvil = m.add_body(given_body("anvil", 0.01, Vec3(1e-5, 1e-5, 1e-5)));
   const BodyId block = m.add_body(given_body("block", 10.0, Vec3(0.1, 0.1, 0.1)).at({0.1, 0, 0}));
   m.set_fixed(anvil);

@@ -1,5 +1,7 @@
 #include "mbd_test.hpp"
 
+#include <limits>
+
 using namespace dem;
 using namespace dem::mbd;
 using namespace dem::mbd::test;
@@ -36,6 +38,7 @@ TEST_CASE("the bound of a bent universal joint follows the shaft that its cross 
 
 TEST_CASE("derived stiffness is stable with room to spare, for every integrator") {
   const auto room = [](auto machine) {
+    machine.joint_tolerance = std::numeric_limits<double>::infinity();  // it may give way, but not blow up
     const BodyId ground = machine.ground();
     BodyId last = ground;
     for (int k = 0; k < 5; ++k) {
@@ -129,6 +132,7 @@ TEMPLATE_TEST_CASE("a rod that is assembled near its dead centre stays stable", 
   // 1/m + r^2/I = 101.
   for (const bool crank_first : {true, false}) {
     Machine<TestType> m;
+    m.joint_tolerance = std::numeric_limits<double>::infinity();  // it may give way, but not blow up
     m.gravity.setZero();
     const BodyId crank = m.add_body(ball("crank", 1.0, 1e-4).moving({0, 0, 0}, {0, 0, 20.0}));
     const BodyId slider = m.add_body(ball("slider", 1.0, 0.01).at({0.4, 0, 0}));

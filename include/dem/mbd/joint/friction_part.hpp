@@ -81,8 +81,11 @@ inline constexpr PartKind friction_kind = {
 DEM_COLD inline void check_friction(const JointSpec& s, const std::string& who) {
   const JointTraits& traits = traits_of(s.kind);
   if (traits.bearing == Bearing::none) {
-    fail("{} has friction, but nothing in it slides; a bushing has dampers, and other kinds of joint have friction",
-         who);
+    fail(
+        "{} has friction, but a {} has no bearing surface that a load presses together and that could rub; give "
+        "with_friction to a joint that slides or turns on one (revolute, prismatic, cylindrical, spherical ...); a "
+        "bushing has dampers",
+        who, name_of(s.kind));
   }
   const double radius = s.friction->radius;
   const std::string what = "JointFriction::radius, of the bearing of " + who;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <dem/core/macros.hpp>
+#include <dem/mbd/solver/joint_watch.hpp>
 #include <dem/mbd/solver/step_watch.hpp>
 
 #include <cmath>
@@ -18,10 +19,10 @@ DEM_COLD inline std::string not_a_number(const Parts& parts) {
 }
 
 /// Why a machine blew up at steps of dt (s, with all `substeps`), in words: a number that is none, a step that was too
-/// large from the start or became so in another pose, or none of these.
+/// large from the start or became so in another pose, a joint that folded, or none of these.
 template <class I>
-std::string cause_of_blow_up(const Parts& parts, const StableTimeStep& at_start, const StepWatch<I>& later, double dt,
-                             int substeps) {
+std::string cause_of_blow_up(const Parts& parts, const StableTimeStep& at_start, const StepWatch<I>& later,
+                             const JointWatch& joints, double dt, int substeps) {
   if (const std::string cause = not_a_number(parts); !cause.empty()) {
     return cause + " is not a number: check the function that gives it.";
   }
@@ -35,6 +36,14 @@ std::string cause_of_blow_up(const Parts& parts, const StableTimeStep& at_start,
         "The time step, {:g} s, was stable at the start of the run, but in the pose at t = {:g} s the stable one was "
         "{:g} s, limited by {}: {}",
         dt, later.time(), later.limit().dt * substeps, later.limit().limited_by, remedy);
+  }
+  if (const JointOpening& folded = joints.folded(); folded.joint.valid()) {
+    return dem::text(
+        "Before, {} had folded: at t = {:g} s its axes stood {:.0f} deg apart, where its springs no longer pull them "
+        "back. It was loaded beyond what it holds at a time step of {:g} s: take a smaller one or more substeps (now "
+        "{}), lower the load, or give the joint more room to bend.",
+        detail::joint_in_words(parts, folded.joint.index()), folded.time, folded.violation.rotation * 57.29577951308232,
+        dt, substeps);
   }
   return dem::text(
       "The time step, {:g} s, was stable at the start of the run{}: check the applied forces, set points and contacts, "

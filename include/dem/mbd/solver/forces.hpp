@@ -21,4 +21,12 @@ inline void add_forces(Parts& m, double time, double dt, bool is_last_stage) {
   }
 }
 
+/// Turn counts are sums of speed times dt; now and then they are set to the exact angles.
+inline void settle_turns(Parts& m) {
+  for (Joint& j : m.joints) {
+    if (!j.turns) continue;
+    j.angle_estimate = rotation_of(j, m.bodies[j.a], m.bodies[j.b]).value - j.angle_offset;
+  }
+}
+
 }  // namespace dem::mbd

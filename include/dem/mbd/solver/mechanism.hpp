@@ -13,6 +13,7 @@
 #include <dem/mbd/load/load_part.hpp>
 #include <dem/mbd/load/spring_part.hpp>
 #include <dem/mbd/sensor/sensor_part.hpp>
+#include <dem/mbd/solver/assembly.hpp>
 #include <dem/mbd/solver/steer.hpp>
 
 namespace dem::mbd {
@@ -22,8 +23,15 @@ namespace dem::mbd {
 /// checks what it is given, throws Error in words, and returns an id.
 class Mechanism {
  public:
-  /// Machine steps within one step dt of the world, or of a machine alone.
-  int substeps = 1;
+  /// Machine steps within one step dt of the world, or of a machine alone. A world raises them, so that joints stay
+  /// within joint_tolerance (close_joints.hpp), up to most_substeps; most_substeps = 1 forbids it.
+  int substeps = 1, most_substeps = 1000;
+  /// m, how far a joint whose stiffness is derived may open, and be out of line: rad times the size of the machine that
+  /// it belongs to. 0: 1e-4 of that size, which is the diagonal of the box about its joints and bodies. A joint that
+  /// opens farther is reported; infinity: none is.
+  double joint_tolerance = 0.0;
+  /// What becomes of velocities that joints do not allow, at the start.
+  GivenVelocities given_velocities = GivenVelocities::project;
   double largest_speed = 1e5;  ///< m/s or rad/s; a body that is faster is reported as blown up
 
   // -------------------------------------------------------------------------------------------------- put together

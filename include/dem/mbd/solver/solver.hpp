@@ -1,23 +1,22 @@
 #pragma once
 
+#include <dem/mbd/joint/locked_shafts.hpp>
+#include <dem/mbd/solver/accepted_time_step.hpp>
+#include <dem/mbd/solver/assembly.hpp>
 #include <dem/mbd/solver/blow_up.hpp>
+#include <dem/mbd/solver/close_joints.hpp>
 #include <dem/mbd/solver/forces.hpp>
 #include <dem/mbd/solver/held_contacts.hpp>
+#include <dem/mbd/solver/machine_report.hpp>
 #include <dem/mbd/solver/mechanism.hpp>
 #include <dem/mbd/solver/softening.hpp>
 
+#include <algorithm>
 #include <string>
+#include <utility>
+#include <vector>
 
 namespace dem::mbd {
-
-/// What became of a step or a run.
-struct MachineReport {
-  bool ok = true;
-  double time = 0.0;  ///< s, reached
-  BodyId body = {};   ///< the body that went wrong
-  std::string text;   ///< what happened and which setting to change; empty if all is well
-  explicit operator bool() const { return ok; }
-};
 
 /// What moves a mechanism: a world calls it with the grains' forces, Machine without any. It belongs to one mechanism,
 /// which is handed to each call.
@@ -35,8 +34,38 @@ class Solver {
   DEM_COLD void design_for(Mechanism& m, double dt) {
     derive_stiffness(m.parts(), dt / checked_substeps(m));
     softening_ = Softening(m.parts(), dt / m.substeps);
+    ramp_ = {};
     design_dt_ = dt;
   }
+
+  /// After design_for: raises the machine's sub-steps, and derives for them, until the weight of all bodies that a
+  /// joint is joined with opens none beyond joint_tolerance.
+  DEM_COLD void carry_weight(Mechanism& m, const Vec3& gravity) {
+    const JointWatch watch(m.parts(), m.joint_tolerance);
+    const double share = opening_under_weight(m.parts(), watch, gravity);
+    const int n = substeps_for(m.substeps, share, 1.0, std::max(m.substeps, m.most_substeps));
+    if (n == m.substeps) return;
+    if (raised_to_ != m.substeps) raised_from_ = m.substeps;
+    m.substeps = raised_to_ = n;
+    design_for(m, design_dt_);
+  }
+
+  /// To be called after a step of the world: raises the sub-steps where joints open too far (close_joints.hpp).
+  void close_joints(Mechanism& m) {
+    ramp_.step(m.parts());
+    const JointOpening recent = joints_.take_recent();
+    const double share = recent.share / ramp_.left();
+    if (share <= 0.5 || bad_.valid()) return;
+    if (m.substeps < m.most_substeps) {
+      raise_substeps(m, substeps_for(m.substeps, share, 0.25, m.most_substeps));
+    } else if (share > 1.0 && std::find(known_.begin(), known_.end(), recent.joint) == known_.end()) {
+      known_.push_back(recent.joint);
+      newly_opened_ = recent;
+    }
+  }
+  /// After close_joints: all is well, or which joint has opened beyond joint_tolerance though the sub-steps are as many
+  /// as they may be. Each joint is told once.
+  MachineReport newly_opened(const Mechanism& m) { return report_of(m, std::exchange(newly_opened_, {})); }
 
   /// The largest stable time step of the world, all sub-steps of the machine together, and the part that limits it.
   DEM_COLD StableTimeStep stable_time_step(const Mechanism& m) const {
@@ -51,6 +80,11 @@ class Solver {
     if (limit.dt > 1e-3 * endless_step) return {};
     limit.dt *= checked_substeps(m);
     return limit;
+  }
+
+  /// The largest time step (s) up to dt at which the machine is stable with what would be derived for that step.
+  DEM_COLD StableTimeStep accepted_time_step(const Mechanism& m, double dt) const {
+    return accepted_time_step_of<I>(m.parts(), dt, checked_substeps(m));
   }
 
   /// False before initialise, and after a body, a joint or a coupling was added or `substeps` was changed since:
@@ -74,6 +108,7 @@ class Solver {
   DEM_COLD void initialise(Mechanism& m, double time, const Vec3& gravity, PutForces&& put_forces) {
     Parts& parts = m.parts();
     require_derived(parts);
+    if (!parts.couplings.empty()) detail::check_locked(parts);
     clear_forces(parts);
     put_forces();
     time_ = time;
@@ -83,14 +118,22 @@ class Solver {
     check_motions(m);
     const double step = design_dt_ / checked_substeps(m);  // 0 if none is known
     if (parts.apply_motions) parts.apply_motions(parts, time, step, false);
+    if (!is_assembled_) assemble(m);
     for (PrescribedMotion& p : parts.motions) p.drive.impulse = 0.0;  // the speeds that it starts with
     add_forces(parts, time, step, false);
     held_.start(parts.outside);
     motion_.initialise(parts.bodies, from_eigen(gravity));
+    joints_ = JointWatch(parts, m.joint_tolerance);
     note_stable_step(m);
     substeps_ = m.substeps;
     revision_ = parts.revision;
     initialised_ = true;
+  }
+
+  /// Bodies that hang together are made to move together; at the first start this is done anyway.
+  DEM_COLD void assemble(Mechanism& m) {
+    if (m.given_velocities != GivenVelocities::keep) assembly_ = joined_velocities(m.parts(), m.given_velocities);
+    is_assembled_ = true;
   }
 
   /// One of the integrator's stages of a step of dt (s): where the integrator predicts, the bodies move first; then
@@ -115,13 +158,23 @@ class Solver {
 
   /// All is well, or which body blew up, when, and what to change.
   MachineReport report(const Mechanism& m) const {
-    if (!bad_.valid()) return {true, time_, {}, {}};
+    if (!bad_.valid()) return {true, time_, {}, {}, {}, {}};
     const std::string text = dem::text(
         "body '{}' blew up at t = {:g} s: its motion is not finite or its speed above largest_speed = {:g}. {}",
         m.parts().bodies[bad_.index()].name, bad_time_, m.largest_speed,
-        cause_of_blow_up<I>(m.parts(), limit_at_start_, watch_, step_dt_, m.substeps));
-    return {false, bad_time_, bad_, text};
+        cause_of_blow_up<I>(m.parts(), limit_at_start_, watch_, joints_, step_dt_, m.substeps));
+    return {false, bad_time_, bad_, {}, text, {}};
   }
+  /// All is well, or which joint opened farthest beyond joint_tolerance, and what keeps it closed.
+  MachineReport report_of_joints(const Mechanism& m) const { return report_of(m, joints_.worst()); }
+  /// What was changed of what the user gave: sub-steps, velocities at the start. Empty if nothing.
+  DEM_COLD std::string note(const Mechanism& m) const {
+    const bool raised = raised_to_ == m.substeps && raised_to_ > raised_from_;
+    return note_of(m.parts(), assembly_, joints_, raised ? raised_from_ : 0, raised_to_);
+  }
+  /// What became of the velocities that were given, at the start.
+  const AssemblyReport& assembly() const { return assembly_; }
+  const JointWatch& joints() const { return joints_; }
   bool has_blown_up() const { return bad_.valid(); }
 
   /// Remembers the largest stable step of this pose, for the report of a blow-up.
@@ -143,6 +196,23 @@ class Solver {
         "the stiffness of {} is to be derived, but the machine does not know its time step: call "
         "machine.design_for(dt) before the first step, or give stiffness and damping",
         open);
+  }
+
+  MachineReport report_of(const Mechanism& m, const JointOpening& worst) const {
+    if (!(worst.share > 1.0)) return {true, time_, {}, {}, {}, {}};
+    return report_of_opening(m.parts(), worst, m.joint_tolerance, step_dt_, m.substeps, time_);
+  }
+
+  /// While running, between two steps of the world.
+  DEM_COLD void raise_substeps(Mechanism& m, int n) {
+    Parts& parts = m.parts();
+    if (m.substeps == 1) held_.start(parts.outside);  // the contacts' forces, which are held from here on
+    if (raised_to_ != m.substeps) raised_from_ = m.substeps;
+    const std::vector<double> before = StiffnessRamp::stiffness_of(parts);
+    m.substeps = substeps_ = raised_to_ = n;
+    design_for(m, design_dt_);
+    ramp_ = StiffnessRamp(parts, before);
+    note_stable_step(m);
   }
 
   /// The time of the state at which a stage's forces are evaluated, in a step of dt from `time`.
@@ -227,6 +297,7 @@ class Solver {
     if (tidy) settle_turns(parts);
     time_ += dt;
     softening_.follow(parts);
+    if (sampling_ && !bad_.valid()) joints_.follow(parts, time_);
     if (!bad_.valid()) watch_.follow(parts, dt, time_);
   }
 
@@ -246,19 +317,18 @@ class Solver {
     }
   }
 
-  /// Turn counts are sums of speed times dt; now and then they are set to the exact angles.
-  static void settle_turns(Parts& parts) {
-    for (Joint& j : parts.joints) {
-      if (!j.turns) continue;
-      j.angle_estimate = rotation_of(j, parts.bodies[j.a], parts.bodies[j.b]).value - j.angle_offset;
-    }
-  }
-
   BodiesInMotion<I> motion_;
   HeldContacts<I> held_;
   SavedState<I> saved_;
   Softening softening_;
+  StiffnessRamp ramp_;
   StepWatch<I> watch_;
+  JointWatch joints_;
+  JointOpening newly_opened_;
+  std::vector<JointId> known_;  // joints that were told of as open
+  AssemblyReport assembly_;
+  bool is_assembled_ = false;
+  int raised_from_ = 0, raised_to_ = 0;  // sub-steps that were given, and that they were raised to
   StableTimeStep limit_at_start_;
   double time_ = 0.0, design_dt_ = 0.0, step_dt_ = 0.0;  // s; the last two with all sub-steps
   long steps_ = 0;

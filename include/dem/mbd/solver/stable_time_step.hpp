@@ -1,6 +1,7 @@
 #pragma once
 
 #include <dem/core/stable_time_step.hpp>
+#include <dem/mbd/solver/derive.hpp>
 #include <dem/mbd/solver/part_kind.hpp>
 
 #include <algorithm>
@@ -78,6 +79,35 @@ inline std::vector<ElementBounds> bounds_of(const Parts& m, const std::vector<El
   return bounds;
 }
 
+/// The part to blame where the parts on one of an element's bodies are too stiff together: of those whose stiffness or
+/// damping was given the one that adds most, if it adds a tenth or more, as what is derived follows the step. Else the
+/// element itself.
+DEM_COLD inline std::string culprit(const Parts& m, const std::vector<Element>& elements, std::size_t worst,
+                                    double dt) {
+  const auto added = [&](const std::vector<Element>& all, std::size_t e, std::uint32_t body) {
+    double sum = 0.0;
+    for (const Element::Side& s : all[e].sides) sum += s.body == body ? s.k * dt * dt + 2.0 * s.c * dt : 0.0;
+    return sum;
+  };
+  const std::vector<Element> given = elements_of(without_derived(m));  // the same, in the same order
+  std::size_t blamed = worst;
+  double most = 0.0, total = 0.0;
+  for (const Element::Side& s : elements[worst].sides) {
+    double on_body = 0.0;
+    for (std::size_t e = 0; e < elements.size(); ++e) on_body += added(elements, e, s.body);
+    total = std::max(total, on_body);
+    for (std::size_t e = 0; e < given.size(); ++e) {
+      const double by_given = added(given, e, s.body);
+      if (by_given > most) {
+        most = by_given;
+        blamed = e;
+      }
+    }
+  }
+  if (most < 0.1 * total) blamed = worst;
+  return elements[blamed].kind->name_of(m, elements[blamed].index);
+}
+
 }  // namespace detail
 
 /// The largest time step at which all joints, couplings, springs and actuators are stable with integrator I, and the
@@ -90,20 +120,28 @@ StableTimeStep stable_time_step_of(const Parts& m) {
   const std::vector<ElementBounds> bounds = bounds_of(m, elements);
   constexpr double as_stiff = 1.0 + 1e-9;  // derived parts are alike but for rounding: one of them stands for all
   StableTimeStep found[2];
+  std::size_t worst_of[2] = {elements.size(), elements.size()};
   for (int i = 0; i < 2; ++i) {
     double worst_k = 0.0, worst_c = 0.0;
+    std::size_t worst = elements.size();
     for (std::size_t e = 0; e < elements.size(); ++e) {
       const double k = bounds[e].k[i], c = bounds[e].c[i];
       if (k <= as_stiff * worst_k && c <= as_stiff * worst_c) continue;
       const double dt = largest_stable_step<I>(k, c);
       if (dt < found[i].dt) {
-        found[i] = {dt, elements[e].kind->name_of(m, elements[e].index)};
+        found[i].dt = dt;
+        worst = e;
         worst_k = k;
         worst_c = c;
       }
     }
+    if (worst < elements.size()) worst_of[i] = worst;
   }
-  return found[0].dt > found[1].dt ? found[0] : found[1];
+  const int better = found[0].dt > found[1].dt ? 0 : 1;
+  if (worst_of[better] < elements.size()) {
+    found[better].limited_by = culprit(m, elements, worst_of[better], found[better].dt);
+  }
+  return found[better];
 }
 
 }  // namespace dem::mbd

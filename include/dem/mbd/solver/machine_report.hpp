@@ -1,0 +1,47 @@
+#pragma once
+
+#include <dem/core/macros.hpp>
+#include <dem/core/stable_time_step.hpp>
+#include <dem/mbd/solver/assembly.hpp>
+#include <dem/mbd/solver/close_joints.hpp>
+
+#include <string>
+
+namespace dem::mbd {
+
+/// What became of a step or a run.
+struct MachineReport {
+  bool ok = true;
+  double time = 0.0;   ///< s, reached
+  BodyId body = {};    ///< the body that went wrong
+  JointId joint = {};  ///< the joint that opened beyond joint_tolerance
+  std::string text;    ///< what happened and which setting to change; empty if all is well
+  std::string note;    ///< what the library changed of what was given, in words; empty if nothing
+  explicit operator bool() const { return ok; }
+};
+
+/// Which joint opened beyond joint_tolerance (`tolerance` in m; 0: by default), at steps of `step` (s) in sub-steps,
+/// and what keeps it closed.
+DEM_COLD inline MachineReport report_of_opening(const Parts& m, const JointOpening& worst, double tolerance,
+                                                double step, int substeps, double time) {
+  const int n = substeps_for(substeps, worst.share, 0.5, 1 << 30);  // half: what swings opens twice as far
+  const std::string text = dem::text(
+      "{} (joint_tolerance, {}): the stiffness that is derived for the time step gives way under its load. A time step "
+      "of {:g} s, or {} substeps (now {}), keeps it; or raise joint_tolerance",
+      in_words(m, worst), tolerance > 0.0 ? dem::text("{:g} m", tolerance) : "1e-4 of the machine's size",
+      rounded_down(step * substeps / n), n, substeps);
+  return {false, time, {}, worst.joint, text, {}};
+}
+
+/// What was changed of what the user gave: velocities at the start, sub-steps (`from` 0: not). Empty if nothing.
+DEM_COLD inline std::string note_of(const Parts& m, const AssemblyReport& assembly, const JointWatch& joints, int from,
+                                    int to) {
+  std::string text = assembly.has_changed() ? assembly.text() : "";
+  if (from == 0) return text;
+  text += dem::text("{}The machine takes {} substeps instead of {}, to keep its joints within joint_tolerance.",
+                    text.empty() ? "" : " ", to, from);
+  if (joints.is_exceeded()) text += dem::text(" Before they were raised, {}.", in_words(m, joints.worst()));
+  return text;
+}
+
+}  // namespace dem::mbd

@@ -1,0 +1,61 @@
+// How far joints open: it is watched, and reported with what would keep them closed.
+
+#include "spatial_slider_crank.hpp"
+
+using namespace dem;
+using namespace dem::mbd;
+using namespace dem::mbd::test;
+
+TEMPLATE_TEST_CASE("a machine whose joints open too far says which joint, how far, and what keeps it closed", "",
+                   SymplecticEuler, VelocityVerlet, PredictorCorrector) {
+  const auto run = [](int substeps, double& off) {
+    SpatialSliderCrank<TestType> s;
+    s.m.substeps = substeps;
+    s.m.given_velocities = GivenVelocities::lead;
+    off = 0.0;
+    const MachineReport report = s.m.run(1.0, 1e-3, [&] { off = std::max(off, s.off()); });
+    CHECK(report.time == Approx(1.0));  // it goes on to its end
+    return report;
+  };
+  double off = 0.0;
+  const MachineReport open = run(1, off);
+  CHECK(off > 0.01);  // the slider is off by more than a centimetre
+  CHECK_FALSE(open);
+  CHECK(open.joint.valid());
+  CHECK_THAT(open.text, Contains("joint 'crank bearing' was out of line by 0.") && Contains("allowed is 0.0001") &&
+                            Contains("A time step of ") && Contains("substeps (now 1)"));
+  // As many sub-steps as are named, until none are: then joints hold to 1e-4 of the machine's size of 0.5 m, and the
+  // slider is where the crank's angle puts it within that size times the few joints between.
+  int substeps = 1;
+  MachineReport report = open;
+  for (int k = 0; k < 5 && !report; ++k) {
+    const auto at = report.text.find(" substeps (now");
+    substeps = std::stoi(report.text.substr(report.text.rfind(' ', at - 1)));
+    report = run(substeps, off);
+  }
+  INFO(report.text);
+  CHECK(report);
+  CHECK(substeps < 1000);
+  CHECK(off < 1e-4);
+}
+
+TEST_CASE("the tolerance of joints is what the user says, and joints of given stiffness are not watched") {
+  // A weight of 2 kg hangs on a derived weld: k = 0.5 (0.7/dt)^2 m, so it opens by 2 g dt^2/0.49 = 4.0e-5 m.
+  const auto hang = [](double tolerance, bool given) {
+    Machine<VelocityVerlet> m;
+    m.joint_tolerance = tolerance;
+    const BodyId b = m.add_body(ball("weight", 2.0));
+    JointSpec weld = fixed("weld", m.ground(), b, {0, 0, 0});
+    if (given) weld = weld.with_stiffness(4.9e5, 1e4);
+    m.add_joint(weld);
+    return m.run(0.5, 1e-3);
+  };
+  CHECK(hang(0.0, false));  // 1e-4 of a diagonal of 0.77 m
+  CHECK(hang(6e-5, false));
+  const MachineReport open = hang(2e-5, false);
+  CHECK_FALSE(open);
+  CHECK_THAT(open.text, Contains("fixed joint 'weld' stood open by") && Contains("joint_tolerance, 2e-05 m"));
+  CHECK(hang(2e-5, true));
+  CHECK(hang(std::numeric_limits<double>::infinity(), false));
+  check_refused([&] { (void)hang(-1.0, false); }, "joint_tolerance is -1 m");
+}

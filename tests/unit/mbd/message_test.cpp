@@ -1,0 +1,86 @@
+// What machines say when something is refused or goes wrong.
+
+#include "mbd_test.hpp"
+
+using namespace dem;
+using namespace dem::mbd;
+using namespace dem::mbd::test;
+
+namespace {
+
+/// The time step that a refusal names.
+double named_step(const std::string& text) {
+  const std::string before = "largest stable one, ";
+  const auto at = text.find(before);
+  REQUIRE(at != std::string::npos);
+  return std::stod(text.substr(at + before.size()));
+}
+
+/// A light wheel on a derived hinge of an arm, with a strut of given stiffness and damping.
+template <class I>
+Machine<I> wheel_on_strut() {
+  Machine<I> m;
+  const BodyId arm = m.add_body(box_body("arm", {0.5, 0.05, 0.05}, 1000).at({0.25, 0, 0}));
+  const BodyId wheel = m.add_body(given_body("wheel", 0.5, Vec3(0.01, 0.01, 0.01)).at({0.5, 0, 0}));
+  m.add_joint(revolute("pivot", m.ground(), arm, {0, 0, 0}, Y));
+  m.add_joint(revolute("axle", arm, wheel, {0.5, 0, 0}, Y));
+  m.add_spring(spring("strut", m.ground(), {0.5, 0, 0.4}, wheel, {0.5, 0, 0.01}, 1e5, 800.0));
+  return m;
+}
+
+}  // namespace
+
+TEMPLATE_TEST_CASE("the stable step that a refusal names is accepted when it is taken, and the strut is to blame", "",
+                   SymplecticEuler, VelocityVerlet, PredictorCorrector) {
+  Machine<TestType> m = wheel_on_strut<TestType>();
+  const std::string text = message_of([&] { (void)m.step(5e-2); });
+  CHECK_THAT(text, Contains("(spring 'strut')"));
+  const double named = named_step(text);
+  CHECK(named < 5e-2);
+  CHECK_NOTHROW((void)m.step(named));
+  // And not for nothing small: a step that is 1 % longer is refused.
+  Machine<TestType> again = wheel_on_strut<TestType>();
+  CHECK_THROWS_AS((void)again.step(1.01 * named), Error);
+}
+
+TEST_CASE("couplings that lock a shaft are refused, those that agree or give way are not") {
+  const auto start = [](double second_ratio, bool elastic) {
+    Machine<VelocityVerlet> m;
+    const BodyId a = m.add_body(ball("a")), b = m.add_body(ball("b").at({1, 0, 0}));
+    const JointId i = m.add_joint(revolute("in", m.ground(), a, {0, 0, 0}, Z));
+    const JointId o = m.add_joint(revolute("out", m.ground(), b, {1, 0, 0}, Z));
+    m.add_coupling(gear("first", i, o, 2.0));
+    CouplingSpec second = gear("second", i, o, second_ratio);
+    if (elastic) second.stiffness = 100.0;
+    m.add_coupling(second);
+    (void)m.run(0.0, 1e-4);
+  };
+  check_refused([&] { start(3.0, false); }, "joint '", "'first', 'second'", "leave it no turn", "check the ratios");
+  CHECK_NOTHROW(start(2.0, false));
+  CHECK_NOTHROW(start(3.0, true));
+}
+
+TEST_CASE("friction of a joint that has no bearing is refused for that reason") {
+  Machine<VelocityVerlet> m;
+  const BodyId a = m.add_body(ball("a"));
+  const JointSpec turns = free_joint("gauge", m.ground(), a, {0, 0, 0}, Z).with_friction({.coefficient = 0.1});
+  const std::string text = message_of([&] { m.add_joint(turns); });
+  CHECK_THAT(text, Contains("'gauge' has friction") && Contains("no bearing surface"));
+  CHECK_THAT(text, !Contains("nothing in it slides"));  // it turns, and slides
+}
+
+TEST_CASE("a blow-up that follows from a folded joint says so") {
+  // A rod on a hinge about z, pushed about x by more than the hinge's derived stiffness can hold at this step: it folds
+  // over, turns ever faster, and flies apart.
+  Machine<VelocityVerlet> m;
+  m.gravity.setZero();
+  m.largest_speed = 1e3;
+  const BodyId rod = m.add_body(ball("rod", 1.0, 0.01));
+  m.add_joint(revolute("hinge", m.ground(), rod, {0, 0, 0}, Z));
+  m.add_load(applied_torque("push", rod, X, Signal::function([](double t) { return 2e4 * t; })));
+  const MachineReport report = m.run(10.0, 1e-3);
+  CHECK_FALSE(report);
+  CHECK(report.body == rod);
+  CHECK_THAT(report.text, Contains("body 'rod' blew up") && Contains("revolute joint 'hinge' had folded: at t = ") &&
+                              Contains("deg apart") && Contains("substeps (now 1)"));
+}
