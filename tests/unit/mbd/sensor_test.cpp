@@ -63,7 +63,7 @@ TEST_CASE("sensors read contacts, sums, joints and actuators") {
 TEST_CASE("what a drive that turns something gives is a torque, and is called so") {
   Machine<VelocityVerlet> m;
   m.gravity.setZero();
-  const BodyId wheel = m.add_body(given_body("wheel", 2.0, Vec3(0.1, 0.1, 0.5)));
+  const BodyId wheel = m.add_body(given_body("wheel", 2.0, Vec3(0.3, 0.3, 0.5)));
   const JointId axle = m.add_joint(revolute("axle", m.ground(), wheel, {0, 0, 0}, Z));
   const MotionId drive =
       m.add_motion(prescribed_joint("drive", axle, Signal::function([](double t) { return t * t; })));
