@@ -20,7 +20,7 @@ namespace dem::rig::sand_pile {
 inline constexpr double degrees = 180.0 / std::numbers::pi;
 
 inline std::string number(double value, const char* format = "{:.1f}") {
-  return std::isfinite(value) ? text_of(format, {value}) : "-";
+  return std::isfinite(value) ? dem::text_of(format, {value}) : "-";
 }
 
 /// Mean and standard deviation of what is known; the latter of two at the least.
