@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Loose sand is weaker than dense sand: the quick grains of the direct shear rig, 6 mm, at relative densities 0 and 0.5, three
+# Loose sand is weaker than dense sand: the quick grains of the direct shear rig, 6 mm, at densities 0 and 0.5, three
 # loads each. Takes 2 to 8 minutes on two cores.
 #
 #   density.sh <direct_shear> <output folder>
