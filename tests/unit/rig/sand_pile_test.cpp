@@ -31,7 +31,7 @@ TEST_CASE("what a sand pile's settings leave open follows from the size and the 
   Settings s;
   sand_pile::resolve(s);
   CHECK(s.grains == 1200);
-  CHECK(kinds_in(s.kinds).size() == 6);
+  CHECK(kinds_in(s.kinds).size() == 4);
   // The cylinder's fill, at a solid fraction of 0.6, is twice as high as its radius.
   CHECK(bulk_volume(s) == Approx(1200 * 8 * std::pow(1.6e-3, 3) / 0.6));
   CHECK(2.0 * std::acos(-1.0) * std::pow(s.cylinder_radius, 3) == Approx(bulk_volume(s)));

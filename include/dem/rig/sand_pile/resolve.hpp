@@ -20,7 +20,7 @@ struct Defaults {
 inline Defaults defaults(Size size) {
   return BySize<Defaults>{
       .smoke = {3.0e-3, 0.3, 0.1, 250, 1, "cube8,sphere-rolling"},
-      .quick = {1.6e-3, 0.6, 1.0, 1200, 1, "cube8,cube8-viscous,polyhedron,superquadric,sphere,sphere-rolling"},
+      .quick = {1.6e-3, 0.6, 1.0, 1200, 1, "cube8,cube8-viscous,sphere,sphere-rolling"},
       .full = {0.9e-3, 1.0, 10.0, 12000, 3,
                "cube8,cube8-viscous,polyhedron,superquadric,sphere,sphere-viscous,sphere-rolling"}}[size];
 }
