@@ -15,11 +15,12 @@ namespace dem::rig {
 /// loads them, and the upper half is pushed over the lower one.
 ///
 ///     dem::rig::direct_shear::Settings settings;
-///     settings.half_edge = 2e-3;                                  // half the edge of the cube that a grain fills
-///     about settings.own_kind = {.name = "capsule", .limits = {0.55, 0.70}}; dem::rig::DirectShear<Sand>
-///     shear(settings, {.shape = capsule, .on_grain = {...}, .on_wall = {...}}); const auto packing =
-///     shear.make_packing(); const auto result = shear.test(packing, 16.2);              // kg on the lid
-///     result.maximum;                                             // Pa
+///     settings.half_edge = 2e-3;  // m, of the cube that a grain about fills
+///     settings.own_kind = {.name = "capsule", .limits = {0.55, 0.70}};
+///     dem::rig::DirectShear<Sand> shear(settings, {.shape = capsule, .on_grain = {...}, .on_wall = {...}});
+///     const auto packing = shear.make_packing();
+///     const auto result = shear.test(packing, 16.2);  // kg on the lid
+///     fmt::print("{} Pa", result.maximum);
 ///
 /// `Model` names the shape and the laws; its Surfaces must have boxes. Stages tell how far they are, and are stopped by
 /// throwing: Stopped when the simulation reports a problem or a stage has no end, Interrupted after Ctrl-C if an
@@ -53,7 +54,7 @@ class DirectShear {
     return direct_shear::lattice(settings_, grains_.shape.bounding_radius());
   }
 
-  /// Pours grains, by default lattice(), makes them as dense as asked for, and measures them.
+  /// Pours grains, by default lattice(), makes them as dense as asked for, levels and measures them.
   direct_shear::PackingResult make_packing(Stages& stages) const { return make_packing(lattice(), stages); }
   direct_shear::PackingResult make_packing() const {
     Stages quiet;
@@ -61,17 +62,18 @@ class DirectShear {
   }
   direct_shear::PackingResult make_packing(std::span<const soil::Placement> grains, Stages& stages) const {
     auto result = direct_shear::make_packing<Model>(settings_, grains_, grains, stages);
-    measure(result);
+    level(result);
     return result;
   }
 
-  /// Finds height and solid fraction of a packing from where its grains are.
-  void measure(direct_shear::PackingResult& p) const {
+  /// Strikes off the highest grains of a packing, if it will be tested, and finds its height and solid fraction.
+  void level(direct_shear::PackingResult& p) const {
+    if (!settings_.packing_only) soil::strike_off(p.packing.grains, settings_.strike_off);
     p.height = soil::height_percentile(p.packing.grains, 0.95) + settings_.half_edge;
     p.solid_fraction = direct_shear::inner_fraction(p.packing.grains, grains_.shape.volume(), settings_);
   }
 
-  /// Loads a packing that was measured, shears it, and evaluates the samples. Throws Error if it stands out of the box.
+  /// Loads a packing that was levelled, shears it, and evaluates the samples. Throws Error if it stands out of the box.
   [[nodiscard]] direct_shear::LoadResult test(const direct_shear::PackingResult& packing, double load) const {
     Stages quiet;
     direct_shear::LoadResult result = of_load(load);

@@ -28,8 +28,8 @@ struct Outcome {
   double wall_time = 0.0;           ///< s
 };
 
-/// A run with its output folder. What it starts from is checked first; then begin() makes the folder the run's own and
-/// shows the progress of the stages.
+/// A run with its output folder. What it starts from is checked first; then begin_run() makes the folder the run's own
+/// and shows the progress of the stages.
 class Session final : public Stages {
  public:
   /// What stays the same from the start to the end of a run.

@@ -37,6 +37,18 @@ class Stages {
   virtual void message([[maybe_unused]] std::string_view text) {}
 };
 
+/// Calls work(), and then save(), also when the work is stopped: each run of a campaign keeps what it has found.
+template <class Work, class Save>
+void work_and_save(Work&& work, Save&& save) {
+  try {
+    work();
+  } catch (...) {
+    save();
+    throw;
+  }
+  save();
+}
+
 /// Runs a world for a time (s), rounded to whole steps, at least one. Throws Stopped with the report of a step that
 /// shows a problem, and Interrupted after the step in which Ctrl-C or SIGTERM came, if a guard watches for it.
 template <class World>

@@ -308,11 +308,11 @@ TEST_CASE("every option is checked by its own name") {
 }
 
 TEST_CASE("options are checked against each other") {
-  // The travel of --size quick is 6 mm, its box 50 mm high.
-  CHECK_THROWS_WITH(read({"--smoothing=0.0031"}), ContainsSubstring("at most half the travel"));
-  CHECK_THROWS_WITH(read({"--wall-thickness=0.0059"}), ContainsSubstring("from the travel up"));
+  // The travel of --size quick is 4 mm, its box 50 mm high.
+  CHECK_THROWS_WITH(read({"--smoothing=0.0021"}), ContainsSubstring("at most half the travel"));
+  CHECK_THROWS_WITH(read({"--wall-thickness=0.0039"}), ContainsSubstring("from the travel up"));
   CHECK_THROWS_WITH(read({"--seam-height=0.05"}), ContainsSubstring("box height, 0.05 m"));
-  CHECK_THROWS_WITH(read({"--ramp-time=0.31"}), ContainsSubstring("at most what the travel takes"));
+  CHECK_THROWS_WITH(read({"--ramp-time=0.21"}), ContainsSubstring("at most what the travel takes"));
   CHECK_THROWS_WITH(read({"--shape=superquadric", "--integrator=euler"}), ContainsSubstring("verlet only"));
 }
 

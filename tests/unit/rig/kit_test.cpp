@@ -157,3 +157,10 @@ TEST_CASE("a world is run by whole steps, until a problem or an interrupt") {
     dem::io::clear_interrupt();
   }
 }
+
+TEST_CASE("what a run has found is saved, also when it is stopped") {
+  std::string done;
+  work_and_save([&] { done += "work "; }, [&] { done += "save "; });
+  CHECK_THROWS_AS(work_and_save([&] { throw Interrupted{}; }, [&] { done += "save"; }), Interrupted);
+  CHECK(done == "work save save");
+}

@@ -65,11 +65,7 @@ void test_load(const DirectShear<Model>& shear, const PackingResult& packing, Lo
                Session& session) {
   const Settings& s = shear.settings();
   const std::string name = load_name(s, r.load);
-  const auto save = [&] {
-    evaluate(r, s);
-    if (!r.samples.empty()) save_samples<Sample>(session.folder() / (name + ".csv"), r.samples, sample_columns);
-  };
-  try {
+  const auto test = [&] {
     std::optional<Frames> frames;
     using Moment = typename DirectShear<Model>::Moment;
     shear.test(packing, r, session, [&](const Apparatus<Model>& rig, Moment moment) {
@@ -86,11 +82,11 @@ void test_load(const DirectShear<Model>& shear, const PackingResult& packing, Lo
         if (replay && replay->due(rig.world.time())) replay->record(rig.world);
       }
     });
-  } catch (...) {
-    save();
-    throw;
-  }
-  save();
+  };
+  work_and_save(test, [&] {
+    evaluate(r, s);
+    if (!r.samples.empty()) save_samples<Sample>(session.folder() / (name + ".csv"), r.samples, sample_columns);
+  });
 }
 
 }  // namespace detail
@@ -114,8 +110,7 @@ void run_campaign(const DirectShear<Model>& shear, Campaign& campaign, Session& 
   } else {
     packing.packing = std::move(first);
   }
-  if (!s.packing_only) soil::strike_off(packing.packing.grains, s.strike_off);
-  shear.measure(packing);
+  shear.level(packing);
   if (!std::isfinite(packing.solid_fraction)) warn_of_no_density("of the packing", s, session);
   if (making > 0) {
     session.finish(std::isfinite(packing.solid_fraction) ? text("solid fraction {:.3f}", packing.solid_fraction) : "");

@@ -1,0 +1,11 @@
+#include "worlds.hpp"
+
+#include <dem/geometry/polyhedron/polyhedra.hpp>
+#include <dem/rig/sand_pile/campaign.hpp>
+
+void polyhedron(const pile::Settings& s, pile::PileResult& result, dem::report::Replay* replay,
+                dem::rig::Session& session) {
+  using Sand = pile::Sand<dem::shape::Polyhedron>;
+  pile::make_pile<Sand>({s, pile::grains_of<Sand>(s, result.kind, dem::shape::cube(s.half_edge))}, result, replay,
+                        session);
+}

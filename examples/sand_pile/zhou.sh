@@ -1,0 +1,37 @@
+#!/usr/bin/env bash
+# Spheres with rolling resistance, left on the floor of a box that is emptied through a slot, beside the fit of
+# Zhou, Xu, Yu and Zulli (Powder Technology 125, 2002): phi = 68.61 mu_pp^0.27 mu_pw^0.22 m_pp^0.06 m_pw^0.12 d^-0.2,
+# with the rolling lengths m and the diameter d in mm. Prints a table. Runs that are there already are not made again.
+#
+#   zhou.sh <sand_pile> <folder> [seeds]
+set -euo pipefail
+
+[ $# -ge 2 ] || { sed -n 's/^#   //p' "$0" >&2 && exit 2; }
+rig=$(realpath "$1")
+seeds=${3:-1}
+mkdir -p "$2"
+cd "$2"
+
+# d, mu_pp, mu_pw, m_pp, m_pw: diameter (mm), sliding friction of grains and of walls, rolling lengths (mm).
+points="10 0.4 0.5 0.05 0.1
+10 0.2 0.2 1 1
+10 0.4 0.4 0.2 0.2
+10 0.6 0.6 0.1 0.1
+10 0.4 0.5 0.5 0.5
+5 0.4 0.5 0.05 0.1"
+
+echo "  d    mu_pp mu_pw  m_pp  m_pw    fit   here  (deg)"
+while read -r d mu_pp mu_pw m_pp m_pw; do
+  name=d${d}_${mu_pp}_${mu_pw}_${m_pp}_${m_pw}
+  # A box 40 d long, 12 d wide, filled 24 d high. A sphere of diameter d has the volume of a cube of half-edge 0.403 d.
+  read -r half width slot length m1 m2 <<< "$(awk -v d="$d" -v a="$m_pp" -v b="$m_pw" 'BEGIN {
+    print d * 4.02998e-4, 12e-3 * d, 5e-3 * d, 40e-3 * d, 1e-3 * a, 1e-3 * b }')"
+  [ -s "$name/results.csv" ] || "$rig" --size quick --method drain --plate flat --kinds sphere-rolling --density 2400 \
+    --half-edge "$half" --grains "${GRAINS:-9000}" --box-width "$width" --slot-width "$slot" --box-length "$length" \
+    --friction "$mu_pp" --plate-friction "$mu_pw" --rolling-length "$m1" --plate-rolling-length "$m2" \
+    --rest-limit 2 --seeds "$seeds" --no-vtk --no-replay --threads "${THREADS:-1}" --output "$name" > "$name.log" 2>&1
+  awk -F, -v d="$d" -v a="$mu_pp" -v b="$mu_pw" -v m="$m_pp" -v n="$m_pw" '
+    NR > 1 && $15 == 1 { sum += $3; ++count }
+    END { if (count) printf "%4g %7g %5g %5g %5g  %5.1f  %5.1f\n", d, a, b, m, n,
+                            68.61 * a^0.27 * b^0.22 * m^0.06 * n^0.12 * d^-0.2, sum / count }' "$name/results.csv"
+done <<< "$points"

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <dem/report/replay_world.hpp>
+#include <dem/rig/frames.hpp>
+#include <dem/rig/samples_file.hpp>
+#include <dem/rig/sand_pile.hpp>
+#include <dem/rig/session.hpp>
+#include <dem/soil/packing_file.hpp>
+
+namespace dem::rig::sand_pile {
+
+/// What the files of a pile are called.
+inline std::string pile_name(const PileResult& r) { return text("{}_{}", r.kind.name, r.seed); }
+
+/// One pile of a program's run: with its frames, its file of samples, and a replay if there is to be one.
+template <class Model>
+void make_pile(const SandPile<Model>& sand_pile, PileResult& r, report::Replay* replay, Session& session) {
+  const Settings& s = sand_pile.settings();
+  const std::string name = pile_name(r);
+  Frames frames(session, s.vtk ? name : "", s.frame_time, "this pile");
+  const auto make = [&] {
+    sand_pile.make(r, session, [&](const auto& world) {
+      frames.show(world.time(), [&](io::VtkSeries& series) {
+        add_grains(series, world);
+        add_surfaces(series, world, "apparatus");
+        add_grain_shapes(series, world);
+      });
+      if (replay && replay->due(world.time())) replay->record(world);
+    });
+  };
+  work_and_save(make, [&] {
+    if (!r.samples.empty()) save_samples<Sample>(session.folder() / (name + ".csv"), r.samples, sample_columns);
+    if (!r.pile.empty()) {
+      soil::save_packing(
+          {s.half_edge, 2.0 * s.plate_radius, 2.0 * s.plate_radius, "a pile, " + s.method, r.pile, r.kind.shape},
+          session.folder() / (name + ".txt"));
+    }
+  });
+}
+
+}  // namespace dem::rig::sand_pile

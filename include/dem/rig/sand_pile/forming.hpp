@@ -1,0 +1,152 @@
+#pragma once
+
+#include <dem/rig/sand_pile/apparatus.hpp>
+#include <dem/rig/sand_pile/results.hpp>
+#include <dem/rig/stages.hpp>
+#include <dem/soil/rest.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <span>
+#include <vector>
+
+// The stages of a pile: grains are filled in, let go, come to rest, and are watched for creep.
+
+namespace dem::rig::sand_pile {
+
+/// rad, of the flank of these grains, as the method has it.
+inline soil::Flank flank_of(std::span<const soil::Placement> grains, const Settings& s, double radius) {
+  soil::FlankOptions o{.low = s.flank_low, .high = s.flank_high, .directions = s.directions};
+  if (s.method != "drain") return soil::flank_of_heap(grains, radius, s.plate_radius, o);
+  o.directions = std::max<std::size_t>(1, s.directions / 3);
+  return soil::flank_of_slope(grains, radius, -s.box_length, 0.0, 0.5 * s.box_width, o);
+}
+
+/// One pile while it is made: its apparatus, and what is kept of it.
+template <class Model, class Look>
+class Forming {
+ public:
+  /// `look(world)` is called every sampling interval.
+  Forming(const Settings& s, Apparatus<Model>& rig, double radius, PileResult& result, Stages& stages, Look& look)
+      : s_(s),
+        rig_(rig),
+        radius_(radius),
+        size_(std::cbrt(4.0 / 3.0 * std::numbers::pi) * radius),
+        result_(result),
+        stages_(stages),
+        look_(look) {}
+
+  /// Lets the grains come to rest in their container.
+  void fill() {
+    stages_.begin(result_.kind.name + ": fill", s_.settle_limit);
+    if (!rest(soil::rest_speed(size_), s_.settle_limit)) {
+      throw Stopped(
+          text("the grains are not at rest in their container after {:g} s; raise --settle-limit or --damping",
+               s_.settle_limit));
+    }
+  }
+
+  /// Lifts the cylinder over the grains, or opens the funnel or the slot until nothing flows out of it any more.
+  void let_go() {
+    const double start = rig_.world.time();
+    if (s_.method == "lift") {
+      const double high = soil::height_percentile(soil::placements(rig_.world), 1.0) + 4.0 * s_.half_edge;
+      const double time = rig_.lift(high);
+      stages_.begin(result_.kind.name + ": lift", time);
+      while (rig_.world.time() < start + time) go_on(), stages_.update(rig_.world.time() - start, status());
+      return;
+    }
+    rig_.open();
+    stages_.begin(result_.kind.name + ": flow");
+    // As long as it takes a grain to fall from the orifice, or out of sight, and a little more.
+    soil::StaysBelow done(0.5, 0.3);
+    for (std::size_t before = flowing() + 1; !done(rig_.world.time(), before == flowing() ? 0.0 : 1.0);) {
+      before = flowing();
+      go_on();
+      stages_.update(rig_.world.time() - start, status());
+      if (rig_.world.time() - start < s_.flow_limit) continue;
+      if (s_.method == "drain") break;  // what creeps never ends: it is measured as it is
+      throw Stopped(text("grains still flow after {:g} s; raise --flow-limit", s_.flow_limit));
+    }
+    if (s_.method == "funnel" && flowing() > 0) {
+      throw Stopped(text("{} grains stay in the funnel, which is blocked; widen --orifice-radius (now {:g} m)",
+                         flowing(), s_.orifice_radius));
+    }
+  }
+
+  /// Waits until the pile stands, measures it, and watches it.
+  void measure() {
+    stages_.begin(result_.kind.name + ": rest", s_.rest_limit);
+    result_.at_rest = rest(0.1 * soil::rest_speed(size_), s_.rest_limit);
+    const std::vector<ParticleId> ids = rig_.world.particles();
+    result_.pile = soil::placements(rig_.world);
+    result_.flank = flank_of(result_.pile, s_, radius_);
+    stages_.begin(result_.kind.name + ": creep", s_.creep_time);
+    const double start = rig_.world.time();
+    while (rig_.world.time() < start + s_.creep_time) go_on(), stages_.update(rig_.world.time() - start, status());
+    result_.creep_time = rig_.world.time() - start;
+    result_.angle_after = flank_of(soil::placements(rig_.world), s_, radius_).angle;
+    std::vector<double> ways;
+    double square = 0.0;
+    const std::vector<ParticleId> left = rig_.world.particles();
+    for (std::size_t k = 0, next = 0; k < ids.size(); ++k) {
+      while (next < left.size() && left[next].index() < ids[k].index()) ++next;
+      if (next == left.size() || left[next] != ids[k]) continue;  // it fell off
+      ways.push_back((rig_.world.position(ids[k]) - result_.pile[k].position).norm() / size_);
+      square += ways.back() * ways.back();
+    }
+    if (ways.empty()) return;
+    result_.creep = std::sqrt(square / static_cast<double>(ways.size()));
+    std::nth_element(ways.begin(), ways.begin() + static_cast<std::ptrdiff_t>(ways.size() / 2), ways.end());
+    result_.creep_median = ways[ways.size() / 2];
+  }
+
+ private:
+  static constexpr double interval = 0.01;  ///< s, of samples
+
+  /// Goes on for a sampling interval.
+  void go_on() {
+    run(rig_.world, interval);
+    result_.lost += rig_.remove_fallen();
+    if (rig_.world.particle_count() == 0) throw Stopped("no grain is left");
+    const auto grains = soil::placements(rig_.world);
+    const soil::Flank flank = flank_of(grains, s_, radius_);
+    result_.samples.push_back({rig_.world.time(), flank.angle * 180.0 / std::numbers::pi, flank.height,
+                               soil::rms_speed(rig_.world), static_cast<double>(grains.size())});
+    look_(rig_.world);
+  }
+  /// Goes on until the grains are slower than a limit for 50 ms; whether they are, by the time `longest` (s).
+  bool rest(double limit, double longest) {
+    const double start = rig_.world.time();
+    soil::StaysBelow slow(limit, 0.05);
+    while (rig_.world.time() - start < longest) {
+      go_on();
+      stages_.update(rig_.world.time() - start, status());
+      if (slow(rig_.world.time(), result_.samples.back().speed)) return true;
+    }
+    return false;
+  }
+  std::string status() const {
+    const Sample& sample = result_.samples.back();
+    return text("{:.1f} deg, grains at {:.2g} mm/s", sample.angle, 1e3 * sample.speed);
+  }
+  /// Grains that are in the funnel, or that are in the box at all.
+  std::size_t flowing() const {
+    if (s_.method == "drain") return rig_.world.particle_count();
+    std::size_t count = 0;
+    for (const ParticleId p : rig_.world.particles()) {
+      count += rig_.world.position(p).z() > s_.orifice_height - s_.half_edge;
+    }
+    return count;
+  }
+
+  const Settings& s_;
+  Apparatus<Model>& rig_;
+  double radius_, size_;  // m, of the sphere and of the cube with a grain's volume
+  PileResult& result_;
+  Stages& stages_;
+  Look& look_;
+};
+
+}  // namespace dem::rig::sand_pile

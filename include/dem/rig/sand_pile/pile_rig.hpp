@@ -1,0 +1,76 @@
+#pragma once
+
+#include <dem/rig/rig.hpp>
+#include <dem/rig/sand_pile/options.hpp>
+#include <dem/rig/sand_pile/report.hpp>
+#include <dem/rig/sand_pile/resolve.hpp>
+
+#include <iterator>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace dem::rig::sand_pile {
+
+/// Grains that a program has a world for.
+struct PileWorld {
+  const char* shape;                                                      ///< as a kind's name begins
+  void (*make)(const Settings&, PileResult&, report::Replay*, Session&);  ///< calls make_pile() with this world
+};
+
+/// The sand pile as a program. It does not know the worlds, so that they are compiled beside it.
+class PileRig : public Rig {
+ public:
+  explicit PileRig(std::span<const PileWorld> worlds) : worlds_(worlds) {}
+
+  void declare(Options& options) override { sand_pile::declare(options, settings); }
+  void find_idle(IdleOptions& idle) const override { sand_pile::find_idle(idle, settings); }
+  void resolve() override { sand_pile::resolve(settings); }
+  std::string output() const override { return settings.output; }
+  ResultNames results() const override {
+    ResultNames names = {.files = {"results.csv"},
+                         .plots = {"profiles", "angles", "angle_over_time"},
+                         .frames = {"grains", "apparatus", "spheres", "superquadrics", "polyhedra"}};
+    for (const char* shape : {"cube8", "polyhedron", "superquadric", "sphere"}) {
+      for (const char* law : {"", "-viscous", "-rolling"}) {
+        for (const char* type : {".csv", ".txt", ".pvd"}) names.files.push_back(text("{}{}_#+{}", shape, law, type));
+      }
+    }
+    return names;
+  }
+  std::vector<OwnWord> words() const override { return {std::begin(own_words), std::end(own_words)}; }
+
+  void run(Session& session) override {
+    const std::vector<Kind> kinds = kinds_in(settings.kinds);
+    for (const Kind& kind : kinds) world_of(kind);
+    session.begin_run(4 * static_cast<int>(kinds.size() * settings.seeds));
+    for (const Kind& kind : kinds) {
+      for (std::uint64_t k = 0; k < settings.seeds; ++k) {
+        PileResult& r = campaign.piles.emplace_back();
+        r.kind = kind;
+        r.seed = settings.seed + k;
+        const bool first = campaign.piles.size() == 1 && settings.replay;
+        if (first) campaign.replay.emplace(report::ReplayOptions{.frames = 100, .interval = settings.frame_time});
+        world_of(kind).make(settings, r, first ? &*campaign.replay : nullptr, session);
+        session.finish(text("{:.1f} deg", degrees * r.flank.angle));
+      }
+    }
+  }
+
+  bool report(Report& report) const override { return sand_pile::report(report, settings, campaign); }
+
+  Settings settings;
+  Campaign campaign;
+
+ private:
+  const PileWorld& world_of(const Kind& kind) const {
+    for (const PileWorld& world : worlds_) {
+      if (kind.shape == world.shape) return world;
+    }
+    throw InAnotherProgram(text("this program has no grains of shape {}", kind.shape));
+  }
+
+  std::span<const PileWorld> worlds_;
+};
+
+}  // namespace dem::rig::sand_pile

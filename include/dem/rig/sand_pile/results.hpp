@@ -1,0 +1,56 @@
+#pragma once
+
+#include <dem/report/replay_recorder.hpp>
+#include <dem/rig/samples.hpp>
+#include <dem/rig/sand_pile/settings.hpp>
+#include <dem/soil/angle_of_repose.hpp>
+
+#include <limits>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace dem::rig::sand_pile {
+
+inline constexpr double not_known = std::numeric_limits<double>::quiet_NaN();
+
+/// A pile at one time.
+struct Sample {
+  double time;    ///< s
+  double angle;   ///< deg, of the flank; NaN while there is none
+  double height;  ///< m, of the mean profile's top
+  double speed;   ///< m/s, root mean square of the grains'
+  double grains;  ///< that are still there
+};
+inline constexpr Column<Sample> sample_columns[] = {{"time_s", &Sample::time},
+                                                    {"angle_deg", &Sample::angle},
+                                                    {"height_m", &Sample::height},
+                                                    {"rms_speed_m_s", &Sample::speed},
+                                                    {"grains", &Sample::grains}};
+
+/// What became of one pile.
+struct PileResult {
+  Kind kind = {};
+  std::uint64_t seed = 0;
+  bool finished = false;
+  std::size_t poured = 0;             ///< grains
+  std::vector<soil::Placement> pile;  ///< as it was measured
+  soil::Flank flank = {};             ///< of it
+  bool at_rest = false;               ///< it stood still when it was measured
+  std::size_t lost = 0;               ///< grains that fell off the plate or out of the box
+  double creep_time = not_known;      ///< s
+  double creep = not_known;           ///< sizes (cube root of the volume), r.m.s. way of the grains in that time
+  double creep_median = not_known;    ///< sizes, median way
+  double angle_after = not_known;     ///< rad, of the flank after that time
+  double time_step = not_known;       ///< s
+  std::string time_step_limit = {};
+  std::vector<Sample> samples = {};
+};
+
+/// All piles of a run.
+struct Campaign {
+  std::vector<PileResult> piles = {};
+  std::optional<report::Replay> replay = {};  ///< of the first
+};
+
+}  // namespace dem::rig::sand_pile
