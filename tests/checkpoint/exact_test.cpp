@@ -28,6 +28,17 @@ Scene<Model> scene(const SceneOptions& o, bool has_grains = true) {
   return Scene<Model>(o, constants<Model>(), shapes<Model>(), has_grains);
 }
 
+/// What a program keeps beside its world.
+struct Progress {
+  std::uint64_t rows = 0;
+  std::vector<double> samples;
+  std::string stage;
+  template <class V>
+  void fields(V& v) {
+    v("rows", rows), v("samples", samples, "N"), v("stage", stage);
+  }
+};
+
 }  // namespace
 
 TEMPLATE_TEST_CASE("n steps, a file and n steps are 2n steps in every bit", "", CorrectedBalls, Balls, VerletBalls,
@@ -83,8 +94,8 @@ TEST_CASE("a state may be saved between any two steps, and in the middle of what
     w.add_particle({.species = SpeciesId(0), .position = {0.014, 0.010, 0.035}});
     w.set_velocity(ParticleId(3), {0, 0, 0.1});
     w.machine().set_fixed(w.machine().body_named("left disc"));
-    w.machine().set_throttle(dem::mbd::ActuatorId(0), -0.2);
-    w.machine().switch_on(dem::mbd::LoadId(0), false);
+    w.machine().set_throttle(dem::ActuatorId(0), -0.2);
+    w.machine().switch_on(dem::LoadId(0), false);
   }
   go_through_file();
   for (auto* s : {&whole, &pieces}) REQUIRE(s->world.run_for(100.3 * s->world.time_step()));
@@ -97,15 +108,6 @@ TEST_CASE("a state may be saved between any two steps, and in the middle of what
 }
 
 TEST_CASE("what else a program keeps is saved with its world") {
-  struct Progress {
-    std::uint64_t rows = 0;
-    std::vector<double> samples;
-    std::string stage;
-    template <class V>
-    void fields(V& v) {
-      v("rows", rows), v("samples", samples, "N"), v("stage", stage);
-    }
-  };
   const Folder folder;
   auto one = scene<Balls>({});
   one.run(10);

@@ -200,8 +200,6 @@ class World : public WorldSetup<M> {
   const WorldState<Model>& state() const { return state_; }
   WorldState<Model>& state() { return state_; }
 
-  /// Whether the set-up has been checked since it was changed last: see prepare().
-  bool is_checked() const { return checked_; }
   /// The state, for <dem/io/checkpoint.hpp>. Throws Error for a world whose last step was broken off.
   template <class V>
   void fields(V& v) {

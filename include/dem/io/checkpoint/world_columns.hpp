@@ -216,7 +216,7 @@ void restore(World<Model>& world, Columns& columns, Others&... others) {
   Fields v(Fields::Task::restore, columns);
   detail::world_fields(v, world, others...);
   v.check_all_read();
-  detail::settle_restored(world.state(), world.is_checked());
+  detail::settle_restored(world.state(), columns.at("world/checked").bytes()[0] != std::byte{0});
 }
 
 }  // namespace dem::io
