@@ -45,7 +45,6 @@ TEST_CASE("a difference of the set-up is named") {
         }) == "no error");
 
   std::string text = load_into(scene<Balls>({}, 0.5));
-  INFO(text);
   CHECK(holds(text, "contact of all other materials: friction is (0.4, 2000, 0.015, 0.975) in the saved state, but (0.5,"));
   text = load_into(scene<Balls>({.hinge_name = "knee"}));
   CHECK(holds(text, "name is 'hinge' in the saved state, but 'knee' in this program"));
@@ -68,6 +67,7 @@ TEST_CASE("a difference of the set-up is named") {
   text = load_into(std::move(grown));
   CHECK(holds(text, "species: the saved state has 2, but this program has 3"));
   text = load_into(scene<Cubes>());
+  INFO(text);
   CHECK(holds(text, "shape is 'dem::shape::Sphere' in the saved state, but 'dem::shape::SphereCluster<8>' in this program"));
 }
 

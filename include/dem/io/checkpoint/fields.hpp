@@ -57,7 +57,7 @@ class Fields : public FieldColumns {
       named_ = false;
       kind_of_part_ = one;
       if constexpr (has_given<std::remove_reference_t<decltype(items[k])>>) visit(items[k], "");
-      else part_of("name", items[k], "");
+      else given("name", items[k]);
     }
     part_ = outer;
   }
