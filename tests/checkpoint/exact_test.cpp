@@ -64,7 +64,9 @@ TEMPLATE_TEST_CASE("n steps, a file and n steps are 2n steps in every bit", "", 
   CHECK(columns.at("body_contacts/points/key").rows() > 0);
   CHECK(whole.world.state().rebuilds > 3);
   const auto& parts = whole.world.machine().parts();
-  CHECK(parts.friction[0].force.x * parts.friction[0].force.x + parts.friction[0].torque.y * parts.friction[0].torque.y > 0);
+  CHECK(parts.friction[0].force.x * parts.friction[0].force.x +
+            parts.friction[0].torque.y * parts.friction[0].torque.y >
+        0);
   CHECK(parts.couplings[0].multiplier != 0.0);
   CHECK(parts.springs[0].force != 0.0);
 }

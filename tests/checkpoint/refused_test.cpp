@@ -45,7 +45,8 @@ TEST_CASE("a difference of the set-up is named") {
         }) == "no error");
 
   std::string text = load_into(scene<Balls>({}, 0.5));
-  CHECK(holds(text, "contact of all other materials: friction is (0.4, 2000, 0.015, 0.975) in the saved state, but (0.5,"));
+  CHECK(holds(text,
+              "contact of all other materials: friction is (0.4, 2000, 0.015, 0.975) in the saved state, but (0.5,"));
   text = load_into(scene<Balls>({.hinge_name = "knee"}));
   CHECK(holds(text, "name is 'hinge' in the saved state, but 'knee' in this program"));
   text = load_into(scene<Balls>({.hinge_stiffness = 1e4}));
@@ -68,7 +69,8 @@ TEST_CASE("a difference of the set-up is named") {
   CHECK(holds(text, "species: the saved state has 2, but this program has 3"));
   text = load_into(scene<Cubes>());
   INFO(text);
-  CHECK(holds(text, "shape is 'dem::shape::Sphere' in the saved state, but 'dem::shape::SphereCluster<8>' in this program"));
+  CHECK(holds(text,
+              "shape is 'dem::shape::Sphere' in the saved state, but 'dem::shape::SphereCluster<8>' in this program"));
 }
 
 TEST_CASE("a file that is cut short, damaged, of another schema or none at all is refused in words") {
@@ -85,7 +87,8 @@ TEST_CASE("a file that is cut short, damaged, of another schema or none at all i
   };
   CHECK(refusal(good) == "no error");
   for (const double share : {0.99999, 0.9, 0.5, 0.1}) {
-    CHECK(holds(refusal(good.substr(0, static_cast<std::size_t>(share * static_cast<double>(good.size())))), "cut short"));
+    CHECK(holds(refusal(good.substr(0, static_cast<std::size_t>(share * static_cast<double>(good.size())))),
+                "cut short"));
   }
   CHECK(holds(refusal(good.substr(0, 300)), "no saved state"));
   CHECK(holds(refusal(""), "no saved state"));

@@ -34,8 +34,8 @@ void add_machine(World& world, const SceneOptions& o) {
                         .with_friction({.coefficient = 0.3, .radius = 1e-3});
   if (o.hinge_stiffness > 0.0) hinge_spec = hinge_spec.with_stiffness(o.hinge_stiffness, 1e-3 * o.hinge_stiffness);
   const auto hinge = m.add_joint(hinge_spec);
-  const auto stirring = m.add_motion(
-      prescribed_joint("stirring", slide, Signal::function([](double t) { return 1e-3 * (1.0 - std::cos(400.0 * t)); })));
+  const auto stirring = m.add_motion(prescribed_joint(
+      "stirring", slide, Signal::function([](double t) { return 1e-3 * (1.0 - std::cos(400.0 * t)); })));
   world.add_surface(flap, dem::surface::Box(edges), {.name = "flap"});
   m.add_sensor(contact_sensor("grains on the flap", flap, 1e-3));
   m.add_sensor(total_force_sensor("all on the flap", flap, 2e-3));
@@ -50,8 +50,9 @@ void add_machine(World& world, const SceneOptions& o) {
   const auto axle_b = m.add_joint(revolute("right axle", world.ground(), b, right, Vec3::UnitZ()));
   m.add_coupling(gear("gears", axle_a, axle_b, -1.5));
   m.add_actuator(motor("motor", axle_a, Curve{{0.0, 2e-5}, {400.0, 0.0}}, 0.7));
-  const auto arm = m.add_actuator(linear_actuator("arm", world.ground(), left + Vec3(4e-3, 0.01, 0), b,
-                                                  right + Vec3(4e-3, 0, 0), 2.0, 1e-3, Signal::sine(1e-3, 50.0, 0, 0.02)));
+  const auto arm =
+      m.add_actuator(linear_actuator("arm", world.ground(), left + Vec3(4e-3, 0.01, 0), b, right + Vec3(4e-3, 0, 0),
+                                     2.0, 1e-3, Signal::sine(1e-3, 50.0, 0, 0.02)));
   m.add_sensor(actuator_sensor("of the arm", arm, 1e-3));
   m.add_spring(spring("spring", a, left + Vec3(4e-3, 0, 0), b, right - Vec3(4e-3, 0, 0), o.spring_stiffness, 1e-3));
   m.add_load(applied_force("push", b, right, {1, 0, 0}, Signal::ramp(0.0, 1e-3)));
@@ -65,9 +66,9 @@ void add_machine(World& world, const SceneOptions& o) {
     const auto plate = m.add_body(box_body("plate", {0.01, 0.01, 2e-3}, 2650).at(place));
     m.add_joint(bushing("mount", world.ground(), plate, place, Vec3::UnitZ(), Vec3::Constant(500), Vec3::Constant(0.05),
                         Vec3::Constant(0.1), Vec3::Constant(1e-5)));
-    const auto block = m.add_body(
-        box_body("block", {4e-3, 4e-3, 4e-3}, 1000)
-            .at(place + Vec3(0, 0, 3.2e-3), Eigen::AngleAxisd(0.1, Vec3::UnitX()).toRotationMatrix()));
+    const auto block =
+        m.add_body(box_body("block", {4e-3, 4e-3, 4e-3}, 1000)
+                       .at(place + Vec3(0, 0, 3.2e-3), Eigen::AngleAxisd(0.1, Vec3::UnitX()).toRotationMatrix()));
     const auto s1 = world.add_surface(plate, dem::surface::Box({0.01, 0.01, 2e-3}), {.name = "plate"});
     const auto s2 = world.add_surface(block, dem::surface::Box(Vec3::Constant(4e-3)), {.name = "block"});
     world.add_body_contact(s1, s2);

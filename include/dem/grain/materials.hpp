@@ -134,9 +134,11 @@ class Materials {
 
   template <class V>
   void fields(V& v) {
-    v.list("names", names_, "material"), v.given("has_default", has_default_), v.list("pairs", pairs_, "pair of materials");
+    v.list("names", names_, "material"), v.given("has_default", has_default_),
+        v.list("pairs", pairs_, "pair of materials");
     for (std::size_t k = 0; k < table_.size(); ++k) {
-      v.about(k == 0 ? "contact of all other materials" : "contact of '" + name(pairs_[k - 1].a) + "' and '" + name(pairs_[k - 1].b) + "'",
+      v.about(k == 0 ? "contact of all other materials"
+                     : "contact of '" + name(pairs_[k - 1].a) + "' and '" + name(pairs_[k - 1].b) + "'",
               [&] { v("constants", table_[k]); });
     }
     v("range", range_, "m");
@@ -146,7 +148,9 @@ class Materials {
   struct Pair {
     MaterialId a, b;
     template <class V>
-    void fields(V& v) { v.given("a", a), v.given("b", b); }
+    void fields(V& v) {
+      v.given("a", a), v.given("b", b);
+    }
   };
   static constexpr std::uint32_t default_entry = 0;
 

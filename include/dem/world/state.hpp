@@ -24,7 +24,9 @@ struct SurfaceSensor {
   SurfaceId surface;
   mbd::WindowAverage average;
   template <class V>
-  void fields(V& v) { v.given("surface", surface), v("average", average); }
+  void fields(V& v) {
+    v.given("surface", surface), v("average", average);
+  }
 };
 
 /// What a thread writes down while it finds contacts.
@@ -83,7 +85,8 @@ struct WorldState {
     v.given("time_step_wanted", options.time_step, "s"), v.given("time_step_safety", options.time_step_safety);
     v.given("skin", options.skin, "m"), v.given("overlap_limit", options.overlap_limit);
     v.given("has_domain", options.domain.has_value());
-    if (options.domain) v.given("domain_low", options.domain->low, "m"), v.given("domain_high", options.domain->high, "m");
+    if (options.domain)
+      v.given("domain_low", options.domain->low, "m"), v.given("domain_high", options.domain->high, "m");
     v("gravity", options.gravity, "m/s^2"), v("time", time, "s"), v("time_step", time_step, "s"), v("steps", step);
     v("materials", materials), v.list("species", species, "species"), v("machine", machine);
     v.list("surfaces", surfaces, "surface"), v.list("surface_sensors", surface_sensors, "surface sensor");

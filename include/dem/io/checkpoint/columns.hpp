@@ -36,7 +36,7 @@ struct Column {
   std::vector<std::byte> own = {};           ///< the numbers, unless they are borrowed
   std::span<const std::byte> borrowed = {};  ///< numbers that stay where they are while the column is in use
   std::vector<std::string> texts = {};       ///< of kind text
-  std::size_t at = 0;                  ///< the next row to be read
+  std::size_t at = 0;                        ///< the next row to be read
 
   std::span<const std::byte> bytes() const { return borrowed.empty() ? std::span<const std::byte>(own) : borrowed; }
   std::size_t row_bytes() const { return width * size_of(kind); }

@@ -96,17 +96,17 @@ class FieldColumns {
 
   Task task_;
   Columns* columns_;
-  std::string path_;          ///< of the present field
-  std::string part_;          ///< in words, whose fields they are
+  std::string path_;  ///< of the present field
+  std::string part_;  ///< in words, whose fields they are
   std::string kind_of_part_;
-  bool named_ = true;         ///< whether the present part has been named
+  bool named_ = true;  ///< whether the present part has been named
 };
-
 
 DEM_COLD inline Column& FieldColumns::column() {
   const auto found = columns_->find(path_);
   if (found == columns_->end()) {
-    fail("the state has no '{}', which this program needs; it was saved by another program or for another model", path_);
+    fail("the state has no '{}', which this program needs; it was saved by another program or for another model",
+         path_);
   }
   return found->second;
 }
@@ -114,9 +114,10 @@ DEM_COLD inline Column& FieldColumns::column() {
 inline void FieldColumns::take(ColumnKind kind, std::size_t width, void* data, std::size_t n) {
   Column& c = column();
   if (c.kind != kind || c.width != width || c.at + n > c.rows()) {
-    fail("'{}' of the state has {} rows of {} numbers, but this program needs {} of {}; it was saved by another program "
-         "or for another model",
-         path_, c.rows(), c.width, c.at + n, width);
+    fail(
+        "'{}' of the state has {} rows of {} numbers, but this program needs {} of {}; it was saved by another program "
+        "or for another model",
+        path_, c.rows(), c.width, c.at + n, width);
   }
   if (kind == ColumnKind::text) {
     for (std::size_t k = 0; k < n; ++k) static_cast<std::string*>(data)[k] = c.texts[c.at + k];
@@ -159,9 +160,8 @@ inline void FieldColumns::exchange(ColumnKind kind, std::size_t width, void* dat
 DEM_COLD inline void FieldColumns::compare(const Column& c, const void* data) {
   const void* saved = c.kind == ColumnKind::text ? static_cast<const void*>(&c.texts[c.at])
                                                  : static_cast<const void*>(c.bytes().data() + c.at * c.row_bytes());
-  const bool same = c.kind == ColumnKind::text
-                        ? c.texts[c.at] == *static_cast<const std::string*>(data)
-                        : std::memcmp(saved, data, c.row_bytes()) == 0;
+  const bool same = c.kind == ColumnKind::text ? c.texts[c.at] == *static_cast<const std::string*>(data)
+                                               : std::memcmp(saved, data, c.row_bytes()) == 0;
   if (same) return;
   fail("{}{} is {} in the saved state, but {} in this program; set it up as the program did that saved it",
        part_.empty() ? "" : part_ + ": ", detail::last_word(path_), detail::in_words(c.kind, c.width, saved, c.unit),
@@ -192,8 +192,9 @@ DEM_COLD inline void FieldColumns::compare_count(std::size_t count, const char* 
 DEM_COLD inline void FieldColumns::check_all_read() const {
   for (const auto& [name, column] : *columns_) {
     if (column.at != column.rows()) {
-      fail("'{}' of the saved state is not part of this program's; it was saved by another program or for another model",
-           name);
+      fail(
+          "'{}' of the saved state is not part of this program's; it was saved by another program or for another model",
+          name);
     }
   }
 }

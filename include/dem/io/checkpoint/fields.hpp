@@ -12,8 +12,8 @@
 
 namespace dem::io {
 
-/// Goes through the fields of a state, which names them once: to collect them in columns, to compare what a program sets
-/// up with what it set up when the columns were collected, and to restore the state from them.
+/// Goes through the fields of a state, which names them once: to collect them in columns, to compare what a program
+/// sets up with what it set up when the columns were collected, and to restore the state from them.
 ///
 /// A struct with a state has one member function, of which this class is the argument:
 ///
@@ -23,8 +23,9 @@ namespace dem::io {
 ///       v("speed", speed, "m/s");             // state: restored
 ///     }
 ///
-/// Fields may be numbers, bools, enums, ids, texts, vectors and matrices, wrenches, structs with fields of their own, and
-/// std::vector, std::array, std::optional and std::pair of them. A field of a part in a list is a column with a row a part.
+/// Fields may be numbers, bools, enums, ids, texts, vectors and matrices, wrenches, structs with fields of their own,
+/// and std::vector, std::array, std::optional and std::pair of them. A field of a part in a list is a column with a row
+/// a part.
 class Fields : public FieldColumns {
  public:
   using FieldColumns::FieldColumns;
@@ -44,8 +45,8 @@ class Fields : public FieldColumns {
     T copy = x;
     visit(copy, unit);
   }
-  /// A list of parts that the program sets up: their number is compared. A difference is told of `one` with the name that
-  /// it has as its first field, or its number.
+  /// A list of parts that the program sets up: their number is compared. A difference is told of `one` with the name
+  /// that it has as its first field, or its number.
   template <class Items>
   void list(std::string_view name, Items& items, const char* one) {
     const Inside inside(*this, name);
@@ -80,8 +81,10 @@ class Fields : public FieldColumns {
       exchange(ColumnKind::real, sizeof(Struct) / sizeof(double), &copy, "");
     }
   }
-  /// n rows of `width` numbers that stay where they are while the columns are in use; to be restored they must have room.
-  void rows(std::string_view name, ColumnKind kind, std::size_t width, void* data, std::size_t n, const char* unit = "") {
+  /// n rows of `width` numbers that stay where they are while the columns are in use; to be restored they must have
+  /// room.
+  void rows(std::string_view name, ColumnKind kind, std::size_t width, void* data, std::size_t n,
+            const char* unit = "") {
     if (task_ == Task::compare) return;
     const Inside inside(*this, name);
     const std::size_t bytes = n * width * size_of(kind);
@@ -123,7 +126,9 @@ class Fields : public FieldColumns {
 
  private:
   template <class T>
-  static constexpr bool has_given = requires(T& x, Fields& f) { x.fields(f); };
+  static constexpr bool has_given = requires(T& x, Fields& f) {
+    x.fields(f);
+  };
 
   template <class T>
   void visit(T& x, const char* unit) {
@@ -143,7 +148,11 @@ class Fields : public FieldColumns {
       auto value = static_cast<std::uint64_t>(x);
       exchange(ColumnKind::natural, 1, &value, unit);
       x = static_cast<T>(value);
-    } else if constexpr (requires { x.data(); x.size(); T::RowsAtCompileTime; }) {
+    } else if constexpr (requires {
+                           x.data();
+                           x.size();
+                           T::RowsAtCompileTime;
+                         }) {
       exchange(ColumnKind::real, static_cast<std::size_t>(T::RowsAtCompileTime * T::ColsAtCompileTime), x.data(), unit);
     } else {
       visit_more(x, unit);

@@ -124,7 +124,8 @@ inline void write_column(hid_t file, const std::string& name, const Column& c) {
   H5Pset_obj_track_times(creation, false);  // the same state is the same file
   if (c.rows() > 0) {
     const std::size_t row = is_text ? length : c.row_bytes();
-    const hsize_t piece[2] = {std::min<hsize_t>(c.rows(), std::max<std::size_t>(1, (std::size_t{1} << 20) / row)), c.width};
+    const hsize_t piece[2] = {std::min<hsize_t>(c.rows(), std::max<std::size_t>(1, (std::size_t{1} << 20) / row)),
+                              c.width};
     H5Pset_chunk(creation, rank, piece);
     H5Pset_shuffle(creation);
     if (H5Zfilter_avail(H5Z_FILTER_DEFLATE) > 0) H5Pset_deflate(creation, 1);
@@ -152,10 +153,10 @@ inline Column read_column(hid_t file, const std::string& name) {
   } else {
     const bool is_signed = H5Tget_sign(type) == H5T_SGN_2;
     const std::size_t bytes = H5Tget_size(type);
-    c.kind = is_signed     ? ColumnKind::integer
-             : bytes == 8  ? ColumnKind::natural
-             : bytes == 4  ? ColumnKind::natural32
-                           : ColumnKind::byte;
+    c.kind = is_signed    ? ColumnKind::integer
+             : bytes == 8 ? ColumnKind::natural
+             : bytes == 4 ? ColumnKind::natural32
+                          : ColumnKind::byte;
   }
   const int rank = H5Sget_simple_extent_ndims(space);
   hsize_t size[2] = {0, 1};

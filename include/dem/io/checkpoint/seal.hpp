@@ -1,7 +1,7 @@
 #pragma once
 
-// The seal of a file with a saved state: its first 512 bytes say what it is, of which schema, how long, and a hash of all
-// other bytes. So a file that is cut short or damaged is refused before anything tries to make sense of it.
+// The seal of a file with a saved state: its first 512 bytes say what it is, of which schema, how long, and a hash of
+// all other bytes. So a file that is cut short or damaged is refused before anything tries to make sense of it.
 
 #include <dem/core/error.hpp>
 #include <dem/io/checkpoint/columns.hpp>
@@ -36,8 +36,8 @@ struct Seal {
   }
   /// False if these are not the first bytes of such a file.
   bool read(const std::string& line) {
-    return line.starts_with(mark) &&
-           std::sscanf(line.c_str() + std::strlen(mark), ", schema %llu, %llu bytes, hash %llx", &schema, &bytes, &hash) == 3;
+    return line.starts_with(mark) && std::sscanf(line.c_str() + std::strlen(mark),
+                                                 ", schema %llu, %llu bytes, hash %llx", &schema, &bytes, &hash) == 3;
   }
 };
 

@@ -113,7 +113,8 @@ void chunk_fields(Fields& v, WorldState<Model>& w) {
       if (first.end() - from < std::ptrdiff_t{chunk_size + 1}) fail("the saved neighbour lists are too short");
       std::copy_n(from, chunk_size + 1, c.candidate_first.begin());
       from += chunk_size + 1;
-      if (partner.end() - next < std::ptrdiff_t{c.candidate_first.back()}) fail("the saved neighbour lists are too short");
+      if (partner.end() - next < std::ptrdiff_t{c.candidate_first.back()})
+        fail("the saved neighbour lists are too short");
       c.candidate.assign(next, next + c.candidate_first.back());
       next += c.candidate_first.back();
       grain::list_owners(c);
@@ -134,14 +135,17 @@ void chunk_fields(Fields& v, WorldState<Model>& w) {
     if (is_restoring) {
       for (Chunk<Model>& c : w.chunks) {
         if (at + c.candidate.size() * sizeof(Memory) > bytes.size()) fail("the saved searches are too few");
-        std::memcpy(static_cast<void*>(c.searches.memory.data()), bytes.data() + at, c.candidate.size() * sizeof(Memory));
+        std::memcpy(static_cast<void*>(c.searches.memory.data()), bytes.data() + at,
+                    c.candidate.size() * sizeof(Memory));
         at += c.candidate.size() * sizeof(Memory);
       }
     }
   }
   constexpr int size = history_size<Model>;
-  contact_fields<size>(v, "pairs", w.chunks, [](auto& c) -> auto& { return c.pair_contacts.last; });
-  contact_fields<size>(v, "surfaces", w.chunks, [](auto& c) -> auto& { return c.surface_contacts.last; });
+  contact_fields<size>(
+      v, "pairs", w.chunks, [](auto& c) -> auto& { return c.pair_contacts.last; });
+  contact_fields<size>(
+      v, "surfaces", w.chunks, [](auto& c) -> auto& { return c.surface_contacts.last; });
 }
 
 /// The policies that a world is made of.
@@ -173,7 +177,8 @@ void world_fields(Fields& v, World<Model>& world, Others&... others) {
     std::uint64_t blocks = w.body_contacts.memories.size();
     v("blocks", blocks);
     w.body_contacts.memories.resize(blocks);
-    contact_fields<history_size<Model>>(v, "points", w.body_contacts.memories, [](auto& m) -> auto& { return m.last; });
+    contact_fields<history_size<Model>>(
+        v, "points", w.body_contacts.memories, [](auto& m) -> auto& { return m.last; });
   });
   int number = 0;
   (v.group("program" + std::to_string(number++), [&] { others.fields(v); }), ...);
@@ -207,8 +212,8 @@ Columns columns_of(const World<Model>& world, const Others&... others) {
 }
 
 /// Puts a world, which the program has set up as it did before, into a state. Grains are those of the state. Throws
-/// Error where the set-up differs, in words, before anything is changed. A state that fits the set-up but lacks something
-/// is refused while it is being read: the world is then good for nothing.
+/// Error where the set-up differs, in words, before anything is changed. A state that fits the set-up but lacks
+/// something is refused while it is being read: the world is then good for nothing.
 template <class Model, class... Others>
 void restore(World<Model>& world, Columns& columns, Others&... others) {
   Fields compare(Fields::Task::compare, columns);

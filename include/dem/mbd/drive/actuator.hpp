@@ -108,11 +108,11 @@ DEM_COLD inline ActuatorSpec motor(std::string name, JointId joint, Curve torque
 struct Actuator {
   ActuatorSpec spec;
   std::uint32_t a = 0, b = 0;
-  Vector3<double> point_a = {}, point_b = {};     ///< m, body frames
-  double coordinate = 0.0;                        ///< m or rad
-  double speed = 0.0;                             ///< m/s or rad/s
-  double force = 0.0;                             ///< N or N m, positive where it makes the coordinate grow
-  Signal::Sample target = {};                     ///< the set point
+  Vector3<double> point_a = {}, point_b = {};  ///< m, body frames
+  double coordinate = 0.0;                     ///< m or rad
+  double speed = 0.0;                          ///< m/s or rad/s
+  double force = 0.0;                          ///< N or N m, positive where it makes the coordinate grow
+  Signal::Sample target = {};                  ///< the set point
   template <class V>
   void fields(V& v) {
     v.given("name", spec.name), v.given("joint", spec.joint), v.given("a", a), v.given("b", b);

@@ -94,7 +94,9 @@ class Curve {
   const std::vector<std::pair<double, double>>& points() const { return points_; }
 
   template <class V>
-  void fields(V& v) { v.given("points", points_), v.given("held_outside", held_); }
+  void fields(V& v) {
+    v.given("points", points_), v.given("held_outside", held_);
+  }
 
  private:
   using Point = std::pair<double, double>;

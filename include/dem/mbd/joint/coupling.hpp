@@ -25,7 +25,9 @@ struct CouplingSpec {
     Dof dof = Dof::own;
     Moves needs = Moves::any;  ///< what the coordinate has to be; `own` is then the joint's turn or its slide
     template <class V>
-    void fields(V& v) { v.given("joint", joint), v.given("dof", dof), v.given("ratio", ratio); }
+    void fields(V& v) {
+      v.given("joint", joint), v.given("dof", dof), v.given("ratio", ratio);
+    }
   };
   std::string name;
   std::vector<Term> terms;

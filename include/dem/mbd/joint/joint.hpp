@@ -12,7 +12,9 @@ namespace dem::mbd {
 struct Axes {
   Vector3<double> x, y, z;
   template <class V>
-  void fields(V& v) { v("x", x), v("y", y), v("z", z); }
+  void fields(V& v) {
+    v("x", x), v("y", y), v("z", z);
+  }
 };
 
 struct BushingTables;

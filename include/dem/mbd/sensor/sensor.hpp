@@ -48,14 +48,18 @@ class WindowAverage {
   double window() const { return window_; }
 
   template <class V>
-  void fields(V& v) { v.given("window", window_, "s"), v("latest", latest_), v("head", head_), v("bins", bins_); }
+  void fields(V& v) {
+    v.given("window", window_, "s"), v("latest", latest_), v("head", head_), v("bins", bins_);
+  }
 
  private:
   struct Bin {
     Wrench sum;
     double time = 0.0;
     template <class V>
-    void fields(V& v) { v("sum", sum), v("time", time, "s"); }
+    void fields(V& v) {
+      v("sum", sum), v("time", time, "s");
+    }
   };
   static constexpr int bin_count = 64, ring_size = bin_count + 1;
 

@@ -77,7 +77,9 @@ class BodiesInMotion {
     double mass;
     Vector3<double> inertia, inverse_inertia;
     template <class V>
-    void fields(V& v) { v("mass", mass), v("inertia", inertia), v("inverse_inertia", inverse_inertia); }
+    void fields(V& v) {
+      v("mass", mass), v("inertia", inertia), v("inverse_inertia", inverse_inertia);
+    }
   };
 
   static integrator::Acceleration<double> acceleration(const Body& b, const Inverse& inv, const Vector3<double>& g,

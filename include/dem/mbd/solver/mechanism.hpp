@@ -210,7 +210,9 @@ class Mechanism {
   }
 
   template <class V>
-  void fields(V& v) { v("substeps", substeps), v("largest_speed", largest_speed), v("parts", parts_); }
+  void fields(V& v) {
+    v("substeps", substeps), v("largest_speed", largest_speed), v("parts", parts_);
+  }
 
  private:
   Parts parts_;

@@ -38,7 +38,9 @@ struct Connection {
   BodyId body;
   Vec3 point = Vec3::Zero();  ///< m, body frame
   template <class V>
-  void fields(V& v) { v.given("name", name), v.given("body", body), v("point", point, "m"); }
+  void fields(V& v) {
+    v.given("name", name), v.given("body", body), v("point", point, "m");
+  }
 };
 
 /// All that a machine is made of, as plain arrays; an Id is an index into its array.
