@@ -4,6 +4,7 @@
 
 #include <dem/core/type_name.hpp>
 #include <dem/io/checkpoint/fields.hpp>
+#include <dem/io/checkpoint/sleep_columns.hpp>
 #include <dem/world/world.hpp>
 
 #include <string>
@@ -168,6 +169,7 @@ void world_fields(Fields& v, World<Model>& world, Others&... others) {
   v.group("world", [&] { world.fields(v); });
   v.group("grains", [&] { grain_fields(v, w.particles); });
   v.group("contacts", [&] { chunk_fields(v, w); });
+  v.group("sleep", [&] { sleep_fields(v, w); });
   v.group("lost", [&] {
     std::vector<std::uint32_t> lost(w.known_lost.begin(), w.known_lost.end());
     v("ids", lost);

@@ -117,7 +117,8 @@ struct Actuator {
   void fields(V& v) {
     v.given("name", spec.name), v.given("joint", spec.joint), v.given("a", a), v.given("b", b);
     v.given("dof", spec.dof), v.given("position_gain", spec.position_gain), v.given("speed_gain", spec.speed_gain);
-    v.given("max_force", spec.max_force), v("torque_curve", spec.torque_curve), v("throttle", spec.throttle);
+    v.given("max_force", spec.max_force), v("torque_curve", spec.torque_curve), v.given("engine_map", spec.engine_map),
+        v.given("idle_speed", spec.idle_speed), v("throttle", spec.throttle);
     v.given("has_set_point", spec.set_point.has_value()), v("on", spec.on);
     if (spec.set_point) v("set_point", *spec.set_point);
     v("point_a", point_a, "m"), v("point_b", point_b, "m"), v("coordinate", coordinate), v("speed", speed);

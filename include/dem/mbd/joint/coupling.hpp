@@ -26,7 +26,7 @@ struct CouplingSpec {
     Moves needs = Moves::any;  ///< what the coordinate has to be; `own` is then the joint's turn or its slide
     template <class V>
     void fields(V& v) {
-      v.given("joint", joint), v.given("dof", dof), v.given("ratio", ratio);
+      v.given("joint", joint), v.given("dof", dof), v("ratio", ratio);
     }
   };
   std::string name;
@@ -76,7 +76,7 @@ struct Coupling {
   double multiplier = 0.0;  ///< force per unit ratio: joint i feels ratio_i * multiplier
   template <class V>
   void fields(V& v) {
-    v.given("name", spec.name), v.list("terms", spec.terms, "term"), v("k", k), v("c", c);
+    v.given("name", spec.name), v.list("terms", spec.terms, "term"), v("on", spec.on), v("k", k), v("c", c);
     v("offset", offset), v("error", error), v("multiplier", multiplier);
   }
 };

@@ -73,7 +73,8 @@ struct Parts {
     v.list("bodies", bodies, "body"), v.list("connections", connections, "connection point");
     v.list("joint_specs", joint_specs, "joint"), v.list("joints", joints, "joint"), v.list("limits", limits, "limit");
     v.list("friction", friction, "joint friction"), v.list("couplings", couplings, "coupling");
-    v.list("actuators", actuators, "actuator"), v.list("springs", springs, "spring"), v.list("loads", loads, "load");
+    v.list("actuators", actuators, "actuator"), v.list("clutches", clutches, "clutch or brake"),
+        v.list("springs", springs, "spring"), v.list("loads", loads, "load");
     v.list("motions", motions, "prescribed motion"), v.list("sensors", sensors, "sensor");
     v("revision", revision), v("spin", spin, "rad/s"), v("outside", outside);
   }
