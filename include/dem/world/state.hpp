@@ -92,7 +92,9 @@ struct WorldState {
     v.list("surfaces", surfaces, "surface"), v.list("surface_sensors", surface_sensors, "surface sensor");
     v.list("body_contacts", body_contacts.pairs, "body contact"), v("near_pairs", body_contacts.near);
     v("machine_solver", machine_solver), v("list_skin", list_skin, "m"), v("list_valid", list_valid);
-    v("rebuilds", rebuilds), v("to_remove", to_remove);
+    v("rebuilds", rebuilds), v("to_remove", to_remove), v("remove_by", remove_by);
+    v.given("beyond_domain", options.beyond_domain), v.list("outlets", outlets, "outlet");
+    v("beyond", beyond_domain);
   }
 
   double skin() const { return options.skin > 0.0 ? options.skin : 0.1 * largest_radius; }

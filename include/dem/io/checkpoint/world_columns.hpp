@@ -168,6 +168,9 @@ void world_fields(Fields& v, World<Model>& world, Others&... others) {
   v.group("model", [&] { model_fields<Model>(v); });
   v.group("world", [&] { world.fields(v); });
   v.group("grains", [&] { grain_fields(v, w.particles); });
+  if (v.task() == Fields::Task::restore) {
+    for (const std::uint32_t id : w.to_remove) w.particles.row_of.at(id) = w.particles.gone;
+  }
   v.group("contacts", [&] { chunk_fields(v, w); });
   v.group("sleep", [&] { sleep_fields(v, w); });
   v.group("lost", [&] {
