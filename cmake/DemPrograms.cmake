@@ -42,6 +42,12 @@ function(dem_needs_cli11 out)
   set(${out} ${needs} PARENT_SCOPE)
 endfunction()
 
+# dem_needs_hdf5(<out> <source>...): whether one of the sources includes a header that needs HDF5.
+function(dem_needs_hdf5 out)
+  dem_includes(needs "hdf5\\.h|dem/io/checkpoint(/hdf5_file)?\\.hpp" ${ARGN})
+  set(${out} ${needs} PARENT_SCOPE)
+endfunction()
+
 # dem_with(<package> <purpose>): an optional package. Afterwards DEM_WITH_<PACKAGE> says whether it is used: the
 # user did not switch it off, and it was found.
 macro(dem_with package purpose)

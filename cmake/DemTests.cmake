@@ -56,6 +56,18 @@ function(dem_drop_cli11 list)
   set(${list} ${${list}} PARENT_SCOPE)
 endfunction()
 
+# dem_drop_hdf5(<list>): takes those sources or headers out of the list that need HDF5.
+function(dem_drop_hdf5 list)
+  foreach(source IN LISTS ${list})
+    dem_needs_hdf5(needs_hdf5 "${source}")
+    if(needs_hdf5)
+      message(STATUS "HDF5 not found, going without: ${source}")
+      list(REMOVE_ITEM ${list} "${source}")
+    endif()
+  endforeach()
+  set(${list} ${${list}} PARENT_SCOPE)
+endfunction()
+
 # dem_add_state_hash_test(<name> <option>...): the program test_<name> runs equivalence/state_hash_test.cpp, compiled with
 # these options. It shares nothing with other tests: whether products and sums are fused is left to no compiler here.
 function(dem_add_state_hash_test name)
@@ -148,6 +160,9 @@ function(dem_add_header_checks include_dir)
   if(NOT CLI11_FOUND)
     dem_drop_cli11(headers)
   endif()
+  if(NOT DEM_WITH_HDF5)
+    dem_drop_hdf5(headers)
+  endif()
   list(TRANSFORM headers REPLACE "^${include_dir}/" "")
   set(tried_in_others "")
   foreach(header IN LISTS headers)
@@ -172,6 +187,10 @@ function(dem_add_header_checks include_dir)
     set(cli11 "$<FILTER:$<TARGET_PROPERTY:CLI11::CLI11,INTERFACE_INCLUDE_DIRECTORIES>,EXCLUDE,^/usr/include$>")
     set(cli11 "$<$<BOOL:${cli11}>:-isystem$<SEMICOLON>$<JOIN:${cli11},$<SEMICOLON>-isystem$<SEMICOLON>>>")
   endif()
+  set(hdf5)
+  if(DEM_WITH_HDF5)
+    list(TRANSFORM HDF5_C_INCLUDE_DIRS PREPEND -isystem OUTPUT_VARIABLE hdf5)
+  endif()
   list(REMOVE_ITEM headers ${tried_in_others})
   set(stamps)
   foreach(header IN LISTS headers)
@@ -189,7 +208,7 @@ function(dem_add_header_checks include_dir)
     file(MAKE_DIRECTORY "${folder}")
     add_custom_command(
       OUTPUT "${stamp}"
-      COMMAND ${DEM_LOOK} $<$<BOOL:${CMAKE_COMPILE_WARNING_AS_ERROR}>:-Werror> ${cli11} ${given}
+      COMMAND ${DEM_LOOK} $<$<BOOL:${CMAKE_COMPILE_WARNING_AS_ERROR}>:-Werror> ${cli11} ${hdf5} ${given}
               -include "${include_dir}/${header}" -x c++ /dev/null -MD -MF "${stamp}.d" -MT "${stamp}"
       COMMAND ${CMAKE_COMMAND} -E touch "${stamp}"
       DEPENDS "${include_dir}/${header}" ${depends}

@@ -18,6 +18,11 @@ struct BodyPair {
   Vector3<double> torque_a = {0, 0, 0};  ///< N m, on the body of a about its centre of mass
   Vector3<double> torque_b = {0, 0, 0};  ///< N m, on the body of b about its centre of mass
   int contacts = 0;                      ///< points that touch
+  template <class V>
+  void fields(V& v) {
+    v.given("a", a), v.given("b", b), v("force", force, "N"), v("torque_a", torque_a, "N m");
+    v("torque_b", torque_b, "N m"), v("contacts", contacts);
+  }
 };
 
 /// Key of a contact between bodies: pair in its block, whose point it is, number of the point, feature of the other

@@ -34,6 +34,16 @@ struct MachineSurface {
   Vector3<double> force = {0, 0, 0};   ///< N, on the surface
   Vector3<double> torque = {0, 0, 0};  ///< N m, about its body's centre of mass
 
+  template <class V>
+  void fields(V& v) {
+    v.given("name", name), v.given("body", body), v.given("material", material);
+    v.given("kind", geometry.index()), v.given("position", position, "m"), v.given("rotation", rotation);
+    const surface::Bounds own = std::visit([](const auto& kind) { return kind.bounds(); }, geometry);
+    v.given("lowest", own.low, "m"), v.given("highest", own.high, "m");
+    v("active", active), v("origin", origin, "m"), v("axes", axes), v("low", low, "m"), v("high", high, "m");
+    v.reals("view", view), v("force", force, "N"), v("torque", torque, "N m");
+  }
+
   void follow(const Body& b) {
     view = {b.motion.position, 0.0, b.motion.velocity, b.fixed ? 0.0 : 1.0 / b.mass,
             b.motion.rotation * b.motion.angular_velocity};

@@ -22,6 +22,11 @@ struct ContactParameters {
   typename Model::Friction::template Parameters<T> friction;
   [[no_unique_address]] typename Model::Rolling::template Parameters<T> rolling = {};
   [[no_unique_address]] typename Model::Cohesion::template Parameters<T> cohesion = {};
+  template <class V>
+  void fields(V& v) {
+    v.given_reals("normal", normal), v.given_reals("friction", friction);
+    v.given_reals("rolling", rolling), v.given_reals("cohesion", cohesion);
+  }
 };
 
 /// Materials by name, and a table with the contact constants of each pair. A pair that was not set takes the default.
@@ -127,9 +132,25 @@ class Materials {
         name(a), name(b), name(a), name(b));
   }
 
+  template <class V>
+  void fields(V& v) {
+    v.list("names", names_, "material"), v.given("has_default", has_default_),
+        v.list("pairs", pairs_, "pair of materials");
+    for (std::size_t k = 0; k < table_.size(); ++k) {
+      v.about(k == 0 ? "contact of all other materials"
+                     : "contact of '" + name(pairs_[k - 1].a) + "' and '" + name(pairs_[k - 1].b) + "'",
+              [&] { v("constants", table_[k]); });
+    }
+    v("range", range_, "m");
+  }
+
  private:
   struct Pair {
     MaterialId a, b;
+    template <class V>
+    void fields(V& v) {
+      v.given("a", a), v.given("b", b);
+    }
   };
   static constexpr std::uint32_t default_entry = 0;
 

@@ -80,6 +80,18 @@ void collect_memories(std::span<const Chunk<Model>> chunks, const Particles& p,
   }
 }
 
+/// What belongs to each candidate of a chunk.
+template <class Model>
+void list_owners(Chunk<Model>& chunk) {
+  chunk.owner.resize(chunk.candidate.size());
+  for (std::size_t k = 0; k < chunk_size; ++k) {
+    std::fill(chunk.owner.begin() + chunk.candidate_first[k], chunk.owner.begin() + chunk.candidate_first[k + 1],
+              static_cast<std::uint8_t>(k));
+  }
+  chunk.partner_load_first.assign(chunk.candidate.size() + 1, 0);
+  chunk.searches.reset(chunk.candidate.size());
+}
+
 /// Candidates of one chunk: all j > i whose bounding spheres come within the skin, ascending.
 template <class Model, class Particles, class BroadPhase>
 void list_candidates(std::size_t chunk_index, Chunk<Model>& chunk, const Particles& p, const BroadPhase& broad_phase,
@@ -102,13 +114,7 @@ void list_candidates(std::size_t chunk_index, Chunk<Model>& chunk, const Particl
   for (std::size_t k = end - begin; k <= chunk_size; ++k) {
     chunk.candidate_first[k] = static_cast<std::uint32_t>(chunk.candidate.size());
   }
-  chunk.owner.resize(chunk.candidate.size());
-  for (std::size_t k = 0; k < end - begin; ++k) {
-    std::fill(chunk.owner.begin() + chunk.candidate_first[k], chunk.owner.begin() + chunk.candidate_first[k + 1],
-              static_cast<std::uint8_t>(k));
-  }
-  chunk.partner_load_first.assign(chunk.candidate.size() + 1, 0);
-  chunk.searches.reset(chunk.candidate.size());
+  list_owners(chunk);
 }
 
 /// The reverse of the candidate lists: for each grain, where it is a partner in another chunk; owners ascending.

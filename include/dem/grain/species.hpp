@@ -16,6 +16,11 @@ struct Species {
   double mass;          ///< kg
   double inverse_mass;  ///< 1/kg
   Vec3 inertia;         ///< kg m^2, principal
+  template <class V>
+  void fields(V& v) {
+    v.given("material", material), v.given("density", density, "kg/m^3"), v.given("mass", mass, "kg");
+    v.given("inertia", inertia, "kg m^2"), v.given("bounding_radius", shape.bounding_radius(), "m");
+  }
 };
 
 /// The numbers of a species that the integration loop reads.

@@ -14,6 +14,11 @@ struct Motion {
   Vector3<T> velocity;          ///< m/s, global frame
   Vector3<T> angular_velocity;  ///< rad/s, body frame
   Matrix3<T> rotation;          ///< body frame -> global frame
+  template <class V>
+  void fields(V& v) {
+    v("position", position, "m"), v("velocity", velocity, "m/s"), v("angular_velocity", angular_velocity, "rad/s");
+    v("rotation", rotation);
+  }
 };
 
 template <class T>

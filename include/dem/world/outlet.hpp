@@ -43,6 +43,12 @@ class Outlet {
         name_, a.x(), a.y(), a.z(), b.x(), b.y(), b.z());
   }
 
+  template <class V>
+  void fields(V& v) {
+    v.given("name", name_), v.given("low", region_.low, "m"), v.given("high", region_.high, "m");
+    v("flow", flow_), v("grains", grains_), v("mass", mass_, "kg"), v("mass_now", now_, "kg");
+  }
+
   const std::string& name() const { return name_; }
   const surface::Bounds& region() const { return region_; }
   std::uint64_t grains() const { return grains_; }  ///< taken so far

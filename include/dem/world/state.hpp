@@ -23,6 +23,10 @@ using SurfaceSensorId = Id<struct SurfaceSensorTag>;  ///< measures the grains' 
 struct SurfaceSensor {
   SurfaceId surface;
   mbd::WindowAverage average;
+  template <class V>
+  void fields(V& v) {
+    v.given("surface", surface), v("average", average);
+  }
 };
 
 /// What a thread writes down while it finds contacts.
@@ -74,6 +78,24 @@ struct WorldState {
   typename Model::Executor executor;
   std::vector<ContactScratch<Model>> scratch;  ///< of the executor's threads
   Stopwatch stopwatch;
+
+  /// All that the future depends on but the grains and their contacts, which <dem/io/checkpoint.hpp> knows.
+  template <class V>
+  void fields(V& v) {
+    v.given("time_step_wanted", options.time_step, "s"), v.given("time_step_safety", options.time_step_safety);
+    v.given("skin", options.skin, "m"), v.given("overlap_limit", options.overlap_limit);
+    v.given("has_domain", options.domain.has_value());
+    if (options.domain)
+      v.given("domain_low", options.domain->low, "m"), v.given("domain_high", options.domain->high, "m");
+    v("gravity", options.gravity, "m/s^2"), v("time", time, "s"), v("time_step", time_step, "s"), v("steps", step);
+    v("materials", materials), v.list("species", species, "species"), v("machine", machine);
+    v.list("surfaces", surfaces, "surface"), v.list("surface_sensors", surface_sensors, "surface sensor");
+    v.list("body_contacts", body_contacts.pairs, "body contact"), v("near_pairs", body_contacts.near);
+    v("machine_solver", machine_solver), v("list_skin", list_skin, "m"), v("list_valid", list_valid);
+    v("rebuilds", rebuilds), v("to_remove", to_remove), v("remove_by", remove_by);
+    v.given("beyond_domain", options.beyond_domain), v.list("outlets", outlets, "outlet");
+    v("beyond", beyond_domain);
+  }
 
   double skin() const { return options.skin > 0.0 ? options.skin : 0.1 * largest_radius; }
 };

@@ -201,6 +201,14 @@ class World : public WorldSetup<M> {
   const WorldState<Model>& state() const { return state_; }
   WorldState<Model>& state() { return state_; }
 
+  /// The state, for <dem/io/checkpoint.hpp>. Throws Error for a world whose last step was broken off.
+  template <class V>
+  void fields(V& v) {
+    if (unfinished_)
+      fail("a world whose last step was broken off by an exception has no state to be saved or restored");
+    v("", state_), v("owed_steps", owed_steps_), v("checked", checked_), v("initialised", initialised_);
+  }
+
  private:
   std::vector<MaterialId> used_materials() const {
     std::vector<MaterialId> used;

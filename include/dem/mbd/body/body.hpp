@@ -27,6 +27,11 @@ struct Body {
   Vector3<double> force = {0, 0, 0};   ///< N, sum of this stage's forces, gravity not included
   Vector3<double> torque = {0, 0, 0};  ///< N m, about the centre of mass, global axes
 
+  template <class V>
+  void fields(V& v) {
+    v.given("name", name), v.given("mass", mass, "kg"), v.given("inertia", inertia, "kg m^2"), v("fixed", fixed);
+    v("motion", motion), v("force", force, "N"), v("torque", torque, "N m");
+  }
   Vec3 position() const { return to_eigen(motion.position); }
   Vec3 velocity() const { return to_eigen(motion.velocity); }
   Mat3 rotation() const { return to_eigen(motion.rotation); }

@@ -108,11 +108,22 @@ DEM_COLD inline ActuatorSpec motor(std::string name, JointId joint, Curve torque
 struct Actuator {
   ActuatorSpec spec;
   std::uint32_t a = 0, b = 0;
-  Vector3<double> point_a = {}, point_b = {};     ///< m, body frames
-  double coordinate = 0.0;                        ///< m or rad
-  double speed = 0.0;                             ///< m/s or rad/s
-  double force = 0.0;                             ///< N or N m, positive where it makes the coordinate grow
-  Signal::Sample target = {};                     ///< the set point
+  Vector3<double> point_a = {}, point_b = {};  ///< m, body frames
+  double coordinate = 0.0;                     ///< m or rad
+  double speed = 0.0;                          ///< m/s or rad/s
+  double force = 0.0;                          ///< N or N m, positive where it makes the coordinate grow
+  Signal::Sample target = {};                  ///< the set point
+  template <class V>
+  void fields(V& v) {
+    v.given("name", spec.name), v.given("joint", spec.joint), v.given("a", a), v.given("b", b);
+    v.given("dof", spec.dof), v.given("position_gain", spec.position_gain), v.given("speed_gain", spec.speed_gain);
+    v.given("max_force", spec.max_force), v("torque_curve", spec.torque_curve), v.given("engine_map", spec.engine_map),
+        v.given("idle_speed", spec.idle_speed), v("throttle", spec.throttle);
+    v.given("has_set_point", spec.set_point.has_value()), v("on", spec.on);
+    if (spec.set_point) v("set_point", *spec.set_point);
+    v("point_a", point_a, "m"), v("point_b", point_b, "m"), v("coordinate", coordinate), v("speed", speed);
+    v("force", force), v("target", target.value), v("target_rate", target.rate);
+  }
   double power() const { return force * speed; }  ///< W, delivered to the bodies
 };
 

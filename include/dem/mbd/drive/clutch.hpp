@@ -95,7 +95,17 @@ struct Clutch {
     double anchor = 0.0;     ///< rad or m: the sum at which the spring is free
     double stretch = 0.0;    ///< rad or m: the sum less the anchor
     double slip_work = 0.0;  ///< J, turned into heat by slipping since it was added
+    template <class V>
+    void fields(V& v) {
+      v("is_closed", is_closed), v("anchor", anchor), v("stretch", stretch), v("slip_work", slip_work, "J");
+    }
   } history;
+  template <class V>
+  void fields(V& v) {
+    v.given("name", spec.name), v.list("terms", spec.terms, "term"), v.given("differential", spec.differential);
+    v("set_capacity", spec.capacity), v("on", spec.on), v("k", k), v("c", c), v("bias", bias), v("capacity", capacity);
+    v("torque", torque), v("speed", speed), v("history", history);
+  }
 
   bool is_slipping() const { return history.is_closed && std::abs(k * history.stretch) >= 0.999999 * capacity; }
   double elastic_energy() const {

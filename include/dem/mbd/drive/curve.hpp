@@ -93,6 +93,11 @@ class Curve {
   bool empty() const { return points_.empty(); }
   const std::vector<std::pair<double, double>>& points() const { return points_; }
 
+  template <class V>
+  void fields(V& v) {
+    v.given("points", points_), v.given("held_outside", held_);
+  }
+
  private:
   using Point = std::pair<double, double>;
   static double crossing(const Point& p, const Point& q) {

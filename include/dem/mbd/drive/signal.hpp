@@ -95,6 +95,12 @@ class Signal {
   /// At a time (s) of a machine that takes steps of dt (s; 0: not known).
   Sample operator()(double time, double dt = 0.0) const { return function_ ? function_(time, dt) : sample_; }
 
+  template <class V>
+  void fields(V& v) {
+    v.given("is_a_function", static_cast<bool>(function_));
+    v("value", sample_.value), v("rate", sample_.rate);
+  }
+
  private:
   static double finite(double x, const char* what) {
     if (!std::isfinite(x)) fail("a {} is {:g}, but must be finite", what, x);

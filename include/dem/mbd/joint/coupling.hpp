@@ -24,6 +24,10 @@ struct CouplingSpec {
     double ratio;
     Dof dof = Dof::own;
     Moves needs = Moves::any;  ///< what the coordinate has to be; `own` is then the joint's turn or its slide
+    template <class V>
+    void fields(V& v) {
+      v.given("joint", joint), v.given("dof", dof), v("ratio", ratio);
+    }
   };
   std::string name;
   std::vector<Term> terms;
@@ -70,6 +74,11 @@ struct Coupling {
   double offset = 0.0;      ///< value of the sum at assembly
   double error = 0.0;       ///< value of the sum, less the offset
   double multiplier = 0.0;  ///< force per unit ratio: joint i feels ratio_i * multiplier
+  template <class V>
+  void fields(V& v) {
+    v.given("name", spec.name), v.list("terms", spec.terms, "term"), v("on", spec.on), v("k", k), v("c", c);
+    v("offset", offset), v("error", error), v("multiplier", multiplier);
+  }
 };
 
 inline double coupling_sum(const CouplingSpec& spec, const std::vector<Joint>& joints,

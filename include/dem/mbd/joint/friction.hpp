@@ -16,6 +16,11 @@ struct JointFrictionState {
   friction::AsperitySpring::History<double> committed = {{0, 0, 0}};
   Vector3<double> force = {0, 0, 0};   ///< N, on b, global; sliding joints
   Vector3<double> torque = {0, 0, 0};  ///< N m, on b, global; joints that turn or bend
+  template <class V>
+  void fields(V& v) {
+    v.given("joint", joint), v.reals("law", law), v("radius", radius, "m"), v("preload", preload, "N");
+    v("lever", lever, "m"), v.reals("slip", committed, "m"), v("force", force, "N"), v("torque", torque, "N m");
+  }
 };
 
 namespace detail {

@@ -11,6 +11,10 @@ namespace dem::mbd {
 /// Joint axes in a body's frame.
 struct Axes {
   Vector3<double> x, y, z;
+  template <class V>
+  void fields(V& v) {
+    v("x", x), v("y", y), v("z", z);
+  }
 };
 
 struct BushingTables;
@@ -33,6 +37,15 @@ struct Joint {
 
   Vector3<double> force = {0, 0, 0};   ///< N, on b, global
   Vector3<double> torque = {0, 0, 0};  ///< N m, on b about the joint's point, global
+  template <class V>
+  void fields(V& v) {
+    v.given("a", a), v.given("b", b), v("on", on), v("point_a", point_a, "m"), v("point_b", point_b, "m");
+    v("axes_a", axes_a), v("axes_b", axes_b), v("k", k, "N/m"), v("c", c, "N s/m");
+    v("kr", kr, "N m/rad"), v("cr", cr, "N m s/rad"), v("k3", k3, "N/m"), v("c3", c3, "N s/m");
+    v("kr3", kr3, "N m/rad"), v("cr3", cr3, "N m s/rad"), v("length", length, "m");
+    v("angle_offset", angle_offset, "rad"), v("slide_offset", slide_offset, "m");
+    v("angle_estimate", angle_estimate, "rad"), v("force", force, "N"), v("torque", torque, "N m");
+  }
 };
 
 namespace detail {

@@ -78,6 +78,17 @@ struct JointSpec {
   void (*add_limits)(Parts& parts, JointSpec& spec, const Joint& joint, std::uint32_t number) = nullptr;
   void (*add_friction)(Parts& parts, JointSpec& spec, const Joint& joint, std::uint32_t number) = nullptr;
 
+  template <class V>
+  void fields(V& v) {
+    v.given("name", name), v.given("kind", std::string(name_of(kind)));
+    v.given("stiffness", stiffness, "N/m"), v.given("damping", damping, "N s/m");
+    v.given("rotational_stiffness", rotational_stiffness, "N m/rad");
+    v.given("rotational_damping", rotational_damping, "N m s/rad");
+    v.given("bushing_stiffness", bushing_stiffness, "N/m"), v.given("bushing_damping", bushing_damping, "N s/m");
+    v.given("bushing_rotational_stiffness", bushing_rotational_stiffness, "N m/rad");
+    v.given("bushing_rotational_damping", bushing_rotational_damping, "N m s/rad");
+  }
+
   /// x of the joint's frame lies in the plane of z and this direction (global at assembly): the first direction of a
   /// planar joint or a bushing, or the arm of a universal joint's cross on body a. Without it x is the global X made
   /// square to z or, where z is within 26 deg of X, the global Y: for z along Z all three axes are the global ones.

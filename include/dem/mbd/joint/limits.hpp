@@ -13,6 +13,11 @@ struct JointLimitState {
   double stiffness = 0, damping = 0;  ///< N/m or N m/rad, N s/m or N m s/rad
   double force = 0;                   ///< N or N m, what the limit pushes with
   Vector3<double> axis = {0, 0, 0};   ///< global: force times this is the force (N) or torque (N m) on b
+  template <class V>
+  void fields(V& v) {
+    v.given("joint", joint), v.given("dof", dof), v.given("lower", lower), v.given("upper", upper);
+    v("stiffness", stiffness), v("damping", damping), v("force", force), v("axis", axis);
+  }
 };
 
 /// A limit pushes back with a spring and, on the way in, a damper; it never pulls.

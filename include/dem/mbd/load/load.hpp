@@ -77,6 +77,12 @@ struct Load {
   Vector3<double> direction = {};  ///< global, or body frame if it follows the body
   double size = 0.0;               ///< N or N m, in the newest force evaluation; not of a law
   Wrench wrench;                   ///< what it put on the body then, about the centre of mass, global axes
+  template <class V>
+  void fields(V& v) {
+    v.given("name", spec.name), v.given("body", spec.body), v.given("is_torque", spec.is_torque);
+    v.given("follows_body", spec.follows_body), v.given("has_law", static_cast<bool>(spec.law)), v("on", spec.on);
+    v("signal", spec.size), v("point", point, "m"), v("direction", direction), v("size", size), v("wrench", wrench);
+  }
 };
 
 inline void apply_load(Load& load, std::vector<Body>& bodies, double time, double dt) {

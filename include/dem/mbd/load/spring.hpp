@@ -106,6 +106,14 @@ struct Spring {
   double start = 0.0;                          ///< m or rad, that the table counts from
   double length = 0.0, speed = 0.0;            ///< m, m/s (or rad, rad/s)
   double force = 0.0;                          ///< N (or N m), positive pushes the points apart
+  template <class V>
+  void fields(V& v) {
+    v.given("name", spec.name), v("on", spec.on), v.given("a", a), v.given("b", b), v.given("joint", spec.joint),
+        v.given("dof", spec.dof);
+    v("force_over_length", spec.force_over_length), v("force_over_speed", spec.force_over_speed);
+    v("point_a", point_a, "m"), v("point_b", point_b, "m"), v("length", length, "m"), v("speed", speed, "m/s");
+    v("force", force, "N"), v("start", start);
+  }
 };
 
 /// The coordinate that a spring acts on.

@@ -47,10 +47,19 @@ class WindowAverage {
   void clear() { bins_ = {}; }
   double window() const { return window_; }
 
+  template <class V>
+  void fields(V& v) {
+    v.given("window", window_, "s"), v("latest", latest_), v("head", head_), v("bins", bins_);
+  }
+
  private:
   struct Bin {
     Wrench sum;
     double time = 0.0;
+    template <class V>
+    void fields(V& v) {
+      v("sum", sum), v("time", time, "s");
+    }
   };
   static constexpr int bin_count = 64, ring_size = bin_count + 1;
 
@@ -96,6 +105,10 @@ DEM_COLD inline SensorSpec drive_sensor(std::string name, MotionId motion, doubl
 struct Sensor {
   SensorSpec spec;
   WindowAverage average;
+  template <class V>
+  void fields(V& v) {
+    v.given("name", spec.name), v.given("target", spec.target), v.given("index", spec.index), v("average", average);
+  }
 };
 
 }  // namespace dem::mbd

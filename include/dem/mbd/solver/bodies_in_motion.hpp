@@ -61,10 +61,25 @@ class BodiesInMotion {
 
   std::vector<Memory>& memory() { return memory_; }
 
+  template <class V>
+  void fields(V& v) {
+    v("inverse", inverse_);
+    if constexpr (!std::is_empty_v<Memory>) {
+      memory_.resize(inverse_.size());
+      for (Memory& m : memory_) v.reals("memory", m);
+    } else {
+      memory_.resize(inverse_.size());
+    }
+  }
+
  private:
   struct Inverse {
     double mass;
     Vector3<double> inertia, inverse_inertia;
+    template <class V>
+    void fields(V& v) {
+      v("mass", mass), v("inertia", inertia), v("inverse_inertia", inverse_inertia);
+    }
   };
 
   static integrator::Acceleration<double> acceleration(const Body& b, const Inverse& inv, const Vector3<double>& g,

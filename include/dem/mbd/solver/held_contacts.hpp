@@ -50,6 +50,11 @@ class HeldContacts {
     }
   }
 
+  template <class V>
+  void fields(V& v) {
+    v("now", now_), v("earlier", earlier_), v("corrected", corrected_);
+  }
+
  private:
   std::vector<Wrench> now_, earlier_, corrected_;  ///< at the start of this step and of the last, and at its end
 };

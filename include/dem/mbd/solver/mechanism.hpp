@@ -217,6 +217,11 @@ class Mechanism {
     detail::set_pose(known(parts_.motions, id, "prescribed motion"), std::move(pose));
   }
 
+  template <class V>
+  void fields(V& v) {
+    v("substeps", substeps), v("largest_speed", largest_speed), v("parts", parts_);
+  }
+
  private:
   Parts parts_;
   BodyId ground_;

@@ -37,6 +37,10 @@ struct Connection {
   std::string name;
   BodyId body;
   Vec3 point = Vec3::Zero();  ///< m, body frame
+  template <class V>
+  void fields(V& v) {
+    v.given("name", name), v.given("body", body), v("point", point, "m");
+  }
 };
 
 /// All that a machine is made of, as plain arrays; an Id is an index into its array.
@@ -63,6 +67,17 @@ struct Parts {
   void (*sample_sensors)(Parts& parts, double dt) = nullptr;
 
   std::uint64_t revision = 0;  ///< grows with each body, joint, coupling ... that is added, set free or fixed
+
+  template <class V>
+  void fields(V& v) {
+    v.list("bodies", bodies, "body"), v.list("connections", connections, "connection point");
+    v.list("joint_specs", joint_specs, "joint"), v.list("joints", joints, "joint"), v.list("limits", limits, "limit");
+    v.list("friction", friction, "joint friction"), v.list("couplings", couplings, "coupling");
+    v.list("actuators", actuators, "actuator"), v.list("clutches", clutches, "clutch or brake"),
+        v.list("springs", springs, "spring"), v.list("loads", loads, "load");
+    v.list("motions", motions, "prescribed motion"), v.list("sensors", sensors, "sensor");
+    v("revision", revision), v("spin", spin, "rad/s"), v("outside", outside);
+  }
 
   // Scratch of a force evaluation, one entry per body.
   std::vector<Vector3<double>> spin;  ///< rad/s, global

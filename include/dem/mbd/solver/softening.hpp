@@ -32,6 +32,12 @@ class Softening {
     steps_left_ = interval_;
   }
 
+  template <class V>
+  void fields(V& v) {
+    v("dt", derivation_.dt, "s"), v("shares", derivation_.shares);
+    v("interval", interval_), v("steps_left", steps_left_);
+  }
+
  private:
   static constexpr int longest_interval = 64;  // steps
 

@@ -183,6 +183,15 @@ class Solver {
     watch_ = StepWatch<I>(m.parts());
   }
 
+  template <class V>
+  void fields(V& v) {
+    v("bodies", motion_), v("held_contacts", held_), v("softening", softening_), v("watch", watch_);
+    v("stable_step_at_start", limit_at_start_.dt, "s"), v("limited_at_start_by", limit_at_start_.limited_by);
+    v("time", time_, "s"), v("design_step", design_dt_, "s"), v("newest_step", step_dt_, "s"), v("steps", steps_);
+    v("substeps", substeps_), v("revision", revision_), v("initialised", initialised_);
+    v("bad_body", bad_), v("bad_time", bad_time_, "s");
+  }
+
  private:
   static int checked_substeps(const Mechanism& m) {
     if (m.substeps < 1) fail("the machine's substeps are {}, but must be at least 1", m.substeps);

@@ -31,6 +31,12 @@ class StepWatch {
   double time() const { return time_; }                   ///< s, when the machine was first seen to be unstable
   const StableTimeStep& limit() const { return limit_; }  ///< of the pose at that time
 
+  template <class V>
+  void fields(V& v) {
+    v("is_needed", is_needed_), v("steps_left", steps_left_), v("examined", examined_), v("time", time_, "s");
+    v("limit", limit_.dt, "s"), v("limited_by", limit_.limited_by);
+  }
+
  private:
   static bool may_grow(const Parts& m) {
     return std::any_of(m.kinds.begin(), m.kinds.end(), [&](const auto* k) { return k->may_grow && k->may_grow(m); });

@@ -1,0 +1,47 @@
+#pragma once
+
+// Stop and go on, bit for bit. Needs HDF5: link dem::hdf5. These are free functions, and dem.hpp does not include them,
+// so that programs which save nothing need neither the library nor the seconds that its headers take to compile.
+
+#include <dem/io/checkpoint/hdf5_file.hpp>
+#include <dem/io/checkpoint/world_columns.hpp>
+
+namespace dem {
+
+/// Saves the state of a world: n steps, a file, and n more steps are 2n steps in every bit, on any number of threads.
+/// The file (HDF5) is compressed and checksummed; it is written beside `path`, synchronised with the disk and renamed,
+/// so a kill at any moment leaves the last good one. Throws Error if it cannot be written, and after a step that an
+/// exception broke off.
+///
+/// `others` are what else the program needs to go on: structs with a member function `fields` (see io::Fields).
+///
+///     struct Progress {
+///       std::uint64_t rows = 0;
+///       template <class V>
+///       void fields(V& v) { v("rows", rows); }
+///     };
+///     dem::save(world, "bed.h5", progress);
+template <class Model, class... Others>
+void save(const World<Model>& world, const std::filesystem::path& path, const Others&... others) {
+  io::write_columns(path, io::columns_of(world, others...));
+}
+
+/// Puts a world into a state that was saved. The program has to set it up first, as it did before it saved: options,
+/// materials, species, surfaces and machine, with the functions (signals, loads) that it gave. Grains come from the
+/// file; those that were added already are dropped. What was steered (targets, switches, set_fixed, gravity) is in the
+/// file too, but functions are not: where a function has taken the place of a number since the set-up, give it before
+/// loading.
+///
+/// Throws Error, and leaves the world as it is, if the file cannot be read, is cut short or damaged, has another
+/// schema, or if the set-up differs; the text names what differs: which option, material, species, body, joint.
+template <class Model, class... Others>
+void load(World<Model>& world, const std::filesystem::path& path, Others&... others) {
+  io::Columns columns = io::read_columns(path);
+  try {
+    io::restore(world, columns, others...);
+  } catch (const Error& problem) {
+    fail("cannot load '{}': {}", path.string(), problem.what());
+  }
+}
+
+}  // namespace dem

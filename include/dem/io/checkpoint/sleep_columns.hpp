@@ -1,0 +1,91 @@
+#pragma once
+
+#include <dem/io/checkpoint/fields.hpp>
+#include <dem/world/sleep.hpp>
+
+#include <vector>
+
+namespace dem::io::detail {
+
+/// Who sleeps, what wakes them, and the loads that sleeping chunks go on to exert. To be called when the chunks have
+/// their candidates.
+template <class Model>
+void sleep_fields(Fields& v, WorldState<Model>& w) {
+  grain::Sleepers& s = w.sleepers;
+  bool may_sleep = w.options.sleep.has_value();
+  SleepOptions o = w.options.sleep.value_or(SleepOptions{});
+  v("may_sleep", may_sleep), v("share", o.share), v("motion", o.motion), v("window", o.window);
+  v("working_chunks", s.working), v("all_work", s.all_work);
+  const bool is_restoring = v.task() == Fields::Task::restore;
+  if (is_restoring) w.options.sleep = may_sleep ? std::optional(o) : std::nullopt;
+  if (!may_sleep || v.task() == Fields::Task::compare) return;
+
+  constexpr std::size_t width = 12, load_width = 6;
+  std::vector<double> rests, partner_loads, surface_loads;
+  std::vector<std::uint8_t> asleep;
+  std::vector<std::uint32_t> load_first, surface_count, surfaces;
+  const auto append = [](std::vector<double>& list, const Vector3<double>& x) {
+    list.insert(list.end(), {x.x, x.y, x.z});
+  };
+  if (!is_restoring) {
+    for (const grain::Rest& r : s.grains) {
+      for (const auto* x : {&r.position, &r.force, &r.torque}) append(rests, *x);
+      rests.insert(rests.end(), {r.borne, double(r.quiet_windows), double(r.asleep)});
+    }
+    for (const Chunk<Model>& c : w.chunks) {
+      asleep.push_back(c.asleep);
+      load_first.insert(load_first.end(), c.partner_load_first.begin(), c.partner_load_first.end());
+      for (std::size_t k = 0; k < c.partner_load_first.back(); ++k) {
+        append(partner_loads, c.partner_loads[k].force), append(partner_loads, c.partner_loads[k].torque);
+      }
+      surface_count.push_back(static_cast<std::uint32_t>(c.surface_loads.size()));
+      for (const SurfaceLoad& load : c.surface_loads) {
+        surfaces.push_back(load.surface.value);
+        append(surface_loads, load.force), append(surface_loads, load.torque);
+      }
+    }
+  }
+  v.copied("resting", ColumnKind::real, width, rests);
+  v("borne", s.borne, "N");
+  v.copied("asleep", ColumnKind::byte, 1, asleep);
+  v.copied("partner_load_first", ColumnKind::natural32, 1, load_first);
+  v.copied("partner_loads", ColumnKind::real, load_width, partner_loads);
+  v.copied("surface_load_count", ColumnKind::natural32, 1, surface_count);
+  v.copied("surface_load_of", ColumnKind::natural32, 1, surfaces);
+  v.copied("surface_loads", ColumnKind::real, load_width, surface_loads);
+  if (!is_restoring) return;
+
+  const auto vector_at = [](const std::vector<double>& list, std::size_t k) {
+    return Vector3<double>{list.at(k), list.at(k + 1), list.at(k + 2)};
+  };
+  s.grains.resize(rests.size() / width);
+  for (std::size_t k = 0; k < s.grains.size(); ++k) {
+    const std::size_t at = k * width;
+    s.grains[k] = {vector_at(rests, at),
+                   vector_at(rests, at + 3),
+                   vector_at(rests, at + 6),
+                   rests[at + 9],
+                   static_cast<std::uint8_t>(rests[at + 10]),
+                   rests[at + 11] != 0.0};
+  }
+  std::size_t first = 0, partner = 0, of_surface = 0;
+  for (std::size_t c = 0; c < w.chunks.size(); ++c) {
+    Chunk<Model>& chunk = w.chunks[c];
+    chunk.asleep = asleep.at(c) != 0;
+    for (std::uint32_t& x : chunk.partner_load_first) x = load_first.at(first++);
+    chunk.partner_loads.resize(chunk.partner_load_first.back());
+    for (PartnerLoad& load : chunk.partner_loads) {
+      load = {vector_at(partner_loads, partner), vector_at(partner_loads, partner + 3)};
+      partner += load_width;
+    }
+    chunk.surface_loads.resize(surface_count.at(c));
+    for (SurfaceLoad& load : chunk.surface_loads) {
+      load = {SurfaceId(surfaces.at(of_surface)), vector_at(surface_loads, of_surface * load_width),
+              vector_at(surface_loads, of_surface * load_width + 3)};
+      ++of_surface;
+    }
+  }
+  grain::list_chunks_around<Model>(w.chunks);
+}
+
+}  // namespace dem::io::detail

@@ -1,0 +1,232 @@
+#pragma once
+
+// The state of a world as columns, and back.
+
+#include <dem/core/type_name.hpp>
+#include <dem/io/checkpoint/fields.hpp>
+#include <dem/io/checkpoint/sleep_columns.hpp>
+#include <dem/world/world.hpp>
+
+#include <string>
+#include <vector>
+
+namespace dem::io {
+
+namespace detail {
+
+/// Contact histories, block after block: those of the last step, from which the next one starts.
+template <int Size, class Blocks, class Last>
+void contact_fields(Fields& v, const char* name, Blocks& blocks, Last&& last) {
+  v.group(name, [&] {
+    std::vector<std::uint32_t> counts;
+    std::vector<std::uint64_t> keys;
+    std::vector<double> histories;
+    const bool is_collecting = v.task() == Fields::Task::collect;
+    if (is_collecting) {
+      for (auto& block : blocks) {
+        const ContactMemory<Size>& memory = last(block);
+        const auto n = static_cast<std::size_t>(memory.count);
+        counts.push_back(static_cast<std::uint32_t>(n));
+        keys.insert(keys.end(), memory.key.begin(), memory.key.begin() + memory.count);
+        for (std::size_t c = 0; c < n; ++c) {
+          for (const auto& column : memory.history) histories.push_back(column[c]);
+        }
+      }
+      v.copied("count", ColumnKind::natural32, 1, counts);
+      v.copied("key", ColumnKind::natural, 1, keys);
+      if (Size > 0) v.copied("history", ColumnKind::real, Size, histories);
+    } else if (v.task() == Fields::Task::restore) {
+      v.copied("count", ColumnKind::natural32, 1, counts);
+      v.copied("key", ColumnKind::natural, 1, keys);
+      if (Size > 0) v.copied("history", ColumnKind::real, Size, histories);
+      std::size_t at = 0, k = 0;
+      for (auto& block : blocks) {
+        ContactMemory<Size>& memory = last(block);
+        const std::size_t n = counts.at(k++);
+        if (at + n > keys.size()) fail("the contacts of '{}' in the saved state are fewer than their count", name);
+        memory.reserve(n + static_cast<std::size_t>(pack_width));
+        memory.count = static_cast<int>(n);
+        for (std::size_t c = 0; c < n; ++c, ++at) {
+          memory.key[c] = keys[at];
+          for (std::size_t h = 0; h < memory.history.size(); ++h) {
+            memory.history[h][c] = histories[at * memory.history.size() + h];
+          }
+        }
+      }
+    }
+  });
+}
+
+/// The grains: what they are, where they are, how they move, and what the integrator remembers of them.
+template <class Particles>
+void grain_fields(Fields& v, Particles& p) {
+  std::uint64_t count = p.count, ids = p.row_of.size();
+  v("count", count);
+  v("ids_given", ids);
+  if (v.task() == Fields::Task::restore) p.resize(0), p.resize(count);
+  const auto columns = [&](const char* name, auto& c, const char* unit) {
+    v.group(name, [&] {
+      v.rows("x", ColumnKind::real, 1, c.x.data(), count, unit);
+      v.rows("y", ColumnKind::real, 1, c.y.data(), count, unit);
+      v.rows("z", ColumnKind::real, 1, c.z.data(), count, unit);
+    });
+  };
+  v.rows("id", ColumnKind::natural32, 1, p.id.data(), count);
+  v.rows("species", ColumnKind::natural32, 1, p.species.data(), count);
+  columns("position", p.position, "m");
+  columns("velocity", p.velocity, "m/s");
+  columns("spin_in_body_frame", p.spin, "rad/s");
+  columns("rotation_row0", p.row0, "");
+  columns("rotation_row1", p.row1, "");
+  columns("rotation_row2", p.row2, "");
+  columns("force", p.force, "N");
+  columns("torque", p.torque, "N m");
+  columns("listed_at", p.listed_at, "m");
+  for (std::size_t k = 0; k < p.memory.size(); ++k) {
+    v.rows("integrator_memory" + std::to_string(k), ColumnKind::real, 1, p.memory[k].data(), count);
+  }
+  if (v.task() != Fields::Task::restore) return;
+  p.row_of.assign(ids, p.gone);
+  for (std::size_t i = 0; i < count; ++i) p.row_of.at(p.id[i]) = static_cast<std::uint32_t>(i);
+  p.pad();
+}
+
+/// Neighbour lists with what searches start from, and contact histories, chunk after chunk.
+template <class Model>
+void chunk_fields(Fields& v, WorldState<Model>& w) {
+  std::uint64_t chunks = w.chunks.size();
+  v("chunks", chunks);
+  const bool is_restoring = v.task() == Fields::Task::restore;
+  if (is_restoring) w.chunks.assign(chunks, {});
+  std::vector<std::uint32_t> first, partner;
+  if (v.task() == Fields::Task::collect) {
+    for (const Chunk<Model>& c : w.chunks) {
+      first.insert(first.end(), c.candidate_first.begin(), c.candidate_first.end());
+      partner.insert(partner.end(), c.candidate.begin(), c.candidate.end());
+    }
+  }
+  v.copied("neighbours_first", ColumnKind::natural32, chunk_size + 1, first);
+  v.copied("neighbours", ColumnKind::natural32, 1, partner);
+  if (is_restoring) {
+    auto from = first.begin();
+    auto next = partner.begin();
+    for (Chunk<Model>& c : w.chunks) {
+      if (first.end() - from < std::ptrdiff_t{chunk_size + 1}) fail("the saved neighbour lists are too short");
+      std::copy_n(from, chunk_size + 1, c.candidate_first.begin());
+      from += chunk_size + 1;
+      if (partner.end() - next < std::ptrdiff_t{c.candidate_first.back()})
+        fail("the saved neighbour lists are too short");
+      c.candidate.assign(next, next + c.candidate_first.back());
+      next += c.candidate_first.back();
+      grain::list_owners(c);
+    }
+  }
+  if constexpr (shape::RememberingShape<typename Model::Shape>) {
+    using Memory = typename Model::Shape::PairMemory;
+    static_assert(std::is_trivially_copyable_v<Memory>, "PairMemory: must be trivially copyable to be saved");
+    std::vector<std::uint8_t> bytes(is_restoring ? 0 : partner.size() * sizeof(Memory));
+    std::size_t at = 0;
+    if (v.task() == Fields::Task::collect) {
+      for (const Chunk<Model>& c : w.chunks) {
+        std::memcpy(bytes.data() + at, c.searches.memory.data(), c.searches.memory.size() * sizeof(Memory));
+        at += c.searches.memory.size() * sizeof(Memory);
+      }
+    }
+    v.copied("searches", ColumnKind::byte, sizeof(Memory), bytes);
+    if (is_restoring) {
+      for (Chunk<Model>& c : w.chunks) {
+        if (at + c.candidate.size() * sizeof(Memory) > bytes.size()) fail("the saved searches are too few");
+        std::memcpy(static_cast<void*>(c.searches.memory.data()), bytes.data() + at,
+                    c.candidate.size() * sizeof(Memory));
+        at += c.candidate.size() * sizeof(Memory);
+      }
+    }
+  }
+  constexpr int size = history_size<Model>;
+  contact_fields<size>(
+      v, "pairs", w.chunks, [](auto& c) -> auto& { return c.pair_contacts.last; });
+  contact_fields<size>(
+      v, "surfaces", w.chunks, [](auto& c) -> auto& { return c.surface_contacts.last; });
+}
+
+/// The policies that a world is made of.
+template <class Model>
+void model_fields(Fields& v) {
+  const auto policy = [&](const char* name, std::string_view type) { v.given(name, std::string(type)); };
+  policy("shape", type_name<typename Model::Shape>());
+  policy("normal_law", type_name<typename Model::Normal>());
+  policy("friction_law", type_name<typename Model::Friction>());
+  policy("rolling_law", type_name<typename Model::Rolling>());
+  policy("cohesion_law", type_name<typename Model::Cohesion>());
+  policy("broad_phase", type_name<typename Model::BroadPhase>());
+  policy("integrator", type_name<typename Model::Integrator>());
+}
+
+template <class Model, class... Others>
+void world_fields(Fields& v, World<Model>& world, Others&... others) {
+  auto& w = world.state();
+  v.group("model", [&] { model_fields<Model>(v); });
+  v.group("world", [&] { world.fields(v); });
+  v.group("grains", [&] { grain_fields(v, w.particles); });
+  if (v.task() == Fields::Task::restore) {
+    for (const std::uint32_t id : w.to_remove) w.particles.row_of.at(id) = w.particles.gone;
+  }
+  v.group("contacts", [&] { chunk_fields(v, w); });
+  v.group("sleep", [&] { sleep_fields(v, w); });
+  v.group("lost", [&] {
+    std::vector<std::uint32_t> lost(w.known_lost.begin(), w.known_lost.end());
+    v("ids", lost);
+    if (v.task() == Fields::Task::restore) w.known_lost = {lost.begin(), lost.end()};
+  });
+  v.group("body_contacts", [&] {
+    std::uint64_t blocks = w.body_contacts.memories.size();
+    v("blocks", blocks);
+    w.body_contacts.memories.resize(blocks);
+    contact_fields<history_size<Model>>(
+        v, "points", w.body_contacts.memories, [](auto& m) -> auto& { return m.last; });
+  });
+  int number = 0;
+  (v.group("program" + std::to_string(number++), [&] { others.fields(v); }), ...);
+}
+
+/// What follows from the state that was restored.
+template <class Model>
+void settle_restored(WorldState<Model>& w, bool is_checked) {
+  if (is_checked) {
+    find_points_deep_enough(w);
+    coupling::list_pairs(w.body_contacts, std::span(std::as_const(w.surfaces)), w.materials);
+  }
+  if (!w.list_valid || w.chunks.empty()) return;
+  for (std::size_t c = 0; c < w.chunks.size(); ++c) {
+    grain::refresh_chunk<Model>(c, w.chunks[c], w.particles, w.species);
+  }
+  grain::list_incoming<Model>(std::span<const Chunk<Model>>(w.chunks), w.particles.count, w.incoming_first, w.incoming);
+}
+
+}  // namespace detail
+
+/// The state of a world, and of what else the program keeps (`others`, structs with fields: see Fields). The columns
+/// refer to the world: they are good until it changes. Throws Error after a step that an exception broke off.
+template <class Model, class... Others>
+Columns columns_of(const World<Model>& world, const Others&... others) {
+  Columns columns;
+  Fields v(Fields::Task::collect, columns);
+  // One list of fields serves both ways. Collecting changes nothing.
+  detail::world_fields(v, const_cast<World<Model>&>(world), const_cast<Others&>(others)...);
+  return columns;
+}
+
+/// Puts a world, which the program has set up as it did before, into a state. Grains are those of the state. Throws
+/// Error where the set-up differs, in words, before anything is changed. A state that fits the set-up but lacks
+/// something is refused while it is being read: the world is then good for nothing.
+template <class Model, class... Others>
+void restore(World<Model>& world, Columns& columns, Others&... others) {
+  Fields compare(Fields::Task::compare, columns);
+  detail::world_fields(compare, world, others...);
+  Fields v(Fields::Task::restore, columns);
+  detail::world_fields(v, world, others...);
+  v.check_all_read();
+  detail::settle_restored(world.state(), columns.at("world/checked").bytes()[0] != std::byte{0});
+}
+
+}  // namespace dem::io

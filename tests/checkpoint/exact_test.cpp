@@ -1,0 +1,127 @@
+// n steps, a file, and n more steps are 2n steps: every column of the state is the same in every bit.
+
+#include "scenes_to_save.hpp"
+
+namespace {
+
+using namespace models;
+
+template <class Model>
+dem::ContactParameters<Model> constants() {
+  if constexpr (std::is_same_v<Model, LinearModel>) {
+    return {.normal = Linear::with_restitution(2000.0, 0.6), .friction = {0.4, 1500.0, 0.1}};
+  } else if constexpr (std::is_same_v<Model, HertzModel>) {
+    const auto pair = dem::contact::elastic_pair({.young = 2e6, .poisson = 0.25});
+    return {.normal = dem::contact::Hertz::with_restitution(pair, 0.6),
+            .friction = dem::friction::Mindlin::with_restitution(pair, 0.4, 0.6)};
+  } else {
+    return sand<Model>();
+  }
+}
+template <class Model>
+std::vector<typename Model::Shape> shapes() {
+  if constexpr (std::is_same_v<typename Model::Shape, Sphere>) return {Sphere(1.2e-3), Sphere(1e-3)};
+  else return {dem::shape::cube8(1e-3), dem::shape::cube8(0.8e-3)};
+}
+template <class Model>
+Scene<Model> scene(const SceneOptions& o, bool has_grains = true) {
+  return Scene<Model>(o, constants<Model>(), shapes<Model>(), has_grains);
+}
+
+/// What a program keeps beside its world.
+struct Progress {
+  std::uint64_t rows = 0;
+  std::vector<double> samples;
+  std::string stage;
+  template <class V>
+  void fields(V& v) {
+    v("rows", rows), v("samples", samples, "N"), v("stage", stage);
+  }
+};
+
+}  // namespace
+
+TEMPLATE_TEST_CASE("n steps, a file and n steps are 2n steps in every bit", "", CorrectedBalls, Balls, VerletBalls,
+                   CorrectedCubes, Cubes, VerletCubes, LinearModel, HertzModel) {
+  const Folder folder;
+  const int substeps = GENERATE(1, 3);
+  CAPTURE(substeps);
+  constexpr std::uint64_t n = 700;
+  auto whole = scene<TestType>({.threads = 1, .substeps = substeps});
+  auto first = scene<TestType>({.threads = 2, .substeps = substeps});
+  whole.run(2 * n);
+  first.run(n);
+  dem::save(first.world, folder / "state.h5");
+  auto second = scene<TestType>({.threads = 3, .substeps = substeps}, false);
+  dem::load(second.world, folder / "state.h5");
+  CHECK(difference(first.world, second.world) == "");
+  second.run(n);
+  CHECK(difference(whole.world, second.world) == "");
+  // There is something that could be forgotten: contacts that remember, lists that were made anew, parts that push.
+  const auto columns = dem::io::columns_of(whole.world);
+  CHECK(columns.at("contacts/pairs/key").rows() > 20);
+  CHECK(columns.at("contacts/surfaces/key").rows() > 10);
+  CHECK(whole.touches_of_bodies > 0);
+  CHECK(whole.world.state().rebuilds > 3);
+  const auto& parts = whole.world.machine().parts();
+  CHECK(parts.friction[0].force.x * parts.friction[0].force.x +
+            parts.friction[0].torque.y * parts.friction[0].torque.y >
+        0);
+  CHECK(parts.couplings[0].multiplier != 0.0);
+  CHECK(parts.springs[0].force != 0.0);
+}
+
+TEST_CASE("a state may be saved between any two steps, and in the middle of what is done by hand") {
+  const Folder folder;
+  auto whole = scene<Cubes>({}), pieces = scene<Cubes>({});
+  const auto go_through_file = [&] {
+    dem::save(pieces.world, folder / "state.h5");
+    auto next = scene<Cubes>({}, false);
+    dem::load(next.world, folder / "state.h5");
+    pieces.world = std::move(next.world);
+  };
+  go_through_file();  // before the first step
+  for (int k = 0; k < 40; ++k) {
+    for (auto* s : {&whole, &pieces}) REQUIRE(s->world.run(7 + static_cast<std::uint64_t>(k % 3)));
+    go_through_file();
+  }
+  CHECK(difference(whole.world, pieces.world) == "");
+
+  // Grains that came, went and were moved since the lists were made; a body that was fixed, a target that was set, and
+  // a part of a step that is owed.
+  for (auto* s : {&whole, &pieces}) {
+    auto& w = s->world;
+    w.remove_particle(ParticleId(5));
+    w.set_position(ParticleId(9), {0.012, 0.010, 0.060});
+    w.add_particle({.species = SpeciesId(0), .position = {0.014, 0.010, 0.065}});
+    w.set_velocity(ParticleId(3), {0, 0, 0.1});
+    w.machine().set_fixed(w.machine().body_named("left disc"));
+    w.machine().set_throttle(dem::ActuatorId(0), -0.2);
+    w.machine().switch_on(dem::LoadId(0), false);
+  }
+  go_through_file();
+  for (auto* s : {&whole, &pieces}) REQUIRE(s->world.run_for(100.3 * s->world.time_step()));
+  go_through_file();
+  for (auto* s : {&whole, &pieces}) REQUIRE(s->world.run_for(50.4 * s->world.time_step()));
+  CHECK(whole.world.steps() == pieces.world.steps());
+  CHECK(difference(whole.world, pieces.world) == "");
+  CHECK(whole.world.particle_count() == pieces.world.particle_count());
+  CHECK(error_of([&] { (void)pieces.world.position(ParticleId(5)); }).find("was removed") != std::string::npos);
+}
+
+TEST_CASE("what else a program keeps is saved with its world") {
+  const Folder folder;
+  auto one = scene<Balls>({});
+  one.run(10);
+  dem::save(one.world, folder / "state.h5", Progress{7, {1.5, -0.0}, "shear"});
+  auto other = scene<Balls>({}, false);
+  Progress progress;
+  dem::load(other.world, folder / "state.h5", progress);
+  CHECK(progress.rows == 7);
+  CHECK(progress.samples == std::vector<double>{1.5, 0.0});
+  CHECK(std::signbit(progress.samples[1]));
+  CHECK(progress.stage == "shear");
+  // A program that does not know of it is told so.
+  auto third = scene<Balls>({}, false);
+  CHECK(error_of([&] { dem::load(third.world, folder / "state.h5"); }).find("program0/") != std::string::npos);
+}
