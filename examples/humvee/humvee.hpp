@@ -10,17 +10,18 @@
 #include <string>
 #include <vector>
 
-namespace humvee {
+namespace hard_ground {
 
 using dem::Mat3;
 using dem::Vec3;
 
 struct Setup {
-  dem::vehicle::HumveeOptions options = {};
+  /// Rear ball joints of rubber need steps of 1.5e-5 s.
+  dem::vehicle::HumveeOptions options = {.rubber_rear = false};
   double speed = 0.0;         ///< m/s, at the start
   double friction = 0.8;      ///< of the tyres
   double slope = 0.0;         ///< rise over run; the car points up it
-  double time_step = 2e-5;    ///< s
+  double time_step = 5e-5;    ///< s
   double wheel_centre = 0.46; ///< m above the road at the start
 };
 
@@ -154,4 +155,4 @@ class Car {
   long step_ = 0;
 };
 
-}  // namespace humvee
+}  // namespace hard_ground

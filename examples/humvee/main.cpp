@@ -1,10 +1,10 @@
-// The Humvee of the thesis by itself on hard ground: at rest, driving off, braking, turning, held on a slope, rocking.
+// The Humvee of the thesis by itself on hard ground: at rest, driving off, braking, turning, held on a slope.
 //
 //   humvee                    # all scenes, results in the folder humvee
-//   humvee brake out/brake    # one scene: rest, launch, brake, turn, slope or modes
+//   humvee brake out/brake    # one scene: rest, launch, brake, turn or slope
 //
-// Each scene writes <scene>.csv (100 rows a second, with units) and <scene>.html (a replay), and prints what was measured
-// beside what was expected.
+// Each scene writes <scene>.csv (100 rows a second, with units) and plots of speed, loads and wheel travel, and prints
+// what was measured beside what was expected.
 
 #include <dem/io/csv.hpp>
 
@@ -19,7 +19,7 @@
 
 namespace {
 
-using namespace humvee;
+using namespace hard_ground;
 
 struct Line {
   std::string what;
@@ -55,12 +55,12 @@ Lines rest(Car& car) {
 Lines launch(Car& car) {
   if (!settle(car, 3.0)) return {};
   const double goal = 60.0 / 3.6;
-  const EnergyBalance before = car.energy;
-  double start = car.machine.time(), reached = 0.0, ran = 0.0;
+  const double start = car.machine.time(), from = car.position().x();
+  double reached = 0.0, ran = 0.0;
   car.drive(40.0, [&](Car& c) {
     c.now = {.throttle = 1.0};
     reached = c.machine.time() - start;
-    ran = c.position().x();
+    ran = c.position().x() - from;
     return c.speed() < goal;
   });
   // From the curve: P = torque(omega) omega goes into the motion of the car and of all that turns with it, less what
@@ -69,7 +69,7 @@ Lines launch(Car& car) {
   const auto& m = car.machine;
   double mass = 0.0, turning = 0.0;
   for (const dem::Body& b : m.bodies()) mass += b.mass;
-  const double ratio = v.driveline.front.bevel_gear.valid() ? v.spec.driveline.front.ratio : 1.0;
+  const double ratio = v.spec.driveline.front.ratio;
   const double radius = v.spec.tyre.radius - v.wheels[0].tyre->deflection;
   turning += 4.0 * (v.spec.wheel.mass.inertia.y() + v.spec.driveline.front.half_shaft.inertia.y() +
                     v.spec.driveline.front.side_shaft.inertia.y());
@@ -117,7 +117,6 @@ Lines turn(Car& car) {
   if (!settle(car, 2.0)) return {};
   dem::vehicle::SpeedHold hold{.gain = 0.3, .integral = 0.1};
   Lines lines;
-  double first = 0.0;
   const double wheelbase = car.vehicle.spec.wheelbase();
   for (const double wanted : {2.0, 4.0, 6.0}) {
     double yaw = 0.0, sideways = 0.0, samples = 0.0, run = 0.0, steer = 0.0;
@@ -131,13 +130,14 @@ Lines turn(Car& car) {
         yaw += b.angular_velocity().z();
         run += c.speed();
         sideways += c.speed() * b.angular_velocity().z();
-        steer += 1.0 / (0.5 / std::tan(steer_of(c.machine, c.vehicle, 0)) + 0.5 / std::tan(steer_of(c.machine, c.vehicle, 1)));
+        // Ackermann: the cotangent of the middle is the mean of both.
+        const double left = steer_of(c.machine, c.vehicle, 0), right = steer_of(c.machine, c.vehicle, 1);
+        steer += 2.0 / (1.0 / std::tan(left) + 1.0 / std::tan(right));
         samples += 1.0;
       }
       return true;
     });
     const double radius = run / yaw, tangent = steer / samples;
-    if (first == 0.0) first = radius;
     lines.push_back({fmt::format("radius at {:g} m/s ({:.2f} m/s^2 sideways)", wanted, sideways / samples), radius,
                      wheelbase / tangent, "m"});
   }

@@ -4,7 +4,7 @@
 
 #include "humvee.hpp"
 
-namespace humvee {
+namespace hard_ground {
 
 void draw(const Car& car, const std::string& folder, const std::string& scene) {
   const auto series = [&](const std::string& column, const std::string& name) {
@@ -32,4 +32,4 @@ void draw(const Car& car, const std::string& folder, const std::string& scene) {
   dem::io::render_plot(travel, folder + "/" + scene + "_travel");
 }
 
-}  // namespace humvee
+}  // namespace hard_ground
