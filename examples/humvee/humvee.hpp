@@ -18,18 +18,18 @@ using dem::Vec3;
 struct Setup {
   /// Rear ball joints of rubber need steps of 1.5e-5 s.
   dem::vehicle::HumveeOptions options = {.rubber_rear = false};
-  double speed = 0.0;         ///< m/s, at the start
-  double friction = 0.8;      ///< of the tyres
-  double slope = 0.0;         ///< rise over run; the car points up it
-  double time_step = 5e-5;    ///< s
-  double wheel_centre = 0.46; ///< m above the road at the start
+  double speed = 0.0;          ///< m/s, at the start
+  double friction = 0.8;       ///< of the tyres
+  double slope = 0.0;          ///< rise over run; the car points up it
+  double time_step = 5e-5;     ///< s
+  double wheel_centre = 0.46;  ///< m above the road at the start
 };
 
 /// Energy since the start, J. What is left over went into the dampers of joints and gears.
 struct EnergyBalance {
-  double gained = 0.0;                                                      ///< motion, height, joints
+  double gained = 0.0;                                                            ///< motion, height, joints
   double engine = 0.0, brakes = 0.0, tyres = 0.0, springs = 0.0, steering = 0.0;  ///< work on the bodies
-  double throughput = 0.0;                                                  ///< of all of them, and of motion and height
+  double throughput = 0.0;  ///< of all of them, and of motion and height
   double left_over() const { return engine + brakes + tyres + springs + steering - gained; }
   double error() const { return throughput > 0.0 ? left_over() / throughput : 0.0; }
 };
@@ -48,13 +48,28 @@ class Car {
     spec.tyre.friction = s.friction;
     const double angle = std::atan(s.slope);
     machine.gravity = 9.81 * Vec3(-std::sin(angle), 0, -std::cos(angle));
-    const Assembly in(machine, "car", Vec3(0, 0, s.wheel_centre - spec.front.points.wheel.z()), Mat3::Identity(), s.speed);
+    const Assembly in(machine, "car", Vec3(0, 0, s.wheel_centre - spec.front.points.wheel.z()), Mat3::Identity(),
+                      s.speed);
     vehicle = add_vehicle(in, spec, Road{});
     machine.design_for(s.time_step);
     machine.initialise(0.0, machine.gravity);
     start_ = dem::mbd::energy_of(machine.parts(), machine.gravity).sum();
-    columns = {"time_s", "x_m", "y_m", "z_m", "yaw_rad", "roll_rad", "pitch_rad", "speed_m_per_s", "yaw_rate_rad_per_s",
-               "throttle", "brake", "steer_rad", "gear", "engine_torque_Nm", "engine_speed_rad_per_s", "engine_power_W"};
+    columns = {"time_s",
+               "x_m",
+               "y_m",
+               "z_m",
+               "yaw_rad",
+               "roll_rad",
+               "pitch_rad",
+               "speed_m_per_s",
+               "yaw_rate_rad_per_s",
+               "throttle",
+               "brake",
+               "steer_rad",
+               "gear",
+               "engine_torque_Nm",
+               "engine_speed_rad_per_s",
+               "engine_power_W"};
     for (const char* corner : {"fl", "fr", "rl", "rr"}) {
       for (const char* what : {"load_N", "pull_N", "side_N", "slip", "slip_angle_rad", "travel_m", "brake_torque_Nm"}) {
         columns.push_back(std::string(corner) + "_" + what);
@@ -91,19 +106,19 @@ class Car {
     const long steps = std::lround(seconds / dt), between = std::lround(0.01 / dt);
     for (long k = 0; k < steps; ++k, ++step_) {
       if (step_ % between == 0) {
-        if (!controls(*this)) return true;
+        if (!controls(*this)) break;
         record();
       }
       dem::vehicle::drive(machine, vehicle, now, dt);
       if (const auto report = machine.step(dt); !report) {
         failed = report.text;
-        return false;
+        break;
       }
       add_work(dt);
     }
     energy.gained = dem::mbd::energy_of(machine.parts(), machine.gravity).sum() - start_;
     energy.throughput = sum_ + std::abs(energy.gained);
-    return true;
+    return failed.empty();
   }
 
  private:
@@ -136,11 +151,22 @@ class Car {
     }
     const Vec3 at = position(), turn = attitude();
     const auto& engine = machine.actuator(vehicle.driveline.engine);
-    std::vector<double> row = {machine.time(), at.x(), at.y(), at.z(), turn.z(), turn.x(), turn.y(), speed(),
-                               machine.body(vehicle.chassis).angular_velocity().z(), now.throttle, now.brake,
+    std::vector<double> row = {machine.time(),
+                               at.x(),
+                               at.y(),
+                               at.z(),
+                               turn.z(),
+                               turn.x(),
+                               turn.y(),
+                               speed(),
+                               machine.body(vehicle.chassis).angular_velocity().z(),
+                               now.throttle,
+                               now.brake,
                                0.5 * (steer_of(machine, vehicle, 0) + steer_of(machine, vehicle, 1)),
-                               1.0 + static_cast<double>(vehicle.driveline.gear), engine.force,
-                               engine_speed(machine, vehicle.driveline), engine.power()};
+                               1.0 + static_cast<double>(vehicle.driveline.gear),
+                               engine.force,
+                               engine_speed(machine, vehicle.driveline),
+                               engine.power()};
     for (std::size_t k = 0; k < 4; ++k) {
       const auto& t = *vehicle.wheels[k].tyre;
       for (const double x : {t.load, t.pull, t.side, t.slip, t.slip_angle, travel_of(machine, vehicle, k),

@@ -63,31 +63,32 @@ Lines launch(Car& car) {
     ran = c.position().x() - from;
     return c.speed() < goal;
   });
-  // From the curve: P = torque(omega) omega goes into the motion of the car and of all that turns with it, less what
-  // tyres lose by slip. The wheels turn with v/r.
+  // From the curve: the torque at the wheels moves the car and all that turns with it. Tyres slip, so the engine turns
+  // faster than the car's way tells: by push/(kx L) of four tyres.
   const auto& v = car.vehicle;
   const auto& m = car.machine;
   double mass = 0.0, turning = 0.0;
   for (const dem::Body& b : m.bodies()) mass += b.mass;
   const double ratio = v.spec.driveline.front.ratio;
-  const double radius = v.spec.tyre.radius - v.wheels[0].tyre->deflection;
+  double radius = v.spec.tyre.radius;
+  for (const auto& w : v.wheels) radius -= 0.25 * w.tyre->deflection;
   turning += 4.0 * (v.spec.wheel.mass.inertia.y() + v.spec.driveline.front.half_shaft.inertia.y() +
                     v.spec.driveline.front.side_shaft.inertia.y());
-  turning += 2.0 * (v.spec.driveline.front.cage.inertia.y() + ratio * ratio * v.spec.driveline.front.pinion.inertia.x());
+  turning +=
+      2.0 * (v.spec.driveline.front.cage.inertia.y() + ratio * ratio * v.spec.driveline.front.pinion.inertia.x());
   turning += ratio * ratio * v.spec.driveline.shaft.inertia.x();
   const double inertia = mass + turning / (radius * radius);
   const auto& e = v.driveline.spec;
-  double time = 0.0, speed = 0.0;
+  double time = 0.0, speed = 0.0, slip = 0.0;
   std::size_t gear = 0;
   const double dt = 1e-3, grip = 0.8 * mass * 9.81;
   while (speed < goal) {
-    const double shaft = speed / radius * ratio;
+    const double shaft = speed / (1.0 - slip) / radius * ratio;
     if (shaft * e.gears[gear] * e.transfer > e.shift_up && gear + 1 < e.gears.size()) ++gear;
     const double total = e.gears[gear] * e.transfer;
     const double push = std::min(grip, e.torque.held_outside()(shaft * total) * total * ratio / radius);
-    // Slip of the tyres: slip stiffness of four tyres.
-    const double slip = push / (4.0 * v.spec.tyre.tread_stiffness * v.spec.tyre.relaxation_length);
-    speed += dt * push * (1.0 - slip) / inertia;
+    slip = push / (4.0 * v.spec.tyre.tread_stiffness * v.spec.tyre.relaxation_length);
+    speed += dt * push / inertia;
     time += dt;
   }
   return {{"0 to 60 km/h", reached, time, "s"}, {"way", ran, 0.0, "m"}};
@@ -190,10 +191,10 @@ int main(int argc, char** argv) {
         fmt::print(" {}\n", l.unit);
       }
       const EnergyBalance& e = car.energy;
-      fmt::print("  energy, J: gained {:.1f}; engine {:.1f}, brakes {:.1f}, tyres {:.1f}, springs and shocks {:.1f}, "
-                 "steering {:.1f}; left over {:.1f}, {:.3f} % of {:.0f}\n",
-                 e.gained, e.engine, e.brakes, e.tyres, e.springs, e.steering, e.left_over(), 100.0 * e.error(),
-                 e.throughput);
+      fmt::print(
+          "  energy, J: gained {:.1f}; engine {:.1f}, brakes {:.1f}, tyres {:.1f}, springs and shocks {:.1f}, "
+          "steering {:.1f}; left over {:.1f}, {:.3f} % of {:.0f}\n",
+          e.gained, e.engine, e.brakes, e.tyres, e.springs, e.steering, e.left_over(), 100.0 * e.error(), e.throughput);
       fmt::print("  widest joint {:.3f} mm ({}), most crooked {:.3f} mrad\n", 1e3 * car.widest, car.widest_joint,
                  1e3 * car.crooked);
       fmt::print("  {:.2f} s driven in {:.2f} s of computing on one core (clock {:.2f} s): {:.2f} of real time\n",

@@ -39,8 +39,8 @@ class Assembly {
   Vec3 point(const Vec3& p) const { return position_ + rotation_ * p; }
   Vec3 direction(const Vec3& d) const { return rotation_ * d; }
 
-  /// Adds a body with its centre of mass at `centre`. It turns with `spin` (rad/s) at the start, beside the speed of the
-  /// vehicle.
+  /// Adds a body with its centre of mass at `centre`. It turns with `spin` (rad/s) at the start, beside the speed of
+  /// the vehicle.
   DEM_COLD BodyId body(const std::string& part, const PartMass& m, const Vec3& centre,
                        const Vec3& spin = Vec3::Zero()) const {
     const Vec3 velocity = direction(Vec3(speed_, 0, 0)), turn = direction(spin);

@@ -19,9 +19,9 @@ struct WishbonePoints {
   /// f(point) for all of them.
   template <class F>
   WishbonePoints mapped(F&& f) const {
-    return {f(wheel),       f(knuckle),     f(upper_front), f(upper_back), f(upper_ball),     f(lower_front),
-            f(lower_back),  f(lower_ball),  f(rod_inner),   f(rod_outer),  f(spring_chassis), f(spring_arm),
-            f(shock_chassis), f(shock_arm)};
+    return {f(wheel),          f(knuckle),    f(upper_front),   f(upper_back), f(upper_ball),
+            f(lower_front),    f(lower_back), f(lower_ball),    f(rod_inner),  f(rod_outer),
+            f(spring_chassis), f(spring_arm), f(shock_chassis), f(shock_arm)};
   }
   /// Of the wheel on the other side.
   WishbonePoints mirrored() const {
@@ -54,11 +54,11 @@ struct BallJoint {
 struct DoubleWishboneSpec {
   WishbonePoints points;
   PartMass upper_arm, lower_arm, knuckle;
-  double spring_free_length = 0.0;       ///< m
-  mbd::Curve spring_force = {};          ///< N over compression in m
-  double shock = 0.0;                    ///< N s/m
-  BallJoint upper_ball, lower_ball;      ///< between the arms and the knuckle
-  double lower_angle = 0.45;             ///< rad, stops of the lower arm, both ways from where it is drawn
+  double spring_free_length = 0.0;   ///< m
+  mbd::Curve spring_force = {};      ///< N over compression in m
+  double shock = 0.0;                ///< N s/m
+  BallJoint upper_ball, lower_ball;  ///< between the arms and the knuckle
+  double lower_angle = 0.45;         ///< rad, stops of the lower arm, both ways from where it is drawn
 
   DoubleWishboneSpec mirrored() const {
     DoubleWishboneSpec s = *this;
@@ -67,8 +67,8 @@ struct DoubleWishboneSpec {
   }
 };
 
-/// The suspension of one wheel: two arms that turn on the chassis, and the knuckle between them. What holds the knuckle's
-/// toe is another part: a toe link, or the tie rod of a steering.
+/// The suspension of one wheel: two arms that turn on the chassis, and the knuckle between them. What holds the
+/// knuckle's toe is another part: a toe link, or the tie rod of a steering.
 struct DoubleWishbone {
   BodyId upper_arm, lower_arm, knuckle;
   JointId upper_hinge, lower_hinge, upper_ball, lower_ball;  ///< the hinges point forward
@@ -89,8 +89,8 @@ DEM_COLD inline DoubleWishbone add_double_wishbone(const Assembly& in, const std
     return mbd::revolute(in.name(corner + part), chassis, arm, in.point(middle), in.direction(axis));
   };
   w.upper_hinge = m.add_joint(hinge(" upper hinge", w.upper_arm, p.upper_front, p.upper_back));
-  w.lower_hinge = m.add_joint(hinge(" lower hinge", w.lower_arm, p.lower_front, p.lower_back)
-                                  .with_limits(-s.lower_angle, s.lower_angle));
+  w.lower_hinge = m.add_joint(
+      hinge(" lower hinge", w.lower_arm, p.lower_front, p.lower_back).with_limits(-s.lower_angle, s.lower_angle));
   w.upper_ball = s.upper_ball.add(in, corner + " upper ball joint", w.upper_arm, w.knuckle, p.upper_ball);
   w.lower_ball = s.lower_ball.add(in, corner + " lower ball joint", w.lower_arm, w.knuckle, p.lower_ball);
   w.spring = m.add_spring(mbd::spring_table(in.name(corner + " spring"), chassis, in.point(p.spring_chassis),

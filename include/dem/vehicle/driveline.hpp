@@ -34,8 +34,8 @@ struct DrivelineSpec {
   EngineSpec engine;
 };
 
-/// Engine, drive shaft and two axles. The drive shaft turns in the chassis and drives both pinions through slip splines,
-/// prismatic joints along the shaft.
+/// Engine, drive shaft and two axles. The drive shaft turns in the chassis and drives both pinions through slip
+/// splines, prismatic joints along the shaft.
 struct Driveline {
   BodyId shaft;
   JointId shaft_turn, front_spline, rear_spline;
@@ -85,7 +85,8 @@ DEM_COLD inline void check_engine(const EngineSpec& e) {
 
 }  // namespace detail
 
-/// `wheels`: front left, front right, rear left, rear right. The shafts turn with wheels of `spin` (rad/s) at the start.
+/// `wheels`: front left, front right, rear left, rear right. The shafts turn with wheels of `spin` (rad/s) at the
+/// start.
 DEM_COLD inline Driveline add_driveline(const Assembly& in, BodyId chassis, const BodyId (&wheels)[4],
                                         const DrivelineSpec& s, double spin = 0.0) {
   using namespace mbd;
@@ -134,7 +135,8 @@ inline void set_throttle(mbd::Mechanism& m, Driveline& d, double throttle) {
   spec.throttle = std::clamp(throttle, 0.0, 1.0);
 }
 
-/// Lets an engine that is an actuator hold a speed of the drive shaft (rad/s) with at most `share` (0 to 1) of its torque.
+/// Lets an engine that is an actuator hold a speed of the drive shaft (rad/s) with at most `share` (0 to 1) of its
+/// torque.
 inline void hold_speed(mbd::Mechanism& m, Driveline& d, double shaft_speed, double share = 1.0) {
   if (d.spec.kind != EngineSpec::Kind::actuator) fail("this engine is a motor with a torque curve; use set_throttle");
   mbd::ActuatorSpec& spec = m.parts().actuators[d.engine.index()].spec;

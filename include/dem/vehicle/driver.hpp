@@ -18,9 +18,9 @@ struct Controls {
 
 /// Holds a speed by throttle and brake: a PI controller whose integral stands still where the output is at its limit.
 struct SpeedHold {
-  double gain = 0.5;       ///< per m/s
-  double integral = 0.1;   ///< per m
-  double sum = 0.0;        ///< m, of the error so far
+  double gain = 0.5;      ///< per m/s
+  double integral = 0.1;  ///< per m
+  double sum = 0.0;       ///< m, of the error so far
 
   /// Controls for a speed and the wanted one (m/s), dt (s) after the last call.
   Controls operator()(double speed, double wanted, double dt) {
@@ -38,13 +38,14 @@ struct PathFollower {
   double preview = 5.0;        ///< m, at rest
   double preview_time = 0.6;   ///< s, of driving added to it
   double largest_steer = 0.6;  ///< rad
+  std::size_t next = 0;        ///< point of the path that the car heads for
 
   /// Angle of the wheels (rad) at a position (m, of the rear axle), a heading (unit vector) and a speed (m/s). Throws
   /// Error for a path of less than two points.
   double operator()(const Vec3& at, const Vec3& heading, double speed) {
     if (path.size() < 2) fail("a path has {} points, but needs at least 2", path.size());
     const double reach = preview + preview_time * std::abs(speed);
-    while (next_ + 1 < path.size() && distance(path[next_], at) < reach) ++next_;
+    while (next + 1 < path.size() && distance(path[next], at) < reach) ++next;
     const Vec3 aim = aim_at(at, reach);
     const double ahead = (aim - at).dot(heading);
     const double left = heading.x() * (aim.y() - at.y()) - heading.y() * (aim.x() - at.x());
@@ -53,14 +54,14 @@ struct PathFollower {
     return std::clamp(std::atan(wheelbase * curvature), -largest_steer, largest_steer);
   }
   /// True when the end of the path is nearer than the preview.
-  bool at_end() const { return next_ + 1 >= path.size(); }
+  bool at_end() const { return next + 1 >= path.size(); }
 
  private:
   static double distance(const Vec3& p, const Vec3& q) { return std::hypot(p.x() - q.x(), p.y() - q.y()); }
   /// Where the path leaves the circle of radius `reach` about `at`, on its present piece.
   Vec3 aim_at(const Vec3& at, double reach) const {
-    if (next_ == 0) return path[1];
-    const Vec3 from = path[next_ - 1], to = path[next_];
+    if (next == 0) return path[1];
+    const Vec3 from = path[next - 1], to = path[next];
     double low = 0.0, high = 1.0;
     if (distance(to, at) < reach || distance(from, at) > reach) return to;
     for (int k = 0; k < 40; ++k) {
@@ -69,7 +70,6 @@ struct PathFollower {
     }
     return from + low * (to - from);
   }
-  std::size_t next_ = 0;
 };
 
 }  // namespace dem::vehicle

@@ -13,15 +13,16 @@ struct HumveeOptions {
   bool low_range = false;  ///< of the transfer case, with gears
 };
 
-/// The Humvee of the thesis with the points, masses, springs and shocks of the public HMMWV data of Project Chrono (from
-/// TACOM TR-13337). 34 bodies; 3 prismatic, 16 revolute, 6 spherical and 4 constant-velocity joints; 5 rotational
-/// actuators (Table 6.2). These alone would leave 75 degrees of freedom. What holds the rest, and is not in the table: 4
-/// bushings (rear ball joints), 2 distance joints (rear toe links), 2 universal joints (tie rods on the rack), 4
+/// The Humvee of the thesis with the points, masses, springs and shocks of the public HMMWV data of Project Chrono
+/// (from TACOM TR-13337). 34 bodies; 3 prismatic, 16 revolute, 6 spherical and 4 constant-velocity joints; 5 rotational
+/// actuators (Table 6.2). These alone would leave 75 degrees of freedom. What holds the rest, and is not in the table:
+/// 4 bushings (rear ball joints), 2 distance joints (rear toe links), 2 universal joints (tie rods on the rack), 4
 /// universal joints (half shafts), 6 sleeves (differentials), 5 gears.
 ///
 /// Not in any source and chosen here: masses of the shafts, tyre constants, the curve of the engine beyond its peak
-/// torque. Ballast scales mass and inertia of the chassis alike, about the same centre. A spindle is part of its knuckle.
-/// The origin is the middle between the axles. Throws Error for a sprung mass below that of the parts on the chassis.
+/// torque. Ballast scales mass and inertia of the chassis alike, about the same centre. A spindle is part of its
+/// knuckle. The origin is the middle between the axles. Throws Error for a sprung mass below that of the parts on the
+/// chassis.
 DEM_COLD inline VehicleSpec humvee(const HumveeOptions& o = {}) {
   VehicleSpec s;
   const double axle = 1.688965;
@@ -69,12 +70,10 @@ DEM_COLD inline VehicleSpec humvee(const HumveeOptions& o = {}) {
     w->knuckle = {19.450 + 14.705, Vec3(0.1656 + 0.04117, 0.1934 + 0.07352, 0.04367 + 0.04117)};
   }
   s.front.spring_free_length = 0.339;
-  s.front.spring_force =
-      spring({{.02, 3630}, {.04, 8992}, {.06, 17818}, {.08, 31841}, {.10, 52792}, {.12, 82403}});
+  s.front.spring_force = spring({{.02, 3630}, {.04, 8992}, {.06, 17818}, {.08, 31841}, {.10, 52792}, {.12, 82403}});
   s.front.shock = 19015.6;
   s.rear.spring_free_length = 0.382;
-  s.rear.spring_force =
-      spring({{.02, 8021}, {.04, 19869}, {.06, 39372}, {.08, 70357}, {.10, 116651}, {.12, 182082}});
+  s.rear.spring_force = spring({{.02, 8021}, {.04, 19869}, {.06, 39372}, {.08, 70357}, {.10, 116651}, {.12, 182082}});
   s.rear.shock = 36725.2;
   s.rear.upper_ball.is_rubber = s.rear.lower_ball.is_rubber = o.rubber_rear;
 

@@ -38,8 +38,8 @@ DEM_COLD inline RackSteering add_rack_steering(const Assembly& in, BodyId chassi
   r.pinion = in.body("steering pinion", s.pinion, on_pinion);
   // A rack behind the axle moves to the right to steer to the left.
   const bool is_behind = s.rod_outer.x() < 0.0 || s.rod_inner.x() < s.rod_outer.x();
-  r.rack_slide = in.joint(JointKind::prismatic, "steering slide", chassis, r.rack, middle,
-                          Vec3(0, is_behind ? -1.0 : 1.0, 0));
+  r.rack_slide =
+      in.joint(JointKind::prismatic, "steering slide", chassis, r.rack, middle, Vec3(0, is_behind ? -1.0 : 1.0, 0));
   r.pinion_turn = in.joint(JointKind::revolute, "steering pinion", chassis, r.pinion, on_pinion, Vec3::UnitX());
   r.gear = m.add_coupling(rack_and_pinion(in.name("steering gear"), r.pinion_turn, r.rack_slide, s.pinion_radius));
   const auto rod = [&](const char* side, double y, BodyId knuckle, BodyId& body, JointId& inner, JointId& outer) {
@@ -48,8 +48,8 @@ DEM_COLD inline RackSteering add_rack_steering(const Assembly& in, BodyId chassi
     const std::string name = std::string(side) + " tie rod";
     body = in.body(name, s.rod, 0.5 * (from + to));
     const Vec3 along = to - from;
-    inner = m.add_joint(universal(in.name(name + " inner"), r.rack, body, in.point(from), in.direction(along),
-                                  in.direction(along)));
+    inner = m.add_joint(
+        universal(in.name(name + " inner"), r.rack, body, in.point(from), in.direction(along), in.direction(along)));
     outer = in.joint(JointKind::spherical, name + " outer", body, knuckle, to);
   };
   rod("left", 1.0, left_knuckle, r.left_rod, r.left_inner, r.left_outer);

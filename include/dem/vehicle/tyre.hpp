@@ -13,9 +13,9 @@ namespace dem::vehicle {
 
 /// A plane road.
 struct Road {
-  Vec3 point = Vec3::Zero();     ///< m
-  Vec3 normal = Vec3::UnitZ();   ///< out of the road
-  double friction = 1.0;         ///< times the friction of a tyre
+  Vec3 point = Vec3::Zero();    ///< m
+  Vec3 normal = Vec3::UnitZ();  ///< out of the road
+  double friction = 1.0;        ///< times the friction of a tyre
 };
 
 /// A tyre on hard ground: one contact point, at the lowest place of the wheel's middle plane.
@@ -23,19 +23,19 @@ struct Road {
 ///   along the road    a tread spring, kx sx and ky sy, with a damper on its rate; their sum is cut at mu Fn
 /// The stretch s of the tread grows with the slip velocity v and is renewed as the tyre rolls by a relaxation length L:
 ///   s' = v - |omega| r s / L
-/// So a tyre that stands holds like a spring, and one that rolls has the slip stiffness kx L and the cornering stiffness
-/// ky L. An endless L is the thesis's rigid wheel with asperity friction. (Pacejka, Tire and Vehicle Dynamics, the
-/// single contact point transient model, doi 10.1016/C2010-0-68548-8.)
+/// So a tyre that stands holds like a spring, and one that rolls has the slip stiffness kx L and the cornering
+/// stiffness ky L. An endless L is the thesis's rigid wheel with asperity friction. (Pacejka, Tire and Vehicle
+/// Dynamics, the single contact point transient model, doi 10.1016/C2010-0-68548-8.)
 struct TyreSpec {
-  double radius = 0.485;            ///< m, unloaded
-  double width = 0.254;             ///< m
-  double stiffness = 4e5;           ///< K, N/m
-  double damping = 4e3;             ///< C, N s/m
-  double friction = 0.8;            ///< mu
-  double tread_stiffness = 4e5;     ///< kx, N/m
-  double lateral_stiffness = 3e5;   ///< ky, N/m
-  double tread_damping = 2e3;       ///< N s/m
-  double relaxation_length = 0.3;   ///< m; may be infinite
+  double radius = 0.485;           ///< m, unloaded
+  double width = 0.254;            ///< m
+  double stiffness = 4e5;          ///< K, N/m
+  double damping = 4e3;            ///< C, N s/m
+  double friction = 0.8;           ///< mu
+  double tread_stiffness = 4e5;    ///< kx, N/m
+  double lateral_stiffness = 3e5;  ///< ky, N/m
+  double tread_damping = 2e3;      ///< N s/m
+  double relaxation_length = 0.3;  ///< m; may be infinite
 
   TyreSpec rigid() const {
     TyreSpec s = *this;
@@ -62,16 +62,16 @@ DEM_COLD inline void check_tyre(const TyreSpec& s) {
 
 /// What a tyre did in the newest force evaluation. Works are sums over time.
 struct TyreState {
-  double deflection = 0.0;             ///< m
-  double load = 0.0;                   ///< N, across the road
-  double pull = 0.0, side = 0.0;       ///< N, on the wheel: forward, to the left
-  double slip = 0.0;                   ///< (omega r - v)/max(omega r, v): positive drives, negative brakes; r loaded
-  double slip_angle = 0.0;             ///< rad, of the path to the left of the wheel's plane
+  double deflection = 0.0;        ///< m
+  double load = 0.0;              ///< N, across the road
+  double pull = 0.0, side = 0.0;  ///< N, on the wheel: forward, to the left
+  double slip = 0.0;              ///< (omega r - v)/max(omega r, v): positive drives, negative brakes; r loaded
+  double slip_angle = 0.0;        ///< rad, of the path to the left of the wheel's plane
   double stretch_x = 0.0, stretch_y = 0.0;  ///< m, of the tread
-  double elastic_energy = 0.0;         ///< J, in the tread and the carcass
-  double work = 0.0;                   ///< J, on the wheel so far
-  Vec3 contact = Vec3::Zero();         ///< m, global
-  double time = -1.0;                  ///< s, of the newest evaluation
+  double elastic_energy = 0.0;              ///< J, in the tread and the carcass
+  double work = 0.0;                        ///< J, on the wheel so far
+  Vec3 contact = Vec3::Zero();              ///< m, global
+  double time = -1.0;                       ///< s, of the newest evaluation
 };
 
 namespace detail {
@@ -85,8 +85,8 @@ inline double stretched(double s, double v, double rolling, double length, doubl
 
 }  // namespace detail
 
-/// Force and torque of the road on a wheel that turns about `axis` (unit vector to the left, body frame). Moves the state
-/// on to `time`; a second call at the same time adds nothing to it.
+/// Force and torque of the road on a wheel that turns about `axis` (unit vector to the left, body frame). Moves the
+/// state on to `time`; a second call at the same time adds nothing to it.
 inline Wrench tyre_wrench(const TyreSpec& tyre, const Road& road, const Body& wheel, const Vec3& axis, double time,
                           TyreState& s) {
   const double dt = s.time < 0.0 ? 0.0 : std::max(0.0, time - s.time);
@@ -135,9 +135,9 @@ inline Wrench tyre_wrench(const TyreSpec& tyre, const Road& road, const Body& wh
   const double fastest = std::max(std::abs(turning), std::abs(travel));
   s.slip = fastest > 1e-3 ? (turning - travel) / fastest : 0.0;
   s.slip_angle = std::abs(travel) > 1e-3 ? std::atan2(drift, std::abs(travel)) : 0.0;
-  s.elastic_energy = 0.5 * (tyre.stiffness * s.deflection * s.deflection +
-                            tyre.tread_stiffness * s.stretch_x * s.stretch_x +
-                            tyre.lateral_stiffness * s.stretch_y * s.stretch_y);
+  s.elastic_energy =
+      0.5 * (tyre.stiffness * s.deflection * s.deflection + tyre.tread_stiffness * s.stretch_x * s.stretch_x +
+             tyre.lateral_stiffness * s.stretch_y * s.stretch_y);
   s.contact = centre + arm;
   const Vec3 force = s.load * n + s.pull * ahead + s.side * left;
   s.work += dt * force.dot(v);

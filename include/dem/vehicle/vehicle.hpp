@@ -56,15 +56,13 @@ DEM_COLD inline Vehicle add_vehicle(const Assembly& in, const VehicleSpec& s, co
     const DoubleWishboneSpec& left = k < 2 ? s.front : s.rear;
     const DoubleWishboneSpec corner = k % 2 == 0 ? left : left.mirrored();
     v.suspension[k] = add_double_wishbone(in, corner_names[k], v.chassis, corner);
-    v.wheels[k] =
-        add_wheel(in, corner_names[k], v.suspension[k].knuckle, corner.points.wheel, s.wheel, spin);
+    v.wheels[k] = add_wheel(in, corner_names[k], v.suspension[k].knuckle, corner.points.wheel, s.wheel, spin);
     wheels[k] = v.wheels[k].body;
     if (k >= 2) {
       v.toe_links[k - 2] = add_toe_link(in, corner_names[k], v.chassis, v.suspension[k].knuckle, corner.points);
     }
   }
-  v.steering =
-      add_rack_steering(in, v.chassis, v.suspension[0].knuckle, v.suspension[1].knuckle, s.steering);
+  v.steering = add_rack_steering(in, v.chassis, v.suspension[0].knuckle, v.suspension[1].knuckle, s.steering);
   v.driveline = add_driveline(in, v.chassis, wheels, s.driveline, spin);
   if (road) {
     for (std::size_t k = 0; k < 4; ++k) add_tyre(in, corner_names[k], v.wheels[k], s.tyre, *road);
@@ -93,14 +91,14 @@ inline Vec3 point_of(const mbd::Mechanism& m, const Vehicle& v, const Vec3& p) {
 }
 /// rad, of a wheel against straight ahead, seen from above the chassis; positive to the left.
 inline double steer_of(const mbd::Mechanism& m, const Vehicle& v, std::size_t corner) {
-  const Vec3 a = m.reference_rotation(v.chassis).transpose() * m.reference_rotation(v.suspension[corner].knuckle) *
-                 Vec3::UnitY();
+  const Vec3 a =
+      m.reference_rotation(v.chassis).transpose() * m.reference_rotation(v.suspension[corner].knuckle) * Vec3::UnitY();
   return std::atan2(-a.x(), a.y());
 }
 /// rad, of a wheel whose top leans outward.
 inline double camber_of(const mbd::Mechanism& m, const Vehicle& v, std::size_t corner) {
-  const Vec3 a = m.reference_rotation(v.chassis).transpose() * m.reference_rotation(v.suspension[corner].knuckle) *
-                 Vec3::UnitY();
+  const Vec3 a =
+      m.reference_rotation(v.chassis).transpose() * m.reference_rotation(v.suspension[corner].knuckle) * Vec3::UnitY();
   return (corner % 2 == 0 ? -1.0 : 1.0) * std::asin(std::clamp(a.z(), -1.0, 1.0));
 }
 /// m, of the middle of a wheel above where it is drawn, in the axes of the chassis.

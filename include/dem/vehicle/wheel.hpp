@@ -10,8 +10,8 @@
 namespace dem::vehicle {
 
 struct WheelSpec {
-  PartMass mass;           ///< rim and tyre; y is the axis
-  double brake = 4000.0;   ///< N m, the most that the brake holds
+  PartMass mass;                 ///< rim and tyre; y is the axis
+  double brake = 4000.0;         ///< N m, the most that the brake holds
   double brake_stiffness = 1e5;  ///< N m/rad, of a brake that holds
   double brake_damping = 300.0;  ///< N m s/rad
 };
@@ -58,8 +58,8 @@ DEM_COLD inline void add_tyre(const Assembly& in, const std::string& corner, Whe
   w.road = in.mechanism().add_load(mbd::custom_load(in.name(corner + " tyre"), w.body, law));
 }
 
-/// Sets the brake, 0 to 1 of its largest torque. To be called before every step: a brake that slips moves the angle that
-/// it holds.
+/// Sets the brake, 0 to 1 of its largest torque. To be called before every step: a brake that slips moves the angle
+/// that it holds.
 inline void set_brake(mbd::Mechanism& m, Wheel& w, double share) {
   mbd::Actuator& brake = m.parts().actuators[w.brake.index()];
   const double torque = std::clamp(share, 0.0, 1.0) * w.largest_brake;

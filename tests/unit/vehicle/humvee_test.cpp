@@ -1,6 +1,7 @@
 // The Humvee: what it is made of (Table 6.2 of the thesis), its joints, its brakes, tyres, engine and driver.
 
-#include "../../catch.hpp"
+#include "catch.hpp"
+#include "core/error_of.hpp"
 
 #include <dem/mbd/mbd.hpp>
 #include <dem/vehicle/humvee.hpp>
@@ -16,16 +17,6 @@ using Catch::Matchers::Contains;
 namespace {
 
 using Machine = mbd::Machine<integrator::VelocityVerlet>;
-
-template <class F>
-std::string message_of(F&& f) {
-  try {
-    f();
-  } catch (const Error& e) {
-    return e.what();
-  }
-  return "nothing was refused";
-}
 
 int count(const mbd::Mechanism& m, mbd::JointKind kind) {
   int n = 0;
@@ -76,8 +67,8 @@ TEST_CASE("the Humvee weighs what the thesis says") {
 }
 
 TEST_CASE("a brake holds up to its torque and slips beyond it") {
-  // A wheel of 2 kg m^2 on a fixed knuckle; brake of 100 N m.
-  for (const double torque : {99.0, 150.0}) {
+  // A wheel of 2 kg m^2 on a fixed knuckle; brake of 100 N m. A sudden 60 N m swing up to 81 N m before they rest.
+  for (const double torque : {60.0, 150.0}) {
     Machine m;
     m.gravity = Vec3::Zero();
     const Assembly in(m);
@@ -139,8 +130,8 @@ TEST_CASE("half shafts turn the wheels by the ratio of the axle, straight or ben
   REQUIRE(m.run(0.5, 5e-5));
   const double shaft = m.speed(v.driveline.shaft_turn);
   CHECK(shaft > 5.0);
-  // Sides of equal load turn alike. A universal joint bent by 1 deg ripples by b^2/2 = 2e-4; the gears wind up while the
-  // speed grows.
+  // Sides of equal load turn alike. A universal joint bent by 1 deg ripples by b^2/2 = 2e-4; the gears wind up while
+  // the speed grows.
   for (const Wheel& w : v.wheels) CHECK(m.speed(w.turn) == Approx(shaft / 5.0).epsilon(2e-3));
 }
 
@@ -170,7 +161,7 @@ TEST_CASE("a driver holds a speed, and follows a circle") {
   CHECK(v == Approx(5.0).epsilon(1e-3));  // the integral leaves no error
   CHECK(fastest < 6.0);                   // and does not wind up while the throttle is at its limit
   // A kinematic car on a circle of 20 m, drawn with pieces of 0.5 m.
-  PathFollower path{.preview = 3.0, .preview_time = 0.0};
+  PathFollower path{.path = {}, .preview = 3.0, .preview_time = 0.0};
   const double r = 20.0;
   for (int k = 0; k <= 400; ++k) {
     const double a = 0.025 * k;

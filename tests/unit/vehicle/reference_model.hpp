@@ -86,8 +86,7 @@ struct Model {
   };
 
   static Mat3 rotation(const State& u) {
-    return Corner::about(Vec3::UnitZ(), u[5]) * Corner::about(Vec3::UnitY(), u[4]) *
-           Corner::about(Vec3::UnitX(), u[3]);
+    return Corner::about(Vec3::UnitZ(), u[5]) * Corner::about(Vec3::UnitY(), u[4]) * Corner::about(Vec3::UnitX(), u[3]);
   }
   Corner corner(std::size_t k) const {
     const WishbonePoints& left = k < 2 ? s.front.points : s.rear.points;
@@ -130,8 +129,8 @@ struct Model {
       add({axle.half_shaft.mass, Vec3::Zero()}, 0.5 * (outer + Vec3(inner.x(), y, inner.z())));
       add({axle.side_shaft.mass, Vec3::Zero()}, axle.middle + Vec3(0, y - 0.5 * side * axle.side_shaft_end, 0));
       const Vec3 moments = s.wheel.mass.inertia;
-      wheels.push_back({s.wheel.mass.mass, Vec3(moments.x(), 0, moments.z()),
-                        origin + r * pose.carried(c.p, c.p.wheel), r * pose.turn});
+      wheels.push_back({s.wheel.mass.mass, Vec3(moments.x(), 0, moments.z()), origin + r * pose.carried(c.p, c.p.wheel),
+                        r * pose.turn});
     }
     list.insert(list.end(), wheels.begin(), wheels.end());
     return list;
@@ -173,9 +172,7 @@ struct Model {
   Matrix stiffness(const State& u, const Matrix& modes, double h = 2e-4) const {
     const long n = modes.cols();
     Matrix k(n, n);
-    const auto at = [&](long i, double a, long j, double b) {
-      return energy(u + a * modes.col(i) + b * modes.col(j));
-    };
+    const auto at = [&](long i, double a, long j, double b) { return energy(u + a * modes.col(i) + b * modes.col(j)); };
     for (long i = 0; i < n; ++i) {
       for (long j = 0; j < n; ++j) {
         k(i, j) = (at(i, h, j, h) - at(i, h, j, -h) - at(i, -h, j, h) + at(i, -h, j, -h)) / (4.0 * h * h);
@@ -204,8 +201,7 @@ struct Model {
       for (long j = 0; j < n; ++j) {
         for (std::size_t b = 0; b < here.size(); ++b) {
           const auto a = static_cast<std::size_t>(i), c = static_cast<std::size_t>(j);
-          m(i, j) += here[b].mass * way[a][b].dot(way[c][b]) +
-                     turn[a][b].dot(here[b].inertia.cwiseProduct(turn[c][b]));
+          m(i, j) += here[b].mass * way[a][b].dot(way[c][b]) + turn[a][b].dot(here[b].inertia.cwiseProduct(turn[c][b]));
           if (b + 4 >= here.size()) {
             m(i, j) += s.wheel.mass.inertia.y() / (radius * radius) * way[a][b].x() * way[c][b].x();
           }

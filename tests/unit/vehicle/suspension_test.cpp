@@ -1,7 +1,7 @@
-// The suspension against the kinematics of its points, and the whole car against a model with rigid joints: at rest, and
-// rocking.
+// The suspension against the kinematics of its points, and the whole car against a model with rigid joints: at rest,
+// and rocking.
 
-#include "../../catch.hpp"
+#include "catch.hpp"
 #include "reference_model.hpp"
 
 #include <dem/mbd/mbd.hpp>
@@ -126,7 +126,8 @@ TEST_CASE("bounce, pitch and roll have the frequencies of the linear model") {
       if (symmetric) {
         w << at.x(), at.z(), std::asin(-r(2, 0)), 0.5 * (q[0] - q[1]), 0.5 * (q[2] - q[3]);
       } else {
-        w << at.y(), std::atan2(r(2, 1), r(2, 2)), std::atan2(r(1, 0), r(0, 0)), 0.5 * (q[0] + q[1]), 0.5 * (q[2] + q[3]);
+        w << at.y(), std::atan2(r(2, 1), r(2, 2)), std::atan2(r(1, 0), r(0, 0)), 0.5 * (q[0] + q[1]),
+            0.5 * (q[2] + q[3]);
       }
       return w;
     };
