@@ -85,8 +85,10 @@ TEST_CASE("a brake holds up to its torque and slips beyond it") {
       CHECK(m.coordinate(w.turn) == Approx(torque / 1e5).margin(1e-8));
       CHECK(std::abs(m.speed(w.turn)) < 1e-8);
     } else {
-      // (150 - 100)/2 = 25 rad/s^2 for 2 s; the first 1 mrad is against the spring.
-      CHECK(m.speed(w.turn) == Approx(50.0).epsilon(1e-3));
+      // (150 - 100)/2 = 25 rad/s^2 for 2 s. Until it is wound up by 1 mrad, for 9 ms at the most, the brake holds less:
+      // 100 N m of 2 kg m^2 for so long are 0.45 rad/s.
+      CHECK(m.speed(w.turn) > 50.0);
+      CHECK(m.speed(w.turn) < 50.45);
     }
   }
 }
