@@ -1,0 +1,184 @@
+#pragma once
+
+// The Humvee on hard ground: one run, with its telemetry and the sums that close its energy.
+
+#include <dem/mbd/mbd.hpp>
+#include <dem/vehicle/humvee.hpp>
+
+#include <array>
+#include <cmath>
+#include <string>
+#include <vector>
+
+namespace hard_ground {
+
+using dem::Mat3;
+using dem::Vec3;
+
+struct Setup {
+  /// Rear ball joints of rubber need steps of 1.5e-5 s.
+  dem::vehicle::HumveeOptions options = {.rubber_rear = false};
+  double speed = 0.0;          ///< m/s, at the start
+  double friction = 0.8;       ///< of the tyres
+  double slope = 0.0;          ///< rise over run; the car points up it
+  double time_step = 5e-5;     ///< s
+  double wheel_centre = 0.46;  ///< m above the road at the start
+};
+
+/// Energy since the start, J. What is left over went into the dampers of joints and gears.
+struct EnergyBalance {
+  double gained = 0.0;                                                            ///< motion, height, joints
+  double engine = 0.0, brakes = 0.0, tyres = 0.0, springs = 0.0, steering = 0.0;  ///< work on the bodies
+  double throughput = 0.0;  ///< of all of them, and of motion and height
+  double left_over() const { return engine + brakes + tyres + springs + steering - gained; }
+  double error() const { return throughput > 0.0 ? left_over() / throughput : 0.0; }
+};
+
+class Car {
+ public:
+  dem::mbd::Machine<dem::integrator::VelocityVerlet> machine;
+  dem::vehicle::Vehicle vehicle;
+  Setup setup;
+  std::vector<std::string> columns;
+  std::vector<std::vector<double>> rows;
+
+  explicit Car(const Setup& s) : setup(s) {
+    using namespace dem::vehicle;
+    VehicleSpec spec = humvee(s.options);
+    spec.tyre.friction = s.friction;
+    const double angle = std::atan(s.slope);
+    machine.gravity = 9.81 * Vec3(-std::sin(angle), 0, -std::cos(angle));
+    const Assembly in(machine, "car", Vec3(0, 0, s.wheel_centre - spec.front.points.wheel.z()), Mat3::Identity(),
+                      s.speed);
+    vehicle = add_vehicle(in, spec, Road{});
+    machine.design_for(s.time_step);
+    machine.initialise(0.0, machine.gravity);
+    start_ = dem::mbd::energy_of(machine.parts(), machine.gravity).sum();
+    columns = {"time_s",
+               "x_m",
+               "y_m",
+               "z_m",
+               "yaw_rad",
+               "roll_rad",
+               "pitch_rad",
+               "speed_m_per_s",
+               "yaw_rate_rad_per_s",
+               "throttle",
+               "brake",
+               "steer_rad",
+               "gear",
+               "engine_torque_Nm",
+               "engine_speed_rad_per_s",
+               "engine_power_W"};
+    for (const char* corner : {"fl", "fr", "rl", "rr"}) {
+      for (const char* what : {"load_N", "pull_N", "side_N", "slip", "slip_angle_rad", "travel_m", "brake_torque_Nm"}) {
+        columns.push_back(std::string(corner) + "_" + what);
+      }
+    }
+  }
+
+  /// Mean of the load on the front axle and on the rear one, N.
+  double load(std::size_t axle) const {
+    return vehicle.wheels[2 * axle].tyre->load + vehicle.wheels[2 * axle + 1].tyre->load;
+  }
+  double speed() const { return dem::vehicle::speed_of(machine, vehicle); }
+  Vec3 position() const { return dem::vehicle::point_of(machine, vehicle, Vec3::Zero()); }
+  double weight() const {
+    double mass = 0.0;
+    for (const dem::Body& b : machine.bodies()) mass += b.fixed ? 0.0 : b.mass;
+    return mass * machine.gravity.norm();
+  }
+  /// Roll, pitch and yaw of the chassis, rad (z, y, x in this order).
+  Vec3 attitude() const {
+    const Mat3 r = machine.reference_rotation(vehicle.chassis);
+    return {std::atan2(r(2, 1), r(2, 2)), std::asin(-r(2, 0)), std::atan2(r(1, 0), r(0, 0))};
+  }
+  /// The widest joint, m, and the most crooked one, rad, so far. Bushings are meant to give way.
+  double widest = 0.0, crooked = 0.0;
+  std::string widest_joint, failed;
+  EnergyBalance energy;
+
+  /// Drives for a time (s): `controls(car)` is asked every 10 ms and returns false to stop, after it set `now`.
+  dem::vehicle::Controls now;
+  template <class F>
+  bool drive(double seconds, F&& controls) {
+    const double dt = setup.time_step;
+    const long steps = std::lround(seconds / dt), between = std::lround(0.01 / dt);
+    for (long k = 0; k < steps; ++k, ++step_) {
+      if (step_ % between == 0) {
+        if (!controls(*this)) break;
+        record();
+      }
+      dem::vehicle::drive(machine, vehicle, now, dt);
+      if (const auto report = machine.step(dt); !report) {
+        failed = report.text;
+        break;
+      }
+      add_work(dt);
+    }
+    energy.gained = dem::mbd::energy_of(machine.parts(), machine.gravity).sum() - start_;
+    energy.throughput = sum_ + std::abs(energy.gained);
+    return failed.empty();
+  }
+
+ private:
+  void add_work(double dt) {
+    const auto& parts = machine.parts();
+    const auto add = [&](double& to, double power) {
+      to += dt * power;
+      sum_ += dt * std::abs(power);
+    };
+    for (const auto& a : parts.actuators) {
+      add(a.spec.name == "car engine" ? energy.engine : energy.brakes, a.power());
+    }
+    for (const auto& s : parts.springs) add(energy.springs, s.force * s.speed);
+    for (const auto& m : parts.motions) add(energy.steering, m.drive.force * m.drive.rate);
+    for (const auto& w : vehicle.wheels) {
+      const dem::Body& b = machine.body(w.body);
+      const dem::Wrench& f = machine.load(w.road).wrench;
+      add(energy.tyres, to_eigen(f.force).dot(b.velocity()) + to_eigen(f.torque).dot(b.angular_velocity()));
+    }
+  }
+
+  void record() {
+    for (std::size_t j = 0; j < machine.parts().joints.size(); ++j) {
+      const auto open = machine.violation(dem::JointId(j));
+      if (open.displacement > widest) {
+        widest = open.displacement;
+        widest_joint = machine.parts().joint_specs[j].name;
+      }
+      crooked = std::max(crooked, open.rotation);
+    }
+    const Vec3 at = position(), turn = attitude();
+    const auto& engine = machine.actuator(vehicle.driveline.engine);
+    std::vector<double> row = {machine.time(),
+                               at.x(),
+                               at.y(),
+                               at.z(),
+                               turn.z(),
+                               turn.x(),
+                               turn.y(),
+                               speed(),
+                               machine.body(vehicle.chassis).angular_velocity().z(),
+                               now.throttle,
+                               now.brake,
+                               0.5 * (steer_of(machine, vehicle, 0) + steer_of(machine, vehicle, 1)),
+                               1.0 + static_cast<double>(vehicle.driveline.gear),
+                               engine.force,
+                               engine_speed(machine, vehicle.driveline),
+                               engine.power()};
+    for (std::size_t k = 0; k < 4; ++k) {
+      const auto& t = *vehicle.wheels[k].tyre;
+      for (const double x : {t.load, t.pull, t.side, t.slip, t.slip_angle, travel_of(machine, vehicle, k),
+                             -machine.actuator(vehicle.wheels[k].brake).force}) {
+        row.push_back(x);
+      }
+    }
+    rows.push_back(std::move(row));
+  }
+
+  double start_ = 0.0, sum_ = 0.0;
+  long step_ = 0;
+};
+
+}  // namespace hard_ground

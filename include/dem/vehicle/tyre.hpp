@@ -1,0 +1,147 @@
+#pragma once
+
+#include <dem/core/error.hpp>
+#include <dem/math/matrix3.hpp>
+#include <dem/math/wrench.hpp>
+#include <dem/mbd/body/body.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace dem::vehicle {
+
+/// A plane road.
+struct Road {
+  Vec3 point = Vec3::Zero();    ///< m
+  Vec3 normal = Vec3::UnitZ();  ///< out of the road
+  double friction = 1.0;        ///< times the friction of a tyre
+};
+
+/// A tyre on hard ground: one contact point, at the lowest place of the wheel's middle plane.
+///   across the road   K d + C d', never pulling; d: deflection
+///   along the road    a tread spring, kx sx and ky sy, with a damper on its rate; their sum is cut at mu Fn
+/// The stretch s of the tread grows with the slip velocity v and is renewed as the tyre rolls by a relaxation length L:
+///   s' = v - |omega| r s / L
+/// So a tyre that stands holds like a spring, and one that rolls has the slip stiffness kx L and the cornering
+/// stiffness ky L. An endless L is the thesis's rigid wheel with asperity friction. (Pacejka, Tire and Vehicle
+/// Dynamics, the single contact point transient model, doi 10.1016/C2010-0-68548-8.)
+struct TyreSpec {
+  double radius = 0.485;           ///< m, unloaded
+  double width = 0.254;            ///< m
+  double stiffness = 4e5;          ///< K, N/m
+  double damping = 4e3;            ///< C, N s/m
+  double friction = 0.8;           ///< mu
+  double tread_stiffness = 4e5;    ///< kx, N/m
+  double lateral_stiffness = 3e5;  ///< ky, N/m
+  double tread_damping = 2e3;      ///< N s/m
+  double relaxation_length = 0.3;  ///< m; may be infinite
+
+  TyreSpec rigid() const {
+    TyreSpec s = *this;
+    s.relaxation_length = std::numeric_limits<double>::infinity();
+    return s;
+  }
+};
+
+/// Throws Error for a tyre that cannot be.
+DEM_COLD inline void check_tyre(const TyreSpec& s) {
+  require_positive(s.radius, "radius of a tyre", "m");
+  require_positive(s.width, "width of a tyre", "m");
+  require_positive(s.stiffness, "stiffness of a tyre", "N/m");
+  require_non_negative(s.damping, "damping of a tyre", "N s/m");
+  require_non_negative(s.friction, "friction of a tyre", "(no unit)");
+  require_positive(s.tread_stiffness, "tread stiffness of a tyre", "N/m");
+  require_positive(s.lateral_stiffness, "lateral stiffness of a tyre", "N/m");
+  require_non_negative(s.tread_damping, "tread damping of a tyre", "N s/m");
+  if (!(s.relaxation_length > 0.0)) {
+    fail("relaxation length of a tyre is {:g} m, but must be positive; infinity makes a rigid tread",
+         s.relaxation_length);
+  }
+}
+
+/// What a tyre did in the newest force evaluation. Works are sums over time.
+struct TyreState {
+  double deflection = 0.0;        ///< m
+  double load = 0.0;              ///< N, across the road
+  double pull = 0.0, side = 0.0;  ///< N, on the wheel: forward, to the left
+  double slip = 0.0;              ///< (omega r - v)/max(omega r, v): positive drives, negative brakes; r loaded
+  double slip_angle = 0.0;        ///< rad, of the path to the left of the wheel's plane
+  double stretch_x = 0.0, stretch_y = 0.0;  ///< m, of the tread
+  double elastic_energy = 0.0;              ///< J, in the tread and the carcass
+  double work = 0.0;                        ///< J, on the wheel so far
+  Vec3 contact = Vec3::Zero();              ///< m, global
+  double time = -1.0;                       ///< s, of the newest evaluation
+};
+
+namespace detail {
+
+/// The tread's stretch at the end of a time dt (s), and its rate; rolling (m/s) renews it.
+inline double stretched(double s, double v, double rolling, double length, double dt, double& rate) {
+  const double end = (s + dt * v) / (1.0 + dt * rolling / length);
+  rate = v - rolling / length * end;
+  return end;
+}
+
+}  // namespace detail
+
+/// Force and torque of the road on a wheel that turns about `axis` (unit vector to the left, body frame). Moves the
+/// state on to `time`; a second call at the same time adds nothing to it.
+inline Wrench tyre_wrench(const TyreSpec& tyre, const Road& road, const Body& wheel, const Vec3& axis, double time,
+                          TyreState& s) {
+  const double dt = s.time < 0.0 ? 0.0 : std::max(0.0, time - s.time);
+  const Vec3 n = road.normal, a = wheel.rotation() * axis;
+  const double lean = a.dot(n);
+  Vec3 down = lean * a - n;  // in the plane of the wheel
+  down /= std::max(1e-9, down.norm());
+  const Vec3 centre = wheel.position();
+  const double height = (centre - road.point).dot(n);
+  const double free = -down.dot(n) * tyre.radius;  // height of the centre of a wheel that just touches
+  s.deflection = free - height;
+  s.time = time;
+  if (!(s.deflection > 0.0)) {
+    const double work = s.work;
+    s = {};
+    s.time = time;
+    s.work = work;
+    return {};
+  }
+  const double loaded = tyre.radius - s.deflection / std::max(0.1, -down.dot(n));
+  const Vec3 arm = loaded * down, spin = wheel.angular_velocity();
+  const Vec3 v = wheel.velocity() + spin.cross(arm);
+  const double into = -v.dot(n);
+  s.load = std::max(0.0, tyre.stiffness * s.deflection + tyre.damping * into);
+
+  Vec3 ahead = a.cross(n);
+  ahead /= std::max(1e-9, ahead.norm());
+  const Vec3 left = n.cross(ahead);
+  const double turning = spin.dot(a) * loaded, rolling = std::abs(turning);
+  const double travel = wheel.velocity().dot(ahead), drift = wheel.velocity().dot(left);
+  double rate_x = 0.0, rate_y = 0.0;
+  s.stretch_x = detail::stretched(s.stretch_x, v.dot(ahead), rolling, tyre.relaxation_length, dt, rate_x);
+  s.stretch_y = detail::stretched(s.stretch_y, v.dot(left), rolling, tyre.relaxation_length, dt, rate_y);
+  const double limit = tyre.friction * road.friction * s.load;
+  const double spring = std::hypot(tyre.tread_stiffness * s.stretch_x, tyre.lateral_stiffness * s.stretch_y);
+  if (spring > limit) {
+    s.stretch_x *= limit / spring;
+    s.stretch_y *= limit / spring;
+  }
+  s.pull = -tyre.tread_stiffness * s.stretch_x - tyre.tread_damping * rate_x;
+  s.side = -tyre.lateral_stiffness * s.stretch_y - tyre.tread_damping * rate_y;
+  if (const double size = std::hypot(s.pull, s.side); size > limit) {
+    s.pull *= limit / size;
+    s.side *= limit / size;
+  }
+  const double fastest = std::max(std::abs(turning), std::abs(travel));
+  s.slip = fastest > 1e-3 ? (turning - travel) / fastest : 0.0;
+  s.slip_angle = std::abs(travel) > 1e-3 ? std::atan2(drift, std::abs(travel)) : 0.0;
+  s.elastic_energy =
+      0.5 * (tyre.stiffness * s.deflection * s.deflection + tyre.tread_stiffness * s.stretch_x * s.stretch_x +
+             tyre.lateral_stiffness * s.stretch_y * s.stretch_y);
+  s.contact = centre + arm;
+  const Vec3 force = s.load * n + s.pull * ahead + s.side * left;
+  s.work += dt * force.dot(v);
+  return {from_eigen(force), from_eigen(Vec3(arm.cross(force)))};
+}
+
+}  // namespace dem::vehicle

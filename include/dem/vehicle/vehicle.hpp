@@ -1,0 +1,125 @@
+#pragma once
+
+#include <dem/vehicle/assembly.hpp>
+#include <dem/vehicle/double_wishbone.hpp>
+#include <dem/vehicle/driveline.hpp>
+#include <dem/vehicle/driver.hpp>
+#include <dem/vehicle/rack_steering.hpp>
+#include <dem/vehicle/wheel.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+#include <string>
+
+namespace dem::vehicle {
+
+/// Corners of a vehicle, in this order everywhere.
+inline constexpr std::array<const char*, 4> corner_names = {"front left", "front right", "rear left", "rear right"};
+
+/// A vehicle with two axles: double wishbones all round, front wheels that steer, all wheels driven.
+struct VehicleSpec {
+  PartMass chassis;
+  Vec3 chassis_centre = Vec3::Zero();  ///< m
+  DoubleWishboneSpec front, rear;      ///< of the left side
+  WheelSpec wheel;
+  TyreSpec tyre;
+  RackSteeringSpec steering;
+  DrivelineSpec driveline;
+
+  double wheelbase() const { return front.points.wheel.x() - rear.points.wheel.x(); }
+  double track() const { return 2.0 * front.points.wheel.y(); }
+};
+
+/// The parts of a vehicle and what steers them.
+struct Vehicle {
+  BodyId chassis;
+  std::array<DoubleWishbone, 4> suspension;
+  std::array<Wheel, 4> wheels;
+  std::array<JointId, 2> toe_links;  ///< of the rear wheels
+  RackSteering steering;
+  Driveline driveline;
+  VehicleSpec spec;
+  double pinion_per_steer = 1.0;  ///< rad of the pinion for a rad of the mean of both wheels, about straight ahead
+};
+
+/// Adds a vehicle to a mechanism. With a road it has tyres on hard ground; without, its wheels need surfaces that touch
+/// what there is. It starts with the assembly's speed, wheels rolling.
+DEM_COLD inline Vehicle add_vehicle(const Assembly& in, const VehicleSpec& s, const std::optional<Road>& road = {}) {
+  Vehicle v;
+  v.spec = s;
+  v.chassis = in.body("chassis", s.chassis, s.chassis_centre);
+  const double spin = in.speed() / s.tyre.radius;
+  BodyId wheels[4];
+  for (std::size_t k = 0; k < 4; ++k) {
+    const DoubleWishboneSpec& left = k < 2 ? s.front : s.rear;
+    const DoubleWishboneSpec corner = k % 2 == 0 ? left : left.mirrored();
+    v.suspension[k] = add_double_wishbone(in, corner_names[k], v.chassis, corner);
+    v.wheels[k] = add_wheel(in, corner_names[k], v.suspension[k].knuckle, corner.points.wheel, s.wheel, spin);
+    wheels[k] = v.wheels[k].body;
+    if (k >= 2) {
+      v.toe_links[k - 2] = add_toe_link(in, corner_names[k], v.chassis, v.suspension[k].knuckle, corner.points);
+    }
+  }
+  v.steering = add_rack_steering(in, v.chassis, v.suspension[0].knuckle, v.suspension[1].knuckle, s.steering);
+  v.driveline = add_driveline(in, v.chassis, wheels, s.driveline, spin);
+  if (road) {
+    for (std::size_t k = 0; k < 4; ++k) add_tyre(in, corner_names[k], v.wheels[k], s.tyre, *road);
+  }
+  // The arm of the tie rod about the line through both ball joints, seen from above.
+  const WishbonePoints& p = s.front.points;
+  const Vec3 kingpin = p.upper_ball - p.lower_ball;
+  const double share = (s.steering.rod_outer.z() - p.lower_ball.z()) / kingpin.z();
+  const double arm = std::abs(s.steering.rod_outer.x() - p.lower_ball.x() - share * kingpin.x());
+  v.pinion_per_steer = arm / s.steering.pinion_radius;
+  return v;
+}
+
+// ------------------------------------------------------------------------------------------------------- looking
+
+inline Vec3 forward_of(const mbd::Mechanism& m, const Vehicle& v) {
+  return m.reference_rotation(v.chassis) * Vec3::UnitX();
+}
+/// m/s, of the chassis along its own axis.
+inline double speed_of(const mbd::Mechanism& m, const Vehicle& v) {
+  return m.body(v.chassis).velocity().dot(forward_of(m, v));
+}
+/// Global position (m) of a point that is given in the axes and from the origin of the vehicle.
+inline Vec3 point_of(const mbd::Mechanism& m, const Vehicle& v, const Vec3& p) {
+  return m.reference_point(v.chassis, p - v.spec.chassis_centre);
+}
+/// rad, of a wheel against straight ahead, seen from above the chassis; positive to the left.
+inline double steer_of(const mbd::Mechanism& m, const Vehicle& v, std::size_t corner) {
+  const Vec3 a =
+      m.reference_rotation(v.chassis).transpose() * m.reference_rotation(v.suspension[corner].knuckle) * Vec3::UnitY();
+  return std::atan2(-a.x(), a.y());
+}
+/// rad, of a wheel whose top leans outward.
+inline double camber_of(const mbd::Mechanism& m, const Vehicle& v, std::size_t corner) {
+  const Vec3 a =
+      m.reference_rotation(v.chassis).transpose() * m.reference_rotation(v.suspension[corner].knuckle) * Vec3::UnitY();
+  return (corner % 2 == 0 ? -1.0 : 1.0) * std::asin(std::clamp(a.z(), -1.0, 1.0));
+}
+/// m, of the middle of a wheel above where it is drawn, in the axes of the chassis.
+inline double travel_of(const mbd::Mechanism& m, const Vehicle& v, std::size_t corner) {
+  const WishbonePoints& p = corner < 2 ? v.spec.front.points : v.spec.rear.points;
+  const Vec3 from_chassis = m.body(v.wheels[corner].body).position() - m.reference_position(v.chassis);
+  return (m.reference_rotation(v.chassis).transpose() * from_chassis + v.spec.chassis_centre).z() - p.wheel.z();
+}
+
+// ------------------------------------------------------------------------------------------------------ steering
+
+/// Passes a driver's controls on, to be called before every step: `dt` is the time (s) to the next call. The steering
+/// turns no faster than `steer_rate` (rad/s of the wheels).
+inline void drive(mbd::Mechanism& m, Vehicle& v, const Controls& c, double dt, double steer_rate = 0.5) {
+  for (Wheel& w : v.wheels) set_brake(m, w, c.brake);
+  if (v.driveline.spec.kind == EngineSpec::Kind::motor) set_throttle(m, v.driveline, c.throttle);
+  mbd::PrescribedMotion& steer = m.parts().motions[v.steering.steer.index()];
+  const double limit = v.steering.largest_angle, now = steer.drive.value;
+  const double wanted = std::clamp(c.steer * v.pinion_per_steer, -limit, limit);
+  const double most = steer_rate * v.pinion_per_steer * dt, by = std::clamp(wanted - now, -most, most);
+  m.set_motion(v.steering.steer, now + by, by / dt);
+}
+
+}  // namespace dem::vehicle

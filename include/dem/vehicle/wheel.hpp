@@ -1,0 +1,80 @@
+#pragma once
+
+#include <dem/vehicle/assembly.hpp>
+#include <dem/vehicle/tyre.hpp>
+
+#include <algorithm>
+#include <memory>
+#include <string>
+
+namespace dem::vehicle {
+
+struct WheelSpec {
+  PartMass mass;                 ///< rim and tyre; y is the axis
+  double brake = 4000.0;         ///< N m, the most that the brake holds
+  double brake_stiffness = 1e5;  ///< N m/rad, of a brake that holds
+  double brake_damping = 300.0;  ///< N m s/rad
+};
+
+/// A wheel on a knuckle, with its brake: a rotational actuator that holds the wheel where it is, up to a torque. Beyond
+/// it the held angle gives way, as an asperity does.
+struct Wheel {
+  BodyId body;
+  JointId turn;  ///< of the wheel on the knuckle; positive drives forward
+  ActuatorId brake;
+  LoadId road;  ///< of the tyre on hard ground, if there is one
+  std::shared_ptr<TyreState> tyre = {};
+  double largest_brake = 0.0;  ///< N m
+  double brake_angle = 0.0;    ///< rad, which the brake holds
+  double brake_torque = 0.0;   ///< N m, asked for
+};
+
+DEM_COLD inline Wheel add_wheel(const Assembly& in, const std::string& corner, BodyId knuckle, const Vec3& middle,
+                                const WheelSpec& s, double spin = 0.0) {
+  using namespace mbd;
+  require_non_negative(s.brake, ("brake of the " + corner + " wheel").c_str(), "N m");
+  require_positive(s.brake_stiffness, ("brake stiffness of the " + corner + " wheel").c_str(), "N m/rad");
+  Wheel w;
+  w.largest_brake = s.brake;
+  w.body = in.body(corner + " wheel", s.mass, middle, Vec3(0, spin, 0));
+  w.turn = in.joint(JointKind::revolute, corner + " wheel", knuckle, w.body, middle, Vec3::UnitY());
+  w.brake = in.mechanism().add_actuator(
+      joint_actuator(in.name(corner + " brake"), w.turn, s.brake_stiffness, s.brake_damping).switched_off());
+  return w;
+}
+
+/// Puts a tyre on a hard road. Not for worlds where the wheel has a surface that touches ground.
+DEM_COLD inline void add_tyre(const Assembly& in, const std::string& corner, Wheel& w, const TyreSpec& tyre,
+                              const Road& road) {
+  check_tyre(tyre);
+  w.tyre = std::make_shared<TyreState>();
+  Road plane = road;
+  plane.normal = road.normal.normalized();
+  const Body& b = in.mechanism().body(w.body);
+  const Vec3 axis = b.rotation().transpose() * in.direction(Vec3::UnitY());
+  const auto law = [tyre, plane, axis, state = w.tyre](double time, const Body& body) {
+    return tyre_wrench(tyre, plane, body, axis, time, *state);
+  };
+  w.road = in.mechanism().add_load(mbd::custom_load(in.name(corner + " tyre"), w.body, law));
+}
+
+/// Sets the brake, 0 to 1 of its largest torque. To be called before every step: a brake that slips moves the angle
+/// that it holds.
+inline void set_brake(mbd::Mechanism& m, Wheel& w, double share) {
+  mbd::Actuator& brake = m.parts().actuators[w.brake.index()];
+  const double torque = std::clamp(share, 0.0, 1.0) * w.largest_brake;
+  const double angle = m.coordinate(w.turn);
+  w.brake_torque = torque;
+  if (!(torque > 0.0)) {
+    brake.spec.on = false;
+    return;
+  }
+  if (!brake.spec.on) w.brake_angle = angle;
+  const double slack = torque / brake.spec.position_gain;
+  w.brake_angle = std::clamp(w.brake_angle, angle - slack, angle + slack);
+  brake.spec.on = true;
+  brake.spec.max_force = torque;
+  brake.spec.set_point = mbd::Signal(w.brake_angle);
+}
+
+}  // namespace dem::vehicle
