@@ -105,6 +105,7 @@ TEST_CASE("at rest the car stands where its energy is least, and its axles carry
   const double front = w[0].tyre->load + w[1].tyre->load, rear = w[2].tyre->load + w[3].tyre->load;
   CHECK(front + rear == Approx(weight).epsilon(1e-3));
   CHECK(front * w[0].tyre->contact.x() + rear * w[2].tyre->contact.x() == Approx(moment).margin(1e-3 * weight));
+  // 1.5e-6 was seen; what is left of the swing after 8 s need not be the same on both sides.
   CHECK(w[0].tyre->load == Approx(w[1].tyre->load).epsilon(1e-5));
 }
 
