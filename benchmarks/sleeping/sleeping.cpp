@@ -52,7 +52,8 @@ struct Bed {
     for (double z = pitch / 2; z < 1.9 * s.height; z += pitch) {
       for (double gx = -s.length / 2 + pitch / 2; gx < s.length / 2 - pitch / 3; gx += pitch) {
         for (double y = -s.width / 2 + pitch / 2; y < s.width / 2 - pitch / 3; y += pitch) {
-          if (std::abs(gx - x) < 2e-3 + 0.6 * pitch && std::abs(y) < 0.25 * s.width + 0.6 * pitch && z > 0.75 * s.height - pitch) {
+          if (std::abs(gx - x) < 2e-3 + 0.6 * pitch && std::abs(y) < 0.25 * s.width + 0.6 * pitch &&
+              z > 0.75 * s.height - pitch) {
             continue;  // here stands the blade
           }
           const Quaternion q = Quaternion(1, 0.3 * turn(random), 0.3 * turn(random), 0.3 * turn(random)).normalized();
