@@ -37,7 +37,7 @@ function(dem_add_catch_tests name label)
   dem_program(test_${name})
   target_link_libraries(test_${name} PRIVATE test_worlds test_main)
   # What has no worlds is soon compiled: each source by itself, so that their names do not meet.
-  if(NOT name MATCHES "^(law|geometry|report|rig|io|soil|terramechanics)$")
+  if(NOT name MATCHES "^(law|geometry|report|rig|io|soil|terramechanics|checkpoint)$")
     set_target_properties(test_${name} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 4)
   endif()
   target_precompile_headers(test_${name} REUSE_FROM test_headers)

@@ -21,6 +21,20 @@ std::size_t memory_bytes(const WorldState<Model>& w) {
     }
     return b;
   };
+  const auto of_forces = [&](const grain::ContactForces& f) {
+    std::size_t b = 0;
+    for (const auto* columns : {&f.force, &f.torque_i, &f.torque_j}) {
+      for (const auto& column : *columns) b += bytes(column);
+    }
+    return b;
+  };
+  for (const ContactScratch<Model>& s : w.scratch) {
+    sum += sizeof(s) + bytes(s.pairs.close) + bytes(s.pairs.touching) + bytes(s.pairs.hits) + bytes(s.pairs.touches) +
+           of_forces(s.pairs.forces) + bytes(s.surfaces.law_of) + bytes(s.surfaces.hits) + bytes(s.surfaces.touches) +
+           bytes(s.surfaces.total_share) + s.surfaces.supports.bytes() + of_forces(s.surfaces.forces);
+  }
+  sum += bytes(w.sleepers.grains) + bytes(w.sleepers.borne) + bytes(w.sleepers.working);
+  for (const Chunk<Model>& c : w.chunks) sum += bytes(c.around);
   for (const Chunk<Model>& c : w.chunks) {
     sum += sizeof(c) + bytes(c.candidate) + bytes(c.owner) + bytes(c.partner_load_first) + bytes(c.partner_loads) +
            bytes(c.surface_loads) + of_memories(c.pair_contacts) + of_memories(c.surface_contacts) + c.searches.bytes();

@@ -71,7 +71,7 @@ struct Corner {
 };
 
 /// The vehicle over x, y, z, roll, pitch, yaw of the chassis' origin and the angles of the four lower arms.
-struct Model {
+struct RigidModel {
   using State = Eigen::Matrix<double, 10, 1>;
   using Matrix = Eigen::MatrixXd;
 

@@ -21,7 +21,7 @@
 using namespace dem;
 using namespace dem::vehicle;
 using dem::vehicle::test::Corner;
-using dem::vehicle::test::Model;
+using dem::vehicle::test::RigidModel;
 
 namespace {
 
@@ -40,7 +40,7 @@ struct Car {
   Machine machine;
   Vehicle vehicle;
   explicit Car(const VehicleSpec& s) {
-    const Model::State u = Model{s}.at_rest();
+    const RigidModel::State u = RigidModel{s}.at_rest();
     vehicle = add_vehicle(Assembly(machine, "car", Vec3(0, 0, u[2])), s, Road{});
     machine.design_for(5e-5);
   }
@@ -88,12 +88,12 @@ TEST_CASE("at rest the car stands where its energy is least, and its axles carry
   Car car(spec);
   const mbd::Mechanism& m = car.machine;
   REQUIRE(car.machine.run(8.0, 5e-5));  // a bounce loses a third each 0.6 s
-  const Model::State u = Model{spec}.at_rest();
+  const RigidModel::State u = RigidModel{spec}.at_rest();
   const Vehicle& v = car.vehicle;
   // Joints give way by some 0.1 mm under 20 kN.
   CHECK(point_of(m, v, Vec3::Zero()).z() == Approx(u[2]).margin(1e-3));
   for (std::size_t k = 0; k < 4; ++k) {
-    const Corner corner = Model{spec}.corner(k);
+    const Corner corner = RigidModel{spec}.corner(k);
     CHECK(travel_of(m, v, k) == Approx(corner.travel(u[6 + static_cast<int>(k)])).margin(1e-3));
   }
   double weight = 0.0, moment = 0.0;
@@ -111,12 +111,12 @@ TEST_CASE("at rest the car stands where its energy is least, and its axles carry
 
 TEST_CASE("bounce, pitch and roll have the frequencies of the linear model") {
   const VehicleSpec spec = plain_humvee();
-  const Model model{spec};
-  const Model::State u0 = model.at_rest();
+  const RigidModel model{spec};
+  const RigidModel::State u0 = model.at_rest();
   for (const bool symmetric : {true, false}) {
-    const Model::Matrix modes = symmetric ? Model::symmetric() : Model::antisymmetric();
-    const Model::Matrix K = model.stiffness(u0, modes), M = model.mass(u0, modes);
-    const Eigen::GeneralizedSelfAdjointEigenSolver<Model::Matrix> linear(K, M);
+    const RigidModel::Matrix modes = symmetric ? RigidModel::symmetric() : RigidModel::antisymmetric();
+    const RigidModel::Matrix K = model.stiffness(u0, modes), M = model.mass(u0, modes);
+    const Eigen::GeneralizedSelfAdjointEigenSolver<RigidModel::Matrix> linear(K, M);
     Car car(spec);
     const mbd::Mechanism& m = car.machine;
     const Vehicle& v = car.vehicle;

@@ -11,7 +11,7 @@ using JkrModel = Laws<contact::Hertz, friction::Mindlin, rolling::None, cohesion
 using StickyModel = Laws<Linear, friction::CundallStrack, rolling::None, cohesion::Constant>;
 template <class S>
 struct Wet : Laws<Linear, friction::CundallStrack, rolling::None, cohesion::LiquidBridge, S> {
-  using Executor = exec::OpenMP;
+  using Executor = exec::Threads;
 };
 using WetModel = Wet<Sphere>;
 using Pair = shape::SphereCluster<2>;

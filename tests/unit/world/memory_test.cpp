@@ -62,7 +62,7 @@ TEST_CASE("a settled cube of eight spheres takes less than 2000 bytes") {
 }
 
 TEST_CASE("the memory that is told is what grains take, to the byte") {
-  // What is freed with a world was the world's: scratch memory of the threads stays.
+  // What is freed with a world was the world's, what its threads write down included.
   const auto taken = [&](int n) {
     auto w = settled_bed(n);
     const long with = bytes_asked_for;

@@ -1,6 +1,7 @@
 #include "scenes.hpp"
 
 #include <dem/law/friction/none.hpp>
+#include <dem/parallel/openmp.hpp>
 
 using Catch::Approx;
 using namespace dem;

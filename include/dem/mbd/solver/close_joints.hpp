@@ -79,6 +79,11 @@ class StiffnessRamp {
     if (left <= 1.0) to_.clear();
   }
 
+  template <class V>
+  void fields(V& v) {
+    v("to", to_), v("left", left_);
+  }
+
  private:
   template <class F>
   static void for_each_stiffness(Parts& m, F&& each) {

@@ -20,6 +20,13 @@ struct JointOpening {
   double displacement = 0.0;  ///< m, allowed
   double rotation = 0.0;      ///< rad, allowed
   double time = 0.0;          ///< s
+
+  template <class V>
+  void fields(V& v) {
+    v("joint", joint), v("displacement", violation.displacement, "m"), v("rotation", violation.rotation, "rad");
+    v("share", share), v("allowed_displacement", displacement, "m"), v("allowed_rotation", rotation, "rad");
+    v("time", time, "s");
+  }
 };
 
 /// Watches, as a machine runs, how far its joints give way. Only what is derived is watched: who gives a stiffness says
@@ -35,6 +42,10 @@ class JointWatch {
     std::uint32_t joint;
     double displacement, rotation;  ///< m and rad, allowed; 1e300 where it is not watched
     double mass;                    ///< kg, of the machine that it belongs to
+    template <class V>
+    void fields(V& v) {
+      v("joint", joint), v("displacement", displacement, "m"), v("rotation", rotation, "rad"), v("mass", mass, "kg");
+    }
   };
 
   JointWatch() = default;
@@ -79,6 +90,12 @@ class JointWatch {
   /// The first joint that folded (see below); no valid id if none did.
   const JointOpening& folded() const { return folded_; }
   const std::vector<Watched>& watched() const { return watched_; }
+
+  template <class V>
+  void fields(V& v) {
+    v("watched", watched_), v("recent", recent_), v("worst", worst_), v("folded", folded_),
+        v("steps_left", steps_left_);
+  }
 
  private:
   static constexpr double unwatched = 1e300;

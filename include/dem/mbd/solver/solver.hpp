@@ -190,6 +190,8 @@ class Solver {
     v("time", time_, "s"), v("design_step", design_dt_, "s"), v("newest_step", step_dt_, "s"), v("steps", steps_);
     v("substeps", substeps_), v("revision", revision_), v("initialised", initialised_);
     v("bad_body", bad_), v("bad_time", bad_time_, "s");
+    v("ramp", ramp_), v("joints", joints_), v("newly_opened", newly_opened_), v("known_open", known_);
+    v("assembled", is_assembled_), v("raised_from", raised_from_), v("raised_to", raised_to_);
   }
 
  private:

@@ -20,7 +20,7 @@ struct BedSettings {
   double shake_frequency = 25.0;  ///< Hz
   double strike_off = 0.02;       ///< share of the grains, the highest, that are taken off before the lid comes
   double lid_pressure = 1000.0;   ///< Pa, of the lid's weight
-  double lid_speed = 0.1;         ///< m/s, at which the lid comes down
+  double lid_speed = 0.05;        ///< m/s, at which the lid comes down
   double stage_limit = 3.0;       ///< s; a stage that has not come to rest by then ends the run
   double wall_thickness = 0.01;   ///< m
   double stable_share = 0.8;      ///< time step, in largest stable ones
