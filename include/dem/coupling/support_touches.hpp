@@ -45,10 +45,10 @@ class SupportTouches {
     touches_.push_back({feature, family, way, owner, touch});
   }
 
-  /// The touches in the order of their features, each with another number. Left out is a touch of a wall that the
-  /// support point of its own way touches too.
   std::size_t bytes() const { return ways_.capacity() * sizeof(Way) + touches_.capacity() * sizeof(Touch); }
 
+  /// The touches in the order of their features, each with another number. Left out is a touch of a wall that the
+  /// support point of its own way touches too.
   const std::vector<Touch>& sorted() {
     if (ways_.size() < 2) return touches_;
     for (Touch& t : touches_) {
