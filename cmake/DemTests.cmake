@@ -153,7 +153,7 @@ endfunction()
 
 # dem_add_header_checks(<include dir>): every header compiles when it is the first and only one, and is guarded. A header
 # that another one includes before anything else is compiled first there, so only the others are compiled for
-# themselves. Built as part of `all`; CUDA headers (*.cuh) are left to nvcc.
+# themselves. All of them also compile together. Built as part of `all`; CUDA headers (*.cuh) are left to nvcc.
 function(dem_add_header_checks include_dir)
   file(GLOB_RECURSE headers CONFIGURE_DEPENDS "${include_dir}/*.hpp")
   find_package(CLI11 QUIET)
@@ -191,6 +191,7 @@ function(dem_add_header_checks include_dir)
   if(DEM_WITH_HDF5)
     list(TRANSFORM HDF5_C_INCLUDE_DIRS PREPEND -isystem OUTPUT_VARIABLE hdf5)
   endif()
+  set(all_headers ${headers})
   list(REMOVE_ITEM headers ${tried_in_others})
   set(stamps)
   foreach(header IN LISTS headers)
@@ -217,6 +218,21 @@ function(dem_add_header_checks include_dir)
       COMMAND_EXPAND_LISTS VERBATIM)
     list(APPEND stamps "${stamp}")
   endforeach()
+  # And all of them together, in one source.
+  list(TRANSFORM all_headers REPLACE "(.+)" "#include <\\1>\n")
+  list(JOIN all_headers "" together)
+  set(together_source "${CMAKE_CURRENT_BINARY_DIR}/header_self_containment/together.cpp")
+  file(CONFIGURE OUTPUT "${together_source}" CONTENT "${together}" @ONLY)
+  set(stamp "${together_source}.ok")
+  add_custom_command(
+    OUTPUT "${stamp}"
+    COMMAND ${DEM_LOOK} ${cli11} ${hdf5} "${together_source}" -MD -MF "${stamp}.d" -MT "${stamp}"
+    COMMAND ${CMAKE_COMMAND} -E touch "${stamp}"
+    DEPENDS "${together_source}"
+    DEPFILE "${stamp}.d"
+    COMMENT "All headers together"
+    COMMAND_EXPAND_LISTS VERBATIM)
+  list(APPEND stamps "${stamp}")
   add_custom_target(header_self_containment ALL DEPENDS ${stamps})
 endfunction()
 

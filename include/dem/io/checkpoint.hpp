@@ -36,7 +36,7 @@ void save(const World<Model>& world, const std::filesystem::path& path, const Ot
 /// schema, or if the set-up differs; the text names what differs: which option, material, species, body, joint.
 template <class Model, class... Others>
 void load(World<Model>& world, const std::filesystem::path& path, Others&... others) {
-  io::Columns columns = io::read_columns(path);
+  io::StateColumns columns = io::read_columns(path);
   try {
     io::restore(world, columns, others...);
   } catch (const Error& problem) {

@@ -75,6 +75,7 @@ class OpenMP {
   }
 
  private:
+#if defined(_OPENMP)
   /// The exception of the lowest piece, whichever thread comes to it first.
   struct Thrown {
     std::exception_ptr first;
@@ -88,7 +89,6 @@ class OpenMP {
     }
   };
 
-#if defined(_OPENMP)
   int threads_ = omp_get_max_threads();
 #else
   int threads_ = 1;

@@ -44,7 +44,7 @@ struct Column {
 };
 
 /// All columns of a state, by their names: parts of a name are set apart by slashes.
-using Columns = std::map<std::string, Column, std::less<>>;
+using StateColumns = std::map<std::string, Column, std::less<>>;
 
 namespace detail {
 
@@ -83,14 +83,14 @@ inline std::uint64_t hash_of(std::string_view name, const Column& column) {
 }
 
 /// Mixes the bits of all columns: two states that differ in one bit differ in it.
-inline std::uint64_t hash_of(const Columns& columns) {
+inline std::uint64_t hash_of(const StateColumns& columns) {
   std::uint64_t hash = 0;
   for (const auto& [name, column] : columns) detail::mix(hash, hash_of(name, column));
   return hash;
 }
 
 /// The names of the columns that two states do not share in every bit.
-inline std::vector<std::string> differences(const Columns& a, const Columns& b) {
+inline std::vector<std::string> differences(const StateColumns& a, const StateColumns& b) {
   std::vector<std::string> names;
   for (const auto& [name, column] : a) {
     const auto other = b.find(name);

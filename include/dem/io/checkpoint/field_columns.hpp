@@ -60,7 +60,7 @@ class FieldColumns {
   enum class Task { collect, compare, restore };
 
   /// Columns to be restored have to be compared first.
-  FieldColumns(Task task, Columns& columns) : task_(task), columns_(&columns) {
+  FieldColumns(Task task, StateColumns& columns) : task_(task), columns_(&columns) {
     if (task == Task::collect) columns.clear();
     if (task != Task::compare) return;
     for (auto& [name, column] : columns) column.at = 0;
@@ -95,7 +95,7 @@ class FieldColumns {
   void add_count(std::size_t count);
 
   Task task_;
-  Columns* columns_;
+  StateColumns* columns_;
   std::string path_;  ///< of the present field
   std::string part_;  ///< in words, whose fields they are
   std::string kind_of_part_;

@@ -186,7 +186,7 @@ inline Column read_column(hid_t file, const std::string& name) {
 
 /// Writes columns to a file, complete or not at all: to `<path>.tmp`, synchronised with the disk, then renamed. Throws
 /// Error.
-inline void write_columns(const std::filesystem::path& path, const Columns& columns) {
+inline void write_columns(const std::filesystem::path& path, const StateColumns& columns) {
   make_folder_of(path);
   const std::filesystem::path temporary = std::filesystem::path(path) += ".tmp";
   const detail::QuietHdf5 quiet;
@@ -212,10 +212,10 @@ inline void write_columns(const std::filesystem::path& path, const Columns& colu
 }
 
 /// Reads them back. Throws Error for a file that is none of these, of another schema, cut short or damaged.
-inline Columns read_columns(const std::filesystem::path& path) {
+inline StateColumns read_columns(const std::filesystem::path& path) {
   detail::check_seal(path);
   const detail::QuietHdf5 quiet;
-  Columns columns;
+  StateColumns columns;
   try {
     detail::Hdf5 file(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose, "HDF5 cannot open it");
     std::vector<std::string> names;

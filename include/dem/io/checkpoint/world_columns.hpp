@@ -208,8 +208,8 @@ void settle_restored(WorldState<Model>& w, bool is_checked) {
 /// The state of a world, and of what else the program keeps (`others`, structs with fields: see Fields). The columns
 /// refer to the world: they are good until it changes. Throws Error after a step that an exception broke off.
 template <class Model, class... Others>
-Columns columns_of(const World<Model>& world, const Others&... others) {
-  Columns columns;
+StateColumns columns_of(const World<Model>& world, const Others&... others) {
+  StateColumns columns;
   Fields v(Fields::Task::collect, columns);
   // One list of fields serves both ways. Collecting changes nothing.
   detail::world_fields(v, const_cast<World<Model>&>(world), const_cast<Others&>(others)...);
@@ -220,7 +220,7 @@ Columns columns_of(const World<Model>& world, const Others&... others) {
 /// Error where the set-up differs, in words, before anything is changed. A state that fits the set-up but lacks
 /// something is refused while it is being read: the world is then good for nothing.
 template <class Model, class... Others>
-void restore(World<Model>& world, Columns& columns, Others&... others) {
+void restore(World<Model>& world, StateColumns& columns, Others&... others) {
   Fields compare(Fields::Task::compare, columns);
   detail::world_fields(compare, world, others...);
   Fields v(Fields::Task::restore, columns);

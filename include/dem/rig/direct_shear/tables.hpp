@@ -17,7 +17,7 @@ namespace dem::rig::direct_shear {
 inline constexpr double degrees = 180.0 / std::numbers::pi;
 
 inline std::string number(double value, const char* format = "{:.2f}") {
-  return std::isfinite(value) ? text_of(format, {value}) : "-";
+  return std::isfinite(value) ? dem::text_of(format, {value}) : "-";
 }
 
 /// Pa, the normal stress that belongs to the maximum; before there is one, the nominal stress.
