@@ -48,6 +48,7 @@ class Car {
     spec.tyre.friction = s.friction;
     const double angle = std::atan(s.slope);
     machine.gravity = 9.81 * Vec3(-std::sin(angle), 0, -std::cos(angle));
+    machine.joint_tolerance = 0.5;  // m: light shafts wind up; how far joints open and turn is told with the results
     const Assembly in(machine, "car", Vec3(0, 0, s.wheel_centre - spec.front.points.wheel.z()), Mat3::Identity(),
                       s.speed);
     vehicle = add_vehicle(in, spec, Road{});
