@@ -69,8 +69,7 @@ TEST_CASE("a difference of the set-up is named") {
   CHECK(holds(text, "species: the saved state has 2, but this program has 3"));
   text = load_into(scene<Cubes>());
   INFO(text);
-  CHECK(holds(text,
-              "shape is 'dem::shape::Sphere' in the saved state, but 'dem::shape::SphereCluster<8>' in this program"));
+  CHECK(holds(text, "shape is 'shape::Sphere' in the saved state, but 'shape::SphereCluster<8>' in this program"));
 }
 
 TEST_CASE("a file that is cut short, damaged, of another schema or none at all is refused in words") {

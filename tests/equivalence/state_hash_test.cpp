@@ -22,7 +22,7 @@
 namespace {
 
 constexpr const char* hash_of_spheres = "73bc636f971f6d70";
-constexpr const char* hash_of_cubes = "292d1dde455ec934";
+constexpr const char* hash_of_cubes = "8da60c509854a73c";
 constexpr const char* hash_of_superquadrics = "6608de9defffe28c";
 
 class Hash {
