@@ -109,10 +109,10 @@ struct Scene {
     }
   }
 
-  /// The box is shaken: gravity swings.
+  /// The box is shaken: gravity swings, and is ten times the earth's, so that grains lie on each other soon.
   void run(std::uint64_t steps) {
     for (std::uint64_t k = 0; k < steps; k += 10) {
-      world.set_gravity({world.steps() / 100 % 2 == 0 ? 4.0 : -4.0, 0, -9.81});
+      world.set_gravity({world.steps() / 100 % 2 == 0 ? 40.0 : -40.0, 0, -98.1});
       const auto report = world.run(std::min<std::uint64_t>(10, steps - k));
       INFO(report.text);
       REQUIRE(report);
@@ -125,7 +125,7 @@ struct Scene {
 class Folder {
  public:
   Folder() {
-    std::string pattern = (std::filesystem::temp_directory_path() / "dem_state_XXXXXX").string();
+    std::string pattern = (std::filesystem::temp_directory_path() / "dem_state_").string() + std::string(6, 'X');
     REQUIRE(::mkdtemp(pattern.data()) != nullptr);
     path_ = pattern;
   }

@@ -1,4 +1,4 @@
-// expect: Executor: needs for_each\(n, f\), threads\(\) and set_threads\(n\)
+// expect: Executor: needs for_each\(n, f\) for f\(piece\) and f\(piece, thread\), threads\(\) and set_threads\(n\)
 #include <dem/world/model.hpp>
 
 struct Loop {

@@ -9,9 +9,9 @@
 
 namespace dem::rig {
 
-/// A word or phrase of the library's, and what the program calls it.
+/// A word or phrase: `from` as the library says it, `to` as the program calls it.
 struct OwnWord {
-  std::string_view library, program;
+  std::string_view from, to;
 };
 
 namespace detail {
@@ -54,10 +54,10 @@ constexpr bool stands_at(std::string_view text, std::size_t at, std::string_view
     }
     const OwnWord* found = nullptr;
     for (const OwnWord& word : words) {
-      if (found == nullptr && detail::stands_at(text, at, word.library)) found = &word;
+      if (found == nullptr && detail::stands_at(text, at, word.from)) found = &word;
     }
-    result += found != nullptr ? found->program : text.substr(at, 1);
-    at += found != nullptr ? found->library.size() : 1;
+    result += found != nullptr ? found->to : text.substr(at, 1);
+    at += found != nullptr ? found->from.size() : 1;
   }
   return result;
 }

@@ -2,6 +2,7 @@
 // Cubical grains and the thesis's constants of their contacts, as options of a rig.
 
 #include <dem/grain/materials.hpp>
+#include <dem/rig/contact_options.hpp>
 #include <dem/rig/options.hpp>
 #include <dem/rig/sizes.hpp>
 #include <dem/soil/relative_density.hpp>
@@ -73,15 +74,8 @@ inline void resolve(GrainSettings& s, double half_edge_by_size) {
   if (s.velocity_stiffness < 0.0) s.velocity_stiffness = s.damping;
   require_positive(s.half_edge, "--half-edge", "m (0: by size)");
   require_positive(s.density, "--density", "kg/m^3");
-  require_positive(s.stiffness, "--stiffness", "N/m");
-  require_non_negative(s.damping, "--damping", "N s/m");
-  require_within(s.separation_factor, 0.0, 1.0, "--separation-factor");
-  require_non_negative(s.friction, "--friction", "(no unit)");
+  check_contact_options(s);
   require_non_negative(s.wall_friction, "--wall-friction", "(no unit)");
-  require_non_negative(s.friction_stiffness, "--friction-stiffness", "N/m");
-  require_non_negative(s.velocity_stiffness, "--velocity-stiffness", "N s/m");
-  require_within(s.breaking_factor, 0.0, 1.0, "--breaking-factor");
-  require_positive(s.constants_for, "--constants-for", "m");
 }
 
 using NamesAndValues = std::vector<std::pair<std::string, std::string>>;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <dem/rig/affordable.hpp>
+#include <dem/rig/contact_options.hpp>
 #include <dem/rig/direct_shear/grain_kind.hpp>
 #include <dem/rig/sizes.hpp>
 
@@ -54,16 +55,9 @@ inline void check_specimen(const Settings& s) {
 }
 
 inline void check_contacts(const Settings& s) {
-  require_positive(s.stiffness, "--stiffness", "N/m (0: by shape)");
-  require_non_negative(s.damping, "--damping", "N s/m");
-  require_within(s.separation_factor, 0.0, 1.0, "--separation-factor");
-  require_non_negative(s.friction, "--friction", "(no unit)");
+  check_contact_options(s, "N/m (0: by shape)");
   require_non_negative(s.wall_friction, "--wall-friction", "(no unit)");
-  require_non_negative(s.friction_stiffness, "--friction-stiffness", "N/m");
-  require_non_negative(s.velocity_stiffness, "--velocity-stiffness", "N s/m");
-  require_within(s.breaking_factor, 0.0, 1.0, "--breaking-factor");
   require_positive(s.density, "--density", "kg/m^3");
-  require_positive(s.constants_for, "--constants-for", "m");
 }
 
 inline void check_test(const Settings& s) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <dem/rig/affordable.hpp>
+#include <dem/rig/contact_options.hpp>
 #include <dem/rig/sand_pile/settings.hpp>
 #include <dem/rig/sizes.hpp>
 
@@ -45,18 +46,11 @@ inline void check(const Settings& s) {
   require_within(s.box_length, 4.0 * d, 4e3 * d, "--box-length (m, from four grains up)");
   require_within(s.box_width, 5.0 * d, 4e3 * d, "--box-width (m, from five grains up)");
   require_within(s.slot_width, 2.0 * d, 1e3 * d, "--slot-width (m, from two grains up)");
-  require_non_negative(s.friction, "--friction", "(no unit)");
   require_non_negative(s.plate_friction, "--plate-friction", "(no unit)");
   require_non_negative(s.container_friction, "--container-friction", "(no unit)");
   require_non_negative(s.plate_rolling_length, "--plate-rolling-length", "m");
-  require_positive(s.stiffness, "--stiffness", "N/m");
-  require_non_negative(s.damping, "--damping", "N s/m");
-  require_within(s.separation_factor, 0.0, 1.0, "--separation-factor");
-  require_non_negative(s.friction_stiffness, "--friction-stiffness", "N/m");
-  require_non_negative(s.velocity_stiffness, "--velocity-stiffness", "N s/m");
-  require_within(s.breaking_factor, 0.0, 1.0, "--breaking-factor");
+  check_contact_options(s);
   require_non_negative(s.rolling_length, "--rolling-length", "m");
-  require_positive(s.constants_for, "--constants-for", "m");
   require_positive(s.settle_limit, "--settle-limit", "s");
   require_positive(s.rest_limit, "--rest-limit", "s (0: by size)");
   require_positive(s.flow_limit, "--flow-limit", "s");
