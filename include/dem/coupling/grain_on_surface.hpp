@@ -7,6 +7,7 @@
 #include <dem/geometry/surface.hpp>
 #include <dem/grain/contact_evaluator.hpp>
 #include <dem/grain/contact_key.hpp>
+#include <dem/grain/particles.hpp>
 
 #include <vector>
 
@@ -62,6 +63,8 @@ struct SurfaceScratch {
   std::vector<grain::Hit> hits;
   std::vector<contact::SurfaceTouch<double>> touches;
   std::vector<double> total_share;  ///< of the touches of patches (contact::PatchTouch); 1 from where it ends
+  Columns3 images;                  ///< m, of the grains of a chunk, for one surface of a periodic world
+  std::vector<PartnerView> views;   ///< of the touches' grains as those images, in a periodic world
   SupportTouches supports;          ///< of one grain on one surface
   grain::ContactForces forces;
 };

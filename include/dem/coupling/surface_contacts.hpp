@@ -38,6 +38,7 @@ struct ChunkAtSurfaces {
   const Materials<Model>& materials;
   std::span<const Surface> surfaces;
   double largest_radius;  ///< m, of all grains
+  const typename Model::Domain& domain;
   SurfaceScratch& scratch;
 
   /// The gap (m) up to which cohesion acts at a distance, else NoGap.
@@ -51,6 +52,36 @@ struct ChunkAtSurfaces {
   double reach() const { return shape::widened(largest_radius, gap()); }
 };
 
+/// Whether grains in a box, which is widened by their reach (m), may meet a surface or, across a border, an image of
+/// it.
+template <class Domain, class Surface>
+bool may_meet(const Domain& domain, const Vec3& low, const Vec3& high, const Surface& s, double reach) {
+  if constexpr (Domain::has_images) return domain.boxes_overlap(low, high, s.low, s.high, reach);
+  else return boxes_overlap(low, high, s.low, s.high);
+}
+
+/// Where the grains of a chunk are for a surface: at their images that are nearest to it. Row `first` is the chunk's
+/// first grain.
+struct Positions {
+  const Columns3& column;
+  std::size_t first;
+  Vector3<double> operator[](std::size_t i) const { return column[i - first]; }
+  Vector3<Pack> pack(std::size_t i) const { return column.pack(i - first); }
+};
+template <class Model>
+Positions positions_for(const ChunkAtSurfaces<Model>& at, const typename ChunkAtSurfaces<Model>::Surface& surface) {
+  if constexpr (Model::Domain::has_images) {
+    Columns3& images = at.scratch.images;
+    images.for_each_column([](AlignedVector<double>& column) { column.resize(chunk_size, 0.0); });
+    for (std::size_t i = at.begin; i < at.end; ++i) {
+      images.set(i - at.begin, at.domain.nearest(at.particles.position[i], surface.low, surface.high, at.reach()));
+    }
+    return {images, at.begin};
+  } else {
+    return {at.particles.position, 0};
+  }
+}
+
 /// Hits of a chunk's grains on one surface, whose geometry is a G. A world stores this function with each surface, so a
 /// program has the code of the kinds that it adds and of no others.
 template <class Model, class G>
@@ -60,7 +91,7 @@ void find_hits_on(const ChunkAtSurfaces<Model>& at, std::size_t number) {
   const G& geometry = *std::get_if<G>(&surface.geometry);
   const auto gap = at.gap();
   SurfaceScratch& s = at.scratch;
-  if constexpr (KnowsClose<G>) {
+  if constexpr (KnowsClose<G> && !Model::Domain::has_images) {
     const Vec3 middle = 0.5 * (at.chunk.low + at.chunk.high);
     const Vector3<double> seen = transpose_times(surface.axes, from_eigen(middle) - surface.origin);
     const double radius = 0.5 * (at.chunk.high - at.chunk.low).norm() + at.reach();
@@ -71,17 +102,18 @@ void find_hits_on(const ChunkAtSurfaces<Model>& at, std::size_t number) {
   }
   const std::size_t first = s.hits.size();
   const auto& p = at.particles;
+  const Positions positions = positions_for(at, surface);
   const Matrix3<Pack> axes = {{Pack(surface.axes.row0.x), Pack(surface.axes.row0.y), Pack(surface.axes.row0.z)},
                               {Pack(surface.axes.row1.x), Pack(surface.axes.row1.y), Pack(surface.axes.row1.z)},
                               {Pack(surface.axes.row2.x), Pack(surface.axes.row2.y), Pack(surface.axes.row2.z)}};
   const Vector3<Pack> origin = {Pack(surface.origin.x), Pack(surface.origin.y), Pack(surface.origin.z)};
   for (std::size_t pack = at.begin; pack < at.end; pack += static_cast<std::size_t>(pack_width)) {
-    const Vector3<Pack> seen = transpose_times(axes, p.position.pack(pack) - origin);
+    const Vector3<Pack> seen = transpose_times(axes, positions.pack(pack) - origin);
     for (std::uint32_t near = bits(geometry.near(seen, Pack(at.reach()))); near != 0; near &= near - 1) {
       const std::size_t i = pack + static_cast<std::size_t>(std::countr_zero(near));
       if (i >= at.end) break;
       const Shape& grain = at.species[p.species[i]].shape;
-      const Vector3<double> centre = transpose_times(surface.axes, p.position[i] - surface.origin);
+      const Vector3<double> centre = transpose_times(surface.axes, positions[i] - surface.origin);
       const double radius = shape::widened(grain.bounding_radius(), gap);
       if (!geometry.near(centre, radius)) continue;
       // A shape of one probe asks the same question by touching.
@@ -95,6 +127,12 @@ void find_hits_on(const ChunkAtSurfaces<Model>& at, std::size_t number) {
                                   p.pose_of(i),
                                   centre};
       shape::visit_kind(grain, [&](const auto& kind) { touch_surface(one, kind, surface, geometry, gap, s); });
+    }
+  }
+  if constexpr (Model::Domain::has_images) {
+    for (std::size_t k = first; k < s.hits.size(); ++k) {
+      s.views.push_back(p.view[s.hits[k].i]);
+      s.views.back().position = positions[s.hits[k].i];
     }
   }
   if constexpr (history_size < Model >> 0 && surface::NamesDirections<G>) {
@@ -121,18 +159,19 @@ template <class Model>
 void find_surface_contacts(const ChunkAtSurfaces<Model>& at, std::span<const FindHits<Model>> find_hits, double dt,
                            grain::ForceSums& sums) {
   using Shape = typename Model::Shape;
-  auto& [begin, end, chunk, p, species, materials, surfaces, largest_radius, scratch] = at;
+  auto& [begin, end, chunk, p, species, materials, surfaces, largest_radius, domain, scratch] = at;
   const double reach = at.reach();
   const Vec3 low = chunk.low - filled(reach), high = chunk.high + filled(reach);
   const std::vector<grain::Hit>& hits = scratch.hits;
   scratch.hits.clear();
+  scratch.views.clear();
   scratch.touches.clear();
   scratch.total_share.clear();
   chunk.surface_loads.clear();
   scratch.law_of.resize(species.size());
   for (std::size_t s = 0; s < surfaces.size(); ++s) {
     const auto& surface = surfaces[s];
-    if (surface.active && boxes_overlap(low, high, surface.low, surface.high)) find_hits[s](at, s);
+    if (surface.active && may_meet(domain, low, high, surface, reach)) find_hits[s](at, s);
   }
 
   if constexpr (shape::PatchShape<Shape>) scratch.total_share.resize(scratch.touches.size(), 1.0);
@@ -146,7 +185,10 @@ void find_surface_contacts(const ChunkAtSurfaces<Model>& at, std::span<const Fin
   grain::ContactEvaluator<Model, OnSurface<Shape>::template Touch> evaluator(materials.table(), dt);
   const grain::Deepest deepest = evaluator.run(
       hits, chunk.surface_contacts, scratch.forces, touch_of,
-      [&](std::size_t c) -> const PartnerView& { return at.particles.view[hits[c].i]; },
+      [&](std::size_t c) -> const PartnerView& {
+        if constexpr (Model::Domain::has_images) return at.scratch.views[c];
+        else return at.particles.view[hits[c].i];
+      },
       [&](std::size_t c) -> const PartnerView& { return at.surfaces[hits[c].partner].view; });
   if (deepest.overlap > chunk.deepest.overlap) {
     chunk.deepest = {deepest.overlap, hits[deepest.hit].i, hits[deepest.hit].partner, true};

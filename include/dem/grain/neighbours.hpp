@@ -3,6 +3,7 @@
 #include <dem/grain/broadphase/broad_phase.hpp>
 #include <dem/grain/chunk.hpp>
 #include <dem/grain/contact_key.hpp>
+#include <dem/grain/images.hpp>
 #include <dem/grain/move.hpp>
 #include <dem/grain/species.hpp>
 
@@ -53,7 +54,7 @@ void mirror(Remembered<history_size<Model>>& r) {
 /// Reads the committed histories of all contacts, those of pairs and those with surfaces apart.
 template <class Model, class Particles>
 void collect_memories(std::span<const Chunk<Model>> chunks, const Particles& p,
-                      std::vector<Remembered<history_size<Model>>>& pairs,
+                      const Images<typename Model::Domain>& images, std::vector<Remembered<history_size<Model>>>& pairs,
                       std::vector<Remembered<history_size<Model>>>& surfaces) {
   constexpr int size = history_size<Model>;
   using Memory = ContactMemory<size>;
@@ -68,8 +69,8 @@ void collect_memories(std::span<const Chunk<Model>> chunks, const Particles& p,
       const auto candidate = static_cast<std::uint32_t>(key >> 32);
       DEM_ASSERT(candidate < chunk.candidate.size(), "what is remembered is of a candidate");
       while (chunk.candidate_first[k + 1] <= candidate) ++k;
-      pairs.push_back({p.id[index * chunk_size + k], p.id[chunk.candidate[candidate]], static_cast<std::uint32_t>(key),
-                       history_of<Memory, size>(of_pairs, c)});
+      pairs.push_back({p.id[index * chunk_size + k], p.id[images.grain_of(chunk.candidate[candidate])],
+                       static_cast<std::uint32_t>(key), history_of<Memory, size>(of_pairs, c)});
     }
     const Memory& of_surfaces = chunk.surface_contacts.last;
     for (int c = 0; c < of_surfaces.count; ++c) {
@@ -92,9 +93,11 @@ void list_owners(Chunk<Model>& chunk) {
   chunk.searches.reset(chunk.candidate.size());
 }
 
-/// Candidates of one chunk: all j > i whose bounding spheres come within the skin, ascending.
+/// Candidates of one chunk: all j > i whose bounding spheres come within the skin, ascending; grains first, then
+/// images.
 template <class Model, class Particles, class BroadPhase>
 void list_candidates(std::size_t chunk_index, Chunk<Model>& chunk, const Particles& p, const BroadPhase& broad_phase,
+                     const Images<typename Model::Domain>& images,
                      std::span<const Species<typename Model::Shape>> species, double skin) {
   const std::size_t begin = chunk_index * chunk_size;
   const std::size_t end = std::min(begin + chunk_size, p.count);
@@ -105,6 +108,7 @@ void list_candidates(std::size_t chunk_index, Chunk<Model>& chunk, const Particl
     const double radius_i = species[p.species[i]].shape.bounding_radius();
     const Vector3<double> x = p.position[i];
     finder.for_each_candidate(i, [&](std::uint32_t j) {
+      if (!images.may_pair(i, j)) return;
       const Vector3<double> d = p.position[j] - x;
       const double reach = radius_i + species[p.species[j]].shape.bounding_radius() + skin;
       if (dot(d, d) < reach * reach) chunk.candidate.push_back(j);
@@ -119,13 +123,15 @@ void list_candidates(std::size_t chunk_index, Chunk<Model>& chunk, const Particl
 
 /// The reverse of the candidate lists: for each grain, where it is a partner in another chunk; owners ascending.
 template <class Model>
-void list_incoming(std::span<const Chunk<Model>> chunks, std::size_t grains, std::vector<std::uint32_t>& first,
+void list_incoming(std::span<const Chunk<Model>> chunks, std::size_t grains,
+                   const Images<typename Model::Domain>& images, std::vector<std::uint32_t>& first,
                    std::vector<Incoming>& incoming) {
   const auto for_each_foreign = [&](auto&& f) {
     for (std::size_t c = 0; c < chunks.size(); ++c) {
       for (std::size_t k = 0; k < chunks[c].candidate.size(); ++k) {
         const std::uint32_t j = chunks[c].candidate[k];
-        if (j / chunk_size != c) f(j, Incoming{static_cast<std::uint32_t>(c), static_cast<std::uint32_t>(k)});
+        if (j / chunk_size != c)
+          f(images.grain_of(j), Incoming{static_cast<std::uint32_t>(c), static_cast<std::uint32_t>(k)});
       }
     }
   };
@@ -153,9 +159,22 @@ void remember(Memory& memory, std::uint64_t key, const Entry& entry) {
   for (std::size_t k = 0; k < entry.history.size(); ++k) memory.history[k][at] = entry.history[k];
 }
 
+/// The candidate among those of one grain that is grain j or an image of it; as many as there are if none is.
+template <class Images>
+std::size_t candidate_of(std::span<const std::uint32_t> candidates, std::uint32_t j, const Images& images) {
+  const auto at = std::lower_bound(candidates.begin(), candidates.end(), j);
+  if (at != candidates.end() && *at == j) return static_cast<std::size_t>(at - candidates.begin());
+  if constexpr (std::is_same_v<Images, ImageRows>) {
+    for (std::size_t k = candidates.size(); k-- > 0 && candidates[k] >= images.first;) {
+      if (images.grain_of(candidates[k]) == j) return k;
+    }
+  }
+  return candidates.size();
+}
+
 /// Hands the contact histories to the chunks that own the contacts now, with the keys of the new candidate lists.
 template <class Model, class Particles>
-void return_memories(std::span<Chunk<Model>> chunks, const Particles& p,
+void return_memories(std::span<Chunk<Model>> chunks, const Particles& p, const Images<typename Model::Domain>& images,
                      std::vector<Remembered<history_size<Model>>>& pairs,
                      std::vector<Remembered<history_size<Model>>>& surfaces) {
   using Entry = Remembered<history_size<Model>>;
@@ -180,11 +199,11 @@ void return_memories(std::span<Chunk<Model>> chunks, const Particles& p,
   for (Chunk<Model>& chunk : chunks) chunk.pair_contacts.last.count = chunk.surface_contacts.last.count = 0;
   for (const Entry& r : pairs) {
     Chunk<Model>& chunk = chunks[r.i / chunk_size];
-    const auto from = chunk.candidate.begin() + chunk.candidate_first[r.i % chunk_size];
-    const auto to = chunk.candidate.begin() + chunk.candidate_first[r.i % chunk_size + 1];
-    const auto at = std::lower_bound(from, to, r.j);
-    if (at == to || *at != r.j) continue;  // parted since
-    remember(chunk.pair_contacts.last, std::uint64_t(at - chunk.candidate.begin()) << 32 | r.feature, r);
+    const std::uint32_t from = chunk.candidate_first[r.i % chunk_size],
+                        to = chunk.candidate_first[r.i % chunk_size + 1];
+    const std::size_t at = candidate_of(std::span(chunk.candidate).subspan(from, to - from), r.j, images);
+    if (at == to - from) continue;  // parted since
+    remember(chunk.pair_contacts.last, std::uint64_t(from + at) << 32 | r.feature, r);
   }
   for (const Entry& r : surfaces) {
     remember(chunks[r.i].surface_contacts.last, std::uint64_t{r.j} << 32 | r.feature, r);

@@ -48,6 +48,7 @@ template <class Shape, class Integrator>
 struct Particles {
   using Motion = integrator::Motion<Pack>;
   static constexpr bool has_orientation = Shape::has_orientation;
+  static constexpr std::size_t pose_size = Shape::pose_size;
   template <class T>
   using Memory = typename Integrator::template Memory<T>;
   static constexpr int memory_size = contact::field_count<Memory<double>>;
@@ -135,6 +136,17 @@ struct Particles {
     count = n;
   }
 
+  /// Rows behind the padding, for images of grains: they have a position, a view, a pose, a species and an id only. The
+  /// next resize() drops them.
+  void add_rows(std::size_t n) {
+    const std::size_t rows = chunks() * chunk_size + n;
+    position.for_each_column([&](AlignedVector<double>& column) { column.resize(rows, 0.0); });
+    view.resize(rows);
+    pose.resize(rows * Shape::pose_size, 0.0);
+    species.resize(rows, 0);
+    id.resize(rows, 0xffffffffu);
+  }
+
   /// Takes grains (ids) out; the others keep their order.
   void remove(std::span<const std::uint32_t> ids) {
     for (const std::uint32_t k : ids) row_of[k] = gone;
@@ -149,7 +161,7 @@ struct Particles {
   /// Puts the padding rows where the last grain is and stops them, so that bounds and displacements stay right.
   void pad() {
     if (count == 0) return;
-    for (std::size_t i = count; i < position.x.size(); ++i) {
+    for (std::size_t i = count; i < chunks() * chunk_size; ++i) {
       position.set(i, position[count - 1]);
       listed_at.set(i, listed_at[count - 1]);
       for (Columns3* c : {&velocity, &spin, &force, &torque}) c->set(i, {0, 0, 0});

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <dem/grain/contact_evaluator.hpp>
+#include <dem/grain/images.hpp>
 #include <dem/grain/move.hpp>
 #include <dem/grain/sleep_options.hpp>
 
@@ -105,12 +106,12 @@ bool end_window(std::size_t begin, std::size_t end, std::span<const Chunk<Model>
 
 /// The chunks that hold candidates of each other, for each chunk.
 template <class Model>
-void list_chunks_around(std::span<Chunk<Model>> chunks) {
+void list_chunks_around(std::span<Chunk<Model>> chunks, const Images<typename Model::Domain>& images) {
   for (auto& chunk : chunks) chunk.around.clear();
   for (std::size_t c = 0; c < chunks.size(); ++c) {
     std::vector<std::uint32_t> others;
     for (const std::uint32_t j : chunks[c].candidate) {
-      const auto other = static_cast<std::uint32_t>(j / chunk_size);
+      const auto other = static_cast<std::uint32_t>(images.grain_of(j) / chunk_size);
       if (other != c && (others.empty() || others.back() != other)) others.push_back(other);
     }
     std::sort(others.begin(), others.end());

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <dem/domain/open.hpp>
 #include <dem/geometry/box/box.hpp>
 #include <dem/geometry/cylinder/cylinder.hpp>
 #include <dem/geometry/mesh/triangle_mesh.hpp>
@@ -31,6 +32,7 @@ struct Model {
   using Rolling = rolling::None;
   using Cohesion = cohesion::None;
   using BroadPhase = broadphase::UniformGrid;
+  using Domain = domain::Open;
   using Integrator = integrator::PredictorCorrector;
   using Executor = exec::Threads;
 };
@@ -44,16 +46,18 @@ constexpr bool check_surfaces(const std::variant<Kinds...>*) {
 /// Within `struct Rolling : Model` the name Rolling means the struct itself, and no policy.
 template <class M, class... Policies>
 constexpr void check_name() {
-  static_assert(!(std::is_same_v<M, Policies> || ...),
-                "Model: your model is called like one of its policies (Shape, Surfaces, Normal, Friction, Rolling, "
-                "Cohesion, BroadPhase, Integrator or Executor), so that name means the model itself; rename the model");
+  static_assert(
+      !(std::is_same_v<M, Policies> || ...),
+      "Model: your model is called like one of its policies (Shape, Surfaces, Normal, Friction, Rolling, "
+      "Cohesion, BroadPhase, Domain, Integrator or Executor), so that name means the model itself; rename the model");
 }
 
 /// Refuses a wrong policy in words, at compile time.
 template <class M>
 constexpr bool check_model() {
   check_name<M, typename M::Shape, typename M::Surfaces, typename M::Normal, typename M::Friction, typename M::Rolling,
-             typename M::Cohesion, typename M::BroadPhase, typename M::Integrator, typename M::Executor>();
+             typename M::Cohesion, typename M::BroadPhase, typename M::Domain, typename M::Integrator,
+             typename M::Executor>();
   shape::check_shape<typename M::Shape>();
   check_surfaces(static_cast<typename M::Surfaces*>(nullptr));
   contact::check_normal_law<typename M::Normal>();
@@ -62,6 +66,11 @@ constexpr bool check_model() {
   cohesion::check_cohesion_law<typename M::Cohesion, typename M::Normal>();
   if constexpr (cohesion::reaches<typename M::Cohesion>) shape::check_reaching_shape<typename M::Shape>();
   broadphase::check_broad_phase<typename M::BroadPhase>();
+  static_assert(
+      requires {
+        { M::Domain::has_images } -> std::convertible_to<bool>;
+      },
+      "Domain: must be domain::Open or domain::Periodic");
   integrator::check_integrator<typename M::Integrator>();
   exec::check_executor<typename M::Executor>();
   return true;

@@ -12,6 +12,11 @@
 
 namespace dem {
 
+/// Which of the axes.
+struct Axes {
+  bool x = false, y = false, z = false;
+};
+
 /// Settings of a world. All have defaults that suit a first try.
 struct WorldOptions {
   Vec3 gravity = {0.0, 0.0, -9.81};       ///< m/s^2
@@ -22,8 +27,9 @@ struct WorldOptions {
   double overlap_limit = 0.5;  ///< overlap, in effective diameters 2 Ri Rj/(Ri + Rj), that is reported as a problem
   std::optional<surface::Bounds> domain = {};         ///< where grains are expected; none: anywhere
   BeyondDomain beyond_domain = BeyondDomain::report;  ///< what becomes of a grain whose centre leaves it
-  int threads = 0;                                    ///< 0: as many as the executor offers
-  std::optional<SleepOptions> sleep = {};             ///< lets grains at rest sleep, so that they cost next to nothing
+  Axes periodic = {};  ///< in which the domain repeats itself; for models whose Domain is domain::Periodic
+  int threads = 0;     ///< 0: as many as the executor offers
+  std::optional<SleepOptions> sleep = {};  ///< lets grains at rest sleep, so that they cost next to nothing
 };
 
 /// A grain to be added.

@@ -37,7 +37,7 @@ void find_sleeping_chunks(WorldState<Model>& w) {
   if (!w.options.sleep) return;
   s.grains.resize(w.particles.row_of.size());
   s.borne.assign(w.chunks.size() * chunk_size, 0.0);
-  grain::list_chunks_around<Model>(w.chunks);
+  grain::list_chunks_around<Model>(w.chunks, w.images);
   for (std::size_t c = 0; c < w.chunks.size(); ++c) {
     bool asleep = true;
     const std::size_t end = std::min((c + 1) * chunk_size, w.particles.count);
@@ -57,7 +57,7 @@ void choose_working_chunks(WorldState<Model>& w) {
     const double reach = shape::widened(w.largest_radius, w.materials.range());
     const Vec3 low = chunk.low - filled(reach), high = chunk.high + filled(reach);
     for (const auto& surface : w.surfaces) {
-      if (surface.moved && surface.active && boxes_overlap(low, high, surface.low, surface.high)) return true;
+      if (surface.moved && surface.active && coupling::may_meet(w.domain, low, high, surface, reach)) return true;
     }
     return false;
   };

@@ -56,6 +56,8 @@ struct WorldState {
   Particles<Shape, Integrator> particles;
   std::vector<Chunk<Model>> chunks;
   typename Model::BroadPhase broad_phase;
+  typename Model::Domain domain;
+  grain::Images<typename Model::Domain> images;
   std::vector<std::uint32_t> incoming_first;
   std::vector<grain::Incoming> incoming;
   double list_skin = 0.0;                ///< m, with which the neighbour list was made
@@ -87,6 +89,7 @@ struct WorldState {
     v.given("has_domain", options.domain.has_value());
     if (options.domain)
       v.given("domain_low", options.domain->low, "m"), v.given("domain_high", options.domain->high, "m");
+    if constexpr (Model::Domain::has_images) v("cell", domain);
     v("gravity", options.gravity, "m/s^2"), v("time", time, "s"), v("time_step", time_step, "s"), v("steps", step);
     v("materials", materials), v.list("species", species, "species"), v("machine", machine);
     v.list("surfaces", surfaces, "surface"), v.list("surface_sensors", surface_sensors, "surface sensor");
@@ -109,12 +112,42 @@ bool neighbours_outdated(const WorldState<Model>& w) {
   return 4.0 * moved2 > w.list_skin * w.list_skin;
 }
 
+/// Puts the grains of a periodic cell back into it, and takes the images away that were beyond its borders.
+template <class Model>
+void wrap_grains(WorldState<Model>& w) {
+  if constexpr (Model::Domain::has_images) {
+    auto& p = w.particles;
+    p.resize(p.count);
+    w.images = {};
+    for (std::size_t i = 0; i < p.count; ++i) p.position.set(i, w.domain.wrapped(p.position[i]));
+  }
+}
+/// Makes the images of the grains near a periodic cell's borders, after the grains are sorted.
+template <class Model>
+void make_images(WorldState<Model>& w, double reach) {
+  if constexpr (Model::Domain::has_images) {
+    grain::find_images(w.images, w.particles, w.domain, reach);
+    grain::make_rows(w.particles, w.images);
+  }
+}
+/// Images go where their grains are.
+template <class Model>
+void place_images(WorldState<Model>& w) {
+  if constexpr (Model::Domain::has_images) {
+    const std::size_t count = w.images.grain.size();
+    w.executor.for_each((count + chunk_size - 1) / chunk_size, [&](std::size_t block) {
+      const std::size_t end = std::min((block + 1) * chunk_size, count);
+      for (std::size_t k = block * chunk_size; k < end; ++k) grain::follow_grain(w.particles, w.images, k);
+    });
+  }
+}
+
 /// Sorts the grains in space, lists their neighbours, and carries the contact histories over.
 template <class Model>
 void rebuild_neighbours(WorldState<Model>& w) {
   auto& p = w.particles;
   std::vector<grain::Remembered<history_size<Model>>> pairs, surfaces;
-  grain::collect_memories<Model>(std::span<const Chunk<Model>>(w.chunks), p, pairs, surfaces);
+  grain::collect_memories<Model>(std::span<const Chunk<Model>>(w.chunks), p, w.images, pairs, surfaces);
   if (!w.to_remove.empty()) {
     p.remove(w.to_remove);
     w.to_remove.clear();
@@ -128,25 +161,31 @@ void rebuild_neighbours(WorldState<Model>& w) {
     return;
   }
   const double reach = 2.0 * w.largest_radius + w.materials.range() + w.skin();
-  const auto positions = [&] {
-    return broadphase::Positions{p.position.x.data(), p.position.y.data(), p.position.z.data(), p.count};
+  const auto positions = [&](std::size_t rows) {
+    return broadphase::Positions{p.position.x.data(), p.position.y.data(), p.position.z.data(), rows};
   };
-  w.broad_phase.build(positions(), reach);
+  wrap_grains(w);
+  w.broad_phase.build(positions(p.count), reach);
   if (const auto order = w.broad_phase.order(); !order.empty()) {
     const std::vector<std::uint32_t> sorted(order.begin(), order.end());
     p.permute(sorted);
-    w.broad_phase.build(positions(), reach);
+    w.broad_phase.build(positions(p.count), reach);
   }
   p.listed_at = p.position;
   p.pad();
+  if constexpr (Model::Domain::has_images) {
+    make_images(w, reach);
+    w.broad_phase.build(positions(p.position.x.size()), reach);
+  }
 
   w.chunks.resize(p.chunks());
   w.executor.for_each(w.chunks.size(), [&](std::size_t c) {
-    grain::list_candidates<Model>(c, w.chunks[c], p, w.broad_phase, w.species, w.materials.range() + w.skin());
+    grain::list_candidates<Model>(c, w.chunks[c], p, w.broad_phase, w.images, w.species,
+                                  w.materials.range() + w.skin());
     grain::refresh_chunk<Model>(c, w.chunks[c], p, w.species);
   });
-  grain::list_incoming<Model>(std::span<const Chunk<Model>>(w.chunks), p.count, w.incoming_first, w.incoming);
-  grain::return_memories<Model>(std::span<Chunk<Model>>(w.chunks), p, pairs, surfaces);
+  grain::list_incoming<Model>(std::span<const Chunk<Model>>(w.chunks), p.count, w.images, w.incoming_first, w.incoming);
+  grain::return_memories<Model>(std::span<Chunk<Model>>(w.chunks), p, w.images, pairs, surfaces);
   w.list_valid = true;
   w.list_skin = w.skin();
   ++w.rebuilds;

@@ -16,9 +16,9 @@ void find_chunk_contacts(WorldState<Model>& w, std::size_t c, ContactScratch<Mod
   grain::ForceSums sums;
   grain::find_pair_contacts<Model>(c, chunk, w.particles, w.species, w.materials, w.time_step, sums, scratch.pairs);
   const double start = w.stopwatch.clock();
-  coupling::find_surface_contacts<Model>(
-      {begin, end, chunk, w.particles, w.species, w.materials, w.surfaces, w.largest_radius, scratch.surfaces},
-      w.find_hits, w.time_step, sums);
+  coupling::find_surface_contacts<Model>({begin, end, chunk, w.particles, w.species, w.materials, w.surfaces,
+                                          w.largest_radius, w.domain, scratch.surfaces},
+                                         w.find_hits, w.time_step, sums);
   chunk.surface_seconds += w.stopwatch.clock() - start;
   sums.write(c, w.particles);
   if (w.sleepers.measuring) {
@@ -37,6 +37,7 @@ void evaluate_contacts(WorldState<Model>& w) {
     rebuild_neighbours(w);
     find_sleeping_chunks(w);
   }
+  place_images(w);
   w.stopwatch.stop(Phase::neighbours);
 
   w.stopwatch.start();

@@ -2,6 +2,7 @@
 
 #include <dem/grain/stable_time_step.hpp>
 #include <dem/world/check.hpp>
+#include <dem/world/check_period.hpp>
 #include <dem/world/report.hpp>
 #include <dem/world/step.hpp>
 #include <dem/world/thin_sheets.hpp>
@@ -42,6 +43,7 @@ class World : public WorldSetup<M> {
       check_thin_sheets(state_);
       const double range = state_.materials.range();
       state_.materials.find_range(state_.largest_radius);
+      check_period(state_);
       find_points_deep_enough(state_);
       if (state_.materials.range() > range) state_.list_valid = false;
       for (const auto& pair : state_.body_contacts.pairs) {

@@ -38,6 +38,7 @@ class WorldSetup {
            d->low.x(), d->low.y(), d->low.z(), d->high.x(), d->high.y(), d->high.z());
     }
     state_.options = options;
+    set_period(options);
     if (options.threads != 0) state_.executor.set_threads(options.threads);
   }
 
@@ -286,6 +287,33 @@ class WorldSetup {
   void touched() {
     state_.list_valid = false;
     initialised_ = false;
+  }
+
+  /// The cell of a periodic world is its domain, which ends nowhere in the directions that repeat.
+  void set_period(const WorldOptions& o) {
+    const std::array<bool, 3> repeats = {o.periodic.x, o.periodic.y, o.periodic.z};
+    const bool any = repeats[0] || repeats[1] || repeats[2];
+    if constexpr (Model::Domain::has_images) {
+      if (!any || !o.domain) {
+        fail(
+            "the world's model has a periodic Domain, but its options name no {}: set WorldOptions::domain to the cell "
+            "and WorldOptions::periodic to the directions in which it repeats",
+            !o.domain ? "domain" : "periodic direction");
+      }
+      surface::Bounds& d = *state_.options.domain;
+      for (std::size_t k = 0; k < 3; ++k) {
+        if (!repeats[k]) continue;
+        require_positive(d.high.data()[k] - d.low.data()[k], "period of the domain", "m");
+      }
+      state_.domain = {d, repeats};
+      for (std::size_t k = 0; k < 3; ++k) {
+        if (repeats[k]) d.low.data()[k] = -HUGE_VAL, d.high.data()[k] = HUGE_VAL;
+      }
+    } else if (any) {
+      fail(
+          "WorldOptions::periodic is set, but the world's model has an open Domain: say `using Domain = "
+          "dem::domain::Periodic;` in the model");
+    }
   }
 
   WorldState<Model> state_;

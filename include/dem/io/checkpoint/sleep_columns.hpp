@@ -85,7 +85,7 @@ void sleep_fields(Fields& v, WorldState<Model>& w) {
       ++of_surface;
     }
   }
-  grain::list_chunks_around<Model>(w.chunks);
+  grain::list_chunks_around<Model>(w.chunks, w.images);
 }
 
 }  // namespace dem::io::detail

@@ -121,6 +121,19 @@ void chunk_fields(Fields& v, WorldState<Model>& w) {
       grain::list_owners(c);
     }
   }
+  if constexpr (Model::Domain::has_images) {
+    std::vector<double> shifts;
+    for (const Vector3<double>& s : w.images.shift) shifts.insert(shifts.end(), {s.x, s.y, s.z});
+    v("image_of", w.images.grain), v("image_shifts", shifts, "m");
+    if (is_restoring) {
+      w.images.grains = static_cast<std::uint32_t>(w.particles.count);
+      w.images.first = static_cast<std::uint32_t>(w.particles.chunks() * chunk_size);
+      w.images.shift.resize(w.images.grain.size());
+      for (std::size_t k = 0; k < w.images.shift.size(); ++k) {
+        w.images.shift[k] = {shifts.at(3 * k), shifts.at(3 * k + 1), shifts.at(3 * k + 2)};
+      }
+    }
+  }
   if constexpr (shape::RememberingShape<typename Model::Shape>) {
     using Memory = typename Model::Shape::PairMemory;
     static_assert(std::is_trivially_copyable_v<Memory>, "PairMemory: must be trivially copyable to be saved");
@@ -160,6 +173,7 @@ void model_fields(Fields& v) {
   policy("cohesion_law", type_name<typename Model::Cohesion>());
   policy("broad_phase", type_name<typename Model::BroadPhase>());
   policy("integrator", type_name<typename Model::Integrator>());
+  if constexpr (Model::Domain::has_images) policy("domain", type_name<typename Model::Domain>());
 }
 
 template <class Model, class... Others>
@@ -200,7 +214,12 @@ void settle_restored(WorldState<Model>& w, bool is_checked) {
   for (std::size_t c = 0; c < w.chunks.size(); ++c) {
     grain::refresh_chunk<Model>(c, w.chunks[c], w.particles, w.species);
   }
-  grain::list_incoming<Model>(std::span<const Chunk<Model>>(w.chunks), w.particles.count, w.incoming_first, w.incoming);
+  if constexpr (Model::Domain::has_images) {
+    grain::make_rows(w.particles, w.images);
+    place_images(w);
+  }
+  grain::list_incoming<Model>(std::span<const Chunk<Model>>(w.chunks), w.particles.count, w.images, w.incoming_first,
+                              w.incoming);
 }
 
 }  // namespace detail

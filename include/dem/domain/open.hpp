@@ -1,0 +1,10 @@
+#pragma once
+
+namespace dem::domain {
+
+/// Space without borders: grains go anywhere. The default.
+struct Open {
+  static constexpr bool has_images = false;
+};
+
+}  // namespace dem::domain

@@ -1,0 +1,84 @@
+#pragma once
+// Images of grains beyond the borders of a periodic cell: rows of their own behind those of the grains, which contacts
+// read as they read any partner. Their loads go to the grains that they are images of.
+
+#include <dem/domain/open.hpp>
+#include <dem/grain/particles.hpp>
+
+#include <cstdint>
+#include <type_traits>
+#include <vector>
+
+namespace dem::grain {
+
+/// Of a world without borders: every row is a grain.
+struct NoImages {
+  static constexpr std::uint32_t grain_of(std::uint32_t row) { return row; }
+  static constexpr bool may_pair(std::size_t, std::uint32_t) { return true; }
+};
+
+/// Which grain (row) each image row shows, and how far away from it.
+struct ImageRows {
+  std::uint32_t grains = 0;            ///< rows of grains; then come padding rows
+  std::uint32_t first = 0xffffffffu;   ///< the first row of an image
+  std::vector<std::uint32_t> grain;    ///< row of the grain, ascending
+  std::vector<Vector3<double>> shift;  ///< m, from the grain to its image
+
+  std::uint32_t grain_of(std::uint32_t row) const { return row < first ? row : grain[row - first]; }
+  /// Whether row j is a partner that grain i looks after: of two grains that meet across a border, the one with the
+  /// lower row.
+  bool may_pair(std::size_t i, std::uint32_t j) const { return j < grains || (j >= first && grain[j - first] > i); }
+};
+
+template <class Domain>
+using Images = std::conditional_t<Domain::has_images, ImageRows, NoImages>;
+
+/// Puts the images where their grains are now.
+template <class Particles>
+void follow_grain(Particles& p, const ImageRows& images, std::size_t image) {
+  const std::size_t row = images.first + image, grain = images.grain[image];
+  p.view[row] = p.view[grain];
+  p.view[row].position += images.shift[image];
+  std::copy_n(p.pose_of(grain), p.pose_size, p.pose_of(row));
+}
+
+/// Makes the rows of images: positions as they are now, and what never changes.
+template <class Particles>
+void make_rows(Particles& p, const ImageRows& images) {
+  p.add_rows(images.grain.size());
+  for (std::size_t k = 0; k < images.grain.size(); ++k) {
+    const std::size_t row = images.first + k, grain = images.grain[k];
+    p.position.set(row, p.position[grain] + images.shift[k]);
+    p.species[row] = p.species[grain];
+    p.id[row] = p.id[grain];
+  }
+}
+
+/// Lists the images of all grains within `reach` (m) of a border; positions are within the cell.
+template <class Particles, class Domain>
+void find_images(ImageRows& images, const Particles& p, const Domain& domain, double reach) {
+  images.grains = static_cast<std::uint32_t>(p.count);
+  images.first = static_cast<std::uint32_t>(p.chunks() * chunk_size);
+  images.grain.clear();
+  images.shift.clear();
+  const auto& period = domain.period();
+  for (std::size_t i = 0; i < p.count; ++i) {
+    const Vector3<double> x = p.position[i];
+    const double place[] = {x.x, x.y, x.z};
+    // Along each axis a grain has an image if it is near a border; those of several axes combine.
+    double to[3] = {0, 0, 0};
+    for (std::size_t k = 0; k < 3; ++k) {
+      if (period[k] == 0.0) continue;
+      if (place[k] - domain.low(k) < reach) to[k] = period[k];
+      else if (domain.low(k) + period[k] - place[k] < reach) to[k] = -period[k];
+    }
+    for (unsigned axes = 1; axes < 8; ++axes) {
+      const Vector3<double> shift = {axes & 1 ? to[0] : 0.0, axes & 2 ? to[1] : 0.0, axes & 4 ? to[2] : 0.0};
+      if ((axes & 1 && to[0] == 0.0) || (axes & 2 && to[1] == 0.0) || (axes & 4 && to[2] == 0.0)) continue;
+      images.grain.push_back(static_cast<std::uint32_t>(i));
+      images.shift.push_back(shift);
+    }
+  }
+}
+
+}  // namespace dem::grain

@@ -1,0 +1,204 @@
+// Cells that repeat themselves: what happens at a border is what happens anywhere else.
+
+#include "scenes.hpp"
+
+#include <dem/domain/periodic.hpp>
+
+#include "core/error_of.hpp"
+
+namespace {
+
+struct PeriodicCubes : Cubes {
+  using Domain = dem::domain::Periodic;
+};
+
+constexpr double length = 0.030, width = 0.024;  // m, of the cell
+
+dem::WorldOptions cell(const Vec3& gravity, dem::Axes periodic, int threads = 1) {
+  dem::WorldOptions o = options(gravity, 1e-5);
+  o.domain = dem::surface::Bounds{{0, 0, -1}, {length, width, 1}};
+  o.periodic = periodic;
+  o.threads = threads;
+  return o;
+}
+
+/// How far apart two points are, but for whole periods along x and y.
+double apart(const Vec3& a, const Vec3& b) {
+  Vec3 d = a - b;
+  d.x() -= length * std::round(d.x() / length);
+  d.y() -= width * std::round(d.y() / width);
+  return d.norm();
+}
+
+template <class World>
+void set_up(World& w) {
+  w.set_contact(sand<typename World::Model>(0.4));
+  w.add_species(dem::shape::cube8(1e-3));
+}
+
+/// A bed on a floor, begun at an offset in the cell.
+template <class World>
+void add_bed(World& w, const Vec3& offset, int layers) {
+  set_up(w);
+  w.add_surface(w.ground(), dem::surface::Plane{});
+  add_block(w, SpeciesId(0), offset + Vec3(1.5e-3, 1.5e-3, 2e-3), 3e-3, 10, 8, layers, 0.3);
+}
+
+}  // namespace
+
+TEST_CASE("grains that meet across the corner of a cell move as grains that meet elsewhere") {
+  // Blocks whose cubes fly at each other, and all of it along a diagonal, so that the borders cut through it anew and
+  // anew, and histories of contacts go through them.
+  const auto drift = Vec3(0.8, 0.5, 0);
+  auto fill = [&](auto& w) {
+    set_up(w);
+    add_block(w, SpeciesId(0), Vec3(-2e-3, -2e-3, 0), 2.6e-3, 3, 3, 3, 0.2);
+    const Vec3 middle(0.6e-3, 0.6e-3, 2.6e-3);
+    for (const ParticleId p : w.particles()) {
+      w.set_velocity(p, w.velocity(p) + drift - 30.0 * (w.position(p) - middle));
+    }
+  };
+  dem::World<PeriodicCubes> repeated(cell(Vec3::Zero(), {.x = true, .y = true}));
+  dem::World<Cubes> open(options(Vec3::Zero(), 1e-5));
+  fill(repeated);
+  fill(open);
+  double touching = 0.0;
+  for (int k = 0; k < 50; ++k) {
+    REQUIRE(repeated.run(20));
+    REQUIRE(open.run(20));
+    for (const ParticleId p : open.particles()) touching += open.force(p).norm() > 0.0 ? 1.0 : 0.0;
+  }
+  CHECK(touching > 50.0);  // forces were seen, a few grains at each look
+  for (const ParticleId p : open.particles()) {
+    CAPTURE(p.value);
+    // Each step rounds positions of 0.03 m by 1e-18 m; contacts enlarge it, by 1e5 at the most in so few.
+    CHECK(apart(repeated.position(p), open.position(p)) < 1e-11);
+    CHECK((repeated.velocity(p) - open.velocity(p)).norm() < 1e-8);
+    CHECK((repeated.rotation(p) - open.rotation(p)).norm() < 1e-8);
+    // Positions are put back into the cell when neighbours are listed.
+    CHECK(repeated.position(p).x() > -1e-3);
+    CHECK(repeated.position(p).x() < length + 1e-3);
+  }
+}
+
+TEST_CASE("a bed is the same wherever its cell is said to begin") {
+  const Vec3 shift(length / 3, width / 5, 0);
+  dem::World<PeriodicCubes> here(cell({1.0, 0.5, -g}, {.x = true, .y = true})),
+      there(cell({1.0, 0.5, -g}, {.x = true, .y = true}));
+  add_bed(here, Vec3::Zero(), 3);
+  add_bed(there, shift, 3);
+  REQUIRE(here.run(1500));
+  REQUIRE(there.run(1500));
+  double weight = 0.0;
+  for (const ParticleId p : here.particles()) {
+    CAPTURE(p.value);
+    CHECK(apart(there.position(p) - shift, here.position(p)) < 1e-9);  // rounding, which collisions enlarge
+    weight += here.position(p).z() > 0.0 ? 1.0 : 0.0;
+  }
+  CHECK(weight == 240.0);  // none fell through the floor
+}
+
+TEST_CASE("what goes on in a cell that repeats in all directions keeps its momentum") {
+  dem::WorldOptions o = cell(Vec3::Zero(), {true, true, true});
+  o.domain->low.z() = 0.0;
+  o.domain->high.z() = 0.02;
+  dem::World<PeriodicCubes> w(o);
+  set_up(w);
+  add_block(w, SpeciesId(0), Vec3(1e-3, 1e-3, 1e-3), 3e-3, 10, 8, 6, 1.0);
+  const auto momentum = [&] {
+    Vec3 sum = Vec3::Zero();
+    for (const ParticleId p : w.particles()) sum += w.velocity(p);
+    return sum;
+  };
+  const Vec3 before = momentum();
+  const Vec3 first = w.velocity(ParticleId(0));
+  REQUIRE(w.run(2000));
+  CHECK((w.velocity(ParticleId(0)) - first).norm() > 0.01);  // it met others
+  // 480 velocities of 1 m/s, each changed 2,000 times by amounts that are rounded to 1e-16 of it.
+  CHECK((momentum() - before).norm() < 1e-10);
+  for (const ParticleId p : w.particles()) {
+    CHECK(w.position(p).z() > -2e-4);
+    CHECK(w.position(p).z() < 0.02 + 2e-4);
+  }
+}
+
+TEST_CASE("the number of threads changes no bit of a periodic bed") {
+  dem::World<PeriodicCubes> one(cell({3.0, 0, -g}, {.x = true, .y = true})),
+      three(cell({3.0, 0, -g}, {.x = true, .y = true}, 3));
+  for (auto* w : {&one, &three}) {
+    add_bed(*w, Vec3::Zero(), 5);
+    REQUIRE(w->run(600));
+    w->remove_particle(ParticleId(17));
+    w->add_particle({.species = SpeciesId(0), .position = {length + 1e-3, 0.01, 0.04}});  // it is put into the cell
+    REQUIRE(w->run(900));
+  }
+  CHECK(one.position(ParticleId(400)).x() < length);
+  for (const ParticleId p : one.particles()) {
+    CAPTURE(p.value);
+    CHECK(one.position(p) == three.position(p));
+    CHECK(one.velocity(p) == three.velocity(p));
+  }
+}
+
+TEST_CASE("a machine part meets grains across a border, in whichever cell it is") {
+  // A blade is drawn through a bed, from the middle of a cell and from two cells farther on.
+  const auto force_on_blade = [](double start, std::vector<Vec3>& forces) {
+    dem::World<PeriodicCubes> w(cell({0, 0, -g}, {.x = true, .y = true}));
+    add_bed(w, Vec3::Zero(), 3);
+    for (const ParticleId p : w.particles()) {
+      const Vec3 from_blade = w.position(p) - Vec3(0.026, 0, 0);
+      const double y = from_blade.y() - width * std::round(from_blade.y() / width);
+      if (std::abs(from_blade.x()) < 3e-3 && std::abs(y) < 6e-3) w.remove_particle(p);
+    }
+    auto& m = w.machine();
+    const Vec3 edges(2e-3, 8e-3, 0.02);
+    const auto blade = m.add_body(dem::mbd::box_body("blade", edges, 2650).at({start, 0.0, 0.013}));
+    const auto slide =
+        m.add_joint(dem::mbd::prismatic("slide", w.ground(), blade, Vec3(start, 0, 0.013), Vec3::UnitX()));
+    m.add_motion(dem::mbd::prescribed_joint(
+        "draw", slide, dem::mbd::Signal::function([](double t) { return 0.5 * (t - 0.01) * (t > 0.01 ? 1.0 : 0.0); })));
+    const auto s = w.add_surface(blade, dem::surface::Box(edges));
+    for (int k = 0; k < 30; ++k) {
+      const auto report = w.run(100);
+      INFO(report.text);
+      REQUIRE(report);
+      forces.push_back(w.surface_force(s));
+    }
+    CHECK(w.machine().bodies()[blade.index()].position().x() == Catch::Approx(start + 0.01).epsilon(1e-3));
+  };
+  const auto largest = [](const std::vector<Vec3>& forces) {
+    double norm = 0.0;
+    for (const Vec3& f : forces) norm = std::max(norm, f.norm());
+    return norm;
+  };
+  std::vector<Vec3> near, far;
+  force_on_blade(0.026, near);  // it crosses the border at 0.03 m, and stands on that at y = 0
+  force_on_blade(0.026 + 2 * length, far);
+  double sum = 0.0;
+  for (std::size_t k = 0; k < near.size(); ++k) {
+    // Places are rounded to 1e-17 m, one cell from another, and the collisions of 3,000 steps enlarge that by 1e10.
+    CHECK((near[k] - far[k]).norm() < 1e-3 * largest(near));
+    sum += near[k].x();
+  }
+  CHECK(sum < -largest(near));  // the bed holds it back
+}
+
+TEST_CASE("a cell that cannot be is refused in words") {
+  check_refused([] { dem::World<Cubes> w({.periodic = {.x = true}}); }, "using Domain = dem::domain::Periodic");
+  check_refused([] { dem::World<PeriodicCubes> w; }, "set WorldOptions::domain to the cell");
+  check_refused(
+      [] {
+        dem::World<PeriodicCubes> w({.domain = dem::surface::Bounds{{0, 0, 0}, {1, 1, 1}}});
+      },
+      "name no periodic direction");
+  dem::WorldOptions o = cell({0, 0, -g}, {.x = true});
+  o.domain->high.x() = 5e-3;
+  dem::World<PeriodicCubes> small(o);
+  set_up(small);
+  small.add_particle({.species = SpeciesId(0)});
+  check_refused([&] { small.prepare(); }, "period in x is 0.005 m, but must be above");
+  dem::World<PeriodicCubes> long_part(cell({0, 0, -g}, {.x = true}));
+  set_up(long_part);
+  long_part.add_surface(long_part.ground(), dem::surface::Box({0.029, 1, 0.01}), {.name = "slab"});
+  check_refused([&] { long_part.prepare(); }, "surface 'slab' is 0.029 m long in x");
+}
