@@ -148,13 +148,14 @@ struct Particles {
   }
 
   /// Takes grains (ids) out; the others keep their order.
-  void remove(std::span<const std::uint32_t> ids) {
+  template <class Executor>
+  void remove(std::span<const std::uint32_t> ids, Executor& executor) {
     for (const std::uint32_t k : ids) row_of[k] = gone;
     std::vector<std::uint32_t> kept;
     for (std::size_t i = 0; i < count; ++i) {
       if (row_of[id[i]] != gone) kept.push_back(static_cast<std::uint32_t>(i));
     }
-    permute(kept);
+    permute(kept, executor);
     resize(kept.size());
   }
 
@@ -169,15 +170,18 @@ struct Particles {
     }
   }
 
-  /// Row k becomes what was row order[k].
-  void permute(std::span<const std::uint32_t> order) {
+  /// Row k becomes what was row order[k]. Threads share the columns.
+  template <class Executor>
+  void permute(std::span<const std::uint32_t> order, Executor& executor) {
     DEM_ASSERT(order.size() <= count, "rows are moved or dropped, and none is made");
-    AlignedVector<double> old;
-    for_each_column([&](AlignedVector<double>& column) {
-      old = column;
+    std::vector<AlignedVector<double>*> columns;
+    for_each_column([&](AlignedVector<double>& column) { columns.push_back(&column); });
+    executor.for_each(columns.size(), [&](std::size_t c) {
+      AlignedVector<double>& column = *columns[c];
+      const AlignedVector<double> old = column;
       for (std::size_t k = 0; k < order.size(); ++k) column[k] = old[order[k]];
     });
-    old = pose;
+    const AlignedVector<double> old = pose;
     for (std::size_t k = 0; k < order.size(); ++k) {
       std::copy_n(old.data() + order[k] * Shape::pose_size, Shape::pose_size, pose_of(k));
     }

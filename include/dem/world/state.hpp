@@ -4,6 +4,7 @@
 #include <dem/coupling/body_stability.hpp>
 #include <dem/coupling/machine_surface.hpp>
 #include <dem/coupling/surface_contacts.hpp>
+#include <dem/grain/carry_histories.hpp>
 #include <dem/grain/materials.hpp>
 #include <dem/grain/neighbours.hpp>
 #include <dem/grain/pair_contacts.hpp>
@@ -146,12 +147,11 @@ void place_images(WorldState<Model>& w) {
 template <class Model>
 void rebuild_neighbours(WorldState<Model>& w) {
   auto& p = w.particles;
-  std::vector<grain::Remembered<history_size<Model>>> pairs, surfaces;
-  grain::collect_memories<Model>(std::span<const Chunk<Model>>(w.chunks), p, w.images, pairs, surfaces);
+  grain::HistoryCarrier<Model> histories;
+  histories.collect(w.executor, std::span<const Chunk<Model>>(w.chunks), p, w.images);
   if (!w.to_remove.empty()) {
-    p.remove(w.to_remove);
+    p.remove(w.to_remove, w.executor);
     w.to_remove.clear();
-    grain::forget_removed(p, pairs, surfaces);
   }
 
   if (p.count == 0) {
@@ -168,8 +168,9 @@ void rebuild_neighbours(WorldState<Model>& w) {
   w.broad_phase.build(positions(p.count), reach);
   if (const auto order = w.broad_phase.order(); !order.empty()) {
     const std::vector<std::uint32_t> sorted(order.begin(), order.end());
-    p.permute(sorted);
-    w.broad_phase.build(positions(p.count), reach);
+    p.permute(sorted, w.executor);
+    if constexpr (requires { w.broad_phase.reordered(); }) w.broad_phase.reordered();
+    else w.broad_phase.build(positions(p.count), reach);
   }
   p.listed_at = p.position;
   p.pad();
@@ -185,7 +186,7 @@ void rebuild_neighbours(WorldState<Model>& w) {
     grain::refresh_chunk<Model>(c, w.chunks[c], p, w.species);
   });
   grain::list_incoming<Model>(std::span<const Chunk<Model>>(w.chunks), p.count, w.images, w.incoming_first, w.incoming);
-  grain::return_memories<Model>(std::span<Chunk<Model>>(w.chunks), p, w.images, pairs, surfaces);
+  histories.hand_out(w.executor, std::span<Chunk<Model>>(w.chunks), p, w.images);
   w.list_valid = true;
   w.list_skin = w.skin();
   ++w.rebuilds;

@@ -21,7 +21,8 @@ struct Positions {
 ///   once
 ///                             for each j > i within reach of i (and for others), in any order;
 ///   order()                   a permutation that puts grains near in space near in memory (or an empty span);
-///   memory_bytes()            what it holds.
+///   memory_bytes()            what it holds;
+///   reordered()               optional: the grains were put in order(). Without it they are built anew.
 template <class B>
 concept BroadPhase = requires(B& b, const B& built, const Positions& positions, double reach) {
   b.build(positions, reach);

@@ -38,6 +38,15 @@ class UniformGrid {
     fill_table();
   }
 
+  /// To be called when the grains were put in order(), so that row k is what was row order()[k]: as good as build(),
+  /// and cheaper.
+  void reordered() {
+    for (std::size_t k = 0; k < order_.size(); ++k) order_[k] = static_cast<std::uint32_t>(k);
+    for (std::uint32_t c = 0; c + 1 < cells_.size(); ++c) {
+      std::fill(cell_of_.begin() + cells_[c].first, cell_of_.begin() + cells_[c + 1].first, c);
+    }
+  }
+
   /// Looks candidates up; each thread has its own. Remembers the surroundings of the last cell, as grains that follow
   /// each other are mostly in one cell.
   class Finder {

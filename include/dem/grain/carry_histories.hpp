@@ -1,0 +1,190 @@
+#pragma once
+
+#include <dem/grain/chunk.hpp>
+#include <dem/grain/contact_key.hpp>
+#include <dem/grain/images.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+#include <span>
+#include <utility>
+#include <vector>
+
+namespace dem::grain {
+
+/// A contact history on its way from one neighbour list to the next. It is named by the ids of the grains, which
+/// sorting does not change.
+template <int HistorySize>
+struct Remembered {
+  std::uint32_t i, j;     ///< id of the owner; id of the partner, or the upper half of a surface contact's key
+  std::uint32_t feature;  ///< lower half of the key
+  std::array<double, static_cast<std::size_t>(HistorySize)> history;
+};
+
+template <class Block, int HistorySize>
+std::array<double, static_cast<std::size_t>(HistorySize)> history_of(const Block& last, int c) {
+  std::array<double, static_cast<std::size_t>(HistorySize)> h;
+  for (std::size_t k = 0; k < h.size(); ++k) h[k] = last.history[k][static_cast<std::size_t>(c)];
+  return h;
+}
+
+/// Turns the vectors of a law's history round; `fields` is where it begins.
+template <class Law>
+void mirror_history(double* fields) {
+  using History = typename Law::template History<double>;
+  if constexpr (!std::is_empty_v<History>) {
+    History h;
+    std::memcpy(&h, fields, sizeof(h));
+    Law::carry(h, [](const Vector3<double>& v) { return -v; });
+    std::memcpy(fields, &h, sizeof(h));
+  }
+}
+
+/// Turns the history of a pair contact round: seen from the other grain, its vectors point the other way.
+template <class Model>
+void mirror(Remembered<history_size<Model>>& r) {
+  std::swap(r.i, r.j);
+  r.feature = Model::Shape::mirrored(r.feature);
+  double* fields = r.history.data() + normal_history_size<Model>;
+  mirror_history<typename Model::Friction>(fields);
+  mirror_history<typename Model::Rolling>(fields + friction_history_size<Model>);
+}
+
+/// The candidate among those of one grain that is grain j or an image of it; as many as there are if none is.
+template <class Images>
+std::size_t candidate_of(std::span<const std::uint32_t> candidates, std::uint32_t j, const Images& images) {
+  const auto at = std::lower_bound(candidates.begin(), candidates.end(), j);
+  if (at != candidates.end() && *at == j) return static_cast<std::size_t>(at - candidates.begin());
+  if constexpr (std::is_same_v<Images, ImageRows>) {
+    for (std::size_t k = candidates.size(); k-- > 0 && candidates[k] >= images.first;) {
+      if (images.grain_of(candidates[k]) == j) return k;
+    }
+  }
+  return candidates.size();
+}
+
+/// Carries the contact histories from one neighbour list to the next: collect(), while the old list is there, and
+/// hand_out(), when the new one is. Grains may be sorted and removed in between. Threads share the work by chunks.
+template <class Model>
+class HistoryCarrier {
+  static constexpr int size = history_size<Model>;
+  using Entry = Remembered<size>;
+  using Memory = ContactMemory<size>;
+
+ public:
+  /// Reads the committed histories of all contacts.
+  template <class Executor, class Particles>
+  void collect(Executor& executor, std::span<const Chunk<Model>> chunks, const Particles& p,
+               const Images<typename Model::Domain>& images) {
+    const auto pairs_first = counts(chunks, [](const Chunk<Model>& c) { return c.pair_contacts.last.count; });
+    const auto surfaces_first = counts(chunks, [](const Chunk<Model>& c) { return c.surface_contacts.last.count; });
+    pairs_.resize(pairs_first.back());
+    surfaces_.resize(surfaces_first.back());
+    executor.for_each(chunks.size(), [&](std::size_t index) {
+      const Chunk<Model>& chunk = chunks[index];
+      const Memory& of_pairs = chunk.pair_contacts.last;
+      std::size_t k = 0;  // owner of the candidate, found by walking along: keys ascend
+      for (int c = 0; c < of_pairs.count; ++c) {
+        const std::uint64_t key = of_pairs.key[static_cast<std::size_t>(c)];
+        const auto candidate = static_cast<std::uint32_t>(key >> 32);
+        DEM_ASSERT(candidate < chunk.candidate.size(), "what is remembered is of a candidate");
+        while (chunk.candidate_first[k + 1] <= candidate) ++k;
+        pairs_[pairs_first[index] + static_cast<std::size_t>(c)] = {
+            p.id[index * chunk_size + k], p.id[images.grain_of(chunk.candidate[candidate])],
+            static_cast<std::uint32_t>(key), history_of<Memory, size>(of_pairs, c)};
+      }
+      const Memory& of_surfaces = chunk.surface_contacts.last;
+      for (int c = 0; c < of_surfaces.count; ++c) {
+        const std::uint64_t key = of_surfaces.key[static_cast<std::size_t>(c)];
+        surfaces_[surfaces_first[index] + static_cast<std::size_t>(c)] = {
+            p.id[index * chunk_size + SurfaceKey::local(key)], static_cast<std::uint32_t>(key >> 32),
+            static_cast<std::uint32_t>(key), history_of<Memory, size>(of_surfaces, c)};
+      }
+    });
+  }
+
+  /// Hands them to the chunks that own the contacts now, with the keys of the new candidate lists. Those of grains that
+  /// were removed or have parted are dropped.
+  template <class Executor, class Particles>
+  void hand_out(Executor& executor, std::span<Chunk<Model>> chunks, const Particles& p,
+                const Images<typename Model::Domain>& images) {
+    const auto by_chunk = [&](std::vector<Entry>& entries, auto&& rename) {
+      constexpr std::size_t block = 4096;
+      executor.for_each((entries.size() + block - 1) / block, [&](std::size_t b) {
+        for (std::size_t k = b * block; k < std::min((b + 1) * block, entries.size()); ++k) rename(entries[k]);
+      });
+      return group(entries, chunks.size(), p.gone);
+    };
+    const Groups of_pairs = by_chunk(pairs_, [&](Entry& r) {
+      r.i = p.row_of[r.i];
+      r.j = p.row_of[r.j];
+      if (r.j == p.gone) r.i = p.gone;
+      if (r.i != p.gone && r.i > r.j) mirror<Model>(r);
+    });
+    const Groups of_surfaces = by_chunk(surfaces_, [&](Entry& r) { r.i = p.row_of[r.i]; });
+
+    executor.for_each(chunks.size(), [&](std::size_t c) {
+      Chunk<Model>& chunk = chunks[c];
+      std::vector<std::pair<std::uint64_t, std::uint32_t>> keys;  // and the entry
+      for (std::uint32_t k = of_pairs.first[c]; k < of_pairs.first[c + 1]; ++k) {
+        const Entry& r = pairs_[of_pairs.entry[k]];
+        const std::uint32_t from = chunk.candidate_first[r.i % chunk_size];
+        const std::uint32_t to = chunk.candidate_first[r.i % chunk_size + 1];
+        const std::size_t at = candidate_of(std::span(chunk.candidate).subspan(from, to - from), r.j, images);
+        if (at == to - from) continue;  // parted since
+        keys.emplace_back(std::uint64_t(from + at) << 32 | r.feature, of_pairs.entry[k]);
+      }
+      remember(chunk.pair_contacts.last, keys, pairs_);
+      keys.clear();
+      for (std::uint32_t k = of_surfaces.first[c]; k < of_surfaces.first[c + 1]; ++k) {
+        const Entry& r = surfaces_[of_surfaces.entry[k]];
+        const std::uint64_t old = std::uint64_t{r.j} << 32 | r.feature;  // with the old place in the chunk
+        keys.emplace_back(SurfaceKey::with_local(old, r.i % chunk_size), of_surfaces.entry[k]);
+      }
+      remember(chunk.surface_contacts.last, keys, surfaces_);
+    });
+  }
+
+ private:
+  /// The entries of each chunk: entry[first[c]] to entry[first[c + 1]].
+  struct Groups {
+    std::vector<std::uint32_t> first, entry;
+  };
+  static Groups group(const std::vector<Entry>& entries, std::size_t chunks, std::uint32_t gone) {
+    Groups g;
+    g.first.assign(chunks + 1, 0);
+    for (const Entry& r : entries) g.first[r.i == gone ? chunks : r.i / chunk_size] += 1;
+    std::uint32_t total = 0;
+    for (std::uint32_t& n : g.first) total += std::exchange(n, total);  // those that are gone come last, in no chunk
+    g.entry.resize(g.first[chunks]);
+    std::vector<std::uint32_t> next(g.first.begin(), g.first.end() - 1);
+    for (std::size_t k = 0; k < entries.size(); ++k) {
+      if (entries[k].i != gone) g.entry[next[entries[k].i / chunk_size]++] = static_cast<std::uint32_t>(k);
+    }
+    return g;
+  }
+  /// Where each chunk's entries begin, and how many there are.
+  template <class Count>
+  static std::vector<std::size_t> counts(std::span<const Chunk<Model>> chunks, Count&& count) {
+    std::vector<std::size_t> first(chunks.size() + 1, 0);
+    for (std::size_t c = 0; c < chunks.size(); ++c)
+      first[c + 1] = first[c] + static_cast<std::size_t>(count(chunks[c]));
+    return first;
+  }
+  static void remember(Memory& memory, std::vector<std::pair<std::uint64_t, std::uint32_t>>& keys,
+                       const std::vector<Entry>& entries) {
+    std::sort(keys.begin(), keys.end());
+    memory.count = static_cast<int>(keys.size());
+    if (memory.key.size() < keys.size()) memory.reserve(keys.size() * 5 / 4);
+    for (std::size_t at = 0; at < keys.size(); ++at) {
+      memory.key[at] = keys[at].first;
+      const auto& history = entries[keys[at].second].history;
+      for (std::size_t k = 0; k < history.size(); ++k) memory.history[k][at] = history[k];
+    }
+  }
+
+  std::vector<Entry> pairs_, surfaces_;
+};
+
+}  // namespace dem::grain
