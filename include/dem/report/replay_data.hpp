@@ -31,6 +31,10 @@ struct ReplayOptions {
 struct ReplayBall {
   Vec3 centre = Vec3::Zero();  ///< m, in the grain's frame
   double radius = 0.0;         ///< m, > 0
+  template <class V>
+  void fields(V& v) {
+    v("centre", centre, "m"), v("radius", radius, "m");
+  }
 };
 
 /// What grains of a species look like, in the grain's frame: balls, or else a mesh.
@@ -38,6 +42,10 @@ struct ReplayShape {
   std::vector<ReplayBall> balls = {};  ///< drawn with more or fewer triangles as there are fewer or more of them
   io::SurfaceMesh mesh = {};           ///< where there are no balls
   double smooth_angle = 0.0;           ///< rad; edges of the mesh that bend less are shaded round
+  template <class V>
+  void fields(V& v) {
+    v("balls", balls), v("mesh", mesh), v("smooth_angle", smooth_angle, "rad");
+  }
 };
 
 /// A grain in a frame.
@@ -61,6 +69,10 @@ struct ReplayPose {
 struct ReplayPart {
   std::string name;
   io::SurfaceMesh mesh;
+  template <class V>
+  void fields(V& v) {
+    v("name", name), v("mesh", mesh);
+  }
 };
 
 /// What is kept of a grain in a frame: 28 bytes.
@@ -81,6 +93,10 @@ struct KeptFrame {
   double time = 0.0;  ///< s
   std::vector<KeptGrain> grains = {};
   std::vector<KeptPose> poses = {};  ///< of the parts that there were at that time
+  template <class V>
+  void fields(V& v) {
+    v("time", time, "s"), v.bytes("grains", grains), v.bytes("poses", poses);
+  }
 };
 
 }  // namespace dem::report

@@ -103,8 +103,19 @@ class Replay {
   /// Which shapes and parts a world's species, surfaces and bodies are, by their indices; for record(world).
   struct OfWorld {
     std::vector<std::size_t> species, surfaces, bodies;
+    template <class V>
+    void fields(V& v) {
+      v("species", species), v("surfaces", surfaces), v("bodies", bodies);
+    }
   };
   [[nodiscard]] OfWorld& of_world() { return of_world_; }
+
+  /// What was recorded so far (see io::Fields), for a run that goes on after it was stopped.
+  template <class V>
+  void fields(V& v) {
+    v("ticks", ticks_), v("sample", sample_), v("shapes", shapes_), v("parts", parts_), v("frames", frames_);
+    v("origin", origin_, "m"), v("last_time", last_time_, "s"), v("of_world", of_world_);
+  }
 
  private:
   void check_frame(double time, std::span<const ReplayGrain> grains, std::span<const ReplayPose> poses) const {

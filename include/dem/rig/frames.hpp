@@ -125,15 +125,13 @@ void add_surfaces(io::VtkSeries& series, const World& world, const char* part = 
 }
 
 /// A series of frames in the output folder, one each time that something has gone on by an interval. A series that
-/// cannot be written goes no further and says why: it is not worth the run.
+/// cannot be written goes no further and says why: it is not worth the run. It begins with its first frame.
 class Frames {
  public:
   /// `name`.pvd; without a name nothing is written. `interval` in the unit of what goes on; `what` it shows, as in
   /// "this load".
   Frames(Session& session, const std::string& name, double interval, const char* what = "this run")
-      : session_(session), interval_(interval), what_(what) {
-    if (!name.empty()) attempt([&] { series_.emplace(session.folder() / (name + ".pvd")); });
-  }
+      : session_(session), interval_(interval), what_(what), name_(name) {}
 
   /// Writes a frame, by write(series), if one is due where things are now.
   template <class Write>
@@ -149,9 +147,24 @@ class Frames {
     if (now > written_) add(now, write);
   }
 
+  /// For a run that goes on: the series goes on as well.
+  template <class V>
+  void fields(V& v) {
+    bool is_open = series_.has_value();
+    v("next", next_), v("written", written_), v("is_open", is_open);
+    if (is_open && !series_) open();
+    if (series_) v("series", *series_);
+  }
+
  private:
+  void open() {
+    attempt([&] { series_.emplace(session_.folder() / (name_ + ".pvd")); });
+  }
+
   template <class Write>
   void add(double now, Write&& write) {
+    if (name_.empty()) return;
+    if (!series_) open();
     if (!series_) return;
     written_ = now;
     attempt([&] { write(*series_); });
@@ -163,6 +176,7 @@ class Frames {
       attempt();
     } catch (const std::exception& error) {
       series_.reset();
+      name_.clear();
       session_.give_up_frames(error.what(), what_);
     }
   }
@@ -170,7 +184,8 @@ class Frames {
   Session& session_;
   double interval_, next_ = 0.0, written_ = -1.0;
   const char* what_;
-  std::optional<io::VtkSeries> series_;  // none: nothing is written, or no more
+  std::string name_;                     // empty: nothing is written, or no more
+  std::optional<io::VtkSeries> series_;  // once there is a frame
 };
 
 }  // namespace dem::rig
