@@ -134,6 +134,9 @@ class Part {
  private:
   template <class F>
   void restore(const std::string& group, F&& f) {
+    for (auto& [name, column] : own_) {
+      if (name.starts_with(group + "/")) column.at = 0;  // something may be kept again, under the same name
+    }
     io::Fields v(io::Fields::Task::restore, own_);
     v.group(group, [&] { f(v); });
   }
