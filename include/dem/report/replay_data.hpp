@@ -56,6 +56,7 @@ struct ReplayGrain {
   Mat3 rotation = Mat3::Identity();  ///< from the grain's frame to the world
   double speed = 0.0;                ///< m/s
   double force = 0.0;                ///< N, the size of the net contact force
+  bool is_asleep = false;            ///< it is not worked on, as it rests
 };
 
 /// Where a part of a machine is in a frame.
@@ -77,7 +78,8 @@ struct ReplayPart {
 
 /// What is kept of a grain in a frame: 28 bytes.
 struct KeptGrain {
-  std::uint32_t number = 0;
+  std::uint32_t number : 31 = 0;
+  std::uint32_t is_asleep : 1 = 0;
   std::array<float, 3> position = {};  ///< m, from the replay's origin
   std::uint32_t rotation = 0;          ///< pack_rotation
   float speed = 0.0F;                  ///< m/s
