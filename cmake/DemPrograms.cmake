@@ -11,7 +11,8 @@ target_compile_options(dem_warnings
 
 # dem_program(<target>): links what every program of dem links.
 function(dem_program target)
-  target_link_libraries(${target} PRIVATE dem::dem dem_warnings $<$<BOOL:${DEM_NATIVE}>:dem::native>)
+  target_link_libraries(${target} PRIVATE dem::dem dem_warnings $<$<BOOL:${DEM_NATIVE}>:dem::native>
+                                          $<TARGET_NAME_IF_EXISTS:dem::zlib>)
 endfunction()
 
 # dem_subfolders(<out> <pattern> [<folder>]): the names of the folders here, or in that folder, that hold a file that
@@ -40,6 +41,13 @@ endfunction()
 function(dem_needs_cli11 out)
   dem_includes(needs "CLI/CLI\\.hpp|dem/rig/(command_line|program)\\.hpp" ${ARGN})
   set(${out} ${needs} PARENT_SCOPE)
+endfunction()
+
+# dem_is_rig(<out> <source>...): whether one of the sources makes a rig's program, which can go on after it was stopped
+# where it links dem::hdf5.
+function(dem_is_rig out)
+  dem_includes(is_rig "dem/rig/program\\.hpp" ${ARGN})
+  set(${out} ${is_rig} PARENT_SCOPE)
 endfunction()
 
 # dem_needs_hdf5(<out> <source>...): whether one of the sources includes a header that needs HDF5.

@@ -9,7 +9,7 @@ packages=(
   libcli11-dev gnuplot-nox libjs-three  # examples: command lines, plots, replays
   catch2 clang-format          # tests
   libbenchmark-dev             # benchmarks
-  libhdf5-dev                  # states that are saved and loaded
+  libhdf5-dev zlib1g-dev       # states that are saved and loaded; compressed files for ParaView
   "$@"
 )
 

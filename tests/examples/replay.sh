@@ -94,9 +94,10 @@ printf '%b' "$(field value)" > "$output/probe.txt"
 expect 'right grains 50 and 50, wrong 0' 'right turns 100' 'frame of the start 0' 'frame of the slider 15' 'clock 0.240 s' 'grains are seen true' 'shades are many true' \
   'the same without a change true' 'sand is yellow true' 'legend is hidden true' 'cut hides grains true' \
   'not moved without a button true' 'play advances true' 'pause stops true' 'play ends true' 'requests 0' \
+  'legend of sleep asleep or awakeasleepawake' \
   'parts floor|bottom box|top box|wheel <of tin>' 'end true'
 grep -q '^legend displacement (m)0.*≥ 0\.0' "$output/probe.txt" || fail "The legend is not that of the displacement" "$(cat "$output/probe.txt")"
-[ "$(grep -c '^changed by .* true$' "$output/probe.txt")" = 14 ] ||
+[ "$(grep -c '^changed by .* true$' "$output/probe.txt")" = 15 ] ||
   fail "Not all controls change the picture:" "$(cat "$output/probe.txt")"
 
 # The mouse as the browser itself has it.

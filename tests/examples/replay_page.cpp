@@ -39,6 +39,7 @@ ReplayGrain cube(int i, int j, int k, double time) {
   g.rotation = turned(wobble + 30.0 * before, Vec3(std::cos(1.0 * i), std::sin(1.0 * j), 1.0));
   g.speed = before > 0.0 ? 9.81 * (landed - before) : sheared > 0.0 ? 3e-3 / (kEnd - kFall) : 0.0;
   g.force = before > 0.0 ? 0.0 : 2e-4 * (kUp - k);
+  g.is_asleep = before == 0.0 && sheared == 0.0;
   return g;
 }
 

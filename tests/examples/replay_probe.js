@@ -33,7 +33,8 @@ function rightGrains() {
     const moved = step.map((size, axis) => size * (frames.place[3 * after + axis] - frames.place[3 * before + axis]));
     const speed = head.speed * (frames.scalar[2 * after] / 255) ** 2;
     const goes = (far, fast) => Math.abs(moved[0] - far) <= step[0] && moved[1] === 0 && moved[2] === 0 &&
-        Math.abs(speed - fast) <= Math.sqrt(fast * head.speed) / 255 + head.speed / 260100 && frames.turn[before] === frames.turn[after];
+        Math.abs(speed - fast) <= Math.sqrt(fast * head.speed) / 255 + head.speed / 260100 &&
+        frames.turn[before] === frames.turn[after] && frames.asleep[before] === 1 && frames.asleep[after] === (far > 0 ? 0 : 1);
     ++right[goes(0, 0) ? "lower" : goes(3e-3, 3e-3 / 0.32) ? "upper" : "wrong"];
   }
   return `${right.lower} and ${right.upper}, wrong ${right.wrong}`;
@@ -89,9 +90,11 @@ async function tryControls() {
   note("clock", figure.querySelector(".clock").textContent);
   note("grains are seen", before.solid > 0.05);
   note("shades are many", before.colours > 500);
-  const {mean} = await changes("one colour", () => set(colour, 3));
+  const {mean} = await changes("one colour", () => set(colour, 4));
   note("sand is yellow", mean[0] > mean[2] + 20);
   note("legend is hidden", figure.querySelector(".legend").hidden);
+  await changes("asleep or awake", () => set(colour, 3));
+  note("legend of sleep", figure.querySelector(".legend").textContent);
   await changes("displacement", () => set(colour, 2));
   note("legend", figure.querySelector(".legend").textContent);
   await changes("scale of the frame", () => [set(time, 3), set(scale, 1)]);

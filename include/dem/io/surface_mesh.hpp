@@ -19,6 +19,12 @@ struct SurfaceMesh {
   std::vector<std::array<std::int32_t, 3>> triangles = {};  ///< indices into vertices, counter-clockwise from outside
   std::vector<std::array<std::int32_t, 4>> quads = {};      ///< likewise
   std::vector<std::vector<std::int32_t>> polygons = {};     ///< likewise, with any number of corners
+
+  /// For those who keep it in a file.
+  template <class V>
+  void fields(V& v) {
+    v("vertices", vertices, "m"), v("triangles", triangles), v("quads", quads), v("polygons", polygons);
+  }
 };
 
 /// A box with edges along the axes, centred at the origin; `size` [m] are its full edge lengths, each finite and > 0.

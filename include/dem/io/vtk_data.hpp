@@ -16,6 +16,12 @@
 
 namespace dem::io {
 
+/// What digits of numbers are kept that are stored as 32-bit floats: rounded numbers take less room in a compressed file.
+struct Rounding {
+  int bits = 23;      ///< of the mantissa, 1 to 23: 10 keep three digits
+  double step = 0.0;  ///< numbers become multiples of it; a power of two; 0: they do not
+};
+
 /// A named array with one tuple of `components` values a point (or a body); it looks at memory of the caller's, which
 /// must outlive the writing. Vectors of numbers convert:
 ///
@@ -28,6 +34,7 @@ struct DataArray {
   std::string name;    ///< shown by ParaView; not empty, and not twice in a file
   int components = 1;  ///< 1 scalar, 3 vector, 9 tensor by rows, ...
   Values values = {};  ///< x0 y0 z0 x1 y1 z1 ...
+  Rounding rounding = {};  ///< of doubles that are stored in single precision
 
   [[nodiscard]] std::size_t size() const {
     return std::visit([](const auto& span) { return span.size(); }, values);
@@ -41,6 +48,8 @@ struct VtkOptions {
   bool single_precision = false;
   /// Time [s] that ParaView shows for the file itself; NaN: none.
   double time_s = std::numeric_limits<double>::quiet_NaN();
+  /// Of positions that are stored in single precision.
+  Rounding position_rounding = {};
 };
 
 /// The numbers of a contiguous range of vectors, in order: {{1,2,3},{4,5,6}} -> 1 2 3 4 5 6. The vectors may be Eigen's

@@ -1,10 +1,11 @@
 #pragma once
 // The format below all VTK XML files: XML text that describes the arrays, then their bytes, appended as they are in
-// memory (VTK File Formats, "XML file formats", appended raw data).
+// memory (VTK File Formats, "XML file formats", appended raw data), or compressed (vtk_compress.hpp).
 
 #include <dem/core/error.hpp>
 #include <dem/io/escape.hpp>
 #include <dem/io/file.hpp>
+#include <dem/io/vtk_compress.hpp>
 #include <dem/io/vtk_data.hpp>
 
 #include <fmt/format.h>
@@ -17,11 +18,9 @@
 #include <cstdint>
 #include <filesystem>
 #include <limits>
-#include <memory>
 #include <span>
 #include <string>
 #include <string_view>
-#include <utility>
 #include <variant>
 #include <vector>
 
@@ -41,15 +40,23 @@ constexpr std::string_view vtk_type() {
   else if constexpr (std::same_as<T, std::uint64_t>) return "UInt64";
 }
 
-/// Gathers the XML and the arrays of one file, and writes them in one go. A span is not copied: what it looks at must
-/// live until save(). A vector is taken over.
+/// A number in single precision, rounded. What is not finite stays.
+inline float single_of(double x, const Rounding& r) {
+  const auto value = static_cast<float>(r.step > 0.0 ? std::nearbyint(x / r.step) * r.step : x);
+  if (r.bits >= 23 || !std::isfinite(value)) return value;
+  const auto dropped = static_cast<unsigned>(23 - r.bits);
+  const std::uint32_t half = 1U << (dropped - 1);  // up into the exponent where the mantissa is full
+  return std::bit_cast<float>((std::bit_cast<std::uint32_t>(value) + half) >> dropped << dropped);
+}
+
+/// Gathers the XML and the arrays of one file, and writes them in one go.
 class VtkFile {
  public:
   VtkFile(std::string_view type, const VtkOptions& options) : type_(type), options_(options) {
     xml_ = fmt::format(
         "<?xml version=\"1.0\"?>\n"
-        "<VTKFile type=\"{0}\" version=\"1.0\" byte_order=\"{1}\" header_type=\"UInt64\">\n<{0}>\n",
-        type_, kVtkByteOrder);
+        "<VTKFile type=\"{0}\" version=\"1.0\" byte_order=\"{1}\" header_type=\"UInt64\"{2}>\n<{0}>\n",
+        type_, kVtkByteOrder, vtk_compressor);
     if (std::isfinite(options.time_s)) {
       xml_ += fmt::format(
           "<FieldData>\n<DataArray type=\"Float64\" Name=\"TimeValue\" NumberOfTuples=\"1\" format=\"ascii\">{}"
@@ -62,31 +69,26 @@ class VtkFile {
   void xml(std::string_view text) { xml_ += text; }
 
   template <class T>
-  void array(std::string_view name, int components, std::span<const T> values) {
+  void array(std::string_view name, int components, std::span<const T> values, const Rounding& rounding = {}) {
     if constexpr (std::same_as<T, double>) {
       if (options_.single_precision) {
         std::vector<float> floats(values.size());
-        std::transform(values.begin(), values.end(), floats.begin(), [](double x) { return static_cast<float>(x); });
-        array(name, components, std::move(floats));
-        return;
+        std::transform(values.begin(), values.end(), floats.begin(), [&](double x) { return single_of(x, rounding); });
+        return array(name, components, std::span<const float>(floats));
       }
     }
     xml_ += fmt::format(
         "<DataArray type=\"{}\" Name=\"{}\" NumberOfComponents=\"{}\" format=\"appended\" offset=\"{}\"/>\n",
         vtk_type<T>(), escape_xml(name), components, offset_);
-    blocks_.emplace_back(values.data(), values.size_bytes());
-    offset_ += sizeof(std::uint64_t) + values.size_bytes();
+    blocks_.push_back(vtk_bytes(values.data(), values.size_bytes()));
+    offset_ += blocks_.back().size();
   }
-
   template <class T>
-  void array(std::string_view name, int components, std::vector<T> values) {
-    const auto kept = std::make_shared<const std::vector<T>>(std::move(values));
-    kept_.push_back(kept);
-    array(name, components, std::span<const T>(*kept));
+  void array(std::string_view name, int components, const std::vector<T>& values) {
+    array(name, components, std::span<const T>(values));
   }
-
   void array(const DataArray& data) {
-    std::visit([&](const auto& values) { array(data.name, data.components, values); }, data.values);
+    std::visit([&](const auto& values) { array(data.name, data.components, values, data.rounding); }, data.values);
   }
 
   /// Closes the XML, appends the arrays and writes the file, complete or not at all.
@@ -94,11 +96,7 @@ class VtkFile {
     xml_ += fmt::format("</{}>\n<AppendedData encoding=\"raw\">\n_", type_);
     AtomicFile file(path);
     file.write(xml_);
-    for (const auto& [data, bytes] : blocks_) {
-      const std::uint64_t size = bytes;
-      file.write(&size, sizeof size);
-      file.write(data, bytes);
-    }
+    for (const std::string& bytes : blocks_) file.write(bytes);
     file.write("\n</AppendedData>\n</VTKFile>\n");
     file.commit();
   }
@@ -106,8 +104,7 @@ class VtkFile {
  private:
   std::string type_, xml_;
   VtkOptions options_;
-  std::vector<std::pair<const void*, std::size_t>> blocks_;
-  std::vector<std::shared_ptr<const void>> kept_;  // arrays that were handed over
+  std::vector<std::string> blocks_;  // what is appended
   std::size_t offset_ = 0;
 };
 

@@ -12,7 +12,6 @@
 #include <filesystem>
 #include <numeric>
 #include <span>
-#include <utility>
 #include <vector>
 
 namespace dem::io {
@@ -46,10 +45,10 @@ inline void write_vtk_points(const std::filesystem::path& path, std::span<const 
                   n));
   for (const PointData& array : data) file.array(array);
   file.xml("</PointData>\n<Points>\n");
-  file.array("Points", 3, positions);
+  file.array("Points", 3, positions, options.position_rounding);
   file.xml("</Points>\n<Verts>\n");
-  file.array("connectivity", 1, std::move(connectivity));
-  file.array("offsets", 1, std::move(offsets));
+  file.array("connectivity", 1, connectivity);
+  file.array("offsets", 1, offsets);
   file.xml("</Verts>\n</Piece>\n");
   file.save(path);
 }

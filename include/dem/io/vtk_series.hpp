@@ -71,10 +71,21 @@ class VtkSeries {
 
   [[nodiscard]] const std::filesystem::path& path() const { return pvd_; }
 
+  /// What is in the collection, to be kept and restored: a run that goes on adds to it.
+  template <class V>
+  void fields(V& v) {
+    v("entries", entries_), v("parts", parts_);
+    if (v.task() == V::Task::restore) save();
+  }
+
  private:
   struct Part {
     std::string name;
     std::size_t files;
+    template <class V>
+    void fields(V& v) {
+      v("name", name), v("files", files);
+    }
   };
 
   void save() const {

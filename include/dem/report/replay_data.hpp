@@ -31,6 +31,10 @@ struct ReplayOptions {
 struct ReplayBall {
   Vec3 centre = Vec3::Zero();  ///< m, in the grain's frame
   double radius = 0.0;         ///< m, > 0
+  template <class V>
+  void fields(V& v) {
+    v("centre", centre, "m"), v("radius", radius, "m");
+  }
 };
 
 /// What grains of a species look like, in the grain's frame: balls, or else a mesh.
@@ -38,6 +42,10 @@ struct ReplayShape {
   std::vector<ReplayBall> balls = {};  ///< drawn with more or fewer triangles as there are fewer or more of them
   io::SurfaceMesh mesh = {};           ///< where there are no balls
   double smooth_angle = 0.0;           ///< rad; edges of the mesh that bend less are shaded round
+  template <class V>
+  void fields(V& v) {
+    v("balls", balls), v("mesh", mesh), v("smooth_angle", smooth_angle, "rad");
+  }
 };
 
 /// A grain in a frame.
@@ -48,6 +56,7 @@ struct ReplayGrain {
   Mat3 rotation = Mat3::Identity();  ///< from the grain's frame to the world
   double speed = 0.0;                ///< m/s
   double force = 0.0;                ///< N, the size of the net contact force
+  bool is_asleep = false;            ///< it is not worked on, as it rests
 };
 
 /// Where a part of a machine is in a frame.
@@ -61,11 +70,16 @@ struct ReplayPose {
 struct ReplayPart {
   std::string name;
   io::SurfaceMesh mesh;
+  template <class V>
+  void fields(V& v) {
+    v("name", name), v("mesh", mesh);
+  }
 };
 
 /// What is kept of a grain in a frame: 28 bytes.
 struct KeptGrain {
-  std::uint32_t number = 0;
+  std::uint32_t number : 31 = 0;
+  std::uint32_t is_asleep : 1 = 0;
   std::array<float, 3> position = {};  ///< m, from the replay's origin
   std::uint32_t rotation = 0;          ///< pack_rotation
   float speed = 0.0F;                  ///< m/s
@@ -81,6 +95,10 @@ struct KeptFrame {
   double time = 0.0;  ///< s
   std::vector<KeptGrain> grains = {};
   std::vector<KeptPose> poses = {};  ///< of the parts that there were at that time
+  template <class V>
+  void fields(V& v) {
+    v("time", time, "s"), v.bytes("grains", grains), v.bytes("poses", poses);
+  }
 };
 
 }  // namespace dem::report

@@ -26,6 +26,7 @@ struct ReplayTable {
   Box box = {};                             ///< of all centres in all frames (m, from the replay's origin)
   double most_speed = 0.0;                  ///< m/s, in all frames
   double most_force = 0.0;                  ///< N, likewise
+  bool any_asleep = false;                  ///< in any frame
 };
 
 /// What a page holds of a replay. `head` is JSON; it says how to read `bytes`, a zlib stream of numbers, their lowest
@@ -51,6 +52,7 @@ struct EncodedReplay {
       first = false;
       table.most_speed = std::max<double>(table.most_speed, g.speed);
       table.most_force = std::max<double>(table.most_force, g.force);
+      table.any_asleep = table.any_asleep || g.is_asleep != 0;
     }
   }
   for (std::size_t shape = 0; shape < replay.shapes().size(); ++shape) {
@@ -81,6 +83,7 @@ struct EncodedReplay {
       packed.rotation = g.rotation;
       packed.scalars = {pack_scalar(g.speed, table.most_speed), pack_scalar(g.force, table.most_force)};
       packed.present = true;
+      packed.asleep = g.is_asleep != 0;
     }
     add_frame(planes, now, before);
   }
@@ -161,7 +164,8 @@ inline std::string add_poses(Deflate& out, const Replay& replay, std::size_t par
       fmt::format(R"({{"grains":{},"seen":{},"low":[{:.9g},{:.9g},{:.9g}],"high":[{:.9g},{:.9g},{:.9g}],)",
                   table.numbers.size(), replay.sample().met(), table.box.low.x(), table.box.low.y(), table.box.low.z(),
                   table.box.high.x(), table.box.high.y(), table.box.high.z());
-  head += fmt::format(R"("speed":{:.9g},"force":{:.9g},"shapes":[)", table.most_speed, table.most_force);
+  head += fmt::format(R"("speed":{:.9g},"force":{:.9g},"sleep":{},"shapes":[)", table.most_speed, table.most_force,
+                      table.any_asleep);
   const char* comma = "";
   for (std::size_t s = 0; s < replay.shapes().size(); ++s) {
     const auto mesh = detail::shape_mesh(replay.shapes()[s], table.counts[s]);

@@ -20,12 +20,13 @@ struct PackedGrain {
   std::uint32_t rotation = 0x1ff7fdffU;        ///< pack_rotation; none at all to begin with
   std::array<std::uint8_t, 2> scalars = {};    ///< pack_scalar of speed and force
   bool present = false;
+  bool asleep = false;
 
   bool operator==(const PackedGrain&) const = default;
 };
 
 /// The bytes of all frames. Plane 0 says of each grain and frame what has changed since the grain was last there:
-/// 1 position, 2 rotation, 4 scalars, added up; 8: the grain is not there. Only what has changed is in the others, as
+/// 1 position, 2 rotation, 4 scalars, added up, and 16 where the grain sleeps; 8: the grain is not there. Only what has changed is in the others, as
 /// differences with their sign in the lowest bit: low and high bytes of x, y and z (1 to 6), low bytes of the three
 /// components of the rotation (7 to 9) and what is left of them (10: the change of the two highest bits, then two bits
 /// of each), speed (11), force (12). So a grain at rest costs a bit a frame, and less among others at rest.
@@ -61,7 +62,7 @@ inline void add_frame(ReplayPlanes& planes, std::span<const PackedGrain> now, st
       continue;
     }
     const bool moved = a.position != b.position, turned = a.rotation != b.rotation, other = a.scalars != b.scalars;
-    plane[0] += byte((moved ? 1U : 0U) + (turned ? 2U : 0U) + (other ? 4U : 0U));
+    plane[0] += byte((moved ? 1U : 0U) + (turned ? 2U : 0U) + (other ? 4U : 0U) + (a.asleep ? 16U : 0U));
     for (std::size_t k = 0; moved && k < 3; ++k) {
       const std::uint32_t d = fold(a.position[k], b.position[k], 16);
       plane[1 + 2 * k] += byte(d);
@@ -93,6 +94,7 @@ class PlaneReader {
       const std::uint32_t what = take(0);
       g.present = what != 8;
       if (!g.present) continue;
+      g.asleep = (what & 16U) != 0;
       for (std::size_t k = 0; (what & 1U) != 0 && k < 3; ++k) {
         const std::uint32_t low = take(1 + 2 * k), high = take(2 + 2 * k);
         g.position[k] = static_cast<std::uint16_t>(unfold(low | high << 8U, g.position[k], 16));

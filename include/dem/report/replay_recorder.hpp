@@ -103,8 +103,19 @@ class Replay {
   /// Which shapes and parts a world's species, surfaces and bodies are, by their indices; for record(world).
   struct OfWorld {
     std::vector<std::size_t> species, surfaces, bodies;
+    template <class V>
+    void fields(V& v) {
+      v("species", species), v("surfaces", surfaces), v("bodies", bodies);
+    }
   };
   [[nodiscard]] OfWorld& of_world() { return of_world_; }
+
+  /// What was recorded so far (see io::Fields), for a run that goes on after it was stopped.
+  template <class V>
+  void fields(V& v) {
+    v("ticks", ticks_), v("sample", sample_), v("shapes", shapes_), v("parts", parts_), v("frames", frames_);
+    v("origin", origin_, "m"), v("last_time", last_time_, "s"), v("of_world", of_world_);
+  }
 
  private:
   void check_frame(double time, std::span<const ReplayGrain> grains, std::span<const ReplayPose> poses) const {
@@ -121,7 +132,7 @@ class Replay {
         fail("replay: grain {} has shape {}, but {} were added (from 0 on); use what add_shape returned", g.number,
              g.shape, shapes_.size());
       }
-      if (g.number >= GrainSample::kUnmet) fail("replay: a grain has the number {}; number them from 0 on", g.number);
+      if (g.number >= std::size_t{1} << 31) fail("replay: a grain has the number {}; number them from 0 on", g.number);
       const std::uint32_t before = sample_.shape_of(g.number);
       if (before != GrainSample::kUnmet && before != g.shape) {
         fail("replay: grain {} has shape {}, but had {} before; give a grain of another shape another number", g.number,
@@ -160,8 +171,13 @@ class Replay {
       if (!sample_.draws(g.number)) continue;
       const Vec3 x = g.position - origin_;
       if (!x.allFinite() || !g.rotation.allFinite() || !std::isfinite(g.speed) || !std::isfinite(g.force)) continue;
-      frame.grains.push_back({static_cast<std::uint32_t>(g.number), single(x), pack_rotation(quaternion_of(g.rotation)),
-                              static_cast<float>(g.speed), static_cast<float>(g.force)});
+      KeptGrain& kept = frame.grains.emplace_back();
+      kept.number = static_cast<std::uint32_t>(g.number) & 0x7fffffffU;
+      kept.is_asleep = g.is_asleep ? 1 : 0;
+      kept.position = single(x);
+      kept.rotation = pack_rotation(quaternion_of(g.rotation));
+      kept.speed = static_cast<float>(g.speed);
+      kept.force = static_cast<float>(g.force);
     }
     for (const ReplayPose& p : poses) {
       const Vec3 x = p.position - origin_;

@@ -60,13 +60,14 @@ class Reader {
 const ABSENT = 0xffffffff;
 
 // All frames of the grains: places (three 16-bit steps each), packed turns (ABSENT: not there), speeds and forces (8
-// bits); frame after frame. `first` is where each grain was when it was first there.
+// bits), and who sleeps; frame after frame. `first` is where each grain was when it was first there.
 function readFrames(head, reader) {
   const grains = head.grains, frames = head.times.length, half = 511 | 511 << 10 | 511 << 20;
   const planes = head.planes.map((count) => reader.plane(count)), at = new Array(planes.length).fill(0);
   const take = (plane) => planes[plane][at[plane]++];
   const place = new Uint16Array(3 * grains * frames), turn = new Uint32Array(grains * frames);
   const scalar = new Uint8Array(2 * grains * frames), first = new Uint16Array(3 * grains);
+  const asleep = new Uint8Array(head.sleep ? grains * frames : 0);
   const places = new Uint16Array(3 * grains), turns = new Uint32Array(grains).fill(half);
   const scalars = new Uint8Array(2 * grains), met = new Uint8Array(grains);
   const unfold = (folded) => (folded >>> 1) ^ -(folded & 1);
@@ -97,12 +98,13 @@ function readFrames(head, reader) {
         place[3 * row + k] = places[3 * g + k];
       }
       met[g] = 1;
+      if (head.sleep) asleep[row] = what >> 4;
       turn[row] = turns[g];
       scalar[2 * row] = scalars[2 * g];
       scalar[2 * row + 1] = scalars[2 * g + 1];
     }
   }
-  return {place, turn, scalar, first};
+  return {place, turn, scalar, asleep, first};
 }
 
 // The quaternion x, y, z, w of a packed turn, into to[at...at + 3], times 32767.

@@ -51,10 +51,11 @@ function legend(view) {
   const title = make("div", {}), ends = make("div", {className: "ends"}), bar = make("div", {className: "bar"});
   bar.style.background = `linear-gradient(to right, ${colours.join(",")})`;
   const box = make("div", {className: "legend"}, title, bar, ends);
-  const show = ({name, unit, most, value}) => {
+  const show = ({name, unit, most, value, ends: words}) => {
     box.hidden = !value;
-    title.textContent = `${name} (${unit})`;
-    ends.replaceChildren(...[0, 0.5, 1].map((t) => make("span", {textContent: (t === 1 ? "\u2265 " : "") + inWords(t * most)})));
+    title.textContent = unit ? `${name} (${unit})` : name;
+    const numbers = () => [0, 0.5, 1].map((t) => (t === 1 ? "\u2265 " : "") + inWords(t * most));
+    ends.replaceChildren(...(words || numbers()).map((textContent) => make("span", {textContent})));
   };
   return {box, show};
 }
@@ -111,7 +112,7 @@ function controls(figure, view) {
     figure.dataset.frame = frame;
   };
 
-  let colour = view.grains.length > 0 ? 0 : 3, ofFrame = false;
+  let colour = view.grains.length > 0 ? 0 : view.colourings.length - 1, ofFrame = false;
   const recolour = () => view.setColouring(view.colourings[colour], ofFrame);
   recolour();
   const rows = [labelled("speed of play", choice(list.map((r) => `\u00d7 ${inWords(r)}`), chosen, (k) => rate = list[k]))];

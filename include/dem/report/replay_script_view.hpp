@@ -43,6 +43,10 @@ function colourings(head, frames) {
     // A few fast grains are not to take all colours from the others, unless only few move at all.
     colouring.most = quantile(values, 0.98) || quantile(values, 1);
   }
+  if (head.sleep) {
+    const awake = (row) => 1 - frames.asleep[row];
+    list.push({name: "asleep or awake", unit: "", most: 1, value: awake, ends: ["asleep", "awake"]});
+  }
   list.push({name: "one colour", unit: "", most: 0, value: null});
   return list;
 }
@@ -130,7 +134,7 @@ class View {
   }
   // The colouring with the upper end that is wanted at a frame: that of the run, or of the frame.
   scaleOf(frame) {
-    if (!this.ofFrame || !this.colouring.value || this.loaded[0] === frame) return this.scale;
+    if (!this.ofFrame || !this.colouring.value || this.colouring.ends || this.loaded[0] === frame) return this.scale;
     const values = [], {grains} = this.head;
     for (let row = frame * grains; row < (frame + 1) * grains; ++row) {
       if (this.frames.turn[row] !== ABSENT) values.push(this.colouring.value(row, row % grains));

@@ -29,6 +29,12 @@ class FrameTicks {
   /// Every second frame is given up, and half as many are due from now on.
   void halve() { stride_ *= 2; }
 
+  /// For a run that goes on after it was stopped.
+  template <class V>
+  void fields(V& v) {
+    v("start", start_, "s"), v("last_slot", last_slot_), v("ticks", ticks_), v("stride", stride_);
+  }
+
  private:
   [[nodiscard]] bool ticks(double time) const { return ticks_ == 0 || interval_ == 0.0 || slot_of(time) > last_slot_; }
   /// A hair too early counts: times of a run are sums of time steps.
@@ -76,6 +82,11 @@ class GrainSample {
   [[nodiscard]] std::size_t drawn() const { return drawn_; }
   /// One more than the highest number that was met.
   [[nodiscard]] std::size_t numbers() const { return shapes_.size(); }
+
+  template <class V>
+  void fields(V& v) {
+    v("met", met_), v("drawn", drawn_), v("below", below_), v.bytes("shapes", shapes_);
+  }
 
  private:
   std::size_t limit_, met_ = 0, drawn_ = 0;

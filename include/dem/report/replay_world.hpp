@@ -75,7 +75,7 @@ void meet_world(Replay& replay, const World& world, const std::vector<io::DrawnB
 }  // namespace detail
 
 /// Replay::record(world, bodies): makes a frame of a world as it is now, if one is due. Grains are drawn by their
-/// shapes, coloured by their speeds and the sizes of their net contact forces; so are all active surfaces where their
+/// shapes, coloured by their speeds, the sizes of their net contact forces, or whether they sleep; so are all active surfaces where their
 /// bodies are, and besides `bodies` as meshes, the same ones in the same order each time. Throws dem::Error for a body
 /// without a mesh, and as Replay::record does.
 template <class World>
@@ -88,7 +88,7 @@ bool record_world(Replay& replay, const World& world, const std::vector<io::Draw
   grains.reserve(world.particle_count());
   for (const ParticleId p : world.particles()) {
     grains.push_back({p.index(), known.species[world.species_of(p).index()], world.position(p), world.rotation(p),
-                      world.velocity(p).norm(), world.force(p).norm()});
+                      world.velocity(p).norm(), world.force(p).norm(), world.is_asleep(p)});
   }
   std::vector<ReplayPose> poses(replay.parts().size(), {.shown = false});
   const auto& machine = world.machine();

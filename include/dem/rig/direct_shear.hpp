@@ -34,7 +34,7 @@ class DirectShear {
   using Apparatus = direct_shear::Apparatus<Model>;
 
   /// When a test calls its `look(apparatus, moment)`.
-  enum class Moment { start, sample, end };
+  using Moment = direct_shear::Moment;
 
   /// Fills in what the settings leave open. Throws Error, in the names that the settings have on a command line, for
   /// what makes no sense.
@@ -99,15 +99,14 @@ class DirectShear {
     rig.world.prepare();
     result.time_step = rig.world.time_step();
     stages.begin(text("consolidate {:.1f} kPa", 1e-3 * result.normal_stress), 1.0);
-    consolidate(rig, settings_, stages);
-    result.consolidation_time = rig.world.time();
-    result.height = rig.lid_low();
-    result.solid_fraction = inner_fraction(rig, settings_, result.height);
-    if (!std::isfinite(result.solid_fraction)) warn_of_no_density("under the lid", settings_, stages);
+    consolidate(rig, settings_, stages, [&] {
+      result.consolidation_time = rig.world.time();
+      result.height = rig.lid_low();
+      result.solid_fraction = inner_fraction(rig, settings_, result.height);
+      if (!std::isfinite(result.solid_fraction)) warn_of_no_density("under the lid", settings_, stages);
+    });
     stages.begin(text("shear at {:.1f} kPa", 1e-3 * result.normal_stress), settings_.travel);
-    look(std::as_const(rig), Moment::start);
-    shear(rig, settings_, result, stages, [&] { look(std::as_const(rig), Moment::sample); });
-    look(std::as_const(rig), Moment::end);
+    shear(rig, settings_, result, stages, [&](Moment moment) { look(std::as_const(rig), moment); });
   }
 
   /// The result of a load (kg) before its test.

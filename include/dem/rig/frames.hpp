@@ -8,7 +8,9 @@
 #include <dem/rig/session.hpp>
 #include <dem/soil/coordination.hpp>
 
+#include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <exception>
 #include <optional>
 #include <string>
@@ -17,12 +19,16 @@
 
 namespace dem::rig {
 
-/// Every grain as a point that knows how it moves and touches others.
+/// Every grain as a point that knows how it moves and touches others and, where grains may sleep, whether it does. In
+/// single precision positions are good to a two-thousandth of a radius, turns to 0.03 degrees, speeds and forces to three
+/// digits: as much as is seen.
 template <class World>
 void write_grain_points(const std::filesystem::path& path, const World& world, const io::VtkOptions& options) {
   const std::size_t n = world.particle_count();
   std::vector<Vec3> position(n), velocity(n), spin(n), force(n);
   std::vector<double> quaternion, radius(n);
+  quaternion.reserve(4 * n);
+  double largest = 1e-300;
   const auto grains = world.particles();
   for (std::size_t i = 0; i < n; ++i) {
     const ParticleId p = grains[i];
@@ -32,18 +38,26 @@ void write_grain_points(const std::filesystem::path& path, const World& world, c
     spin[i] = world.angular_velocity(p);
     force[i] = world.force(p);
     radius[i] = world.species(world.species_of(p)).shape.bounding_radius();
+    largest = std::max(largest, radius[i]);
     quaternion.insert(quaternion.end(), {q.w(), q.x(), q.y(), q.z()});
   }
   const auto contacts = soil::coordination(world);
-  io::write_vtk_points(path, io::flat(position),
-                       {{"radius_m", 1, radius},
-                        {"velocity_m_s", 3, io::flat(velocity)},
-                        {"angular_velocity_rad_s", 3, io::flat(spin)},
-                        {"quaternion_wxyz", 4, quaternion},
-                        {"net_contact_force_N", 3, io::flat(force)},
-                        {"contact_points", 1, contacts.contacts},
-                        {"coordination", 1, contacts.neighbours}},
-                       options);
+  constexpr io::Rounding three_digits = {.bits = 10}, of_turn = {.step = 0x1p-11};
+  std::vector<io::PointData> data = {{"radius_m", 1, radius},
+                                     {"velocity_m_s", 3, io::flat(velocity), three_digits},
+                                     {"angular_velocity_rad_s", 3, io::flat(spin), three_digits},
+                                     {"quaternion_wxyz", 4, quaternion, of_turn},
+                                     {"net_contact_force_N", 3, io::flat(force), three_digits},
+                                     {"contact_points", 1, contacts.contacts},
+                                     {"coordination", 1, contacts.neighbours}};
+  std::vector<std::uint8_t> asleep(n);
+  if (world.state().options.sleep) {
+    for (std::size_t i = 0; i < n; ++i) asleep[i] = world.is_asleep(grains[i]) ? 1 : 0;
+    data.push_back({"asleep", 1, asleep});
+  }
+  io::VtkOptions own = options;
+  own.position_rounding.step = std::exp2(std::floor(std::log2(largest)) - 11.0);
+  io::write_vtk_points(path, io::flat(position), data, own);
 }
 
 /// Every grain as its spheres: Point Gaussian, scaled by radius_m, shows the true shape.
@@ -125,15 +139,13 @@ void add_surfaces(io::VtkSeries& series, const World& world, const char* part = 
 }
 
 /// A series of frames in the output folder, one each time that something has gone on by an interval. A series that
-/// cannot be written goes no further and says why: it is not worth the run.
+/// cannot be written goes no further and says why: it is not worth the run. It begins with its first frame.
 class Frames {
  public:
   /// `name`.pvd; without a name nothing is written. `interval` in the unit of what goes on; `what` it shows, as in
   /// "this load".
   Frames(Session& session, const std::string& name, double interval, const char* what = "this run")
-      : session_(session), interval_(interval), what_(what) {
-    if (!name.empty()) attempt([&] { series_.emplace(session.folder() / (name + ".pvd")); });
-  }
+      : session_(session), interval_(interval), what_(what), name_(name) {}
 
   /// Writes a frame, by write(series), if one is due where things are now.
   template <class Write>
@@ -149,9 +161,24 @@ class Frames {
     if (now > written_) add(now, write);
   }
 
+  /// For a run that goes on: the series goes on as well.
+  template <class V>
+  void fields(V& v) {
+    bool is_open = series_.has_value();
+    v("next", next_), v("written", written_), v("is_open", is_open);
+    if (is_open && !series_) open();
+    if (series_) v("series", *series_);
+  }
+
  private:
+  void open() {
+    attempt([&] { series_.emplace(session_.folder() / (name_ + ".pvd")); });
+  }
+
   template <class Write>
   void add(double now, Write&& write) {
+    if (name_.empty()) return;
+    if (!series_) open();
     if (!series_) return;
     written_ = now;
     attempt([&] { write(*series_); });
@@ -163,6 +190,7 @@ class Frames {
       attempt();
     } catch (const std::exception& error) {
       series_.reset();
+      name_.clear();
       session_.give_up_frames(error.what(), what_);
     }
   }
@@ -170,7 +198,8 @@ class Frames {
   Session& session_;
   double interval_, next_ = 0.0, written_ = -1.0;
   const char* what_;
-  std::optional<io::VtkSeries> series_;  // none: nothing is written, or no more
+  std::string name_;                     // empty: nothing is written, or no more
+  std::optional<io::VtkSeries> series_;  // once there is a frame
 };
 
 }  // namespace dem::rig

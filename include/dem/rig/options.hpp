@@ -29,6 +29,8 @@ struct Option {
   std::vector<std::string> given = {};    ///< texts of its value, as given; empty if nobody gave it
   std::string default_text = {};          ///< of the value before anything was read
   bool in_file = false;                   ///< the settings file gives it
+  bool is_setting = true;                 ///< false: how this run is gone about; not in the file that repeats it
+  bool changes_results = true;            ///< false: a run may go on with another value
   [[nodiscard]] std::string key() const { return name.substr(2); }  ///< in a settings file
 };
 
@@ -54,6 +56,17 @@ class Options {
     /// The name that switches a flag off.
     Added& off(std::string name) {
       option_.no = std::move(name);
+      return *this;
+    }
+
+    /// What is found does not depend on it: a run that was stopped may go on with another value.
+    Added& changes_no_result() {
+      option_.changes_results = false;
+      return *this;
+    }
+    /// It says how this run is gone about, and is not in the file that repeats it.
+    Added& of_this_run() {
+      option_.is_setting = false;
       return *this;
     }
 

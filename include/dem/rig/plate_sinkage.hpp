@@ -63,28 +63,30 @@ class PlateSinkage {
     for (const auto p : world.particles()) top = std::max(top, world.position(p).z() + shape_.bounding_radius());
     const Vec3 edges(s.length, result.width, s.thickness), at(0.0, 0.0, top + 0.5 * s.thickness);
     const double mass = 7800.0 * edges.prod(), k = 1e7, c = 2.0 * std::sqrt(k * mass);
+    const double interval = s.sample_interval();
     const BodyId plate = m.add_body(mbd::box_body("plate", edges, 7800.0).at(at));
     world.set_contact("grain", "plate", grain_contact<Model>(s.grains, s.plate_friction));
     world.add_surface(plate, surface::Box(edges), {.material = "plate", .name = "plate"});
     const JointId slide = m.add_joint(mbd::prismatic("plate slide", bed.top, plate, at, Vec3::UnitZ()));
-    const double start = world.time(), interval = s.sample_interval();
-    const ActuatorId drive =
-        m.add_actuator(mbd::joint_actuator("plate drive", slide, k, c, smooth_start(-s.speed, s.ramp_time, start)));
+    const ActuatorId drive = m.add_actuator(mbd::joint_actuator("plate drive", slide, k, c));
     const SensorId grains = m.add_sensor(mbd::contact_sensor("grains on the plate", plate, interval));
     const SensorId driven = m.add_sensor(mbd::actuator_sensor("drive of the plate", drive, interval));
 
     stages.begin(text("press {:.0f} mm", 1e3 * result.width), s.sinkage);
+    plate_sinkage::Pressing n{.start = world.time()};
+    const auto stage =
+        stages.enter(world, n, [&] { m.set_target(drive, smooth_start(-s.speed, s.ramp_time, n.start)); });
+    if (!stage) return;
     const double area = s.length * result.width, farthest = top - bed.level + s.sinkage + 4.0 * s.grains.edge();
-    double zero = plate_sinkage::not_known;
-    for (double travel = 0.0; !(travel - zero >= s.sinkage);) {
+    while (!(n.travel - n.zero >= s.sinkage)) {
       run(world, interval);
-      travel = -m.coordinate(slide);
+      const double travel = n.travel = -m.coordinate(slide);
       const double force = m.sensor(grains).mean().force.z, pressure = force / area;
       result.samples.push_back(
-          {world.time() - start, travel, plate_sinkage::not_known, pressure, force, -m.sensor(driven).mean().force.x});
-      if (std::isnan(zero) && pressure >= s.threshold) zero = travel;
+          {world.time() - n.start, travel, plate_sinkage::not_known, pressure, force, -m.sensor(driven).mean().force.x});
+      if (std::isnan(n.zero) && pressure >= s.threshold) n.zero = travel;
       look(std::as_const(world), travel);
-      stages.update(std::isnan(zero) ? 0.0 : travel - zero, text("{:.1f} kPa", 1e-3 * pressure));
+      stages.update(std::isnan(n.zero) ? 0.0 : travel - n.zero, text("{:.1f} kPa", 1e-3 * pressure));
       if (travel > farthest) {
         throw Stopped(
             text("the plate of {:g} mm is {:g} mm down and has no sinkage of {:g} mm yet: the bed hardly "

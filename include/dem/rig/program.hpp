@@ -1,8 +1,11 @@
 #pragma once
-// The program of a rig. Needs CLI11.
+// The program of a rig. Needs CLI11. Programs that link dem::hdf5 can go on after they were stopped.
 
 #include <dem/rig/command_line.hpp>
 #include <dem/rig/rig.hpp>
+#if defined(DEM_WITH_HDF5)
+#include <dem/rig/hdf5_checkpoints.hpp>
+#endif
 
 #include <csignal>
 #include <exception>
@@ -30,6 +33,37 @@ inline void open_standard_streams() {
 }
 
 inline const char* const no_memory = "there is not enough memory for so many grains; take fewer";
+
+/// Adds the options of a rig that can go on after it was stopped.
+inline void add_checkpoint_options(Options& options, CheckpointOptions& o) {
+  options.group("Stop and go on");
+  options
+      .add("--checkpoint-every", o.every,
+           "keep what the run can go on from, in the output folder, each time that so much wall time has gone by [s]; "
+           "0: never")
+      .of_this_run();
+  options
+      .flag("--resume", o.resume,
+            "go on with the run in the output folder that was stopped or killed, where it was kept last; with the same "
+            "settings it ends with the same results to the last digit")
+      .of_this_run();
+}
+
+/// Completes them once they were read. Throws Error where this program can keep nothing.
+inline void resolve(CheckpointOptions& o, const Options& options) {
+  require_non_negative(o.every, "--checkpoint-every", "s (0: never)");
+#if defined(DEM_WITH_HDF5)
+  o.files = hdf5_checkpoints();
+#else
+  if (o.every > 0.0 || o.resume) {
+    fail("{} needs HDF5, which this program was built without; install it (on Debian and Ubuntu: apt install "
+         "libhdf5-dev), configure with cmake anew and build", o.resume ? "--resume" : "--checkpoint-every");
+  }
+#endif
+  for (const Option& option : options.all()) {
+    if (!option.changes_results) o.free_settings.push_back(option.key());
+  }
+}
 
 /// Runs the rig until its end or to where it is stopped. Throws what it throws before the run has begun.
 inline void run_to_end(Rig& rig, Session& session) {
@@ -61,13 +95,16 @@ inline int run_program(const ProgramText& program, Rig& rig, int argc, const cha
   try {
     Options options;
     rig.declare(options);
+    CheckpointOptions checkpoints;
+    if (rig.can_resume()) detail::add_checkpoint_options(options, checkpoints);
     if (!read_command_line(program, argc, argv, options)) return 0;
     IdleOptions idle;
     rig.find_idle(idle);
     refuse_idle(options, idle);
     const std::string config = settings_text(options, idle);
     rig.resolve();
-    Session session({program.name, rig.output(), config, rig.results(), rig.words()});
+    detail::resolve(checkpoints, options);
+    Session session({program.name, rig.output(), config, rig.results(), rig.words(), std::move(checkpoints)});
     detail::run_to_end(rig, session);
 
     Report report(session, program.title);
@@ -76,8 +113,13 @@ inline int run_program(const ProgramText& program, Rig& rig, int argc, const cha
     const bool is_complete = report.finish(has_frames);
     const Outcome& outcome = session.outcome;
     if (!outcome.problem.empty()) tell(stderr, "{}: {}\n", program.name, outcome.problem);
-    if (outcome.interrupted) return 130;
-    return is_complete && outcome.problem.empty() ? 0 : 1;
+    if (outcome.interrupted) {
+      if (!session.parts().parts().empty()) tell(stderr, "{}: --resume goes on with the run\n", program.name);
+      return 130;
+    }
+    if (!is_complete || !outcome.problem.empty()) return 1;
+    session.parts().clear();
+    return 0;
   } catch (const InAnotherProgram& error) {
     tell(stderr, "{}: {}\n", program.name, error.what());
     return 3;

@@ -26,6 +26,8 @@ class Rig {
   /// The output folder, which an option may have set, and what the rig's files in it are called.
   [[nodiscard]] virtual std::string output() const = 0;
   [[nodiscard]] virtual ResultNames results() const = 0;
+  /// Whether its stages are entered (see Stages), in parts (see PartOf): then it can go on after it was stopped.
+  [[nodiscard]] virtual bool can_resume() const { return false; }
   /// For what the library calls otherwise than the program does.
   [[nodiscard]] virtual std::vector<OwnWord> words() const { return {}; }
   /// Builds the world, which throws Error for what cannot work; calls session.begin_run(stages); runs the stages and

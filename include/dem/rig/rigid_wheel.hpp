@@ -68,16 +68,17 @@ class RigidWheel {
     auto& world = stand.bed.world;
     const auto& m = world.machine();
     stages.begin("set down", 1.0);
-    const double start = world.time();
-    soil::StaysBelow slow(0.01 * s.set_down_speed, 0.01), loaded(0.02, 0.01);
-    for (bool done = false; !done;) {
+    const auto kept = stages.keep("bed", stand.bed);
+    Lowering n{world.time(), {0.01 * s.set_down_speed, 0.01}, {0.02, 0.01}};
+    const auto stage = stages.enter(world, n);
+    while (stage && !n.done) {
       run(world, 1e-3);
       const double force = m.sensor(stand.grains).mean().force.z, speed = m.body(stand.shaft).velocity().z();
-      const bool is_slow = slow(world.time(), std::abs(speed));
-      done = loaded(world.time(), std::abs(force / s.load - 1.0)) && is_slow;
+      const bool is_slow = n.slow(world.time(), std::abs(speed));
+      n.done = n.loaded(world.time(), std::abs(force / s.load - 1.0)) && is_slow;
       stages.update(std::clamp(force / s.load, 0.0, 1.0),
                     text("{:.1f} N, {:.2f} mm deep", force, 1e3 * sinkage(stand)));
-      if (!done && world.time() - start > s.bed.stage_limit) {
+      if (!n.done && world.time() - n.start > s.bed.stage_limit) {
         throw Stopped(
             text("the wheel is not at rest after {:g} s: the grains carry {:.4g} N of {:.4g} N; raise "
                  "--stage-limit or --damping",
@@ -96,32 +97,38 @@ class RigidWheel {
   /// Rolls the wheel at a slip, on one thread, and evaluates its samples.
   [[nodiscard]] rigid_wheel::SlipResult roll(const Stand& stand, double slip) const {
     rigid_wheel::SlipResult result{.slip = slip};
-    roll(stand, result, [](const auto&, double) {});
+    Stages quiet;
+    roll(stand, result, quiet, [](const auto&, double) {});
     rigid_wheel::evaluate(result, stand.bed.level, settings_);
     return result;
   }
 
-  /// The same with look(world, share of the run) after each sample. `result` is filled as the run goes; its samples are
-  /// not evaluated.
+  /// The same with stages that are told the share of the run, and look(world, share) after each sample. `result` is
+  /// filled as the run goes; its samples are not evaluated.
   template <class Look>
-  void roll(Stand stand, rigid_wheel::SlipResult& result, Look&& look) const {
+  void roll(Stand stand, rigid_wheel::SlipResult& result, Stages& stages, Look&& look) const {
     const Settings& s = settings_;
     auto& world = stand.bed.world;
     world.set_threads(1);
     auto& m = world.machine();
-    const double start = world.time(), interval = s.sample_interval(), speed = (1.0 - result.slip) * s.rim_speed();
-    m.set_target(stand.drive, smooth_start(speed, s.ramp_time, start, m.coordinate(stand.rail)));
-    m.set_target(stand.motor, smooth_start(s.spin(), s.ramp_time, start, m.coordinate(stand.axle)));
-    const double from = m.coordinate(stand.rail), duration = s.duration();
-    while (world.time() - start < duration) {
+    const double interval = s.sample_interval(), speed = (1.0 - result.slip) * s.rim_speed(), duration = s.duration();
+    rigid_wheel::Rolling n{world.time(), m.coordinate(stand.rail), m.coordinate(stand.axle)};
+    const auto stage = stages.enter(world, n, [&] {
+      m.set_target(stand.drive, smooth_start(speed, s.ramp_time, n.start, n.rail));
+      m.set_target(stand.motor, smooth_start(s.spin(), s.ramp_time, n.start, n.axle));
+    });
+    if (!stage) return;
+    while (world.time() - n.start < duration) {
       run(world, interval);
       const auto& grains = m.sensor(stand.grains).mean();
       const double rim = m.speed(stand.axle) * s.radius, way = m.speed(stand.rail);
-      result.samples.push_back({world.time() - start, 1.0 - way / rim, m.coordinate(stand.rail) - from, grains.force.x,
+      result.samples.push_back({world.time() - n.start, 1.0 - way / rim, m.coordinate(stand.rail) - n.rail, grains.force.x,
                                 -grains.torque.y, sinkage(stand), grains.force.z,
                                 -m.sensor(stand.drive_sensor).mean().force.x,
                                 m.sensor(stand.motor_sensor).mean().force.x});
-      look(std::as_const(world), (world.time() - start) / duration);
+      const double share = (world.time() - n.start) / duration;
+      look(std::as_const(world), share);
+      stages.update(std::min(1.0, share), text("slip {:g}: pull {:.1f} N", result.slip, grains.force.x));
     }
     // Behind the wheel, and not where it was set down.
     const double chord = std::sqrt(2.0 * s.radius * std::max(sinkage(stand), s.grains.edge()));

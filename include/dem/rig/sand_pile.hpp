@@ -62,6 +62,7 @@ class SandPile {
     rig.world.prepare();
     result.time_step = rig.world.time_step();
     sand_pile::Forming forming(settings_, rig, sand_pile::equal_radius(grains_.shape), result, stages, look);
+    const auto kept = stages.keep("forming", forming);
     forming.fill();
     forming.let_go();
     forming.measure();

@@ -5,6 +5,7 @@
 #include <dem/io/file.hpp>
 #include <dem/report/interrupt.hpp>
 #include <dem/report/progress.hpp>
+#include <dem/rig/checkpoint_folder.hpp>
 #include <dem/rig/folder_lock.hpp>
 #include <dem/rig/old_results.hpp>
 #include <dem/rig/own_words.hpp>
@@ -39,9 +40,11 @@ class Session final : public Stages {
     std::string config = {};          ///< text of settings.toml
     ResultNames results = {};         ///< of this rig
     std::vector<OwnWord> words = {};  ///< for what the library calls otherwise than the program
+    CheckpointOptions checkpoints = {};
   };
 
-  explicit Session(Set set) : set_(std::move(set)) {}
+  explicit Session(Set set)
+      : set_(std::move(set)), parts_(set_.program, set_.output, set_.config, set_.checkpoints) {}
 
   [[nodiscard]] std::filesystem::path folder() const { return set_.output; }
   [[nodiscard]] const std::string& program() const { return set_.program; }
@@ -62,32 +65,38 @@ class Session final : public Stages {
   }
 
   /// The check of the start is over: `stages` will follow. Results of an earlier run in the folder go, and it is said
-  /// which; `also` is what else will be replaced later. The settings file is written. From here on Ctrl-C and SIGTERM
-  /// end the run after the present step. Throws Error, and leaves earlier results as they are, if the folder cannot be
-  /// written to or another process runs in it.
+  /// which; `also` is what else will be replaced later. A run that goes on leaves them. The settings file is written.
+  /// From here on Ctrl-C and SIGTERM end the run after the present step. Throws Error, and leaves earlier results as
+  /// they are, if the folder cannot be written to, another process runs in it, or the run in it cannot go on.
   void begin_run(int stages, const std::string& also = {}) {
     lock();
-    const auto settings = folder() / "settings.toml";
-    io::AtomicFile{settings};
-    if (const auto old = find_old_results(folder(), set_.results); !old.empty()) {
-      const bool same = std::filesystem::exists(settings) && io::read_file(settings) == set_.config;
-      std::string names;
-      for (const auto& path : old) names += (names.empty() ? "" : ", ") + path.filename().string();
-      tell(stderr, "Replacing what an earlier run with {} settings left in '{}': {}{}. Another --output keeps it.\n",
-           same ? "the same" : "other", set_.output, names, also);
+    if (parts_.resumes()) {
+      parts_.check();
+      io::write_file(folder() / "settings.toml", set_.config);
+    } else {
+      make_room(also);
     }
-    io::write_file(settings, set_.config);
-    remove_old_results(folder(), set_.results);
     guard_ = std::make_unique<io::InterruptGuard>();
-    start_ = io::steady_seconds();
+    parts_.start();
     io::ProgressOptions options;
     options.stages = stages;
     progress_.emplace(options);
+    if (!parts_.resumes()) return;
+    const auto files = parts_.parts();
+    message(files.empty() ? "The run had kept nothing to go on from: it begins anew."
+                          : text("Going on where {} part{} of the run {} kept last.", files.size(),
+                                 files.size() > 1 ? "s" : "", files.size() > 1 ? "were" : "was"));
   }
   [[nodiscard]] bool has_begun() const { return progress_.has_value(); }
 
+  /// Where the parts of the run are kept.
+  [[nodiscard]] CheckpointFolder& parts() { return parts_; }
+
   void begin(std::string_view name, double total = unknown) override { progress_->begin(name, total); }
-  void update(double done, std::string_view status = {}) override { progress_->update(done, status); }
+  void update(double done, std::string_view status = {}) override {
+    progress_->update(done, status);
+    save_if_due();
+  }
   void finish(std::string_view result = {}) override { progress_->finish(result); }
   void message(std::string_view text) override { progress_->message(text); }
 
@@ -101,7 +110,7 @@ class Session final : public Stages {
   void end(const std::string& problem = {}) {
     outcome.problem = in_own_words(problem);
     progress_->stop(outcome.problem);
-    outcome.wall_time = io::steady_seconds() - start_;
+    outcome.wall_time = parts_.wall_time();
     guard_.reset();
   }
 
@@ -114,11 +123,32 @@ class Session final : public Stages {
     lock_.emplace(set_.output, set_.program);
   }
 
+  /// Removes what an earlier run has left, and writes the settings of this one.
+  void make_room(const std::string& also) {
+    const auto settings = folder() / "settings.toml";
+    io::AtomicFile{settings};  // is gone again: the folder can be written to
+    auto old = find_old_results(folder(), set_.results);
+    const auto parts = parts_.parts();
+    old.insert(old.end(), parts.begin(), parts.end());
+    if (!old.empty()) {
+      const bool same = std::filesystem::exists(settings) && io::read_file(settings) == set_.config;
+      std::string names;
+      for (const auto& path : old) {
+        names += (names.empty() ? "" : ", ") + path.lexically_proximate(folder()).generic_string();
+      }
+      tell(stderr, "Replacing what an earlier run with {} settings left in '{}': {}{}. Another --output keeps it.\n",
+           same ? "the same" : "other", set_.output, names, also);
+    }
+    parts_.clear();  // first: they are those of the settings that were there
+    io::write_file(settings, set_.config);
+    remove_old_results(folder(), set_.results);
+  }
+
   Set set_;
+  CheckpointFolder parts_;
   std::optional<FolderLock> lock_;
   std::unique_ptr<io::InterruptGuard> guard_;
   std::optional<io::Progress> progress_;
-  double start_ = 0.0;
 };
 
 }  // namespace dem::rig

@@ -4,6 +4,11 @@
 #include <dem/rig/config_text.hpp>
 #include <dem/rig/option_text.hpp>
 
+#include <algorithm>
+#include <string>
+#include <string_view>
+#include <vector>
+
 namespace dem::rig {
 
 /// The lines of a settings file that must be understood as a whole. Throws Error for what is not in the form, a name
@@ -48,6 +53,7 @@ inline void refuse_idle(const Options& options, const IdleOptions& idle) {
 [[nodiscard]] inline std::string settings_text(const Options& options, const IdleOptions& idle) {
   std::string lines;
   for (const Option& option : options.all()) {
+    if (!option.is_setting) continue;
     std::vector<std::string> values = option.given;
     if (values.empty() && !option.default_text.empty()) values = {option.default_text};
     if (values.empty() || values.front().empty() || idle.contains(option.name)) continue;
@@ -57,6 +63,34 @@ inline void refuse_idle(const Options& options, const IdleOptions& idle) {
     lines += text("{}={}\n", option.key(), values.size() > 1 ? "[" + joined + "]" : joined);
   }
   return lines;
+}
+
+/// Throws Error unless two texts of settings files are those of runs with the same results: `then` of one that was
+/// stopped, `now` of the one that is to go on with it. The option that differs is named.
+inline void require_same_settings(std::string_view then, std::string_view now, const std::vector<std::string>& free,
+                                  const std::string& where) {
+  const auto lines_of = [&](std::string_view text) {
+    std::vector<ConfigLine> lines = read_config(text);
+    std::erase_if(lines, [&](const ConfigLine& l) { return std::find(free.begin(), free.end(), l.key) != free.end(); });
+    return lines;
+  };
+  const auto value_in = [](const std::vector<ConfigLine>& lines, const std::string& key) {
+    std::string value;
+    for (const ConfigLine& l : lines) {
+      for (std::size_t k = 0; l.key == key && k < l.values.size(); ++k) value += (k == 0 ? "" : ",") + l.values[k];
+    }
+    return value.empty() ? "not given" : value;
+  };
+  const auto before = lines_of(then), after = lines_of(now);
+  for (const auto* list : {&before, &after}) {
+    for (const ConfigLine& l : *list) {
+      const std::string a = value_in(before, l.key), b = value_in(after, l.key);
+      if (a == b) continue;
+      fail("--{} was {} in the run in '{}' that is to go on, but is {} now; give the same settings (--config "
+           "{}/settings.toml), or another --output for a new run",
+           l.key, a, where, b, where);
+    }
+  }
 }
 
 }  // namespace dem::rig

@@ -34,12 +34,31 @@ class SharedStages {
     const std::lock_guard lock(mutex_);
     f();
   }
+  /// Those that are shared, for use within alone().
+  Stages& all() { return stages_; }
   std::atomic<bool> has_failed = false;
 
  private:
   Stages& stages_;
   std::vector<double> done_;
   std::mutex mutex_;
+};
+
+/// The stages of one of them: what they tell is told of it.
+class StagesOfOne final : public Stages {
+ public:
+  StagesOfOne(SharedStages& shared, std::size_t run) : shared_(shared), run_(run) {}
+  void update(double done, std::string_view status = {}) override {
+    shared_.update(run_, done, status);
+    save_if_due();
+  }
+  void message(std::string_view text) override {
+    shared_.alone([&] { shared_.all().message(text); });
+  }
+
+ private:
+  SharedStages& shared_;
+  std::size_t run_;
 };
 
 /// Calls job(k, shared) for each k below `jobs`, up to `workers` at a time. What a job throws ends the others at their

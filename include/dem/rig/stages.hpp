@@ -3,11 +3,15 @@
 
 #include <dem/core/error.hpp>
 #include <dem/report/interrupt.hpp>
+#include <dem/rig/part.hpp>
 
 #include <algorithm>
 #include <cmath>
+#include <concepts>
 #include <cstdint>
+#include <memory>
 #include <stdexcept>
+#include <string>
 #include <string_view>
 
 namespace dem::rig {
@@ -20,7 +24,58 @@ struct Stopped : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+/// A stage that was entered, until this goes: whether it is to be run.
+class EnteredStage {
+ public:
+  EnteredStage(Part* part, Part::Entry entry) : part_(part), entry_(entry) {}
+  EnteredStage(const EnteredStage&) = delete;
+  EnteredStage& operator=(const EnteredStage&) = delete;
+  ~EnteredStage() {
+    if (part_ != nullptr && entry_ != Part::Entry::skip) part_->leave();
+  }
+  /// False: it was done before the run was stopped that is gone on with.
+  explicit operator bool() const { return entry_ != Part::Entry::skip; }
+  /// Whether it begins; else it goes on where it was saved.
+  [[nodiscard]] bool begins() const { return entry_ == Part::Entry::begin; }
+
+ private:
+  Part* part_;
+  Part::Entry entry_;
+};
+
+/// Something that is kept with a part, until this goes.
+class KeptWhile {
+ public:
+  explicit KeptWhile(Part* part) : part_(part) {}
+  KeptWhile(const KeptWhile&) = delete;
+  KeptWhile& operator=(const KeptWhile&) = delete;
+  ~KeptWhile() {
+    if (part_ != nullptr) part_->drop();
+  }
+
+ private:
+  Part* part_;
+};
+
+/// Numbers of a stage that has none.
+struct NoNumbers {
+  template <class V>
+  void fields(V&) {}
+};
+
 /// What the stages of a run tell. Session shows it; this one keeps quiet.
+///
+/// A run that was stopped goes on by running again, from its start, all but what was done: stages that are entered. So
+/// what a stage does belongs between enter() and its end, and what it needs of the world is set up by enter().
+///
+///     Pushing n = {.start = world.time()};
+///     stages.begin("push", travel);
+///     if (const auto stage = stages.enter(world, n, [&] { m.set_target(drive, push_from(n.start)); })) {
+///       while (world.time() < n.start + time) {
+///         run(world, 1e-3);
+///         stages.update(world.time() - n.start);   // here it may be saved
+///       }
+///     }
 class Stages {
  public:
   /// Total of a stage whose end is not known beforehand.
@@ -35,6 +90,64 @@ class Stages {
   virtual void finish([[maybe_unused]] std::string_view result = {}) {}
   /// Something to know besides, as a warning.
   virtual void message([[maybe_unused]] std::string_view text) {}
+
+  /// Enters a stage of a world, after begin(). It may be saved at each update() from here on until the result goes: so
+  /// world and `numbers`, a struct with fields (see io::Fields), are then all that the rest of the stage depends on.
+  /// `set_up()` adds what the stage needs in the world (parts, functions, friction). It is called whether the stage is
+  /// run or not, as later stages stand on it; where the stage goes on, with the numbers from the file and before the
+  /// world takes its state. Throws Error if the state does not fit the world.
+  template <class World, class Numbers, std::invocable SetUp>
+  [[nodiscard]] EnteredStage enter(World& world, Numbers& numbers, SetUp&& set_up) {
+    auto entry = Part::Entry::begin;
+    if (part_ != nullptr) {
+      entry = part_->enter(std::make_unique<detail::KeptAs<Numbers>>(numbers), &world, &detail::mark_of<World>);
+    }
+    set_up();
+    if (entry == Part::Entry::go_on) part_->restore_world();
+    return {part_, entry};
+  }
+  template <class World, class Numbers>
+  [[nodiscard]] EnteredStage enter(World& world, Numbers& numbers) {
+    return enter(world, numbers, [] {});
+  }
+  /// Keeps something with fields besides, under a name, as long as the result lives: what was found so far.
+  template <class T>
+  [[nodiscard]] KeptWhile keep(std::string_view name, T& it) {
+    if (part_ != nullptr) part_->keep(name, std::make_unique<detail::KeptAs<T>>(it));
+    return KeptWhile(part_);
+  }
+  /// The same of something that may not be there: null.
+  template <class T>
+  [[nodiscard]] KeptWhile keep(std::string_view name, T* it) {
+    if (it == nullptr) return KeptWhile(nullptr);
+    return keep(name, *it);
+  }
+  /// The stages of the part are done. Later parts start from this world: it is saved, or where the part was done before
+  /// takes its state from the file.
+  template <class World>
+  void complete(World& world) {
+    if (part_ != nullptr) warn(part_->complete(&world, &detail::mark_of<World>));
+  }
+  /// The same where no world is handed on.
+  void complete() {
+    if (part_ != nullptr) warn(part_->complete(nullptr, nullptr));
+  }
+  /// The part that the stages belong to from now on; null: they are not kept.
+  void set_part(Part* part) { part_ = part; }
+  [[nodiscard]] Part* part() const { return part_; }
+
+ protected:
+  /// To be called by update().
+  void save_if_due() {
+    if (part_ != nullptr) warn(part_->save_if_due());
+  }
+
+ private:
+  void warn(const std::string& problem) {
+    if (!problem.empty()) message("warning: the run could not be saved to go on from here: " + problem);
+  }
+
+  Part* part_ = nullptr;
 };
 
 /// Calls work(), and then save(), also when the work is stopped: each run of a campaign keeps what it has found.

@@ -35,6 +35,11 @@ struct Flank {
   double from = 0.0, to = 0.0;                                ///< m, of s: the flank
   std::vector<double> angles = {};                            ///< rad, of the directions that have a flank
   std::vector<double> profile_s = {}, profile_z = {};         ///< m, the mean profile
+  template <class V>
+  void fields(V& v) {
+    v("angle", angle, "rad"), v("scatter", scatter, "rad"), v("height", height, "m"), v("from", from, "m");
+    v("to", to, "m"), v("angles", angles), v("profile_s", profile_s), v("profile_z", profile_z);
+  }
 };
 
 /// Fits the flank of a slope that falls with s: the mean profile over strips of `width` (m) says where the flank is,

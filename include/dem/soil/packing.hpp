@@ -19,6 +19,10 @@ namespace dem::soil {
 struct Placement {
   Vec3 position = Vec3::Zero();      ///< m, centre of mass
   Mat3 rotation = Mat3::Identity();  ///< grain frame -> global
+  template <class V>
+  void fields(V& v) {
+    v("position", position, "m"), v("rotation", rotation);
+  }
 };
 
 /// Grains of one size at rest in a box: what a rig starts from. The floor of the box is z = 0, its middle is x = y = 0.
@@ -29,6 +33,11 @@ struct Packing {
   std::string note = {};   ///< one line: how it was made
   std::vector<Placement> grains = {};
   std::string shape = "cube8";  ///< of the grains, in one word
+  template <class V>
+  void fields(V& v) {
+    v("half_edge", half_edge, "m"), v("length_x", length_x, "m"), v("length_y", length_y, "m"), v("note", note);
+    v("grains", grains), v("shape", shape);
+  }
 };
 
 /// Volume (m^3) of a grain: that of the solid cube of edge 2 h, which is also what gives it its mass.

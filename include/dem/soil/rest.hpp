@@ -33,6 +33,12 @@ class StaysBelow {
     return since_ >= 0.0 && time - since_ >= duration_;
   }
 
+  /// For a run that goes on after it was stopped.
+  template <class V>
+  void fields(V& v) {
+    v("since", since_, "s");
+  }
+
  private:
   double limit_, duration_;
   double since_ = -1.0;

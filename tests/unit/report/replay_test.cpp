@@ -58,6 +58,7 @@ std::vector<ReplayGrain> tumbling(int frame) {
     g.rotation = still ? Mat3(Mat3::Identity()) : turned(t * (1.0 + a), Vec3(1, std::sin(a), std::cos(a)));
     g.speed = still ? 0.0 : 0.04 * t;
     g.force = 5.0 + std::sin(t * a);
+    g.is_asleep = still && frame > 8;
     grains.push_back(g);
   }
   return grains;

@@ -110,6 +110,17 @@ class Fields : public FieldColumns {
     c = {.kind = kind, .width = width};
     c.own.assign(from, from + numbers.size() * sizeof(T));
   }
+  /// A list of structs of nothing but doubles, as samples are: a row each. Unlike copied(), of a part in a list too.
+  template <class Struct>
+  void numbers(std::string_view name, std::vector<Struct>& rows) {
+    static_assert(sizeof(Struct) % sizeof(double) == 0 && alignof(Struct) == alignof(double));
+    packed(name, ColumnKind::real, rows);
+  }
+  /// A list of structs of plain numbers, as their bytes are in memory.
+  template <class Struct>
+  void bytes(std::string_view name, std::vector<Struct>& rows) {
+    packed(name, ColumnKind::byte, rows);
+  }
   /// A group of fields: `f()` names them.
   template <class F>
   void group(std::string_view name, F&& f) {
@@ -190,6 +201,21 @@ class Fields : public FieldColumns {
     part_of("count", count, "");
     x.resize(count);
     for (T& item : x) part_of("value", item, unit);
+  }
+  template <class Struct>
+  void packed(std::string_view name, ColumnKind kind, std::vector<Struct>& rows) {
+    static_assert(std::is_trivially_copyable_v<Struct>);
+    if (task_ == Task::compare) return;
+    const Inside inside(*this, name);
+    const std::size_t width = sizeof(Struct) / size_of(kind);
+    std::uint64_t count = rows.size();
+    part_of("count", count, "");
+    rows.resize(count);
+    const Inside values(*this, "rows");
+    if (task_ == Task::restore) return take(kind, width, rows.data(), count);
+    Column& c = columns_->try_emplace(path_, Column{.kind = kind, .width = width}).first->second;
+    const auto* from = reinterpret_cast<const std::byte*>(rows.data());
+    c.own.insert(c.own.end(), from, from + count * sizeof(Struct));
   }
   template <class T>
   void part_of(std::string_view name, T& x, const char* unit) {

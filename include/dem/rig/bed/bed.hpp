@@ -104,6 +104,12 @@ class Bed {
     world.set_active(lid_surface, false);
   }
 
+  /// What of it is not the world's, for a run that goes on after it was stopped.
+  template <class V>
+  void fields(V& v) {
+    v("level", level, "m");
+  }
+
   World world;
   double level = std::nan("");  ///< m, of the levelled surface
   BodyId bottom, top, lid;      ///< a fixed box is both bottom and top

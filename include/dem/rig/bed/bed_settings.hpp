@@ -37,7 +37,7 @@ struct BedBySize {
 
 /// Names the options of a bed, in a group of their own.
 inline void add_bed_options(Options& options, BedSettings& s) {
-  const auto add = [&](const char* name, auto& value, const char* text) { options.add(name, value, text); };
+  const auto add = [&](const char* name, auto& value, const char* text) { return options.add(name, value, text); };
   options.group("Bed");
   add("--bed-length", s.length, "inner length of the box, along x [m]; 0: by size");
   add("--bed-width", s.width, "inner width [m]; 0: by size");
@@ -52,7 +52,7 @@ inline void add_bed_options(Options& options, BedSettings& s) {
   add("--stage-limit", s.stage_limit, "a bed or a lid must be at rest by then [s]");
   add("--stable-share", s.stable_share, "time step, as a share of the largest stable one");
   add("--seed", s.seed, "of the rain");
-  add("--threads", s.threads, "0: all, at least 1000 grains for each");
+  add("--threads", s.threads, "0: all, at least 1000 grains for each").changes_no_result();
   add("--bed-file", s.file, "read the grains from this file instead of raining them");
   add("--save-bed", s.save, "file for the levelled bed; empty: bed.txt in the output folder");
 }

@@ -17,39 +17,68 @@ inline double walls_for(const soil::Packing& p, const GrainSettings& grains) {
   return highest + 3.0 * grains.half_edge;
 }
 
+/// What making a bed denser has come to.
+struct Densifying {
+  double start = 0.0, looked = 0.0;                           ///< s
+  double first = std::nan(""), fraction = 0.0, before = 0.0;  ///< solid fractions
+  double share = 1.0;                                         ///< of friction
+  template <class V>
+  void fields(V& v) {
+    v("start", start, "s"), v("looked", looked, "s"), v("first", first), v("fraction", fraction);
+    v("before", before), v("share", share);
+  }
+};
+
+/// What lowering the lid has come to.
+struct Lowering {
+  double start = 0.0;  ///< s
+  soil::StaysBelow slow, loaded;
+  bool done = false;
+  template <class V>
+  void fields(V& v) {
+    v("start", start, "s"), v("slow", slow), v("loaded", loaded), v("done", done);
+  }
+};
+
 /// Makes a bed denser: friction sinks to zero while the bed is shaken along x, until the density that was asked for is
 /// reached or, without friction, changes no more. Shaking is done by gravity, which turns to and fro: in the frame of
 /// the box that is the same as a box that shakes.
 template <class Model>
 void densify(Bed<Model>& bed, Stages& stages) {
   const BedSettings& s = bed.settings();
-  const double wanted = soil::solid_fraction_at(s.relative_density, soil::cube8_limits), start = bed.world.time();
-  const double first = bed.solid_fraction();
-  if (!std::isfinite(first)) {
+  const double wanted = soil::solid_fraction_at(s.relative_density, soil::cube8_limits);
+  stages.begin("densify", 1.0);
+  Densifying n;
+  const auto stage = stages.enter(bed.world, n, [&] { bed.set_friction(n.share); });
+  if (!stage) return;
+  if (stage.begins()) {
+    const double first = bed.solid_fraction(), start = bed.world.time();
+    n = {.start = start, .looked = start + s.densify_time, .first = first, .fraction = first, .before = first};
+  }
+  if (!std::isfinite(n.first)) {
     throw Stopped(
         text("the bed is too flat to measure its density {:g} mm away from floor and top; take a deeper "
              "--bed-depth, a smaller --half-edge, or let it be as it settles (--relative-density 0)",
              1e3 * bed.margin()));
   }
-  stages.begin("densify", 1.0);
   const double w = 2.0 * std::numbers::pi * s.shake_frequency;
-  double fraction = first, before = first, looked = start + s.densify_time;
-  while (fraction < wanted) {
-    const double now = bed.world.time(), share = std::max(0.0, 1.0 - (now - start) / s.densify_time);
-    bed.set_friction(share);
+  while (n.fraction < wanted) {
+    const double now = bed.world.time();
+    n.share = std::max(0.0, 1.0 - (now - n.start) / s.densify_time);
+    bed.set_friction(n.share);
     for (int k = 0; k < 5; ++k) {
-      const double at = bed.world.time() - start, grown = std::min(1.0, at * s.shake_frequency / 2.0);
+      const double at = bed.world.time() - n.start, grown = std::min(1.0, at * s.shake_frequency / 2.0);
       bed.world.set_gravity(Vec3(grown * s.shake_amplitude * w * w * std::sin(w * at), 0.0, -9.81));
       run(bed.world, 1e-3);
     }
-    fraction = bed.solid_fraction();
-    if (now - looked >= 0.2) {
-      if (fraction < before + 1e-3) break;
-      before = fraction;
-      looked = now;
+    n.fraction = bed.solid_fraction();
+    if (now - n.looked >= 0.2) {
+      if (n.fraction < n.before + 1e-3) break;
+      n.before = n.fraction;
+      n.looked = now;
     }
-    stages.update(std::clamp(std::max(1.0 - share, (fraction - first) / (wanted - first)), 0.0, 1.0),
-                  text("solid {:.3f} of {:.3f}", fraction, wanted));
+    stages.update(std::clamp(std::max(1.0 - n.share, (n.fraction - n.first) / (wanted - n.first)), 0.0, 1.0),
+                  text("solid {:.3f} of {:.3f}", n.fraction, wanted));
   }
   bed.world.set_gravity(Vec3(0.0, 0.0, -9.81));
   bed.set_friction(1.0);
@@ -61,33 +90,38 @@ template <class Model>
 void level(Bed<Model>& bed, double strike_off, Stages& stages) {
   const BedSettings& s = bed.settings();
   auto& world = bed.world;
-  std::vector<ParticleId> by_height = world.particles();
-  std::stable_sort(by_height.begin(), by_height.end(),
-                   [&](ParticleId a, ParticleId b) { return world.position(a).z() > world.position(b).z(); });
-  by_height.resize(static_cast<std::size_t>(strike_off * static_cast<double>(by_height.size())));
-  for (const ParticleId p : by_height) world.remove_particle(p);
-  if (!by_height.empty()) run(world, 1e-6);  // they go with the next step
   stages.begin("level", 1.0);
-  bed.add_lid();
-  const double start = world.time(), weight = bed.lid_weight();
-  soil::StaysBelow slow(0.01 * s.lid_speed, 0.01), loaded(0.02, 0.01);
-  for (bool done = false; !done;) {
-    run(world, 1e-3);
-    const double force = world.machine().sensor(bed.lid_sensor).mean().force.z;
-    const double speed = world.machine().body(bed.lid).velocity().z();
-    const bool is_slow = slow(world.time(), std::abs(speed));
-    done = loaded(world.time(), std::abs(force / weight - 1.0)) && is_slow;
-    stages.update(std::clamp(force / weight, 0.0, 1.0), text("{:.0f} Pa on the lid", force / bed.area()));
-    if (!done && world.time() - start > s.stage_limit) {
-      throw Stopped(
-          text("the lid is not at rest after {:g} s: it carries {:.4g} N of {:.4g} N; raise --stage-limit or "
-               "--damping",
-               s.stage_limit, force, weight));
-    }
+  NoNumbers none;
+  if (const auto stage = stages.enter(world, none)) {
+    std::vector<ParticleId> by_height = world.particles();
+    std::stable_sort(by_height.begin(), by_height.end(),
+                     [&](ParticleId a, ParticleId b) { return world.position(a).z() > world.position(b).z(); });
+    by_height.resize(static_cast<std::size_t>(strike_off * static_cast<double>(by_height.size())));
+    for (const ParticleId p : by_height) world.remove_particle(p);
+    if (!by_height.empty()) run(world, 1e-6);  // they go with the next step
   }
-  bed.level = bed.lid_low();
-  bed.take_lid_off();
-  settle(world, bed.grains().edge(), s.stage_limit, "--stage-limit", stages, [] { return 1.0; });
+  const double weight = bed.lid_weight();
+  Lowering n{world.time(), {0.01 * s.lid_speed, 0.01}, {0.02, 0.01}};
+  if (const auto stage = stages.enter(world, n, [&] { bed.add_lid(); })) {
+    while (!n.done) {
+      run(world, 1e-3);
+      const double force = world.machine().sensor(bed.lid_sensor).mean().force.z;
+      const double speed = world.machine().body(bed.lid).velocity().z();
+      const bool is_slow = n.slow(world.time(), std::abs(speed));
+      n.done = n.loaded(world.time(), std::abs(force / weight - 1.0)) && is_slow;
+      stages.update(std::clamp(force / weight, 0.0, 1.0), text("{:.0f} Pa on the lid", force / bed.area()));
+      if (!n.done && world.time() - n.start > s.stage_limit) {
+        throw Stopped(
+            text("the lid is not at rest after {:g} s: it carries {:.4g} N of {:.4g} N; raise --stage-limit or "
+                 "--damping",
+                 s.stage_limit, force, weight));
+      }
+    }
+    bed.level = bed.lid_low();
+  }
+  settle(
+      world, bed.grains().edge(), s.stage_limit, "--stage-limit", stages, [] { return 1.0; },
+      [&] { bed.take_lid_off(); });
 }
 
 /// Stages of progress in make_bed.
@@ -99,6 +133,7 @@ Bed<Model> make_bed(const BedSettings& s, const GrainSettings& grains, const typ
                     const soil::Packing& start, Stages& stages) {
   const bool made = s.file.empty();
   Bed<Model> bed(s, grains, shape, {.halves = halves, .wall_top = walls_for(start, grains)}, start.grains);
+  const auto kept = stages.keep("bed", bed);
   stages.begin(made ? "rain" : "settle", 1.0);
   const double high = mean_height(bed.world), low = 0.5 * s.depth;
   settle(bed.world, grains.edge(), s.stage_limit, "--stage-limit", stages, [&] {

@@ -4,6 +4,7 @@
 #include <dem/rig/direct_shear.hpp>
 #include <dem/rig/direct_shear/packing_of_run.hpp>
 #include <dem/rig/frames.hpp>
+#include <dem/rig/part_of.hpp>
 #include <dem/rig/samples_file.hpp>
 #include <dem/rig/session.hpp>
 
@@ -66,22 +67,28 @@ void test_load(const DirectShear<Model>& shear, const PackingResult& packing, Lo
   const Settings& s = shear.settings();
   const std::string name = load_name(s, r.load);
   const auto test = [&] {
-    std::optional<Frames> frames;
-    using Moment = typename DirectShear<Model>::Moment;
+    PartOf<Model> part(session, session, name);
+    Frames frames(session, s.vtk ? name : "", s.vtk_interval, "this load");
+    const auto kept = session.keep("load", r), frames_kept = session.keep("frames", frames);
+    const auto pictures = session.keep("replay", replay);
+    if (part.is_done()) {
+      session.begin(text("consolidate {:.1f} kPa", 1e-3 * r.normal_stress));
+      return session.begin(text("shear at {:.1f} kPa", 1e-3 * r.normal_stress));
+    }
     shear.test(packing, r, session, [&](const Apparatus<Model>& rig, Moment moment) {
-      if (moment == Moment::start) frames.emplace(session, s.vtk ? name : "", s.vtk_interval, "this load");
       const auto write = [&](io::VtkSeries& series) {
         add_grains(series, rig.world);
         add_surfaces(series, rig.world, "boxes");
         add_grain_shapes(series, rig.world, s.vtk_spheres);
       };
-      if (moment == Moment::start) frames->show(0.0, write);  // where it is but for its spring
-      else if (moment == Moment::sample) frames->show(rig.top_displacement(), write);
-      else frames->finish(rig.top_displacement(), write);
+      if (moment == Moment::start) frames.show(0.0, write);  // where it is but for its spring
+      else if (moment == Moment::sample) frames.show(rig.top_displacement(), write);
+      else frames.finish(rig.top_displacement(), write);
       if constexpr (HasReplay<typename Model::Shape>) {
         if (replay && replay->due(rig.world.time())) replay->record(rig.world);
       }
     });
+    session.complete();
   };
   work_and_save(test, [&] {
     evaluate(r, s);
@@ -105,7 +112,11 @@ void run_campaign(const DirectShear<Model>& shear, Campaign& campaign, Session& 
                     replaces ? ", and " + s.save_packing + " once there is a new packing" : "");
   PackingResult& packing = campaign.packing;
   if (made) {
-    packing = make_packing<Model>(s, shear.grains(), first.grains, session);
+    PartOf<Model> part(session, session, "packing");
+    const auto kept = session.keep("packing", packing);
+    if (!part.is_done()) packing = make_packing<Model>(s, shear.grains(), first.grains, session);
+    else for (int k = 0; k < making; ++k) session.begin("packing");
+    session.complete();
     soil::save_packing(packing.packing, s.save_packing);  // before anything else can go wrong
   } else {
     packing.packing = std::move(first);

@@ -84,9 +84,9 @@ inline void add_test_options(Options& options, Settings& s) {
       "overlap that ends the run, in effective diameters 2 Ri Rj/(Ri + Rj): the radius of two equal spheres, the "
       "diameter of a sphere on a wall; other shapes count as spheres of their volume");
   add("--seed", s.seed, "of a random packing");
-  add("--threads", s.threads, "0: all, at least 1000 grains for each");
+  add("--threads", s.threads, "0: all, at least 1000 grains for each").changes_no_result();
   options.group("Output");
-  add("--output", s.output, "folder; results of an earlier run in it are replaced");
+  add("--output", s.output, "folder; results of an earlier run in it are replaced").changes_no_result();
   options
       .flag("--replay", s.replay,
             "replay of the load in the middle in the report (--replay=true) or none (--no-replay)")

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <dem/rig/direct_shear/density.hpp>
+#include <dem/rig/bed/settle.hpp>
 #include <dem/rig/stages.hpp>
 #include <dem/soil/coordination.hpp>
 #include <dem/soil/rest.hpp>
@@ -18,19 +19,7 @@ namespace dem::rig::direct_shear {
 /// the stage is done.
 template <class Model, class Done>
 void settle(Apparatus<Model>& rig, const Settings& s, Stages& stages, Done&& done) {
-  const double limit = soil::rest_speed(2.0 * s.half_edge), start = rig.world.time();
-  soil::StaysBelow at_rest(limit, 0.02);
-  for (double speed = 1e300; !at_rest(rig.world.time(), speed);) {
-    if (rig.world.time() - start > s.settle_limit) {
-      throw Stopped(
-          text("the grains are not at rest after {:g} s: their r.m.s. speed is {:.3g} mm/s, rest is below "
-               "{:.3g}; raise --settle-limit or --damping",
-               s.settle_limit, 1e3 * speed, 1e3 * limit));
-    }
-    run(rig.world, 2e-3);
-    speed = soil::rms_speed(rig.world);
-    stages.update(done(), text("{:.2f} s, grains at {:.2g} mm/s", rig.world.time(), 1e3 * speed));
-  }
+  rig::settle(rig.world, 2.0 * s.half_edge, s.settle_limit, "--settle-limit", stages, done);
 }
 
 /// Lets grains fall until they lie at rest. Progress is how far their middle has come down towards that of a
@@ -65,13 +54,13 @@ template <class Model>
 void end_shaking(Apparatus<Model>& rig, const Settings& s, double t0) {
   shake(rig, shaking(s, t0, rig.world.time()));
   run(rig.world, 1.5 / s.shake_frequency);
+  shake(rig, 0.0);  // where it has come to
 }
 
 /// Makes a random packing denser: both frictions sink from their full value to zero while the box is shaken gently,
 /// until the density that was asked for is reached, or, without friction, changes no more. Then friction is back.
 template <class Model>
 void densify(Apparatus<Model>& rig, const Settings& s, Stages& stages) {
-  const double start = rig.world.time();
   const double wanted = soil::solid_fraction_at(s.relative_density, density_limits(s));
   const auto measure = [&] {
     const double fraction = inner_fraction(rig, s);
@@ -81,27 +70,34 @@ void densify(Apparatus<Model>& rig, const Settings& s, Stages& stages) {
              "--grains or a smaller --half-edge, or let them be as they settle (--relative-density 0)",
              1e3 * measuring_margin(s)));
   };
-  shake(rig, shaking(s, start));
-  const double first = measure();
-  double fraction = first, before = fraction, looked = start + s.densify_time;
   stages.begin("densify", 1.0);
-  while (fraction < wanted || s.relative_density >= 1.0) {
+  StageOfTest n{.start = rig.world.time()};
+  const auto stage = stages.enter(rig.world, n, [&] {
+    shake(rig, shaking(s, n.start));
+    rig.set_friction(n.share);
+  });
+  if (!stage) return shake(rig, 0.0);
+  if (stage.begins()) {
+    n.first = n.fraction = n.before = measure();
+    n.looked = n.start + s.densify_time;
+  }
+  while (n.fraction < wanted || s.relative_density >= 1.0) {
     const double now = rig.world.time();
-    const double share = std::max(0.0, 1.0 - (now - start) / s.densify_time);
-    rig.set_friction(share);
+    n.share = std::max(0.0, 1.0 - (now - n.start) / s.densify_time);
+    rig.set_friction(n.share);
     run(rig.world, 5e-3);
-    fraction = measure();
-    if (now - looked >= 0.2) {  // five periods of 25 Hz
-      if (fraction < before + 1e-3) break;
-      before = fraction;
-      looked = now;
+    n.fraction = measure();
+    if (now - n.looked >= 0.2) {  // five periods of 25 Hz
+      if (n.fraction < n.before + 1e-3) break;
+      n.before = n.fraction;
+      n.looked = now;
     }
     // Of the two ways for it to end, the one that is nearer.
-    stages.update(std::clamp(std::max(1.0 - share, (fraction - first) / (wanted - first)), 0.0, 1.0),
-                  text("solid {:.3f} of {:.3f}, mu {:.2f}", fraction, wanted, rig.friction()));
+    stages.update(std::clamp(std::max(1.0 - n.share, (n.fraction - n.first) / (wanted - n.first)), 0.0, 1.0),
+                  text("solid {:.3f} of {:.3f}, mu {:.2f}", n.fraction, wanted, rig.friction()));
   }
   rig.set_friction(1.0);
-  end_shaking(rig, s, start);
+  end_shaking(rig, s, n.start);
 }
 
 /// Stages of progress in make_packing: pour; then shake or densify, and settle.
@@ -126,13 +122,16 @@ PackingResult make_packing(const Settings& s, const Grains<Model>& kind, std::sp
   pour(rig, s, solid, stages);
   if (poured) {
     stages.begin("shake", s.shake_time);
-    const double start = rig.world.time();
-    shake(rig, shaking(s, start));
-    while (rig.world.time() < start + s.shake_time) {
-      run(rig.world, 5e-3);
-      stages.update(rig.world.time() - start);
+    StageOfTest n{.start = rig.world.time()};
+    if (const auto stage = stages.enter(rig.world, n, [&] { shake(rig, shaking(s, n.start)); })) {
+      while (rig.world.time() < n.start + s.shake_time) {
+        run(rig.world, 5e-3);
+        stages.update(rig.world.time() - n.start);
+      }
+      end_shaking(rig, s, n.start);
+    } else {
+      shake(rig, 0.0);
     }
-    end_shaking(rig, s, start);
   } else if (s.relative_density > 0.0) {
     densify(rig, s, stages);
   }

@@ -3,6 +3,7 @@
 #include <dem/report/replay_recorder.hpp>
 #include <dem/rig/samples.hpp>
 #include <dem/soil/packing.hpp>
+#include <dem/soil/rest.hpp>
 
 #include <cmath>
 #include <limits>
@@ -34,6 +35,23 @@ inline constexpr Column<Sample> sample_columns[] = {{"time_s", &Sample::time},
                                                     {"lid_stress_Pa", &Sample::lid_stress},
                                                     {"plane_normal_stress_Pa", &Sample::plane_stress}};
 
+/// What a stage of a packing or a test has come to.
+struct StageOfTest {
+  double start = 0.0;  ///< s
+  soil::StaysBelow slow = {0.0, 0.0}, loaded = {0.0, 0.0};
+  bool done = false;
+  double lid = 0.0, below = 0.0;  ///< m, of the lid at the start; N, weight of the grains below the plane of shear
+  double first = not_known, fraction = not_known, before = not_known;  ///< solid fractions
+  double looked = 0.0;                                                 ///< s
+  double share = 1.0;                                                  ///< of friction
+  template <class V>
+  void fields(V& v) {
+    v("start", start, "s"), v("slow", slow), v("loaded", loaded), v("done", done), v("lid", lid, "m");
+    v("below", below, "N"), v("first", first), v("fraction", fraction), v("before", before);
+    v("looked", looked, "s"), v("share", share);
+  }
+};
+
 /// The test at one load.
 struct LoadResult {
   double load = 0.0;                      ///< kg
@@ -57,6 +75,14 @@ struct LoadResult {
   double lid_share = not_known;       ///< force of the grains on the lid over its weight, mean while shearing
   /// Pa, m g over the areas that `maximum` and `residual` are over: normal_stress, unless areas are corrected.
   double normal_at_maximum = not_known, normal_at_residual = not_known;
+
+  /// What a run that goes on takes over.
+  template <class V>
+  void fields(V& v) {
+    v("solid_fraction", solid_fraction), v("height", height, "m"), v("consolidation_time", consolidation_time, "s");
+    v("time_step", time_step, "s"), v("time_step_limit", time_step_limit), v("finished", finished);
+    v.numbers("samples", samples);
+  }
 };
 
 /// The specimen before any load.
@@ -66,6 +92,12 @@ struct PackingResult {
   double height = not_known;          ///< m, where 95 % of the grains' centres are below, plus half an edge
   double asked_density = not_known;   ///< relative, that it was densified towards
   double coordination = not_known;    ///< grains that touch a grain, mean
+
+  /// Of a packing that is made: what follows is measured.
+  template <class V>
+  void fields(V& v) {
+    v("packing", packing), v("asked_density", asked_density), v("coordination", coordination);
+  }
 };
 
 /// All that was found, also when the run ended early.

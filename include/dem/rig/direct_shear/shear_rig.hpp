@@ -27,6 +27,7 @@ class ShearRig : public Rig {
   void resolve() override { direct_shear::resolve(settings); }
   std::string output() const override { return settings.output; }
   ResultNames results() const override { return result_names(); }
+  bool can_resume() const override { return true; }
   std::vector<OwnWord> words() const override {
     return {std::begin(direct_shear::own_words), std::end(direct_shear::own_words)};
   }

@@ -3,6 +3,7 @@
 #include <dem/report/replay_world.hpp>
 #include <dem/rig/bed/bed_file.hpp>
 #include <dem/rig/frames.hpp>
+#include <dem/rig/part_of.hpp>
 #include <dem/rig/plate_sinkage.hpp>
 #include <dem/rig/samples_file.hpp>
 #include <dem/rig/session.hpp>
@@ -11,32 +12,37 @@ namespace dem::rig::plate_sinkage {
 
 namespace detail {
 
+/// What names of a variant's files begin with.
+inline std::string prefix(const Variant& v) { return v.name.empty() ? "" : v.name + "_"; }
+
 /// One plate of a variant, with its file, and for the run itself frames and perhaps a replay.
 template <class Model>
 void press(const PlateSinkage<Model>& test, const Bed<Model>& bed, const Variant& variant, PlateResult& r,
            report::Replay* replay, Session& session) {
   const Settings& s = test.settings();
-  const std::string plate = text("plate_{:.0f}mm", 1e3 * r.width);
+  const std::string plate = text("plate_{:.0f}mm", 1e3 * r.width), file = prefix(variant) + plate;
   const auto save = [&] {
     evaluate(r, s);
     if (r.samples.empty()) return;
-    const std::string file = (variant.name.empty() ? "" : variant.name + "_") + plate + ".csv";
-    save_samples<Sample>(session.folder() / file, r.samples, sample_columns);
+    save_samples<Sample>(session.folder() / (file + ".csv"), r.samples, sample_columns);
   };
-  try {
-    Frames frames(session, s.vtk && variant.name.empty() ? plate : "", s.sinkage / 20.0, "this plate");
-    test.press(bed, r, session, [&](const auto& world, double travel) {
-      frames.show(travel, [&](io::VtkSeries& series) {
-        add_grains(series, world);
-        add_surfaces(series, world);
-      });
-      if (replay != nullptr && replay->due(world.time())) replay->record(world);
-    });
-  } catch (...) {
-    save();
-    throw;
-  }
-  save();
+  work_and_save(
+      [&] {
+        PartOf<Model> part(session, session, file);
+        Frames frames(session, s.vtk && variant.name.empty() ? plate : "", s.sinkage / 20.0, "this plate");
+        const auto kept = session.keep("plate", r), series = session.keep("frames", frames);
+        const auto pictures = session.keep("replay", replay);
+        if (part.is_done()) return session.begin(text("press {:.0f} mm", 1e3 * r.width));
+        test.press(bed, r, session, [&](const auto& world, double travel) {
+          frames.show(travel, [&](io::VtkSeries& to) {
+            add_grains(to, world);
+            add_surfaces(to, world);
+          });
+          if (replay && replay->due(world.time())) replay->record(world);
+        });
+        session.complete();
+      },
+      save);
   session.finish(r.fit ? text("n {:.2f}", r.fit->curve.exponent) : "");
 }
 
@@ -69,7 +75,10 @@ void run_campaign(const Settings& settings, ShapeOf&& shape_of, Campaign& campai
     VariantResult& result = campaign.variants.emplace_back(VariantResult{.variant = v});
     const PlateSinkage<Model> variant(v.settings, shape_of);
     if (v.name != "slow") {
+      PartOf<Model> part(session, session, detail::prefix(v) + "bed");
       bed.emplace(variant.make_bed(v.name.empty() ? start : start_of(v.settings), session));
+      const auto kept = session.keep("bed", *bed);
+      session.complete(bed->world);
       if (made && v.name.empty()) soil::save_packing(packing_of(*bed), settings.bed.save);
     }
     result.level = bed->level;

@@ -26,6 +26,7 @@ class PlateRig : public Rig {
     }
     return names;
   }
+  [[nodiscard]] bool can_resume() const override { return true; }
   [[nodiscard]] std::vector<OwnWord> words() const override { return bed_words(); }
   void run(Session& session) override { run_(settings, campaign, session); }
 

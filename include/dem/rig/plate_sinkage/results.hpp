@@ -28,6 +28,16 @@ inline constexpr Column<Sample> sample_columns[] = {{"time_s", &Sample::time},  
                                                     {"sinkage_m", &Sample::sinkage}, {"pressure_Pa", &Sample::pressure},
                                                     {"force_N", &Sample::force},     {"drive_N", &Sample::drive}};
 
+/// What pressing a plate has come to.
+struct Pressing {
+  double start = 0.0;                     ///< s
+  double zero = not_known, travel = 0.0;  ///< m
+  template <class V>
+  void fields(V& v) {
+    v("start", start, "s"), v("zero", zero, "m"), v("travel", travel, "m");
+  }
+};
+
 /// One plate.
 struct PlateResult {
   double width = 0.0;  ///< m
@@ -37,6 +47,12 @@ struct PlateResult {
   // Of the samples, by evaluate()
   terramechanics::PlateCurve curve = {};                   ///< smoothed, from zero sinkage on
   std::optional<terramechanics::PlateConstants> fit = {};  ///< none if there are too few points
+
+  /// What a run that goes on takes over.
+  template <class V>
+  void fields(V& v) {
+    v("finished", finished), v.numbers("samples", samples);
+  }
 };
 
 /// All plates on a bed.

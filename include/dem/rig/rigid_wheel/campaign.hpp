@@ -3,6 +3,7 @@
 #include <dem/report/replay_world.hpp>
 #include <dem/rig/bed/bed_file.hpp>
 #include <dem/rig/frames.hpp>
+#include <dem/rig/part_of.hpp>
 #include <dem/rig/rigid_wheel.hpp>
 #include <dem/rig/samples_file.hpp>
 #include <dem/rig/session.hpp>
@@ -21,14 +22,28 @@ void run_campaign(const Settings& settings, ShapeOf&& shape_of, Campaign& campai
   if (made) session.require_writable(s.bed.save, "--save-bed");
   session.begin_run(bed_stages(s.bed) + 2);
 
-  Bed<Model> bed = test.make_bed(start, session);
+  const auto made_bed = [&] {
+    PartOf<Model> part(session, session, "bed");
+    Bed<Model> bed = test.make_bed(start, session);
+    const auto kept = session.keep("bed", bed);
+    session.complete(bed.world);
+    return bed;
+  };
+  Bed<Model> bed = made_bed();
   if (made) soil::save_packing(packing_of(bed), s.bed.save);
   campaign.level = bed.level;
   campaign.solid_fraction = bed.solid_fraction(bed.level);
   campaign.grains = bed.world.particle_count();
   campaign.time_step = bed.world.time_step();
   session.finish(text("{:.1f} mm deep, solid fraction {:.3f}", 1e3 * bed.level, campaign.solid_fraction));
-  const auto stand = test.set_down(std::move(bed), session);
+  const auto set_down = [&] {
+    PartOf<Model> part(session, session, "set_down");
+    auto stand = test.set_down(std::move(bed), session);
+    const auto kept = session.keep("bed", stand.bed);
+    session.complete(stand.bed.world);
+    return stand;
+  };
+  const auto stand = set_down();
   campaign.set_down_sinkage = test.sinkage(stand);
   session.finish(text("{:.2f} mm deep", 1e3 * campaign.set_down_sinkage));
 
@@ -46,26 +61,26 @@ void run_campaign(const Settings& settings, ShapeOf&& shape_of, Campaign& campai
       evaluate(r, campaign.level, s);
       if (!r.samples.empty()) save_samples<Sample>(session.folder() / (name + ".csv"), r.samples, sample_columns);
     };
-    std::optional<Frames> frames;
-    stages.alone([&] { frames.emplace(session, s.vtk && k == shown ? name : "", 0.05, "this slip"); });
-    try {
-      test.roll(stand, r, [&](const auto& world, double share) {
-        if (k == shown) {
-          stages.alone([&] {
-            frames->show(share, [&](io::VtkSeries& series) {
-              add_grains(series, world);
-              add_surfaces(series, world);
-            });
+    const auto roll = [&] {
+      StagesOfOne own(stages, k);
+      PartOf<Model> part(session, own, name);
+      Frames frames(session, s.vtk && k == shown ? name : "", 0.05, "this slip");
+      report::Replay* replay = campaign.replay && k == shown ? &*campaign.replay : nullptr;
+      const auto kept = own.keep("slip", r), series = own.keep("frames", frames), pictures = own.keep("replay", replay);
+      if (part.is_done()) return own.update(1.0);
+      test.roll(stand, r, own, [&](const auto& world, double share) {
+        if (k != shown) return;
+        stages.alone([&] {
+          frames.show(share, [&](io::VtkSeries& to) {
+            add_grains(to, world);
+            add_surfaces(to, world);
           });
-          if (campaign.replay && campaign.replay->due(world.time())) campaign.replay->record(world);
-        }
-        stages.update(k, std::min(1.0, share), text("slip {:g}: pull {:.1f} N", r.slip, r.samples.back().pull));
+        });
+        if (replay && replay->due(world.time())) replay->record(world);
       });
-    } catch (...) {
-      save();
-      throw;
-    }
-    save();
+      own.complete();
+    };
+    work_and_save(roll, save);
   });
 }
 

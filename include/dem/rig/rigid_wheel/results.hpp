@@ -38,6 +38,16 @@ inline constexpr Column<Sample> sample_columns[] = {{"time_s", &Sample::time},
                                                     {"drive_force_N", &Sample::drive_force},
                                                     {"motor_torque_Nm", &Sample::motor_torque}};
 
+/// Where a run at one slip started.
+struct Rolling {
+  double start = 0.0;             ///< s
+  double rail = 0.0, axle = 0.0;  ///< m, rad
+  template <class V>
+  void fields(V& v) {
+    v("start", start, "s"), v("rail", rail, "m"), v("axle", axle, "rad");
+  }
+};
+
 /// The run at one slip.
 struct SlipResult {
   double slip = 0.0;  ///< 1 - v/(omega r), as asked for
@@ -52,6 +62,12 @@ struct SlipResult {
   double efficiency = not_known;  ///< pull v/(torque omega), thesis eq. 44; known where the wheel drives and pulls
   double rut_depth = not_known;   ///< m, below the level: the mean over the middle half of the wheel's width
   double rut_width = not_known;   ///< m, where the surface is lower than half of that depth
+
+  /// What a run that goes on takes over.
+  template <class V>
+  void fields(V& v) {
+    v("finished", finished), v.numbers("samples", samples), v("rut_y", rut_y), v("rut_z", rut_z);
+  }
 };
 
 /// Everything that a run finds.

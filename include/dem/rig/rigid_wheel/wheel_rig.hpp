@@ -27,6 +27,7 @@ class WheelRig : public Rig {
             .plots = {"pull", "torque", "sinkage", "pull_over_time", "sinkage_over_time", "rut"},
             .frames = {"grains", "surfaces"}};
   }
+  [[nodiscard]] bool can_resume() const override { return true; }
   [[nodiscard]] std::vector<OwnWord> words() const override { return bed_words(); }
   void run(Session& session) override { run_(settings, campaign, session); }
 

@@ -42,13 +42,12 @@ class Apparatus {
     if (s.method == "funnel") build_funnel(top);
   }
 
-  /// Lifts the cylinder by a way (m), at the lift speed at its most; returns how long (s) that takes.
-  double lift(double way) {
-    // The largest rate of a smooth step is 15/8 of its mean.
-    const double time = 1.875 * way / settings_.lift_speed, now = world.time();
-    world.machine().set_motion(lift_, mbd::Signal::smooth_step(0.0, way, now, now + time));
-    return time;
+  /// Lifts the cylinder by a way (m) from a time on (s), at the lift speed at its most.
+  void lift(double way, double start) {
+    world.machine().set_motion(lift_, mbd::Signal::smooth_step(0.0, way, start, start + lift_time(way)));
   }
+  /// s; the largest rate of a smooth step is 15/8 of its mean.
+  double lift_time(double way) const { return 1.875 * way / settings_.lift_speed; }
   /// Opens the funnel or the slot.
   void open() { world.set_active(gate_, false); }
   /// Takes away the grains that have fallen far below the plate; returns how many.

@@ -2,6 +2,7 @@
 
 #include <dem/report/replay_world.hpp>
 #include <dem/rig/frames.hpp>
+#include <dem/rig/part_of.hpp>
 #include <dem/rig/samples_file.hpp>
 #include <dem/rig/sand_pile.hpp>
 #include <dem/rig/session.hpp>
@@ -17,16 +18,21 @@ template <class Model>
 void make_pile(const SandPile<Model>& sand_pile, PileResult& r, report::Replay* replay, Session& session) {
   const Settings& s = sand_pile.settings();
   const std::string name = pile_name(r);
-  Frames frames(session, s.vtk ? name : "", s.frame_time, "this pile");
   const auto make = [&] {
+    PartOf<Model> part(session, session, name);
+    Frames frames(session, s.vtk ? name : "", s.frame_time, "this pile");
+    const auto kept = session.keep("pile", r), series = session.keep("frames", frames);
+    const auto pictures = session.keep("replay", replay);
+    if (part.is_done()) return session.begin(name);
     sand_pile.make(r, session, [&](const auto& world) {
-      frames.show(world.time(), [&](io::VtkSeries& series) {
-        add_grains(series, world);
-        add_surfaces(series, world, "apparatus");
-        add_grain_shapes(series, world);
+      frames.show(world.time(), [&](io::VtkSeries& to) {
+        add_grains(to, world);
+        add_surfaces(to, world, "apparatus");
+        add_grain_shapes(to, world);
       });
       if (replay && replay->due(world.time())) replay->record(world);
     });
+    session.complete();
   };
   work_and_save(make, [&] {
     if (!r.samples.empty()) save_samples<Sample>(session.folder() / (name + ".csv"), r.samples, sample_columns);

@@ -23,6 +23,18 @@ inline soil::Flank flank_of(std::span<const soil::Placement> grains, const Setti
   return soil::flank_of_slope(grains, radius, -s.box_length, 0.0, 0.5 * s.box_width, o);
 }
 
+/// What a stage of a pile has come to.
+struct StageOfPile {
+  double start = 0.0;  ///< s
+  soil::StaysBelow slow = {0.0, 0.0};
+  std::size_t flowing = 0;
+  bool done = false;
+  template <class V>
+  void fields(V& v) {
+    v("start", start, "s"), v("slow", slow), v("flowing", flowing), v("done", done);
+  }
+};
+
 /// One pile while it is made: its apparatus, and what is kept of it.
 template <class Model, class Look>
 class Forming {
@@ -37,10 +49,18 @@ class Forming {
         stages_(stages),
         look_(look) {}
 
+  /// What stages leave to later ones, for a run that goes on after it was stopped.
+  template <class V>
+  void fields(V& v) {
+    v("lift_start", lift_start_, "s"), v("lift_way", lift_way_, "m"), v("grains_of_pile", ids_);
+  }
+
   /// Lets the grains come to rest in their container.
   void fill() {
     stages_.begin(result_.kind.name + ": fill", s_.settle_limit);
-    if (!rest(soil::rest_speed(size_), s_.settle_limit)) {
+    StageOfPile n{.start = rig_.world.time(), .slow = {soil::rest_speed(size_), 0.05}};
+    const auto stage = stages_.enter(rig_.world, n);
+    if (stage && !rest(n, s_.settle_limit)) {
       throw Stopped(
           text("the grains are not at rest in their container after {:g} s; raise --settle-limit or --damping",
                s_.settle_limit));
@@ -49,25 +69,21 @@ class Forming {
 
   /// Lifts the cylinder over the grains, or opens the funnel or the slot until nothing flows out of it any more.
   void let_go() {
-    const double start = rig_.world.time();
-    if (s_.method == "lift") {
-      const double high = soil::height_percentile(soil::placements(rig_.world), 1.0) + 4.0 * s_.half_edge;
-      const double time = rig_.lift(high);
-      stages_.begin(result_.kind.name + ": lift", time);
-      while (rig_.world.time() < start + time) go_on(), stages_.update(rig_.world.time() - start, status());
-      return;
-    }
-    rig_.open();
+    if (s_.method == "lift") return lift();
     stages_.begin(result_.kind.name + ": flow");
     // As long as it takes a grain to fall from the orifice, or out of sight, and a little more.
-    soil::StaysBelow done(0.5, 0.3);
-    for (std::size_t before = flowing() + 1; !done(rig_.world.time(), before == flowing() ? 0.0 : 1.0);) {
-      before = flowing();
+    StageOfPile n{.start = rig_.world.time(), .slow = {0.5, 0.3}, .flowing = flowing() + 1};
+    const auto stage = stages_.enter(rig_.world, n, [&] { rig_.open(); });
+    if (!stage) return;
+    while (!n.done && !n.slow(rig_.world.time(), n.flowing == flowing() ? 0.0 : 1.0)) {
+      n.flowing = flowing();
       go_on();
-      stages_.update(rig_.world.time() - start, status());
-      if (rig_.world.time() - start < s_.flow_limit) continue;
-      if (s_.method == "drain") break;  // what creeps never ends: it is measured as it is
-      throw Stopped(text("grains still flow after {:g} s; raise --flow-limit", s_.flow_limit));
+      const double time = rig_.world.time() - n.start;
+      n.done = s_.method == "drain" && time >= s_.flow_limit;  // what creeps never ends: it is measured as it is
+      stages_.update(time, status());
+      if (!n.done && time >= s_.flow_limit) {
+        throw Stopped(text("grains still flow after {:g} s; raise --flow-limit", s_.flow_limit));
+      }
     }
     if (s_.method == "funnel" && flowing() > 0) {
       throw Stopped(text("{} grains stay in the funnel, which is blocked; widen --orifice-radius (now {:g} m)",
@@ -78,22 +94,51 @@ class Forming {
   /// Waits until the pile stands, measures it, and watches it.
   void measure() {
     stages_.begin(result_.kind.name + ": rest", s_.rest_limit);
-    result_.at_rest = rest(0.1 * soil::rest_speed(size_), s_.rest_limit);
-    const std::vector<ParticleId> ids = rig_.world.particles();
-    result_.pile = soil::placements(rig_.world);
-    result_.flank = flank_of(result_.pile, s_, radius_);
+    StageOfPile n{.start = rig_.world.time(), .slow = {0.1 * soil::rest_speed(size_), 0.05}};
+    if (const auto stage = stages_.enter(rig_.world, n)) {
+      result_.at_rest = rest(n, s_.rest_limit);
+      ids_ = rig_.world.particles();
+      result_.pile = soil::placements(rig_.world);
+      result_.flank = flank_of(result_.pile, s_, radius_);
+    }
     stages_.begin(result_.kind.name + ": creep", s_.creep_time);
-    const double start = rig_.world.time();
-    while (rig_.world.time() < start + s_.creep_time) go_on(), stages_.update(rig_.world.time() - start, status());
-    result_.creep_time = rig_.world.time() - start;
+    n = {.start = rig_.world.time()};
+    const auto stage = stages_.enter(rig_.world, n);
+    if (!stage) return;
+    while (rig_.world.time() < n.start + s_.creep_time) go_on(), stages_.update(rig_.world.time() - n.start, status());
+    result_.creep_time = rig_.world.time() - n.start;
+    find_creep();
+  }
+
+ private:
+  static constexpr double interval = 0.01;  ///< s, of samples
+
+  void lift() {
+    NoNumbers none;
+    const auto stage = stages_.enter(rig_.world, none, [&] {
+      if (lift_way_ == 0.0) {
+        lift_way_ = soil::height_percentile(soil::placements(rig_.world), 1.0) + 4.0 * s_.half_edge;
+        lift_start_ = rig_.world.time();
+      }
+      rig_.lift(lift_way_, lift_start_);
+    });
+    const double time = rig_.lift_time(lift_way_);
+    stages_.begin(result_.kind.name + ": lift", time);
+    while (stage && rig_.world.time() < lift_start_ + time) {
+      go_on();
+      stages_.update(rig_.world.time() - lift_start_, status());
+    }
+  }
+
+  void find_creep() {
     result_.angle_after = flank_of(soil::placements(rig_.world), s_, radius_).angle;
     std::vector<double> ways;
     double square = 0.0;
     const std::vector<ParticleId> left = rig_.world.particles();
-    for (std::size_t k = 0, next = 0; k < ids.size(); ++k) {
-      while (next < left.size() && left[next].index() < ids[k].index()) ++next;
-      if (next == left.size() || left[next] != ids[k]) continue;  // it fell off
-      ways.push_back((rig_.world.position(ids[k]) - result_.pile[k].position).norm() / size_);
+    for (std::size_t k = 0, next = 0; k < ids_.size(); ++k) {
+      while (next < left.size() && left[next].index() < ids_[k].index()) ++next;
+      if (next == left.size() || left[next] != ids_[k]) continue;  // it fell off
+      ways.push_back((rig_.world.position(ids_[k]) - result_.pile[k].position).norm() / size_);
       square += ways.back() * ways.back();
     }
     if (ways.empty()) return;
@@ -101,9 +146,6 @@ class Forming {
     std::nth_element(ways.begin(), ways.begin() + static_cast<std::ptrdiff_t>(ways.size() / 2), ways.end());
     result_.creep_median = ways[ways.size() / 2];
   }
-
- private:
-  static constexpr double interval = 0.01;  ///< s, of samples
 
   /// Goes on for a sampling interval.
   void go_on() {
@@ -116,16 +158,14 @@ class Forming {
                                soil::rms_speed(rig_.world), static_cast<double>(grains.size())});
     look_(rig_.world);
   }
-  /// Goes on until the grains are slower than a limit for 50 ms; whether they are, by the time `longest` (s).
-  bool rest(double limit, double longest) {
-    const double start = rig_.world.time();
-    soil::StaysBelow slow(limit, 0.05);
-    while (rig_.world.time() - start < longest) {
+  /// Goes on until the grains are slow for 50 ms; whether they are, by the time `longest` (s).
+  bool rest(StageOfPile& n, double longest) {
+    while (!n.done && rig_.world.time() - n.start < longest) {
       go_on();
-      stages_.update(rig_.world.time() - start, status());
-      if (slow(rig_.world.time(), result_.samples.back().speed)) return true;
+      n.done = n.slow(rig_.world.time(), result_.samples.back().speed);
+      stages_.update(rig_.world.time() - n.start, status());
     }
-    return false;
+    return n.done;
   }
   std::string status() const {
     const Sample& sample = result_.samples.back();
@@ -147,6 +187,8 @@ class Forming {
   PileResult& result_;
   Stages& stages_;
   Look& look_;
+  double lift_start_ = 0.0, lift_way_ = 0.0;  // s, m
+  std::vector<ParticleId> ids_;               // of the pile as it was measured
 };
 
 }  // namespace dem::rig::sand_pile

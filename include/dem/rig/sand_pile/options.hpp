@@ -61,9 +61,9 @@ inline void declare(Options& options, Settings& s) {
   add("--directions", s.directions, "lines through the flank of a heap; a drained box has a third as many");
   options.group("Numerics");
   add("--stable-share", s.stable_share, "time step as a share of the largest stable one");
-  add("--threads", s.threads, "0: all, at least 1000 grains for each");
+  add("--threads", s.threads, "0: all, at least 1000 grains for each").changes_no_result();
   options.group("Output");
-  add("--output", s.output, "folder; results of an earlier run in it are replaced");
+  add("--output", s.output, "folder; results of an earlier run in it are replaced").changes_no_result();
   options.flag("--replay", s.replay, "replay of the first pile in the report (--replay=true) or none (--no-replay)")
       .off("--no-replay");
   options.flag("--vtk", s.vtk, "files for ParaView (--vtk=true) or none (--no-vtk)").off("--no-vtk");

@@ -38,6 +38,7 @@ class PileRig : public Rig {
     }
     return names;
   }
+  bool can_resume() const override { return true; }
   std::vector<OwnWord> words() const override { return {std::begin(own_words), std::end(own_words)}; }
 
   void run(Session& session) override {

@@ -45,6 +45,15 @@ struct PileResult {
   double time_step = not_known;       ///< s
   std::string time_step_limit = {};
   std::vector<Sample> samples = {};
+
+  /// What a run that goes on takes over.
+  template <class V>
+  void fields(V& v) {
+    v("finished", finished), v("poured", poured), v("pile", pile), v("flank", flank), v("at_rest", at_rest);
+    v("lost", lost), v("creep_time", creep_time, "s"), v("creep", creep), v("creep_median", creep_median);
+    v("angle_after", angle_after, "rad"), v("time_step", time_step, "s"), v("time_step_limit", time_step_limit);
+    v.numbers("samples", samples);
+  }
 };
 
 /// All piles of a run.
