@@ -4,6 +4,7 @@
 #include <dem/mbd/solver/accepted_time_step.hpp>
 #include <dem/mbd/solver/assembly.hpp>
 #include <dem/mbd/solver/blow_up.hpp>
+#include <dem/mbd/solver/body_watch.hpp>
 #include <dem/mbd/solver/close_joints.hpp>
 #include <dem/mbd/solver/forces.hpp>
 #include <dem/mbd/solver/held_contacts.hpp>
@@ -55,7 +56,7 @@ class Solver {
     ramp_.step(m.parts());
     const JointOpening recent = joints_.take_recent();
     const double share = recent.share / ramp_.left();
-    if (share <= 0.5 || bad_.valid()) return;
+    if (share <= 0.5 || body_watch_.seen()) return;
     if (m.substeps < m.most_substeps) {
       raise_substeps(m, substeps_for(m.substeps, share, 0.25, m.most_substeps));
     } else if (share > 1.0 && std::find(known_.begin(), known_.end(), recent.joint) == known_.end()) {
@@ -158,12 +159,12 @@ class Solver {
 
   /// All is well, or which body blew up, when, and what to change.
   MachineReport report(const Mechanism& m) const {
-    if (!bad_.valid()) return {true, time_, {}, {}, {}, {}};
+    if (!body_watch_.seen()) return {true, time_, {}, {}, {}, {}};
     const std::string text = dem::text(
         "body '{}' blew up at t = {:g} s: its motion is not finite or its speed above largest_speed = {:g}. {}",
-        m.parts().bodies[bad_.index()].name, bad_time_, m.largest_speed,
+        m.parts().bodies[body_watch_.body().index()].name, body_watch_.time(), m.largest_speed,
         cause_of_blow_up<I>(m.parts(), limit_at_start_, watch_, joints_, step_dt_, m.substeps));
-    return {false, bad_time_, bad_, {}, text, {}};
+    return {false, body_watch_.time(), body_watch_.body(), {}, text, {}};
   }
   /// All is well, or which joint opened farthest beyond joint_tolerance, and what keeps it closed.
   MachineReport report_of_joints(const Mechanism& m) const { return report_of(m, joints_.worst()); }
@@ -175,7 +176,7 @@ class Solver {
   /// What became of the velocities that were given, at the start.
   const AssemblyReport& assembly() const { return assembly_; }
   const JointWatch& joints() const { return joints_; }
-  bool has_blown_up() const { return bad_.valid(); }
+  bool has_blown_up() const { return body_watch_.seen(); }
 
   /// Remembers the largest stable step of this pose, for the report of a blow-up.
   DEM_COLD void note_stable_step(const Mechanism& m) {
@@ -189,7 +190,7 @@ class Solver {
     v("stable_step_at_start", limit_at_start_.dt, "s"), v("limited_at_start_by", limit_at_start_.limited_by);
     v("time", time_, "s"), v("design_step", design_dt_, "s"), v("newest_step", step_dt_, "s"), v("steps", steps_);
     v("substeps", substeps_), v("revision", revision_), v("initialised", initialised_);
-    v("bad_body", bad_), v("bad_time", bad_time_, "s");
+    body_watch_.fields(v);
     v("ramp", ramp_), v("joints", joints_), v("newly_opened", newly_opened_), v("known_open", known_);
     v("assembled", is_assembled_), v("raised_from", raised_from_), v("raised_to", raised_to_);
   }
@@ -292,7 +293,7 @@ class Solver {
     if (!parts.apply_motions) return;
     parts.apply_motions(parts, time_at_end_of_step, dt, true);
     for (const PrescribedMotion& p : parts.motions) {
-      if (p.spec.on) watch_body(m, p.spec.body.index());  // also a fixed one, which nothing else moves
+      if (p.spec.on) watch_body(m, p.spec.body);  // also a fixed one, which nothing else moves
     }
   }
 
@@ -303,29 +304,17 @@ class Solver {
     for (std::size_t i = 0; i < parts.bodies.size(); ++i) {
       Body& b = parts.bodies[i];
       if (tidy && !b.fixed) b.motion.rotation = orthonormalised(b.motion.rotation);
-      watch_body(m, i);
+      watch_body(m, BodyId(i));
     }
     if (tidy) settle_turns(parts);
     time_ += dt;
     softening_.follow(parts);
-    if (sampling_ && !bad_.valid()) joints_.follow(parts, time_);
-    if (!bad_.valid()) watch_.follow(parts, dt, time_);
+    if (sampling_ && !body_watch_.seen()) joints_.follow(parts, time_);
+    if (!body_watch_.seen()) watch_.follow(parts, dt, time_);
   }
 
-  /// Notes the first body that is too fast, or has anything in its motion that is not a number. Each sum of squares is
-  /// compared by itself: a maximum of several would drop a NaN in one of them.
-  void watch_body(const Mechanism& m, std::size_t i) {
-    const auto& motion = m.parts().bodies[i].motion;
-    const double limit = m.largest_speed * m.largest_speed, anywhere = 1e300;
-    const Matrix3<double>& r = motion.rotation;
-    const double turned = dot(r.row0, r.row0) + dot(r.row1, r.row1) + dot(r.row2, r.row2);
-    const bool is_well = dot(motion.velocity, motion.velocity) < limit &&
-                         dot(motion.angular_velocity, motion.angular_velocity) < limit &&
-                         dot(motion.position, motion.position) < anywhere && turned < anywhere;
-    if (!is_well && !bad_.valid()) [[unlikely]] {
-      bad_ = BodyId(i);
-      bad_time_ = time_;
-    }
+  void watch_body(const Mechanism& m, BodyId id) {
+    body_watch_.look(id, m.parts().bodies[id.index()], m.largest_speed, time_);
   }
 
   BodiesInMotion<I> motion_;
@@ -335,6 +324,7 @@ class Solver {
   StiffnessRamp ramp_;
   StepWatch<I> watch_;
   JointWatch joints_;
+  BodyWatch body_watch_;
   JointOpening newly_opened_;
   std::vector<JointId> known_;  // joints that were told of as open
   AssemblyReport assembly_;
@@ -347,8 +337,6 @@ class Solver {
   std::uint64_t revision_ = 0;
   bool initialised_ = false;
   bool sampling_ = true;  // whether forces are felt by the sensors: not those of a trial
-  BodyId bad_;            // the body that blew up, and when
-  double bad_time_ = 0.0;
 };
 
 }  // namespace dem::mbd
