@@ -4,9 +4,11 @@
 #include <dem/coupling/body_stability.hpp>
 #include <dem/coupling/machine_surface.hpp>
 #include <dem/coupling/surface_contacts.hpp>
+#include <dem/grain/energy_ledger.hpp>
 #include <dem/grain/materials.hpp>
 #include <dem/grain/neighbours.hpp>
 #include <dem/grain/pair_contacts.hpp>
+#include <dem/grain/skin.hpp>
 #include <dem/grain/sleep.hpp>
 #include <dem/mbd/solver/solver.hpp>
 #include <dem/world/model.hpp>
@@ -59,6 +61,7 @@ struct WorldState {
   std::vector<std::uint32_t> incoming_first;
   std::vector<grain::Incoming> incoming;
   double list_skin = 0.0;                ///< m, with which the neighbour list was made
+  grain::SkinChoice skin_choice;         ///< unless a skin was given
   bool list_valid = false;               ///< false after grains were added or moved by hand
   std::uint64_t rebuilds = 0;            ///< neighbour lists made
   std::set<std::uint32_t> known_lost;    ///< ids of grains that were reported as lost
@@ -79,6 +82,10 @@ struct WorldState {
   std::vector<ContactScratch<Model>> scratch;  ///< of the executor's threads
   Stopwatch stopwatch;
 
+  grain::EnergyLedger ledger;
+  void (*record_contacts)(WorldState&, std::size_t, ContactScratch<Model>&) = nullptr;  ///< set by count_energy()
+  void (*count_energy)(WorldState&) = nullptr;                                          ///< at the end of a step
+
   /// All that the future depends on but the grains and their contacts, which <dem/io/checkpoint.hpp> knows.
   template <class V>
   void fields(V& v) {
@@ -92,12 +99,17 @@ struct WorldState {
     v.list("surfaces", surfaces, "surface"), v.list("surface_sensors", surface_sensors, "surface sensor");
     v.list("body_contacts", body_contacts.pairs, "body contact"), v("near_pairs", body_contacts.near);
     v("machine_solver", machine_solver), v("list_skin", list_skin, "m"), v("list_valid", list_valid);
-    v("rebuilds", rebuilds), v("to_remove", to_remove), v("remove_by", remove_by);
+    v("skin_choice", skin_choice), v("rebuilds", rebuilds), v("to_remove", to_remove), v("remove_by", remove_by);
     v.given("beyond_domain", options.beyond_domain), v.list("outlets", outlets, "outlet");
-    v("beyond", beyond_domain);
+    v("beyond", beyond_domain), v("energy", ledger);
   }
 
-  double skin() const { return options.skin > 0.0 ? options.skin : 0.1 * largest_radius; }
+  /// m, farthest that a grain went since the neighbour list was made.
+  double moved() const {
+    double moved2 = 0.0;
+    for (const auto& chunk : chunks) moved2 = std::max(moved2, chunk.moved2);
+    return std::sqrt(moved2);
+  }
 };
 
 /// True when some grain moved more than half the skin since the neighbour list was made.
@@ -127,7 +139,10 @@ void rebuild_neighbours(WorldState<Model>& w) {
     w.list_valid = true;
     return;
   }
-  const double reach = 2.0 * w.largest_radius + w.materials.range() + w.skin();
+  constexpr double evaluations = Model::Integrator::stages;
+  const double skin =
+      w.options.skin > 0.0 ? w.options.skin : w.skin_choice.choose(w.largest_radius, w.moved(), w.step, evaluations);
+  const double reach = 2.0 * w.largest_radius + w.materials.range() + skin;
   const auto positions = [&] {
     return broadphase::Positions{p.position.x.data(), p.position.y.data(), p.position.z.data(), p.count};
   };
@@ -142,14 +157,30 @@ void rebuild_neighbours(WorldState<Model>& w) {
 
   w.chunks.resize(p.chunks());
   w.executor.for_each(w.chunks.size(), [&](std::size_t c) {
-    grain::list_candidates<Model>(c, w.chunks[c], p, w.broad_phase, w.species, w.materials.range() + w.skin());
+    grain::list_candidates<Model>(c, w.chunks[c], p, w.broad_phase, w.species, w.materials.range() + skin);
     grain::refresh_chunk<Model>(c, w.chunks[c], p, w.species);
   });
   grain::list_incoming<Model>(std::span<const Chunk<Model>>(w.chunks), p.count, w.incoming_first, w.incoming);
   grain::return_memories<Model>(std::span<Chunk<Model>>(w.chunks), p, pairs, surfaces);
   w.list_valid = true;
-  w.list_skin = w.skin();
+  w.list_skin = skin;
   ++w.rebuilds;
+  if (w.options.skin == 0.0) {
+    double radii = 0.0, candidates = 0.0;
+    for (std::size_t i = 0; i < p.count; ++i) radii += p.view[i].radius;
+    for (const auto& chunk : w.chunks) candidates += static_cast<double>(chunk.candidate.size());
+    const auto count = static_cast<double>(p.count);
+    w.skin_choice.made_list(w.largest_radius, 2.0 * radii / count + w.materials.range(), candidates / count, w.step,
+                            evaluations);
+  }
+}
+
+/// After a step: a list that has lasted, and holds more than the motion asks for, is made anew.
+template <class Model>
+void look_at_skin(WorldState<Model>& w) {
+  if (w.step < w.skin_choice.look_at) [[likely]]
+    return;
+  if (w.skin_choice.is_too_wide(w.largest_radius, w.moved(), w.step, Model::Integrator::stages)) w.list_valid = false;
 }
 
 /// Points of grains and of other bodies are found behind a finely cut mesh until they are so deep that it is reported.
