@@ -192,10 +192,11 @@ void load_pairs(std::span<const Surface> surfaces, const Materials<Model>& mater
 /// Contacts between surfaces of machine parts (thesis section 2.2.4). The points of each surface of a pair are tried
 /// against the other surface. Points that push in one direction are weighted so that they are one whole contact. Laws
 /// and histories are those of grains. Forces are added to the bodies. Pairs whose bounding boxes do not meet cost
-/// nothing. One thread does it in the order of pairs and points, so sums are the same in every run.
-template <class Model, class Surface>
+/// nothing. One thread does it in the order of pairs and points, so sums are the same in every run. `look(memories)` is
+/// called for each block of pairs while its lists are there.
+template <class Model, class Surface, class Look>
 void find_body_contacts(BodyContacts<Model>& c, std::span<const Surface> surfaces, const Materials<Model>& materials,
-                        std::span<Body> bodies, double dt) {
+                        std::span<Body> bodies, double dt, Look&& look) {
   if (c.pairs.empty()) return;
   for (const std::uint32_t k : c.near) c.pairs[k] = {c.pairs[k].a, c.pairs[k].b};
   for (auto& memories : c.memories) memories.now.count = 0;
@@ -209,7 +210,13 @@ void find_body_contacts(BodyContacts<Model>& c, std::span<const Surface> surface
       probe_pair(c.near[at], surfaces, materials, std::span<const Body>(bodies), c.memories[block], c);
     }
     load_pairs(surfaces, materials, bodies, dt, c.memories[block], c);
+    look(c.memories[block]);
   }
+}
+template <class Model, class Surface>
+void find_body_contacts(BodyContacts<Model>& c, std::span<const Surface> surfaces, const Materials<Model>& materials,
+                        std::span<Body> bodies, double dt) {
+  find_body_contacts(c, surfaces, materials, bodies, dt, [](const auto&) {});
 }
 
 }  // namespace dem::coupling

@@ -3,6 +3,7 @@
 #include <dem/core/ids.hpp>
 #include <dem/geometry/shape.hpp>
 #include <dem/grain/contact_list.hpp>
+#include <dem/grain/energy_ledger.hpp>
 #include <dem/grain/particles.hpp>
 
 namespace dem {
@@ -40,6 +41,7 @@ struct Chunk {
   std::vector<PartnerLoad> partner_loads;         ///< of the contacts whose partner is in another chunk, in their order
   std::vector<std::uint32_t> partner_load_first;  ///< for each candidate, and one entry more
   std::vector<SurfaceLoad> surface_loads;
+  std::vector<grain::ContactWork> work;  ///< all of its contacts, while energy is counted
 
   Vec3 low = Vec3::Zero(), high = Vec3::Zero();  ///< of the grains' centres
   double moved2 = 0.0;  ///< m^2, largest squared displacement since the neighbour list was made

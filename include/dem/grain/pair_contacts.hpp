@@ -171,6 +171,20 @@ void share_forces(std::size_t begin, Chunk<Model>& chunk, const PairScratch<Mode
   for (std::uint32_t& first : chunk.partner_load_first) first = total += first;
 }
 
+/// The touch of hit c of a chunk.
+template <class Model, class Pairs>
+DEM_HOT typename Model::Shape::template PairTouch<double> touch_of_hit(const Pairs& pairs, const PairScratch<Model>& s,
+                                                                       std::size_t c) {
+  using Shape = typename Model::Shape;
+  if constexpr (shape::BitShape<Shape>) {
+    const std::size_t i = s.hits[c].i, j = s.hits[c].partner;
+    return Shape::touch(pairs.kind(i).shape, pairs.p.pose_of(i), pairs.kind(j).shape, pairs.p.pose_of(j),
+                        pairs.separation(i, j), static_cast<std::uint32_t>(s.hits[c].key));
+  } else {
+    return s.touches[c];
+  }
+}
+
 /// Contacts of the grains of one chunk with their candidates: narrow phase, laws, forces. Writes to the chunk and its
 /// own grains' sums only, so chunks may run at the same time.
 template <class Model, class Particles>
@@ -188,15 +202,7 @@ void find_pair_contacts(std::size_t chunk_index, Chunk<Model>& chunk, const Part
     find_hits_one_by_one<Model>(pairs, close_count, chunk.searches, s);
   }
 
-  const auto touch_of = [&](std::size_t c) {
-    if constexpr (shape::BitShape<Shape>) {
-      const std::size_t i = s.hits[c].i, j = s.hits[c].partner;
-      return Shape::touch(pairs.kind(i).shape, p.pose_of(i), pairs.kind(j).shape, p.pose_of(j), pairs.separation(i, j),
-                          static_cast<std::uint32_t>(s.hits[c].key));
-    } else {
-      return s.touches[c];
-    }
-  };
+  const auto touch_of = [&](std::size_t c) { return touch_of_hit<Model>(pairs, s, c); };
   ContactEvaluator<Model, Shape::template PairTouch, Shape> evaluator(materials.table(), dt);
   const Deepest deepest = evaluator.run(
       s.hits, chunk.pair_contacts, s.forces, touch_of,

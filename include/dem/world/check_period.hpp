@@ -11,7 +11,8 @@ void check_period(const WorldState<Model>& w) {
   if constexpr (Model::Domain::has_images) {
     constexpr const char* axes[] = {"x", "y", "z"};
     const double reach = shape::widened(w.largest_radius, w.materials.range());
-    const double list_reach = 2.0 * w.largest_radius + w.materials.range() + w.skin();
+    const double skin = w.options.skin > 0.0 ? w.options.skin : grain::SkinChoice::ladder[0] * w.largest_radius;
+    const double list_reach = 2.0 * w.largest_radius + w.materials.range() + skin;
     for (std::size_t k = 0; k < 3; ++k) {
       const double period = w.domain.period()[k];
       if (period == 0.0) continue;

@@ -36,9 +36,12 @@ std::size_t memory_bytes(const WorldState<Model>& w) {
   if constexpr (Model::Domain::has_images) sum += bytes(w.images.grain) + bytes(w.images.shift);
   sum += bytes(w.sleepers.grains) + bytes(w.sleepers.borne) + bytes(w.sleepers.working);
   for (const Chunk<Model>& c : w.chunks) sum += bytes(c.around);
+  const grain::EnergyLedger& l = w.ledger;
+  sum += bytes(l.last) + bytes(l.velocity) + bytes(l.spin) + bytes(l.energy);
   for (const Chunk<Model>& c : w.chunks) {
     sum += sizeof(c) + bytes(c.candidate) + bytes(c.owner) + bytes(c.partner_load_first) + bytes(c.partner_loads) +
-           bytes(c.surface_loads) + of_memories(c.pair_contacts) + of_memories(c.surface_contacts) + c.searches.bytes();
+           bytes(c.surface_loads) + bytes(c.work) + of_memories(c.pair_contacts) + of_memories(c.surface_contacts) +
+           c.searches.bytes();
   }
   return sum;
 }

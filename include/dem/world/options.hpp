@@ -23,7 +23,7 @@ struct WorldOptions {
   double time_step = 0.0;                 ///< s; 0: `time_step_safety` times the largest stable one
   double time_step_safety = 0.5;          ///< in (0, 1]
   bool allow_unstable_time_step = false;  ///< accept a time step above the stable one
-  double skin = 0.0;                      ///< m, reach of the neighbour list; 0: a tenth of the largest bounding radius
+  double skin = 0.0;                      ///< m, reach of the neighbour lists; 0: chosen while it runs (grain/skin.hpp)
   double overlap_limit = 0.5;  ///< overlap, in effective diameters 2 Ri Rj/(Ri + Rj), that is reported as a problem
   std::optional<surface::Bounds> domain = {};         ///< where grains are expected; none: anywhere
   BeyondDomain beyond_domain = BeyondDomain::report;  ///< what becomes of a grain whose centre leaves it

@@ -4,10 +4,11 @@
 #include <dem/coupling/body_stability.hpp>
 #include <dem/coupling/machine_surface.hpp>
 #include <dem/coupling/surface_contacts.hpp>
-#include <dem/grain/carry_histories.hpp>
+#include <dem/grain/energy_ledger.hpp>
 #include <dem/grain/materials.hpp>
 #include <dem/grain/neighbours.hpp>
 #include <dem/grain/pair_contacts.hpp>
+#include <dem/grain/skin.hpp>
 #include <dem/grain/sleep.hpp>
 #include <dem/mbd/solver/solver.hpp>
 #include <dem/world/model.hpp>
@@ -62,6 +63,7 @@ struct WorldState {
   std::vector<std::uint32_t> incoming_first;
   std::vector<grain::Incoming> incoming;
   double list_skin = 0.0;                ///< m, with which the neighbour list was made
+  grain::SkinChoice skin_choice;         ///< unless a skin was given
   bool list_valid = false;               ///< false after grains were added or moved by hand
   std::uint64_t rebuilds = 0;            ///< neighbour lists made
   std::set<std::uint32_t> known_lost;    ///< ids of grains that were reported as lost
@@ -82,6 +84,10 @@ struct WorldState {
   std::vector<ContactScratch<Model>> scratch;  ///< of the executor's threads
   Stopwatch stopwatch;
 
+  grain::EnergyLedger ledger;
+  void (*record_contacts)(WorldState&, std::size_t, ContactScratch<Model>&) = nullptr;  ///< set by count_energy()
+  void (*count_energy)(WorldState&) = nullptr;                                          ///< at the end of a step
+
   /// All that the future depends on but the grains and their contacts, which <dem/io/checkpoint.hpp> knows.
   template <class V>
   void fields(V& v) {
@@ -96,101 +102,18 @@ struct WorldState {
     v.list("surfaces", surfaces, "surface"), v.list("surface_sensors", surface_sensors, "surface sensor");
     v.list("body_contacts", body_contacts.pairs, "body contact"), v("near_pairs", body_contacts.near);
     v("machine_solver", machine_solver), v("list_skin", list_skin, "m"), v("list_valid", list_valid);
-    v("rebuilds", rebuilds), v("to_remove", to_remove), v("remove_by", remove_by);
+    v("skin_choice", skin_choice), v("rebuilds", rebuilds), v("to_remove", to_remove), v("remove_by", remove_by);
     v.given("beyond_domain", options.beyond_domain), v.list("outlets", outlets, "outlet");
-    v("beyond", beyond_domain);
+    v("beyond", beyond_domain), v("energy", ledger);
   }
 
-  double skin() const { return options.skin > 0.0 ? options.skin : 0.1 * largest_radius; }
+  /// m, farthest that a grain went since the neighbour list was made.
+  double moved() const {
+    double moved2 = 0.0;
+    for (const auto& chunk : chunks) moved2 = std::max(moved2, chunk.moved2);
+    return std::sqrt(moved2);
+  }
 };
-
-/// True when some grain moved more than half the skin since the neighbour list was made.
-template <class Model>
-bool neighbours_outdated(const WorldState<Model>& w) {
-  if (!w.list_valid) return w.particles.count > 0;
-  double moved2 = 0.0;
-  for (const auto& chunk : w.chunks) moved2 = std::max(moved2, chunk.moved2);
-  return 4.0 * moved2 > w.list_skin * w.list_skin;
-}
-
-/// Puts the grains of a periodic cell back into it, and takes the images away that were beyond its borders.
-template <class Model>
-void wrap_grains(WorldState<Model>& w) {
-  if constexpr (Model::Domain::has_images) {
-    auto& p = w.particles;
-    p.resize(p.count);
-    w.images = {};
-    for (std::size_t i = 0; i < p.count; ++i) p.position.set(i, w.domain.wrapped(p.position[i]));
-  }
-}
-/// Makes the images of the grains near a periodic cell's borders, after the grains are sorted.
-template <class Model>
-void make_images(WorldState<Model>& w, double reach) {
-  if constexpr (Model::Domain::has_images) {
-    grain::find_images(w.images, w.particles, w.domain, reach);
-    grain::make_rows(w.particles, w.images);
-  }
-}
-/// Images go where their grains are.
-template <class Model>
-void place_images(WorldState<Model>& w) {
-  if constexpr (Model::Domain::has_images) {
-    const std::size_t count = w.images.grain.size();
-    w.executor.for_each((count + chunk_size - 1) / chunk_size, [&](std::size_t block) {
-      const std::size_t end = std::min((block + 1) * chunk_size, count);
-      for (std::size_t k = block * chunk_size; k < end; ++k) grain::follow_grain(w.particles, w.images, k);
-    });
-  }
-}
-
-/// Sorts the grains in space, lists their neighbours, and carries the contact histories over.
-template <class Model>
-void rebuild_neighbours(WorldState<Model>& w) {
-  auto& p = w.particles;
-  grain::HistoryCarrier<Model> histories;
-  histories.collect(w.executor, std::span<const Chunk<Model>>(w.chunks), p, w.images);
-  if (!w.to_remove.empty()) {
-    p.remove(w.to_remove, w.executor);
-    w.to_remove.clear();
-  }
-
-  if (p.count == 0) {
-    w.chunks.clear();
-    w.incoming.clear();
-    w.list_valid = true;
-    return;
-  }
-  const double reach = 2.0 * w.largest_radius + w.materials.range() + w.skin();
-  const auto positions = [&](std::size_t rows) {
-    return broadphase::Positions{p.position.x.data(), p.position.y.data(), p.position.z.data(), rows};
-  };
-  wrap_grains(w);
-  w.broad_phase.build(positions(p.count), reach);
-  if (const auto order = w.broad_phase.order(); !order.empty()) {
-    const std::vector<std::uint32_t> sorted(order.begin(), order.end());
-    p.permute(sorted, w.executor);
-    if constexpr (requires { w.broad_phase.reordered(); }) w.broad_phase.reordered();
-    else w.broad_phase.build(positions(p.count), reach);
-  }
-  p.listed_at = p.position;
-  p.pad();
-  if constexpr (Model::Domain::has_images) {
-    make_images(w, reach);
-    w.broad_phase.build(positions(p.position.x.size()), reach);
-  }
-
-  w.chunks.resize(p.chunks());
-  w.executor.for_each(w.chunks.size(), [&](std::size_t c) {
-    grain::list_candidates<Model>(c, w.chunks[c], p, w.broad_phase, w.images, w.species,
-                                  w.materials.range() + w.skin());
-    grain::refresh_chunk<Model>(c, w.chunks[c], p, w.species);
-  });
-  grain::list_incoming<Model>(std::span<const Chunk<Model>>(w.chunks), p.count, w.images, w.incoming_first, w.incoming);
-  histories.hand_out(w.executor, std::span<Chunk<Model>>(w.chunks), p, w.images);
-  w.list_valid = true;
-  w.list_skin = w.skin();
-  ++w.rebuilds;
-}
 
 /// Points of grains and of other bodies are found behind a finely cut mesh until they are so deep that it is reported.
 template <class Model>

@@ -3,6 +3,7 @@
 #include <dem/coupling/surface_contacts.hpp>
 #include <dem/grain/move.hpp>
 #include <dem/grain/pair_contacts.hpp>
+#include <dem/world/neighbours.hpp>
 #include <dem/world/sleep.hpp>
 
 namespace dem {
@@ -27,6 +28,8 @@ void find_chunk_contacts(WorldState<Model>& w, std::size_t c, ContactScratch<Mod
     grain::add_borne(begin, scratch.pairs.hits, scratch.pairs.forces, true, borne);
     grain::add_borne(begin, scratch.surfaces.hits, scratch.surfaces.forces, false, borne);
   }
+  if (w.record_contacts) [[unlikely]]
+    w.record_contacts(w, c, scratch);
 }
 
 /// All contacts at the present state, and the loads that they put on bodies, whose sums of forces are clear.
@@ -102,9 +105,12 @@ void advance(WorldState<Model>& w) {
     if (last) sample_surface_sensors(w);
     w.stopwatch.stop(Phase::motion);
   }
+  if (w.count_energy) [[unlikely]]
+    w.count_energy(w);
   wake_and_put_to_sleep(w);
   w.time += w.time_step;
   ++w.step;
+  look_at_skin(w);
 }
 
 /// Before the first step, and after anything was changed by hand: forces at the present state, from which integrators

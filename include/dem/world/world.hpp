@@ -60,6 +60,8 @@ class World : public WorldSetup<M> {
       initialised_ = true;
     }
   }
+  /// Whether prepare() has nothing left to do: nothing was changed since the last step.
+  bool is_prepared() const { return checked_ && initialised_ && machine_is_initialised(); }
   [[nodiscard]] StepReport step() { return run(1); }
   /// Runs n steps, or fewer if a problem shows. A lost grain is reported once: a run may go on without it. An exception
   /// of a law, a shape or a function of your own arrives here, from whichever thread; the world may then be looked at,

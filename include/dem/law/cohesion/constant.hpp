@@ -25,6 +25,10 @@ struct Constant {
   static double stiffness(const Parameters<double>& p, const NormalState<double>&) {
     return p.depth > 0.0 ? p.force / p.depth : 0.0;
   }
+  static double energy(const Parameters<double>& p, const NormalState<double>& s, const History<double>&) {
+    const double d = max(0.0, s.overlap);
+    return d < p.depth ? -0.5 * p.force * d * d / p.depth : -p.force * (d - 0.5 * p.depth);
+  }
   static void check(const Parameters<double>& p) {
     require_non_negative(p.force, "cohesive force", "N");
     require_non_negative(p.depth, "depth of a cohesive force", "m");

@@ -28,6 +28,10 @@ struct ContactStress {
   static double stiffness(const Parameters<double>& p, const NormalState<double>& s) {
     return pi * p.stress * s.effective_radius;
   }
+  static double energy(const Parameters<double>& p, const NormalState<double>& s, const History<double>&) {
+    const double d = max(0.0, s.overlap);
+    return -0.5 * pi * p.stress * s.effective_radius * d * d;
+  }
   static void check(const Parameters<double>& p) { require_non_negative(p.stress, "adhesive stress", "Pa"); }
 
  private:

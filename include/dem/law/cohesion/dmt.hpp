@@ -24,6 +24,9 @@ struct DMT {
   }
 
   static double stiffness(const Parameters<double>&, const NormalState<double>&) { return 0.0; }
+  static double energy(const Parameters<double>& p, const NormalState<double>& s, const History<double>&) {
+    return -6.28318530717958647693 * p.work_of_adhesion * s.effective_radius * max(0.0, s.overlap);
+  }
   static void check(const Parameters<double>& p) {
     require_non_negative(p.work_of_adhesion, "work of adhesion", "J/m^2");
   }

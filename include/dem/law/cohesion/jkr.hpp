@@ -59,6 +59,21 @@ struct JKR {
                          s.effective_radius / (unit * unit);
     return std::max(0.0, slope - 2.0 * p.modulus * std::sqrt(s.effective_radius * s.overlap));
   }
+  /// The integral of JKR's force from the pull-off, less what Hertz's spring stores: in units of pi w R times that of
+  /// d, 16/15 x^5 - 8/3 x^(7/2) + x^2.
+  static double energy(const Parameters<double>& p, const NormalState<double>& s, const History<double>& h) {
+    const double unit = unit_of_radius(p, s), per_unit = unit * unit / s.effective_radius;
+    const double z = root_of_radius(max(s.overlap / per_unit, last_overlap));
+    const auto integral = [](double x, double root) {
+      const double x2 = x * x;
+      return 16.0 / 15.0 * x2 * x2 * x - 8.0 / 3.0 * x2 * x * root + x2;
+    };
+    const double last = std::cbrt(1.0 / 16.0), over = max(0.0, s.overlap);  // x^(3/2) = 1/4
+    const double jkr = pi * p.work_of_adhesion * s.effective_radius * per_unit *
+                       (integral(z * z, z) - integral(last, std::sqrt(last)));
+    const double hertz = 8.0 / 15.0 * p.modulus * std::sqrt(s.effective_radius * over) * over * over;
+    return h.joined * (jkr - hertz);
+  }
   static double range(const Parameters<double>& p, double radius) {
     return 0.75 * std::cbrt(pi * pi * p.work_of_adhesion * p.work_of_adhesion * radius / (p.modulus * p.modulus));
   }

@@ -16,6 +16,7 @@ struct None {
     return {T(0), T(0)};
   }
   static double stiffness(const Parameters<double>&, const NormalState<double>&) { return 0.0; }
+  static double energy(const Parameters<double>&, const NormalState<double>&, const History<double>&) { return 0.0; }
   static void check(const Parameters<double>&) {}
 };
 

@@ -49,6 +49,9 @@ struct AsperitySpring {
   static double damping(const Parameters<double>& p, const contact::NormalState<double>&) {
     return p.velocity_stiffness;
   }
+  static double energy(const Parameters<double>& p, const History<double>& h) {
+    return 0.5 * p.stiffness * dot(h.slip, h.slip);
+  }
 
   static void check(const Parameters<double>& p) {
     require_non_negative(p.coefficient, "friction coefficient", "(no unit)");

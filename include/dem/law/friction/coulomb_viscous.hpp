@@ -26,6 +26,7 @@ struct CoulombViscous {
   static DEM_HOT void carry(History<T>&, Turn&&) {}
 
   static double stiffness(const Parameters<double>&) { return 0.0; }
+  static double energy(const Parameters<double>&, const History<double>&) { return 0.0; }
   static double damping(const Parameters<double>& p, const contact::NormalState<double>&) { return p.damping; }
 
   static void check(const Parameters<double>& p) {

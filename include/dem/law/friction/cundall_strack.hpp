@@ -51,6 +51,9 @@ struct CundallStrack {
   }
 
   static double stiffness(const Parameters<double>& p) { return p.stiffness; }
+  static double energy(const Parameters<double>& p, const History<double>& h) {
+    return 0.5 * p.stiffness * dot(h.spring, h.spring);
+  }
   static double damping(const Parameters<double>& p, const contact::NormalState<double>& s) {
     return 2.0 * p.damping_ratio * std::sqrt(tangential_mass_share * s.effective_mass * p.stiffness);
   }

@@ -22,6 +22,7 @@ concept HasStiffness = requires(const typename L::template Parameters<double>& p
 ///   Parameters<T>, History<T>, check(parameters), stiffness(parameters) in N/m, or stiffness(parameters, NormalState)
 ///   where it depends on the overlap, optionally damping(parameters, NormalState) in N s/m, and
 ///   force(parameters, state, history) -> Vector3<T>   the force on i in N, in the tangent plane.
+///   energy(parameters, history) -> double   optional: what the history's springs store, in J; without it none.
 /// Vectors in a History are given in global axes; before each call the world turns them with the contact, and
 /// carry(history, turn) says how: it applies `turn` to every vector member.
 template <class L>

@@ -56,6 +56,11 @@ struct Mindlin {
   static double stiffness(const Parameters<double>& p, const contact::NormalState<double>& s) {
     return 8.0 * p.shear_modulus * std::sqrt(s.effective_radius * s.overlap);
   }
+  /// F^2/(2 kt).
+  static double energy(const Parameters<double>& p, const History<double>& h) {
+    const double stiffness = 8.0 * p.shear_modulus * h.contact_radius;
+    return stiffness > 0.0 ? 0.5 * dot(h.spring_force, h.spring_force) / stiffness : 0.0;
+  }
   static double damping(const Parameters<double>& p, const contact::NormalState<double>& s) {
     return 2.0 * p.damping_ratio * std::sqrt(tangential_mass_share * s.effective_mass * stiffness(p, s));
   }

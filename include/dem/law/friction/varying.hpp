@@ -60,6 +60,11 @@ struct Varying {
     return contact::damping_of<Law>(roughest(p), s);
   }
 
+  static double energy(const Parameters<double>& p, const History<double>& h) requires requires {
+    Law::energy(p.law, h);
+  }
+  { return Law::energy(p.law, h); }
+
   static void check(const Parameters<double>& p) {
     Law::check(p.law);
     require_non_negative(p.kinetic_ratio, "ratio of kinetic to static friction", "(no unit)");

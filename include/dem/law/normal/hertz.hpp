@@ -43,6 +43,10 @@ struct Hertz {
     const double k = 4.0 / 3.0 * p.modulus * std::sqrt(s.effective_radius);
     return root_of_5 * p.damping_ratio * std::sqrt(k * s.effective_mass * std::sqrt(s.overlap));
   }
+  /// 2/5 k d^(5/2).
+  static double energy(const Parameters<double>& p, const NormalState<double>& s, const History<double>&) {
+    return 8.0 / 15.0 * p.modulus * std::sqrt(s.effective_radius * s.overlap) * s.overlap * s.overlap;
+  }
 
   static void check(const Parameters<double>& p) {
     require_positive(p.modulus, "effective modulus", "Pa");

@@ -46,6 +46,12 @@ struct Hysteretic {
   }
 
   static double stiffness(const Parameters<double>& p, const NormalState<double>&) { return p.unloading_stiffness; }
+  /// What the spring on the way out gives back: F^2/(2 k2).
+  static double energy(const Parameters<double>& p, const NormalState<double>& s, const History<double>& h) {
+    History<double> same = h;
+    const double f = force(p, s, same);
+    return 0.5 * f * f / p.unloading_stiffness;
+  }
 
   static void check(const Parameters<double>& p) {
     require_positive(p.loading_stiffness, "loading stiffness", "N/m");

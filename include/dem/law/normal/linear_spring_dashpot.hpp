@@ -34,6 +34,9 @@ struct LinearSpringDashpot {
   static double damping(const Parameters<double>& p, const NormalState<double>& s) {
     return 2.0 * p.damping_ratio * std::sqrt(p.stiffness * s.effective_mass);
   }
+  static double energy(const Parameters<double>& p, const NormalState<double>& s, const History<double>&) {
+    return 0.5 * p.stiffness * s.overlap * s.overlap;
+  }
 
   static void check(const Parameters<double>& p) {
     require_positive(p.stiffness, "normal stiffness", "N/m");

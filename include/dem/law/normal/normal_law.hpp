@@ -20,6 +20,8 @@ namespace dem::contact {
 ///                  the stable time step as well;
 ///   inherited(history, overlap) -> History<double>   optional: what a point that turns up in a patch (of polyhedra)
 ///                  with this overlap remembers, from the mean of what the patch's points did; else it is new.
+///   energy(parameters, state, history) -> double   optional: what the contact stores and gives back, in J. Without it
+///                  all work on the law counts as dissipated (dem::energy_of).
 /// The state for stiffness and damping is the deepest that a world allows (WorldOptions::overlap_limit).
 template <class L>
 concept NormalLaw = requires(const typename L::template Parameters<double>& p, const NormalState<double>& state,

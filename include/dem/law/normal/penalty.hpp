@@ -25,6 +25,9 @@ struct Penalty {
 
   static double stiffness(const Parameters<double>& p, const NormalState<double>&) { return p.stiffness; }
   static double damping(const Parameters<double>& p, const NormalState<double>&) { return p.damping; }
+  static double energy(const Parameters<double>& p, const NormalState<double>& s, const History<double>&) {
+    return 0.5 * p.stiffness * s.overlap * s.overlap;
+  }
 
   static void check(const Parameters<double>& p) {
     require_positive(p.stiffness, "normal stiffness", "N/m");

@@ -28,6 +28,7 @@ struct ConstantTorque {
   static DEM_HOT void carry(History<T>&, Turn&&) {}
 
   static double stiffness(const Parameters<double>&, const contact::NormalState<double>&) { return 0.0; }
+  static double energy(const Parameters<double>&, double, const History<double>&) { return 0.0; }
   static void check(const Parameters<double>& p) {
     require_non_negative(p.coefficient, "rolling coefficient", "(no unit)");
   }

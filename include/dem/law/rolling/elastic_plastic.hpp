@@ -49,6 +49,10 @@ struct ElasticPlastic {
     return 2.0 * p.damping_ratio * std::sqrt(rolling_inertia * s.effective_mass * p.stiffness) * radius2;
   }
 
+  static double energy(const Parameters<double>& p, double radius, const History<double>& h) {
+    return 0.5 * p.stiffness * radius * radius * dot(h.angle, h.angle);
+  }
+
   static void check(const Parameters<double>& p) {
     require_non_negative(p.coefficient, "rolling coefficient", "(no unit)");
     require_positive(p.stiffness, "rolling stiffness", "N/m");

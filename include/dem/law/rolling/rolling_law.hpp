@@ -27,6 +27,8 @@ inline constexpr double rolling_inertia = 1.4, twisting_inertia = 0.4;
 ///   torque(parameters, state, history) -> Vector3<T>   the torque on i in N m; j feels the opposite;
 ///   stiffness(parameters, NormalState) -> double       the largest slope d(torque)/d(angle) in N m, and, optionally,
 ///   damping(parameters, NormalState) -> double         the largest slope d(torque)/d(spin) in N m s;
+///   energy(parameters, radius, history) -> double      optional: what the history's springs store in J, for an
+///                                                      effective radius in m; without it none;
 ///   carry(history, turn)                               applies `turn` to every vector of the history.
 template <class L>
 concept RollingLaw = requires(const typename L::template Parameters<double>& p, const RollingState<double>& state,

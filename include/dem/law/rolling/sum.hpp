@@ -41,6 +41,11 @@ struct Sum {
   static double damping(const Parameters<double>& p, const contact::NormalState<double>& s) {
     return contact::damping_of<First>(p.first, s) + contact::damping_of<Second>(p.second, s);
   }
+  static double energy(const Parameters<double>& p, double radius, const History<double>& h) requires requires {
+    First::energy(p.first, radius, h);
+    Second::energy(p.second, radius, h);
+  }
+  { return First::energy(p.first, radius, h) + Second::energy(p.second, radius, h); }
   static void check(const Parameters<double>& p) {
     First::check(p.first);
     Second::check(p.second);

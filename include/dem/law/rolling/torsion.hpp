@@ -44,6 +44,10 @@ struct Torsion {
     return 2.0 * p.damping_ratio * std::sqrt(twisting_inertia * s.effective_mass * p.stiffness) * radius2;
   }
 
+  static double energy(const Parameters<double>& p, double radius, const History<double>& h) {
+    return 0.5 * p.stiffness * radius * radius * h.angle * h.angle;
+  }
+
   static void check(const Parameters<double>& p) {
     require_non_negative(p.coefficient, "twisting coefficient", "(no unit)");
     require_positive(p.stiffness, "twisting stiffness", "N/m");

@@ -1,0 +1,48 @@
+#pragma once
+// Force chains for ParaView (.vtp).
+
+#include <dem/io/vtk_lines.hpp>
+#include <dem/world/contacts.hpp>
+#include <dem/world/force_lines.hpp>
+
+namespace dem::io {
+
+/// Writes force chains as lines from grain to grain and from grain to surface, with the arrays "force" and
+/// "normal_force" and "friction" [N], "overlap" [m], "points" (at which the two touch), "on_surface" (1 or 0) and
+/// "grain" (the number of the grain at the line's first end). ParaView's filter Tube draws them as thick as "force".
+/// Throws dem::Error as write_vtk_lines does.
+inline void write_vtk_force_lines(const std::filesystem::path& path, const std::vector<ForceLine>& lines,
+                                  const VtkOptions& options = {}) {
+  std::vector<double> ends, force, normal, friction, overlap;
+  std::vector<std::int32_t> points, on_surface;
+  std::vector<std::uint32_t> grain;
+  for (const ForceLine& line : lines) {
+    for (const Vec3& end : {line.from, line.to}) ends.insert(ends.end(), end.data(), end.data() + 3);
+    force.push_back(line.force.norm());
+    normal.push_back(line.normal_force);
+    friction.push_back(line.friction.norm());
+    overlap.push_back(line.overlap);
+    points.push_back(line.points);
+    on_surface.push_back(line.surface.valid() ? 1 : 0);
+    grain.push_back(line.grain.value);
+  }
+  write_vtk_lines(path, ends,
+                  {{"force", 1, std::span<const double>(force)},
+                   {"normal_force", 1, std::span<const double>(normal)},
+                   {"friction", 1, std::span<const double>(friction)},
+                   {"overlap", 1, std::span<const double>(overlap)},
+                   {"points", 1, std::span<const std::int32_t>(points)},
+                   {"on_surface", 1, std::span<const std::int32_t>(on_surface)},
+                   {"grain", 1, std::span<const std::uint32_t>(grain)}},
+                  options);
+}
+/// The same of all contacts of a world as it stands.
+///
+///     write_vtk_grains(series.next_path("grains"), world);
+///     write_vtk_contacts(series.next_path("contacts"), world);
+template <class Model>
+void write_vtk_contacts(const std::filesystem::path& path, const World<Model>& world, const VtkOptions& options = {}) {
+  write_vtk_force_lines(path, force_lines(contacts_of(world)), options);
+}
+
+}  // namespace dem::io

@@ -1,0 +1,246 @@
+#pragma once
+
+#include <dem/world/contacts.hpp>
+
+#include <limits>
+
+namespace dem {
+
+/// Whether a law tells what it stores (its optional function `energy`).
+template <class Model>
+inline constexpr bool tells_energy = requires(const ContactParameters<Model>& p, const ContactHistory<Model, double>& h,
+                                              const contact::NormalState<double>& s) {
+  Model::Normal::energy(p.normal, s, h.normal);
+  Model::Friction::energy(p.friction, h.friction);
+  Model::Rolling::energy(p.rolling, 1.0, h.rolling);
+  Model::Cohesion::energy(p.cohesion, s, h.cohesion);
+};
+
+/// The energies of a world's grains, in J. Those of a machine are mbd::energy_of.
+struct GrainEnergy {
+  double translation = 0.0, rotation = 0.0;  ///< of motion
+  double potential = 0.0;                    ///< against gravity, from the origin
+  double normal_springs = 0.0;               ///< of the normal law
+  double friction_springs = 0.0;
+  double rolling_springs = 0.0;  ///< of rolling resistance and torsion
+  double cohesion = 0.0;         ///< negative where grains hold each other
+
+  // Since count_energy(); zero without it.
+  double dissipated_normal = 0.0;    ///< by the dampers of the normal law, or its plastic flow
+  double dissipated_friction = 0.0;  ///< by sliding, the dampers of friction, and springs that let go
+  double dissipated_rolling = 0.0;   ///< by rolling resistance and torsion
+  double by_surfaces = 0.0;          ///< work of machine parts on the grains
+  double came = 0.0;                 ///< what grains that were added had, less what those had that went
+
+  double kinetic() const { return translation + rotation; }
+  double elastic() const { return normal_springs + friction_springs + rolling_springs + cohesion; }
+  double dissipated() const { return dissipated_normal + dissipated_friction + dissipated_rolling; }
+  /// What stays the same while energy is counted, but for the integrator's error.
+  double balance() const { return kinetic() + potential + elastic() + dissipated() - by_surfaces - came; }
+};
+
+namespace detail {
+
+/// Integrators that evaluate where a step ends remember springs as they are there. The others remember them as they
+/// were before the grains moved on.
+template <class Integrator>
+inline constexpr bool evaluates_at_end = Integrator::predicts_before_forces || Integrator::stages > 1;
+
+/// Adds what a contact stores, of laws that tell it.
+template <class Model>
+void add_stored(const Contact<Model>& c, const ContactParameters<Model>& p, GrainEnergy& e) {
+  const ContactHistory<Model, double>& h = evaluates_at_end<typename Model::Integrator> ? c.last : c.history;
+  const contact::NormalState<double> gap = {c.overlap, 0.0, c.effective_radius, 1.0, 0.0};
+  contact::NormalState<double> touching = gap;
+  touching.overlap = std::max(0.0, c.overlap);
+  if constexpr (requires { Model::Normal::energy(p.normal, touching, h.normal); })
+    e.normal_springs += c.share * Model::Normal::energy(p.normal, touching, h.normal);
+  if constexpr (requires { Model::Friction::energy(p.friction, h.friction); })
+    e.friction_springs += c.share * Model::Friction::energy(p.friction, h.friction);
+  if constexpr (requires { Model::Rolling::energy(p.rolling, 1.0, h.rolling); })
+    e.rolling_springs += c.share * Model::Rolling::energy(p.rolling, c.effective_radius, h.rolling);
+  if constexpr (requires { Model::Cohesion::energy(p.cohesion, gap, h.cohesion); })
+    e.cohesion += c.share * Model::Cohesion::energy(p.cohesion, gap, h.cohesion);
+}
+
+/// J, kinetic (translation, rotation) and potential of the grain of a row.
+template <class Model>
+GrainEnergy energy_of_row(const WorldState<Model>& w, std::size_t row) {
+  const auto& p = w.particles;
+  const auto& kind = w.species[p.species[row]];
+  const Vector3<double> v = p.velocity[row], s = p.spin[row];
+  GrainEnergy e;
+  e.translation = 0.5 * kind.mass * dot(v, v);
+  e.rotation = 0.5 * (kind.inertia[0] * s.x * s.x + kind.inertia[1] * s.y * s.y + kind.inertia[2] * s.z * s.z);
+  e.potential = -kind.mass * dot(from_eigen(w.options.gravity), p.position[row]);
+  return e;
+}
+
+/// Keeps the contacts of a chunk that were just evaluated. Called by whichever thread works on the chunk.
+template <class Model>
+void record_contacts(WorldState<Model>& w, std::size_t c, ContactScratch<Model>& scratch) {
+  Chunk<Model>& chunk = w.chunks[c];
+  const auto& p = w.particles;
+  chunk.work.clear();
+  const auto add = [&](const grain::Hit& hit, std::uint32_t partner, bool on_surface, const PartnerView& other,
+                       const contact::Geometry<double>& g, const grain::ContactForces& forces, std::size_t k) {
+    const Vector3<double> force = grain::ContactForces::at(forces.force, k);
+    chunk.work.push_back({p.id[hit.i], partner, on_surface, g.normal, g.arm,
+                          g.arm - (other.position - p.view[hit.i].position), force,
+                          grain::ContactForces::at(forces.torque_i, k) - cross(g.arm, force)});
+  };
+  const grain::ChunkPairs<Model, std::remove_cvref_t<decltype(p)>> pairs{chunk, p, w.species, w.materials,
+                                                                         c * chunk_size};
+  for (std::size_t k = 0; k < scratch.pairs.hits.size(); ++k) {
+    const grain::Hit& hit = scratch.pairs.hits[k];
+    add(hit, p.id[hit.partner], false, p.view[hit.partner],
+        grain::touch_of_hit<Model>(pairs, scratch.pairs, k).geometry(), scratch.pairs.forces, k);
+  }
+  for (std::size_t k = 0; k < scratch.surfaces.hits.size(); ++k) {
+    const grain::Hit& hit = scratch.surfaces.hits[k];
+    add(hit, hit.partner, true, w.surfaces[hit.partner].view, scratch.surfaces.touches[k].geometry(),
+        scratch.surfaces.forces, k);
+  }
+}
+
+/// Counts the work of a step, at its end. The work of a force is its product with the mean of the velocities at the
+/// step's start and end, which is what the grain's kinetic energy gains. Integrators that evaluate where a step ends
+/// take the mean of its forces at both ends.
+template <class Model>
+void count_step(WorldState<Model>& w) {
+  grain::EnergyLedger& ledger = w.ledger;
+  const auto& p = w.particles;
+  struct Mean {
+    Vector3<double> velocity, spin;
+  };
+  std::vector<Mean> grains(p.row_of.size()), bodies;
+  const std::size_t known = ledger.velocity.size();
+  ledger.velocity.resize(p.row_of.size());
+  ledger.spin.resize(p.row_of.size());
+  ledger.energy.resize(p.row_of.size(), std::numeric_limits<double>::quiet_NaN());
+  for (std::size_t id = 0; id < known; ++id) {
+    grains[id] = {ledger.velocity[id], ledger.spin[id]};
+    if (p.row_of[id] != p.gone || std::isnan(ledger.energy[id])) continue;
+    ledger.came -= ledger.energy[id];
+    ledger.energy[id] = std::numeric_limits<double>::quiet_NaN();
+  }
+  for (std::size_t row = 0; row < p.count; ++row) {
+    const std::uint32_t id = p.id[row];
+    const Vector3<double> v = p.velocity[row], s = p.angular_velocity(row);
+    grains[id] = id < known ? Mean{0.5 * (ledger.velocity[id] + v), 0.5 * (ledger.spin[id] + s)} : Mean{v, s};
+    ledger.velocity[id] = v;
+    ledger.spin[id] = s;
+    if (p.row_of[id] == p.gone) continue;
+    const GrainEnergy e = energy_of_row(w, row);
+    const double sum = e.kinetic() + e.potential;
+    if (std::isnan(ledger.energy[id])) ledger.came += sum;
+    ledger.energy[id] = sum;
+  }
+  ledger.body_velocity.resize(w.machine.bodies().size());
+  ledger.body_spin.resize(w.machine.bodies().size());
+  for (std::size_t b = 0; b < w.machine.bodies().size(); ++b) {
+    const auto& m = w.machine.bodies()[b].motion;
+    const Vector3<double> spin = m.rotation * m.angular_velocity;
+    bodies.push_back({0.5 * (ledger.body_velocity[b] + m.velocity), 0.5 * (ledger.body_spin[b] + spin)});
+    ledger.body_velocity[b] = m.velocity;
+    ledger.body_spin[b] = spin;
+  }
+
+  const auto add = [&](const grain::ContactWork& c, double time) {
+    const Mean& i = grains[c.i];
+    const Mean& j = c.on_surface ? bodies[w.surfaces[c.partner].body.index()] : grains[c.partner];
+    const Vector3<double> at_j = j.velocity + cross(j.spin, c.other_arm);
+    const Vector3<double> velocity = i.velocity + cross(i.spin, c.arm) - at_j;
+    const double push = dot(c.force, c.normal), along = push * dot(c.normal, velocity);
+    ledger.into_contacts.normal -= time * along;
+    ledger.into_contacts.friction -= time * (dot(c.force, velocity) - along);
+    ledger.into_contacts.rolling -= time * dot(c.moment, i.spin - j.spin);
+    if (c.on_surface) ledger.by_surfaces += time * (dot(c.force, at_j) + dot(c.moment, j.spin));
+  };
+  constexpr bool at_end = evaluates_at_end<typename Model::Integrator>;
+  const double dt = w.time_step, share = at_end ? 0.5 : 1.0;
+  if (at_end) {
+    for (const grain::ContactWork& c : ledger.last) add(c, 0.5 * dt);
+  }
+  ledger.last.clear();
+  for (const Chunk<Model>& chunk : w.chunks) {
+    for (const grain::ContactWork& c : chunk.work) add(c, share * dt);
+    if (at_end) ledger.last.insert(ledger.last.end(), chunk.work.begin(), chunk.work.end());
+  }
+}
+
+}  // namespace detail
+
+/// The energies of the grains as they stand, and what was dissipated since count_energy(). Springs count where their
+/// laws tell what they store (`energy`, see tells_energy): the work on others counts as dissipated. Contacts of machine
+/// parts with each other are not the grains'. The world is not changed; it costs what contacts_of() does.
+template <class Model>
+GrainEnergy energy_of(const World<Model>& world) {
+  const WorldState<Model>& w = world.state();
+  GrainEnergy e;
+  for (std::size_t row = 0; row < w.particles.count; ++row) {
+    if (w.particles.row_of[w.particles.id[row]] == w.particles.gone) continue;
+    const GrainEnergy one = detail::energy_of_row(w, row);
+    e.translation += one.translation;
+    e.rotation += one.rotation;
+    e.potential += one.potential;
+  }
+  for (const auto& c : contacts_of(world)) {
+    if (c.kind != ContactKind::bodies) detail::add_stored(c, w.materials.table()[c.law], e);
+  }
+  const grain::EnergyLedger& ledger = w.ledger;
+  if (!ledger.on) return e;
+  const auto &in = ledger.into_contacts, &start = ledger.stored;
+  e.dissipated_normal = in.normal - (e.normal_springs + e.cohesion - start.normal);
+  e.dissipated_friction = in.friction - (e.friction_springs - start.friction);
+  e.dissipated_rolling = in.rolling - (e.rolling_springs - start.rolling);
+  e.by_surfaces = ledger.by_surfaces;
+  e.came = ledger.came;
+  return e;
+}
+
+/// Counts from now on, while the world runs, what contacts dissipate and what machine parts do on the grains; energy_of
+/// tells it. What a contact dissipates is the work that went into it, less what its springs store. The run itself is
+/// the same bits as without. Each step costs about half more. Changes by hand (set_velocity, set_position) are not
+/// counted. Throws Error as prepare() does.
+///
+///     count_energy(world);
+///     world.run_for(1.0);
+///     const GrainEnergy e = energy_of(world);   // e.balance() is what it was
+template <class Model>
+void count_energy(World<Model>& world) {
+  world.prepare();
+  WorldState<Model>& w = world.state();
+  w.ledger = {};
+  const GrainEnergy e = energy_of(world);
+  grain::EnergyLedger& ledger = w.ledger;
+  ledger.on = true;
+  ledger.stored = {e.normal_springs + e.cohesion, e.friction_springs, e.rolling_springs};
+  for (const auto& c : contacts_of(world)) {
+    if (c.kind == ContactKind::bodies) continue;
+    const bool on_surface = c.kind == ContactKind::grain_on_surface;
+    ledger.last.push_back({c.grain.value, on_surface ? c.surface.value : c.other_grain.value, on_surface,
+                           from_eigen(c.normal), from_eigen(c.arm), from_eigen(c.other_arm), from_eigen(c.force),
+                           from_eigen(c.rolling_torque())});
+  }
+  const auto& p = w.particles;
+  ledger.velocity.resize(p.row_of.size());
+  ledger.spin.resize(p.row_of.size());
+  ledger.energy.resize(p.row_of.size(), std::numeric_limits<double>::quiet_NaN());
+  for (std::size_t row = 0; row < p.count; ++row) {
+    const std::uint32_t id = p.id[row];
+    ledger.velocity[id] = p.velocity[row];
+    ledger.spin[id] = p.angular_velocity(row);
+    if (p.row_of[id] == p.gone) continue;
+    const GrainEnergy one = detail::energy_of_row(w, row);
+    ledger.energy[id] = one.kinetic() + one.potential;
+  }
+  for (const Body& b : w.machine.bodies()) {
+    ledger.body_velocity.push_back(b.motion.velocity);
+    ledger.body_spin.push_back(b.motion.rotation * b.motion.angular_velocity);
+  }
+  w.record_contacts = &detail::record_contacts<Model>;
+  w.count_energy = &detail::count_step<Model>;
+}
+
+}  // namespace dem

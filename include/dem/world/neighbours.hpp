@@ -1,0 +1,128 @@
+#pragma once
+
+#include <dem/grain/carry_histories.hpp>
+#include <dem/grain/neighbours.hpp>
+#include <dem/world/state.hpp>
+
+namespace dem {
+
+/// True when some grain moved more than half the skin since the neighbour list was made.
+template <class Model>
+bool neighbours_outdated(const WorldState<Model>& w) {
+  if (!w.list_valid) return w.particles.count > 0;
+  double moved2 = 0.0;
+  for (const auto& chunk : w.chunks) moved2 = std::max(moved2, chunk.moved2);
+  return 4.0 * moved2 > w.list_skin * w.list_skin;
+}
+
+/// Puts the grains of a periodic cell back into it, and takes the images away that were beyond its borders.
+template <class Model>
+void wrap_grains(WorldState<Model>& w) {
+  if constexpr (Model::Domain::has_images) {
+    auto& p = w.particles;
+    p.resize(p.count);
+    w.images = {};
+    for (std::size_t i = 0; i < p.count; ++i) p.position.set(i, w.domain.wrapped(p.position[i]));
+  }
+}
+/// Makes the images of the grains near a periodic cell's borders, after the grains are sorted.
+template <class Model>
+void make_images(WorldState<Model>& w, double reach) {
+  if constexpr (Model::Domain::has_images) {
+    grain::find_images(w.images, w.particles, w.domain, reach);
+    grain::make_rows(w.particles, w.images);
+  }
+}
+/// Images go where their grains are.
+template <class Model>
+void place_images(WorldState<Model>& w) {
+  if constexpr (Model::Domain::has_images) {
+    const std::size_t count = w.images.grain.size();
+    w.executor.for_each((count + chunk_size - 1) / chunk_size, [&](std::size_t block) {
+      const std::size_t end = std::min((block + 1) * chunk_size, count);
+      for (std::size_t k = block * chunk_size; k < end; ++k) grain::follow_grain(w.particles, w.images, k);
+    });
+  }
+}
+
+/// The skin of the next list (m): the one that was given, or the one that suits the grains' motion. A periodic cell
+/// bounds it, as no grain may be listed with two images of another.
+template <class Model>
+double choose_skin(WorldState<Model>& w) {
+  if (w.options.skin > 0.0) return w.options.skin;
+  double skin = w.skin_choice.choose(w.largest_radius, w.moved(), w.step, Model::Integrator::stages);
+  if constexpr (Model::Domain::has_images) {
+    for (const double period : w.domain.period()) {
+      if (period > 0.0) skin = std::min(skin, 0.499 * period - 2.0 * w.largest_radius - w.materials.range());
+    }
+    w.skin_choice.skin = skin;
+  }
+  return skin;
+}
+
+/// Sorts the grains in space, lists their neighbours, and carries the contact histories over.
+template <class Model>
+void rebuild_neighbours(WorldState<Model>& w) {
+  auto& p = w.particles;
+  grain::HistoryCarrier<Model> histories;
+  histories.collect(w.executor, std::span<const Chunk<Model>>(w.chunks), p, w.images);
+  if (!w.to_remove.empty()) {
+    p.remove(w.to_remove, w.executor);
+    w.to_remove.clear();
+  }
+
+  if (p.count == 0) {
+    w.chunks.clear();
+    w.incoming.clear();
+    w.list_valid = true;
+    return;
+  }
+  const double skin = choose_skin(w);
+  const double reach = 2.0 * w.largest_radius + w.materials.range() + skin;
+  const auto positions = [&](std::size_t rows) {
+    return broadphase::Positions{p.position.x.data(), p.position.y.data(), p.position.z.data(), rows};
+  };
+  wrap_grains(w);
+  w.broad_phase.build(positions(p.count), reach);
+  if (const auto order = w.broad_phase.order(); !order.empty()) {
+    const std::vector<std::uint32_t> sorted(order.begin(), order.end());
+    p.permute(sorted, w.executor);
+    if constexpr (requires { w.broad_phase.reordered(); }) w.broad_phase.reordered();
+    else w.broad_phase.build(positions(p.count), reach);
+  }
+  p.listed_at = p.position;
+  p.pad();
+  if constexpr (Model::Domain::has_images) {
+    make_images(w, reach);
+    w.broad_phase.build(positions(p.position.x.size()), reach);
+  }
+
+  w.chunks.resize(p.chunks());
+  w.executor.for_each(w.chunks.size(), [&](std::size_t c) {
+    grain::list_candidates<Model>(c, w.chunks[c], p, w.broad_phase, w.images, w.species, w.materials.range() + skin);
+    grain::refresh_chunk<Model>(c, w.chunks[c], p, w.species);
+  });
+  grain::list_incoming<Model>(std::span<const Chunk<Model>>(w.chunks), p.count, w.images, w.incoming_first, w.incoming);
+  histories.hand_out(w.executor, std::span<Chunk<Model>>(w.chunks), p, w.images);
+  w.list_valid = true;
+  w.list_skin = skin;
+  ++w.rebuilds;
+  if (w.options.skin == 0.0) {
+    double radii = 0.0, candidates = 0.0;
+    for (std::size_t i = 0; i < p.count; ++i) radii += p.view[i].radius;
+    for (const auto& chunk : w.chunks) candidates += static_cast<double>(chunk.candidate.size());
+    const auto count = static_cast<double>(p.count);
+    w.skin_choice.made_list(w.largest_radius, 2.0 * radii / count + w.materials.range(), candidates / count, w.step,
+                            Model::Integrator::stages);
+  }
+}
+
+/// After a step: a list that has lasted, and holds more than the motion asks for, is made anew.
+template <class Model>
+void look_at_skin(WorldState<Model>& w) {
+  if (w.step < w.skin_choice.look_at) [[likely]]
+    return;
+  if (w.skin_choice.is_too_wide(w.largest_radius, w.moved(), w.step, Model::Integrator::stages)) w.list_valid = false;
+}
+
+}  // namespace dem
