@@ -67,6 +67,7 @@ class SoftLane {
     stages.begin("settle lane");
     settle(stand.world, s.grains.edge(), s.bed.stage_limit, "--stage-limit", stages, [] { return 0.0; });
     stand.before = soil::placements(stand.world);
+    stand.level = soft_lane::level_of(s, stand.before);
     soft_lane::add_car(stand, s);
     lower(stand, stages, look);
     const vehicle::Controls brakes{.brake = 1.0};
@@ -94,6 +95,12 @@ class SoftLane {
       result.rest_sinkage[k] = rest.wheels[k].sinkage;
       result.rest_load[k] = rest.wheels[k].load;
     }
+    const auto overlaps = soft_lane::overlaps_under_tyres(stand, s);
+    result.level = stand.level;
+    result.overlap = mean_of(overlaps);
+    result.deep_share =
+        static_cast<double>(std::count_if(overlaps.begin(), overlaps.end(), [](double x) { return x > 0.02; })) /
+        static_cast<double>(overlaps.size());
     if (s.slope_angle() != 0.0) tilt(stand, stages, look);
     soft_lane::Driver driver(s, s.scene == "slope" ? std::sin(s.slope_angle()) * result.weight : 0.0);
     soft_lane::Judge judge(s);

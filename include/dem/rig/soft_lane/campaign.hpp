@@ -51,7 +51,6 @@ void run_campaign(const Settings& settings, ShapeOf&& shape_of, Campaign& c, Ses
 
   const Bed<Model> bed = test.make_bed(start, session);
   if (made) soil::save_packing(packing_of(bed), s.bed.save);
-  c.level = bed.level;
   c.solid_fraction = bed.solid_fraction(bed.level);
   session.finish(text("{:.1f} mm deep, solid fraction {:.3f}", 1e3 * bed.level, c.solid_fraction));
   auto stand = test.set_down(bed, session, [](const auto&) {});

@@ -66,6 +66,20 @@ World<Model> make_lane(const Settings& s, const typename Model::Shape& shape, st
   return world;
 }
 
+/// Mean height (m) of the surface of the lane, away from its walls: what sinkage and ruts are measured from.
+inline double level_of(const Settings& s, std::span<const soil::Placement> grains) {
+  const double away = s.grains.edge(), x = 0.5 * s.bed.length - away, y = 0.5 * s.bed.width - away;
+  double sum = 0.0, count = 0.0;
+  for (int k = 0; k < s.troughs(); ++k) {
+    const double middle = s.is_bed() ? 0.0 : (k == 0 ? 0.5 : -0.5) * s.car.track();
+    for (const double z : surface_profile(grains, s.grains.half_edge, -x, x, middle - y, middle + y).z) {
+      sum += z;
+      count += 1.0;
+    }
+  }
+  return count > 0.0 ? sum / count : 0.0;
+}
+
 /// Overlap of the deepest contact in the last step, as a share of the edge of the cubes of 8 spheres. The world knows
 /// it in effective diameters: the radius of two equal spheres, a quarter of the edge, and twice that of one on a
 /// surface.

@@ -130,6 +130,38 @@ inline SurfaceProfile track_profile(const Settings& s, std::span<const soil::Pla
   return surface_profile(grains, s.grains.half_edge, from, to, middle - half, middle + half);
 }
 
+/// Overlaps of all contacts of grains with grains under the wheels, in the box about each wheel's lowest point that is
+/// as wide as the tyre, 0.3 m long, and down to the floor: as shares of a grain's edge. A search of its own.
+template <class Model>
+std::vector<double> overlaps_under_tyres(const Stand<Model>& stand, const Settings& s) {
+  using Shape = typename Model::Shape;
+  const auto& world = stand.world;
+  std::vector<double> overlaps;
+  for (const Vec3& wheel : wheels_of(stand)) {
+    std::vector<ParticleId> near;
+    AlignedVector<double> pose;
+    for (const ParticleId p : world.particles()) {
+      const Vec3 x = world.position(p) - wheel;
+      if (std::abs(x.x()) > 0.15 || std::abs(x.y()) > 0.5 * s.car.tyre.width) continue;
+      near.push_back(p);
+      pose.resize(near.size() * Shape::pose_size + 1);
+      world.species(world.species_of(p))
+          .shape.orient(from_eigen(world.rotation(p)), &pose[(near.size() - 1) * Shape::pose_size]);
+    }
+    for (std::size_t i = 0; i < near.size(); ++i) {
+      for (std::size_t j = i + 1; j < near.size(); ++j) {
+        const Vec3 link = world.position(near[j]) - world.position(near[i]);
+        if (link.squaredNorm() > 8.0 * s.grains.edge() * s.grains.edge()) continue;
+        Shape::collide(
+            world.species(world.species_of(near[i])).shape, &pose[i * Shape::pose_size],
+            world.species(world.species_of(near[j])).shape, &pose[j * Shape::pose_size], from_eigen(link),
+            [&](std::uint32_t, const auto& touch) { overlaps.push_back(touch.geometry().overlap / s.grains.edge()); });
+      }
+    }
+  }
+  return overlaps;
+}
+
 /// What is seen of the lane at the end: ruts behind the rear wheels, and a section through the left wheels.
 template <class Model>
 void look_back(const Stand<Model>& stand, const Settings& s, Campaign& c) {

@@ -59,8 +59,10 @@ inline io::Table cost_table(const Settings& s, const Campaign& c) {
   }
   double widest = 0.0, asleep = 0.0;
   for (const Sample& x : c.samples) widest = std::max(widest, x.widest_joint), asleep += x.asleep;
-  t.row("deepest overlap of grains", number(100.0 * c.deepest), "% of the edge");
-  t.row("overlap under a tyre, as estimated", number(100.0 * s.overlap(c.weight)), "% of the edge");
+  t.row("overlap of grains under the tyres at rest, mean", number(100.0 * c.overlap.mean), "% of the edge");
+  t.row("of these contacts, deeper than 2 % of the edge", number(100.0 * c.deep_share, "{:.0f}"), "%");
+  t.row("deepest overlap of any grain while driving", number(100.0 * c.deepest), "% of the edge");
+  t.row("overlap under a tyre, as estimated for these grains", number(100.0 * s.overlap(c.weight)), "% of the edge");
   t.row("widest joint", number(1e3 * widest), "mm");
   t.row("grains asleep while driving", number(100.0 * asleep / static_cast<double>(c.samples.size()), "{:.0f}"), "%");
   t.row("grains that left the lane", number(c.lost, "{:.0f}"), "");
