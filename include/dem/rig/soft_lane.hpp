@@ -48,7 +48,7 @@ class SoftLane {
     return make_bed(bed_grains(settings_.bed, settings_.grains, shape_.volume(), shape_.bounding_radius()), quiet);
   }
 
-  /// Makes the lane of a bed, sets the car down on it until the crane carries less than 2 % of it for 50 ms, takes the
+  /// Makes the lane of a bed, sets the car down on it until the crane carries less than 5 % of it for 30 ms, takes the
   /// crane off, and lets the car stand on its brakes for 0.2 s. Throws Stopped if that takes longer than twice the
   /// stage limit.
   [[nodiscard]] Stand set_down(const Bed<Model>& bed) const {
@@ -139,7 +139,7 @@ class SoftLane {
     const auto& m = stand.world.machine();
     const double weight = vehicle::weight_of(m), start = stand.world.time(), limit = 2.0 * s.bed.stage_limit;
     stages.begin("set down", 1.0);
-    soil::StaysBelow carried(0.02, 0.05);
+    soil::StaysBelow carried(0.05, 0.03);
     for (bool done = false; !done;) {
       soft_lane::advance(stand, {.brake = 1.0});
       look(std::as_const(stand));

@@ -36,7 +36,7 @@ World<Model> make_lane(const Settings& s, const typename Model::Shape& shape, st
   const double track = s.is_bed() ? 0.0 : s.car.track(), top = level + 0.5;
   const double far_x = 0.5 * length + t, far_y = 0.5 * (track + width) + t;
   World<Model> world({.time_step = time_step,
-                      .overlap_limit = 1.0,
+                      .overlap_limit = 1.8,  // a grain that is jammed for a moment does not end a run; the report tells
                       .domain = surface::Bounds{Vec3(-far_x, -far_y, -t), Vec3(far_x, far_y, top)},
                       .beyond_domain = BeyondDomain::remove,
                       .threads = s.bed.threads > 0 ? s.bed.threads : threads_for(grains.size()),

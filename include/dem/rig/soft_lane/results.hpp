@@ -80,7 +80,8 @@ inline constexpr const char* slid_back = "slid back";      ///< 0.3 m behind the
 inline constexpr const char* too_slow = "too slow";        ///< not there in four times the path's time and 3 s
 }  // namespace ending
 
-/// Means over the second half of the way, of what moved the car there.
+/// Means over the second half of the way; where the car brakes or coasts from half of the path on, over the quarter of
+/// the path before.
 struct Means {
   double from_way = not_known;  ///< m
   double speed = not_known, slip = not_known;
@@ -156,13 +157,14 @@ inline void evaluate(Campaign& c, const Settings& s) {
   c.drift = last.car.position.y() - c.samples.front().car.position.y();
 
   Means m = {};
-  m.from_way = 0.5 * last.way;
+  const bool slows = s.scene == "brake" || s.scene == "coast";
+  m.from_way = slows ? 0.25 * s.path : 0.5 * last.way;
   double n = 0.0, energy = 0.0;
   m.speed = m.slip = m.sinkage = m.load = m.torque = m.pull = 0.0;
   double begin = 0.0, way = 0.0, steer = 0.0, yaw = 0.0;
   for (std::size_t k = 1; k < c.samples.size(); ++k) {
     const Sample& x = c.samples[k];
-    if (!(x.way >= m.from_way) || x.car.controls.brake > 0.0) continue;
+    if (!(x.way >= m.from_way) || (slows && x.way >= 0.5 * s.path)) continue;
     if (n == 0.0) begin = x.car.time, way = x.way;
     n += 1.0;
     m.speed += x.car.speed, m.slip += x.mean(&WheelSample::slip), m.sinkage += x.mean(&WheelSample::sinkage);
@@ -183,14 +185,12 @@ inline void evaluate(Campaign& c, const Settings& s) {
       c.ackermann = s.car.wheelbase() / std::tan(steer / n);
     }
   }
-  if (s.scene != "brake" && s.scene != "coast") return;
+  if (!slows) return;
   // From where the driver brakes, or lets go, to a tenth of that speed.
   const Sample *first = nullptr, *end = nullptr;
-  double fastest = 0.0;
   for (const Sample& x : c.samples) {
-    fastest = std::max(fastest, x.car.speed);
-    const bool slows = x.way >= 0.5 * s.path && x.car.controls.throttle == 0.0;
-    if (slows && first == nullptr) first = &x;
+    const bool lets_go = x.way >= 0.5 * s.path && x.car.controls.throttle == 0.0;
+    if (lets_go && first == nullptr) first = &x;
     if (first != nullptr && end == nullptr && x.car.speed <= 0.1 * first->car.speed) end = &x;
   }
   if (first == nullptr || first == &last) return;

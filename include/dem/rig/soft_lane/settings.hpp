@@ -22,16 +22,17 @@ struct Settings {
   double slope = 20.0;  ///< percent, of slope (positive: uphill) and side-slope (positive: the left side is high)
 
   vehicle::VehicleSpec car = vehicle::humvee({.rubber_rear = false});
-  std::string engine = "motor";   ///< motor, gears or low-range
-  std::string tyre = "mesh";      ///< mesh or cylinder
-  int tyre_triangles = 6662;      ///< of a mesh (thesis)
-  double tyre_friction = 0.8;     ///< mu, grain on tyre
-  double machine_step = 5e-5;     ///< s, the largest step of the car
-  double set_down_speed = 0.3;    ///< m/s
-  double speed = 0.0;             ///< m/s, that the driver holds; 0: by size
-  double acceleration = 1.0;      ///< m/s^2, at which the driver reaches it
-  double path = 0.0;              ///< m, that the car drives; 0: as far as the lane goes
-  double steer_deg = 12.0;        ///< of the front wheels in a turn
+  std::string engine = "motor";  ///< motor, gears or low-range
+  std::string tyre = "mesh";     ///< mesh or cylinder
+  int tyre_triangles = 6662;     ///< of a mesh (thesis)
+  double tyre_friction = 0.8;    ///< mu, grain on tyre
+  double machine_step = 5e-5;    ///< s, the largest step of the car
+  double set_down_speed = 0.5;   ///< m/s
+  double speed = 0.0;            ///< m/s, that the driver holds; 0: by size
+  double acceleration = 1.0;     ///< m/s^2, at which the driver reaches it
+  double spin_limit = 1.0;       ///< m/s, by which rims are faster than the car where the driver eases off the throttle
+  double path = 0.0;             ///< m, that the car drives; 0: as far as the lane goes
+  double steer_deg = 12.0;       ///< of the front wheels in a turn
   double steer_deg_per_s = 30.0;  ///< at which they turn there
 
   GrainSettings grains{.stiffness = 4e4, .damping = 0.1};
@@ -77,6 +78,8 @@ inline void declare(Options& options, Settings& s) {
   add("--tyre-friction", s.tyre_friction, "mu, grain on tyre");
   add("--speed", s.speed, "that the driver holds [m/s]; 0: by size");
   add("--acceleration", s.acceleration, "at which the driver reaches it [m/s^2]");
+  add("--spin-limit", s.spin_limit,
+      "the driver eases off the throttle where rims are faster than the car by this [m/s]");
   add("--path", s.path, "that the car drives [m]; 0: as far as the lane goes");
   add("--steer", s.steer_deg, "of the front wheels in a turn, to the left [deg]");
   add("--steer-rate", s.steer_deg_per_s, "at which they turn there [deg/s]");
@@ -142,7 +145,7 @@ inline void resolve(Settings& s) {
   struct Defaults {
     double length, trough_width, bed_width, depth, half_edge, speed;
   };
-  const auto by_size = BySize<Defaults>{.smoke = {4.9, 0.60, 2.6, 0.16, 40e-3, 1.0},
+  const auto by_size = BySize<Defaults>{.smoke = {4.8, 0.58, 2.6, 0.14, 40e-3, 0.8},
                                         .quick = {7.5, 0.55, 3.0, 0.20, 22e-3, 1.5},
                                         .full = {15.0, 0.90, 4.0, 0.0, 13.3e-3, 2.0}}[size_named(s.size)];
   if (s.layout.empty()) s.layout = s.scene == "turn" ? "bed" : "troughs";
@@ -167,6 +170,7 @@ inline void resolve(Settings& s) {
   require_non_negative(s.tyre_friction, "--tyre-friction", "(no unit)");
   require_within(s.speed, 0.05, 20.0, "--speed (m/s)");
   require_within(s.acceleration, 0.05, 10.0, "--acceleration (m/s^2)");
+  require_within(s.spin_limit, 0.01, 100.0, "--spin-limit (m/s)");
   require_within(s.path, 0.0, 1e4, "--path (m; 0: as far as the lane goes)");
   require_within(s.steer_deg, -40.0, 40.0, "--steer (deg)");
   require_within(s.steer_deg_per_s, 1.0, 90.0, "--steer-rate (deg/s)");
