@@ -4,6 +4,7 @@
 
 #include <dem/mbd/mbd.hpp>
 #include <dem/vehicle/humvee.hpp>
+#include <dem/vehicle/telemetry.hpp>
 
 #include <array>
 #include <cmath>
@@ -55,23 +56,8 @@ class Car {
     machine.design_for(s.time_step);
     machine.initialise(0.0, machine.gravity);
     start_ = dem::mbd::energy_of(machine.parts(), machine.gravity).sum();
-    columns = {"time_s",
-               "x_m",
-               "y_m",
-               "z_m",
-               "yaw_rad",
-               "roll_rad",
-               "pitch_rad",
-               "speed_m_per_s",
-               "yaw_rate_rad_per_s",
-               "throttle",
-               "brake",
-               "steer_rad",
-               "gear",
-               "engine_torque_Nm",
-               "engine_speed_rad_per_s",
-               "engine_power_W"};
-    for (const char* corner : {"fl", "fr", "rl", "rr"}) {
+    dem::vehicle::add_columns(columns, dem::vehicle::CarSample{});
+    for (const char* corner : dem::vehicle::corner_letters) {
       for (const char* what : {"load_N", "pull_N", "side_N", "slip", "slip_angle_rad", "travel_m", "brake_torque_Nm"}) {
         columns.push_back(std::string(corner) + "_" + what);
       }
@@ -84,16 +70,7 @@ class Car {
   }
   double speed() const { return dem::vehicle::speed_of(machine, vehicle); }
   Vec3 position() const { return dem::vehicle::point_of(machine, vehicle, Vec3::Zero()); }
-  double weight() const {
-    double mass = 0.0;
-    for (const dem::Body& b : machine.bodies()) mass += b.fixed ? 0.0 : b.mass;
-    return mass * machine.gravity.norm();
-  }
-  /// Roll, pitch and yaw of the chassis, rad (z, y, x in this order).
-  Vec3 attitude() const {
-    const Mat3 r = machine.reference_rotation(vehicle.chassis);
-    return {std::atan2(r(2, 1), r(2, 2)), std::asin(-r(2, 0)), std::atan2(r(1, 0), r(0, 0))};
-  }
+  double weight() const { return dem::vehicle::weight_of(machine); }
   /// The widest joint, m, and the most crooked one, rad, so far. Bushings are meant to give way.
   double widest = 0.0, crooked = 0.0;
   std::string widest_joint, failed;
@@ -150,24 +127,8 @@ class Car {
       }
       crooked = std::max(crooked, open.rotation);
     }
-    const Vec3 at = position(), turn = attitude();
-    const auto& engine = machine.actuator(vehicle.driveline.engine);
-    std::vector<double> row = {machine.time(),
-                               at.x(),
-                               at.y(),
-                               at.z(),
-                               turn.z(),
-                               turn.x(),
-                               turn.y(),
-                               speed(),
-                               machine.body(vehicle.chassis).angular_velocity().z(),
-                               now.throttle,
-                               now.brake,
-                               0.5 * (steer_of(machine, vehicle, 0) + steer_of(machine, vehicle, 1)),
-                               1.0 + static_cast<double>(vehicle.driveline.gear),
-                               engine.force,
-                               engine_speed(machine, vehicle.driveline),
-                               engine.power()};
+    std::vector<double> row;
+    dem::vehicle::add_values(row, dem::vehicle::sample_of(machine, vehicle, now, machine.time()));
     for (std::size_t k = 0; k < 4; ++k) {
       const auto& t = *vehicle.wheels[k].tyre;
       for (const double x : {t.load, t.pull, t.side, t.slip, t.slip_angle, travel_of(machine, vehicle, k),

@@ -1,7 +1,7 @@
 // The Humvee of the thesis by itself on hard ground: at rest, driving off, braking, turning, held on a slope.
 //
 //   humvee                    # all scenes, results in the folder humvee
-//   humvee brake out/brake    # one scene: rest, launch, brake, turn or slope
+//   humvee brake out/brake    # one scene: rest, launch, brake, turn or slope; the folder may also follow --output
 //
 // Each scene writes <scene>.csv (100 rows a second, with units) and plots of speed, loads and wheel travel, and prints
 // what was measured beside what was expected.
@@ -12,7 +12,9 @@
 
 #include <chrono>
 #include <ctime>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include "humvee.hpp"
 #include "pictures.hpp"
@@ -164,7 +166,11 @@ struct Scene {
 }  // namespace
 
 int main(int argc, char** argv) {
-  const std::string wanted = argc > 1 ? argv[1] : "all", folder = argc > 2 ? argv[2] : "humvee";
+  std::vector<std::string> words;
+  for (int k = 1; k < argc; ++k) {
+    if (std::string(argv[k]) != "--output") words.emplace_back(argv[k]);
+  }
+  const std::string wanted = !words.empty() ? words[0] : "all", folder = words.size() > 1 ? words[1] : "humvee";
   const std::vector<Scene> scenes = {{"rest", {}, rest},
                                      {"launch", {}, launch},
                                      {"brake", {.speed = 60.0 / 3.6, .friction = 0.5}, brake},

@@ -162,16 +162,27 @@ void work_and_save(Work&& work, Save&& save) {
   save();
 }
 
-/// Runs a world for a time (s), rounded to whole steps, at least one. Throws Stopped with the report of a step that
-/// shows a problem, and Interrupted after the step in which Ctrl-C or SIGTERM came, if a guard watches for it.
-template <class World>
-void run(World& world, double duration) {
+/// Runs a world for a time (s), rounded to whole steps, at least one, calling `before_step()` before each. Throws
+/// Stopped with the report of a step that shows a problem, and Interrupted after the step in which Ctrl-C or SIGTERM
+/// came, if a guard watches for it.
+template <class World, class BeforeStep>
+void run(World& world, double duration, BeforeStep&& before_step) {
   world.prepare();
   const double steps = std::max(1.0, std::round(duration / world.time_step()));
   require_within(steps, 1.0, 0x1.0p53, "number of steps of a stage");
-  const auto report = world.run(static_cast<std::uint64_t>(steps), [] { return !io::interrupted(); });
+  before_step();
+  const auto report = world.run(static_cast<std::uint64_t>(steps), [&, left = steps]() mutable {
+    if (io::interrupted()) return false;
+    if (--left > 0.0) before_step();
+    return true;
+  });
   if (!report) throw Stopped(report.text);
   if (io::interrupted()) throw Interrupted{};
+}
+/// The same without anything between the steps.
+template <class World>
+void run(World& world, double duration) {
+  run(world, duration, [] {});
 }
 
 }  // namespace dem::rig

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <dem/report/replay_recorder.hpp>
+#include <dem/rig/bed/surface_profile.hpp>
 #include <dem/rig/rigid_wheel/settings.hpp>
 #include <dem/rig/samples.hpp>
 #include <dem/rig/steady_window.hpp>
@@ -8,6 +9,7 @@
 
 #include <limits>
 #include <optional>
+#include <utility>
 #include <vector>
 
 namespace dem::rig::rigid_wheel {
@@ -115,27 +117,13 @@ inline void evaluate(SlipResult& r, double level, const Settings& s) {
   r.rut_width = wide;
 }
 
-/// The surface of a bed across y (m), in strips as wide as a grain is long: the mean, over cells of that size along x
-/// between two places (m), of the highest grain's middle plus its half-edge. A cell without grains is the floor. Sets y
-/// and z.
+/// The surface across the bed between two places along x (m). Sets y and z.
 inline void find_rut(std::span<const soil::Placement> grains, const Settings& s, double from, double to,
                      SlipResult& r) {
-  const double edge = s.grains.edge();
-  const auto nx = static_cast<std::size_t>(std::max(0.0, (to - from) / edge));
-  const auto ny = static_cast<std::size_t>(std::max(0.0, s.bed.width / edge));
-  if (nx < 2 || ny < 2) return;
-  std::vector<double> highest(nx * ny, 0.0);
-  const double cell = s.bed.width / static_cast<double>(ny);
-  for (const auto& g : grains) {
-    const double x = (g.position.x() - from) / edge, y = (g.position.y() + 0.5 * s.bed.width) / cell;
-    if (!(x >= 0.0 && x < static_cast<double>(nx) && y >= 0.0 && y < static_cast<double>(ny))) continue;
-    double& z = highest[static_cast<std::size_t>(y) * nx + static_cast<std::size_t>(x)];
-    z = std::max(z, g.position.z() + s.grains.half_edge);
-  }
-  for (std::size_t j = 0; j < ny; ++j) {
-    r.rut_y.push_back((static_cast<double>(j) + 0.5) * cell - 0.5 * s.bed.width);
-    r.rut_z.push_back(mean_of(std::span(highest).subspan(j * nx, nx)).mean);
-  }
+  const double half = 0.5 * s.bed.width;
+  SurfaceProfile p = surface_profile(grains, s.grains.half_edge, from, to, -half, half);
+  r.rut_y = std::move(p.y);
+  r.rut_z = std::move(p.z);
 }
 
 }  // namespace dem::rig::rigid_wheel

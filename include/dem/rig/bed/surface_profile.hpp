@@ -1,0 +1,45 @@
+#pragma once
+// The surface of a bed across a track, and the ruts in it.
+
+#include <dem/rig/steady_window.hpp>
+#include <dem/soil/packing.hpp>
+
+#include <algorithm>
+#include <cstddef>
+#include <span>
+#include <vector>
+
+namespace dem::rig {
+
+/// Heights of a bed's surface in strips along x.
+struct SurfaceProfile {
+  std::vector<double> y = {}, z = {};  ///< m; empty where there is too little of the bed
+  [[nodiscard]] double strip() const { return y.size() > 1 ? y[1] - y[0] : 0.0; }  ///< m, width of one
+};
+
+/// The surface between two places along x and two along y (m), in strips as wide as a grain is long: the mean, over
+/// cells of that size along x, of the highest grain's middle plus its half-edge (m). A cell without grains is the
+/// floor.
+inline SurfaceProfile surface_profile(std::span<const soil::Placement> grains, double half_edge, double from_x,
+                                      double to_x, double from_y, double to_y) {
+  const double edge = 2.0 * half_edge;
+  SurfaceProfile p;
+  const auto nx = static_cast<std::size_t>(std::max(0.0, (to_x - from_x) / edge));
+  const auto ny = static_cast<std::size_t>(std::max(0.0, (to_y - from_y) / edge));
+  if (nx < 2 || ny < 2) return p;
+  std::vector<double> highest(nx * ny, 0.0);
+  const double cell = (to_y - from_y) / static_cast<double>(ny);
+  for (const auto& g : grains) {
+    const double x = (g.position.x() - from_x) / edge, y = (g.position.y() - from_y) / cell;
+    if (!(x >= 0.0 && x < static_cast<double>(nx) && y >= 0.0 && y < static_cast<double>(ny))) continue;
+    double& z = highest[static_cast<std::size_t>(y) * nx + static_cast<std::size_t>(x)];
+    z = std::max(z, g.position.z() + half_edge);
+  }
+  for (std::size_t j = 0; j < ny; ++j) {
+    p.y.push_back(from_y + (static_cast<double>(j) + 0.5) * cell);
+    p.z.push_back(mean_of(std::span(highest).subspan(j * nx, nx)).mean);
+  }
+  return p;
+}
+
+}  // namespace dem::rig

@@ -1,0 +1,182 @@
+#pragma once
+
+#include <dem/rig/bed/make_bed.hpp>
+#include <dem/rig/soft_lane/driver.hpp>
+#include <dem/rig/soft_lane/stand.hpp>
+
+#include <utility>
+
+namespace dem::rig {
+
+/// A car that drives on grains (thesis chapter 6: the Humvee on soft soil), on grains of a Model, which has the
+/// thesis's laws and surface::Box, Cylinder and TriangleMesh among its Surfaces. The car is the machine of the world;
+/// its rigid tyres are surfaces of the wheels. Slopes are tilted gravity: x runs up the slope, y to the left.
+///
+/// A trough of grains is rained, levelled and put under each track (soft_lane/lane.hpp). The car hangs on a crane, a
+/// damper on its chassis under which its weight sinks at the set-down speed, ever slower as the grains take it up. Then
+/// it stands on its brakes while gravity is tilted, and drives.
+///
+///     dem::rig::soft_lane::Settings settings;
+///     settings.size = "smoke";
+///     dem::rig::SoftLane<Sand> test(settings, [](double h) { return dem::shape::cube8(h); });
+///     auto stand = test.set_down(test.make_bed());
+///     dem::rig::soft_lane::Campaign result;
+///     test.drive(stand, result);
+///     result.means.resistance;                          // N
+template <class M>
+class SoftLane {
+ public:
+  using Model = M;
+  using Settings = soft_lane::Settings;
+  using Campaign = soft_lane::Campaign;
+  using Stand = soft_lane::Stand<Model>;
+  using Shape = typename Model::Shape;
+
+  /// `shape_of(half_edge)` makes the shape of the grains (m). Throws Error for settings that make no sense.
+  template <class ShapeOf>
+  SoftLane(Settings settings, ShapeOf&& shape_of) : SoftLane(resolved(std::move(settings)), shape_of, 0) {}
+
+  [[nodiscard]] const Settings& settings() const { return settings_; }
+  [[nodiscard]] const Shape& shape() const { return shape_; }
+
+  /// The levelled bed of one trough.
+  [[nodiscard]] Bed<Model> make_bed(const soil::Packing& start, Stages& stages) const {
+    return rig::make_bed<Model>(settings_.bed, settings_.grains, shape_, false, start, stages);
+  }
+  [[nodiscard]] Bed<Model> make_bed() const {
+    Stages quiet;
+    return make_bed(bed_grains(settings_.bed, settings_.grains, shape_.volume(), shape_.bounding_radius()), quiet);
+  }
+
+  /// Makes the lane of a bed, sets the car down on it until the crane carries less than 5 % of it for 30 ms, takes the
+  /// crane off, and lets the car stand on its brakes for 0.2 s. Throws Stopped if that takes longer than twice the
+  /// stage limit.
+  [[nodiscard]] Stand set_down(const Bed<Model>& bed) const {
+    Stages quiet;
+    return set_down(bed, quiet, [](const auto&) {});
+  }
+  /// The same with look(stand) every ten milliseconds.
+  template <class Look>
+  [[nodiscard]] Stand set_down(const Bed<Model>& bed, Stages& stages, Look&& look) const {
+    const Settings& s = settings_;
+    // Between two samples there is a whole number of steps.
+    const double dt = soft_lane::interval / std::ceil(soft_lane::interval / bed.world.time_step() * (1.0 - 1e-9));
+    Stand stand{.world = soft_lane::make_lane<Model>(s, shape_, soil::placements(bed.world), bed.level, dt),
+                .level = bed.level,
+                .before = {}};
+    stages.begin("settle lane");
+    settle(stand.world, s.grains.edge(), s.bed.stage_limit, "--stage-limit", stages, [] { return 0.0; });
+    stand.before = soil::placements(stand.world);
+    stand.level = soft_lane::level_of(s, stand.before);
+    soft_lane::add_car(stand, s);
+    lower(stand, stages, look);
+    const vehicle::Controls brakes{.brake = 1.0};
+    for (int k = 0; k < 20; ++k) soft_lane::advance(stand, brakes), look(std::as_const(stand));
+    return stand;
+  }
+
+  /// Tilts gravity as the scene says while the car stands on its brakes, drives until something ends it, and evaluates
+  /// what was found.
+  void drive(Stand& stand, Campaign& result) const {
+    Stages quiet;
+    drive(stand, result, quiet, [](const auto&) {});
+    soft_lane::look_back(stand, settings_, result);
+    soft_lane::evaluate(result, settings_);
+  }
+  /// The same with look(stand) after each sample. `result` is filled as the run goes; it is not evaluated.
+  template <class Look>
+  void drive(Stand& stand, Campaign& result, Stages& stages, Look&& look) const {
+    const Settings& s = settings_;
+    auto& world = stand.world;
+    const double radius = s.car.tyre.radius, steer_rate = s.steer_deg_per_s * std::numbers::pi / 180.0;
+    result.weight = vehicle::weight_of(world.machine());
+    const auto rest = soft_lane::sample_of(stand, {}, 0.0, 0.0, radius);
+    for (std::size_t k = 0; k < 4; ++k) {
+      result.rest_sinkage[k] = rest.wheels[k].sinkage;
+      result.rest_load[k] = rest.wheels[k].load;
+    }
+    const auto overlaps = soft_lane::overlaps_under_tyres(stand, s);
+    result.level = stand.level;
+    result.overlap = mean_of(overlaps);
+    result.deep_share =
+        static_cast<double>(std::count_if(overlaps.begin(), overlaps.end(), [](double x) { return x > 0.02; })) /
+        static_cast<double>(overlaps.size());
+    if (s.slope_angle() != 0.0) tilt(stand, stages, look);
+    soft_lane::Driver driver(s, s.scene == "slope" ? std::sin(s.slope_angle()) * result.weight : 0.0);
+    soft_lane::Judge judge(s);
+    stages.begin("drive", s.path);
+    const double start = world.time(), from = soft_lane::place_of(stand);
+    for (double way = 0.0; result.ended.empty();) {
+      const auto now = driver(world.machine(), stand.car, world.time() - start, way, soft_lane::interval);
+      soft_lane::advance(stand, now, s.scene == "turn" ? steer_rate : 0.5);
+      way = soft_lane::place_of(stand) - from;
+      auto x = soft_lane::sample_of(stand, now, world.time() - start, way, radius);
+      if (!result.samples.empty()) {
+        x.acceleration = (x.car.speed - result.samples.back().car.speed) / soft_lane::interval;
+      }
+      result.ended = judge(x, soft_lane::wheels_of(stand));
+      stages.update(std::clamp(way, 0.0, s.path),
+                    text("{:.2f} m/s, slip {:.2f}, {:.0f} mm deep", x.car.speed, x.mean(&soft_lane::WheelSample::slip),
+                         1e3 * x.mean(&soft_lane::WheelSample::sinkage)));
+      result.samples.push_back(x);
+      look(std::as_const(stand));
+    }
+  }
+
+ private:
+  template <class ShapeOf>
+  SoftLane(Settings settings, ShapeOf&& shape_of, int)
+      : settings_(std::move(settings)), shape_(shape_of(settings_.grains.half_edge)) {}
+  static Settings resolved(Settings s) {
+    soft_lane::resolve(s);
+    return s;
+  }
+
+  /// Lowers the car until the crane carries next to nothing of it.
+  template <class Look>
+  void lower(Stand& stand, Stages& stages, Look&& look) const {
+    const Settings& s = settings_;
+    const auto& m = stand.world.machine();
+    const double weight = vehicle::weight_of(m), start = stand.world.time(), limit = 2.0 * s.bed.stage_limit;
+    stages.begin("set down", 1.0);
+    soil::StaysBelow carried(0.05, 0.03);
+    for (bool done = false; !done;) {
+      soft_lane::advance(stand, {.brake = 1.0});
+      look(std::as_const(stand));
+      double on_grains = 0.0;
+      for (const SensorId k : stand.grains) on_grains += m.sensor(k).mean().force.z;
+      const double crane = std::abs(m.load(stand.crane).wrench.force.z);
+      done = carried(stand.world.time(), on_grains > 0.5 * weight ? crane / weight : 1.0);
+      stages.update(std::clamp(on_grains / weight, 0.0, 1.0),
+                    text("grains carry {:.1f} of {:.1f} kN", 1e-3 * on_grains, 1e-3 * weight));
+      if (!done && stand.world.time() - start > limit) {
+        throw Stopped(
+            text("the car is not set down after {:g} s: the grains carry {:.4g} N of {:.4g} N; raise "
+                 "--stage-limit or --set-down-speed",
+                 limit, on_grains, weight));
+      }
+    }
+    stand.world.machine().switch_on(stand.crane, false);
+  }
+
+  /// Turns gravity to that of the slope, smoothly within half a second, and lets the car stand for 0.2 s more.
+  template <class Look>
+  void tilt(Stand& stand, Stages& stages, Look&& look) const {
+    const double whole = settings_.slope_angle(), start = stand.world.time(), over = 0.5;
+    const bool is_side = settings_.scene == "side-slope";
+    stages.begin("tilt", over + 0.2);
+    for (double t = 0.0; t < over + 0.2; t = stand.world.time() - start) {
+      const double share = std::min(1.0, (t + soft_lane::interval) / over);
+      const double angle = whole * share * share * (3.0 - 2.0 * share), along = -9.81 * std::sin(angle);
+      stand.world.set_gravity(Vec3(is_side ? 0.0 : along, is_side ? along : 0.0, -9.81 * std::cos(angle)));
+      soft_lane::advance(stand, {.brake = 1.0});
+      look(std::as_const(stand));
+      stages.update(t);
+    }
+  }
+
+  Settings settings_;
+  Shape shape_;
+};
+
+}  // namespace dem::rig

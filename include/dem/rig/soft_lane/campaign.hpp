@@ -1,0 +1,71 @@
+#pragma once
+
+#include <dem/io/csv.hpp>
+#include <dem/io/duration.hpp>
+#include <dem/report/replay_world.hpp>
+#include <dem/rig/bed/bed_file.hpp>
+#include <dem/rig/frames.hpp>
+#include <dem/rig/session.hpp>
+#include <dem/rig/soft_lane.hpp>
+
+namespace dem::rig::soft_lane {
+
+/// The car's body as it is drawn, in the axes of the chassis about its centre of mass: hull, cab and bonnet.
+inline io::SurfaceMesh drawn_hull(const vehicle::VehicleSpec& car) {
+  IndexedMesh mesh = mesh::box(Vec3(4.6, 1.5, 0.35)).moved(Vec3(0, 0, 0.40));
+  mesh += mesh::box(Vec3(2.5, 1.9, 0.60)).moved(Vec3(-0.35, 0, 0.85));
+  mesh += mesh::box(Vec3(0.9, 1.2, 0.18)).moved(Vec3(1.6, 0, 0.66));
+  return io::drawn(mesh.moved(-car.chassis_centre));
+}
+
+inline void save_telemetry(const std::filesystem::path& path, const std::vector<Sample>& samples) {
+  io::CsvWriter csv(path, Sample{}.columns(), {.digits = 7});
+  for (const Sample& x : samples) csv.row(x.row());
+  csv.flush();
+}
+
+/// The run of a program: a bed, the lane, the car set down on it, and the drive. What can be refused is refused before
+/// session.begin_run(). `c` is filled as the run goes.
+template <class Model, class ShapeOf>
+void run_campaign(const Settings& settings, ShapeOf&& shape_of, Campaign& c, Session& session) {
+  const SoftLane<Model> test(settings, shape_of);
+  const Settings& s = test.settings();
+  const bool made = s.bed.file.empty();
+  const soil::Packing start = start_of_bed(s.bed, s.grains, test.shape().volume(), test.shape().bounding_radius());
+  if (made) session.require_writable(s.bed.save, "--save-bed");
+  session.begin_run(bed_stages(s.bed) + (s.slope_angle() != 0.0 ? 4 : 3));
+
+  const io::SurfaceMesh hull = drawn_hull(s.car);
+  if (s.replay) c.replay.emplace(report::ReplayOptions{.frames = 90, .interval = 0.05, .grains = 12'000});
+  std::optional<Frames> frames;
+  frames.emplace(session, s.vtk ? "soft_lane" : "", 0.05);
+  const auto look = [&](const auto& stand) {
+    const auto& world = stand.world;
+    frames->show(world.time(), [&](io::VtkSeries& series) {
+      add_grains(series, world);
+      add_surfaces(series, world);
+    });
+    if (c.replay && c.replay->due(world.time()))
+      c.replay->record(world, std::vector{io::DrawnBody{stand.car.chassis, &hull}});
+  };
+
+  const Bed<Model> bed = test.make_bed(start, session);
+  if (made) soil::save_packing(packing_of(bed), s.bed.save);
+  c.solid_fraction = bed.solid_fraction(bed.level);
+  session.finish(text("{:.1f} mm deep, solid fraction {:.3f}", 1e3 * bed.level, c.solid_fraction));
+  auto stand = test.set_down(bed, session, [](const auto&) {});
+  c.grains = stand.world.particle_count();
+  c.time_step = stand.world.time_step();
+  c.substeps = stand.world.machine().substeps;
+  const double from = io::steady_seconds(), begin = stand.world.time();
+  work_and_save([&] { test.drive(stand, c, session, look); },
+                [&] {
+                  c.computing = (io::steady_seconds() - from) / std::max(1e-9, stand.world.time() - begin);
+                  look_back(stand, s, c);
+                  evaluate(c, s);
+                  if (!c.samples.empty()) save_telemetry(session.folder() / "telemetry.csv", c.samples);
+                });
+  session.finish(text("{} after {:.2f} m", c.ended, c.samples.back().way));
+}
+
+}  // namespace dem::rig::soft_lane

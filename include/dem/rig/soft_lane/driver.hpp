@@ -1,0 +1,90 @@
+#pragma once
+
+#include <dem/rig/soft_lane/results.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace dem::rig::soft_lane {
+
+/// Drives a scene: holds a speed by throttle and brakes and keeps to the middle of the lane, or brakes, coasts or turns
+/// after half of the path. It eases off the throttle where the wheels spin: from the full throttle at the spin limit
+/// (mean of the rims less the car's speed) to none at twice that. Asked every hundredth of a second.
+class Driver {
+ public:
+  /// `force` (N) is what it takes to stand on the slope; the throttle begins with it, so that the car does not roll
+  /// back.
+  Driver(const Settings& s, double force) : settings_(s) {
+    hold_.gain = 0.5;
+    hold_.integral = 0.3;
+    const auto& d = s.car.driveline;
+    const double largest = d.engine.torque.held_outside()(0.0) * d.engine.gears.front() * d.engine.transfer *
+                           d.front.ratio / s.car.tyre.radius;
+    hold_.sum = std::clamp(force / largest, -1.0, 1.0) / hold_.integral;
+    follow_.wheelbase = s.car.wheelbase();
+    follow_.path = {Vec3(-s.bed.length, 0, 0), Vec3(s.bed.length + 20.0, 0, 0)};
+    follow_.preview = 4.0;
+  }
+
+  vehicle::Controls operator()(const mbd::Mechanism& m, const vehicle::Vehicle& v, double time, double way, double dt) {
+    const Settings& s = settings_;
+    const double speed = vehicle::speed_of(m, v);
+    const bool is_beyond = way >= 0.5 * s.path;
+    if (is_beyond && s.scene == "brake") has_braked_ = true;
+    if (has_braked_) return {.brake = 1.0};
+    if (is_beyond && s.scene == "coast") return {};
+    vehicle::Controls c = hold_(speed, std::min(s.speed, s.acceleration * time), dt);
+    const double rims = m.speed(v.driveline.shaft_turn) / s.car.driveline.front.ratio * s.car.tyre.radius;
+    c.throttle *= std::clamp(2.0 - (rims - speed) / s.spin_limit, 0.0, 1.0);
+    if (s.scene == "turn") {
+      const double degrees = is_beyond || way > 0.15 * s.path ? s.steer_deg : 0.0;
+      c.steer = degrees * std::numbers::pi / 180.0;
+    } else {
+      const Vec3 rear = vehicle::point_of(m, v, Vec3(s.car.rear.points.wheel.x(), 0, 0));
+      c.steer = follow_(rear, vehicle::forward_of(m, v), speed);
+    }
+    return c;
+  }
+
+ private:
+  const Settings& settings_;
+  vehicle::SpeedHold hold_;
+  vehicle::PathFollower follow_;
+  bool has_braked_ = false;
+};
+
+/// Sees how a run ends. Asked after every sample.
+class Judge {
+ public:
+  explicit Judge(const Settings& s) : settings_(s) {}
+
+  /// One of `ending`, or an empty text while the run goes on. `deepest` (m) is the sinkage at which a wheel's middle is
+  /// at the level of the lane.
+  std::string operator()(const Sample& x, const std::array<Vec3, 4>& wheels) {
+    const Settings& s = settings_;
+    const double far = std::numbers::pi / 3.0;
+    if (std::abs(x.car.roll) > far || std::abs(x.car.pitch) > far) return ending::rolled_over;
+    for (std::size_t k = 0; k < 4; ++k) {
+      const double middle = s.is_bed() ? 0.0 : (k % 2 == 0 ? 0.5 : -0.5) * s.car.track();
+      if (std::abs(wheels[k].y() - middle) > 0.5 * s.bed.width) return ending::left_lane;
+      if (x.wheels[k].sinkage > s.car.tyre.radius) return ending::dug_in;
+    }
+    if (x.way < -0.3) return ending::slid_back;
+    const bool slips = x.mean(&WheelSample::slip) > 0.8 && x.car.speed < 0.1 * s.speed;
+    slips_since_ = !slips ? -1.0 : slips_since_ < 0.0 ? x.car.time : slips_since_;
+    if (slips && x.car.time - slips_since_ >= 1.0) return ending::dug_in;
+    const bool slows = (s.scene == "brake" || s.scene == "coast") && x.way >= 0.5 * s.path;
+    stands_since_ = !(slows && std::abs(x.car.speed) < 0.02) ? -1.0 : stands_since_ < 0.0 ? x.car.time : stands_since_;
+    if (stands_since_ >= 0.0 && x.car.time - stands_since_ >= 0.2) return ending::stopped;
+    if (x.way >= s.path) return ending::arrived;
+    if (x.car.time > 4.0 * s.path / s.speed + 3.0) return ending::too_slow;
+    return {};
+  }
+
+ private:
+  const Settings& settings_;
+  double slips_since_ = -1.0, stands_since_ = -1.0;  // s
+};
+
+}  // namespace dem::rig::soft_lane

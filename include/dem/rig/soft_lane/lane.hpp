@@ -1,0 +1,95 @@
+#pragma once
+// The lane: troughs of grains in the ground, with the grains of a levelled bed in each.
+
+#include <dem/geometry/box/box.hpp>
+#include <dem/rig/bed/bed.hpp>
+#include <dem/rig/soft_lane/results.hpp>
+
+#include <algorithm>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace dem::rig::soft_lane {
+
+/// Grains of a levelled bed as they lie in the lane: as they are, or in two troughs, in the right one turned by half a
+/// turn about z, so that both tracks are of the same soil but not mirror images.
+inline std::vector<soil::Placement> lane_grains(const Settings& s, std::span<const soil::Placement> bed) {
+  if (s.is_bed()) return {bed.begin(), bed.end()};
+  std::vector<soil::Placement> all;
+  all.reserve(2 * bed.size());
+  const Vec3 to_left(0, 0.5 * s.car.track(), 0);
+  Mat3 half_turn = Mat3::Identity();
+  half_turn(0, 0) = half_turn(1, 1) = -1.0;
+  for (const auto& g : bed) all.push_back({g.position + to_left, g.rotation});
+  for (const auto& g : bed) all.push_back({half_turn * g.position - to_left, half_turn * g.rotation});
+  return all;
+}
+
+/// A world with the lane's walls and grains, without a car. Grains that leave it over the walls are taken out and
+/// counted. `time_step` in s.
+template <class Model>
+World<Model> make_lane(const Settings& s, const typename Model::Shape& shape, std::span<const soil::Placement> bed,
+                       double level, double time_step) {
+  const auto grains = lane_grains(s, bed);
+  const double length = s.bed.length, width = s.bed.width, t = s.bed.wall_thickness;
+  const double track = s.is_bed() ? 0.0 : s.car.track(), top = level + 0.5;
+  const double far_x = 0.5 * length + t, far_y = 0.5 * (track + width) + t;
+  World<Model> world({.time_step = time_step,
+                      .overlap_limit = 1.8,  // a grain that is jammed for a moment does not end a run; the report tells
+                      .domain = surface::Bounds{Vec3(-far_x, -far_y, -t), Vec3(far_x, far_y, top)},
+                      .beyond_domain = BeyondDomain::remove,
+                      .threads = s.bed.threads > 0 ? s.bed.threads : threads_for(grains.size()),
+                      .sleep = s.sleep ? std::optional<SleepOptions>(SleepOptions{}) : std::nullopt});
+  const SpeciesId species = world.add_species(shape, {.material = "grain", .density = s.grains.density});
+  world.set_contact("grain", "grain", grain_contact<Model>(s.grains, s.grains.friction));
+  world.set_contact("grain", "wall", grain_contact<Model>(s.grains, s.grains.wall_friction));
+  const BodyId ground = world.machine().add_body(mbd::fixed_body("lane"));
+  const auto wall = [&](const std::string& name, const Vec3& edges, const Vec3& at) {
+    world.add_surface(ground, surface::Box(edges), {.name = name, .position = at});
+  };
+  // As high as a grain's edge above the level: what a tyre pushes over it is lost.
+  const double high = level + s.grains.edge(), middle = 0.5 * high;
+  for (int k = 0; k < s.troughs(); ++k) {
+    const double y = k == 0 ? 0.5 * track : -0.5 * track;
+    const std::string name = s.is_bed() ? "bed" : k == 0 ? "left trough" : "right trough";
+    wall(name + " floor", Vec3(length + 2.0 * t, width + 2.0 * t, t), Vec3(0, y, -0.5 * t));
+    for (const double side : {-1.0, 1.0}) {
+      const std::string sign = side < 0.0 ? "-" : "+";
+      wall(name + " wall " + sign + "x", Vec3(t, width + 2.0 * t, high), Vec3(side * 0.5 * (length + t), y, middle));
+      wall(name + " wall " + sign + "y", Vec3(length, t, high), Vec3(0, y + side * 0.5 * (width + t), middle));
+    }
+  }
+  for (const auto& g : grains) {
+    world.add_particle({.species = species, .position = g.position, .rotation = g.rotation});
+  }
+  return world;
+}
+
+/// Mean height (m) of the surface of the lane, away from its walls: what sinkage and ruts are measured from.
+inline double level_of(const Settings& s, std::span<const soil::Placement> grains) {
+  const double away = s.grains.edge(), x = 0.5 * s.bed.length - away, y = 0.5 * s.bed.width - away;
+  double sum = 0.0, count = 0.0;
+  for (int k = 0; k < s.troughs(); ++k) {
+    const double middle = s.is_bed() ? 0.0 : (k == 0 ? 0.5 : -0.5) * s.car.track();
+    for (const double z : surface_profile(grains, s.grains.half_edge, -x, x, middle - y, middle + y).z) {
+      sum += z;
+      count += 1.0;
+    }
+  }
+  return count > 0.0 ? sum / count : 0.0;
+}
+
+/// Overlap of the deepest contact in the last step, as a share of the edge of the cubes of 8 spheres. The world knows
+/// it in effective diameters: the radius of two equal spheres, a quarter of the edge, and twice that of one on a
+/// surface.
+template <class Model>
+double deepest_overlap(const World<Model>& world) {
+  double deepest = 0.0;
+  for (const auto& chunk : world.state().chunks) {
+    deepest = std::max(deepest, chunk.deepest.overlap * (chunk.deepest.with_surface ? 0.5 : 0.25));
+  }
+  return deepest;
+}
+
+}  // namespace dem::rig::soft_lane

@@ -1,0 +1,142 @@
+#pragma once
+
+#include <dem/io/csv.hpp>
+#include <dem/io/duration.hpp>
+#include <dem/report/replay_page.hpp>
+#include <dem/rig/rig.hpp>
+#include <dem/rig/soft_lane/tables.hpp>
+
+namespace dem::rig::soft_lane {
+
+/// The car on a soft lane as a program. `campaign_run` is run_campaign() with a world, compiled beside it.
+class LaneRig : public Rig {
+ public:
+  using Run = void(const Settings&, Campaign&, Session&);
+  explicit LaneRig(Run* campaign_run) : run_(campaign_run) {}
+
+  void declare(Options& options) override { soft_lane::declare(options, settings); }
+  void find_idle(IdleOptions& idle) const override { soft_lane::find_idle(idle, settings); }
+  void resolve() override { soft_lane::resolve(settings); }
+  [[nodiscard]] std::string output() const override { return settings.output; }
+  [[nodiscard]] ResultNames results() const override {
+    return {.files = {"results.csv", "telemetry.csv", "rut.csv", "soft_lane.pvd"},
+            .plots = {"speed", "slip", "sinkage", "load", "pull", "torque", "travel", "engine", "driver", "attitude",
+                      "rut", "section"},
+            .frames = {"grains", "surfaces"}};
+  }
+  [[nodiscard]] std::vector<OwnWord> words() const override { return bed_words(); }
+  void run(Session& session) override { run_(settings, campaign, session); }
+
+  bool report(Report& report) const override {
+    const Settings& s = settings;
+    const Campaign& c = campaign;
+    report.part("results.csv", [&] { write_results(report.folder() / "results.csv"); });
+    report.part("rut.csv", [&] { write_ruts(report.folder() / "rut.csv"); });
+    const std::vector<io::Table> tables{drive_table(s, c), wheel_table(c), cost_table(s, c)};
+    report.part("the printed report", [&] {
+      fmt::print("\n{}\n{}\n\n", lane_text(s, c), words_text);
+      for (const auto& table : tables) {
+        io::print(table);
+        fmt::print("\n");
+      }
+      fmt::print("{} of wall time.\n", io::format_duration(report.outcome().wall_time));
+    });
+    report.page(list_settings(s), [&](io::HtmlReport& page) {
+      page.paragraph(lane_text(s, c)).paragraph(words_text);
+      for (const auto& table : tables) page.table(table);
+      if (c.samples.size() > 1) add_plots(report, page);
+      if (c.replay && c.replay->frames().size() > 1) {
+        page.heading("Replay").replay(*c.replay, "The car from the moment it stands on the lane.");
+      }
+    });
+    return s.vtk && !c.samples.empty();
+  }
+
+  Settings settings;
+  Campaign campaign;
+
+ private:
+  void add_plots(Report& report, io::HtmlReport& page) const {
+    const Campaign& c = campaign;
+    const auto wheels = [&](double WheelSample::*value, double scale, const char* name, const char* title,
+                            const char* label, const char* caption) {
+      report.plot(page, wheel_plot(c, value, scale, title, label), name, caption);
+    };
+    page.heading("Plots");
+    if (!c.section.empty()) {
+      report.plot(page, section_plot(settings, c), "section", "Grains and tyres in the plane of the left wheels.");
+    }
+    report.plot(page, speed_plot(c), "speed", "Speed of the car along its own axis.");
+    wheels(&WheelSample::slip, 1.0, "slip", "Slip", "slip (omega r - v)/max", "Slip of each wheel.");
+    wheels(&WheelSample::sinkage, 1e3, "sinkage", "Sinkage", "sinkage [mm]",
+           "Depth of each wheel's lowest point below the level.");
+    wheels(&WheelSample::load, 1e-3, "load", "Load", "load [kN]", "Load of each wheel.");
+    wheels(&WheelSample::pull, 1e-3, "pull", "Pull", "pull [kN]", "Net forward force of the grains on each wheel.");
+    wheels(&WheelSample::torque, 1e-3, "torque", "Torque", "torque [kN m]",
+           "Torque that drives each wheel against the grains.");
+    wheels(&WheelSample::travel, 1e3, "travel", "Suspension travel", "travel [mm]", "Travel of each wheel, up.");
+    report.plot(page, engine_plot(c), "engine", "Power of the engine.");
+    report.plot(page, driver_plot(c), "driver", "What the driver does; steering: mean angle of the front wheels.");
+    report.plot(page, pose_plot(c), "attitude", "Attitude of the chassis.");
+    if (auto rut = rut_plot(c); !rut.series.empty()) {
+      report.plot(page, rut, "rut", "Height of the surface across both tracks, behind the rear wheels.");
+    }
+  }
+
+  void write_results(const std::filesystem::path& path) const {
+    const Settings& s = settings;
+    const Campaign& c = campaign;
+    const Means& m = c.means;
+    io::CsvWriter csv(path, {"scene",
+                             "slope_percent",
+                             "ended",
+                             "way_m",
+                             "time_s",
+                             "speed_m_per_s",
+                             "slip",
+                             "sinkage_m",
+                             "load_N",
+                             "pull_N",
+                             "torque_Nm",
+                             "resistance_N",
+                             "power_W",
+                             "energy_per_metre_J_per_m",
+                             "cost_of_transport",
+                             "rut_depth_left_m",
+                             "rut_depth_right_m",
+                             "rut_width_m",
+                             "drift_m",
+                             "brake_way_m",
+                             "deceleration_m_per_s2",
+                             "radius_m",
+                             "ackermann_radius_m",
+                             "deepest_overlap_of_edge",
+                             "grains",
+                             "grains_lost",
+                             "computing_s_per_s"});
+    const auto cell = [](double value) { return std::isfinite(value) ? text("{}", value) : std::string(); };
+    const bool any = !c.samples.empty();
+    csv.row(s.scene, s.slope_angle() != 0.0 ? s.slope : 0.0, c.ended, cell(any ? c.samples.back().way : not_known),
+            cell(any ? c.samples.back().car.time : not_known), cell(m.speed), cell(m.slip), cell(m.sinkage),
+            cell(m.load), cell(m.pull), cell(m.torque), cell(m.resistance), cell(m.power), cell(m.energy_per_metre),
+            cell(m.cost_of_transport), cell(c.rut_depth[0]), cell(c.rut_depth[1]), cell(c.rut_width), cell(c.drift),
+            cell(c.brake_way), cell(c.deceleration), cell(c.radius), cell(c.ackermann), cell(c.deepest), c.grains,
+            c.lost, cell(c.computing));
+    csv.flush();
+  }
+
+  void write_ruts(const std::filesystem::path& path) const {
+    io::CsvWriter csv(path, {"y_m", "before_m", "after_m"});
+    for (std::size_t side : {1, 0}) {
+      const SurfaceProfile &before = campaign.before[side], &after = campaign.after[side];
+      for (std::size_t k = 0; k < std::min(before.y.size(), after.y.size()); ++k) {
+        csv.row(before.y[k], before.z[k], after.z[k]);
+      }
+    }
+    csv.flush();
+  }
+
+  Run* run_;
+};
+
+}  // namespace dem::rig::soft_lane

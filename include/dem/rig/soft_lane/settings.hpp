@@ -1,0 +1,198 @@
+#pragma once
+
+#include <dem/rig/bed/bed_settings.hpp>
+#include <dem/vehicle/humvee.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+namespace dem::rig::soft_lane {
+
+/// Everything that can be chosen, in SI units. A value of 0 where it says "0: by size" is filled in by resolve().
+///
+/// The stiffness of the grains follows from how deep they overlap under a tyre. The thesis's K = 2,000 N/m for any size
+/// cannot carry a car. Here K grows with the size of the grains, as 4e4 N/m at a half-edge of 0.9 mm, which is 22.2 MPa
+/// times the edge d. A wheel that carries F on a print of b x l presses with p = F/(b l). If four tenths of the grains
+/// in the print carry it, each by one contact, the overlap is p d^2/(0.4 K), as a share of d p/(0.4 K/d): 1.8 % for the
+/// Humvee's 12 kN on 0.25 m x 0.3 m, whatever the size of the grains. The report has the overlaps that there were.
+struct Settings {
+  std::string size = "quick";   ///< smoke, quick or full
+  std::string scene = "level";  ///< level, slope, side-slope, brake, turn or coast
+  double slope = 20.0;  ///< percent, of slope (positive: uphill) and side-slope (positive: the left side is high)
+
+  vehicle::VehicleSpec car = vehicle::humvee({.rubber_rear = false});
+  std::string engine = "motor";  ///< motor, gears or low-range
+  std::string tyre = "mesh";     ///< mesh or cylinder
+  int tyre_triangles = 6662;     ///< of a mesh (thesis)
+  double tyre_friction = 0.8;    ///< mu, grain on tyre
+  double machine_step = 5e-5;    ///< s, the largest step of the car
+  double set_down_speed = 0.5;   ///< m/s
+  double speed = 0.0;            ///< m/s, that the driver holds; 0: by size
+  double acceleration = 1.0;     ///< m/s^2, at which the driver reaches it
+  double spin_limit = 1.0;       ///< m/s, by which rims are faster than the car where the driver eases off the throttle
+  double path = 0.0;             ///< m, that the car drives; 0: as far as the lane goes
+  double steer_deg = 12.0;       ///< of the front wheels in a turn
+  double steer_deg_per_s = 30.0;  ///< at which they turn there
+
+  GrainSettings grains{.stiffness = 4e4, .damping = 0.1};
+  /// Of one trough: length along x, width, depth. There are two of them, one under each track, with the same grains,
+  /// turned by half a turn; or one bed under the whole car.
+  BedSettings bed{.lid_pressure = 5000.0, .stage_limit = 6.0, .file = {}, .save = {}};
+  std::string layout;  ///< troughs or bed; empty: troughs, but a bed for a turn
+  bool sleep = true;
+
+  std::string output = "humvee_soil_output";
+  bool replay = true;
+  bool vtk = false;
+
+  [[nodiscard]] bool is_bed() const { return layout == "bed"; }
+  [[nodiscard]] int troughs() const { return is_bed() ? 1 : 2; }
+  /// m, between the middle of a wheel and the end of the lane.
+  [[nodiscard]] double margin() const { return car.tyre.radius + 0.1; }
+  [[nodiscard]] double longest_path() const { return bed.length - car.wheelbase() - 2.0 * margin(); }
+  /// m, along x, of the vehicle's origin at the start: the rear wheels stand at the lane's end.
+  [[nodiscard]] double start() const { return -0.5 * bed.length + margin() - car.rear.points.wheel.x(); }
+  /// rad, by which gravity is tilted.
+  [[nodiscard]] double slope_angle() const {
+    return scene == "slope" || scene == "side-slope" ? std::atan(0.01 * slope) : 0.0;
+  }
+  /// Pa, of a wheel of a car with this weight (N) on a print 0.3 m long.
+  [[nodiscard]] double pressure(double weight) const { return 0.25 * weight / (0.3 * car.tyre.width); }
+  /// Overlap of grains under that pressure, as a share of their edge.
+  [[nodiscard]] double overlap(double weight) const {
+    return pressure(weight) * grains.edge() / (0.4 * grains.scale() * grains.stiffness);
+  }
+};
+
+/// Names every option and the place of its value.
+inline void declare(Options& options, Settings& s) {
+  const auto add = [&](const char* name, auto& value, const char* text) { return options.add(name, value, text); };
+  add("--size", s.size, "smoke (seconds), quick (minutes) or full (the thesis's 331,890 grains: days)");
+  add("--scene", s.scene, "what is driven").one_of({"level", "slope", "side-slope", "brake", "turn", "coast"});
+  add("--slope", s.slope, "percent: of slope (below 0: downhill) and of side-slope (above 0: its left side is high)");
+  options.group("Car");
+  add("--engine", s.engine, "motor (no gears), gears (a diesel), low-range").one_of({"motor", "gears", "low-range"});
+  add("--tyre", s.tyre, "mesh of triangles, as in the thesis, or cylinder").one_of({"mesh", "cylinder"});
+  add("--tyre-triangles", s.tyre_triangles, "of a mesh");
+  add("--tyre-friction", s.tyre_friction, "mu, grain on tyre");
+  add("--speed", s.speed, "that the driver holds [m/s]; 0: by size");
+  add("--acceleration", s.acceleration, "at which the driver reaches it [m/s^2]");
+  add("--spin-limit", s.spin_limit,
+      "the driver eases off the throttle where rims are faster than the car by this [m/s]");
+  add("--path", s.path, "that the car drives [m]; 0: as far as the lane goes");
+  add("--steer", s.steer_deg, "of the front wheels in a turn, to the left [deg]");
+  add("--steer-rate", s.steer_deg_per_s, "at which they turn there [deg/s]");
+  add("--set-down-speed", s.set_down_speed, "of the crane that sets the car down [m/s]");
+  add("--machine-step", s.machine_step, "largest time step of the car, which sub-steps keep [s]");
+  add_grain_options(options, s.grains);
+  add_bed_options(options, s.bed);
+  add("--layout", s.layout, "troughs (two, one a track) or bed (one under the car); empty: by scene");
+  options.flag("--sleep", s.sleep, "grains at rest sleep (--sleep=true) or not (--no-sleep)").off("--no-sleep");
+  options.group("Output");
+  add("--output", s.output, "folder; results of an earlier run in it are replaced");
+  options.flag("--replay", s.replay, "replay in the report (--replay=true) or none (--no-replay)").off("--no-replay");
+  options.flag("--vtk", s.vtk, "files for ParaView (--vtk=true) or none (--no-vtk)").off("--no-vtk");
+}
+
+inline void find_idle(IdleOptions& idle, const Settings& s) {
+  rig::find_idle(idle, s.grains);
+  rig::find_idle(idle, s.bed);
+  idle.unless(s.tyre == "mesh", "with --tyre mesh", {"--tyre-triangles"});
+  idle.unless(s.scene == "slope" || s.scene == "side-slope", "with --scene slope or side-slope", {"--slope"});
+  idle.unless(s.scene == "turn", "with --scene turn", {"--steer", "--steer-rate"});
+}
+
+/// Depth (m) of a trough that so many grains fill as they settle, when `strike_off` of them is taken off.
+inline double depth_of(double grains, double strike_off, double half_edge, double length, double width) {
+  const double rained = std::ceil(grains / (1.0 - strike_off));
+  return rained * 8.0 * half_edge * half_edge * half_edge / soil::solid_fraction_at(0.0, soil::cube8_limits) /
+         (length * width);
+}
+
+/// Throws Error unless the lane holds the car and its path.
+inline void require_room(const Settings& s) {
+  const double shortest = s.car.wheelbase() + 2.0 * s.margin() + 0.1;
+  if (!(s.bed.length > shortest)) {
+    fail(
+        "the lane is {:g} m long, but the car's wheels stand {:.3g} m apart and need {:.3g} m before and behind them; "
+        "give --bed-length at least {:.3g}",
+        s.bed.length, s.car.wheelbase(), s.margin(), shortest + 0.01);
+  }
+  if (!(s.path <= s.longest_path() * (1.0 + 1e-9))) {
+    fail(
+        "a --path of {:g} m is longer than the lane: {:.3g} m of its {:g} m are left for driving; give --bed-length "
+        "{:.4g} or a shorter --path",
+        s.path, s.longest_path(), s.bed.length, s.path + s.bed.length - s.longest_path());
+  }
+  const double tyre = s.car.tyre.width, narrowest = tyre + 4.0 * s.grains.edge(), track = s.car.track();
+  if (s.is_bed() && !(s.bed.width >= track + narrowest)) {
+    fail(
+        "the bed is {:g} m wide, but the car needs {:.3g} m: its track, a tyre and two grains on either side; give a "
+        "larger --bed-width",
+        s.bed.width, track + narrowest);
+  }
+  if (!s.is_bed() && !(s.bed.width >= narrowest && s.bed.width + 2.0 * s.bed.wall_thickness <= track)) {
+    fail(
+        "a trough is {:g} m wide, but must hold a tyre and two grains on either side, {:.3g} m, and no more than the "
+        "track, {:.3g} m, lets two troughs have; change --bed-width or --half-edge, or give --layout bed",
+        s.bed.width, narrowest, track - 2.0 * s.bed.wall_thickness);
+  }
+}
+
+/// Fills in what depends on the size, and checks every option against its range. Throws Error.
+inline void resolve(Settings& s) {
+  struct Defaults {
+    double length, trough_width, bed_width, depth, half_edge, speed;
+  };
+  const auto by_size = BySize<Defaults>{.smoke = {4.8, 0.58, 2.6, 0.14, 40e-3, 0.8},
+                                        .quick = {7.5, 0.55, 3.0, 0.20, 22e-3, 1.5},
+                                        .full = {15.0, 0.90, 4.0, 0.0, 13.3e-3, 2.0}}[size_named(s.size)];
+  if (s.layout.empty()) s.layout = s.scene == "turn" ? "bed" : "troughs";
+  if (s.layout != "troughs" && s.layout != "bed") {
+    fail("--layout is '{}', but must be troughs, bed, or empty: by scene", s.layout);
+  }
+  rig::resolve(s.grains, by_size.half_edge);
+  require_within(s.bed.strike_off, 0.0, 0.9, "--strike-off");
+  fill(s.bed.length, by_size.length);
+  fill(s.bed.width, s.is_bed() ? by_size.bed_width : by_size.trough_width);
+  require_positive(s.bed.length, "--bed-length", "m (0: by size)");
+  require_positive(s.bed.width, "--bed-width", "m (0: by size)");
+  const double full_depth =
+      depth_of(331'890.0 / s.troughs(), s.bed.strike_off, s.grains.half_edge, s.bed.length, s.bed.width);
+  rig::resolve(s.bed, {s.bed.length, s.bed.width, by_size.depth > 0.0 ? by_size.depth : full_depth}, s.output);
+  fill(s.speed, by_size.speed);
+  if (s.engine != "motor") {
+    s.car = vehicle::humvee({.rubber_rear = false, .has_gears = true, .low_range = s.engine == "low-range"});
+  }
+  require_within(s.slope, -100.0, 100.0, "--slope (percent)");
+  require_within(s.tyre_triangles, 60, 200'000, "--tyre-triangles");
+  require_non_negative(s.tyre_friction, "--tyre-friction", "(no unit)");
+  require_within(s.speed, 0.05, 20.0, "--speed (m/s)");
+  require_within(s.acceleration, 0.05, 10.0, "--acceleration (m/s^2)");
+  require_within(s.spin_limit, 0.01, 100.0, "--spin-limit (m/s)");
+  require_within(s.path, 0.0, 1e4, "--path (m; 0: as far as the lane goes)");
+  require_within(s.steer_deg, -40.0, 40.0, "--steer (deg)");
+  require_within(s.steer_deg_per_s, 1.0, 90.0, "--steer-rate (deg/s)");
+  require_within(s.set_down_speed, 0.01, 1.0, "--set-down-speed (m/s)");
+  require_within(s.machine_step, 1e-6, 2e-4, "--machine-step (s)");
+  require_room(s);
+  if (s.path == 0.0) s.path = s.longest_path();
+}
+
+/// Names and values for the report.
+inline NamesAndValues list_settings(const Settings& s) {
+  const bool sloped = s.slope_angle() != 0.0;
+  NamesAndValues list{{"size", s.size}, {"scene", s.scene + (sloped ? text(" of {:g} %", s.slope) : "")}};
+  list.insert(list.end(), {{"speed", text("{:g} m/s, reached at {:g} m/s²", s.speed, s.acceleration)},
+                           {"path", text("{:.2f} m", s.path)},
+                           {"engine", s.engine},
+                           {"tyre", s.tyre + text(", {:g} m x {:g} m, friction on grains {:g}", 2.0 * s.car.tyre.radius,
+                                                  s.car.tyre.width, s.tyre_friction)},
+                           {"lane", s.is_bed() ? "one bed under the car" : "two troughs, one under each track"}});
+  rig::list_settings(list, s.grains);
+  rig::list_settings(list, s.bed);
+  return list;
+}
+
+}  // namespace dem::rig::soft_lane

@@ -1,0 +1,182 @@
+#pragma once
+// The car on the lane: how it is put there, moved on, and looked at.
+
+#include <dem/geometry/cylinder/cylinder.hpp>
+#include <dem/geometry/mesh/mesh_shapes.hpp>
+#include <dem/geometry/mesh/triangle_mesh.hpp>
+#include <dem/rig/soft_lane/lane.hpp>
+#include <dem/rig/stages.hpp>
+
+#include <cmath>
+#include <numbers>
+#include <span>
+#include <utility>
+#include <vector>
+
+namespace dem::rig::soft_lane {
+
+inline constexpr double interval = 0.01;  ///< s, of samples and of the driver
+
+/// The lane with the car.
+template <class Model>
+struct Stand {
+  World<Model> world;
+  double level = 0.0;                   ///< m
+  std::vector<soil::Placement> before;  ///< grains before the car came
+  vehicle::Vehicle car = {};
+  std::array<SensorId, 4> grains = {};  ///< on the wheels
+  LoadId crane = {};
+};
+
+/// Hangs the car over the lane: the wheels 0.2 m above the grains as the suspension is drawn, for they sink on their
+/// springs. The crane is a damper against sinking, rolling and pitching of the chassis: the car's weight sinks at the
+/// set-down speed.
+template <class Model>
+void add_car(Stand<Model>& stand, const Settings& s) {
+  auto& m = stand.world.machine();
+  double top = stand.level;
+  for (const auto& g : stand.before) top = std::max(top, g.position.z() + s.grains.half_edge);
+  const vehicle::TyreSpec& tyre = s.car.tyre;
+  const double height = top + tyre.radius + 0.2 - s.car.front.points.wheel.z();
+  m.joint_tolerance = 0.5;  // m: light shafts wind up; how far joints open is told with the results
+  m.substeps = static_cast<int>(std::ceil(stand.world.time_step() / s.machine_step * (1.0 - 1e-9)));
+  stand.car = vehicle::add_vehicle(vehicle::Assembly(m, "car", Vec3(s.start(), 0, height)), s.car);
+
+  stand.world.set_contact("grain", "tyre", grain_contact<Model>(s.grains, s.tyre_friction));
+  Mat3 about_y;  // the tyre's axis, z of its own frame, along y
+  about_y << 1, 0, 0, 0, 0, 1, 0, -1, 0;
+  for (std::size_t k = 0; k < 4; ++k) {
+    const BodyId wheel = stand.car.wheels[k].body;
+    const std::string corner = vehicle::corner_names[k];
+    const SurfaceOptions place{.material = "tyre", .name = corner + " tyre", .rotation = about_y};
+    if (s.tyre == "mesh") {
+      const IndexedMesh mesh = mesh::tyre(2.0 * tyre.radius, tyre.width, s.tyre_triangles);
+      stand.world.add_surface(wheel, surface::TriangleMesh(mesh), place);
+    } else {
+      stand.world.add_surface(wheel, surface::Cylinder(tyre.radius, tyre.width), place);
+    }
+    stand.grains[k] = m.add_sensor(mbd::contact_sensor("grains on the " + corner + " tyre", wheel, interval));
+  }
+  const double weight = vehicle::weight_of(m), up = weight / s.set_down_speed, turn = up * s.car.wheelbase();
+  stand.crane = m.add_load(mbd::custom_load("crane", stand.car.chassis, [up, turn](double, const Body& b) {
+    const Vec3 v = b.velocity(), w = b.angular_velocity();
+    return Wrench{{0, 0, -up * v.z()}, {-turn * w.x(), -turn * w.y(), 0}};
+  }));
+}
+
+/// Ten milliseconds with the driver's controls. Steering turns at `steer_rate` (rad/s) at most. Throws Stopped for a
+/// step that shows a problem, Interrupted after Ctrl-C.
+template <class Model>
+void advance(Stand<Model>& stand, const vehicle::Controls& controls, double steer_rate = 0.5) {
+  const double dt = stand.world.time_step();
+  run(stand.world, interval, [&] { vehicle::drive(stand.world.machine(), stand.car, controls, dt, steer_rate); });
+}
+
+/// m, the middles of the wheels.
+template <class Model>
+std::array<Vec3, 4> wheels_of(const Stand<Model>& stand) {
+  std::array<Vec3, 4> at;
+  for (std::size_t k = 0; k < 4; ++k) at[k] = stand.world.machine().body(stand.car.wheels[k].body).position();
+  return at;
+}
+/// Where the car is along the lane, m: the mean of its wheels.
+template <class Model>
+double place_of(const Stand<Model>& stand) {
+  const auto at = wheels_of(stand);
+  return 0.25 * (at[0].x() + at[1].x() + at[2].x() + at[3].x());
+}
+
+/// Telemetry of the last interval. `time` (s) and `way` (m) since the start.
+template <class Model>
+Sample sample_of(const Stand<Model>& stand, const vehicle::Controls& controls, double time, double way, double radius) {
+  const auto& m = stand.world.machine();
+  Sample x;
+  x.car = vehicle::sample_of(m, stand.car, controls, time);
+  x.way = way;
+  for (std::size_t j = 0; j < m.parts().joints.size(); ++j) {
+    x.widest_joint = std::max(x.widest_joint, m.violation(JointId(j)).displacement);
+  }
+  x.overlap = deepest_overlap(stand.world);
+  x.asleep = static_cast<double>(stand.world.asleep_count()) / static_cast<double>(stand.world.particle_count());
+  for (std::size_t k = 0; k < 4; ++k) {
+    const vehicle::Wheel& wheel = stand.car.wheels[k];
+    const Body& body = m.body(wheel.body);
+    const Wrench grains = m.sensor(stand.grains[k]).mean();
+    const Vec3 force = to_eigen(grains.force), torque = to_eigen(grains.torque), v = body.velocity();
+    const Vec3 axle = m.reference_rotation(stand.car.suspension[k].knuckle) * Vec3::UnitY();
+    const Vec3 across = axle.cross(Vec3::UnitZ()), ahead = across.normalized(), left = Vec3::UnitZ().cross(ahead);
+    WheelSample& w = x.wheels[k];
+    w.spin = m.speed(wheel.turn);
+    w.slip = vehicle::slip_of(body.angular_velocity().dot(axle) * radius, v.dot(ahead));
+    w.slip_angle = std::abs(v.dot(ahead)) > 1e-3 ? std::atan2(v.dot(left), std::abs(v.dot(ahead))) : 0.0;
+    w.load = force.z();
+    w.pull = force.dot(ahead);
+    w.side = force.dot(left);
+    w.torque = -torque.dot(axle);
+    w.sinkage = stand.level - (body.position().z() - radius);
+    w.travel = vehicle::travel_of(m, stand.car, k);
+    w.brake_torque = -m.actuator(wheel.brake).force;
+  }
+  return x;
+}
+
+/// The surface of the left (0) or right (1) track between where the rear wheels stood and a place (m) that they left,
+/// 0.2 m from both.
+inline SurfaceProfile track_profile(const Settings& s, std::span<const soil::Placement> grains, std::size_t side,
+                                    double rear) {
+  const double from = s.start() + s.car.rear.points.wheel.x() + 0.2, to = rear - 0.2;
+  const double half = s.is_bed() ? 0.25 * s.bed.width : 0.5 * s.bed.width;
+  const double middle = (side == 0 ? 1.0 : -1.0) * (s.is_bed() ? half : 0.5 * s.car.track());
+  return surface_profile(grains, s.grains.half_edge, from, to, middle - half, middle + half);
+}
+
+/// Overlaps of all contacts of grains with grains under the wheels, in the box about each wheel's lowest point that is
+/// as wide as the tyre, 0.3 m long, and down to the floor: as shares of a grain's edge. A search of its own.
+template <class Model>
+std::vector<double> overlaps_under_tyres(const Stand<Model>& stand, const Settings& s) {
+  using Shape = typename Model::Shape;
+  const auto& world = stand.world;
+  std::vector<double> overlaps;
+  for (const Vec3& wheel : wheels_of(stand)) {
+    std::vector<ParticleId> near;
+    AlignedVector<double> pose;
+    for (const ParticleId p : world.particles()) {
+      const Vec3 x = world.position(p) - wheel;
+      if (std::abs(x.x()) > 0.15 || std::abs(x.y()) > 0.5 * s.car.tyre.width) continue;
+      near.push_back(p);
+      pose.resize(near.size() * Shape::pose_size + 1);
+      world.species(world.species_of(p))
+          .shape.orient(from_eigen(world.rotation(p)), &pose[(near.size() - 1) * Shape::pose_size]);
+    }
+    for (std::size_t i = 0; i < near.size(); ++i) {
+      for (std::size_t j = i + 1; j < near.size(); ++j) {
+        const Vec3 link = world.position(near[j]) - world.position(near[i]);
+        if (link.squaredNorm() > 8.0 * s.grains.edge() * s.grains.edge()) continue;
+        Shape::collide(
+            world.species(world.species_of(near[i])).shape, &pose[i * Shape::pose_size],
+            world.species(world.species_of(near[j])).shape, &pose[j * Shape::pose_size], from_eigen(link),
+            [&](std::uint32_t, const auto& touch) { overlaps.push_back(touch.geometry().overlap / s.grains.edge()); });
+      }
+    }
+  }
+  return overlaps;
+}
+
+/// What is seen of the lane at the end: ruts behind the rear wheels, and a section through the left wheels.
+template <class Model>
+void look_back(const Stand<Model>& stand, const Settings& s, Campaign& c) {
+  const auto after = soil::placements(stand.world);
+  c.wheel_at = wheels_of(stand);
+  for (std::size_t k = 0; k < 2; ++k) {
+    c.before[k] = track_profile(s, stand.before, k, c.wheel_at[2].x());
+    c.after[k] = track_profile(s, after, k, c.wheel_at[2].x());
+  }
+  const double y = 0.5 * (c.wheel_at[0].y() + c.wheel_at[2].y());
+  c.section.clear();
+  for (const auto& g : after) {
+    if (std::abs(g.position.y() - y) < s.grains.half_edge) c.section.push_back(g.position);
+  }
+  c.lost = static_cast<double>(stand.world.beyond_domain().grains());
+}
+
+}  // namespace dem::rig::soft_lane

@@ -1,0 +1,92 @@
+#pragma once
+// What is recorded of a vehicle while it drives, whatever it drives on: rows of numbers with units in their names.
+
+#include <dem/vehicle/vehicle.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+namespace dem::vehicle {
+
+/// Corners in the names of columns, in the order of corner_names.
+inline constexpr std::array<const char*, 4> corner_letters = {"fl", "fr", "rl", "rr"};
+
+/// Longitudinal slip: (rim - way)/max(|rim|, |way|), of the speed of the rim, omega r, and that of the wheel's middle
+/// (m/s). Positive drives, negative brakes, from -1 (locked) to 1 (spins on the spot); 2 or -2 where both turn against
+/// each other. 0 below 1 mm/s.
+inline double slip_of(double rim, double way) {
+  const double fastest = std::max(std::abs(rim), std::abs(way));
+  return fastest > 1e-3 ? (rim - way) / fastest : 0.0;
+}
+
+/// Roll, pitch and yaw of the chassis, rad: turned by yaw about z, then pitch about y, then roll about x. A positive
+/// pitch lowers the nose.
+inline Vec3 attitude_of(const mbd::Mechanism& m, const Vehicle& v) {
+  const Mat3 r = m.reference_rotation(v.chassis);
+  return {std::atan2(r(2, 1), r(2, 2)), std::asin(std::clamp(-r(2, 0), -1.0, 1.0)), std::atan2(r(1, 0), r(0, 0))};
+}
+
+/// N, of all bodies of a mechanism that are not fixed, under 9.81 m/s^2.
+inline double weight_of(const mbd::Mechanism& m) {
+  double mass = 0.0;
+  for (const Body& b : m.bodies()) mass += b.fixed ? 0.0 : b.mass;
+  return 9.81 * mass;
+}
+
+/// The vehicle as a whole at a time.
+struct CarSample {
+  double time = 0.0;                          ///< s
+  Vec3 position = Vec3::Zero();               ///< m, of the vehicle's origin
+  double yaw = 0.0, roll = 0.0, pitch = 0.0;  ///< rad
+  double speed = 0.0;                         ///< m/s, of the chassis along its own axis
+  double yaw_rate = 0.0;                      ///< rad/s
+  Controls controls;
+  double steer = 0.0;          ///< rad, mean of the front wheels
+  double gear = 1.0;           ///< from 1
+  double engine_torque = 0.0;  ///< N m, at the drive shaft
+  double engine_speed = 0.0;   ///< rad/s, of the engine's shaft
+  double engine_power = 0.0;   ///< W
+
+  /// f(name with unit, value) for all columns.
+  template <class F>
+  void each(F&& f) const {
+    f("time_s", time), f("x_m", position.x()), f("y_m", position.y()), f("z_m", position.z());
+    f("yaw_rad", yaw), f("roll_rad", roll), f("pitch_rad", pitch);
+    f("speed_m_per_s", speed), f("yaw_rate_rad_per_s", yaw_rate);
+    f("throttle", controls.throttle), f("brake", controls.brake), f("steer_rad", steer), f("gear", gear);
+    f("engine_torque_Nm", engine_torque), f("engine_speed_rad_per_s", engine_speed), f("engine_power_W", engine_power);
+  }
+};
+
+/// `controls`: what the driver does.
+inline CarSample sample_of(const mbd::Mechanism& m, const Vehicle& v, const Controls& controls, double time) {
+  const Vec3 turn = attitude_of(m, v);
+  const auto& engine = m.actuator(v.driveline.engine);
+  return {.time = time,
+          .position = point_of(m, v, Vec3::Zero()),
+          .yaw = turn.z(),
+          .roll = turn.x(),
+          .pitch = turn.y(),
+          .speed = speed_of(m, v),
+          .yaw_rate = m.body(v.chassis).angular_velocity().z(),
+          .controls = controls,
+          .steer = 0.5 * (steer_of(m, v, 0) + steer_of(m, v, 1)),
+          .gear = 1.0 + static_cast<double>(v.driveline.gear),
+          .engine_torque = engine.force,
+          .engine_speed = engine_speed(m, v.driveline),
+          .engine_power = engine.power()};
+}
+
+/// Names of the columns of something with each(), after a prefix.
+template <class Sample>
+void add_columns(std::vector<std::string>& names, const Sample& sample, const std::string& prefix = "") {
+  sample.each([&](const char* name, double) { names.push_back(prefix + name); });
+}
+template <class Sample>
+void add_values(std::vector<double>& row, const Sample& sample) {
+  sample.each([&](const char*, double value) { row.push_back(value); });
+}
+
+}  // namespace dem::vehicle

@@ -1,0 +1,155 @@
+#include "catch.hpp"
+
+#include <dem/rig/soft_lane/driver.hpp>
+
+#include <cmath>
+
+using Catch::Approx;
+using namespace dem::rig;
+using dem::Vec3;
+
+namespace {
+
+soft_lane::Settings quick_lane() {
+  soft_lane::Settings s;
+  s.output = "lane";
+  return s;
+}
+
+std::string refusal_of(soft_lane::Settings s) {
+  try {
+    soft_lane::resolve(s);
+  } catch (const dem::Error& e) {
+    return e.what();
+  }
+  return "";
+}
+
+/// A car that drives at 1.5 m/s with slip, on wheels where they should be.
+soft_lane::Sample driving(double time) {
+  soft_lane::Sample x;
+  x.car.time = time;
+  x.car.speed = 1.5;
+  x.way = 1.5 * time;
+  x.car.position = Vec3(x.way, 0.01 * time, 0.5);
+  x.car.engine_power = 6000.0;
+  for (auto& w : x.wheels) w = {.slip = 0.2, .load = 12e3, .pull = 100.0, .torque = 970.0, .sinkage = 0.05};
+  return x;
+}
+
+std::array<dem::Vec3, 4> wheels_in_their_tracks() {
+  const double y = 0.91;
+  return {Vec3(3, y, 0.5), Vec3(3, -y, 0.5), Vec3(0, y, 0.5), Vec3(0, -y, 0.5)};
+}
+
+}  // namespace
+
+TEST_CASE("a lane that is too short or too narrow for the car and its path is refused, with what to change") {
+  using Catch::Matchers::ContainsSubstring;
+  auto s = quick_lane();
+  CHECK(refusal_of(s).empty());
+  s.path = 50.0;
+  CHECK_THAT(refusal_of(s), ContainsSubstring("a --path of 50 m is longer than the lane"));
+  s = quick_lane();
+  s.bed.length = 4.0;
+  CHECK_THAT(refusal_of(s), ContainsSubstring("the lane is 4 m long, but the car's wheels stand 3.3 m apart"));
+  s = quick_lane();
+  s.bed.width = 0.3;
+  CHECK_THAT(refusal_of(s), ContainsSubstring("a trough is 0.3 m wide, but must hold a tyre"));
+  s.bed.width = 1.9;
+  CHECK_THAT(refusal_of(s), ContainsSubstring("give --layout bed"));
+  s.layout = "bed";
+  CHECK_THAT(refusal_of(s), ContainsSubstring("the bed is 1.9 m wide, but the car needs"));
+  s.layout = "ditch";
+  CHECK_THAT(refusal_of(s), ContainsSubstring("--layout is 'ditch', but must be troughs, bed"));
+}
+
+TEST_CASE("the lane of the thesis has 331,890 grains, and grains overlap below two hundredths whatever their size") {
+  auto s = quick_lane();
+  s.size = "full";
+  soft_lane::resolve(s);
+  const double volume = dem::soil::cube_volume(s.grains.half_edge);
+  const auto rained = static_cast<double>(grains_in(s.bed, volume));
+  CHECK(2.0 * (rained - std::floor(s.bed.strike_off * rained)) == Approx(331890.0).margin(4.0));
+  const double weight = 48.36e3;  // N
+  CHECK(s.overlap(weight) < 0.02);
+  s.grains.half_edge *= 2.0;
+  CHECK(s.overlap(weight) == Approx(0.0178).margin(5e-4));
+}
+
+TEST_CASE("slip is 1 for a wheel that spins on the spot and -1 for a locked one") {
+  using dem::vehicle::slip_of;
+  CHECK(slip_of(2.0, 0.0) == 1.0);
+  CHECK(slip_of(0.0, 2.0) == -1.0);
+  CHECK(slip_of(2.0, 1.5) == 0.25);
+  CHECK(slip_of(1.5, 2.0) == -0.25);
+  CHECK(slip_of(-2.0, -1.5) == -0.25);
+  CHECK(slip_of(5e-4, 0.0) == 0.0);
+}
+
+TEST_CASE("a car that rolls over, digs in, slides back or leaves the lane ends its run with that word") {
+  auto s = quick_lane();
+  soft_lane::resolve(s);
+  const auto wheels = wheels_in_their_tracks();
+  const auto word = [&](auto&& change) {
+    soft_lane::Judge judge(s);
+    std::string found;
+    for (double t = 0.01; found.empty() && t < 1.5; t += 0.01) {
+      auto x = driving(t);
+      change(x);
+      found = judge(x, wheels);
+    }
+    return found;
+  };
+  CHECK(word([](auto&) {}) == "");
+  CHECK(word([](auto& x) { x.car.roll = -1.1; }) == soft_lane::ending::rolled_over);
+  CHECK(word([](auto& x) { x.car.pitch = 1.1; }) == soft_lane::ending::rolled_over);
+  CHECK(word([](auto& x) { x.wheels[2].sinkage = 0.5; }) == soft_lane::ending::dug_in);
+  CHECK(word([](auto& x) { x.way = -0.31; }) == soft_lane::ending::slid_back);
+  CHECK(word([](auto& x) { x.way += 10.0; }) == soft_lane::ending::arrived);
+  CHECK(word([](auto& x) { x.car.time += 60.0, x.way = 0.2; }) == soft_lane::ending::too_slow);
+  const auto spin = [](auto& x) {
+    x.car.speed = x.way = 0.02;
+    for (auto& w : x.wheels) w.slip = 0.95;
+  };
+  CHECK(word(spin) == soft_lane::ending::dug_in);
+  CHECK(word([&](auto& x) {
+          if (x.car.time < 0.9) spin(x);  // not for a second
+        }) == "");
+  auto beside = wheels;
+  beside[1] -= Vec3(0, 0.5, 0);
+  CHECK(soft_lane::Judge(s)(driving(0.1), beside) == soft_lane::ending::left_lane);
+}
+
+TEST_CASE(
+    "resistance is thrust less pull, and energy per metre is what the engine gave on the second half of the way") {
+  auto s = quick_lane();
+  soft_lane::resolve(s);
+  soft_lane::Campaign c;
+  c.weight = 48e3;
+  for (int k = 0; k <= 200; ++k) c.samples.push_back(driving(0.01 * k));
+  soft_lane::evaluate(c, s);
+  CHECK(c.means.from_way == Approx(1.5));
+  CHECK(c.means.slip == Approx(0.2));
+  CHECK(c.means.pull == Approx(400.0));
+  CHECK(c.means.resistance == Approx(4.0 * (970.0 / 0.485 - 100.0)));
+  // 6 kW at 1.5 m/s, but for the first of a hundred intervals, whose way is not counted
+  CHECK(c.means.energy_per_metre == Approx(4000.0).epsilon(0.011));
+  CHECK(c.means.cost_of_transport == Approx(4000.0 / 48e3).epsilon(0.011));
+  CHECK(c.drift == Approx(0.02));
+}
+
+TEST_CASE("the depth and the width of a rut are those of its profile") {
+  SurfaceProfile before, after;
+  for (int k = 0; k < 20; ++k) {
+    const double y = 0.05 * k - 0.475;
+    before.y.push_back(y);
+    before.z.push_back(0.2);
+    after.y.push_back(y);
+    after.z.push_back(std::abs(y - 0.1) < 0.15 ? 0.14 : 0.21);
+  }
+  double depth = 0.0, width = 0.0;
+  soft_lane::evaluate_rut(before, after, 0.1, 0.25, depth, width);
+  CHECK(depth == Approx(0.06));
+  CHECK(width == Approx(0.3));
+}
