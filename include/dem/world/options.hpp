@@ -5,6 +5,7 @@
 #include <dem/grain/sleep_options.hpp>
 #include <dem/math/vector.hpp>
 #include <dem/mbd/body/body.hpp>
+#include <dem/world/inlet.hpp>
 #include <dem/world/outlet.hpp>
 
 #include <optional>

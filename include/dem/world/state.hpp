@@ -69,6 +69,9 @@ struct WorldState {
   std::uint64_t remove_by = 0;           ///< the step in which that list is due, if there are any
   std::vector<Outlet> outlets;
   Outlet beyond_domain;  ///< of a domain that removes what leaves it
+  std::vector<Inlet> inlets;
+  std::uint64_t put_in_at = 0;            ///< the step in which inlets put in what is due at the latest
+  void (*put_in)(WorldState&) = nullptr;  ///< set with the first inlet: other programs are without that code
   grain::Sleepers sleepers;
 
   mbd::Mechanism machine;
@@ -98,7 +101,7 @@ struct WorldState {
     v("machine_solver", machine_solver), v("list_skin", list_skin, "m"), v("list_valid", list_valid);
     v("rebuilds", rebuilds), v("to_remove", to_remove), v("remove_by", remove_by);
     v.given("beyond_domain", options.beyond_domain), v.list("outlets", outlets, "outlet");
-    v("beyond", beyond_domain);
+    v("beyond", beyond_domain), v.list("inlets", inlets, "inlet"), v("put_in_at", put_in_at);
   }
 
   double skin() const { return options.skin > 0.0 ? options.skin : 0.1 * largest_radius; }

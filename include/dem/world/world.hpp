@@ -73,6 +73,7 @@ class World : public WorldSetup<M> {
     prepare();
     for (std::uint64_t k = 0; k < n; ++k) {
       unfinished_ = true;
+      if (state_.put_in) state_.put_in(state_);
       advance(state_);
       take_out(state_);
       unfinished_ = false;
@@ -188,6 +189,8 @@ class World : public WorldSetup<M> {
   const Outlet& outlet(OutletId o) const { return known(state_.outlets, o, "outlet"); }
   /// The same of the grains that left a domain which removes them (BeyondDomain::remove), over the last 0.1 s.
   const Outlet& beyond_domain() const { return state_.beyond_domain; }
+  /// What an inlet put in so far, and what it owes.
+  const Inlet& inlet(InletId i) const { return known(state_.inlets, i, "inlet"); }
 
   /// Force (N) that the grains exert on a surface, from the last force evaluation; body_contact_force tells what
   /// another body's surface does.
@@ -221,7 +224,12 @@ class World : public WorldSetup<M> {
   bool machine_is_initialised() const { return state_.machine_solver.is_initialised(state_.machine); }
   StableTimeStep stable_time_step_of_machine() const { return state_.machine_solver.stable_time_step(state_.machine); }
   StepReport ok() const {
-    return {StepReport::Problem::none, state_.time, state_.step, {}, {}, state_.machine_solver.note(state_.machine)};
+    StepReport r{
+        StepReport::Problem::none, state_.time, state_.step, {}, {}, state_.machine_solver.note(state_.machine)};
+    for (const Inlet& inlet : state_.inlets) {
+      if (inlet.is_short()) r.note += (r.note.empty() ? "" : "; ") + inlet.note();
+    }
+    return r;
   }
 
   /// Of grains with each other and with surfaces, and of bodies with each other.

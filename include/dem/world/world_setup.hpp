@@ -1,5 +1,6 @@
 #pragma once
 
+#include <dem/world/put_in.hpp>
 #include <dem/world/take_out.hpp>
 
 #include <algorithm>
@@ -97,16 +98,9 @@ class WorldSetup {
     if (!(distance_from_rotation(n.rotation) <= 1e-6)) {
       fail("grain {} was given a rotation matrix that is no rotation; normalise it (R^T R = I, det R = 1)", id);
     }
-    const std::size_t row = p.count;
-    p.resize(row + 1);
-    p.position.set(row, from_eigen(n.position));
-    p.velocity.set(row, from_eigen(n.velocity));
     const Mat3 rotation = Shape::has_orientation ? n.rotation : Mat3(Mat3::Identity());
-    p.set_rotation(row, from_eigen(rotation));
-    p.spin.set(row, from_eigen(Vec3(rotation.transpose() * n.angular_velocity)));
-    p.species[row] = n.species.value;
-    p.id[row] = static_cast<std::uint32_t>(id);
-    p.row_of.push_back(static_cast<std::uint32_t>(row));
+    p.append(n.species.value, from_eigen(n.position), from_eigen(n.velocity), from_eigen(rotation),
+             from_eigen(Vec3(rotation.transpose() * n.angular_velocity)));
     touched();
     return ParticleId(id);
   }
@@ -123,6 +117,18 @@ class WorldSetup {
   OutletId add_outlet(const surface::Bounds& region, const OutletOptions& o = {}) {
     state_.outlets.emplace_back(region, o);
     return OutletId(state_.outlets.size() - 1);
+  }
+
+  /// A region that puts grains in while the world runs: a flow of mass or of grains. They come in batches, some steps
+  /// apart. Throws Error for an unknown species and for options that make no sense. What does not fit is owed, and
+  /// StepReport::note tells of it.
+  ///
+  ///     world.add_inlet(InletRegion::disc({0, 0, 0.3}, {0, 0, -1}, 0.02), {.grains = sand, .mass_flow = 0.1});
+  InletId add_inlet(const InletRegion& region, const InletOptions& o) {
+    const auto mass_of = [&](SpeciesId s) { return known(state_.species, s, "species").mass; };
+    state_.inlets.emplace_back(region, o, MixtureDraw(o.grains, mass_of), state_.time);
+    state_.put_in = &dem::put_in<Model>;
+    return InletId(state_.inlets.size() - 1);
   }
 
   /// Bodies, joints, actuators, sensors. The world moves them.
