@@ -112,6 +112,7 @@ void find_hits_on(const ChunkAtSurfaces<Model>& at, std::size_t number) {
     for (std::uint32_t near = bits(geometry.near(seen, Pack(at.reach()))); near != 0; near &= near - 1) {
       const std::size_t i = pack + static_cast<std::size_t>(std::countr_zero(near));
       if (i >= at.end) break;
+      if (at.species[p.species[i]].is_held()) continue;
       const Shape& grain = at.species[p.species[i]].shape;
       const Vector3<double> centre = transpose_times(surface.axes, positions[i] - surface.origin);
       const double radius = shape::widened(grain.bounding_radius(), gap);

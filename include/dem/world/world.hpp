@@ -17,8 +17,8 @@ namespace dem {
 template <class M>
 class World : public WorldSetup<M> {
   using Setup = WorldSetup<M>;
-  using Setup::state_, Setup::checked_, Setup::initialised_, Setup::known, Setup::row, Setup::require_finite,
-      Setup::touched;
+  using Setup::state_, Setup::checked_, Setup::initialised_, Setup::known, Setup::row, Setup::row_that_moves,
+      Setup::require_finite, Setup::touched;
 
  public:
   using Model = M;
@@ -166,21 +166,21 @@ class World : public WorldSetup<M> {
 
   void set_velocity(ParticleId p, const Vec3& v) {
     require_finite(v, "velocity of a grain");
-    wake_around(state_, row(p));
+    wake_around(state_, row_that_moves(p));
     state_.particles.velocity.set(row(p), from_eigen(v));
     initialised_ = false;
   }
   /// rad/s, global axes.
   void set_angular_velocity(ParticleId p, const Vec3& w) {
     require_finite(w, "angular velocity of a grain");
-    wake_around(state_, row(p));
+    wake_around(state_, row_that_moves(p));
     state_.particles.spin.set(row(p), from_eigen(Vec3(rotation(p).transpose() * w)));
     initialised_ = false;
   }
   /// Puts a grain elsewhere; its contacts there start without friction, those that it still has go on.
   void set_position(ParticleId p, const Vec3& x) {
     require_finite(x, "position of a grain");
-    wake_around(state_, row(p));
+    wake_around(state_, row_that_moves(p));
     state_.particles.position.set(row(p), from_eigen(x));
     touched();
   }
