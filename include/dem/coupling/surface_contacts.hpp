@@ -112,6 +112,7 @@ void find_hits_on(const ChunkAtSurfaces<Model>& at, std::size_t number) {
     for (std::uint32_t near = bits(geometry.near(seen, Pack(at.reach()))); near != 0; near &= near - 1) {
       const std::size_t i = pack + static_cast<std::size_t>(std::countr_zero(near));
       if (i >= at.end) break;
+      if (at.species[p.species[i]].is_held()) continue;
       const Shape& grain = at.species[p.species[i]].shape;
       const Vector3<double> centre = transpose_times(surface.axes, positions[i] - surface.origin);
       const double radius = shape::widened(grain.bounding_radius(), gap);
@@ -152,6 +153,13 @@ struct OnSurface {
   using Touch = std::conditional_t<shape::PatchShape<Shape>, contact::PatchTouch<T>, contact::SurfaceTouch<T>>;
 };
 
+/// The grain of a touch, where the surface sees it.
+template <class Model, class GrainParticles>
+const PartnerView& view_of(const SurfaceScratch& s, std::size_t touch, const GrainParticles& p) {
+  if constexpr (Model::Domain::has_images) return s.views[touch];
+  else return p.view[s.hits[touch].i];
+}
+
 /// Contacts of the grains of one chunk with the surfaces of machine parts, and the load that the chunk puts on each
 /// surface. The chunk's bounding box selects the surfaces, anew each time, so fast parts need no neighbour list. Writes
 /// to the chunk and its own grains' sums only.
@@ -185,10 +193,7 @@ void find_surface_contacts(const ChunkAtSurfaces<Model>& at, std::span<const Fin
   grain::ContactEvaluator<Model, OnSurface<Shape>::template Touch> evaluator(materials.table(), dt);
   const grain::Deepest deepest = evaluator.run(
       hits, chunk.surface_contacts, scratch.forces, touch_of,
-      [&](std::size_t c) -> const PartnerView& {
-        if constexpr (Model::Domain::has_images) return at.scratch.views[c];
-        else return at.particles.view[hits[c].i];
-      },
+      [&](std::size_t c) -> const PartnerView& { return view_of<Model>(at.scratch, c, at.particles); },
       [&](std::size_t c) -> const PartnerView& { return at.surfaces[hits[c].partner].view; });
   if (deepest.overlap > chunk.deepest.overlap) {
     chunk.deepest = {deepest.overlap, hits[deepest.hit].i, hits[deepest.hit].partner, true};

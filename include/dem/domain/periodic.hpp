@@ -41,6 +41,25 @@ class Periodic {
     return {wrapped(x.x, 0), wrapped(x.y, 1), wrapped(x.z, 2)};
   }
 
+  /// Calls f(image) for a point and its images in the cells around.
+  template <class F>
+  void for_each_image(const Vec3& x, F&& f) const {
+    const auto cells = [&](std::size_t k) { return period_[k] > 0.0 ? 1 : 0; };
+    for (int k = -cells(2); k <= cells(2); ++k) {
+      for (int j = -cells(1); j <= cells(1); ++j) {
+        for (int i = -cells(0); i <= cells(0); ++i) f(Vec3(x + Vec3(i * period_[0], j * period_[1], k * period_[2])));
+      }
+    }
+  }
+
+  /// The image of x that is nearest to another point.
+  Vector3<double> beside(const Vector3<double>& x, const Vector3<double>& y) const {
+    const auto image = [&](double a, double b, std::size_t k) {
+      return period_[k] == 0.0 ? a : a + period_[k] * std::round((b - a) / period_[k]);
+    };
+    return {image(x.x, y.x, 0), image(x.y, y.y, 1), image(x.z, y.z, 2)};
+  }
+
   /// Whether a thing that extends so far (m) is met as one image at a time by grains that reach so far. Larger ones,
   /// as a floor, stand as they are and fill the cell: see check_extent.
   bool repeats(std::size_t axis, double extent, double reach) const { return extent + 2.0 * reach < period_[axis]; }

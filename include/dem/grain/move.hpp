@@ -14,6 +14,20 @@ struct Incoming {
   std::uint32_t chunk, candidate;
 };
 
+/// Adds to a grain's force and torque those of the contacts that other chunks hold.
+template <class Model>
+void add_incoming(std::size_t i, std::span<const Chunk<Model>> chunks, std::span<const std::uint32_t> incoming_first,
+                  std::span<const Incoming> incoming, Vector3<double>& force, Vector3<double>& torque) {
+  for (std::uint32_t m = incoming_first[i]; m < incoming_first[i + 1]; ++m) {
+    const Chunk<Model>& other = chunks[incoming[m].chunk];
+    const std::uint32_t stop = other.partner_load_first[incoming[m].candidate + 1];
+    for (std::uint32_t c = other.partner_load_first[incoming[m].candidate]; c < stop; ++c) {
+      force += other.partner_loads[c].force;
+      torque += other.partner_loads[c].torque;
+    }
+  }
+}
+
 /// Completes the sums of forces on the grains of one chunk with the contacts that other chunks hold, in a fixed order.
 /// Every chunk only reads what others wrote: no locks, and the same bits on any number of threads.
 template <class Model, class Particles>
@@ -23,14 +37,7 @@ void gather_forces(std::size_t chunk_index, std::span<const Chunk<Model>> chunks
   const std::size_t end = std::min(begin + chunk_size, p.count);
   for (std::size_t i = begin; i < end; ++i) {
     Vector3<double> force = p.force[i], torque = p.torque[i];
-    for (std::uint32_t m = incoming_first[i]; m < incoming_first[i + 1]; ++m) {
-      const Chunk<Model>& other = chunks[incoming[m].chunk];
-      const std::uint32_t stop = other.partner_load_first[incoming[m].candidate + 1];
-      for (std::uint32_t c = other.partner_load_first[incoming[m].candidate]; c < stop; ++c) {
-        force += other.partner_loads[c].force;
-        torque += other.partner_loads[c].torque;
-      }
-    }
+    add_incoming<Model>(i, chunks, incoming_first, incoming, force, torque);
     p.force.set(i, force);
     p.torque.set(i, torque);
   }

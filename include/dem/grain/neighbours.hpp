@@ -25,7 +25,7 @@ void list_owners(Chunk<Model>& chunk) {
 }
 
 /// Candidates of one chunk: all j > i whose bounding spheres come within the skin, ascending; grains first, then
-/// images.
+/// images. No two that are held.
 template <class Model, class Particles, class BroadPhase>
 void list_candidates(std::size_t chunk_index, Chunk<Model>& chunk, const Particles& p, const BroadPhase& broad_phase,
                      const Images<typename Model::Domain>& images,
@@ -36,13 +36,15 @@ void list_candidates(std::size_t chunk_index, Chunk<Model>& chunk, const Particl
   chunk.candidate.clear();
   for (std::size_t i = begin; i < end; ++i) {
     chunk.candidate_first[i - begin] = static_cast<std::uint32_t>(chunk.candidate.size());
-    const double radius_i = species[p.species[i]].shape.bounding_radius();
+    const auto& kind = species[p.species[i]];
+    const double radius_i = kind.shape.bounding_radius();
     const Vector3<double> x = p.position[i];
     finder.for_each_candidate(i, [&](std::uint32_t j) {
       if (!images.may_pair(i, j)) return;
       const Vector3<double> d = p.position[j] - x;
-      const double reach = radius_i + species[p.species[j]].shape.bounding_radius() + skin;
-      if (dot(d, d) < reach * reach) chunk.candidate.push_back(j);
+      const auto& other = species[p.species[j]];
+      const double reach = radius_i + other.shape.bounding_radius() + skin;
+      if (dot(d, d) < reach * reach && !(kind.is_held() && other.is_held())) chunk.candidate.push_back(j);
     });
     std::sort(chunk.candidate.begin() + chunk.candidate_first[i - begin], chunk.candidate.end());
   }

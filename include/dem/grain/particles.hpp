@@ -116,6 +116,13 @@ struct Particles {
     }
   }
 
+  void set_memory(std::size_t i, const Memory<double>& m) {
+    if constexpr (memory_size > 0) {
+      const auto fields = std::bit_cast<std::array<double, static_cast<std::size_t>(memory_size)>>(m);
+      for (std::size_t k = 0; k < memory.size(); ++k) memory[k][i] = fields[k];
+    }
+  }
+
   /// Calls f(column) for every column of doubles that has one entry a grain.
   template <class F>
   void for_each_column(F&& f) {
@@ -145,6 +152,24 @@ struct Particles {
     pose.resize(rows * Shape::pose_size, 0.0);
     species.resize(rows, 0);
     id.resize(rows, 0xffffffffu);
+  }
+
+  /// Adds a grain with the next id, at rest in what integrators remember; `turning` in rad/s, body frame. Returns its
+  /// row.
+  std::size_t append(std::uint32_t kind, const Vector3<double>& x, const Vector3<double>& v,
+                     const Matrix3<double>& rotation, const Vector3<double>& turning) {
+    const std::size_t row = count;
+    resize(row + 1);
+    position.set(row, x);
+    velocity.set(row, v);
+    spin.set(row, turning);
+    set_rotation(row, rotation);
+    for (Columns3* c : {&force, &torque}) c->set(row, {0, 0, 0});
+    set_memory(row, {});
+    species[row] = kind;
+    id[row] = static_cast<std::uint32_t>(row_of.size());
+    row_of.push_back(static_cast<std::uint32_t>(row));
+    return row;
   }
 
   /// Takes grains (ids) out; the others keep their order.

@@ -83,9 +83,9 @@ bool end_window(std::size_t begin, std::size_t end, std::span<const Chunk<Model>
     const double radius = kind.shape.bounding_radius(), most = o.share * std::max(kind.mass * g, borne);
     Rest& rest = s.grains[p.id[i]];
     const Vector3<double> left = p.force[i] + kind.mass * from_eigen(gravity);
-    const bool is_quiet = norm(left) <= most && norm(p.torque[i]) <= most * radius &&
-                          std::abs(borne - rest.borne) <= most &&
-                          norm(p.position[i] - rest.position) <= o.motion * radius;
+    const bool is_balanced = kind.is_held() || (norm(left) <= most && norm(p.torque[i]) <= most * radius);
+    const bool is_quiet =
+        is_balanced && std::abs(borne - rest.borne) <= most && norm(p.position[i] - rest.position) <= o.motion * radius;
     rest.quiet_windows =
         is_quiet ? std::min<std::uint8_t>(rest.quiet_windows + 1, Sleepers::windows_to_sleep) : std::uint8_t{0};
     rest.position = p.position[i];

@@ -64,12 +64,12 @@ class ContactFinder {
     }
     coupling::SurfaceScratch& s = scratch_.surfaces;
     coupling::find_surface_contacts<Model>(
-        {begin, end, chunk, p, w_.species, w_.materials, surfaces_, w_.largest_radius, s}, w_.find_hits, w_.time_step,
-        sums);
+        {begin, end, chunk, p, w_.species, w_.materials, surfaces_, w_.largest_radius, w_.domain, s}, w_.find_hits,
+        w_.time_step, sums);
     for (std::size_t k = 0; k < s.hits.size(); ++k) {
       const grain::Hit& hit = s.hits[k];
-      Contact<Model>& contact =
-          add(hit, s.touches[k].geometry(), p.view[hit.i], surfaces_[hit.partner].view, s.forces, k);
+      Contact<Model>& contact = add(hit, s.touches[k].geometry(), coupling::view_of<Model>(s, k, p),
+                                    surfaces_[hit.partner].view, s.forces, k);
       contact.kind = ContactKind::grain_on_surface;
       contact.grain = ParticleId(p.id[hit.i]);
       contact.surface = SurfaceId(hit.partner);

@@ -82,24 +82,24 @@ void record_contacts(WorldState<Model>& w, std::size_t c, ContactScratch<Model>&
   Chunk<Model>& chunk = w.chunks[c];
   const auto& p = w.particles;
   chunk.work.clear();
-  const auto add = [&](const grain::Hit& hit, std::uint32_t partner, bool on_surface, const PartnerView& other,
-                       const contact::Geometry<double>& g, const grain::ContactForces& forces, std::size_t k) {
+  const auto add = [&](const grain::Hit& hit, std::uint32_t partner, bool on_surface, const PartnerView& own,
+                       const PartnerView& other, const contact::Geometry<double>& g, const grain::ContactForces& forces,
+                       std::size_t k) {
     const Vector3<double> force = grain::ContactForces::at(forces.force, k);
-    chunk.work.push_back({p.id[hit.i], partner, on_surface, g.normal, g.arm,
-                          g.arm - (other.position - p.view[hit.i].position), force,
-                          grain::ContactForces::at(forces.torque_i, k) - cross(g.arm, force)});
+    chunk.work.push_back({p.id[hit.i], partner, on_surface, g.normal, g.arm, g.arm - (other.position - own.position),
+                          force, grain::ContactForces::at(forces.torque_i, k) - cross(g.arm, force)});
   };
   const grain::ChunkPairs<Model, std::remove_cvref_t<decltype(p)>> pairs{chunk, p, w.species, w.materials,
                                                                          c * chunk_size};
   for (std::size_t k = 0; k < scratch.pairs.hits.size(); ++k) {
     const grain::Hit& hit = scratch.pairs.hits[k];
-    add(hit, p.id[hit.partner], false, p.view[hit.partner],
+    add(hit, p.id[hit.partner], false, p.view[hit.i], p.view[hit.partner],
         grain::touch_of_hit<Model>(pairs, scratch.pairs, k).geometry(), scratch.pairs.forces, k);
   }
   for (std::size_t k = 0; k < scratch.surfaces.hits.size(); ++k) {
     const grain::Hit& hit = scratch.surfaces.hits[k];
-    add(hit, hit.partner, true, w.surfaces[hit.partner].view, scratch.surfaces.touches[k].geometry(),
-        scratch.surfaces.forces, k);
+    add(hit, hit.partner, true, coupling::view_of<Model>(scratch.surfaces, k, p), w.surfaces[hit.partner].view,
+        scratch.surfaces.touches[k].geometry(), scratch.surfaces.forces, k);
   }
 }
 

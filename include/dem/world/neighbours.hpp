@@ -104,6 +104,7 @@ void rebuild_neighbours(WorldState<Model>& w) {
   });
   grain::list_incoming<Model>(std::span<const Chunk<Model>>(w.chunks), p.count, w.images, w.incoming_first, w.incoming);
   histories.hand_out(w.executor, std::span<Chunk<Model>>(w.chunks), p, w.images);
+  place_images(w);
   w.list_valid = true;
   w.list_skin = skin;
   ++w.rebuilds;

@@ -5,6 +5,7 @@
 #include <dem/grain/sleep_options.hpp>
 #include <dem/math/vector.hpp>
 #include <dem/mbd/body/body.hpp>
+#include <dem/world/inlet.hpp>
 #include <dem/world/outlet.hpp>
 
 #include <optional>
@@ -45,6 +46,9 @@ struct NewParticle {
 struct SpeciesOptions {
   std::string material = "grain";
   double density = 2650.0;  ///< kg/m^3; the default is quartz
+  bool held = false;  ///< its grains do not move by themselves: they stand still, as a rough base does, or go with
+                      ///< a machine part (World::attach). They feel grains that move, but neither each other nor
+                      ///< surfaces
 };
 
 /// Where a surface sits on its body: by default where it was drawn. The two frames are one for boxes, cylinders,

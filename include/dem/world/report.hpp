@@ -17,7 +17,7 @@ struct StepReport {
   std::uint64_t step = 0;  ///< steps done
   ParticleId particle;     ///< the grain, if it is one
   std::string text;
-  std::string note;  ///< what the library changed of what was given, in words; empty if nothing
+  std::string note;  ///< what of what was given was changed, or could not be done, in words; empty if nothing
 
   explicit operator bool() const { return problem == Problem::none; }
 };

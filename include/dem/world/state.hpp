@@ -5,6 +5,7 @@
 #include <dem/coupling/machine_surface.hpp>
 #include <dem/coupling/surface_contacts.hpp>
 #include <dem/grain/energy_ledger.hpp>
+#include <dem/grain/held.hpp>
 #include <dem/grain/materials.hpp>
 #include <dem/grain/neighbours.hpp>
 #include <dem/grain/pair_contacts.hpp>
@@ -71,6 +72,12 @@ struct WorldState {
   std::uint64_t remove_by = 0;           ///< the step in which that list is due, if there are any
   std::vector<Outlet> outlets;
   Outlet beyond_domain;  ///< of a domain that removes what leaves it
+  std::vector<Inlet> inlets;
+  std::uint64_t put_in_at = 0;                  ///< the step in which inlets put in what is due at the latest
+  void (*put_in)(WorldState&) = nullptr;        ///< set with the first inlet: other programs are without that code
+  std::vector<grain::HeldGrains> held;          ///< attached to machine parts
+  void (*carry_held)(WorldState&) = nullptr;    ///< set with the first attached grain, as put_in is
+  void (*load_by_held)(WorldState&) = nullptr;  ///< the same
   grain::Sleepers sleepers;
 
   mbd::Mechanism machine;
@@ -104,7 +111,8 @@ struct WorldState {
     v("machine_solver", machine_solver), v("list_skin", list_skin, "m"), v("list_valid", list_valid);
     v("skin_choice", skin_choice), v("rebuilds", rebuilds), v("to_remove", to_remove), v("remove_by", remove_by);
     v.given("beyond_domain", options.beyond_domain), v.list("outlets", outlets, "outlet");
-    v("beyond", beyond_domain), v("energy", ledger);
+    v("beyond", beyond_domain), v("energy", ledger), v.list("inlets", inlets, "inlet"), v("put_in_at", put_in_at);
+    v("held", held);
   }
 
   /// m, farthest that a grain went since the neighbour list was made.

@@ -36,6 +36,7 @@ void find_chunk_contacts(WorldState<Model>& w, std::size_t c, ContactScratch<Mod
 template <class Model>
 void evaluate_contacts(WorldState<Model>& w) {
   w.stopwatch.start();
+  if (w.carry_held) w.carry_held(w);
   if (neighbours_outdated(w)) {
     rebuild_neighbours(w);
     find_sleeping_chunks(w);
@@ -54,6 +55,7 @@ void evaluate_contacts(WorldState<Model>& w) {
 
   w.stopwatch.start();
   load_bodies(w);
+  if (w.load_by_held) w.load_by_held(w);
   if (w.find_body_contacts) w.find_body_contacts(w);
   w.stopwatch.stop(Phase::machine);
 }
@@ -105,8 +107,10 @@ void advance(WorldState<Model>& w) {
     if (last) sample_surface_sensors(w);
     w.stopwatch.stop(Phase::motion);
   }
+  if (w.carry_held) w.carry_held(w);
   if (w.count_energy) [[unlikely]]
     w.count_energy(w);
+  place_images(w);
   wake_and_put_to_sleep(w);
   w.time += w.time_step;
   ++w.step;

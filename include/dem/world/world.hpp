@@ -2,7 +2,7 @@
 
 #include <dem/grain/stable_time_step.hpp>
 #include <dem/world/check.hpp>
-#include <dem/world/check_period.hpp>
+#include <dem/world/period.hpp>
 #include <dem/world/report.hpp>
 #include <dem/world/step.hpp>
 #include <dem/world/thin_sheets.hpp>
@@ -17,8 +17,8 @@ namespace dem {
 template <class M>
 class World : public WorldSetup<M> {
   using Setup = WorldSetup<M>;
-  using Setup::state_, Setup::checked_, Setup::initialised_, Setup::known, Setup::row, Setup::require_finite,
-      Setup::touched;
+  using Setup::state_, Setup::checked_, Setup::initialised_, Setup::known, Setup::row, Setup::row_that_moves,
+      Setup::require_finite, Setup::touched;
 
  public:
   using Model = M;
@@ -75,6 +75,7 @@ class World : public WorldSetup<M> {
     prepare();
     for (std::uint64_t k = 0; k < n; ++k) {
       unfinished_ = true;
+      if (state_.put_in) state_.put_in(state_);
       advance(state_);
       take_out(state_);
       unfinished_ = false;
@@ -167,21 +168,21 @@ class World : public WorldSetup<M> {
 
   void set_velocity(ParticleId p, const Vec3& v) {
     require_finite(v, "velocity of a grain");
-    wake_around(state_, row(p));
+    wake_around(state_, row_that_moves(p));
     state_.particles.velocity.set(row(p), from_eigen(v));
     initialised_ = false;
   }
   /// rad/s, global axes.
   void set_angular_velocity(ParticleId p, const Vec3& w) {
     require_finite(w, "angular velocity of a grain");
-    wake_around(state_, row(p));
+    wake_around(state_, row_that_moves(p));
     state_.particles.spin.set(row(p), from_eigen(Vec3(rotation(p).transpose() * w)));
     initialised_ = false;
   }
   /// Puts a grain elsewhere; its contacts there start without friction, those that it still has go on.
   void set_position(ParticleId p, const Vec3& x) {
     require_finite(x, "position of a grain");
-    wake_around(state_, row(p));
+    wake_around(state_, row_that_moves(p));
     state_.particles.position.set(row(p), from_eigen(x));
     touched();
   }
@@ -190,6 +191,8 @@ class World : public WorldSetup<M> {
   const Outlet& outlet(OutletId o) const { return known(state_.outlets, o, "outlet"); }
   /// The same of the grains that left a domain which removes them (BeyondDomain::remove), over the last 0.1 s.
   const Outlet& beyond_domain() const { return state_.beyond_domain; }
+  /// What an inlet put in so far, and what it owes.
+  const Inlet& inlet(InletId i) const { return known(state_.inlets, i, "inlet"); }
 
   /// Force (N) that the grains exert on a surface, from the last force evaluation; body_contact_force tells what
   /// another body's surface does.
@@ -223,7 +226,12 @@ class World : public WorldSetup<M> {
   bool machine_is_initialised() const { return state_.machine_solver.is_initialised(state_.machine); }
   StableTimeStep stable_time_step_of_machine() const { return state_.machine_solver.stable_time_step(state_.machine); }
   StepReport ok() const {
-    return {StepReport::Problem::none, state_.time, state_.step, {}, {}, state_.machine_solver.note(state_.machine)};
+    StepReport r{
+        StepReport::Problem::none, state_.time, state_.step, {}, {}, state_.machine_solver.note(state_.machine)};
+    for (const Inlet& inlet : state_.inlets) {
+      if (inlet.is_short()) r.note += (r.note.empty() ? "" : "; ") + inlet.note();
+    }
+    return r;
   }
 
   /// Of grains with each other and with surfaces, and of bodies with each other.

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <dem/world/held_grains.hpp>
+#include <dem/world/period.hpp>
+#include <dem/world/put_in.hpp>
 #include <dem/world/take_out.hpp>
 
 #include <algorithm>
@@ -38,7 +41,7 @@ class WorldSetup {
            d->low.x(), d->low.y(), d->low.z(), d->high.x(), d->high.y(), d->high.z());
     }
     state_.options = options;
-    set_period(options);
+    set_period(state_);
     if (options.threads != 0) state_.executor.set_threads(options.threads);
   }
 
@@ -54,13 +57,13 @@ class WorldSetup {
                               material,
                               o.density,
                               o.density * shape.volume(),
-                              1.0 / (o.density * shape.volume()),
+                              o.held ? 0.0 : 1.0 / (o.density * shape.volume()),
                               o.density * shape.unit_inertia()};
     check_moments(s.inertia);
-    SpeciesInertia numbers = {1.0 / s.mass, 1.0, {}, {}};
+    SpeciesInertia numbers = {s.inverse_mass, o.held ? 0.0 : 1.0, {}, {}};
     for (int k = 0; k < 3; ++k) {
       numbers.inertia[k] = s.inertia[k];
-      numbers.inverse_inertia[k] = 1.0 / s.inertia[k];
+      numbers.inverse_inertia[k] = o.held ? 0.0 : 1.0 / s.inertia[k];
     }
     state_.species.push_back(s);
     state_.inertia.push_back(numbers);
@@ -93,24 +96,33 @@ class WorldSetup {
     if (!is_finite(n.position) || !is_finite(n.velocity) || !is_finite(n.angular_velocity)) {
       fail("grain {} was given a position or velocity that is not finite", id);
     }
+    if (state_.species[n.species.index()].is_held() && (!n.velocity.isZero(0.0) || !n.angular_velocity.isZero(0.0))) {
+      fail("grain {} is of a species that is held, but was given a velocity; attach it to a part that moves", id);
+    }
     // Written such that a NaN fails as well.
     if (!(distance_from_rotation(n.rotation) <= 1e-6)) {
       fail("grain {} was given a rotation matrix that is no rotation; normalise it (R^T R = I, det R = 1)", id);
     }
-    const std::size_t row = p.count;
-    p.resize(row + 1);
-    p.position.set(row, from_eigen(n.position));
-    p.velocity.set(row, from_eigen(n.velocity));
     const Mat3 rotation = Shape::has_orientation ? n.rotation : Mat3(Mat3::Identity());
-    p.set_rotation(row, from_eigen(rotation));
-    p.spin.set(row, from_eigen(Vec3(rotation.transpose() * n.angular_velocity)));
-    p.species[row] = n.species.value;
-    p.id[row] = static_cast<std::uint32_t>(id);
-    p.row_of.push_back(static_cast<std::uint32_t>(row));
+    p.append(n.species.value, from_eigen(n.position), from_eigen(n.velocity), from_eigen(rotation),
+             from_eigen(Vec3(rotation.transpose() * n.angular_velocity)));
     touched();
     return ParticleId(id);
   }
 
+  /// Attaches a grain of a species that is held (SpeciesOptions::held) to a body, as if glued to it where both are now:
+  /// the body carries it from here on, and feels the forces on it. Its mass is not added to the body's. Attached to
+  /// ground() it stands still, as one that is not attached does, and loads the ground. Throws Error for an unknown
+  /// body, and for a species of grains that move.
+  void attach(ParticleId p, BodyId body) {
+    if (!state_.species[state_.particles.species[row(p)]].is_held()) {
+      fail("grain {} is to be attached to a body, but moves by itself; make its species with SpeciesOptions::held",
+           p.value);
+    }
+    known(state_.machine.bodies(), body, "body");
+    attach_grain(state_, p, row(p), body);
+    initialised_ = false;
+  }
   /// Takes a grain out of the world; its id is not given again. The ids of others stay.
   void remove_particle(ParticleId p) {
     take_out_row(state_, row(p));
@@ -123,6 +135,22 @@ class WorldSetup {
   OutletId add_outlet(const surface::Bounds& region, const OutletOptions& o = {}) {
     state_.outlets.emplace_back(region, o);
     return OutletId(state_.outlets.size() - 1);
+  }
+
+  /// A region that puts grains in while the world runs: a flow of mass or of grains. They come in batches, some steps
+  /// apart. Throws Error for an unknown species and for options that make no sense. What does not fit is owed, and
+  /// StepReport::note tells of it.
+  ///
+  ///     world.add_inlet(InletRegion::disc({0, 0, 0.3}, {0, 0, -1}, 0.02), {.grains = sand, .mass_flow = 0.1});
+  InletId add_inlet(const InletRegion& region, const InletOptions& o) {
+    const auto mass_of = [&](SpeciesId s) {
+      const auto& kind = known(state_.species, s, "species");
+      if (kind.is_held()) fail("inlet '{}' is to give grains of species {}, which is held", o.name, s.value);
+      return kind.mass;
+    };
+    state_.inlets.emplace_back(region, o, MixtureDraw(o.grains, mass_of), state_.time);
+    state_.put_in = &dem::put_in<Model>;
+    return InletId(state_.inlets.size() - 1);
   }
 
   /// Bodies, joints, actuators, sensors. The world moves them.
@@ -283,37 +311,18 @@ class WorldSetup {
   static void require_finite(const Vec3& v, const char* what) {
     if (!is_finite(v)) fail("{} is ({:g}, {:g}, {:g}), but must be finite", what, v.x(), v.y(), v.z());
   }
+  /// The row of a grain that moves by itself.
+  std::size_t row_that_moves(ParticleId p) const {
+    const std::size_t r = row(p);
+    if (state_.species[state_.particles.species[r]].is_held()) {
+      fail("grain {} is held and cannot be moved by hand; move the body that it is attached to", p.value);
+    }
+    return r;
+  }
   /// Grains came or were moved by hand.
   void touched() {
     state_.list_valid = false;
     initialised_ = false;
-  }
-
-  /// The cell of a periodic world is its domain, which ends nowhere in the directions that repeat.
-  void set_period(const WorldOptions& o) {
-    const std::array<bool, 3> repeats = {o.periodic.x, o.periodic.y, o.periodic.z};
-    const bool any = repeats[0] || repeats[1] || repeats[2];
-    if constexpr (Model::Domain::has_images) {
-      if (!any || !o.domain) {
-        fail(
-            "the world's model has a periodic Domain, but its options name no {}: set WorldOptions::domain to the cell "
-            "and WorldOptions::periodic to the directions in which it repeats",
-            !o.domain ? "domain" : "periodic direction");
-      }
-      surface::Bounds& d = *state_.options.domain;
-      for (std::size_t k = 0; k < 3; ++k) {
-        if (!repeats[k]) continue;
-        require_positive(d.high.data()[k] - d.low.data()[k], "period of the domain", "m");
-      }
-      state_.domain = {d, repeats};
-      for (std::size_t k = 0; k < 3; ++k) {
-        if (repeats[k]) d.low.data()[k] = -HUGE_VAL, d.high.data()[k] = HUGE_VAL;
-      }
-    } else if (any) {
-      fail(
-          "WorldOptions::periodic is set, but the world's model has an open Domain: say `using Domain = "
-          "dem::domain::Periodic;` in the model");
-    }
   }
 
   WorldState<Model> state_;

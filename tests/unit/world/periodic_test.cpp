@@ -3,6 +3,7 @@
 #include "scenes.hpp"
 
 #include <dem/domain/periodic.hpp>
+#include <dem/world/contacts.hpp>
 
 #include "core/error_of.hpp"
 
@@ -181,6 +182,37 @@ TEST_CASE("a machine part meets grains across a border, in whichever cell it is"
     sum += near[k].x();
   }
   CHECK(sum < -largest(near));  // the bed holds it back
+}
+
+TEST_CASE("contacts across borders are listed with the rest, and inlets see grains beyond them") {
+  dem::World<PeriodicCubes> w(cell({2.0, 1.0, -g}, {.x = true, .y = true}));
+  set_up(w);
+  w.add_surface(w.ground(), dem::surface::Plane{});
+  dem::InletOptions o;
+  o.grains = SpeciesId(0);
+  o.mass_flow = 0.5;
+  o.velocity = {0, 0, -0.3};
+  w.add_inlet(dem::InletRegion::box({0, 0, 0.012}, {length, width, 0.016}), o);
+  REQUIRE(w.run(9000));
+  REQUIRE(w.particle_count() > 200);
+  double deepest = 0.0;
+  std::vector<Vec3> forces(w.particles().back().index() + 1, Vec3::Zero());
+  int across = 0;
+  for (const auto& c : dem::contacts_of(w)) {
+    deepest = std::max(deepest, c.overlap);
+    forces[c.grain.index()] += c.force;
+    if (c.kind != dem::ContactKind::grains) continue;
+    forces[c.other_grain.index()] -= c.force;
+    across += (w.position(c.grain) - w.position(c.other_grain)).norm() > 0.01 ? 1 : 0;
+  }
+  CHECK(across > 5);
+  CHECK(deepest < 0.3e-3);  // m: no grain was put into another
+  const auto grains = w.particles();
+  REQUIRE(w.run(1));  // evaluates the forces of that state, with which it moves the grains
+  for (const ParticleId p : grains) {
+    CAPTURE(p.value);
+    CHECK((forces[p.index()] - w.force(p)).norm() < 1e-12);  // rounding of sums of some 0.01 N
+  }
 }
 
 TEST_CASE("a cell that cannot be is refused in words") {

@@ -4,6 +4,34 @@
 
 namespace dem {
 
+/// The cell of a periodic world is its domain, which ends nowhere in the directions that repeat. Throws Error where the
+/// options and the model's Domain do not go together.
+template <class Model>
+void set_period(WorldState<Model>& w) {
+  const std::array<bool, 3> repeats = {w.options.periodic.x, w.options.periodic.y, w.options.periodic.z};
+  const bool any = repeats[0] || repeats[1] || repeats[2];
+  if constexpr (Model::Domain::has_images) {
+    if (!any || !w.options.domain) {
+      fail(
+          "the world's model has a periodic Domain, but its options name no {}: set WorldOptions::domain to the cell "
+          "and WorldOptions::periodic to the directions in which it repeats",
+          !w.options.domain ? "domain" : "periodic direction");
+    }
+    surface::Bounds& d = *w.options.domain;
+    for (std::size_t k = 0; k < 3; ++k) {
+      if (repeats[k]) require_positive(d.high.data()[k] - d.low.data()[k], "period of the domain", "m");
+    }
+    w.domain = {d, repeats};
+    for (std::size_t k = 0; k < 3; ++k) {
+      if (repeats[k]) d.low.data()[k] = -HUGE_VAL, d.high.data()[k] = HUGE_VAL;
+    }
+  } else if (any) {
+    fail(
+        "WorldOptions::periodic is set, but the world's model has an open Domain: say `using Domain = "
+        "dem::domain::Periodic;` in the model");
+  }
+}
+
 /// Refuses a periodic cell that is so small that a grain would meet itself or another grain twice, and a surface that
 /// neither fills the cell nor leaves room for grains between its images. Throws Error.
 template <class Model>

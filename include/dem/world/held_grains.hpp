@@ -1,0 +1,92 @@
+#pragma once
+
+#include <dem/world/sleep.hpp>
+
+#include <algorithm>
+#include <cstring>
+
+namespace dem {
+
+/// Puts grains that are attached to machine parts where their parts are, with the velocities of these. To be called
+/// before forces are found, and at the end of a step.
+template <class Model>
+void carry_held(WorldState<Model>& w) {
+  auto& p = w.particles;
+  std::vector<std::uint32_t> chunks;  // whose grains moved
+  for (grain::HeldGrains& held : w.held) {
+    const auto& motion = w.machine.bodies()[held.body.index()].motion;
+    const Vector3<double> turning = motion.rotation * motion.angular_velocity;
+    const bool rests = dot(motion.velocity, motion.velocity) + dot(turning, turning) == 0.0;
+    if (rests && std::memcmp(&held.carried_to, &motion, sizeof(motion)) == 0) continue;
+    held.carried_to = motion;
+    std::erase_if(held.grains, [&](const auto& g) { return p.row_of[g.id] == p.gone; });
+    for (const grain::HeldGrain& g : held.grains) {
+      const std::size_t row = p.row_of[g.id];
+      const Vector3<double> arm = motion.rotation * g.place;
+      const Matrix3<double> rotation = motion.rotation * g.turn;
+      Vector3<double> x = motion.position + arm;
+      if constexpr (Model::Domain::has_images) x = w.domain.beside(x, p.position[row]);
+      p.position.set(row, x);
+      p.velocity.set(row, motion.velocity + cross(turning, arm));
+      p.spin.set(row, Particles<typename Model::Shape, typename Model::Integrator>::has_orientation
+                          ? transpose_times(rotation, turning)
+                          : turning);
+      if constexpr (Model::Shape::has_orientation) p.set_rotation(row, rotation);
+      const auto c = static_cast<std::uint32_t>(row / chunk_size);
+      if (c < w.chunks.size() && (chunks.empty() || chunks.back() != c)) chunks.push_back(c);
+    }
+  }
+  if (chunks.empty()) return;
+  std::sort(chunks.begin(), chunks.end());
+  chunks.erase(std::unique(chunks.begin(), chunks.end()), chunks.end());
+  if (w.options.sleep) {
+    for (const std::uint32_t c : chunks) wake_around(w, c * chunk_size);
+  }
+  if (!w.list_valid) return;  // all is refreshed when neighbours are listed
+  w.executor.for_each(
+      chunks.size(), [&](std::size_t k) { grain::refresh_chunk<Model>(chunks[k], w.chunks[chunks[k]], p, w.species); });
+}
+
+/// Hands the forces of the contacts of attached grains to their parts. Forces are summed by grain, in the order in
+/// which grains were attached: the same sum whatever thread found them.
+template <class Model>
+void load_by_held(WorldState<Model>& w) {
+  const auto& p = w.particles;
+  for (const grain::HeldGrains& held : w.held) {
+    Body& body = w.machine.body(held.body);
+    Vector3<double> force = {0, 0, 0}, torque = {0, 0, 0};
+    for (const grain::HeldGrain& g : held.grains) {
+      const std::size_t row = p.row_of[g.id];
+      if (row == p.gone) continue;
+      Vector3<double> f = p.force[row], t = p.torque[row];
+      // A chunk that does not work keeps the whole sum of the last time.
+      const auto c = static_cast<std::uint32_t>(row / chunk_size);
+      if (!w.options.sleep || std::binary_search(w.sleepers.working.begin(), w.sleepers.working.end(), c)) {
+        grain::add_incoming<Model>(row, w.chunks, w.incoming_first, w.incoming, f, t);
+      }
+      force += f;
+      torque += t + cross(body.motion.rotation * g.place, f);
+    }
+    body.force += force;
+    body.torque += torque;
+  }
+}
+
+/// Attaches a held grain to a body, where both are now.
+template <class Model>
+void attach_grain(WorldState<Model>& w, ParticleId grain, std::size_t row, BodyId to) {
+  auto& p = w.particles;
+  for (grain::HeldGrains& held : w.held) {
+    std::erase_if(held.grains, [&](const auto& g) { return g.id == grain.value; });
+  }
+  auto of_body = std::find_if(w.held.begin(), w.held.end(), [&](const auto& h) { return h.body == to; });
+  if (of_body == w.held.end()) of_body = w.held.insert(w.held.end(), {to, {}, {}});
+  const auto& motion = w.machine.bodies()[to.index()].motion;
+  const Vector3<double> place = transpose_times(motion.rotation, p.position[row] - motion.position);
+  of_body->grains.push_back({grain.value, place, transposed(motion.rotation) * p.rotation(row)});
+  of_body->carried_to.velocity = {HUGE_VAL, 0, 0};  // nowhere yet
+  w.carry_held = &carry_held<Model>;
+  w.load_by_held = &load_by_held<Model>;
+}
+
+}  // namespace dem
