@@ -2,6 +2,8 @@
 
 #include "scenes_to_save.hpp"
 
+#include <dem/world/energy.hpp>
+
 namespace {
 
 using namespace models;
@@ -108,6 +110,25 @@ TEST_CASE("a state may be saved between any two steps, and in the middle of what
   CHECK(difference(whole.world, pieces.world) == "");
   CHECK(whole.world.particle_count() == pieces.world.particle_count());
   CHECK(error_of([&] { (void)pieces.world.position(ParticleId(5)); }).find("was removed") != std::string::npos);
+}
+
+TEST_CASE("energy that is counted goes on where it was saved") {
+  const Folder folder;
+  auto whole = scene<HertzModel>({}), first = scene<HertzModel>({});
+  for (auto* s : {&whole, &first}) dem::count_energy(s->world);
+  whole.run(600);
+  first.run(300);
+  dem::save(first.world, folder / "state.h5");
+  auto second = scene<HertzModel>({}, false);
+  dem::count_energy(second.world);
+  dem::load(second.world, folder / "state.h5");
+  second.run(300);
+  CHECK(difference(whole.world, second.world) == "");
+  CHECK(dem::energy_of(whole.world).dissipated() > 0.0);
+  CHECK(dem::energy_of(second.world).balance() == dem::energy_of(whole.world).balance());
+  // A program that does not count is told so.
+  auto third = scene<HertzModel>({}, false);
+  CHECK(error_of([&] { dem::load(third.world, folder / "state.h5"); }).find("energy") != std::string::npos);
 }
 
 TEST_CASE("what else a program keeps is saved with its world") {

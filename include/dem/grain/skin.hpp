@@ -26,14 +26,15 @@ struct SkinChoice {
   double skin = 0.0;              ///< m, of the present list; 0: there was none yet
   double diameter = 0.0;          ///< m, mean of the grains' bounding spheres, with the range of cohesion
   double candidates = 0.0;        ///< of a grain, in the present list
+  double moved = -1.0;            ///< m, farthest way of a grain in a list that was given up; negative: not known
   std::uint64_t made = 0;         ///< steps before the present list
   std::uint64_t look_at = never;  ///< the number of steps after which the present list is looked at
   bool looked_at = false;         ///< and a new one was found better
 
   template <class V>
   void fields(V& v) {
-    v("skin", skin, "m"), v("diameter", diameter, "m"), v("candidates", candidates), v("made", made);
-    v("look_at", look_at), v("looked_at", looked_at);
+    v("skin", skin, "m"), v("diameter", diameter, "m"), v("candidates", candidates), v("moved", moved, "m");
+    v("made", made), v("look_at", look_at), v("looked_at", looked_at);
   }
 
   /// Candidates of a grain in a list with the skin s.
@@ -57,15 +58,18 @@ struct SkinChoice {
     return best;
   }
 
-  /// Before a new list: its skin (m). `step`: steps so far; `moved`: m, farthest that a grain went since the present
-  /// list was made.
-  double choose(double largest_radius, double moved, std::uint64_t step, double evaluations) {
-    if (skin == 0.0) return skin = ladder[0] * largest_radius;
-    const double steps = static_cast<double>(std::max<std::uint64_t>(1, step - made)), speed = 2.0 * moved / steps;
-    const bool outlived = looked_at || 2.0 * moved >= skin;  // else something other than motion asked for it
-    const double s = best(largest_radius, speed, evaluations, outlived ? 0.0 : 1.0 / steps);
+  /// Before a new list: its skin (m), the same as before where nobody knows how far grains have moved. `step`: steps so
+  /// far.
+  double choose(double largest_radius, std::uint64_t step, double evaluations) {
+    if (skin == 0.0) skin = ladder[0] * largest_radius;
+    else if (moved >= 0.0) {
+      const double steps = static_cast<double>(std::max<std::uint64_t>(1, step - made));
+      const bool outlived = looked_at || 2.0 * moved >= skin;  // else something other than motion asked for it
+      skin = best(largest_radius, 2.0 * moved / steps, evaluations, outlived ? 0.0 : 1.0 / steps);
+    }
     looked_at = false;
-    return skin = s;
+    moved = -1.0;
+    return skin;
   }
   /// After a new list was made.
   void made_list(double largest_radius, double mean_diameter, double candidates_of_a_grain, std::uint64_t step,
@@ -78,10 +82,11 @@ struct SkinChoice {
     const double needless = evaluations * (candidates - candidates_at(least));
     if (skin > least && needless > 0.0) look_at = step + 1 + static_cast<std::uint64_t>(list_cost(least) / needless);
   }
-  /// After `step` steps, when the list is due to be looked at: whether a new list is better.
-  bool is_too_wide(double largest_radius, double moved, std::uint64_t step, double evaluations) {
+  /// After `step` steps, when the list is due to be looked at: whether a new list is better, with grains that have
+  /// moved so far (m).
+  bool is_too_wide(double largest_radius, double so_far, std::uint64_t step, double evaluations) {
     const std::uint64_t steps = step - made;
-    looked_at = best(largest_radius, 2.0 * moved / static_cast<double>(steps), evaluations, 0.0) < skin;
+    looked_at = best(largest_radius, 2.0 * so_far / static_cast<double>(steps), evaluations, 0.0) < skin;
     look_at = step + steps;
     return looked_at;
   }

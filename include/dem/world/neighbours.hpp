@@ -50,7 +50,7 @@ void place_images(WorldState<Model>& w) {
 template <class Model>
 double choose_skin(WorldState<Model>& w) {
   if (w.options.skin > 0.0) return w.options.skin;
-  double skin = w.skin_choice.choose(w.largest_radius, w.moved(), w.step, Model::Integrator::stages);
+  double skin = w.skin_choice.choose(w.largest_radius, w.step, Model::Integrator::stages);
   if constexpr (Model::Domain::has_images) {
     for (const double period : w.domain.period()) {
       if (period > 0.0) skin = std::min(skin, 0.499 * period - 2.0 * w.largest_radius - w.materials.range());
@@ -77,6 +77,7 @@ void rebuild_neighbours(WorldState<Model>& w) {
     w.list_valid = true;
     return;
   }
+  give_up_list(w);
   const double skin = choose_skin(w);
   const double reach = 2.0 * w.largest_radius + w.materials.range() + skin;
   const auto positions = [&](std::size_t rows) {
@@ -123,7 +124,7 @@ template <class Model>
 void look_at_skin(WorldState<Model>& w) {
   if (w.step < w.skin_choice.look_at) [[likely]]
     return;
-  if (w.skin_choice.is_too_wide(w.largest_radius, w.moved(), w.step, Model::Integrator::stages)) w.list_valid = false;
+  if (w.skin_choice.is_too_wide(w.largest_radius, w.moved(), w.step, Model::Integrator::stages)) give_up_list(w);
 }
 
 }  // namespace dem

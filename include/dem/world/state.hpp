@@ -123,6 +123,13 @@ struct WorldState {
   }
 };
 
+/// A new neighbour list is due, whether grains have left this one or not.
+template <class Model>
+void give_up_list(WorldState<Model>& w) {
+  if (w.list_valid) w.skin_choice.moved = w.moved();
+  w.list_valid = false;
+}
+
 /// Points of grains and of other bodies are found behind a finely cut mesh until they are so deep that it is reported.
 template <class Model>
 void find_points_deep_enough(WorldState<Model>& w) {

@@ -55,7 +55,7 @@ void take_out(WorldState<Model>& w) {
         w.beyond_domain, [&](const auto& chunk) { return is_out(chunk.low, chunk.high); },
         [&](const Vec3& x) { return is_out(x, x); });
   }
-  if (!w.to_remove.empty() && w.step >= w.remove_by) w.list_valid = false;
+  if (!w.to_remove.empty() && w.step >= w.remove_by) give_up_list(w);
 }
 
 }  // namespace dem

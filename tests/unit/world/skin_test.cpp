@@ -53,7 +53,11 @@ TEST_CASE("lists that are made anew for other reasons need no skin that outlasts
   choice.made = 100;
   // Motion at 1e-5 m a step would ask for a wide skin, but a list is made every second step anyway.
   CHECK(choice.best(1e-3, 2e-5, 1.0, 0.0) > 3e-4);
-  CHECK(choice.choose(1e-3, 2e-5, 102, 1.0) == 1e-4);
+  choice.moved = 2e-5;
+  CHECK(choice.choose(1e-3, 102, 1.0) == 1e-4);
+  // Where the list was given up by hand, nothing is known of the motion.
+  choice.skin = 4e-4;
+  CHECK(choice.choose(1e-3, 104, 1.0) == 4e-4);
 }
 
 TEST_CASE("a list that has lasted is narrowed when its needless candidates have cost a new one") {
@@ -64,7 +68,8 @@ TEST_CASE("a list that has lasted is narrowed when its needless candidates have 
   SkinChoice resting = choice, moving = choice;
   const std::uint64_t then = choice.look_at, steps = then - 500;
   CHECK(resting.is_too_wide(1e-3, 0.0, then, 1.0));
-  CHECK(resting.choose(1e-3, 0.0, then, 1.0) == 1e-4);
+  resting.moved = 0.0;
+  CHECK(resting.choose(1e-3, then, 1.0) == 1e-4);
   // Still moving as fast as the skin was made for: looked at again after as many steps.
   const double farthest = 0.45e-3;
   CHECK(moving.is_too_wide(1e-3, farthest, then, 1.0) ==
