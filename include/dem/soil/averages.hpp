@@ -5,8 +5,30 @@
 
 namespace dem::soil {
 
+namespace detail {
+
+/// From a grain to all of its images in and around a periodic cell; 0 of open space.
+template <class Domain>
+std::vector<Vec3> shifts_of(const Domain& domain) {
+  std::vector<Vec3> shifts = {Vec3(0, 0, 0)};
+  if constexpr (Domain::has_images) {
+    for (int axis = 0; axis < 3; ++axis) {
+      const double period = domain.period()[static_cast<std::size_t>(axis)];
+      if (period == 0.0) continue;
+      const std::size_t known = shifts.size();
+      for (std::size_t k = 0; k < known; ++k) {
+        for (const double side : {-period, period}) shifts.push_back(shifts[k] + side * Vec3(Vec3::Unit(axis)));
+      }
+    }
+  }
+  return shifts;
+}
+
+}  // namespace detail
+
 /// Density, velocity, stress, ... of a world's grains as it stands, at the middle of each cell of a grid; see Average.
-/// The world is not changed. Throws Error for a grid that is none, and as contacts_of does.
+/// Images of a periodic cell count too, one cell on. The world is not changed. Throws Error for a grid that is none,
+/// and as contacts_of does.
 ///
 ///     const auto field = soil::averages(world, {{low, high}, {20, 20, 10}}, soil::Kernel::lucy(4 * radius));
 template <class Model>
@@ -15,11 +37,14 @@ Averages averages(const World<Model>& world, const AverageGrid& grid, const Kern
   std::vector<int> touching(world.state().particles.row_of.size(), 0);
   const ContactForce* before = nullptr;
   const auto contacts = contacts_of(world);
+  const auto shifts = detail::shifts_of(world.state().domain);
   for (const auto& c : contacts) {
     if (c.kind == ContactKind::bodies) continue;
-    sums.add_path(c.centre(), c.point, -c.force);
+    for (const Vec3& shift : shifts) {
+      sums.add_path(c.centre() + shift, c.point + shift, -c.force);
+      if (c.kind == ContactKind::grains) sums.add_path(c.point + shift, c.other_centre() + shift, -c.force);
+    }
     if (c.kind != ContactKind::grains) continue;
-    sums.add_path(c.point, c.other_centre(), -c.force);
     const bool same_pair =
         before != nullptr && before->grain == c.grain && before->other_grain == c.other_grain;  // they come together
     if (!same_pair && c.overlap >= 0.0) {
@@ -30,7 +55,9 @@ Averages averages(const World<Model>& world, const AverageGrid& grid, const Kern
   }
   for (const ParticleId p : world.particles()) {
     const auto& kind = world.species(world.species_of(p));
-    sums.add_grain(kind.mass, kind.shape.volume(), world.position(p), world.velocity(p), touching[p.index()]);
+    for (const Vec3& shift : shifts) {
+      sums.add_grain(kind.mass, kind.shape.volume(), world.position(p) + shift, world.velocity(p), touching[p.index()]);
+    }
   }
   return sums.averages();
 }

@@ -140,16 +140,20 @@ class ContactFinder {
 /// the last evaluation, which was before the grains moved. (Velocity Verlet moves the grains on before it evaluates.) A
 /// grain that an outlet took is felt, and listed, until its row goes.
 ///
+/// In a periodic cell, a contact across a border is with an image: `other_grain` is the grain that it shows, the places
+/// are those of the image.
+///
 /// It costs about one evaluation on one thread, and a copy of the world where it was changed by hand or its neighbour
-/// lists are due. Throws Error as World::prepare does.
+/// lists are due, or where it has a periodic cell. Throws Error as World::prepare does.
 template <class Model>
 std::vector<Contact<Model>> contacts_of(const World<Model>& world) {
-  if (world.is_prepared() && !neighbours_outdated(world.state())) {
+  if (!Model::Domain::has_images && world.is_prepared() && !neighbours_outdated(world.state())) {
     return detail::ContactFinder<Model>(world.state()).find();
   }
   World<Model> copy = world;
   copy.prepare();
   if (neighbours_outdated(copy.state())) rebuild_neighbours(copy.state());
+  place_images(copy.state());
   return detail::ContactFinder<Model>(copy.state()).find();
 }
 

@@ -29,7 +29,7 @@ struct GrainEnergy {
   double dissipated_normal = 0.0;    ///< by the dampers of the normal law, or its plastic flow
   double dissipated_friction = 0.0;  ///< by sliding, the dampers of friction, and springs that let go
   double dissipated_rolling = 0.0;   ///< by rolling resistance and torsion
-  double by_surfaces = 0.0;          ///< work of machine parts on the grains
+  double by_surfaces = 0.0;          ///< work of machine parts, and of held grains, on the grains
   double came = 0.0;                 ///< what grains that were added had, less what those had that went
 
   double kinetic() const { return translation + rotation; }
@@ -63,13 +63,15 @@ void add_stored(const Contact<Model>& c, const ContactParameters<Model>& p, Grai
     e.cohesion += c.share * Model::Cohesion::energy(p.cohesion, gap, h.cohesion);
 }
 
-/// J, kinetic (translation, rotation) and potential of the grain of a row.
+/// J, kinetic (translation, rotation) and potential of the grain of a row; none of a held one, which is a part of what
+/// holds it.
 template <class Model>
 GrainEnergy energy_of_row(const WorldState<Model>& w, std::size_t row) {
   const auto& p = w.particles;
   const auto& kind = w.species[p.species[row]];
   const Vector3<double> v = p.velocity[row], s = p.spin[row];
   GrainEnergy e;
+  if (kind.is_held()) return e;
   e.translation = 0.5 * kind.mass * dot(v, v);
   e.rotation = 0.5 * (kind.inertia[0] * s.x * s.x + kind.inertia[1] * s.y * s.y + kind.inertia[2] * s.z * s.z);
   e.potential = -kind.mass * dot(from_eigen(w.options.gravity), p.position[row]);
@@ -146,16 +148,21 @@ void count_step(WorldState<Model>& w) {
     ledger.body_spin[b] = spin;
   }
 
+  const auto is_held = [&](std::uint32_t id) {
+    const std::uint32_t row = p.row_of[id];
+    return row != p.gone && w.species[p.species[row]].is_held();
+  };
   const auto add = [&](const grain::ContactWork& c, double time) {
     const Mean& i = grains[c.i];
     const Mean& j = c.on_surface ? bodies[w.surfaces[c.partner].body.index()] : grains[c.partner];
-    const Vector3<double> at_j = j.velocity + cross(j.spin, c.other_arm);
-    const Vector3<double> velocity = i.velocity + cross(i.spin, c.arm) - at_j;
+    const Vector3<double> at_i = i.velocity + cross(i.spin, c.arm), at_j = j.velocity + cross(j.spin, c.other_arm);
+    const Vector3<double> velocity = at_i - at_j;
     const double push = dot(c.force, c.normal), along = push * dot(c.normal, velocity);
     ledger.into_contacts.normal -= time * along;
     ledger.into_contacts.friction -= time * (dot(c.force, velocity) - along);
     ledger.into_contacts.rolling -= time * dot(c.moment, i.spin - j.spin);
-    if (c.on_surface) ledger.by_surfaces += time * (dot(c.force, at_j) + dot(c.moment, j.spin));
+    if (is_held(c.i)) ledger.by_surfaces -= time * (dot(c.force, at_i) + dot(c.moment, i.spin));
+    if (c.on_surface || is_held(c.partner)) ledger.by_surfaces += time * (dot(c.force, at_j) + dot(c.moment, j.spin));
   };
   constexpr bool at_end = evaluates_at_end<typename Model::Integrator>;
   const double dt = w.time_step, share = at_end ? 0.5 : 1.0;
