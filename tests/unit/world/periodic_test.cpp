@@ -5,6 +5,9 @@
 #include <dem/domain/periodic.hpp>
 #include <dem/world/contacts.hpp>
 
+#include <dem/soil/averages.hpp>
+#include <dem/world/energy.hpp>
+
 #include "core/error_of.hpp"
 
 namespace {
@@ -233,4 +236,47 @@ TEST_CASE("a cell that cannot be is refused in words") {
   set_up(long_part);
   long_part.add_surface(long_part.ground(), dem::surface::Box({0.029, 1, 0.01}), {.name = "slab"});
   check_refused([&] { long_part.prepare(); }, "surface 'slab' is 0.029 m long in x");
+}
+
+TEST_CASE("contacts across a border count in lists, stresses and energies") {
+  // A layer of cubes, face on face, which fills the cell: its borders cut through cubes. Four contacts a face.
+  dem::World<PeriodicCubes> w(cell(Vec3::Zero(), {.x = true, .y = true}));
+  const double depth = 4e-6, pitch = 3e-3, high = 4e-3;
+  w.set_contact(sand<PeriodicCubes>(0.4));
+  w.add_species(dem::shape::cube8(0.5 * (pitch + depth)));
+  for (int k = 0; k < 80; ++k) {
+    w.add_particle({SpeciesId(0), {0.7e-3 + pitch * (k % 10), 1e-3 + pitch * (k / 10), 0}});
+  }
+  CHECK(dem::contacts_of(w).size() == 80 * 2 * 4);
+  const dem::surface::Bounds box = {{0, 0, -0.5 * high}, {length, width, 0.5 * high}};
+  for (const auto& a : dem::soil::averages(w, {box, {5, 3, 1}}).values) {
+    // 2.5 faces in a cell of the grid along x, and so on: only the sum is that of whole cubes.
+    CHECK(a.contact_stress(2, 2) == Catch::Approx(0.0).margin(1e-9));
+  }
+  const auto whole = dem::soil::average_in(w, box);
+  const double stress = 4 * 2000.0 * depth / (pitch * high);
+  CHECK(whole.stress()(0, 0) == Catch::Approx(stress).epsilon(1e-9));
+  CHECK(whole.stress()(1, 1) == Catch::Approx(stress).epsilon(1e-9));
+  CHECK(whole.coordination == Catch::Approx(4.0));
+  CHECK(whole.density == Catch::Approx(total_mass(w) / (length * width * high)));
+
+  Random random(4);
+  for (const ParticleId p : w.particles()) w.set_velocity(p, Vec3(0.5, 0.3, 0) + random.vector(0.2));
+  dem::count_energy(w);
+  const auto start = dem::energy_of(w);
+  REQUIRE(w.run(800));  // 4 mm along x: some cubes are put back into the cell
+  const auto end = dem::energy_of(w);
+  CHECK(end.dissipated() > 1e-3 * start.kinetic());
+  CHECK(end.balance() == Catch::Approx(start.balance()).epsilon(1e-6));
+
+  std::vector<Vec3> sum(80, Vec3::Zero());
+  double size = 0.0;
+  for (const auto& c : dem::contacts_of(w)) {
+    sum[c.grain.index()] += c.force;
+    sum[c.other_grain.index()] -= c.force;
+    size = std::max(size, c.force.norm());
+  }
+  w.set_gravity(Vec3::Zero());  // forces at the present state are due
+  w.prepare();
+  for (const ParticleId p : w.particles()) CHECK((w.force(p) - sum[p.index()]).norm() < 1e-13 * size);
 }
