@@ -3,9 +3,8 @@
 #include "scenes.hpp"
 
 #include <dem/domain/periodic.hpp>
-#include <dem/world/contacts.hpp>
-
 #include <dem/soil/averages.hpp>
+#include <dem/world/contacts.hpp>
 #include <dem/world/energy.hpp>
 
 #include "core/error_of.hpp"
