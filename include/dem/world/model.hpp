@@ -12,6 +12,7 @@
 #include <dem/law/friction/asperity_spring.hpp>
 #include <dem/law/normal/penalty.hpp>
 #include <dem/law/rolling/none.hpp>
+#include <dem/mbd/solver/joint_policy.hpp>
 #include <dem/parallel/threads.hpp>
 
 #include <type_traits>
@@ -33,6 +34,8 @@ struct Model {
   using BroadPhase = broadphase::UniformGrid;
   using Integrator = integrator::PredictorCorrector;
   using Executor = exec::Threads;
+  /// Of the machine. mbd::Projected, of <dem/mbd/solver/projected.hpp>, holds them exactly.
+  using Joints = mbd::Penalty;
 };
 
 template <class... Kinds>
@@ -44,16 +47,18 @@ constexpr bool check_surfaces(const std::variant<Kinds...>*) {
 /// Within `struct Rolling : Model` the name Rolling means the struct itself, and no policy.
 template <class M, class... Policies>
 constexpr void check_name() {
-  static_assert(!(std::is_same_v<M, Policies> || ...),
-                "Model: your model is called like one of its policies (Shape, Surfaces, Normal, Friction, Rolling, "
-                "Cohesion, BroadPhase, Integrator or Executor), so that name means the model itself; rename the model");
+  static_assert(
+      !(std::is_same_v<M, Policies> || ...),
+      "Model: your model is called like one of its policies (Shape, Surfaces, Normal, Friction, Rolling, "
+      "Cohesion, BroadPhase, Integrator, Executor or Joints), so that name means the model itself; rename the model");
 }
 
 /// Refuses a wrong policy in words, at compile time.
 template <class M>
 constexpr bool check_model() {
   check_name<M, typename M::Shape, typename M::Surfaces, typename M::Normal, typename M::Friction, typename M::Rolling,
-             typename M::Cohesion, typename M::BroadPhase, typename M::Integrator, typename M::Executor>();
+             typename M::Cohesion, typename M::BroadPhase, typename M::Integrator, typename M::Executor,
+             typename M::Joints>();
   shape::check_shape<typename M::Shape>();
   check_surfaces(static_cast<typename M::Surfaces*>(nullptr));
   contact::check_normal_law<typename M::Normal>();
@@ -64,6 +69,7 @@ constexpr bool check_model() {
   broadphase::check_broad_phase<typename M::BroadPhase>();
   integrator::check_integrator<typename M::Integrator>();
   exec::check_executor<typename M::Executor>();
+  mbd::check_joint_policy<typename M::Joints>();
   return true;
 }
 
