@@ -103,8 +103,9 @@ class Projection {
   }
 
   /// At the end of the step, when forces have changed the speeds: takes what does not fit the joints, and tells what
-  /// they carried, as the mean over the step of dt (s).
-  void finish(Parts& m, double dt) {
+  /// they carried, as the mean over the step of dt (s) that ends at `time` (s).
+  void finish(Parts& m, double time, double dt) {
+    if (!m.motions.empty()) sample_motions(m, time, dt);  // forces may have changed the speeds of bodies in their pose
     reaction_.assign(m.joints.size(), {});
     on_body_.assign(m.bodies.size(), {});
     on_drive_.assign(m.motions.size(), 0.0);
@@ -117,10 +118,6 @@ class Projection {
     collect(m, x_);
     report(m, 1.0 / dt);
   }
-
-  /// How far the worst joint was from closed when it was left so: rad, and m as a share of the machine's size.
-  double worst() const { return worst_; }
-  bool is_closed() const { return worst_ < 1e-6; }
 
   template <class V>
   void fields(V& v) {

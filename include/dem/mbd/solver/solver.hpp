@@ -262,7 +262,7 @@ class Solver {
     }
     if (last) end_step(m, dt);
     if constexpr (Joints::projects) {
-      if (last) held_joints_.finish(parts, dt);
+      if (last) held_joints_.finish(parts, start + dt, dt);
       sample();
     } else {
       prescribe(m, start + dt, dt);
