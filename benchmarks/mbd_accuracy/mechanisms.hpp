@@ -5,6 +5,7 @@
 // count.
 
 #include <dem/mbd/mbd.hpp>
+#include <dem/mbd/solver/projected.hpp>
 
 #include <algorithm>
 #include <array>
@@ -43,8 +44,8 @@ struct Outcome {
   double error, opening;
 };
 
-template <class I>
-double worst_opening(const Machine<I>& m) {
+template <class I, class J = Penalty>
+double worst_opening(const Machine<I, J>& m) {
   double worst = 0.0;
   for (std::size_t k = 0; k < m.parts().joints.size(); ++k) {
     worst = std::max(worst, m.violation(JointId(k)).displacement);
@@ -55,10 +56,11 @@ double worst_opening(const Machine<I>& m) {
 /// Andrews' squeezer, 0.03 s: the largest relative error of the seven published angles.
 struct Squeezer {
   static constexpr const char* name = "squeezer";
-  static constexpr std::array steps = {8e-7, 4e-7, 2e-7, 1e-7, 5e-8};
-  template <class I>
+  static constexpr std::array steps = {8e-7, 4e-7, 2e-7, 1e-7, 5e-8},
+                              projected_steps = {2e-5, 1e-5, 5e-6, 2.5e-6, 1.25e-6};
+  template <class I, class J = Penalty>
   static Outcome run(double dt) {
-    auto s = squeezer::make<I>();
+    auto s = squeezer::make<I, J>();
     (void)s.machine.run(0.03, dt);
     return {s.error(), worst_opening(s.machine)};
   }
@@ -69,13 +71,14 @@ struct Squeezer {
 /// circle of 1 m: 3 q'' = 3.5 g sin(q), q from the vertical.
 struct FourBar {
   static constexpr const char* name = "four-bar";
-  static constexpr std::array steps = {1.6e-4, 8e-5, 4e-5, 2e-5, 1e-5};
-  template <class I>
+  static constexpr std::array steps = {1.6e-4, 8e-5, 4e-5, 2e-5, 1e-5},
+                              projected_steps = {1e-2, 5e-3, 2.5e-3, 1.25e-3, 6.25e-4};
+  template <class I, class J = Penalty>
   static Outcome run(double dt) {
     static const double answer = runge_kutta<2>({0.0, 1.0}, 10.0, 200000, [](const auto& y) {
       return std::array{y[1], 3.5 * 9.81 / 3.0 * std::sin(y[0])};
     })[0];
-    Machine<I> m;
+    Machine<I, J> m;
     m.gravity = {0, -9.81, 0};
     const auto rod = [&](const std::string& title, const Vec3& at, const Vec3& along, const Vec3& v, const Vec3& w) {
       return m.add_body(
@@ -103,10 +106,11 @@ struct FourBar {
 /// own in few coordinates is at hand; energy is what its benchmark asks for.)
 struct Bricard {
   static constexpr const char* name = "Bricard";
-  static constexpr std::array steps = {1.6e-4, 8e-5, 4e-5, 2e-5, 1e-5};
-  template <class I>
+  static constexpr std::array steps = {1.6e-4, 8e-5, 4e-5, 2e-5, 1e-5},
+                              projected_steps = {1e-2, 5e-3, 2.5e-3, 1.25e-3, 6.25e-4};
+  template <class I, class J = Penalty>
   static Outcome run(double dt) {
-    Machine<I> m;
+    Machine<I, J> m;
     m.gravity = {0, -9.81, 0};
     const std::array<Vec3, 6> hinge = {Vec3(0, 0, 0),  Vec3(1, 0, 0),  Vec3(1, -1, 0),
                                        Vec3(1, -1, 1), Vec3(0, -1, 1), Vec3(0, 0, 1)};
@@ -137,7 +141,8 @@ struct Bricard {
 /// q' from the energy, I(q) q'^2 = const.
 struct SliderCrank {
   static constexpr const char* name = "slider-crank";
-  static constexpr std::array steps = {4e-5, 2e-5, 1e-5, 5e-6, 2.5e-6};
+  static constexpr std::array steps = {4e-5, 2e-5, 1e-5, 5e-6, 2.5e-6},
+                              projected_steps = {2e-3, 1e-3, 5e-4, 2.5e-4, 1.25e-4};
   static constexpr double radius = 0.08, length = 0.3, speed = 6.0;
 
   static Vec3 pin(double q) { return Vec3(0, 0.1, 0.12) + radius * Vec3(0, -std::sin(q), std::cos(q)); }
@@ -166,13 +171,13 @@ struct SliderCrank {
     return 1e-4 + 0.12 * 0.25 * radius * radius + 0.5 * middle.squaredNorm() + 4e-4 * w.x() * w.x() +
            4e-3 * (w.y() * w.y() + w.z() * w.z()) + 2.0 * slide.squaredNorm();
   }
-  template <class I>
+  template <class I, class J = Penalty>
   static Outcome run(double dt) {
     static const double answer = runge_kutta<1>({0.0}, 1.0, 4000, [](const auto& y) {
       static const double start = inertia(0.0);
       return std::array{speed * std::sqrt(start / inertia(y[0]))};
     })[0];
-    Machine<I> m;
+    Machine<I, J> m;
     m.gravity.setZero();
     m.given_velocities = GivenVelocities::lead;
     const Vec3 centre(0, 0.1, 0.12), p = pin(0.0), s = slider(0.0), d = (s - p).normalized();
@@ -196,7 +201,8 @@ struct SliderCrank {
 /// depth s.
 struct Governor {
   static constexpr const char* name = "governor";
-  static constexpr std::array steps = {8e-5, 4e-5, 2e-5, 1e-5, 5e-6};
+  static constexpr std::array steps = {8e-5, 4e-5, 2e-5, 1e-5, 5e-6},
+                              projected_steps = {1e-3, 5e-4, 2.5e-4, 1.25e-4, 6.25e-5};
   static constexpr double g = 9.81, ball = 5.0, reach = 0.9, across = 0.5, axial = 0.02;  // an arm with its ball
   static constexpr double shaft = 0.3, collar = 4.0, collar_turn = 0.02;                  // kg m^2, kg, kg m^2
   static constexpr double at = 0.5, k = 8e4, c = 2e3, free = 0.5, start = std::numbers::pi / 6,
@@ -207,7 +213,7 @@ struct Governor {
     const double s2 = std::sin(q) * std::sin(q);
     return shaft + collar_turn + 2 * ((ball * reach * reach + across) * s2 + axial * (1 - s2));
   }
-  template <class I>
+  template <class I, class J = Penalty>
   static Outcome run(double dt) {
     static const double answer = [] {
       const double momentum = turning(start) * spin;
@@ -222,7 +228,7 @@ struct Governor {
         return std::array{y[1], (torque + push * dl_dq) / heavy, y[3], g + 2 * push * dl_ds / collar};
       })[0];
     }();
-    Machine<I> m;
+    Machine<I, J> m;
     const Vec3 w = spin * Z;
     const BodyId axle = m.add_body(given_body("shaft", 10.0, Vec3(1, 1, shaft)).moving(Vec3::Zero(), w));
     m.add_joint(revolute("shaft bearing", m.ground(), axle, {0, 0, 0}, Z));
@@ -249,14 +255,14 @@ struct Governor {
 /// A heavy top in steady precession, one round: how far its axis is from where it began (m at 1 m).
 struct HeavyTop {
   static constexpr const char* name = "heavy top";
-  static constexpr std::array steps = {1.6e-4, 8e-5, 4e-5, 2e-5, 1e-5};
-  template <class I>
+  static constexpr std::array steps = {1.6e-4, 8e-5, 4e-5, 2e-5, 1e-5}, projected_steps = steps;
+  template <class I, class J = Penalty>
   static Outcome run(double given_dt) {
     const double mass = 0.5, h = 0.1, A = 4e-4, C = 6e-4, W = 2.0, tilt = 0.5, g = 9.81;
     const double spin = (mass * g * h + (A + mass * h * h) * W * W * std::cos(tilt)) / (C * W);
     const Mat3 pose = Eigen::AngleAxisd(tilt, Y).toRotationMatrix();
     const Vec3 axis = pose * Z, w = W * Z + (spin - W * std::cos(tilt)) * axis;
-    Machine<I> m;
+    Machine<I, J> m;
     const BodyId top =
         m.add_body(given_body("top", mass, Vec3(A, A, C)).at(h * axis, pose).moving(w.cross(h * axis), w));
     m.add_joint(spherical("tip", m.ground(), top, {0, 0, 0}));

@@ -40,7 +40,6 @@ struct Result {  // N, N m, m
 Result roll(const Settings& s, double slip, ColumnField& field) {
   const double r = s.wheel.radius, v = s.spin * r * (1.0 - slip), wheel_mass = 1.5;
   mbd::Machine<integrator::VelocityVerlet> machine;
-  machine.joint_tolerance = 2e-4;  // m: some hundredths of the sinkage
   const BodyId carriage = machine.add_fixed_body("carriage", {0, 0, 3 * r});
   const double hub_density = (s.load / 9.81 - wheel_mass) / (0.3 * 0.3 * 0.3);
   const BodyId hub = machine.add_body(mbd::box_body("hub", {0.3, 0.3, 0.3}, hub_density).at({0, 0, r}));

@@ -27,9 +27,9 @@ inline constexpr std::array<double, 7> reference = {15.8107712,   -15.7563711,  
 inline constexpr std::array<const char*, 7> names = {"beta", "Theta", "gamma", "Phi", "delta", "Omega", "epsilon"};
 
 /// The mechanism; `angles` are the joints whose coordinates are the seven angles.
-template <class I>
+template <class I, class Joints = dem::mbd::Penalty>
 struct Squeezer {
-  dem::mbd::Machine<I> machine;
+  dem::mbd::Machine<I, Joints> machine;
   std::array<JointId, 7> angles;
 
   double error(std::size_t k) const { return std::abs(machine.coordinate(angles[k]) / reference[k] - 1.0); }
@@ -41,8 +41,8 @@ struct Squeezer {
   }
 };
 
-template <class I>
-Squeezer<I> make() {
+template <class I, class Joints = dem::mbd::Penalty>
+Squeezer<I, Joints> make() {
   using namespace dem::mbd;
   const double d = 0.028, da = 0.0115, e = 0.02, ea = 0.01421, rr = 0.007, ra = 0.00092, sa = 0.01874, sb = 0.01043,
                sc = 0.018, sd = 0.02, ta = 0.02308, tb = 0.00916, u = 0.04, ua = 0.01228, ub = 0.00449, zf = 0.02,
@@ -57,8 +57,8 @@ Squeezer<I> make() {
   const Vec3 P = crank_end - d * along(beta + theta);  // where four bodies meet
   const Vec3 K5_end = A + zt * along(delta), K7_end = A + u * across(epsilon);
 
-  Squeezer<I> s;
-  Machine<I>& m = s.machine;
+  Squeezer<I, Joints> s;
+  Machine<I, Joints>& m = s.machine;
   m.gravity = Vec3::Zero();
   const auto body = [&](const char* name, double mass, double inertia, const Vec3& at) {
     return m.add_body(given_body(name, mass, Vec3(inertia, inertia, inertia)).at(at));

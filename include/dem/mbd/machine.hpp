@@ -14,7 +14,7 @@ namespace dem::mbd {
 ///     const BodyId rod = m.add_body(box_body("rod", {1, 0.1, 0.1}, 100).at({0.5, 0, 0}));
 ///     m.add_joint(revolute("hinge", m.ground(), rod, {0, 0, 0}, {0, 1, 0}));
 ///     if (const MachineReport report = m.run(10.0, 1e-4); !report) fmt::print("{}\n", report.text);
-template <integrator::Integrator I>
+template <integrator::Integrator I, JointPolicy Joints = Penalty>
 class Machine : public Mechanism {
  public:
   Vec3 gravity = {0.0, 0.0, -9.81};       ///< m/s^2
@@ -22,13 +22,13 @@ class Machine : public Mechanism {
 
   double time() const { return solver_.time(); }  ///< s
 
-  /// One step of dt (s), in `substeps` parts. Throws Error, before anything moves, if it is above the stable time step
-  /// or a prescribed motion would have to jump. What is derived from the step is derived anew when dt changes: a
-  /// smaller one makes joints stiffer at once, a jolt where they are strained. design_for with one dt for all keeps
-  /// them as they are.
+  /// One step of dt (s), in `substeps` parts, which are raised where a joint opens too far (joint_tolerance). Throws
+  /// Error, before anything moves, if it is above the stable time step or a prescribed motion would have to jump. What
+  /// is derived from the step is derived anew when dt changes: a smaller one makes joints stiffer at once, a jolt where
+  /// they are strained. design_for with one dt for all keeps them as they are.
   [[nodiscard]] MachineReport step(double dt) {
     prepare(dt);
-    solver_.step(*this, dt, gravity);
+    advance(dt);
     return report();
   }
 
@@ -50,7 +50,7 @@ class Machine : public Mechanism {
     const auto steps = static_cast<long long>(whole);
     for (long long s = 0; s < steps && !solver_.has_blown_up(); ++s) {
       if (s > 0) prepare(dt);  // after_step may have changed something
-      solver_.step(*this, dt, gravity);
+      advance(dt);
       if constexpr (std::is_same_v<std::invoke_result_t<F&>, bool>) {
         if (!after_step()) break;
       } else {
@@ -72,11 +72,12 @@ class Machine : public Mechanism {
     gravity = g;
     solver_.initialise(*this, time, g, [] {});
   }
-  /// All is well; or which body blew up, when, and what to change; or which joint opened beyond joint_tolerance since
-  /// the machine was last laid out, and the time step that keeps it closed. The run went on to its end with it.
+  /// All is well; or which body blew up, when, and what to change; or which joint stood open beyond joint_tolerance
+  /// with most_substeps since the machine was last laid out, and the time step that keeps it closed. The run went on to
+  /// its end with it.
   MachineReport report() const {
     MachineReport report = solver_.report(*this);
-    if (report) report = solver_.report_of_joints(*this);
+    if (report) report = solver_.report_of(*this, open_);
     report.note = solver_.note(*this);
     return report;
   }
@@ -102,6 +103,11 @@ class Machine : public Mechanism {
     if (!is_initialised() || dt != accepted_dt_) accept(dt);
     solver_.check_motions(*this);
   }
+  void advance(double dt) {
+    solver_.step(*this, dt, gravity);
+    const JointOpening open = solver_.close_joints(*this, false);
+    if (open.share > open_.share) open_ = open;
+  }
   /// Lays the machine out for steps of dt (s), as far as that is due. Throws Error if they are too large.
   DEM_COLD void accept(double dt) {
     const bool same = is_initialised();
@@ -110,6 +116,7 @@ class Machine : public Mechanism {
       if (is_designed_) design_for(solver_.design_step());
       initialise(time(), gravity);
       accepted_dt_ = 0.0;
+      open_ = {};
     }
     if (dt != accepted_dt_) {
       check_time_step(dt);
@@ -128,7 +135,8 @@ class Machine : public Mechanism {
         dt, rounded_down(limit.dt), limit.limited_by, substeps);
   }
 
-  Solver<I> solver_;
+  Solver<I, Joints> solver_;
+  JointOpening open_;  // farthest, of those that more sub-steps did not close
   bool is_designed_ = false;
   double accepted_dt_ = 0.0;  // s, that was compared with the stable time step
 };

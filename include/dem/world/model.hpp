@@ -13,6 +13,7 @@
 #include <dem/law/friction/asperity_spring.hpp>
 #include <dem/law/normal/penalty.hpp>
 #include <dem/law/rolling/none.hpp>
+#include <dem/mbd/solver/joint_policy.hpp>
 #include <dem/parallel/threads.hpp>
 
 #include <type_traits>
@@ -35,6 +36,8 @@ struct Model {
   using Domain = domain::Open;
   using Integrator = integrator::PredictorCorrector;
   using Executor = exec::Threads;
+  /// Of the machine. mbd::Projected, of <dem/mbd/solver/projected.hpp>, holds them exactly.
+  using Joints = mbd::Penalty;
 };
 
 template <class... Kinds>
@@ -49,7 +52,8 @@ constexpr void check_name() {
   static_assert(
       !(std::is_same_v<M, Policies> || ...),
       "Model: your model is called like one of its policies (Shape, Surfaces, Normal, Friction, Rolling, "
-      "Cohesion, BroadPhase, Domain, Integrator or Executor), so that name means the model itself; rename the model");
+      "Cohesion, BroadPhase, Domain, Integrator, Executor or Joints), so that name means the model itself; rename the "
+      "model");
 }
 
 /// Refuses a wrong policy in words, at compile time.
@@ -57,7 +61,7 @@ template <class M>
 constexpr bool check_model() {
   check_name<M, typename M::Shape, typename M::Surfaces, typename M::Normal, typename M::Friction, typename M::Rolling,
              typename M::Cohesion, typename M::BroadPhase, typename M::Domain, typename M::Integrator,
-             typename M::Executor>();
+             typename M::Executor, typename M::Joints>();
   shape::check_shape<typename M::Shape>();
   check_surfaces(static_cast<typename M::Surfaces*>(nullptr));
   contact::check_normal_law<typename M::Normal>();
@@ -73,6 +77,7 @@ constexpr bool check_model() {
       "Domain: must be domain::Open or domain::Periodic");
   integrator::check_integrator<typename M::Integrator>();
   exec::check_executor<typename M::Executor>();
+  mbd::check_joint_policy<typename M::Joints>();
   return true;
 }
 

@@ -81,7 +81,7 @@ struct WorldState {
   grain::Sleepers sleepers;
 
   mbd::Mechanism machine;
-  mbd::Solver<Integrator> machine_solver;
+  mbd::Solver<Integrator, typename Model::Joints> machine_solver;
   std::vector<Surface> surfaces;
   std::vector<coupling::FindHits<Model>> find_hits;  ///< of the surfaces: the code for their kinds
   std::vector<SurfaceSensor> surface_sensors;

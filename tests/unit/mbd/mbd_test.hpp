@@ -31,10 +31,10 @@ inline BodySpec ball(const std::string& name, double mass = 1.0, double inertia 
 }
 
 /// A mechanism with the solver of a world, which calls it stage by stage, and `put_forces` in place of the grains.
-template <class I>
+template <class I, class Joints = Penalty>
 struct InWorld {
   Mechanism m;
-  Solver<I> solver;
+  Solver<I, Joints> solver;
 
   void start(double dt, const Vec3& gravity = Vec3::Zero()) {
     solver.design_for(m, dt);

@@ -8,7 +8,6 @@ using namespace dem::mbd::test;
 
 TEST_CASE("a recorder samples joints, bodies and the user's own numbers") {
   Machine<PredictorCorrector> m;
-  m.joint_tolerance = 0.01;  // m; steps of a millisecond are coarse, and accuracy is not what is asked here
   const BodyId b = m.add_body(brick("rod", {1, 0, 0}));
   const JointId hinge = m.add_joint(revolute("hinge", m.ground(), b, {0, 0, 0}, Y));
   Recorder recorder(m);

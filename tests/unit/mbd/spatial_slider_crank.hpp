@@ -10,11 +10,11 @@
 
 namespace dem::mbd::test {
 
-template <class I>
+template <class I, class Joints = Penalty>
 struct SpatialSliderCrank {
   static constexpr double radius = 0.08, rod_length = 0.3, speed = 6.0;  // m, m, rad/s
 
-  Machine<I> m;
+  Machine<I, Joints> m;
   Vec3 centre = {0, 0.1, 0.12}, start;  // m: of the crank, and the slider at the start
   BodyId crank, rod, slider;
   JointId bearing, guide;

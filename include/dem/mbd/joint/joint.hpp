@@ -25,6 +25,7 @@ struct Joint {
   JointKind kind;
   bool turns = false;                ///< has a rotation about z, followed over whole turns
   bool on = true;                    ///< false: it holds nothing for now
+  bool rigid = false;                ///< held by the solver, without springs (projected.hpp)
   Vector3<double> point_a, point_b;  ///< m, body frames
   Axes axes_a, axes_b;               ///< body frames
   double k = 0, c = 0;               ///< N/m, N s/m

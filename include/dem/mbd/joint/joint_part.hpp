@@ -83,7 +83,7 @@ inline constexpr PartKind joint_kind = {
     .add_forces =
         [](Parts& m, const Evaluation& now) {
           for (Joint& j : m.joints) {
-            if (j.on) [[likely]] {
+            if (j.on && !j.rigid) [[likely]] {
               traits_of(j.kind).force(j, m.bodies[j.a], m.bodies[j.b], m.spin[j.a], m.spin[j.b], now.followed());
             } else if (j.turns) {
               follow_turns(j, m.bodies[j.a], m.bodies[j.b], m.spin[j.a], m.spin[j.b], now.followed());

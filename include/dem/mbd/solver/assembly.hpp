@@ -104,4 +104,27 @@ DEM_COLD inline AssemblyReport joined_velocities(Parts& m, GivenVelocities how =
   return report;
 }
 
+/// Moves the bodies so that joints with derived stiffness stand open by `part` of what they do, with the least change
+/// of positions as masses weigh them, and takes the speeds at which they open or close.
+DEM_COLD inline void close_openings(Parts& m, double part) {
+  using namespace detail;
+  const std::vector<HeldRow> rows = held_rows(m);
+  std::vector<double> errors;
+  for (const HeldRow& row : rows) errors.push_back((part - 1.0) * row.error);
+  const auto response = [&](std::size_t i, const Wrench& impulse) { return response_of(m.bodies[i], impulse); };
+  solve_held(m, rows, errors, response);
+  std::vector<Wrench> by(m.bodies.size());
+  for (std::size_t k = 0; k < rows.size(); ++k) {
+    for (const HeldRow::Side& s : rows[k].sides) {
+      if (gives_way(m, s.body)) by[s.body] = by[s.body] + errors[k] * response(s.body, s.push);
+    }
+  }
+  for (std::size_t i = 0; i < m.bodies.size(); ++i) {
+    integrator::Motion<double>& x = m.bodies[i].motion;
+    x.position += by[i].force;
+    x.rotation = rotation_from_vector(by[i].torque) * x.rotation;
+  }
+  joined_velocities(m);
+}
+
 }  // namespace dem::mbd

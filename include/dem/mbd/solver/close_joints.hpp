@@ -1,11 +1,12 @@
 #pragma once
 
-// How a world chooses the sub-steps of its machine, by how far the joints may open. A derived stiffness grows as the
-// square of the number of sub-steps, so an opening falls with its square.
+// How the sub-steps of a machine are chosen, by how far its joints may open. A derived stiffness grows as the square of
+// the number of sub-steps, so an opening falls with its square.
 //
-// Before the first step: the joints' stiffness has to carry the weight of all bodies that they are joined with. While
-// running: where a joint opens by more than half of what is allowed, the sub-steps are raised so far that the same load
-// opens it by a quarter of it. They are never lowered. All this depends on nothing but the state of the machine.
+// Before the first step of a world: the joints' stiffness has to carry the weight of all bodies that they are joined
+// with. While a world or a machine alone is running: where a joint opens by more than half of what is allowed, the
+// sub-steps are raised so far that the same load opens it by a quarter of it. They are never lowered. All this depends
+// on nothing but the state of the machine.
 
 #include <dem/core/macros.hpp>
 #include <dem/mbd/solver/joint_watch.hpp>
@@ -35,7 +36,7 @@ inline double opening_under_weight(const Parts& m, const JointWatch& watch, cons
 }
 
 /// Brings stiffness that was raised while a machine runs in by and by. A strained spring that gets stiffer all at once
-/// gains energy; here it grows at most fourfold in a step of the world, under the dampers that belong to its end.
+/// gains energy; here it grows at most fourfold in a step, under the dampers that belong to its end.
 class StiffnessRamp {
  public:
   /// What the stiffness is now, before it is derived anew.
@@ -62,7 +63,7 @@ class StiffnessRamp {
   /// How many times as stiff the softest part is going to be; 1 when it is over.
   double left() const { return is_over() ? 1.0 : left_; }
 
-  /// To be called once in a step of the world.
+  /// To be called once in a step of the world, or of a machine alone.
   void step(Parts& m) {
     if (is_over()) return;
     constexpr double growth = 4.0;

@@ -34,4 +34,14 @@ DEM_COLD inline std::string first_underived(const Parts& m) {
   return {};
 }
 
+/// Throws Error if anything has no stiffness yet.
+DEM_COLD inline void require_derived(const Parts& m) {
+  if (const std::string open = first_underived(m); !open.empty()) {
+    fail(
+        "the stiffness of {} is to be derived, but the machine does not know its time step: call "
+        "machine.design_for(dt) before the first step, or give stiffness and damping",
+        open);
+  }
+}
+
 }  // namespace dem::mbd

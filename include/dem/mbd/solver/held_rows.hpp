@@ -20,11 +20,13 @@ struct HeldRow {
     Wrench push;  ///< about the centre of mass, global
   };
   std::vector<Side> sides;
-  double rate = 0.0;  ///< wanted, m/s or rad/s
+  double rate = 0.0;   ///< wanted, m/s or rad/s
+  double error = 0.0;  ///< m or rad, by which a joint stands open along it; of what is no joint 0
 };
 
-inline HeldRow row_of(const Coordinate& q, std::uint32_t a, std::uint32_t b, double rate = 0.0) {
+inline HeldRow row_of(const Coordinate& q, std::uint32_t a, std::uint32_t b, double rate = 0.0, double error = 0.0) {
   HeldRow row;
+  row.error = error;
   row.rate = rate;
   if (b != JacobianRow::no_body) row.sides.push_back({b, push_on_b(q)});
   if (a != JacobianRow::no_body) row.sides.push_back({a, push_on_a(q)});
@@ -47,19 +49,46 @@ void for_each_held_rotation(const Joint& j, Align align, const Matrix3<double>& 
   }
 }
 
+/// The small rotation (rad, global) by which b is off what a joint holds.
+inline Vector3<double> rotation_off(const Joint& j, Align align, const Matrix3<double>& A, const Matrix3<double>& B) {
+  using V = Vector3<double>;
+  const V xa = A * j.axes_a.x, ya = A * j.axes_a.y, za = A * j.axes_a.z;
+  const V xb = B * j.axes_b.x, yb = B * j.axes_b.y, zb = B * j.axes_b.z;
+  switch (align) {
+    case Align::locked: return 0.5 * (cross(xa, xb) + cross(ya, yb) + cross(za, zb));
+    case Align::parallel: return cross(za, zb);
+    case Align::cross: {
+      const V g = cross(yb, xa);
+      return (dot(xa, yb) / max(dot(g, g), 1e-6)) * g;
+    }
+    case Align::constant_velocity: {
+      const V g = 0.5 * (cross(xb, ya) - cross(yb, xa));
+      return (0.5 * (dot(ya, xb) - dot(xa, yb)) / max(dot(g, g), 1e-6)) * g;
+    }
+    case Align::bushing:
+    case Align::nothing: break;
+  }
+  return {0, 0, 0};
+}
+
 /// The rows of a joint: of displacements if `holds`, of rotations if `aligns`.
 inline void add_rows(const Parts& m, const Joint& j, bool holds, bool aligns, std::vector<HeldRow>& rows) {
   const Body &a = m.bodies[j.a], &b = m.bodies[j.b];
   const JointTraits& traits = traits_of(j.kind);
-  if (holds && traits.hold == Hold::length) rows.push_back(row_of(distance_of(j.point_a, j.point_b, a, b), j.a, j.b));
+  if (holds && traits.hold == Hold::length) {
+    const Coordinate q = distance_of(j.point_a, j.point_b, a, b);
+    rows.push_back(row_of(q, j.a, j.b, 0.0, q.value - j.length));
+  }
   if (holds) {
     for_each_held_axis(j, traits.hold, [&](const Vector3<double>& axis) {
-      rows.push_back(row_of(displacement_along(axis, j, a, b), j.a, j.b));
+      const Coordinate q = displacement_along(axis, j, a, b);
+      rows.push_back(row_of(q, j.a, j.b, 0.0, q.value));
     });
   }
   if (!aligns) return;
+  const Vector3<double> off = rotation_off(j, traits.align, a.motion.rotation, b.motion.rotation);
   for_each_held_rotation(j, traits.align, a.motion.rotation, b.motion.rotation, [&](const Vector3<double>& axis) {
-    rows.push_back(row_of(rotation_about(axis, 0.0, a, b), j.a, j.b));
+    rows.push_back(row_of(rotation_about(axis, 0.0, a, b), j.a, j.b, 0.0, dot(off, axis)));
   });
 }
 

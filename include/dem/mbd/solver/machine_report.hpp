@@ -25,6 +25,16 @@ struct MachineReport {
 DEM_COLD inline MachineReport report_of_opening(const Parts& m, const JointOpening& worst, double tolerance,
                                                 double step, int substeps, double time) {
   const int n = substeps_for(substeps, worst.share, 0.5, 1 << 30);  // half: what swings opens twice as far
+  if (m.joints[worst.joint.index()].rigid) {
+    return {false,
+            time,
+            {},
+            worst.joint,
+            dem::text("{}: no pose closes all joints; let parts that contradict each other go, or lower the time step "
+                      "(now {:g} s)",
+                      in_words(m, worst), step),
+            {}};
+  }
   const std::string text = dem::text(
       "{} (joint_tolerance, {}): the stiffness that is derived for the time step gives way under its load. A time step "
       "of {:g} s, or {} substeps (now {}), keeps it; or raise joint_tolerance",

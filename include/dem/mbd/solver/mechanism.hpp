@@ -23,12 +23,12 @@ namespace dem::mbd {
 /// checks what it is given, throws Error in words, and returns an id.
 class Mechanism {
  public:
-  /// Machine steps within one step dt of the world, or of a machine alone. A world raises them, so that joints stay
-  /// within joint_tolerance (close_joints.hpp), up to most_substeps; most_substeps = 1 forbids it.
+  /// Machine steps within one step dt of the world, or of a machine alone. They are raised while it runs, so that
+  /// joints stay within joint_tolerance (close_joints.hpp), up to most_substeps; most_substeps = 1 forbids it.
   int substeps = 1, most_substeps = 1000;
   /// m, how far a joint whose stiffness is derived may open, and be out of line: rad times the size of the machine that
   /// it belongs to. 0: 1e-4 of that size, which is the diagonal of the box about its joints and bodies. A joint that
-  /// opens farther is reported; infinity: none is.
+  /// opens farther with most_substeps is reported; infinity: none is.
   double joint_tolerance = 0.0;
   /// What becomes of velocities that joints do not allow, at the start.
   GivenVelocities given_velocities = GivenVelocities::project;

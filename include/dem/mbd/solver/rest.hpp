@@ -9,6 +9,8 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <type_traits>
+#include <utility>
 #include <vector>
 
 namespace dem::mbd {
@@ -35,10 +37,12 @@ namespace detail {
 
 /// Looks for the pose at which no force is left, by implicit steps in a time of its own, without inertia between them:
 /// (M/tau^2 + K) d = f, with K by differences. Short steps follow the forces, long ones are Newton's.
+template <class PutForces>
 class RestSearch {
  public:
-  RestSearch(Parts& parts, const Vec3& gravity, double time, double dt)
-      : m_(parts), gravity_(from_eigen(gravity)), time_(time), dt_(dt) {
+  /// `put_forces()` adds the forces from outside to the bodies, whose sums are clear.
+  RestSearch(Parts& parts, const Vec3& gravity, double time, double dt, PutForces put_forces)
+      : m_(parts), put_forces_(std::move(put_forces)), gravity_(from_eigen(gravity)), time_(time), dt_(dt) {
     double weight = 0.0;
     const JoinedBodies joined = joined_bodies(parts);
     for (const JoinedBodies::Machine& k : joined.machines) size_ = std::max(size_, k.size);
@@ -97,6 +101,7 @@ class RestSearch {
   /// Forces (N) and torques (N m) on the free bodies, gravity included.
   void evaluate(std::vector<double>& f) {
     clear_forces(m_);
+    put_forces_();
     add_forces(m_, time_, dt_, false);
     f.resize(6 * free_.size());
     for (std::size_t k = 0; k < free_.size(); ++k) {
@@ -195,12 +200,39 @@ class RestSearch {
   }
 
   Parts& m_;
+  PutForces put_forces_;
   Vector3<double> gravity_;
   double time_, dt_, size_ = 1e-6, scale_ = 0.0, longest_ = 1e3;
   std::vector<std::size_t> free_;
   std::vector<Vector3<double>> start_;
   std::vector<double> force_, K_;
 };
+
+/// Throws Error for what a search for rest cannot hold, and stops all bodies.
+DEM_COLD inline void stop_for_rest(Parts& parts) {
+  for (const PrescribedMotion& p : parts.motions) {
+    if (p.spec.on && !parts.bodies[p.spec.body.index()].fixed) {
+      fail("find_rest knows nothing of prescribed motion '{}'; switch it off, or hold the coordinate with an actuator",
+           p.spec.name);
+    }
+  }
+  for (Body& b : parts.bodies) b.motion.velocity = b.motion.angular_velocity = {0, 0, 0};
+}
+
+/// Searches, with joints as they are in steps of dt (s).
+template <class Joints, class PutForces>
+RestReport search_rest(Parts& parts, const Vec3& gravity, double time, double dt, const RestOptions& options,
+                       PutForces&& put_forces) {
+  if constexpr (Joints::projects) {  // springs for the search, so stiff that they hardly give way
+    for (Joint& j : parts.joints) j.rigid = false;
+    derive_stiffness(parts, 0.1 * dt);
+  }
+  RestSearch<std::decay_t<PutForces>> search(parts, gravity, time, dt, put_forces);
+  const RestReport report = search.run(options);
+  Joints::State::take_springs_off(parts);
+  settle_turns(parts);
+  return report;
+}
 
 }  // namespace detail
 
@@ -209,23 +241,17 @@ class RestSearch {
 /// hold nothing. Joints stand open as they will in steps of dt (s), so the run that follows stays where it is. A
 /// direction in which nothing holds and nothing pulls, as a wheel about its axle, stays as it is.
 ///
-/// Throws Error for a prescribed motion of a body that is not fixed, and what Machine::run throws.
-template <integrator::Integrator I>
-RestReport find_rest(Machine<I>& machine, double dt, const RestOptions& options = {}) {
+/// Throws Error for a prescribed motion of a body that is not fixed, and what Machine::run throws. Of a machine in a
+/// world: <dem/world/rest.hpp>.
+template <integrator::Integrator I, JointPolicy Joints>
+RestReport find_rest(Machine<I, Joints>& machine, double dt, const RestOptions& options = {}) {
   Parts& parts = machine.parts();
-  for (const PrescribedMotion& p : parts.motions) {
-    if (p.spec.on && !parts.bodies[p.spec.body.index()].fixed) {
-      fail("find_rest knows nothing of prescribed motion '{}'; switch it off, or hold the coordinate with an actuator",
-           p.spec.name);
-    }
-  }
-  for (Body& b : parts.bodies) b.motion.velocity = b.motion.angular_velocity = {0, 0, 0};
+  detail::stop_for_rest(parts);
   if (const MachineReport report = machine.run(0.0, dt); machine.report().body.valid()) {
     return {.body = parts.bodies[report.body.index()].name, .text = report.text};
   }
   const RestReport report =
-      detail::RestSearch(parts, machine.gravity, machine.time(), dt / machine.substeps).run(options);
-  settle_turns(parts);
+      detail::search_rest<Joints>(parts, machine.gravity, machine.time(), dt / machine.substeps, options, [] {});
   machine.initialise(machine.time(), machine.gravity);
   return report;
 }

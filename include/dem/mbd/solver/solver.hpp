@@ -8,13 +8,14 @@
 #include <dem/mbd/solver/close_joints.hpp>
 #include <dem/mbd/solver/forces.hpp>
 #include <dem/mbd/solver/held_contacts.hpp>
+#include <dem/mbd/solver/joint_policy.hpp>
 #include <dem/mbd/solver/machine_report.hpp>
 #include <dem/mbd/solver/mechanism.hpp>
+#include <dem/mbd/solver/raised_substeps.hpp>
 #include <dem/mbd/solver/softening.hpp>
 
 #include <algorithm>
 #include <string>
-#include <utility>
 #include <vector>
 
 namespace dem::mbd {
@@ -25,7 +26,7 @@ namespace dem::mbd {
 ///     solver.design_for(mechanism, dt);
 ///     solver.initialise(mechanism, time, gravity, forces_of_grains);
 ///     for (int stage = 0; stage < I::stages; ++stage) solver.stage(mechanism, stage, dt, gravity, forces_of_grains);
-template <integrator::Integrator I>
+template <integrator::Integrator I, JointPolicy Joints = Penalty>
 class Solver {
  public:
   double time() const { return time_; }              ///< s
@@ -34,6 +35,7 @@ class Solver {
   /// Derives what was left open (stiffness, damping) for a step of dt (s), all sub-steps together, in the present pose.
   DEM_COLD void design_for(Mechanism& m, double dt) {
     derive_stiffness(m.parts(), dt / checked_substeps(m));
+    held_joints_.take_springs_off(m.parts());
     softening_ = Softening(m.parts(), dt / m.substeps);
     ramp_ = {};
     design_dt_ = dt;
@@ -46,27 +48,29 @@ class Solver {
     const double share = opening_under_weight(m.parts(), watch, gravity);
     const int n = substeps_for(m.substeps, share, 1.0, std::max(m.substeps, m.most_substeps));
     if (n == m.substeps) return;
-    if (raised_to_ != m.substeps) raised_from_ = m.substeps;
-    m.substeps = raised_to_ = n;
+    raised_.raise(m.substeps, n);
+    m.substeps = n;
     design_for(m, design_dt_);
   }
 
-  /// To be called after a step of the world: raises the sub-steps where joints open too far (close_joints.hpp).
-  void close_joints(Mechanism& m) {
+  /// To be called after a step: raises the sub-steps where joints open too far (close_joints.hpp). Bodies that touch
+  /// nothing may be moved to close them. Returns what stays open beyond joint_tolerance with most_substeps.
+  JointOpening close_joints(Mechanism& m, bool bodies_may_touch = true) {
     ramp_.step(m.parts());
     const JointOpening recent = joints_.take_recent();
     const double share = recent.share / ramp_.left();
-    if (share <= 0.5 || body_watch_.seen()) return;
+    if (share <= 0.5 || body_watch_.seen()) return {};
     if (m.substeps < m.most_substeps) {
-      raise_substeps(m, substeps_for(m.substeps, share, 0.25, m.most_substeps));
-    } else if (share > 1.0 && std::find(known_.begin(), known_.end(), recent.joint) == known_.end()) {
-      known_.push_back(recent.joint);
-      newly_opened_ = recent;
+      raise_substeps(m, substeps_for(m.substeps, share, 0.25, m.most_substeps), bodies_may_touch);
+      return {};
     }
+    if (share <= 1.0) return {};
+    raised_.stands_open(recent);
+    return recent;
   }
   /// After close_joints: all is well, or which joint has opened beyond joint_tolerance though the sub-steps are as many
   /// as they may be. Each joint is told once.
-  MachineReport newly_opened(const Mechanism& m) { return report_of(m, std::exchange(newly_opened_, {})); }
+  MachineReport newly_opened(const Mechanism& m) { return report_of(m, raised_.take_newly_opened()); }
 
   /// The largest stable time step of the world, all sub-steps of the machine together, and the part that limits it.
   DEM_COLD StableTimeStep stable_time_step(const Mechanism& m) const {
@@ -108,7 +112,7 @@ class Solver {
   template <class PutForces>
   DEM_COLD void initialise(Mechanism& m, double time, const Vec3& gravity, PutForces&& put_forces) {
     Parts& parts = m.parts();
-    require_derived(parts);
+    if (design_dt_ <= 0.0) require_derived(parts);
     if (!parts.couplings.empty()) detail::check_locked(parts);
     clear_forces(parts);
     put_forces();
@@ -119,6 +123,7 @@ class Solver {
     check_motions(m);
     const double step = design_dt_ / checked_substeps(m);  // 0 if none is known
     if (parts.apply_motions) parts.apply_motions(parts, time, step, false);
+    held_joints_.start(parts);
     if (!is_assembled_) assemble(m);
     for (PrescribedMotion& p : parts.motions) p.drive.impulse = 0.0;  // the speeds that it starts with
     add_forces(parts, time, step, false);
@@ -166,12 +171,14 @@ class Solver {
         cause_of_blow_up<I>(m.parts(), limit_at_start_, watch_, joints_, step_dt_, m.substeps));
     return {false, body_watch_.time(), body_watch_.body(), {}, text, {}};
   }
-  /// All is well, or which joint opened farthest beyond joint_tolerance, and what keeps it closed.
-  MachineReport report_of_joints(const Mechanism& m) const { return report_of(m, joints_.worst()); }
+  /// All is well, or which joint stood open beyond joint_tolerance, and what keeps it closed.
+  MachineReport report_of(const Mechanism& m, const JointOpening& worst) const {
+    if (!(worst.share > 1.0)) return {true, time_, {}, {}, {}, {}};
+    return report_of_opening(m.parts(), worst, m.joint_tolerance, step_dt_, m.substeps, time_);
+  }
   /// What was changed of what the user gave: sub-steps, velocities at the start. Empty if nothing.
   DEM_COLD std::string note(const Mechanism& m) const {
-    const bool raised = raised_to_ == m.substeps && raised_to_ > raised_from_;
-    return note_of(m.parts(), assembly_, joints_, raised ? raised_from_ : 0, raised_to_);
+    return note_of(m.parts(), assembly_, joints_, raised_.given(m.substeps), m.substeps);
   }
   /// What became of the velocities that were given, at the start.
   const AssemblyReport& assembly() const { return assembly_; }
@@ -190,9 +197,8 @@ class Solver {
     v("stable_step_at_start", limit_at_start_.dt, "s"), v("limited_at_start_by", limit_at_start_.limited_by);
     v("time", time_, "s"), v("design_step", design_dt_, "s"), v("newest_step", step_dt_, "s"), v("steps", steps_);
     v("substeps", substeps_), v("revision", revision_), v("initialised", initialised_);
-    body_watch_.fields(v);
-    v("ramp", ramp_), v("joints", joints_), v("newly_opened", newly_opened_), v("known_open", known_);
-    v("assembled", is_assembled_), v("raised_from", raised_from_), v("raised_to", raised_to_);
+    v("ramp", ramp_), v("joints", joints_), v("assembled", is_assembled_);
+    body_watch_.fields(v), raised_.fields(v), held_joints_.fields(v);
   }
 
  private:
@@ -200,30 +206,18 @@ class Solver {
     if (m.substeps < 1) fail("the machine's substeps are {}, but must be at least 1", m.substeps);
     return m.substeps;
   }
-  DEM_COLD void require_derived(const Parts& parts) const {
-    if (design_dt_ > 0.0) return;
-    const std::string open = first_underived(parts);
-    if (open.empty()) return;
-    fail(
-        "the stiffness of {} is to be derived, but the machine does not know its time step: call "
-        "machine.design_for(dt) before the first step, or give stiffness and damping",
-        open);
-  }
 
-  MachineReport report_of(const Mechanism& m, const JointOpening& worst) const {
-    if (!(worst.share > 1.0)) return {true, time_, {}, {}, {}, {}};
-    return report_of_opening(m.parts(), worst, m.joint_tolerance, step_dt_, m.substeps, time_);
-  }
-
-  /// While running, between two steps of the world.
-  DEM_COLD void raise_substeps(Mechanism& m, int n) {
+  /// While running, between two steps of the world or of a machine alone.
+  DEM_COLD void raise_substeps(Mechanism& m, int n, bool in_ramp) {
     Parts& parts = m.parts();
     if (m.substeps == 1) held_.start(parts.outside);  // the contacts' forces, which are held from here on
-    if (raised_to_ != m.substeps) raised_from_ = m.substeps;
+    raised_.raise(m.substeps, n);
     const std::vector<double> before = StiffnessRamp::stiffness_of(parts);
-    m.substeps = substeps_ = raised_to_ = n;
+    const double part = static_cast<double>(m.substeps) / n;
+    m.substeps = substeps_ = n;
     design_for(m, design_dt_);
-    ramp_ = StiffnessRamp(parts, before);
+    if (in_ramp) ramp_ = StiffnessRamp(parts, before);
+    else close_openings(parts, part * part);  // so that joints bear the same forces
     note_stable_step(m);
   }
 
@@ -242,10 +236,12 @@ class Solver {
   }
 
   void predict(Mechanism& m, int stage, double dt) {
+    if (stage == 0) held_joints_.begin(m.parts());
     if constexpr (I::predicts_before_forces) {
       motion_.before_forces(m.parts().bodies, stage, dt);
       // Forces see driven bodies where they are at the end of the step.
-      if (m.parts().apply_motions) m.parts().apply_motions(m.parts(), time_ + dt, dt, false);
+      if constexpr (Joints::projects) held_joints_.move(m.parts(), time_ + dt, dt, true);
+      else if (m.parts().apply_motions) m.parts().apply_motions(m.parts(), time_ + dt, dt, false);
     }
   }
 
@@ -254,11 +250,23 @@ class Solver {
     Parts& parts = m.parts();
     const bool last = stage == I::stages - 1;
     add_forces(parts, stage_time(start, dt, stage), dt, last);
-    if (last && sampling_ && parts.sample_sensors) parts.sample_sensors(parts, dt);
+    const auto sample = [&] {
+      if (last && sampling_ && parts.sample_sensors) parts.sample_sensors(parts, dt);
+    };
+    if constexpr (!Joints::projects) sample();
+    else if constexpr (I::stages == 1) held_joints_.add_gyroscopic(parts, integrator::gyroscopic_lead<I>(dt));
     motion_.after_forces(parts.bodies, stage, dt, from_eigen(gravity));
     step_dt_ = dt * m.substeps;
+    if constexpr (Joints::projects) {
+      if constexpr (!I::predicts_before_forces) held_joints_.move(parts, start + dt, dt, last);
+    }
     if (last) end_step(m, dt);
-    prescribe(m, start + dt, dt);
+    if constexpr (Joints::projects) {
+      if (last) held_joints_.finish(parts, start + dt, dt);
+      sample();
+    } else {
+      prescribe(m, start + dt, dt);
+    }
   }
 
   /// Takes the machine's steps within one of the world's, with the grains' forces as HeldContacts has them.
@@ -270,6 +278,7 @@ class Solver {
     if constexpr (I::stages > 1) {
       if (stage == 0) saved_.save(parts, motion_.memory(), time_);
       else time_ = saved_.restore(parts, motion_.memory());
+      held_joints_.forget();
     }
     struct Sampling {  // goes on after the sub-steps, also if a function of the user throws in one
       bool& flag;
@@ -318,6 +327,7 @@ class Solver {
   }
 
   BodiesInMotion<I> motion_;
+  typename Joints::State held_joints_;
   HeldContacts<I> held_;
   SavedState<I> saved_;
   Softening softening_;
@@ -325,11 +335,9 @@ class Solver {
   StepWatch<I> watch_;
   JointWatch joints_;
   BodyWatch body_watch_;
-  JointOpening newly_opened_;
-  std::vector<JointId> known_;  // joints that were told of as open
+  RaisedSubsteps raised_;
   AssemblyReport assembly_;
   bool is_assembled_ = false;
-  int raised_from_ = 0, raised_to_ = 0;  // sub-steps that were given, and that they were raised to
   StableTimeStep limit_at_start_;
   double time_ = 0.0, design_dt_ = 0.0, step_dt_ = 0.0;  // s; the last two with all sub-steps
   long steps_ = 0;

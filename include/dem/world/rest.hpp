@@ -1,0 +1,34 @@
+#pragma once
+
+// Static equilibrium of the machine of a world. Not among what <dem/dem.hpp> includes.
+
+#include <dem/mbd/solver/rest.hpp>
+#include <dem/world/world.hpp>
+
+namespace dem {
+
+/// Brings the machine of a world to rest: moves its bodies to where gravity, springs, loads, joints and contacts are in
+/// balance, and stops them, as mbd::find_rest does for a machine alone. Grains are held where they are. They push on
+/// what comes near, so a wheel that hangs over a settled bed is set down on it, and sinks in no farther than grains at
+/// rest give way. Friction holds what it held before.
+///
+/// Each iteration evaluates all contacts 12 times for each free body: cheap before there are grains, or with some
+/// thousands. Of a large bed, find the rest on a plane first, and let the bed take the load as it runs.
+///
+///     #include <dem/world/rest.hpp>
+///     if (const auto rest = find_rest(world); !rest) fmt::print("{}\n", rest.text);
+///
+/// Throws Error for a prescribed motion of a body that is not fixed, and what World::run throws.
+template <class Model>
+mbd::RestReport find_rest(World<Model>& world, const mbd::RestOptions& options = {}) {
+  WorldState<Model>& w = world.state();
+  mbd::detail::stop_for_rest(w.machine.parts());
+  world.prepare();
+  const mbd::RestReport report = mbd::detail::search_rest<typename Model::Joints>(
+      w.machine.parts(), w.options.gravity, w.time, w.time_step / w.machine.substeps, options,
+      [&w] { evaluate_contacts(w); });
+  world.set_gravity(w.options.gravity);  // what integrators remember of forces is out of date, and grains may wake
+  return report;
+}
+
+}  // namespace dem

@@ -1,0 +1,55 @@
+// Static equilibrium of the machine of a world.
+
+#include "catch.hpp"
+#include "worlds.hpp"
+
+#include <dem/dem.hpp>
+#include <dem/world/rest.hpp>
+
+namespace {
+
+using models::Balls, models::VerletBalls;
+
+}  // namespace
+
+TEMPLATE_TEST_CASE("a plate on a spring comes to rest under its weight and a grain that is held", "", Balls,
+                   VerletBalls) {
+  // The grain of stiffness kn overlaps the plate by d. The plate gives way by x: k x = m g + kn (d - x).
+  const double k = 5e3, kn = 2e3, mass = 2e-2, radius = 1e-3, d = 2e-5, g = 9.81;
+  dem::World<TestType> world({.gravity = {0, 0, -g}, .time_step = 1e-6});
+  world.set_contact({.normal = {.stiffness = kn, .damping = 0, .separation_factor = 1}, .friction = {}});
+  const auto species = world.add_species(dem::shape::Sphere(radius));
+  auto& machine = world.machine();
+  const dem::Vec3 edges(4e-3, 4e-3, 1e-3);
+  const dem::BodyId plate = machine.add_body(dem::mbd::box_body("plate", edges, mass / edges.prod()));
+  const auto slide = machine.add_joint(dem::mbd::prismatic("slide", world.ground(), plate, {0, 0, 0}, {0, 0, 1}));
+  const auto spring = machine.add_spring(dem::mbd::spring("spring", world.ground(), {0, 0, -0.1}, plate, {0, 0, 0}, k));
+  world.add_surface(plate, dem::surface::Box(edges));
+  const auto grain = world.add_particle({.species = species, .position = {0, 0, 0.5e-3 + radius - d}});
+
+  const dem::mbd::RestReport before = find_rest(world);
+  INFO(before.text);
+  REQUIRE(before);
+  const double x = (mass * g + kn * d) / (k + kn);
+  REQUIRE(x > d);  // so the plate leaves the grain, and carries its weight alone
+  CHECK(-machine.coordinate(slide) == Approx(mass * g / k).epsilon(1e-6));
+  CHECK(machine.spring(spring).force == Approx(mass * g).epsilon(1e-6));
+
+  // With a stiff spring it stays in touch.
+  dem::World<TestType> stiff({.gravity = {0, 0, -g}, .time_step = 1e-6});
+  stiff.set_contact({.normal = {.stiffness = kn, .damping = 0, .separation_factor = 1}, .friction = {}});
+  const auto same = stiff.add_species(dem::shape::Sphere(radius));
+  auto& m = stiff.machine();
+  const dem::BodyId table = m.add_body(dem::mbd::box_body("table", edges, mass / edges.prod()));
+  const auto guide = m.add_joint(dem::mbd::prismatic("guide", stiff.ground(), table, {0, 0, 0}, {0, 0, 1}));
+  m.add_spring(dem::mbd::spring("leg", stiff.ground(), {0, 0, -0.1}, table, {0, 0, 0}, 10 * k));
+  stiff.add_surface(table, dem::surface::Box(edges));
+  (void)stiff.add_particle({.species = same, .position = {0, 0, 0.5e-3 + radius - d}});
+  const dem::mbd::RestReport rest = find_rest(stiff);
+  INFO(rest.text);
+  REQUIRE(rest);
+  CHECK(-m.coordinate(guide) == Approx((mass * g + kn * d) / (10 * k + kn)).epsilon(1e-5));
+  CHECK(m.body(table).velocity().norm() == 0.0);
+  CHECK(world.position(grain).z() == 0.5e-3 + radius - d);  // it was held
+  REQUIRE(world.run(10));
+}
