@@ -16,7 +16,8 @@
 
 namespace dem::io {
 
-/// What digits of numbers are kept that are stored as 32-bit floats: rounded numbers take less room in a compressed file.
+/// What digits of numbers are kept that are stored as 32-bit floats: rounded numbers take less room in a compressed
+/// file.
 struct Rounding {
   int bits = 23;      ///< of the mantissa, 1 to 23: 10 keep three digits
   double step = 0.0;  ///< numbers become multiples of it; a power of two; 0: they do not
@@ -31,9 +32,9 @@ struct DataArray {
                               std::span<const std::int64_t>, std::span<const std::uint8_t>,
                               std::span<const std::uint32_t>, std::span<const std::uint64_t>>;
 
-  std::string name;    ///< shown by ParaView; not empty, and not twice in a file
-  int components = 1;  ///< 1 scalar, 3 vector, 9 tensor by rows, ...
-  Values values = {};  ///< x0 y0 z0 x1 y1 z1 ...
+  std::string name;        ///< shown by ParaView; not empty, and not twice in a file
+  int components = 1;      ///< 1 scalar, 3 vector, 9 tensor by rows, ...
+  Values values = {};      ///< x0 y0 z0 x1 y1 z1 ...
   Rounding rounding = {};  ///< of doubles that are stored in single precision
 
   [[nodiscard]] std::size_t size() const {

@@ -26,10 +26,11 @@ struct PackedGrain {
 };
 
 /// The bytes of all frames. Plane 0 says of each grain and frame what has changed since the grain was last there:
-/// 1 position, 2 rotation, 4 scalars, added up, and 16 where the grain sleeps; 8: the grain is not there. Only what has changed is in the others, as
-/// differences with their sign in the lowest bit: low and high bytes of x, y and z (1 to 6), low bytes of the three
-/// components of the rotation (7 to 9) and what is left of them (10: the change of the two highest bits, then two bits
-/// of each), speed (11), force (12). So a grain at rest costs a bit a frame, and less among others at rest.
+/// 1 position, 2 rotation, 4 scalars, added up, and 16 where the grain sleeps; 8: the grain is not there. Only what has
+/// changed is in the others, as differences with their sign in the lowest bit: low and high bytes of x, y and z (1 to
+/// 6), low bytes of the three components of the rotation (7 to 9) and what is left of them (10: the change of the two
+/// highest bits, then two bits of each), speed (11), force (12). So a grain at rest costs a bit a frame, and less among
+/// others at rest.
 struct ReplayPlanes {
   std::array<std::string, 13> bytes = {};
 };

@@ -75,9 +75,9 @@ void meet_world(Replay& replay, const World& world, const std::vector<io::DrawnB
 }  // namespace detail
 
 /// Replay::record(world, bodies): makes a frame of a world as it is now, if one is due. Grains are drawn by their
-/// shapes, coloured by their speeds, the sizes of their net contact forces, or whether they sleep; so are all active surfaces where their
-/// bodies are, and besides `bodies` as meshes, the same ones in the same order each time. Throws dem::Error for a body
-/// without a mesh, and as Replay::record does.
+/// shapes, coloured by their speeds, the sizes of their net contact forces, or whether they sleep; so are all active
+/// surfaces where their bodies are, and besides `bodies` as meshes, the same ones in the same order each time. Throws
+/// dem::Error for a body without a mesh, and as Replay::record does.
 template <class World>
 bool record_world(Replay& replay, const World& world, const std::vector<io::DrawnBody>& bodies = {}) {
   const double time = world.time();

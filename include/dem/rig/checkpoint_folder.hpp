@@ -57,9 +57,10 @@ class CheckpointFolder final : public PartStore {
     require_same_settings(io::read_file(settings), settings_, options_.free_settings, output_);
     const auto files = parts();
     if (files.empty() && std::filesystem::exists(std::filesystem::path(output_) / "report.html")) {
-      fail("the run in '{}' has ended, or kept nothing that it could go on from (see --checkpoint-every); leave out "
-           "--resume to begin it anew",
-           output_);
+      fail(
+          "the run in '{}' has ended, or kept nothing that it could go on from (see --checkpoint-every); leave out "
+          "--resume to begin it anew",
+          output_);
     }
     for (const auto& file : files) options_.files.check(file);
   }
@@ -116,7 +117,7 @@ class CheckpointFolder final : public PartStore {
 
   std::string write(const std::string& part, io::StateColumns& columns) override {
     if (options_.every == 0.0) return "";  // nothing is to be kept of a run that just goes on
-    const std::lock_guard lock(mutex_);  // HDF5 as Debian has it is not for several threads
+    const std::lock_guard lock(mutex_);    // HDF5 as Debian has it is not for several threads
     io::StateColumns own;
     io::Fields v(io::Fields::Task::collect, own);
     std::string version = DEM_VERSION_STRING;
@@ -138,7 +139,8 @@ class CheckpointFolder final : public PartStore {
  private:
   [[nodiscard]] std::filesystem::path path_of(const std::string& part) const { return folder_ / (part + ".h5"); }
   static void fields(io::Fields& v, std::string& program, std::string& version, std::string& settings, double& wall) {
-    v.group("rig/run", [&] { v("program", program), v("version", version), v("settings", settings), v("wall_time", wall, "s"); });
+    v.group("rig/run",
+            [&] { v("program", program), v("version", version), v("settings", settings), v("wall_time", wall, "s"); });
   }
 
   std::string program_, output_;

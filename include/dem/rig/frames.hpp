@@ -20,8 +20,8 @@
 namespace dem::rig {
 
 /// Every grain as a point that knows how it moves and touches others and, where grains may sleep, whether it does. In
-/// single precision positions are good to a two-thousandth of a radius, turns to 0.03 degrees, speeds and forces to three
-/// digits: as much as is seen.
+/// single precision positions are good to a two-thousandth of a radius, turns to 0.03 degrees, speeds and forces to
+/// three digits: as much as is seen.
 template <class World>
 void write_grain_points(const std::filesystem::path& path, const World& world, const io::VtkOptions& options) {
   const std::size_t n = world.particle_count();

@@ -44,8 +44,8 @@ class PartStore {
   virtual ~PartStore() = default;
   /// Whether parts are kept at all.
   [[nodiscard]] virtual bool is_on() const = 0;
-  /// Whether so much time has gone by since `last` (s, of a clock of its own) that a part is to be saved. `last` is then
-  /// set to now.
+  /// Whether so much time has gone by since `last` (s, of a clock of its own) that a part is to be saved. `last` is
+  /// then set to now.
   virtual bool is_due(double& last) = 0;
   /// The columns of a part as it was saved last; none if it was not, or if the run begins anew. Throws Error.
   virtual io::StateColumns read(const std::string& part) = 0;
@@ -112,9 +112,7 @@ class Part {
   void drop() { kept_.pop_back(); }
 
   /// Saves the part, if it is in a stage and it is time to. Returns why that did not work.
-  std::string save_if_due() {
-    return numbers_ && store_.is_on() && store_.is_due(last_) ? save(world_, type_) : "";
-  }
+  std::string save_if_due() { return numbers_ && store_.is_on() && store_.is_due(last_) ? save(world_, type_) : ""; }
   /// The part is done. Its world, if another part starts from it, is saved; or restored, if the part was done before.
   std::string complete(void* world, const void* type) {
     if (!was_done_) {

@@ -56,8 +56,10 @@ inline void resolve(CheckpointOptions& o, const Options& options) {
   o.files = hdf5_checkpoints();
 #else
   if (o.every > 0.0 || o.resume) {
-    fail("{} needs HDF5, which this program was built without; install it (on Debian and Ubuntu: apt install "
-         "libhdf5-dev), configure with cmake anew and build", o.resume ? "--resume" : "--checkpoint-every");
+    fail(
+        "{} needs HDF5, which this program was built without; install it (on Debian and Ubuntu: apt install "
+        "libhdf5-dev), configure with cmake anew and build",
+        o.resume ? "--resume" : "--checkpoint-every");
   }
 #endif
   for (const Option& option : options.all()) {

@@ -122,8 +122,8 @@ class RigidWheel {
       run(world, interval);
       const auto& grains = m.sensor(stand.grains).mean();
       const double rim = m.speed(stand.axle) * s.radius, way = m.speed(stand.rail);
-      result.samples.push_back({world.time() - n.start, 1.0 - way / rim, m.coordinate(stand.rail) - n.rail, grains.force.x,
-                                -grains.torque.y, sinkage(stand), grains.force.z,
+      result.samples.push_back({world.time() - n.start, 1.0 - way / rim, m.coordinate(stand.rail) - n.rail,
+                                grains.force.x, -grains.torque.y, sinkage(stand), grains.force.z,
                                 -m.sensor(stand.drive_sensor).mean().force.x,
                                 m.sensor(stand.motor_sensor).mean().force.x});
       const double share = (world.time() - n.start) / duration;

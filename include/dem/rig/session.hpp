@@ -43,8 +43,7 @@ class Session final : public Stages {
     CheckpointOptions checkpoints = {};
   };
 
-  explicit Session(Set set)
-      : set_(std::move(set)), parts_(set_.program, set_.output, set_.config, set_.checkpoints) {}
+  explicit Session(Set set) : set_(std::move(set)), parts_(set_.program, set_.output, set_.config, set_.checkpoints) {}
 
   [[nodiscard]] std::filesystem::path folder() const { return set_.output; }
   [[nodiscard]] const std::string& program() const { return set_.program; }

@@ -86,9 +86,10 @@ inline void require_same_settings(std::string_view then, std::string_view now, c
     for (const ConfigLine& l : *list) {
       const std::string a = value_in(before, l.key), b = value_in(after, l.key);
       if (a == b) continue;
-      fail("--{} was {} in the run in '{}' that is to go on, but is {} now; give the same settings (--config "
-           "{}/settings.toml), or another --output for a new run",
-           l.key, a, where, b, where);
+      fail(
+          "--{} was {} in the run in '{}' that is to go on, but is {} now; give the same settings (--config "
+          "{}/settings.toml), or another --output for a new run",
+          l.key, a, where, b, where);
     }
   }
 }

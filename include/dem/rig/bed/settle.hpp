@@ -16,9 +16,9 @@ struct Settling {
   }
 };
 
-/// Enters a stage in which the grains of a world come to rest: their r.m.s. speed stays below that of rest (soil::rest_speed of their
-/// size, m) for 20 ms. `done()` is what of the stage is done. Throws Stopped if that takes longer than `limit` (s);
-/// `option` is what sets the limit. `set_up()` as for Stages::enter.
+/// Enters a stage in which the grains of a world come to rest: their r.m.s. speed stays below that of rest
+/// (soil::rest_speed of their size, m) for 20 ms. `done()` is what of the stage is done. Throws Stopped if that takes
+/// longer than `limit` (s); `option` is what sets the limit. `set_up()` as for Stages::enter.
 template <class World, class Done, std::invocable SetUp>
 void settle(World& world, double size, double limit, const char* option, Stages& stages, Done&& done, SetUp&& set_up) {
   const double rest = soil::rest_speed(size);

@@ -115,7 +115,8 @@ void run_campaign(const DirectShear<Model>& shear, Campaign& campaign, Session& 
     PartOf<Model> part(session, session, "packing");
     const auto kept = session.keep("packing", packing);
     if (!part.is_done()) packing = make_packing<Model>(s, shear.grains(), first.grains, session);
-    else for (int k = 0; k < making; ++k) session.begin("packing");
+    else
+      for (int k = 0; k < making; ++k) session.begin("packing");
     session.complete();
     soil::save_packing(packing.packing, s.save_packing);  // before anything else can go wrong
   } else {

@@ -1,7 +1,7 @@
 #pragma once
 
-#include <dem/rig/direct_shear/density.hpp>
 #include <dem/rig/bed/settle.hpp>
+#include <dem/rig/direct_shear/density.hpp>
 #include <dem/rig/stages.hpp>
 #include <dem/soil/coordination.hpp>
 #include <dem/soil/rest.hpp>

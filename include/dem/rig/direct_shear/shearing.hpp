@@ -50,9 +50,8 @@ void shear(Apparatus<Model>& rig, const Settings& s, LoadResult& result, Stages&
   auto& machine = rig.world.machine();
   const double interval = 1e-5 / s.shear_speed;
   StageOfTest n{.start = rig.world.time(), .lid = rig.lid_low()};
-  const auto stage = stages.enter(rig.world, n, [&] {
-    machine.set_target(rig.shearing, smooth_start(s.shear_speed, s.ramp_time, n.start));
-  });
+  const auto stage = stages.enter(
+      rig.world, n, [&] { machine.set_target(rig.shearing, smooth_start(s.shear_speed, s.ramp_time, n.start)); });
   if (!stage) return;
   if (stage.begins()) {
     // Weight of the grains in the bottom box: they hang on it, but not on the plane of shear.
