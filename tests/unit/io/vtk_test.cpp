@@ -1,6 +1,7 @@
 #include "catch.hpp"
 #include "files.hpp"
 #include "io/vtk_reader.hpp"
+#include "random.hpp"
 
 #include <dem/geometry/polyhedron/polyhedra.hpp>
 #include <dem/io/polyhedron_mesh.hpp>
@@ -332,3 +333,35 @@ TEST_CASE("vtk mistakes are told") {
     CHECK_THAT(error_of([&] { (void)cylinder_mesh(1, wrong); }), ContainsSubstring("must be finite"));
   }
 }
+
+#if defined(DEM_WITH_ZLIB)
+TEST_CASE("a frame of grains as rigs write it takes less than 50 bytes a grain: 300,000 are less than 15 MB") {
+  const TempFolder folder;
+  constexpr std::size_t n = 20000;  // in the order of a lattice, as grains have who were rained; all move and turn
+  Random random(1);
+  std::vector<Vec3> position, velocity, spin, force;
+  std::vector<double> quaternion, radius(n, 1.4e-3);
+  std::vector<std::int32_t> contacts, neighbours;
+  for (std::size_t k = 0; k < n; ++k) {
+    const Vec3 cell(static_cast<double>(k % 27), static_cast<double>(k / 27 % 27), static_cast<double>(k / 729));
+    position.push_back(2.2e-3 * (cell + random.vector(0.3)));
+    for (auto* v : {&velocity, &spin, &force})
+      v->push_back(std::exp(3.0 * random.between(-1.0, 1.0)) * random.vector(1.0));
+    const dem::Quaternion q(random.rotation());
+    quaternion.insert(quaternion.end(), {q.w(), q.x(), q.y(), q.z()});
+    contacts.push_back(static_cast<std::int32_t>(random.between(2.0, 14.0)));
+    neighbours.push_back(static_cast<std::int32_t>(random.between(2.0, 8.0)));
+  }
+  const Rounding digits = {.bits = 10}, turn = {.step = 0x1p-11};
+  write_vtk_points(folder / "grains.vtp", flat(position),
+                   {{"radius_m", 1, radius},
+                    {"velocity_m_s", 3, flat(velocity), digits},
+                    {"angular_velocity_rad_s", 3, flat(spin), digits},
+                    {"quaternion_wxyz", 4, quaternion, turn},
+                    {"net_contact_force_N", 3, flat(force), digits},
+                    {"contact_points", 1, contacts},
+                    {"coordination", 1, neighbours}},
+                   {.single_precision = true, .position_rounding = {.step = 0x1p-21}});
+  CHECK(std::filesystem::file_size(folder / "grains.vtp") < 50 * n);
+}
+#endif
