@@ -11,6 +11,10 @@
 #include <string>
 
 #if defined(DEM_WITH_ZLIB)
+#include <dem/parallel/threads.hpp>
+
+#include <vector>
+
 #include <zlib.h>
 #endif
 
@@ -18,43 +22,60 @@ namespace dem::io::detail {
 
 #if defined(DEM_WITH_ZLIB)
 
-inline constexpr const char* vtk_compressor = " compressor=\"vtkZLibDataCompressor\"";
+/// Packs arrays block by block, on all threads that OpenMP offers.
+class VtkPacker {
+ public:
+  static constexpr const char* attribute = " compressor=\"vtkZLibDataCompressor\"";  ///< of the file
 
-/// Numbers of blocks, bytes of a block, bytes of the last one if it is shorter, and of each compressed one; then these.
-inline std::string vtk_bytes(const void* data, std::size_t bytes) {
-  constexpr std::size_t block = std::size_t{1} << 17;
-  constexpr int fastest = 1;  // numbers of a simulation gain next to nothing from better levels
-  const std::size_t blocks = (bytes + block - 1) / block;
-  std::string out((3 + blocks) * sizeof(std::uint64_t), '\0');
-  const auto put = [&](std::size_t k, std::uint64_t number) {
-    std::memcpy(out.data() + k * sizeof number, &number, sizeof number);
-  };
-  put(0, blocks), put(1, block), put(2, bytes % block);
-  for (std::size_t k = 0; k < blocks; ++k) {
-    const std::size_t size = std::min(block, bytes - k * block), start = out.size();
-    auto room = ::compressBound(static_cast<uLong>(size));
-    out.resize(start + room);
-    const auto* from = static_cast<const Bytef*>(data) + k * block;
-    const int status = ::compress2(reinterpret_cast<Bytef*>(out.data() + start), &room, from, size, fastest);
-    if (status != Z_OK) fail("zlib cannot compress {} bytes for ParaView (its error {})", size, status);
-    out.resize(start + room);
-    put(3 + k, room);
+  /// How many blocks there are, the bytes of each, of the last one if it is shorter, and of each when compressed; then
+  /// these.
+  std::string operator()(const void* data, std::size_t bytes) {
+    const std::size_t blocks = (bytes + block_size - 1) / block_size;
+    std::vector<std::string> packed(blocks);
+    threads_.for_each(blocks, [&](std::size_t k) {
+      packed[k] =
+          compressed(static_cast<const char*>(data) + k * block_size, std::min(block_size, bytes - k * block_size));
+    });
+    std::string out;
+    const auto put = [&](std::uint64_t number) { out.append(reinterpret_cast<const char*>(&number), sizeof number); };
+    put(blocks), put(block_size), put(bytes % block_size);
+    for (const std::string& p : packed) put(p.size());
+    for (const std::string& p : packed) out += p;
+    return out;
   }
-  return out;
-}
+
+ private:
+  static constexpr std::size_t block_size = std::size_t{1} << 17;
+
+  static std::string compressed(const char* data, std::size_t bytes) {
+    constexpr int fastest = 1;  // numbers of a simulation gain next to nothing from better levels
+    auto room = ::compressBound(static_cast<uLong>(bytes));
+    std::string out(room, '\0');
+    const int status = ::compress2(reinterpret_cast<Bytef*>(out.data()), &room, reinterpret_cast<const Bytef*>(data),
+                                   static_cast<uLong>(bytes), fastest);
+    if (status != Z_OK) fail("zlib cannot compress {} bytes for ParaView (its error {})", bytes, status);
+    out.resize(room);
+    return out;
+  }
+
+  exec::Threads threads_;
+};
 
 #else
 
-inline constexpr const char* vtk_compressor = "";
+class VtkPacker {
+ public:
+  static constexpr const char* attribute = "";
 
-/// The number of bytes, and the bytes.
-inline std::string vtk_bytes(const void* data, std::size_t bytes) {
-  const std::uint64_t size = bytes;
-  std::string out(sizeof size + bytes, '\0');
-  std::memcpy(out.data(), &size, sizeof size);
-  if (bytes > 0) std::memcpy(out.data() + sizeof size, data, bytes);
-  return out;
-}
+  /// The number of bytes, and the bytes.
+  std::string operator()(const void* data, std::size_t bytes) const {
+    const std::uint64_t size = bytes;
+    std::string out(sizeof size + bytes, '\0');
+    std::memcpy(out.data(), &size, sizeof size);
+    if (bytes > 0) std::memcpy(out.data() + sizeof size, data, bytes);
+    return out;
+  }
+};
 
 #endif
 

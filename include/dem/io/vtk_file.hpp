@@ -56,7 +56,7 @@ class VtkFile {
     xml_ = fmt::format(
         "<?xml version=\"1.0\"?>\n"
         "<VTKFile type=\"{0}\" version=\"1.0\" byte_order=\"{1}\" header_type=\"UInt64\"{2}>\n<{0}>\n",
-        type_, kVtkByteOrder, vtk_compressor);
+        type_, kVtkByteOrder, VtkPacker::attribute);
     if (std::isfinite(options.time_s)) {
       xml_ += fmt::format(
           "<FieldData>\n<DataArray type=\"Float64\" Name=\"TimeValue\" NumberOfTuples=\"1\" format=\"ascii\">{}"
@@ -80,7 +80,7 @@ class VtkFile {
     xml_ += fmt::format(
         "<DataArray type=\"{}\" Name=\"{}\" NumberOfComponents=\"{}\" format=\"appended\" offset=\"{}\"/>\n",
         vtk_type<T>(), escape_xml(name), components, offset_);
-    blocks_.push_back(vtk_bytes(values.data(), values.size_bytes()));
+    blocks_.push_back(pack_(values.data(), values.size_bytes()));
     offset_ += blocks_.back().size();
   }
   template <class T>
@@ -105,6 +105,7 @@ class VtkFile {
   std::string type_, xml_;
   VtkOptions options_;
   std::vector<std::string> blocks_;  // what is appended
+  VtkPacker pack_;
   std::size_t offset_ = 0;
 };
 

@@ -115,6 +115,10 @@ class Part {
   std::string save_if_due() { return numbers_ && store_.is_on() && store_.is_due(last_) ? save(world_, type_) : ""; }
   /// The part is done. Its world, if another part starts from it, is saved; or restored, if the part was done before.
   std::string complete(void* world, const void* type) {
+    if (is_passing_ && !was_done_) {
+      fail("the part '{}' of the run was saved in its stage {}, but has {} stages only", name_, saved_stage_,
+           next_stage_);
+    }
     if (!was_done_) {
       is_done_ = true;
       return store_.is_on() ? save(world, type) : "";

@@ -31,16 +31,19 @@ Coordination coordination(const World& world) {
   const std::vector<ParticleId> grains = world.particles();
   const std::size_t n = grains.size();
   Coordination result{std::vector<std::int32_t>(n, 0), std::vector<std::int32_t>(n, 0)};
-  std::vector<double> x(n), y(n), z(n);
+  std::vector<double> x(n), y(n), z(n), reach(n);
+  std::vector<const Shape*> shapes(n);
   AlignedVector<double> pose(n * Shape::pose_size + 1);
   double largest = 0.0;
-  const auto shape_of = [&](std::size_t i) -> const Shape& { return world.species(world.species_of(grains[i])).shape; };
+  const auto shape_of = [&](std::size_t i) -> const Shape& { return *shapes[i]; };
   for (std::size_t i = 0; i < n; ++i) {
+    shapes[i] = &world.species(world.species_of(grains[i])).shape;
+    reach[i] = shape_of(i).bounding_radius();
     const Vec3 p = world.position(grains[i]);
     x[i] = p.x();
     y[i] = p.y();
     z[i] = p.z();
-    largest = std::max(largest, shape_of(i).bounding_radius());
+    largest = std::max(largest, reach[i]);
     if constexpr (Shape::pose_size > 0) {
       shape_of(i).orient(from_eigen(world.rotation(grains[i])), &pose[i * Shape::pose_size]);
     }
@@ -50,9 +53,10 @@ Coordination coordination(const World& world) {
   grid.build(broadphase::Positions{x.data(), y.data(), z.data(), n}, 2.0 * largest);
   for (std::size_t i = 0; i < n; ++i) {
     grid.finder().for_each_candidate(i, [&](std::size_t j) {
+      const Vector3<double> apart = {x[j] - x[i], y[j] - y[i], z[j] - z[i]};
+      if (dot(apart, apart) > (reach[i] + reach[j]) * (reach[i] + reach[j])) return;
       std::int32_t points = 0;
-      Shape::collide(shape_of(i), &pose[i * Shape::pose_size], shape_of(j), &pose[j * Shape::pose_size],
-                     Vector3<double>{x[j] - x[i], y[j] - y[i], z[j] - z[i]},
+      Shape::collide(shape_of(i), &pose[i * Shape::pose_size], shape_of(j), &pose[j * Shape::pose_size], apart,
                      [&](std::uint32_t, const auto&) { ++points; });
       if (points == 0) return;
       for (const std::size_t k : {i, j}) {

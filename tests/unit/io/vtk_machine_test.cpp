@@ -1,6 +1,7 @@
 #include "catch.hpp"
 #include "core/error_of.hpp"
 #include "files.hpp"
+#include "io/vtk_reader.hpp"
 #include "worlds.hpp"
 
 #include <dem/io/vtk_machine.hpp>
@@ -8,7 +9,6 @@
 #include <dem/report/columns.hpp>
 #include <dem/world/world.hpp>
 
-#include <cstring>
 #include <fstream>
 #include <sstream>
 
@@ -25,22 +25,6 @@ std::string text_of(const std::filesystem::path& path) {
   return text.str();
 }
 
-/// The numbers of an array of a VTK file.
-template <class T>
-std::vector<T> array_of(const std::string& file, const std::string& name) {
-  const std::size_t tag = file.find("Name=\"" + name + "\"");
-  REQUIRE(tag != std::string::npos);
-  const std::string key = "offset=\"";
-  const std::size_t offset = std::stoul(file.substr(file.find(key, tag) + key.size()));
-  const std::string start = "encoding=\"raw\">\n_";
-  const char* data = file.data() + file.find(start) + start.size() + offset;
-  std::uint64_t bytes;
-  std::memcpy(&bytes, data, sizeof bytes);
-  std::vector<T> values(bytes / sizeof(T));
-  std::memcpy(values.data(), data + sizeof bytes, bytes);
-  return values;
-}
-
 }  // namespace
 
 TEST_CASE("bodies of a machine are drawn in their reference frames, with their motion") {
@@ -54,18 +38,18 @@ TEST_CASE("bodies of a machine are drawn in their reference frames, with their m
   const dem::io::SurfaceMesh mesh = dem::io::rectangle_mesh(2, 4);
   const TempFolder folder;
   dem::io::write_vtk_machine(folder / "part.vtp", m, {{.body = part, .mesh = &mesh, .position = {0, 0, 0.5}}});
-  const std::string file = text_of(folder / "part.vtp");
-  const auto points = array_of<double>(file, "Points");
+  const VtkContent file = read_vtk(folder / "part.vtp");
+  const auto points = file.values<double>("Points");
   REQUIRE(points.size() == 12);
   for (std::size_t k = 0; k < 4; ++k) {
     const Vec3 expected = Vec3(1, 2, 3) + askew * (mesh.vertices[k] + Vec3(0, 0, 0.5));
     CHECK((Vec3(points[3 * k], points[3 * k + 1], points[3 * k + 2]) - expected).norm() < 1e-14);
   }
-  CHECK(array_of<std::int32_t>(file, "machine_part") == std::vector<std::int32_t>{1});
-  CHECK(array_of<double>(file, "angular_velocity_rad_s")[2] == Approx(2.0));
+  CHECK(file.values<std::int32_t>("machine_part") == std::vector<std::int32_t>{1});
+  CHECK(file.values<double>("angular_velocity_rad_s")[2] == Approx(2.0));
   const Vec3 v = m.body(part).velocity();
-  CHECK(array_of<double>(file, "velocity_m_s") == std::vector<double>{v.x(), v.y(), v.z()});
-  CHECK(array_of<double>(file, "contact_force_N") == std::vector<double>{0, 0, 0});
+  CHECK(file.values<double>("velocity_m_s") == std::vector<double>{v.x(), v.y(), v.z()});
+  CHECK(file.values<double>("contact_force_N") == std::vector<double>{0, 0, 0});
   check_refused([&] { dem::io::write_vtk_machine(folder / "no.vtp", m, {{.body = BodyId(7), .mesh = &mesh}}); },
                 "body 7 was asked for");
   check_refused([&] { dem::io::write_vtk_machine(folder / "no.vtp", m, {{.body = part}}); }, "has no mesh");
@@ -91,17 +75,17 @@ TEST_CASE("a frame of a world shows its grains, and its surfaces of every kind w
   const std::string pvd = text_of(folder / "run.pvd");
   CHECK_THAT(pvd, Contains("run/grains_000000.vtp") && Contains("run/surfaces_000000.vtp"));
   dem::io::write_vtk_surfaces(folder / "s.vtp", world, {}, 0.2);
-  const std::string file = text_of(folder / "s.vtp");
+  const VtkContent file = read_vtk(folder / "s.vtp");
   // The plane's square and the six faces of the box; a surface that touches nothing is not shown.
-  const auto part = array_of<std::int32_t>(file, "machine_part");
+  const auto part = file.values<std::int32_t>("machine_part");
   CHECK(part == std::vector<std::int32_t>{0, 1, 1, 1, 1, 1, 1});
-  const auto points = array_of<double>(file, "Points");
+  const auto points = file.values<double>("Points");
   CHECK(points.size() == 3 * (4 + 8));
   CHECK(std::abs(points[0]) == Approx(0.1));
-  const auto force = array_of<double>(file, "force_of_grains_N");
+  const auto force = file.values<double>("force_of_grains_N");
   CHECK(force[2] == world.surface_force(plane).z());
   CHECK(force[2] < 0.0);
-  CHECK(array_of<double>(file, "velocity_m_s")[5] == Approx(0.01));
+  CHECK(file.values<double>("velocity_m_s")[5] == Approx(0.01));
 
   // A body as a mesh of its own, at the same time of the same series.
   const dem::io::SurfaceMesh mesh = dem::io::box_mesh({1, 1, 1});

@@ -1,6 +1,7 @@
 #include "catch.hpp"
 #include "files.hpp"
-#include "xml.hpp"
+#include "io/vtk_reader.hpp"
+#include "random.hpp"
 
 #include <dem/geometry/polyhedron/polyhedra.hpp>
 #include <dem/io/polyhedron_mesh.hpp>
@@ -9,10 +10,13 @@
 
 #include <Eigen/Geometry>
 
+#include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <cstdint>
 #include <cstring>
+#include <limits>
 #include <map>
 #include <set>
 #include <stdexcept>
@@ -24,66 +28,6 @@ using Catch::Approx;
 using Catch::Matchers::ContainsSubstring;
 using dem::Mat3;
 using dem::Vec3;
-
-namespace {
-
-/// A VTK XML file read back: its tags, and the bytes of its arrays by name.
-struct VtkContent {
-  std::vector<XmlTag> tags;
-  std::map<std::string, std::string> bytes;
-
-  [[nodiscard]] const XmlTag& tag(const std::string& name) const {
-    for (const auto& t : tags) {
-      if (t.name == name) return t;
-    }
-    throw std::runtime_error("no tag " + name);
-  }
-  [[nodiscard]] const XmlTag& array(const std::string& name) const {
-    for (const auto& t : tags) {
-      if (t.name == "DataArray" && t.at("Name") == name) return t;
-    }
-    throw std::runtime_error("no array " + name);
-  }
-  template <class T>
-  [[nodiscard]] std::vector<T> values(const std::string& name) const {
-    const std::string& from = bytes.at(name);
-    REQUIRE(from.size() % sizeof(T) == 0);
-    std::vector<T> to(from.size() / sizeof(T));
-    if (!to.empty()) std::memcpy(to.data(), from.data(), from.size());
-    return to;
-  }
-};
-
-VtkContent read_vtk(const std::filesystem::path& path) {
-  const std::string file = read_file(path);
-  const std::string start = "<AppendedData encoding=\"raw\">\n_", end = "\n</AppendedData>\n</VTKFile>\n";
-  const auto at = file.find(start);
-  REQUIRE(at != std::string::npos);
-  REQUIRE(file.size() >= end.size());
-  REQUIRE(file.substr(file.size() - end.size()) == end);
-  const std::string data = file.substr(at + start.size(), file.size() - at - start.size() - end.size());
-
-  VtkContent content;
-  content.tags = XmlReader::tags(file.substr(0, at) + "</VTKFile>");
-  std::size_t next = 0;
-  for (const auto& tag : content.tags) {
-    if (tag.name != "DataArray" || tag.at("format") != "appended") continue;
-    CHECK(tag.at("offset") == std::to_string(next));  // the blocks touch
-    std::uint64_t size = 0;
-    REQUIRE(next + sizeof size <= data.size());
-    std::memcpy(&size, data.data() + next, sizeof size);
-    REQUIRE(next + sizeof size + size <= data.size());
-    content.bytes[tag.at("Name")] = data.substr(next + sizeof size, size);
-    next += sizeof size + size;
-  }
-  CHECK(next == data.size());
-  CHECK(content.tag("VTKFile").at("type") == "PolyData");
-  CHECK(content.tag("VTKFile").at("header_type") == "UInt64");
-  CHECK(content.tag("VTKFile").at("byte_order") == "LittleEndian");
-  return content;
-}
-
-}  // namespace
 
 TEST_CASE("points and their data are read back from a vtp file") {
   const TempFolder folder;
@@ -136,6 +80,46 @@ TEST_CASE("points and their data are read back from a vtp file") {
   CHECK(file.values<std::int32_t>("offsets") == std::vector<std::int32_t>{1, 2});
   CHECK(file.array("TimeValue").parents == "VTKFile/PolyData/FieldData/");
   CHECK_THAT(read_file(path), Catch::Matchers::ContainsSubstring("format=\"ascii\">0.25</DataArray>"));
+}
+
+TEST_CASE("arrays of several blocks, and of none, are read back") {
+  const TempFolder folder;
+  std::vector<Vec3> positions;
+  std::vector<std::int64_t> numbers;
+  for (std::int64_t k = 0; k < 17000; ++k) {  // 136,000 bytes: a block and a part of one
+    positions.emplace_back(static_cast<double>(k), std::sin(static_cast<double>(k)), 0.0);
+    numbers.push_back(k * k);
+  }
+  write_vtk_points(folder / "many.vtp", flat(positions), {{"number", 1, numbers}});
+  const VtkContent many = read_vtk(folder / "many.vtp");
+  CHECK(many.values<std::int64_t>("number") == numbers);
+  CHECK(many.values<double>("Points").at(3 * 16999 + 1) == std::sin(16999.0));
+
+  write_vtk_points(folder / "none.vtp", std::vector<double>{}, {{"number", 1, std::vector<std::int64_t>{}}});
+  CHECK(read_vtk(folder / "none.vtp").values<std::int64_t>("number").empty());
+}
+
+TEST_CASE("numbers in single precision are rounded as far as they are asked to be") {
+  const TempFolder folder;
+  const std::vector<double> positions = {1.0, 1.0 + 0x1p-12, -3.3, 1e-7, 0.0, 1e6};
+  const std::vector<double> speeds = {1.0 / 3.0, -1e-30}, odd = {std::nan(""), std::numeric_limits<double>::infinity()};
+  write_vtk_points(folder / "rounded.vtp", positions,
+                   {{"speed", 1, speeds, {.bits = 10}}, {"odd", 1, odd, {.bits = 10}}, {"whole", 1, speeds}},
+                   {.single_precision = true, .position_rounding = {.step = 0x1p-10}});
+  const VtkContent file = read_vtk(folder / "rounded.vtp");
+  const auto points = file.values<float>("Points");
+  for (std::size_t k = 0; k < positions.size(); ++k) {
+    CHECK(std::abs(points[k] - positions[k]) <= std::max(0x1p-11, 1e-7 * positions[k]));
+    CHECK(std::fmod(points[k], 0x1p-10F) == 0.0F);
+  }
+  const auto rounded = file.values<float>("speed");
+  for (std::size_t k = 0; k < speeds.size(); ++k) {
+    CHECK(std::abs(rounded[k] / speeds[k] - 1.0) <= 0x1p-11);  // half of the last of ten bits
+    CHECK((std::bit_cast<std::uint32_t>(rounded[k]) & 0x1fffU) == 0);
+  }
+  CHECK(std::isnan(file.values<float>("odd")[0]));
+  CHECK(std::isinf(file.values<float>("odd")[1]));
+  CHECK(file.values<float>("whole")[0] == 1.0F / 3.0F);
 }
 
 TEST_CASE("single precision stores doubles as floats and integers as they are") {
@@ -349,3 +333,35 @@ TEST_CASE("vtk mistakes are told") {
     CHECK_THAT(error_of([&] { (void)cylinder_mesh(1, wrong); }), ContainsSubstring("must be finite"));
   }
 }
+
+#if defined(DEM_WITH_ZLIB)
+TEST_CASE("a frame of grains as rigs write it takes less than 50 bytes a grain: 300,000 are less than 15 MB") {
+  const TempFolder folder;
+  constexpr std::size_t n = 20000;  // in the order of a lattice, as grains have who were rained; all move and turn
+  Random random(1);
+  std::vector<Vec3> position, velocity, spin, force;
+  std::vector<double> quaternion, radius(n, 1.4e-3);
+  std::vector<std::int32_t> contacts, neighbours;
+  for (std::size_t k = 0; k < n; ++k) {
+    const Vec3 cell(static_cast<double>(k % 27), static_cast<double>(k / 27 % 27), static_cast<double>(k / 729));
+    position.push_back(2.2e-3 * (cell + random.vector(0.3)));
+    for (auto* v : {&velocity, &spin, &force})
+      v->push_back(std::exp(3.0 * random.between(-1.0, 1.0)) * random.vector(1.0));
+    const dem::Quaternion q(random.rotation());
+    quaternion.insert(quaternion.end(), {q.w(), q.x(), q.y(), q.z()});
+    contacts.push_back(static_cast<std::int32_t>(random.between(2.0, 14.0)));
+    neighbours.push_back(static_cast<std::int32_t>(random.between(2.0, 8.0)));
+  }
+  const Rounding digits = {.bits = 10}, turn = {.step = 0x1p-11};
+  write_vtk_points(folder / "grains.vtp", flat(position),
+                   {{"radius_m", 1, radius},
+                    {"velocity_m_s", 3, flat(velocity), digits},
+                    {"angular_velocity_rad_s", 3, flat(spin), digits},
+                    {"quaternion_wxyz", 4, quaternion, turn},
+                    {"net_contact_force_N", 3, flat(force), digits},
+                    {"contact_points", 1, contacts},
+                    {"coordination", 1, neighbours}},
+                   {.single_precision = true, .position_rounding = {.step = 0x1p-21}});
+  CHECK(std::filesystem::file_size(folder / "grains.vtp") < 50 * n);
+}
+#endif

@@ -77,6 +77,13 @@ class Inflate {
 
   void block(std::uint32_t kind) {
     std::vector<int> literals, distances;
+    if (kind == 0) {  // bytes as they are
+      at_ = (at_ + 7) / 8 * 8;
+      const std::uint32_t count = bits(16);
+      if ((bits(16) ^ count) != 0xFFFFU) throw std::runtime_error("a wrong number of bytes");
+      for (std::uint32_t k = 0; k < count; ++k) out_ += static_cast<char>(bits(8));
+      return;
+    }
     if (kind == 1) {
       for (int s = 0; s < 288; ++s) literals.push_back(s < 144 ? 8 : s < 256 ? 9 : s < 280 ? 7 : 8);
       distances.assign(30, 5);
@@ -96,8 +103,11 @@ class Inflate {
                                                              67, 83, 99, 115, 131, 163, 195, 227, 258};
       const int extra = s < 265 || s == 285 ? 0 : static_cast<int>(s - 261) / 4;
       const std::uint32_t length = base.at(s - 257) + bits(extra);
-      if (symbol(distance) != 0) throw std::runtime_error("a distance that is not 1");
-      out_.append(length, out_.at(out_.size() - 1));
+      const std::uint32_t d = symbol(distance);
+      const int more = d < 4 ? 0 : static_cast<int>(d - 2) / 2;
+      const std::uint32_t far = (d < 4 ? d : (2 + d % 2) << static_cast<unsigned>(more)) + 1 + bits(more);
+      if (far > out_.size()) throw std::runtime_error("a distance before the start");
+      for (std::uint32_t k = 0; k < length; ++k) out_ += out_[out_.size() - far];
     }
   }
 

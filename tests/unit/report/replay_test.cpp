@@ -2,6 +2,7 @@
 #include "core/error_of.hpp"
 #include "inflate.hpp"
 
+#include <dem/io/checkpoint/fields.hpp>
 #include <dem/report/replay_encode.hpp>
 
 #include <cmath>
@@ -97,6 +98,7 @@ TEST_CASE("all that a page holds of a run can be read back, within the stated er
 
   const EncodedReplay encoded = encode(replay);
   CHECK(encoded.head.find('<') == std::string::npos);
+  CHECK(encoded.head.find("\"sleep\":true") != std::string::npos);
   CHECK_THAT(encoded.head, Catch::Matchers::ContainsSubstring(R"("name":"\u0022wheel\u0022 \u003c/script>")"));
   CHECK(numbers_of(encoded.head, "times").at(19) == 9.5);
   CHECK(numbers_of(encoded.head, "seen").at(0) == 60);
@@ -136,6 +138,7 @@ TEST_CASE("all that a page holds of a run can be read back, within the stated er
                                                 table.numbers.begin());
       const PackedGrain& p = packed.at(row);
       REQUIRE(p.present);
+      CHECK(p.asleep == g.is_asleep);
       for (int k = 0; k < 3; ++k) {
         const double x = replay.origin()[k] + unpack_coordinate(p.position[static_cast<std::size_t>(k)],
                                                                 table.box.low[k], table.box.high[k]);
@@ -310,4 +313,33 @@ TEST_CASE("what cannot be recorded is refused in words") {
   // The part was not there in the first frame.
   replay.record(2.0, grains, std::vector<ReplayPose>(1));
   CHECK(numbers_of(encode(replay).head, "poses")[0] == 2);
+}
+
+TEST_CASE("a replay that was kept in a file goes on as if it had not been") {
+  const auto add_looks = [](Replay& replay) {
+    replay.add_shape(ball(0.1));
+    replay.add_shape(cube(0.2));
+    replay.add_part("lid", dem::io::box_mesh({1, 2, 3}));
+  };
+  const auto record = [](Replay& replay, int from, int to) {
+    for (int f = from; f < to; ++f) {
+      replay.record(0.5 * f, tumbling(f), std::vector<ReplayPose>{{.position = {100, 0, 0.1 * f}}});
+    }
+  };
+  const ReplayOptions options = {
+      .frames = 12, .interval = 0.5, .grains = 40};  // every second frame is dropped on the way
+  Replay whole(options), first(options), second(options);
+  add_looks(whole), add_looks(first);
+  record(whole, 0, 20);
+  record(first, 0, 15);
+  dem::io::StateColumns columns;
+  dem::io::Fields collect(dem::io::Fields::Task::collect, columns);
+  first.fields(collect);
+  dem::io::Fields restore(dem::io::Fields::Task::restore, columns);
+  second.fields(restore);
+  restore.check_all_read();
+  CHECK(encode(second).bytes == encode(first).bytes);
+  record(second, 15, 20);
+  CHECK(encode(second).head == encode(whole).head);
+  CHECK(encode(second).bytes == encode(whole).bytes);
 }

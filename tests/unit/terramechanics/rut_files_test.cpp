@@ -1,10 +1,10 @@
 #include <dem/terramechanics/rut_files.hpp>
 #include <dem/terramechanics/rut_vtk.hpp>
 
-#include <cstring>
 #include <filesystem>
 
 #include "catch.hpp"
+#include "io/vtk_reader.hpp"
 
 using namespace dem;
 using namespace dem::terramechanics;
@@ -69,17 +69,10 @@ TEST_CASE("a rut is written for ParaView") {
   const std::string text = io::read_file(folder.path / "rut.vtp");
   CHECK_THAT(text, ContainsSubstring("NumberOfPoints=\"6\""));
   CHECK_THAT(text, ContainsSubstring("NumberOfPolys=\"2\""));
-  // The arrays follow each other, each after its size in 8 bytes: four of 6 doubles, then the points.
-  const std::size_t data = text.find("_", text.find("<AppendedData")) + 1;
-  const auto number = [&](std::size_t at) {
-    double x = 0.0;
-    std::memcpy(&x, text.data() + data + at, sizeof x);
-    return x;
-  };
-  const std::size_t block = 8 + 6 * 8;
-  CHECK(number(8 + 2 * 8) == 0.04);                                // sunk_m of (2, 0)
-  CHECK(number(block + 8 + 3 * 8) == Approx(0.01));                // heap_m of (0, 1)
-  CHECK(number(4 * block + 8 + (3 * 2 + 2) * 8) == Approx(0.06));  // z of (2, 0)
+  const VtkContent file = read_vtk(folder.path / "rut.vtp");
+  CHECK(file.values<double>("sunk_m").at(2) == 0.04);                  // of (2, 0)
+  CHECK(file.values<double>("heap_m").at(3) == Approx(0.01));          // of (0, 1)
+  CHECK(file.values<double>("Points").at(3 * 2 + 2) == Approx(0.06));  // z of (2, 0)
   ColumnField line;
   line.grid = {0.0, 0.0, 1.0, 5, 1};
   line.resize(0.0);

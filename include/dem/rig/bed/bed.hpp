@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <span>
 #include <string>
 
@@ -39,7 +40,8 @@ class Bed {
                                               -0.5 * bed.width - bed.wall_thickness, -bed.wall_thickness),
                                          Vec3(0.5 * bed.length + bed.wall_thickness,
                                               0.5 * bed.width + bed.wall_thickness, box.wall_top + 0.1)},
-               .threads = bed.threads > 0 ? bed.threads : threads_for(places.size())}),
+               .threads = bed.threads > 0 ? bed.threads : threads_for(places.size()),
+               .sleep = bed.sleep ? std::optional<SleepOptions>(SleepOptions{}) : std::nullopt}),
         bed_(bed),
         grains_(grains),
         grain_volume_(shape.volume()) {

@@ -26,6 +26,7 @@ struct BedSettings {
   double stable_share = 0.8;      ///< time step, in largest stable ones
   std::uint64_t seed = 1;         ///< of the rain
   int threads = 0;                ///< 0: all, at least 1000 grains for each
+  bool sleep = false;             ///< grains at rest may sleep
   std::string file;               ///< read instead of made
   std::string save;               ///< empty: <output>/bed.txt
 };
@@ -53,6 +54,8 @@ inline void add_bed_options(Options& options, BedSettings& s) {
   add("--stable-share", s.stable_share, "time step, as a share of the largest stable one");
   add("--seed", s.seed, "of the rain");
   add("--threads", s.threads, "0: all, at least 1000 grains for each").changes_no_result();
+  options.flag("--sleep", s.sleep,
+               "grains at rest are not worked on until something wakes them: faster, nearly the same");
   add("--bed-file", s.file, "read the grains from this file instead of raining them");
   add("--save-bed", s.save, "file for the levelled bed; empty: bed.txt in the output folder");
 }

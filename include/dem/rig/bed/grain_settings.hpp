@@ -3,7 +3,6 @@
 
 #include <dem/grain/materials.hpp>
 #include <dem/rig/contact_options.hpp>
-#include <dem/rig/options.hpp>
 #include <dem/rig/sizes.hpp>
 #include <dem/soil/relative_density.hpp>
 
@@ -53,14 +52,8 @@ inline void add_grain_options(Options& options, GrainSettings& s) {
   add("--density", s.density, "of a grain [kg/m^3]");
   add("--stiffness", s.stiffness, "K of a sphere [N/m]");
   add("--damping", s.damping, "C [N s/m]");
-  add("--separation-factor", s.separation_factor, "Sp, share of C while separating");
-  add("--friction", s.friction, "mu, grain on grain");
   add("--wall-friction", s.wall_friction, "mu, grain on wall and lid; negative: as grain on grain");
-  add("--friction-stiffness", s.friction_stiffness, "kt [N/m]; negative: as K");
-  add("--velocity-stiffness", s.velocity_stiffness, "cv [N s/m]; negative: as C");
-  add("--breaking-factor", s.breaking_factor, "friction kept by a broken asperity");
-  add("--constants-for", s.constants_for, "half-edge that K, kt, C and cv are given for [m]");
-  add("--scale-contacts", s.scale_contacts, "scale them to other sizes: K, kt ~ size, C, cv ~ size^2");
+  add_contact_options(options, s);
 }
 inline void find_idle(IdleOptions& idle, const GrainSettings& s) {
   idle.unless(s.scale_contacts, "with --scale-contacts true", {"--constants-for"});

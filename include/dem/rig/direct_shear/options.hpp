@@ -1,7 +1,7 @@
 #pragma once
 
+#include <dem/rig/contact_options.hpp>
 #include <dem/rig/direct_shear/settings.hpp>
-#include <dem/rig/options.hpp>
 #include <dem/rig/own_words.hpp>
 
 // Every option with the value that it sets, in the groups that --help shows.
@@ -50,15 +50,9 @@ inline void add_contact_options(Options& options, Settings& s) {
   options.group("Contacts");
   add("--stiffness", s.stiffness, "K [N/m]; 0: by shape (cube8: 20000, a sphere; others: 80000, as four of them)");
   add("--damping", s.damping, "C [N s/m]; negative: by shape (cube8: 0.015, others: 0.06)");
-  add("--separation-factor", s.separation_factor, "Sp, share of C while separating");
-  add("--friction", s.friction, "mu, grain on grain");
   add("--wall-friction", s.wall_friction, "mu, grain on wall; negative: as grain on grain");
-  add("--friction-stiffness", s.friction_stiffness, "kt [N/m]; negative: as K");
-  add("--velocity-stiffness", s.velocity_stiffness, "cv [N s/m]; negative: by shape, as C");
-  add("--breaking-factor", s.breaking_factor, "friction kept by a broken asperity");
   add("--density", s.density, "of a grain [kg/m^3]");
-  add("--constants-for", s.constants_for, "half-edge that K, kt, C and cv are given for [m]");
-  add("--scale-contacts", s.scale_contacts, "scale them to other sizes: K, kt ~ size, C, cv ~ size^2");
+  rig::add_contact_options(options, s);
 }
 
 inline void add_test_options(Options& options, Settings& s) {
@@ -85,13 +79,7 @@ inline void add_test_options(Options& options, Settings& s) {
       "diameter of a sphere on a wall; other shapes count as spheres of their volume");
   add("--seed", s.seed, "of a random packing");
   add("--threads", s.threads, "0: all, at least 1000 grains for each").changes_no_result();
-  options.group("Output");
-  add("--output", s.output, "folder; results of an earlier run in it are replaced").changes_no_result();
-  options
-      .flag("--replay", s.replay,
-            "replay of the load in the middle in the report (--replay=true) or none (--no-replay)")
-      .off("--no-replay");
-  options.flag("--vtk", s.vtk, "files for ParaView (--vtk=true) or none (--no-vtk)").off("--no-vtk");
+  add_output_options(options, s, "the load in the middle");
   options.flag("--vtk-spheres", s.vtk_spheres, "ParaView files also with the eight spheres of each grain");
   add("--vtk-interval", s.vtk_interval, "travel between two frames [m]; 0: a twentieth of the travel");
 }

@@ -75,11 +75,7 @@ inline void declare(Options& options, Settings& s) {
   add("--soil", s.soil, "file of a soil as the bevameter writes it: its Bekker-Wong curves are drawn too");
   add_grain_options(options, s.grains);
   add_bed_options(options, s.bed);
-  options.group("Output");
-  add("--output", s.output, "folder; results of an earlier run in it are replaced").changes_no_result();
-  options.flag("--replay", s.replay, "replay of a slip in the report (--replay=true) or none (--no-replay)")
-      .off("--no-replay");
-  options.flag("--vtk", s.vtk, "files for ParaView (--vtk=true) or none (--no-vtk)").off("--no-vtk");
+  add_output_options(options, s, "a slip");
 }
 
 inline void find_idle(IdleOptions& idle, const Settings& s) {

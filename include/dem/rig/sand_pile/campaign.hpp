@@ -23,7 +23,10 @@ void make_pile(const SandPile<Model>& sand_pile, PileResult& r, report::Replay* 
     Frames frames(session, s.vtk ? name : "", s.frame_time, "this pile");
     const auto kept = session.keep("pile", r), series = session.keep("frames", frames);
     const auto pictures = session.keep("replay", replay);
-    if (part.is_done()) return session.begin(name);
+    if (part.is_done()) {
+      for (const char* stage : {": fill", ": let go", ": rest", ": creep"}) session.begin(r.kind.name + stage);
+      return;
+    }
     sand_pile.make(r, session, [&](const auto& world) {
       frames.show(world.time(), [&](io::VtkSeries& to) {
         add_grains(to, world);

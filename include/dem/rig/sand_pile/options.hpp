@@ -1,6 +1,6 @@
 #pragma once
 
-#include <dem/rig/options.hpp>
+#include <dem/rig/contact_options.hpp>
 #include <dem/rig/own_words.hpp>
 #include <dem/rig/sand_pile/settings.hpp>
 
@@ -40,16 +40,10 @@ inline void declare(Options& options, Settings& s) {
   options.group("Contacts");
   add("--stiffness", s.stiffness, "K [N/m], of a sphere of cube8; grains that touch once have four times this");
   add("--damping", s.damping, "C [N s/m], likewise");
-  add("--separation-factor", s.separation_factor, "Sp, share of C while separating");
-  add("--friction", s.friction, "mu, grain on grain");
-  add("--friction-stiffness", s.friction_stiffness, "kt [N/m]; negative: as K");
-  add("--velocity-stiffness", s.velocity_stiffness, "cv [N s/m]; negative: as C");
-  add("--breaking-factor", s.breaking_factor, "friction kept by a broken asperity");
+  add_contact_options(options, s);
   add("--rolling-length", s.rolling_length,
       "of sphere-rolling: rolling resists by this times the normal force [m]; 0: a fifth of the half-edge");
   add("--plate-rolling-length", s.plate_rolling_length, "the same on plate, floor and walls; negative: the same");
-  add("--constants-for", s.constants_for, "half-edge that K, kt, C and cv are given for [m]");
-  add("--scale-contacts", s.scale_contacts, "scale them to other sizes: K, kt ~ size, C, cv ~ size^2");
   options.group("Stages");
   add("--settle-limit", s.settle_limit, "grains must be at rest in their container by then [s]");
   add("--flow-limit", s.flow_limit, "funnel and box must have emptied by then [s]");
@@ -62,11 +56,7 @@ inline void declare(Options& options, Settings& s) {
   options.group("Numerics");
   add("--stable-share", s.stable_share, "time step as a share of the largest stable one");
   add("--threads", s.threads, "0: all, at least 1000 grains for each").changes_no_result();
-  options.group("Output");
-  add("--output", s.output, "folder; results of an earlier run in it are replaced").changes_no_result();
-  options.flag("--replay", s.replay, "replay of the first pile in the report (--replay=true) or none (--no-replay)")
-      .off("--no-replay");
-  options.flag("--vtk", s.vtk, "files for ParaView (--vtk=true) or none (--no-vtk)").off("--no-vtk");
+  add_output_options(options, s, "the first pile");
   add("--frame-time", s.frame_time, "between two frames for ParaView [s]");
 }
 
