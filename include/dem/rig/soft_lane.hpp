@@ -101,7 +101,9 @@ class SoftLane {
     result.deep_share =
         static_cast<double>(std::count_if(overlaps.begin(), overlaps.end(), [](double x) { return x > 0.02; })) /
         static_cast<double>(overlaps.size());
+    const double stood = soft_lane::place_of(stand);
     if (s.slope_angle() != 0.0) tilt(stand, stages, look);
+    result.held_way = soft_lane::place_of(stand) - stood;
     soft_lane::Driver driver(s, s.scene == "slope" ? std::sin(s.slope_angle()) * result.weight : 0.0);
     soft_lane::Judge judge(s);
     stages.begin("drive", s.path);

@@ -104,6 +104,7 @@ struct Campaign {
   int substeps = 0;
   double weight = not_known;                                                    ///< N, of the car
   std::array<double, 4> rest_sinkage = {0, 0, 0, 0}, rest_load = {0, 0, 0, 0};  ///< m, N: on its brakes, on the level
+  double held_way = 0.0;          ///< m, that the car moved on its brakes while gravity was tilted
   MeanAndDeviation overlap = {};  ///< of contacts under the tyres at rest, as a share of a grain's edge
   double deep_share = not_known;  ///< of these contacts: deeper than 2 % of the edge
   std::vector<Sample> samples;

@@ -146,7 +146,7 @@ inline void resolve(Settings& s) {
     double length, trough_width, bed_width, depth, half_edge, speed;
   };
   const auto by_size = BySize<Defaults>{.smoke = {4.8, 0.58, 2.6, 0.14, 40e-3, 0.8},
-                                        .quick = {7.5, 0.55, 3.0, 0.20, 22e-3, 1.5},
+                                        .quick = {7.5, 0.55, 3.0, 0.20, 25e-3, 1.5},
                                         .full = {15.0, 0.90, 4.0, 0.0, 13.3e-3, 2.0}}[size_named(s.size)];
   if (s.layout.empty()) s.layout = s.scene == "turn" ? "bed" : "troughs";
   if (s.layout != "troughs" && s.layout != "bed") {

@@ -53,6 +53,8 @@ inline io::Table cost_table(const Settings& s, const Campaign& c) {
     t.row("mean deceleration", number(c.deceleration), "m/s²");
     t.row("force that slows the car, mass times deceleration", number(1e-3 * c.weight / 9.81 * c.deceleration), "kN");
   }
+  if (s.slope_angle() != 0.0)
+    t.row("way on its brakes while gravity was tilted", number(1e3 * c.held_way, "{:.0f}"), "mm");
   if (s.scene == "turn") {
     t.row("radius of the turn", number(c.radius), "m");
     t.row("radius by the angle of the front wheels", number(c.ackermann), "m");
