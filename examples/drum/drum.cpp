@@ -30,7 +30,7 @@ int main(int argc, char** argv) {
   arguments.check();
   const double d = 3e-3, radius = 14 * d, length = 6 * d, g = 9.81, pi = std::numbers::pi;  // m; m/s^2
 
-  World<Beads> world({.skin = 0.3 * d});
+  World<Beads> world;
   const ContactParameters<Beads> rough = {.normal = contact::LinearSpringDashpot::with_restitution(500, 0.6),
                                           .friction = {0.5, 350, 0.1}};
   ContactParameters<Beads> smooth = rough;

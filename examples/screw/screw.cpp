@@ -1,5 +1,5 @@
 // A screw conveyor: a helical blade, a mesh made by code, turns in a trough and carries grains of a sieve curve from
-// under an inlet to the end of the trough. Out comes what goes in, somewhat slower than the blade advances.
+// under an inlet to the end of the trough. Out comes what goes in, as fast as the blade advances.
 //
 //   screw --seconds 5 --output out/screw
 //
@@ -67,7 +67,7 @@ int main(int argc, char** argv) {
   const double outer = 24e-3, shaft = 8e-3, pitch = 40e-3, length = 4 * pitch, turns = 2.0;  // m, 1/s
   const double flow = 0.06;                                                                  // kg/s
 
-  World<Gravel> world({.skin = 1e-3});
+  World<Gravel> world;
   world.set_contact({.normal = contact::LinearSpringDashpot::with_restitution(1000, 0.5), .friction = {0.4, 700, 0.1}});
   const auto curve = soil::SizeDistribution::sieve_curve({{3e-3, 0}, {4e-3, 60}, {6e-3, 100}});
   const Mixture gravel =
@@ -96,22 +96,25 @@ int main(int argc, char** argv) {
                                         {.name = "end", .window = 0.25 * seconds});
 
   io::Series fed{.name = "fed"}, carried{.name = "carried"};
+  double mass = 0.0, momentum = 0.0;  // of the grains in the third turn, over the last fifth of the time
   while (world.time() < seconds) {
     const auto report = world.run_for(0.05);
     if (!report) return fmt::print("{}\n", report.text), 1;
     if (!report.note.empty()) fmt::print("{}\n", report.note);
     fed.x.push_back(world.time()), carried.x.push_back(world.time());
     fed.y.push_back(1e3 * world.inlet(in).mass()), carried.y.push_back(1e3 * world.outlet(out).mass());
+    if (world.time() < 0.8 * seconds) continue;
+    for (const ParticleId p : world.particles()) {
+      if (const double x = world.position(p).x(); x < 2 * pitch || x > 3 * pitch) continue;
+      const double m = world.species(world.species_of(p)).mass;
+      mass += m, momentum += m * world.velocity(p).x();
+    }
   }
 
-  // Between two turns that are full: mass per length, and how fast it goes.
-  double mass = 0.0, momentum = 0.0;
   Picture picture({1, 0, 0}, Vec3(0, 0.5, 0.87));
   for (const ParticleId p : world.particles()) {
-    const auto& kind = world.species(world.species_of(p));
-    picture.grain(world.position(p), kind.shape.radius(), Picture::heat((kind.shape.radius() - 1.5e-3) / 1.5e-3));
-    if (const double x = world.position(p).x(); x < 2 * pitch || x > 3 * pitch) continue;
-    mass += kind.mass, momentum += kind.mass * world.velocity(p).x();
+    const double radius = world.species(world.species_of(p)).shape.radius();
+    picture.grain(world.position(p), radius, Picture::heat((radius - 1.5e-3) / 1.5e-3));
   }
   std::vector<Vec3> edge;
   for (int k = 0; k <= 200; ++k) {
@@ -120,7 +123,7 @@ int main(int argc, char** argv) {
   }
   picture.line(edge);
   for (const double y : {-outer, outer}) picture.line({Vec3(0, y, 0), Vec3(length, y, 0)}, 0x909090);
-  picture.save(folder + "/picture", "A screw conveyor seen from above: gravel by size", 1200, 520);
+  picture.save(folder + "/picture", "A screw conveyor from above and the side: gravel by size", 1200, 520);
   io::render_plot({.x_label = "time [s]", .y_label = "mass [g]", .series = {fed, carried}}, folder + "/flow");
 
   const double advance = pitch * turns, torque = machine.sensor(load).mean().torque.x;
