@@ -40,14 +40,17 @@ class RandomStream {
   Vec3 in_ball(double radius) {
     for (;;) {
       const Vec3 x = in_box(Vec3(-1, -1, -1), Vec3(1, 1, 1));
-      if (x.squaredNorm() <= 1.0) return radius * x;
+      if (eager::dot3(x.data(), 1, x.data()) <= 1.0) return radius * x;
     }
   }
   /// A rotation drawn evenly from all rotations (K. Shoemake, Graphics Gems III, 1992).
   Mat3 rotation() {
     const double u = uniform(), a = 2.0 * std::numbers::pi * uniform(), b = 2.0 * std::numbers::pi * uniform();
     const double s = std::sqrt(1.0 - u), t = std::sqrt(u);
-    return Quaternion(t * std::cos(b), s * std::sin(a), s * std::cos(a), t * std::sin(b)).toRotationMatrix();
+    const double w = t * std::cos(b), x = s * std::sin(a), y = s * std::cos(a), z = t * std::sin(b);
+    return to_eigen(Matrix3<double>{{1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y - w * z), 2.0 * (x * z + w * y)},
+                                    {2.0 * (x * y + w * z), 1.0 - 2.0 * (x * x + z * z), 2.0 * (y * z - w * x)},
+                                    {2.0 * (x * z - w * y), 2.0 * (y * z + w * x), 1.0 - 2.0 * (x * x + y * y)}});
   }
 
  private:

@@ -49,7 +49,7 @@ class FreeRoom {
           for (std::uint32_t b = first_[index({i, j, k})]; b != none; b = balls_[b].next) {
             const double reach = radius + balls_[b].radius + gap;
             const Vec3 d = balls_[b].position - x;
-            if (!(d.squaredNorm() > reach * reach)) return false;
+            if (!(eager::dot3(d.data(), 1, d.data()) > reach * reach)) return false;
           }
         }
       }

@@ -22,7 +22,7 @@ class InletRegion {
  public:
   /// The box may be flat. Throws Error unless it is finite.
   static InletRegion box(const Vec3& low, const Vec3& high) {
-    if (!low.allFinite() || !high.allFinite() || !none_below(high, low)) {
+    if (!is_finite(low) || !is_finite(high) || !none_below(high, low)) {
       fail("the region of an inlet goes from ({:g}, {:g}, {:g}) to ({:g}, {:g}, {:g}) m, which is no finite box",
            low.x(), low.y(), low.z(), high.x(), high.y(), high.z());
     }
@@ -37,12 +37,13 @@ class InletRegion {
     InletRegion r;
     require_positive(radius, "radius of an inlet", "m");
     require_non_negative(thickness, "thickness of an inlet", "m");
-    if (!centre.allFinite() || !normal.allFinite() || !(normal.norm() > 0.0)) {
+    const double size = norm(from_eigen(normal));
+    if (!is_finite(centre) || !is_finite(normal) || !(size > 0.0)) {
       fail("an inlet has the normal ({:g}, {:g}, {:g}), or a centre that is not finite; give it a direction",
            normal.x(), normal.y(), normal.z());
     }
     r.centre_ = centre;
-    r.axes_ = rotation_between(Vec3::UnitZ(), normal.normalized());
+    r.axes_ = rotation_between(Vec3::UnitZ(), Vec3((1.0 / size) * normal));
     r.half_ = Vec3(radius, radius, 0.5 * thickness);
     r.is_round_ = true;
     return r;
@@ -106,7 +107,7 @@ class Inlet {
       fail("inlet '{}' is to give {:g} kg or {:g} grains in all; give it more than nothing", o.name, o.total_mass,
            o.total_grains);
     }
-    if (!o.velocity.allFinite()) fail("inlet '{}' has a velocity that is not finite", o.name);
+    if (!is_finite(o.velocity)) fail("inlet '{}' has a velocity that is not finite", o.name);
   }
 
   template <class V>

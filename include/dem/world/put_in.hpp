@@ -1,6 +1,7 @@
 #pragma once
 
 #include <dem/world/free_room.hpp>
+#include <dem/world/neighbours.hpp>
 #include <dem/world/sleep.hpp>
 
 #include <algorithm>

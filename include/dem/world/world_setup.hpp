@@ -96,7 +96,8 @@ class WorldSetup {
     if (!is_finite(n.position) || !is_finite(n.velocity) || !is_finite(n.angular_velocity)) {
       fail("grain {} was given a position or velocity that is not finite", id);
     }
-    if (state_.species[n.species.index()].is_held() && (!n.velocity.isZero(0.0) || !n.angular_velocity.isZero(0.0))) {
+    if (state_.species[n.species.index()].is_held() &&
+        !(n.velocity == Vec3::Zero() && n.angular_velocity == Vec3::Zero())) {
       fail("grain {} is of a species that is held, but was given a velocity; attach it to a part that moves", id);
     }
     // Written such that a NaN fails as well.
