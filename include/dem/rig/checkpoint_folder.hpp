@@ -62,7 +62,13 @@ class CheckpointFolder final : public PartStore {
           "--resume to begin it anew",
           output_);
     }
-    for (const auto& file : files) options_.files.check(file);
+    for (const auto& file : files) {
+      try {
+        options_.files.check(file);
+      } catch (const Error& problem) {
+        fail("{}, or remove it to begin that part of the run anew", problem.what());
+      }
+    }
   }
 
   /// Removes what an earlier run has left, or this one when it has ended. Other files in the folder stay.
