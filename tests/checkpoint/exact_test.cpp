@@ -1,5 +1,7 @@
 // n steps, a file, and n more steps are 2n steps: every column of the state is the same in every bit.
 
+#include <dem/mbd/solver/projected.hpp>
+
 #include "scenes_to_save.hpp"
 
 #include <dem/world/energy.hpp>
@@ -7,6 +9,11 @@
 namespace {
 
 using namespace models;
+
+/// The machine's joints are held exactly.
+struct HeldBalls : VerletBalls {
+  using Joints = dem::mbd::Projected;
+};
 
 template <class Model>
 dem::ContactParameters<Model> constants() {
@@ -44,7 +51,7 @@ struct Progress {
 }  // namespace
 
 TEMPLATE_TEST_CASE("n steps, a file and n steps are 2n steps in every bit", "", CorrectedBalls, Balls, VerletBalls,
-                   CorrectedCubes, Cubes, VerletCubes, LinearModel, HertzModel) {
+                   CorrectedCubes, Cubes, VerletCubes, LinearModel, HertzModel, HeldBalls) {
   const Folder folder;
   const int substeps = GENERATE(1, 3);
   CAPTURE(substeps);

@@ -84,6 +84,8 @@ class JointWatch {
   /// The joint that stood open farthest since the last call; no valid id if none came to half of what is allowed.
   JointOpening take_recent() { return std::exchange(recent_, {}); }
 
+  bool has_recent() const { return recent_.share > 0.0; }
+
   /// The joint that stood open farthest since the start; no valid id if none came to half of what is allowed.
   const JointOpening& worst() const { return worst_; }
   bool is_exceeded() const { return worst_.share > 1.0; }

@@ -54,9 +54,10 @@ class Projection {
   /// After the integrator has moved the bodies: closes the joints at `time` (s), the end of a step of dt (s).
   void move(Parts& m, double time, double dt, bool is_last_stage) {
     if (!m.motions.empty()) sample_motions(m, time, dt);
+    if (went_on_) rows_ = at_start_;  // the stage before ended with others
+    went_on_ = false;
     std::fill(total_.begin(), total_.end(), 0.0);
     worst_ = rows_.errors(m, x_, per_metre_);
-    bool is_linearised_here = false;
     for (int pass = 0; pass < 12 && worst_ > tolerance; ++pass) {
       const double before = worst_;
       for (double& e : x_) e *= -1.0 / dt;
@@ -66,16 +67,17 @@ class Projection {
       worst_ = rows_.errors(m, errors_, per_metre_);
       if (worst_ < 0.5 * before) {
         std::swap(x_, errors_);
-      } else if (is_linearised_here) {
+      } else if (went_on_) {
         break;
       } else {  // through a singular position the rows of the step's start say nothing of its end
         for (double& x : x_) x = -x;
         add_impulses();
         push(m, 1.0, dt);
-        is_linearised_here = true;
+        went_on_ = true;
+        at_start_ = rows_;
         worst_ = rows_.errors(m, x_, per_metre_);
       }
-      if (is_linearised_here && worst_ > tolerance) rows_.update(m);
+      if (went_on_ && worst_ > tolerance) rows_.update(m);
     }
     note_reached(m);
     if (is_last_stage) return;
@@ -111,6 +113,7 @@ class Projection {
     on_drive_.assign(m.motions.size(), 0.0);
     multiplier_.assign(m.couplings.size(), 0.0);
     collect(m, total_);
+    went_on_ = false;
     rows_.update(m);
     rows_.speed_errors(m, x_);
     rows_.solve(x_);
@@ -221,7 +224,8 @@ class Projection {
     }
   }
 
-  RigidRows rows_;
+  RigidRows rows_, at_start_;  ///< the latter of the step's start, if the former are others already
+  bool went_on_ = false;
   std::vector<double> x_, errors_, total_, on_drive_, multiplier_;
   std::vector<Vector3<double>> torque_, gyroscopic_;  ///< N m, global: of joints in the last step, see add_gyroscopic
   std::vector<Change> change_;

@@ -57,6 +57,7 @@ class Solver {
   /// nothing may be moved to close them. Returns what stays open beyond joint_tolerance with most_substeps.
   JointOpening close_joints(Mechanism& m, bool bodies_may_touch = true) {
     ramp_.step(m.parts());
+    if (!joints_.has_recent()) return {};
     const JointOpening recent = joints_.take_recent();
     const double share = recent.share / ramp_.left();
     if (share <= 0.5 || body_watch_.seen()) return {};
@@ -64,9 +65,8 @@ class Solver {
       raise_substeps(m, substeps_for(m.substeps, share, 0.25, m.most_substeps), bodies_may_touch);
       return {};
     }
-    if (share <= 1.0) return {};
-    raised_.stands_open(recent);
-    return recent;
+    if (share > 1.0) raised_.stands_open(recent);
+    return share > 1.0 ? recent : JointOpening{};
   }
   /// After close_joints: all is well, or which joint has opened beyond joint_tolerance though the sub-steps are as many
   /// as they may be. Each joint is told once.
