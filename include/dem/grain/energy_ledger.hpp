@@ -50,7 +50,7 @@ struct EnergyLedger {
 
   template <class V>
   void fields(V& v) {
-    v.given("on", on);
+    v.given("energy_counted", on);
     v("into_contacts", into_contacts), v("stored_at_start", stored), v("by_surfaces", by_surfaces, "J");
     v("came", came, "J"), v("last", last), v("velocity", velocity, "m/s"), v("spin", spin, "rad/s");
     v("grains", energy, "J"), v("body_velocity", body_velocity, "m/s"), v("body_spin", body_spin, "rad/s");
