@@ -37,8 +37,9 @@ struct Settings {
 
   GrainSettings grains{.stiffness = 4e4, .damping = 0.1};
   /// Of one trough: length along x, width, depth. There are two of them, one under each track, with the same grains,
-  /// turned by half a turn; or one bed under the whole car.
-  BedSettings bed{.lid_pressure = 5000.0, .stage_limit = 6.0, .file = {}, .save = {}};
+  /// turned by half a turn; or one bed under the whole car. The lid presses with 5 kPa, on one wide bed with 1 kPa:
+  /// while it comes down few grains carry all of it.
+  BedSettings bed{.lid_pressure = 0.0, .stage_limit = 6.0, .file = {}, .save = {}};
   std::string layout;  ///< troughs or bed; empty: troughs, but a bed for a turn
   bool sleep = true;
 
@@ -156,6 +157,7 @@ inline void resolve(Settings& s) {
   require_within(s.bed.strike_off, 0.0, 0.9, "--strike-off");
   fill(s.bed.length, by_size.length);
   fill(s.bed.width, s.is_bed() ? by_size.bed_width : by_size.trough_width);
+  fill(s.bed.lid_pressure, s.is_bed() ? 1000.0 : 5000.0);
   require_positive(s.bed.length, "--bed-length", "m (0: by size)");
   require_positive(s.bed.width, "--bed-width", "m (0: by size)");
   const double full_depth =
