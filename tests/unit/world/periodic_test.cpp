@@ -279,3 +279,54 @@ TEST_CASE("contacts across a border count in lists, stresses and energies") {
   w.prepare();
   for (const ParticleId p : w.particles()) CHECK((w.force(p) - sum[p.index()]).norm() < 1e-13 * size);
 }
+
+TEST_CASE("an inlet keeps clear of grains across a border") {
+  // A layer over the whole cell, filled until nothing fits. Without weight a grain that touched another would move.
+  dem::World<PeriodicCubes> w(cell({0, 0, 0}, {.x = true, .y = true}));
+  set_up(w);
+  w.add_inlet(dem::InletRegion::box({0, 0, 0}, {length, width, 1e-3}), {.grains = SpeciesId(0), .grain_flow = 1e8});
+  REQUIRE(w.run(400));
+  CHECK(w.particle_count() > 50);
+  double least = 1.0;
+  for (const ParticleId a : w.particles()) {
+    for (const ParticleId b : w.particles()) {
+      if (a.index() < b.index()) least = std::min(least, apart(w.position(a), w.position(b)));
+    }
+    CHECK(w.force(a).norm() == 0.0);
+  }
+  CHECK(least > 2.0 * w.species(SpeciesId(0)).shape.bounding_radius());
+}
+
+TEST_CASE("grains that are attached to a part stay in the cell, and load their part as they do elsewhere") {
+  // A part flies through three cells, and pushes a cube before it: without a border in its way, and with.
+  const auto push = [](auto& w) {
+    set_up(w);
+    w.add_species(dem::shape::cube8(1e-3), {.held = true});
+    const dem::BodyId cart =
+        w.machine().add_body(dem::mbd::box_body("cart", Vec3::Constant(4e-3), 2000).at({0.012, 0.01, 0}));
+    const auto rail =
+        w.machine().add_joint(dem::mbd::prismatic("rail", w.ground(), cart, {0.012, 0.01, 0}, Vec3::UnitX()));
+    w.machine().add_motion(dem::mbd::prescribed_joint("drive", rail, dem::mbd::Signal::ramp(0, 2.0)));
+    const auto sensor = w.machine().add_sensor(dem::mbd::contact_sensor("cart", cart, 0.05));
+    const ParticleId bow = w.add_particle({SpeciesId(1), {0.016, 0.01, 5e-4}});
+    w.attach(bow, cart);
+    const ParticleId other = w.add_particle({SpeciesId(0), {0.02, 0.01, 0}});
+    REQUIRE(w.run(5000));
+    const dem::Wrench& load = w.machine().sensor(sensor).mean();
+    CHECK(apart(w.position(bow), w.machine().body(cart).position() + Vec3(4e-3, 0, 5e-4)) < 1e-12);
+    CHECK(w.velocity(other).x() > 1.9);
+    return std::pair(load.force.x, load.torque.y);
+  };
+  dem::World<PeriodicCubes> periodic(cell({0, 0, 0}, {.x = true, .y = true}));
+  dem::World<Cubes> open(options({0, 0, 0}, 1e-5));
+  const auto [force, torque] = push(periodic);
+  const auto [open_force, open_torque] = push(open);
+  // Places differ by rounding of 1e-17 m, and contacts are as stiff as 2000 N/m.
+  CHECK(force == Catch::Approx(open_force).epsilon(1e-8));
+  CHECK(torque == Catch::Approx(open_torque).epsilon(1e-6).margin(1e-12));
+  CHECK(force < 0.0);
+  for (const ParticleId p : periodic.particles()) {
+    CHECK(periodic.position(p).x() > -1e-3);
+    CHECK(periodic.position(p).x() < length + 1e-3);
+  }
+}
