@@ -55,7 +55,7 @@ class Car {
     vehicle = add_vehicle(in, spec, Road{});
     machine.design_for(s.time_step);
     machine.initialise(0.0, machine.gravity);
-    start_ = dem::mbd::energy_of(machine.parts(), machine.gravity).sum();
+    start_ = stored();
     dem::vehicle::add_columns(columns, dem::vehicle::CarSample{});
     for (const char* corner : dem::vehicle::corner_letters) {
       for (const char* what : {"load_N", "pull_N", "side_N", "slip", "slip_angle_rad", "travel_m", "brake_torque_Nm"}) {
@@ -94,12 +94,17 @@ class Car {
       }
       add_work(dt);
     }
-    energy.gained = dem::mbd::energy_of(machine.parts(), machine.gravity).sum() - start_;
+    energy.gained = stored() - start_;
     energy.throughput = sum_ + std::abs(energy.gained);
     return failed.empty();
   }
 
  private:
+  /// J, but for springs and shocks, whose work is summed.
+  double stored() const {
+    const dem::mbd::Energy e = dem::mbd::energy_of(machine.parts(), machine.gravity);
+    return e.sum() - e.springs;
+  }
   void add_work(double dt) {
     const auto& parts = machine.parts();
     const auto add = [&](double& to, double power) {
