@@ -61,7 +61,7 @@ class Periodic {
   }
 
   /// Whether a thing that extends so far (m) is met as one image at a time by grains that reach so far. Larger ones,
-  /// as a floor, stand as they are and fill the cell: see check_extent.
+  /// as a floor, stand as they are and fill the cell.
   bool repeats(std::size_t axis, double extent, double reach) const { return extent + 2.0 * reach < period_[axis]; }
 
   /// The image of x that is nearest to the middle of a box, in the directions in which the box repeats.

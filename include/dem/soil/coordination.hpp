@@ -49,11 +49,25 @@ Coordination coordination(const World& world) {
     }
   }
   if (n == 0) return result;
+  std::vector<std::size_t> image_of;  // in a periodic world, grains have images behind the rest
+  if constexpr (World::Model::Domain::has_images) {
+    for (std::size_t i = 0; i < n; ++i) {
+      const Vec3 at(x[i], y[i], z[i]);
+      world.state().domain.for_each_image(at, [&](const Vec3& image) {
+        if (image == at) return;
+        image_of.push_back(i);
+        x.push_back(image.x()), y.push_back(image.y()), z.push_back(image.z());
+      });
+    }
+  }
   broadphase::UniformGrid grid;
-  grid.build(broadphase::Positions{x.data(), y.data(), z.data(), n}, 2.0 * largest);
+  grid.build(broadphase::Positions{x.data(), y.data(), z.data(), x.size()}, 2.0 * largest);
+  auto finder = grid.finder();
   for (std::size_t i = 0; i < n; ++i) {
-    grid.finder().for_each_candidate(i, [&](std::size_t j) {
-      const Vector3<double> apart = {x[j] - x[i], y[j] - y[i], z[j] - z[i]};
+    finder.for_each_candidate(i, [&](std::size_t row) {
+      const std::size_t j = row < n ? row : image_of[row - n];
+      if (j <= i) return;
+      const Vector3<double> apart = {x[row] - x[i], y[row] - y[i], z[row] - z[i]};
       if (dot(apart, apart) > (reach[i] + reach[j]) * (reach[i] + reach[j])) return;
       std::int32_t points = 0;
       Shape::collide(shape_of(i), &pose[i * Shape::pose_size], shape_of(j), &pose[j * Shape::pose_size], apart,

@@ -13,6 +13,31 @@ std::string surface_in_words(const WorldState<Model>& w, std::size_t s) {
                       : dem::text("surface '{}'", name);
 }
 
+/// Why a surface of a periodic world, where it is now, does not fit the cell, in words; empty if it does. Grains meet
+/// the nearest image of a short surface. A longer one has to reach beyond the cell as far as a grain may: its bounding
+/// radius, and half of the widest skin.
+template <class Model>
+std::string misfit_in_period(const WorldState<Model>& w, std::size_t number,
+                             const typename WorldState<Model>::Surface& s) {
+  if constexpr (Model::Domain::has_images) {
+    constexpr const char* axes[] = {"x", "y", "z"};
+    const double reach = shape::widened(w.largest_radius, w.materials.range());
+    const double skin = w.options.skin > 0.0 ? w.options.skin : grain::SkinChoice::ladder.back() * w.largest_radius;
+    const double margin = reach + 0.5 * skin;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const double period = w.domain.period()[k], from = w.domain.low(k) - margin;
+      const double to = w.domain.low(k) + period + margin;
+      const double low = s.low.data()[k], high = s.high.data()[k];
+      if (period == 0.0 || !s.active || w.domain.repeats(k, high - low, reach) || (low <= from && high >= to)) continue;
+      return dem::text(
+          "{} reaches from {:g} to {:g} m in {}, where the domain repeats itself every {:g} m: a surface there must be "
+          "shorter than {:g} m, so that grains fit between its images, or fill the cell and more, from {:g} to {:g} m",
+          surface_in_words(w, number), low, high, axes[k], period, period - 2.0 * reach, from, to);
+    }
+  }
+  return {};
+}
+
 /// Looks for grains that are not finite, lost, or pressed too deep into something. Costs a look at each chunk; only
 /// when something is wrong the grain is searched.
 template <class Model>
@@ -36,9 +61,9 @@ StepReport find_problem(WorldState<Model>& w) {
                                  p.id[i], when(), w.time_step));
       }
     }
-    if (const auto& domain = w.options.domain;
-        domain && w.options.beyond_domain == BeyondDomain::report &&
-        !(none_below(chunk.low, domain->low) && none_below(domain->high, chunk.high))) [[unlikely]] {
+    if (const auto& domain = w.borders; domain && w.options.beyond_domain == BeyondDomain::report &&
+                                        !(none_below(chunk.low, domain->low) && none_below(domain->high, chunk.high)))
+        [[unlikely]] {
       for (std::size_t i = begin; i < end; ++i) {
         const Vec3 x = to_eigen(p.position[i]);
         if ((none_below(x, domain->low) && none_below(domain->high, x)) || p.row_of[p.id[i]] == p.gone) continue;
@@ -71,6 +96,14 @@ StepReport find_problem(WorldState<Model>& w) {
                              "(now {:g} s), or start with the bodies apart",
                              body(pair.a), body(pair.b), w.body_contacts.worst_overlap, when(), w.options.overlap_limit,
                              w.time_step));
+  }
+  if constexpr (Model::Domain::has_images) {
+    for (std::size_t s = 0; s < w.surfaces.size(); ++s) {
+      if (!w.surfaces[s].moved) continue;
+      if (const std::string why = misfit_in_period(w, s, w.surfaces[s]); !why.empty()) {
+        return problem(StepReport::Problem::machine, p.count, why + dem::text(" ({})", when()));
+      }
+    }
   }
   if (const auto report = w.machine_solver.report(w.machine); !report) {
     return problem(StepReport::Problem::machine, p.count, report.text);

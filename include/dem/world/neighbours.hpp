@@ -22,7 +22,14 @@ void wrap_grains(WorldState<Model>& w) {
     auto& p = w.particles;
     p.resize(p.count);
     w.images = {};
-    for (std::size_t i = 0; i < p.count; ++i) p.position.set(i, w.domain.wrapped(p.position[i]));
+    for (std::size_t i = 0; i < p.count; ++i) {
+      const Vector3<double> inside = w.domain.wrapped(p.position[i]);
+      const auto& kind = w.species[p.species[i]];
+      if (w.ledger.on && !kind.is_held()) {
+        w.ledger.came -= kind.mass * dot(from_eigen(w.options.gravity), inside - p.position[i]);
+      }
+      p.position.set(i, inside);
+    }
   }
 }
 /// Makes the images of the grains near a periodic cell's borders, after the grains are sorted.
@@ -72,6 +79,7 @@ void rebuild_neighbours(WorldState<Model>& w) {
   }
 
   if (p.count == 0) {
+    w.images = {};
     w.chunks.clear();
     w.incoming.clear();
     w.list_valid = true;

@@ -13,8 +13,8 @@
 
 namespace dem {
 
-/// Which of the axes.
-struct Axes {
+/// Directions in which a domain repeats itself.
+struct PeriodicAxes {
   bool x = false, y = false, z = false;
 };
 
@@ -28,8 +28,8 @@ struct WorldOptions {
   double overlap_limit = 0.5;  ///< overlap, in effective diameters 2 Ri Rj/(Ri + Rj), that is reported as a problem
   std::optional<surface::Bounds> domain = {};         ///< where grains are expected; none: anywhere
   BeyondDomain beyond_domain = BeyondDomain::report;  ///< what becomes of a grain whose centre leaves it
-  Axes periodic = {};  ///< in which the domain repeats itself; for models whose Domain is domain::Periodic
-  int threads = 0;     ///< 0: as many as the executor offers
+  PeriodicAxes periodic = {};  ///< in which the domain repeats itself; for models whose Domain is domain::Periodic
+  int threads = 0;             ///< 0: as many as the executor offers
   std::optional<SleepOptions> sleep = {};  ///< lets grains at rest sleep, so that they cost next to nothing
 };
 

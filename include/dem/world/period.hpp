@@ -10,6 +10,7 @@ template <class Model>
 void set_period(WorldState<Model>& w) {
   const std::array<bool, 3> repeats = {w.options.periodic.x, w.options.periodic.y, w.options.periodic.z};
   const bool any = repeats[0] || repeats[1] || repeats[2];
+  w.borders = w.options.domain;
   if constexpr (Model::Domain::has_images) {
     if (!any || !w.options.domain) {
       fail(
@@ -17,7 +18,7 @@ void set_period(WorldState<Model>& w) {
           "and WorldOptions::periodic to the directions in which it repeats",
           !w.options.domain ? "domain" : "periodic direction");
     }
-    surface::Bounds& d = *w.options.domain;
+    surface::Bounds& d = *w.borders;
     for (std::size_t k = 0; k < 3; ++k) {
       if (repeats[k]) require_positive(d.high.data()[k] - d.low.data()[k], "period of the domain", "m");
     }
@@ -32,13 +33,26 @@ void set_period(WorldState<Model>& w) {
   }
 }
 
+/// Throws Error unless the region of an inlet is in the cell of a periodic world.
+template <class Model>
+void check_region(const WorldState<Model>& w, const surface::Bounds& region, const std::string& inlet) {
+  if constexpr (Model::Domain::has_images) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      const double period = w.domain.period()[k], low = w.domain.low(k), slack = 1e-9 * period;
+      const double from = region.low.data()[k], to = region.high.data()[k];
+      if (period == 0.0 || (from >= low - slack && to <= low + period + slack)) continue;
+      fail("inlet '{}' reaches from {:g} to {:g} m in {}, but must be in the domain's cell, from {:g} to {:g} m", inlet,
+           from, to, "xyz"[k], low, low + period);
+    }
+  }
+}
+
 /// Refuses a periodic cell that is so small that a grain would meet itself or another grain twice, and a surface that
 /// neither fills the cell nor leaves room for grains between its images. Throws Error.
 template <class Model>
 void check_period(const WorldState<Model>& w) {
   if constexpr (Model::Domain::has_images) {
     constexpr const char* axes[] = {"x", "y", "z"};
-    const double reach = shape::widened(w.largest_radius, w.materials.range());
     const double skin = w.options.skin > 0.0 ? w.options.skin : grain::SkinChoice::ladder[0] * w.largest_radius;
     const double list_reach = 2.0 * w.largest_radius + w.materials.range() + skin;
     for (std::size_t k = 0; k < 3; ++k) {
@@ -50,19 +64,11 @@ void check_period(const WorldState<Model>& w) {
             "enlarge the cell or take smaller grains",
             axes[k], period, 2.0 * list_reach);
       }
-      for (std::size_t s = 0; s < w.surfaces.size(); ++s) {
-        auto surface = w.surfaces[s];
-        surface.follow(w.machine.bodies()[surface.body.index()]);
-        const double low = surface.low.data()[k], high = surface.high.data()[k], extent = high - low;
-        if (w.domain.repeats(k, extent, reach)) continue;
-        if (low <= w.domain.low(k) && high >= w.domain.low(k) + period) continue;
-        fail(
-            "{} is {:g} m long in {} (from {:g} to {:g}), where the domain repeats itself every {:g} m: a surface "
-            "there "
-            "must fill the cell ({:g} to {:g} m) or be shorter than {:g} m, so that grains fit between its images",
-            surface_in_words(w, s), extent, axes[k], low, high, period, w.domain.low(k), w.domain.low(k) + period,
-            period - 2.0 * reach);
-      }
+    }
+    for (std::size_t s = 0; s < w.surfaces.size(); ++s) {
+      auto surface = w.surfaces[s];
+      surface.follow(w.machine.bodies()[surface.body.index()]);
+      if (const std::string why = misfit_in_period(w, s, surface); !why.empty()) fail("{}", why);
     }
   }
 }

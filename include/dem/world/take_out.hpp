@@ -23,7 +23,7 @@ void take_out_row(WorldState<Model>& w, std::size_t row) {
 /// chunk; nothing where there is neither. In the order of rows, so that the number of threads changes nothing.
 template <class Model>
 void take_out(WorldState<Model>& w) {
-  const bool ends = w.options.domain && w.options.beyond_domain == BeyondDomain::remove;
+  const bool ends = w.borders && w.options.beyond_domain == BeyondDomain::remove;
   if (w.outlets.empty() && !ends) [[likely]]
     return;
   const auto& p = w.particles;
@@ -32,6 +32,7 @@ void take_out(WorldState<Model>& w) {
       if (!reaches(w.chunks[c])) continue;
       for (std::size_t i = c * chunk_size; i < std::min((c + 1) * chunk_size, p.count); ++i) {
         if (p.row_of[p.id[i]] == p.gone || !holds(to_eigen(p.position[i]))) continue;
+        if (w.species[p.species[i]].is_held()) continue;  // a part of the apparatus
         outlet.take(w.species[p.species[i]].mass);
         take_out_row(w, i);
       }
@@ -45,7 +46,7 @@ void take_out(WorldState<Model>& w) {
         [&](const Vec3& x) { return none_below(x, region.low) && none_below(region.high, x); });
   }
   if (ends) {
-    const surface::Bounds& d = *w.options.domain;
+    const surface::Bounds& d = *w.borders;
     // Written such that a NaN is no grain that left: it is reported.
     const auto is_out = [&](const Vec3& low, const Vec3& high) {
       return low.x() < d.low.x() || low.y() < d.low.y() || low.z() < d.low.z() || high.x() > d.high.x() ||

@@ -149,6 +149,7 @@ class WorldSetup {
       if (kind.is_held()) fail("inlet '{}' is to give grains of species {}, which is held", o.name, s.value);
       return kind.mass;
     };
+    check_region(state_, region.bounds(), o.name);
     state_.inlets.emplace_back(region, o, MixtureDraw(o.grains, mass_of), state_.time);
     state_.put_in = &dem::put_in<Model>;
     return InletId(state_.inlets.size() - 1);

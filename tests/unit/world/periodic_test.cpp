@@ -17,7 +17,7 @@ struct PeriodicCubes : Cubes {
 
 constexpr double length = 0.030, width = 0.024;  // m, of the cell
 
-dem::WorldOptions cell(const Vec3& gravity, dem::Axes periodic, int threads = 1) {
+dem::WorldOptions cell(const Vec3& gravity, dem::PeriodicAxes periodic, int threads = 1) {
   dem::WorldOptions o = options(gravity, 1e-5);
   o.domain = dem::surface::Bounds{{0, 0, -1}, {length, width, 1}};
   o.periodic = periodic;
@@ -217,6 +217,34 @@ TEST_CASE("contacts across borders are listed with the rest, and inlets see grai
   }
 }
 
+TEST_CASE("a cell may run empty and be filled again") {
+  dem::World<PeriodicCubes> w(cell({0, 0, -g}, {.x = true, .y = true}));
+  set_up(w);
+  add_block(w, SpeciesId(0), Vec3(1e-3, 1e-3, 0), 3e-3, 4, 4, 1, 0.1);
+  w.add_outlet({{-1, -1, -1}, {1, 1, -1e-3}});
+  REQUIRE(w.run(4000));
+  CHECK(w.particle_count() == 0);
+  REQUIRE(w.run(20));
+  CHECK(dem::contacts_of(w).empty());
+  w.add_particle({.species = SpeciesId(0), .position = {0, 0, 0.01}});
+  REQUIRE(w.run(20));
+  CHECK(w.particle_count() == 1);
+}
+
+TEST_CASE("a part that turns until it neither fits the cell nor fills it is reported") {
+  dem::World<PeriodicCubes> w(cell({0, 0, 0}, {.x = true, .y = true}));
+  set_up(w);
+  w.add_particle({.species = SpeciesId(0), .position = {0.01, 0.01, 0.1}});
+  const Vec3 edges(0.004, 0.004, 0.04);  // upright it fits
+  const auto bar =
+      w.machine().add_body(dem::mbd::box_body("bar", edges, 2650).at({0.01, 0.01, 0}).moving({0, 0, 0}, {0, 100, 0}));
+  w.add_surface(bar, dem::surface::Box(edges), {.name = "bar"});
+  const auto report = w.run(2000);
+  CHECK_FALSE(report);
+  CHECK(report.text.find("surface 'bar' reaches from") != std::string::npos);
+  CHECK(w.time() > 0.002);
+}
+
 TEST_CASE("a cell that cannot be is refused in words") {
   check_refused([] { dem::World<Cubes> w({.periodic = {.x = true}}); }, "using Domain = dem::domain::Periodic");
   check_refused([] { dem::World<PeriodicCubes> w; }, "set WorldOptions::domain to the cell");
@@ -231,10 +259,21 @@ TEST_CASE("a cell that cannot be is refused in words") {
   set_up(small);
   small.add_particle({.species = SpeciesId(0)});
   check_refused([&] { small.prepare(); }, "period in x is 0.005 m, but must be above");
+  dem::World<PeriodicCubes> short_floor(cell({0, 0, -g}, {.x = true}));
+  set_up(short_floor);
+  short_floor.add_surface(short_floor.ground(), dem::surface::Box({length, 1, 0.01}),
+                          {.name = "floor", .position = {length / 2, 0, 0}});
+  check_refused([&] { short_floor.prepare(); }, "or fill the cell and more");
+  check_refused(
+      [&] {
+        short_floor.add_inlet(dem::InletRegion::box({0, 0, 0}, {1, 0, 0}),
+                              {.name = "rain", .grains = SpeciesId(0), .mass_flow = 1});
+      },
+      "inlet 'rain' reaches from 0 to 1 m in x");
   dem::World<PeriodicCubes> long_part(cell({0, 0, -g}, {.x = true}));
   set_up(long_part);
   long_part.add_surface(long_part.ground(), dem::surface::Box({0.029, 1, 0.01}), {.name = "slab"});
-  check_refused([&] { long_part.prepare(); }, "surface 'slab' is 0.029 m long in x");
+  check_refused([&] { long_part.prepare(); }, "surface 'slab' reaches from -0.0145 to 0.0145 m in x");
 }
 
 TEST_CASE("contacts across a border count in lists, stresses and energies") {

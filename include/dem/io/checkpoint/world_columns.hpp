@@ -125,9 +125,8 @@ void chunk_fields(Fields& v, WorldState<Model>& w) {
     std::vector<double> shifts;
     for (const Vector3<double>& s : w.images.shift) shifts.insert(shifts.end(), {s.x, s.y, s.z});
     v("image_of", w.images.grain), v("image_shifts", shifts, "m");
+    v("rows_of_grains", w.images.grains), v("first_image", w.images.first);  // grains may have come since
     if (is_restoring) {
-      w.images.grains = static_cast<std::uint32_t>(w.particles.count);
-      w.images.first = static_cast<std::uint32_t>(w.particles.chunks() * chunk_size);
       w.images.shift.resize(w.images.grain.size());
       for (std::size_t k = 0; k < w.images.shift.size(); ++k) {
         w.images.shift[k] = {shifts.at(3 * k), shifts.at(3 * k + 1), shifts.at(3 * k + 2)};
@@ -173,6 +172,7 @@ void model_fields(Fields& v) {
   policy("cohesion_law", type_name<typename Model::Cohesion>());
   policy("broad_phase", type_name<typename Model::BroadPhase>());
   policy("integrator", type_name<typename Model::Integrator>());
+  if constexpr (Model::Joints::projects) policy("joints", type_name<typename Model::Joints>());
   if constexpr (Model::Domain::has_images) policy("domain", type_name<typename Model::Domain>());
 }
 
@@ -210,10 +210,16 @@ void settle_restored(WorldState<Model>& w, bool is_checked) {
     find_points_deep_enough(w);
     coupling::list_pairs(w.body_contacts, std::span(std::as_const(w.surfaces)), w.materials);
   }
-  if (!w.list_valid || w.chunks.empty()) return;
-  for (std::size_t c = 0; c < w.chunks.size(); ++c) {
+  if (!w.held.empty()) {
+    w.carry_held = &carry_held<Model>;
+    w.load_by_held = &load_by_held<Model>;
+  }
+  // Also where the list is due: inlets look for room by the bounds of chunks. There may be more chunks of grains by
+  // now.
+  for (std::size_t c = 0; c < std::min(w.chunks.size(), w.particles.chunks()); ++c) {
     grain::refresh_chunk<Model>(c, w.chunks[c], w.particles, w.species);
   }
+  if (!w.list_valid || w.chunks.empty()) return;
   if constexpr (Model::Domain::has_images) {
     grain::make_rows(w.particles, w.images);
     place_images(w);
