@@ -1,11 +1,12 @@
 #include "catch.hpp"
 #include "files.hpp"
-#include "xml.hpp"
+#include "io/vtk_reader.hpp"
 
 #include <dem/io/vtk_contacts.hpp>
 
-#include <cstring>
+#include <cstdint>
 #include <string>
+#include <vector>
 
 using Catch::Matchers::ContainsSubstring;
 using dem::ForceLine;
@@ -30,33 +31,16 @@ TEST_CASE("force chains are written as lines with their forces at both ends") {
   wall.force = {-7, 0, 0};
   dem::io::write_vtk_force_lines(folder / "chains.vtp", {pair, wall});
 
-  const std::string file = dem::io::read_file(folder / "chains.vtp");
-  const std::string mark = "<AppendedData encoding=\"raw\">\n_";
-  const auto at = file.find(mark);
-  REQUIRE(at != std::string::npos);
-  const auto tags = XmlReader::tags(file.substr(0, at) + "</VTKFile>");
+  const VtkContent file = read_vtk(folder / "chains.vtp");
+  CHECK(file.tag("Piece").at("NumberOfPoints") == "4");
+  CHECK(file.tag("Piece").at("NumberOfLines") == "2");
+  CHECK(file.values<double>("force") == std::vector<double>{5, 5, 7, 7});
+  CHECK(file.values<std::int32_t>("on_surface") == std::vector<std::int32_t>{0, 0, 1, 1});
+  CHECK(file.values<double>("Points").at(5) == 2.0);
+  CHECK(file.values<std::int32_t>("offsets") == std::vector<std::int32_t>{2, 4});
   std::string names;
-  for (const auto& tag : tags) {
-    if (tag.name == "Piece") {
-      CHECK(tag.at("NumberOfPoints") == "4");
-      CHECK(tag.at("NumberOfLines") == "2");
-    }
-    if (tag.name != "DataArray") continue;
-    names += tag.at("Name") + " ";
-    const std::size_t from = at + mark.size() + std::stoul(tag.at("offset")) + 8;
-    const auto number = [&]<class T>(std::size_t k, T value) {
-      std::memcpy(&value, file.data() + from + k * sizeof(T), sizeof(T));
-      return value;
-    };
-    if (tag.at("Name") == "force") {
-      for (const std::size_t k : {0, 1}) CHECK(number(k, 0.0) == 5.0);
-      for (const std::size_t k : {2, 3}) CHECK(number(k, 0.0) == 7.0);
-    }
-    if (tag.at("Name") == "on_surface") {
-      for (const std::size_t k : {0, 1, 2, 3}) CHECK(number(k, std::int32_t{9}) == (k < 2 ? 0 : 1));
-    }
-    if (tag.at("Name") == "Points") CHECK(number(5, 0.0) == 2.0);
-    if (tag.at("Name") == "offsets") CHECK(number(1, std::int32_t{0}) == 4);
+  for (const auto& tag : file.tags) {
+    if (tag.name == "DataArray") names += tag.at("Name") + " ";
   }
   CHECK(names == "force normal_force friction overlap points on_surface grain Points connectivity offsets ");
 }
