@@ -43,6 +43,7 @@ struct Rig {
     wheel =
         machine.add_body(mbd::cylinder_body("wheel", same.radius, same.width, density).at({0, 0, same.radius}, turn));
     machine.joint_tolerance = 0.01;  // m; the slide tilts by 0.02 rad, and the wheel is compared to 0.005
+    machine.most_substeps = 1;       // steps of the soil are counted
     machine.add_joint(mbd::prismatic("slide", carriage, hub, {0, 0, same.radius}, Vec3::UnitZ()));
     const auto axle = machine.add_joint(mbd::revolute("axle", hub, wheel, {0, 0, same.radius}, Vec3::UnitY()));
     machine.add_motion(mbd::prescribed_position("travel", carriage, Vec3::UnitX(), mbd::Signal::ramp(0.0, v)));

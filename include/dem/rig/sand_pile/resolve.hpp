@@ -46,10 +46,10 @@ inline void check(const Settings& s) {
   require_within(s.box_length, 4.0 * d, 4e3 * d, "--box-length (m, from four grains up)");
   require_within(s.box_width, 5.0 * d, 4e3 * d, "--box-width (m, from five grains up)");
   require_within(s.slot_width, 2.0 * d, 1e3 * d, "--slot-width (m, from two grains up)");
+  check_contact_options(s);
   require_non_negative(s.plate_friction, "--plate-friction", "(no unit)");
   require_non_negative(s.container_friction, "--container-friction", "(no unit)");
   require_non_negative(s.plate_rolling_length, "--plate-rolling-length", "m");
-  check_contact_options(s);
   require_non_negative(s.rolling_length, "--rolling-length", "m");
   require_positive(s.settle_limit, "--settle-limit", "s");
   require_positive(s.rest_limit, "--rest-limit", "s (0: by size)");
