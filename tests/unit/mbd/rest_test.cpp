@@ -54,6 +54,14 @@ TEST_CASE("a linkage finds the pose of least energy, and what has nothing to res
   CHECK_FALSE(none);
   CHECK_THAT(none.text, Contains("no rest was found") && Contains("body 'stone'") && Contains("nothing to rest on"));
 
+  Machine<PredictorCorrector> windy;  // a NaN is no rest, however small the other forces are
+  const BodyId sail = windy.add_body(ball("sail"));
+  windy.add_body(ball("stone"));
+  windy.add_load(custom_load("wind", sail, [](double, const Body&) { return Wrench{{0, std::nan(""), 0}, {}}; }));
+  const RestReport nowhere = find_rest(windy, 1e-4);
+  CHECK_FALSE(nowhere);
+  CHECK_THAT(nowhere.text, Contains("body 'sail' are not finite") && Contains("load 'wind' is not a number"));
+
   const JointId other = m.add_joint(free_joint("gauge", m.ground(), b, {0, 0, 0}, Y));
   m.add_motion(prescribed_joint("turn", middle, Signal::held(m.coordinate(middle), 0.0)));
   check_refused([&] { (void)find_rest(m, 1e-4); }, "prescribed motion 'turn'");

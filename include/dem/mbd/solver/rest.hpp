@@ -64,7 +64,7 @@ class RestSearch {
   DEM_COLD RestReport run(const RestOptions& o) {
     RestReport report;
     double tau = 0.1, last = residual();
-    for (; report.iterations < o.most_iterations; ++report.iterations) {
+    for (; std::isfinite(last) && report.iterations < o.most_iterations; ++report.iterations) {
       if (worst_share(report) <= o.tolerance) {
         report.ok = true;
         break;
@@ -78,10 +78,17 @@ class RestSearch {
       move(step);
       evaluate(force_);
       const double now = residual();
-      if (!std::isfinite(now)) break;
       tau *= std::clamp(last / std::max(now, 1e-300), 0.3, 4.0);
       tau = std::min(tau, longest_);
       last = now;
+    }
+    if (!std::isfinite(last)) {
+      const std::string cause = not_a_number(m_);
+      report.text = dem::text("no rest was found: after {} iterations the forces on body '{}' are not finite. {}",
+                              report.iterations, body_without_number(),
+                              cause.empty() ? "Start nearer to rest, or check the loads."
+                                            : cause + " is not a number: check the function that gives it.");
+      return report;
     }
     for (std::size_t k = 0; k < free_.size(); ++k) {
       report.moved = std::max(report.moved, norm(m_.bodies[free_[k]].motion.position - start_[k]));
@@ -119,6 +126,14 @@ class RestSearch {
     double sum = 0.0;
     for (std::size_t i = 0; i < force_.size(); ++i) sum += force_[i] * force_[i] / mass(i);
     return std::sqrt(sum);
+  }
+  const std::string& body_without_number() const {
+    std::size_t k = 0;
+    while (k + 1 < free_.size() &&
+           std::all_of(&force_[6 * k], &force_[6 * k] + 6, [](double f) { return std::isfinite(f); })) {
+      ++k;
+    }
+    return m_.bodies[free_[k]].name;
   }
   double worst_share(RestReport& report) const {
     report.share = report.force = report.torque = 0.0;
@@ -219,14 +234,32 @@ DEM_COLD inline void stop_for_rest(Parts& parts) {
   for (Body& b : parts.bodies) b.motion.velocity = b.motion.angular_velocity = {0, 0, 0};
 }
 
+/// What is held exactly gets springs for the search, so stiff that they hardly give way. All else (limits, brakes,
+/// friction) keeps the stiffness that it has in steps of dt (s): it is what the run goes on with.
+DEM_COLD inline void put_springs_on(Parts& parts, double dt) {
+  constexpr double stiffer = 100.0;
+  std::vector<Joint*> joints;
+  std::vector<Coupling*> couplings;
+  for (Joint& j : parts.joints) {
+    if (j.rigid) joints.push_back(&j);
+    j.rigid = false;
+  }
+  for (Coupling& g : parts.couplings) {
+    if (g.k == 0.0 && g.c == 0.0) couplings.push_back(&g);
+  }
+  derive_stiffness(parts, dt);
+  for (Joint* j : joints) {
+    j->k *= stiffer;
+    j->kr *= stiffer;
+  }
+  for (Coupling* g : couplings) g->k *= stiffer;
+}
+
 /// Searches, with joints as they are in steps of dt (s).
 template <class Joints, class PutForces>
 RestReport search_rest(Parts& parts, const Vec3& gravity, double time, double dt, const RestOptions& options,
                        PutForces&& put_forces) {
-  if constexpr (Joints::projects) {  // springs for the search, so stiff that they hardly give way
-    for (Joint& j : parts.joints) j.rigid = false;
-    derive_stiffness(parts, 0.1 * dt);
-  }
+  if constexpr (Joints::projects) put_springs_on(parts, dt);
   RestSearch<std::decay_t<PutForces>> search(parts, gravity, time, dt, put_forces);
   const RestReport report = search.run(options);
   Joints::State::take_springs_off(parts);
