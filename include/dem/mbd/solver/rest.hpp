@@ -27,7 +27,7 @@ struct RestReport {
   double force = 0.0;   ///< N, the largest that is left on a body
   double torque = 0.0;  ///< N m, the largest that is left, about a centre of mass
   double share = 0.0;   ///< the residual as a share of the weight or of the largest force
-  double moved = 0.0;   ///< m, the farthest that a body was moved
+  double moved = 0.0;   ///< m, the farthest that a body was moved, also if it was put back
   std::string body;     ///< with the largest residual
   std::string text;     ///< in words, if it was not found
   explicit operator bool() const { return ok; }
@@ -51,7 +51,7 @@ class RestSearch {
       if (b.fixed) continue;
       b.motion.velocity = b.motion.angular_velocity = {0, 0, 0};
       free_.push_back(i);
-      start_.push_back(b.motion.position);
+      start_.push_back(b.motion);
       weight += b.mass * norm(gravity_);
     }
     evaluate(force_);
@@ -59,6 +59,11 @@ class RestSearch {
     for (const Spring& s : parts.springs) scale_ = std::max(scale_, std::abs(s.force));
     for (const Actuator& u : parts.actuators) scale_ = std::max(scale_, std::abs(u.force));
     for (const Load& l : parts.loads) scale_ = std::max(scale_, norm(l.wrench.force) + norm(l.wrench.torque) / size_);
+  }
+
+  /// Puts the bodies where they were.
+  void put_back() {
+    for (std::size_t k = 0; k < free_.size(); ++k) m_.bodies[free_[k]].motion = start_[k];
   }
 
   DEM_COLD RestReport run(const RestOptions& o) {
@@ -91,7 +96,7 @@ class RestSearch {
       return report;
     }
     for (std::size_t k = 0; k < free_.size(); ++k) {
-      report.moved = std::max(report.moved, norm(m_.bodies[free_[k]].motion.position - start_[k]));
+      report.moved = std::max(report.moved, norm(m_.bodies[free_[k]].motion.position - start_[k].position));
     }
     if (!report.ok) {
       report.text = dem::text(
@@ -219,7 +224,7 @@ class RestSearch {
   Vector3<double> gravity_;
   double time_, dt_, size_ = 1e-6, scale_ = 0.0, longest_ = 1e3;
   std::vector<std::size_t> free_;
-  std::vector<Vector3<double>> start_;
+  std::vector<integrator::Motion<double>> start_;
   std::vector<double> force_, K_;
 };
 
@@ -262,6 +267,7 @@ RestReport search_rest(Parts& parts, const Vec3& gravity, double time, double dt
   if constexpr (Joints::projects) put_springs_on(parts, dt);
   RestSearch<std::decay_t<PutForces>> search(parts, gravity, time, dt, put_forces);
   const RestReport report = search.run(options);
+  if (!report) search.put_back();
   Joints::State::take_springs_off(parts);
   settle_turns(parts);
   return report;
@@ -272,7 +278,8 @@ RestReport search_rest(Parts& parts, const Vec3& gravity, double time, double dt
 /// Brings a machine to rest: moves its bodies to where gravity, springs, loads, actuators, limits and joints are in
 /// balance, and stops them. Loads are asked at the machine's present time and at speed 0; friction, dampers and motors
 /// hold nothing. Joints stand open as they will in steps of dt (s), so the run that follows stays where it is. A
-/// direction in which nothing holds and nothing pulls, as a wheel about its axle, stays as it is.
+/// direction in which nothing holds and nothing pulls, as a wheel about its axle, stays as it is. If no rest is found,
+/// the bodies are stopped where they were. Velocities that are given afterwards fit the joints by Machine::assemble.
 ///
 /// Throws Error for a prescribed motion of a body that is not fixed, and what Machine::run throws. Of a machine in a
 /// world: <dem/world/rest.hpp>.
