@@ -179,6 +179,7 @@ DEM_COLD inline void set_ratio(Parts& parts, Coupling& g, std::size_t term, doub
 DEM_COLD inline CouplingId add_coupling(Parts& parts, CouplingSpec spec) {
   settle_name(spec.name, parts.couplings, "coupling", "couplings", name_in_spec);
   use(parts, coupling_kind);
+  parts.couplings_changed = true;
   return keep<CouplingId>(parts, parts.couplings, make_coupling(parts, std::move(spec)));
 }
 
