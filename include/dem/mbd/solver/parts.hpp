@@ -66,7 +66,8 @@ struct Parts {
   void (*check_holds)(Parts& parts, double time) = nullptr;
   void (*sample_sensors)(Parts& parts, double dt) = nullptr;
 
-  std::uint64_t revision = 0;  ///< grows with each body, joint, coupling ... that is added, set free or fixed
+  bool couplings_changed = false;  ///< added, switched on or given another ratio since a lock was looked for
+  std::uint64_t revision = 0;      ///< grows with each body, joint, coupling ... that is added, set free or fixed
 
   template <class V>
   void fields(V& v) {

@@ -100,9 +100,10 @@ class Solver {
   /// Whether what is derived belongs to steps of dt (s), and nothing was added since.
   bool is_designed_for(const Mechanism& m, double dt) const { return is_initialised(m) && dt == design_dt_; }
 
-  /// Throws Error if a prescribed motion that was added, switched on or given another signal would have to jump to take
+  /// Throws Error if couplings that were added or changed lock a shaft, or such a motion would have to jump to take
   /// hold of its coordinate. To be called before a step begins, so that one that has begun is never refused.
   void check_motions(Mechanism& m) const {
+    detail::check_changed_couplings(m.parts());
     if (m.parts().check_holds) m.parts().check_holds(m.parts(), time_);
   }
 
@@ -113,7 +114,6 @@ class Solver {
   DEM_COLD void initialise(Mechanism& m, double time, const Vec3& gravity, PutForces&& put_forces) {
     Parts& parts = m.parts();
     if (design_dt_ <= 0.0) require_derived(parts);
-    if (!parts.couplings.empty()) detail::check_locked(parts);
     clear_forces(parts);
     put_forces();
     time_ = time;
