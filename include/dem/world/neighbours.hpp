@@ -83,9 +83,10 @@ double choose_skin(WorldState<Model>& w) {
   return skin;
 }
 
-/// Sorts the grains in space, lists their neighbours, and carries the contact histories over.
-template <class Model>
-void rebuild_neighbours(WorldState<Model>& w) {
+/// Sorts the grains in space, lists their neighbours, and carries the contact histories over. `change(histories)` may
+/// put grains in, with their histories, when those that left are out.
+template <class Model, class Change>
+void rebuild_neighbours(WorldState<Model>& w, Change&& change) {
   auto& p = w.particles;
   grain::HistoryCarrier<Model> histories;
   histories.collect(w.executor, std::span<const Chunk<Model>>(w.chunks), p, w.images);
@@ -93,6 +94,7 @@ void rebuild_neighbours(WorldState<Model>& w) {
     p.remove(w.to_remove, w.executor);
     w.to_remove.clear();
   }
+  change(histories);
 
   if (p.count == 0) {
     w.images = {};
@@ -146,6 +148,12 @@ void rebuild_neighbours(WorldState<Model>& w) {
     const auto count = static_cast<double>(p.count);
     w.skin_choice.made_list(w.materials.range(), candidates / count, w.step, Model::Integrator::stages);
   }
+}
+
+/// The same grains as before.
+template <class Model>
+void rebuild_neighbours(WorldState<Model>& w) {
+  rebuild_neighbours(w, [](grain::HistoryCarrier<Model>&) {});
 }
 
 /// After a step: a list that has lasted, and holds more than the motion asks for, is made anew.
