@@ -74,10 +74,9 @@ class PlateSinkage {
 
     stages.begin(text("press {:.0f} mm", 1e3 * result.width), s.sinkage);
     plate_sinkage::Pressing n{.start = world.time()};
-    const auto stage =
-        stages.enter(world, n, [&] { m.set_target(drive, smooth_start(-s.speed, s.ramp_time, n.start)); });
     const double area = s.length * result.width, farthest = top - bed.level + s.sinkage + 4.0 * s.grains.edge();
-    if (stage) {
+    const auto push = [&] { m.set_target(drive, smooth_start(-s.speed, s.ramp_time, n.start)); };
+    if (const auto stage = stages.enter(world, n, push)) {
       while (!(n.travel - n.zero >= s.sinkage)) {
         run(world, interval);
         const double travel = n.travel = -m.coordinate(slide);

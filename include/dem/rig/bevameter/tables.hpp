@@ -113,7 +113,7 @@ inline io::Plot shear_plot(const direct_shear::Campaign& d, const direct_shear::
   io::Plot plot{.title = "Shear stress over displacement",
                 .x_label = "shear displacement [mm]",
                 .y_label = "shear stress [kPa]",
-                .x_range = {.min = 0.0},
+                .x_range = {.min = 0.0, .max = 1e3 * s.travel},
                 .y_range = {.min = 0.0}};
   int color = 0;
   for (const auto& r : d.loads) {
