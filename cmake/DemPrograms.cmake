@@ -43,6 +43,12 @@ function(dem_needs_cli11 out)
   set(${out} ${needs} PARENT_SCOPE)
 endfunction()
 
+# dem_needs_nlopt(<out> <source>...): whether one of the sources includes NLopt's header.
+function(dem_needs_nlopt out)
+  dem_includes(needs "nlopt\\.hpp" ${ARGN})
+  set(${out} ${needs} PARENT_SCOPE)
+endfunction()
+
 # dem_is_rig(<out> <source>...): whether one of the sources makes a rig's program, which can go on after it was stopped
 # where it links dem::hdf5.
 function(dem_is_rig out)

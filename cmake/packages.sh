@@ -6,7 +6,7 @@ set -euo pipefail
 packages=(
   g++ cmake ninja-build        # compiler and build
   libeigen3-dev libfmt-dev     # the library
-  libcli11-dev gnuplot-nox libjs-three  # examples: command lines, plots, replays
+  libcli11-dev gnuplot-nox libjs-three libnlopt-cxx-dev  # examples: command lines, plots, replays, calibration
   catch2 clang-format          # tests
   libbenchmark-dev             # benchmarks
   libhdf5-dev zlib1g-dev       # states that are saved and loaded; compressed files for ParaView

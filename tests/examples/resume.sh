@@ -57,7 +57,7 @@ for file in "$output"/whole/*.csv "$output"/whole/*.pvd "$output"/whole/*.txt; d
   cmp "$file" "$output/killed/$(basename "$file")" || refuse "$(basename "$file") is not what it is without a stop"
 done
 diff -rq "$output/whole" "$output/killed" | grep -v -e report.html -e settings.toml -e '\.png' || true
-numbers() { sed -n '/^Report/!{/wall time/!p}' "$1" | grep -v -e ': started' -e ' %, ' -e ': done in' -e 'Going on' -e anew || true; }
+numbers() { sed -n '/^Report/!{/wall time/!p}' "$1" | grep -v -e ': started' -e ' %, ' -e ': done in' -e 'Going on' -e anew -e '^Replacing' || true; }
 diff <(numbers "$output/whole.txt") <(numbers "$output/killed.txt") || refuse "the printed report differs"
 [ ! -e "$output/killed/checkpoint" ] || refuse "files to go on from are left"
 echo "The same after $killed kills, $gone_on of which it went on after"

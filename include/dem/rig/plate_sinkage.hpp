@@ -74,30 +74,51 @@ class PlateSinkage {
 
     stages.begin(text("press {:.0f} mm", 1e3 * result.width), s.sinkage);
     plate_sinkage::Pressing n{.start = world.time()};
-    const auto stage =
-        stages.enter(world, n, [&] { m.set_target(drive, smooth_start(-s.speed, s.ramp_time, n.start)); });
-    if (!stage) return;
     const double area = s.length * result.width, farthest = top - bed.level + s.sinkage + 4.0 * s.grains.edge();
-    while (!(n.travel - n.zero >= s.sinkage)) {
-      run(world, interval);
-      const double travel = n.travel = -m.coordinate(slide);
-      const double force = m.sensor(grains).mean().force.z, pressure = force / area;
-      result.samples.push_back({world.time() - n.start, travel, plate_sinkage::not_known, pressure, force,
-                                -m.sensor(driven).mean().force.x});
-      if (std::isnan(n.zero) && pressure >= s.threshold) n.zero = travel;
-      look(std::as_const(world), travel);
-      stages.update(std::isnan(n.zero) ? 0.0 : travel - n.zero, text("{:.1f} kPa", 1e-3 * pressure));
-      if (travel > farthest) {
-        throw Stopped(
-            text("the plate of {:g} mm is {:g} mm down and has no sinkage of {:g} mm yet: the bed hardly "
-                 "carries it; lower --threshold or --sinkage",
-                 1e3 * result.width, 1e3 * travel, 1e3 * s.sinkage));
+    const auto push = [&] { m.set_target(drive, smooth_start(-s.speed, s.ramp_time, n.start)); };
+    if (const auto stage = stages.enter(world, n, push)) {
+      while (!(n.travel - n.zero >= s.sinkage)) {
+        run(world, interval);
+        const double travel = n.travel = -m.coordinate(slide);
+        const double force = m.sensor(grains).mean().force.z, pressure = force / area;
+        result.samples.push_back({world.time() - n.start, travel, plate_sinkage::not_known, pressure, force,
+                                  -m.sensor(driven).mean().force.x});
+        if (std::isnan(n.zero) && pressure >= s.threshold) n.zero = travel;
+        look(std::as_const(world), travel);
+        stages.update(std::isnan(n.zero) ? 0.0 : travel - n.zero, text("{:.1f} kPa", 1e-3 * pressure));
+        if (travel > farthest) {
+          throw Stopped(
+              text("the plate of {:g} mm is {:g} mm down and has no sinkage of {:g} mm yet: the bed hardly "
+                   "carries it; lower --threshold or --sinkage",
+                   1e3 * result.width, 1e3 * travel, 1e3 * s.sinkage));
+        }
       }
+      result.finished = true;
     }
-    result.finished = true;
+    if (s.unload) draw_up(world, slide, drive, grains, area, result, stages);
   }
 
  private:
+  /// Draws the plate up again, a tenth as fast, until the grains push with a twentieth of what they did.
+  void draw_up(typename Bed<Model>::World& world, JointId slide, ActuatorId drive, SensorId grains, double area,
+               plate_sinkage::PlateResult& result, Stages& stages) const {
+    const Settings& s = settings_;
+    auto& m = world.machine();
+    stages.begin(text("draw up {:.0f} mm", 1e3 * result.width), 1.0);
+    plate_sinkage::Pressing n{.start = world.time(), .zero = -m.coordinate(slide)};
+    const double first = result.samples.back().pressure, speed = 0.1 * s.speed;
+    const auto stage =
+        stages.enter(world, n, [&] { m.set_target(drive, smooth_start(speed, s.ramp_time, n.start, -n.zero)); });
+    if (!stage) return;
+    for (double pressure = first; pressure > 0.05 * first && n.travel > -0.25 * s.sinkage;) {
+      run(world, s.sample_interval());
+      n.travel = -m.coordinate(slide) - n.zero;
+      pressure = m.sensor(grains).mean().force.z / area;
+      result.unloading.push_back({n.zero + n.travel, pressure});
+      stages.update(std::clamp(1.0 - pressure / first, 0.0, 1.0), text("{:.1f} kPa", 1e-3 * pressure));
+    }
+  }
+
   template <class ShapeOf>
   PlateSinkage(Settings settings, ShapeOf&& shape_of, int)
       : settings_(std::move(settings)), shape_(shape_of(settings_.grains.half_edge)) {}

@@ -12,6 +12,7 @@
 #include <dem/rig/stages.hpp>
 #include <dem/rig/tell.hpp>
 
+#include <algorithm>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -41,6 +42,9 @@ class Session final : public Stages {
     ResultNames results = {};         ///< of this rig
     std::vector<OwnWord> words = {};  ///< for what the library calls otherwise than the program
     CheckpointOptions checkpoints = {};
+    /// Of a run that is a stage of another one: that one's stages, whose stage has the total 1. They are told how far
+    /// this run is, and whoever runs that one watches for Ctrl-C. Null: a run of its own.
+    Stages* within = nullptr;
   };
 
   explicit Session(Set set) : set_(std::move(set)), parts_(set_.program, set_.output, set_.config, set_.checkpoints) {}
@@ -48,6 +52,7 @@ class Session final : public Stages {
   [[nodiscard]] std::filesystem::path folder() const { return set_.output; }
   [[nodiscard]] const std::string& program() const { return set_.program; }
   [[nodiscard]] const std::string& config() const { return set_.config; }
+  [[nodiscard]] const CheckpointOptions& checkpoints() const { return set_.checkpoints; }
   [[nodiscard]] std::string in_own_words(std::string_view text) const { return rig::in_own_words(text, set_.words); }
 
   /// Throws Error unless a file can be written there, and is none of the run's own; an older one stays as it is.
@@ -75,29 +80,44 @@ class Session final : public Stages {
     } else {
       make_room(also);
     }
-    guard_ = std::make_unique<io::InterruptGuard>();
     parts_.start();
-    io::ProgressOptions options;
-    options.stages = stages;
-    progress_.emplace(options);
+    stages_ = stages;
+    if (set_.within == nullptr) {
+      guard_ = std::make_unique<io::InterruptGuard>();
+      io::ProgressOptions options;
+      options.stages = stages;
+      progress_.emplace(options);
+    }
     if (!parts_.resumes()) return;
     const auto files = parts_.parts();
     message(files.empty() ? "The run had kept nothing to go on from: it begins anew."
                           : text("Going on where {} part{} of the run {} kept last.", files.size(),
                                  files.size() > 1 ? "s" : "", files.size() > 1 ? "were" : "was"));
   }
-  [[nodiscard]] bool has_begun() const { return progress_.has_value(); }
+  [[nodiscard]] bool has_begun() const { return stages_ >= 0; }
 
   /// Where the parts of the run are kept.
   [[nodiscard]] CheckpointFolder& parts() { return parts_; }
 
-  void begin(std::string_view name, double total = unknown) override { progress_->begin(name, total); }
+  void begin(std::string_view name, double total = unknown) override {
+    if (progress_) return progress_->begin(name, total);
+    ++stage_;
+    name_ = name;
+    total_ = total;
+    tell_within(0.0, {});
+  }
   void update(double done, std::string_view status = {}) override {
-    progress_->update(done, status);
+    if (progress_) progress_->update(done, status);
+    else tell_within(done, status);
     save_if_due();
   }
-  void finish(std::string_view result = {}) override { progress_->finish(result); }
-  void message(std::string_view text) override { progress_->message(text); }
+  void finish(std::string_view result = {}) override {
+    if (progress_) progress_->finish(result);
+  }
+  void message(std::string_view text) override {
+    if (progress_) progress_->message(text);
+    else set_.within->message(text);
+  }
 
   /// Files for ParaView of `what` cannot be written: it is said, and noted for the report.
   void give_up_frames(const std::string& why, const char* what) {
@@ -108,7 +128,7 @@ class Session final : public Stages {
   /// Notes the end of a run that has begun; `problem` is empty if there is none.
   void end(const std::string& problem = {}) {
     outcome.problem = in_own_words(problem);
-    progress_->stop(outcome.problem);
+    if (progress_) progress_->stop(outcome.problem);
     outcome.wall_time = parts_.wall_time();
     guard_.reset();
   }
@@ -135,15 +155,29 @@ class Session final : public Stages {
       for (const auto& path : old) {
         names += (names.empty() ? "" : ", ") + path.lexically_proximate(folder()).generic_string();
       }
-      tell(stderr, "Replacing what an earlier run with {} settings left in '{}': {}{}. Another --output keeps it.\n",
-           same ? "the same" : "other", set_.output, names, also);
+      const std::string replacing =
+          text("Replacing what an earlier run with {} settings left in '{}': {}{}. Another --output keeps it.",
+               same ? "the same" : "other", set_.output, names, also);
+      if (set_.within == nullptr) tell(stderr, "{}\n", replacing);
+      else set_.within->message(replacing);
     }
     parts_.clear();  // first: they are those of the settings that were there
     io::write_file(settings, set_.config);
     remove_old_results(folder(), set_.results);
   }
 
+  /// What another run is told: the share of all stages that is done.
+  void tell_within(double done, std::string_view status) {
+    const double share = total_ > 0.0 ? std::clamp(done / total_, 0.0, 1.0) : 0.0;
+    const double all = std::max({stages_, stage_, 1});
+    set_.within->update(std::min(1.0, (stage_ - 1 + share) / all),
+                        name_ + (status.empty() ? "" : ": ") + std::string(status));
+  }
+
   Set set_;
+  int stages_ = -1, stage_ = 0;  // of the run, once it has begun; of a run within another one, the stage that it is in
+  std::string name_;
+  double total_ = unknown;
   CheckpointFolder parts_;
   std::optional<FolderLock> lock_;
   std::unique_ptr<io::InterruptGuard> guard_;

@@ -8,8 +8,8 @@ namespace dem::terramechanics {
 
 /// Bekker's constants through the points of several plates.
 struct BekkerFit {
-  Bekker law;
-  Bekker error;  ///< standard errors; NaN without a point to spare
+  Bekker law = {};
+  Bekker error = {};  ///< standard errors; NaN without a point to spare
   double r_squared = 1.0;
   std::size_t points = 0;
 };
@@ -52,6 +52,30 @@ inline BekkerFit fit_bekker(std::span<const PlateCurve> plates, PlateFit kind = 
           .error = {.k_c = fit.error[0], .k_phi = fit.error[1], .n = fit.error[2]},
           .r_squared = fit.r_squared,
           .points = fit.points};
+}
+
+/// k_phi and n of p = k_phi z^n (frictional), or k_c and n of p = (k_c/b) z^n, all plates and points at once; the other
+/// modulus is 0. Throws Error as fit_plate does.
+inline BekkerFit fit_bekker_one(std::span<const PlateCurve> plates, bool frictional,
+                                PlateFit kind = PlateFit::pressures) {
+  const auto fit = detail::fit_form<1>("Bekker's fit", plates, kind, [&](double z, double b, std::array<double, 1>& u) {
+    u = {frictional ? 1.0 : 1.0 / b};
+    return z;
+  });
+  BekkerFit one{.r_squared = fit.r_squared, .points = fit.points};
+  (frictional ? one.law.k_phi : one.law.k_c) = fit.value[0];
+  (frictional ? one.error.k_phi : one.error.k_c) = fit.error[0];
+  one.law.n = fit.value[1];
+  one.error.n = fit.error[1];
+  return one;
+}
+
+/// fit_bekker with moduli that a soil may have: one that comes out negative is left out, and the other one fitted alone
+/// (fit_bekker_one). Wider plates on sand carry more, which a k_c below 0 would say.
+inline BekkerFit fit_bekker_not_negative(std::span<const PlateCurve> plates, PlateFit kind = PlateFit::pressures) {
+  const BekkerFit both = fit_bekker(plates, kind);
+  if (both.law.k_c >= 0.0 && both.law.k_phi >= 0.0) return both;
+  return fit_bekker_one(plates, both.law.k_c < 0.0, kind);
 }
 
 /// k_c', k_phi' and n of p = (c k_c' + gamma b k_phi') (z/b)^n for a soil of cohesion c (Pa) and unit weight gamma

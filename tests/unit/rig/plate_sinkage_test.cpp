@@ -61,6 +61,17 @@ TEST_CASE("a plate that carries nothing has no curve and no fit") {
   CHECK(r.curve.sinkage.empty());
 }
 
+TEST_CASE("the slope of unloading is that of the samples between 90 and 10 percent") {
+  std::vector<plate_sinkage::Unloading> samples;
+  for (int i = 0; i <= 20; ++i) {  // 2e7 Pa/m, but for a knee at either end
+    const double back = 1e-4 * i, p = 3e4 - 2e7 * back;
+    samples.push_back({0.01 - back, i == 0 ? 3e4 : i >= 14 ? 1000.0 : p});
+  }
+  CHECK(plate_sinkage::unloading_slope(samples) == Approx(2e7));
+  CHECK(std::isnan(plate_sinkage::unloading_slope(std::span(samples).first(2))));
+  CHECK(std::isnan(plate_sinkage::unloading_slope({})));
+}
+
 TEST_CASE("settings of plates that make no sense are refused by the names of their options") {
   const auto refuses = [](auto&& change, const char* option) {
     auto s = small();
@@ -104,8 +115,18 @@ TEST_CASE(
   const double weight = 9.81 * 2650.0 * bed.grain_volume() * static_cast<double>(bed.world.particle_count());
   CHECK(up == Approx(weight).epsilon(0.02));  // rest is a speed below 3 mm/s, not a force
 
-  const auto first = test.press(bed, 0.03), second = test.press(bed, 0.03);
+  auto settings = small();
+  settings.unload = true;
+  const PlateSinkage<models::VerletCubes> drawing_up(settings, [](double h) { return dem::shape::cube8(h); });
+  const auto first = test.press(bed, 0.03), second = drawing_up.press(bed, 0.03);
   REQUIRE(first.finished);
+  CHECK(first.unloading.empty());
+  CHECK(std::isnan(first.unloading_stiffness));
+  // It is drawn up until the grains push with a twentieth, by less than it was pressed.
+  REQUIRE(second.unloading.size() > 2);
+  CHECK(second.unloading.back().pressure <= 0.05 * second.samples.back().pressure);
+  CHECK(second.unloading.back().travel < second.samples.back().travel);
+  CHECK(second.unloading.back().travel > second.samples.back().travel - 0.25 * 2e-3 - 1e-4);
   REQUIRE(first.samples.size() == second.samples.size());
   bool same = true;
   for (std::size_t i = 0; i < first.samples.size(); ++i) same &= first.samples[i].force == second.samples[i].force;

@@ -25,6 +25,8 @@ void press(const PlateSinkage<Model>& test, const Bed<Model>& bed, const Variant
     evaluate(r, s);
     if (r.samples.empty()) return;
     save_samples<Sample>(session.folder() / (file + ".csv"), r.samples, sample_columns);
+    if (r.unloading.empty()) return;
+    save_samples<Unloading>(session.folder() / (file + "_unloading.csv"), r.unloading, unloading_columns);
   };
   work_and_save(
       [&] {
@@ -32,7 +34,11 @@ void press(const PlateSinkage<Model>& test, const Bed<Model>& bed, const Variant
         Frames frames(session, s.vtk && variant.name.empty() ? plate : "", s.sinkage / 20.0, "this plate");
         const auto kept = session.keep("plate", r), series = session.keep("frames", frames);
         const auto pictures = session.keep("replay", replay);
-        if (part.is_done()) return session.begin(text("press {:.0f} mm", 1e3 * r.width));
+        if (part.is_done()) {
+          session.begin(text("press {:.0f} mm", 1e3 * r.width));
+          if (s.unload) session.begin(text("draw up {:.0f} mm", 1e3 * r.width));
+          return;
+        }
         test.press(bed, r, session, [&](const auto& world, double travel) {
           frames.show(travel, [&](io::VtkSeries& to) {
             add_grains(to, world);
@@ -63,7 +69,8 @@ void run_campaign(const Settings& settings, ShapeOf&& shape_of, Campaign& campai
     if (v.settings.study != "none" && v.settings.study != "speed" && !v.settings.bed.file.empty()) {
       fail("--study {} needs other beds than the one of --bed-file; leave --bed-file out", v.settings.study);
     }
-    stages += static_cast<int>(v.settings.widths.size()) + (v.name == "slow" ? 0 : bed_stages(v.settings.bed));
+    stages += static_cast<int>(v.settings.widths.size()) * (v.settings.unload ? 2 : 1) +
+              (v.name == "slow" ? 0 : bed_stages(v.settings.bed));
   }
   soil::Packing start = start_of(test.settings());
   const bool made = settings.bed.file.empty();

@@ -18,11 +18,12 @@ class PlateRig : public Rig {
   void resolve() override { plate_sinkage::resolve(settings); }
   [[nodiscard]] std::string output() const override { return settings.output; }
   [[nodiscard]] ResultNames results() const override {
-    ResultNames names{.files = {"results.csv", "plate_#+mm.pvd", "plate_#+mm.csv"},
+    ResultNames names{.files = {"results.csv", "plate_#+mm.pvd", "plate_#+mm.csv", "plate_#+mm_unloading.csv"},
                       .plots = {"pressure", "fits"},
                       .frames = {"grains", "surfaces"}};
     for (const char* variant : {"wide", "deep", "slow", "second", "third"}) {
       names.files.push_back(std::string(variant) + "_plate_#+mm.csv");
+      names.files.push_back(std::string(variant) + "_plate_#+mm_unloading.csv");
     }
     return names;
   }
@@ -73,7 +74,7 @@ class PlateRig : public Rig {
 
   void write_results(const std::filesystem::path& path) const {
     io::CsvWriter csv(path, {"run", "plate_m", "k_Pa_per_m^n", "k_error", "n", "n_error", "mean_pressure_Pa",
-                             "solid_fraction", "grains", "finished"});
+                             "unloading_Pa_per_m", "solid_fraction", "grains", "finished"});
     const auto cell = [](double value) { return std::isfinite(value) ? text("{}", value) : ""; };
     for (const VariantResult& v : campaign.variants) {
       for (const PlateResult& r : v.plates) {
@@ -81,7 +82,7 @@ class PlateRig : public Rig {
         csv.row(v.variant.text, r.width, cell(f ? r.fit->curve.modulus : not_known),
                 cell(f ? r.fit->modulus_error : not_known), cell(f ? r.fit->curve.exponent : not_known),
                 cell(f ? r.fit->exponent_error : not_known), cell(mean_pressure(r, v.variant.settings)),
-                cell(v.solid_fraction), v.grains, r.finished);
+                cell(r.unloading_stiffness), cell(v.solid_fraction), v.grains, r.finished);
       }
     }
     csv.flush();

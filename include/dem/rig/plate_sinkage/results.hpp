@@ -8,6 +8,7 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <span>
 #include <vector>
 
 namespace dem::rig::plate_sinkage {
@@ -28,6 +29,15 @@ inline constexpr Column<Sample> sample_columns[] = {{"time_s", &Sample::time},  
                                                     {"sinkage_m", &Sample::sinkage}, {"pressure_Pa", &Sample::pressure},
                                                     {"force_N", &Sample::force},     {"drive_N", &Sample::drive}};
 
+/// A plate that is drawn up again.
+struct Unloading {
+  double travel;    ///< m, downwards, since the plate started
+  double pressure;  ///< Pa, as of Sample
+};
+
+inline constexpr Column<Unloading> unloading_columns[] = {{"travel_m", &Unloading::travel},
+                                                          {"pressure_Pa", &Unloading::pressure}};
+
 /// What pressing a plate has come to.
 struct Pressing {
   double start = 0.0;                     ///< s
@@ -43,15 +53,17 @@ struct PlateResult {
   double width = 0.0;  ///< m
   bool finished = false;
   std::vector<Sample> samples = {};
+  std::vector<Unloading> unloading = {};  ///< with Settings::unload
 
   // Of the samples, by evaluate()
   terramechanics::PlateCurve curve = {};                   ///< smoothed, from zero sinkage on
+  double unloading_stiffness = not_known;                  ///< Pa/m, with Settings::unload
   std::optional<terramechanics::PlateConstants> fit = {};  ///< none if there are too few points
 
   /// What a run that goes on takes over.
   template <class V>
   void fields(V& v) {
-    v("finished", finished), v.numbers("samples", samples);
+    v("finished", finished), v.numbers("samples", samples), v.numbers("unloading", unloading);
   }
 };
 
@@ -87,8 +99,22 @@ inline terramechanics::PlateCurve fitted_part(const PlateResult& r, const Settin
   return terramechanics::within(r.curve, s.fit_from * s.sinkage, s.sinkage);
 }
 
+/// Slope (Pa/m) of pressure over travel while a plate is drawn up, by least squares, between 90 % and 10 % of the first
+/// pressure; NaN where there are fewer than three samples in between, or they show no slope.
+inline double unloading_slope(std::span<const Unloading> samples) {
+  double n = 0.0, x = 0.0, y = 0.0, xx = 0.0, xy = 0.0;
+  for (const Unloading& u : samples) {
+    const double share = u.pressure / samples.front().pressure, at = u.travel - samples.front().travel;
+    if (!(share <= 0.9 && share >= 0.1)) continue;
+    n += 1.0, x += at, y += u.pressure, xx += at * at, xy += at * u.pressure;
+  }
+  const double spread = n * xx - x * x, slope = (n * xy - x * y) / spread;
+  return n >= 3.0 && spread > 0.0 && slope > 0.0 ? slope : not_known;
+}
+
 /// Finds where sinkage begins, the curve from there on, and k and n of p = k z^n (weighted logarithms).
 inline void evaluate(PlateResult& r, const Settings& s) {
+  r.unloading_stiffness = unloading_slope(r.unloading);
   const auto pressure = smoothed<Sample>(r.samples, &Sample::travel, &Sample::pressure, s.smoothing * s.sinkage);
   terramechanics::PlateCurve raw{.width = r.width, .sinkage = {}, .pressure = pressure};
   bool carries = false;

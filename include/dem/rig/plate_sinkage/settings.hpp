@@ -26,6 +26,8 @@ struct Settings {
   double smoothing = 0.02;      ///< of the sinkage, over which pressures are averaged
   double fit_from = 0.1;        ///< of the sinkage: points before are not fitted
 
+  bool unload = false;  ///< draw the plate up again, for the slope of unloading
+
   std::string study = "none";  ///< none, box, speed or seeds
   std::string output = "plate_sinkage_output";
   bool replay = true;
@@ -57,6 +59,7 @@ inline void declare(Options& options, Settings& s) {
   add("--threshold", s.threshold, "pressure at which sinkage begins [Pa]");
   add("--smoothing", s.smoothing, "share of the sinkage over which pressures are averaged");
   add("--fit-from", s.fit_from, "share of the sinkage from which points are fitted");
+  options.flag("--unload", s.unload, "then draw the plate up again, a tenth as fast: the slope of unloading");
   add("--study", s.study, "also: a bed twice as wide and one twice as deep (box), half the speed, or two other seeds")
       .one_of({"none", "box", "speed", "seeds"});
   add_grain_options(options, s.grains);

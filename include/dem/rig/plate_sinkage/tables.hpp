@@ -37,9 +37,9 @@ inline io::Table pressure_table(const VariantResult& v) {
 }
 
 inline io::Table fit_table(const VariantResult& v) {
-  io::Table t{
-      .caption = "p = k z^n of each plate (weighted logarithms; standard errors)",
-      .header = {"plate [mm]", "k [kPa/m^n]", "± [kPa/m^n]", "n", "±", "R²", "drive against sensor [%]", "done"}};
+  io::Table t{.caption = "p = k z^n of each plate (weighted logarithms; standard errors)",
+              .header = {"plate [mm]", "k [kPa/m^n]", "± [kPa/m^n]", "n", "±", "R²", "unloading [MPa/m]",
+                         "drive against sensor [%]", "done"}};
   for (const PlateResult& r : v.plates) {
     double driven = 0.0, felt = 0.0;
     for (const Sample& x : r.samples) driven += x.drive, felt += x.force;
@@ -50,7 +50,8 @@ inline io::Table fit_table(const VariantResult& v) {
     t.row(number(1e3 * r.width, "{:.0f}"), number(f ? 1e-3 * f->curve.modulus : not_known, "{:.4g}"),
           number(f ? 1e-3 * f->modulus_error : not_known, "{:.2g}"),
           number(f ? f->curve.exponent : not_known, "{:.3f}"), number(f ? f->exponent_error : not_known, "{:.3f}"),
-          number(f ? f->r_squared : not_known, "{:.4f}"), number(mismatch), r.finished);
+          number(f ? f->r_squared : not_known, "{:.4f}"), number(1e-6 * r.unloading_stiffness), number(mismatch),
+          r.finished);
   }
   return t;
 }

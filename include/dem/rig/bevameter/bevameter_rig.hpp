@@ -1,0 +1,174 @@
+#pragma once
+
+#include <dem/rig/bevameter/tables.hpp>
+#include <dem/rig/direct_shear/shear_rig.hpp>
+#include <dem/rig/plate_sinkage/plate_rig.hpp>
+#include <dem/rig/rigid_wheel/wheel_rig.hpp>
+#include <dem/rig/run_within.hpp>
+#include <dem/terramechanics/chrono_scm.hpp>
+
+#include <array>
+#include <optional>
+#include <string>
+
+namespace dem::rig::bevameter {
+
+/// A bevameter as a program: plates, shear tests and a wheel in beds of the same grains, each a run of its own rig in a
+/// folder of its own, and the constants of the soil. The worlds are compiled beside it.
+class BevameterRig : public Rig {
+ public:
+  using PlateRun = plate_sinkage::PlateRig::Run;
+  using WheelRun = rigid_wheel::WheelRig::Run;
+  using ShearRun = void(const direct_shear::Settings&, direct_shear::Campaign&, Session&);
+
+  BevameterRig(PlateRun* press, ShearRun* shear, WheelRun* roll)
+      : shear_world_{{{"cube8", "verlet", shear}}}, plates_(press), shear_(shear_world_, ""), wheel_(roll) {}
+
+  void declare(Options& options) override { bevameter::declare(options, settings); }
+  void find_idle(IdleOptions& idle) const override { bevameter::find_idle(idle, settings); }
+  void resolve() override { bevameter::resolve(settings); }
+  [[nodiscard]] std::string output() const override { return settings.output; }
+  [[nodiscard]] ResultNames results() const override {
+    return {.files = {"constants.csv", "soil_bekker.toml", "soil_reece.toml", "chrono_scm.txt", "predicted.csv"},
+            .plots = {"plates", "shear", "mohr_coulomb", "pull", "torque", "sinkage"}};
+  }
+  [[nodiscard]] bool can_resume() const override { return true; }
+  [[nodiscard]] std::vector<OwnWord> words() const override { return bed_words(); }
+
+  void run(Session& session) override {
+    const Settings& s = settings;
+    session.begin_run(s.has_wheel() ? 3 : 2);
+    {
+      PartWithoutWorld begun(session.parts(), "bevameter");
+      session.set_part(&begun);
+      session.complete();
+      session.set_part(nullptr);
+    }
+    session.begin("plates", 1.0);
+    plates_.settings = plates_of(s);
+    run_within(session, plates_, "plate_sinkage", "Plates of the bevameter");
+    session.begin("shear", 1.0);
+    shear_.settings = shear_of(s, bed_density());
+    run_within(session, shear_, "direct_shear", "Shear test of the bevameter");
+    constants = find_constants(plates(), shear_.campaign, shear_.settings, s.pieces, s.confidence);
+    save_soils(session.folder());
+    if (s.has_wheel()) {
+      session.begin("wheel", 1.0);
+      wheel_.settings = wheel_of(s, (session.folder() / "soil_bekker.toml").string());
+      run_within(session, wheel_, "rigid_wheel", "Wheel in the soil of the bevameter");
+    }
+    for (const Rig* rig :
+         {static_cast<const Rig*>(&plates_), static_cast<const Rig*>(&shear_), static_cast<const Rig*>(&wheel_)}) {
+      forget_run_within(*rig);
+    }
+  }
+
+  bool report(Report& report) const override {
+    std::vector<io::Table> tables;
+    std::string words = "The run ended before the constants could be found.";
+    if (constants) {
+      words = constants_text(*constants, settings.confidence);
+      tables = {constants_table(*constants, settings.confidence), shear_table(*constants)};
+      if (has_rolled()) tables.push_back(circle_table(*constants, wheel_.campaign, wheel_.settings));
+      report.part("constants.csv", [&] { write_constants(report.folder() / "constants.csv"); });
+      if (has_rolled()) report.part("predicted.csv", [&] { write_predicted(report.folder() / "predicted.csv"); });
+    }
+    report.part("the printed report", [&] {
+      fmt::print("\n{}\n\n", words);
+      for (const auto& table : tables) {
+        io::print(table);
+        fmt::print("\n");
+      }
+      if (!chrono_problem_.empty()) fmt::print("No chrono_scm.txt: {}\n", chrono_problem_);
+      fmt::print("{} of wall time.\n", io::format_duration(report.outcome().wall_time));
+    });
+    report.page(list_settings(settings), [&](io::HtmlReport& page) {
+      page.paragraph(words).paragraph(
+          "The folders plates, shear and wheel have the reports of these runs. soil_bekker.toml and soil_reece.toml "
+          "are "
+          "the soil for terramechanics, chrono_scm.txt is the call that gives Bekker's to Project Chrono's SCM "
+          "terrain.");
+      for (const auto& table : tables) page.table(table);
+      add_plots(report, page);
+    });
+    return false;
+  }
+
+  Settings settings;
+  std::optional<Constants> constants = {};
+
+ private:
+  [[nodiscard]] const plate_sinkage::VariantResult& plates() const { return plates_.campaign.variants.front(); }
+  /// Relative density of the plates' bed; what was asked for where the bed is too flat to measure it.
+  [[nodiscard]] double bed_density() const {
+    const double solid = plates().solid_fraction;
+    return std::isfinite(solid) ? soil::relative_density(solid, soil::cube8_limits) : settings.relative_density;
+  }
+  [[nodiscard]] bool has_rolled() const {
+    for (const auto& r : wheel_.campaign.slips) {
+      if (std::isfinite(r.pull.mean)) return true;
+    }
+    return false;
+  }
+
+  void save_soils(const std::filesystem::path& folder) {
+    const std::string name = text("DEM sand, cubes of half-edge {:g} mm", 1e3 * settings.grains.half_edge);
+    const std::string source = "bevameter in grains, settings.toml beside this file";
+    terramechanics::save_soil((folder / "soil_bekker.toml").string(), {name, source, constants->bekker_soil});
+    terramechanics::save_soil((folder / "soil_reece.toml").string(), {name, source, constants->reece_soil});
+    try {
+      io::write_file(folder / "chrono_scm.txt",
+                     terramechanics::to_text(terramechanics::to_chrono(constants->bekker_soil)));
+    } catch (const Error& problem) {  // as of a soil that gives way when it is unloaded
+      chrono_problem_ = problem.what();
+    }
+  }
+
+  void write_constants(const std::filesystem::path& path) const {
+    io::CsvWriter csv(path, {"constant", "value", "standard_error", "half_interval", "degrees_of_freedom", "unit"});
+    for (const NamedConstant& n : list(*constants)) {
+      csv.row(n.name, n.scale * n.estimate.value, n.scale * n.estimate.error,
+              n.scale * n.estimate.half_width(settings.confidence), n.estimate.freedom, n.unit);
+    }
+    csv.flush();
+  }
+
+  void write_predicted(const std::filesystem::path& path) const {
+    io::CsvWriter csv(path, {"slip_1-v/(omega*r)", "quantity", "grains", "deviation", "bekker", "reece"});
+    for (const auto& r : wheel_.campaign.slips) {
+      const auto bekker = reference_at(constants->bekker_soil, r.slip, wheel_.settings),
+                 reece = reference_at(constants->reece_soil, r.slip, wheel_.settings);
+      for (const Compared& q : compared) {
+        csv.row(r.slip, text("{} [{}]", q.name, q.unit), q.scale * (r.*q.grains).mean,
+                q.scale * (r.*q.grains).deviation, bekker ? q.scale * (*bekker).*q.predicted : std::nan(""),
+                reece ? q.scale * (*reece).*q.predicted : std::nan(""));
+      }
+    }
+    csv.flush();
+  }
+
+  void add_plots(Report& report, io::HtmlReport& page) const {
+    if (plates_.campaign.variants.empty()) return;
+    page.heading("Plots");
+    report.plot(page, plates_plot(plates(), constants), "plates",
+                "Pressure on the plates; dashed: Bekker, dotted: Reece, each one law for all plates.");
+    if (shear_.campaign.loads.empty()) return;
+    report.plot(page, shear_plot(shear_.campaign, shear_.settings, constants), "shear",
+                "Shear stress; dashed: Janosi and Hanamoto with the soil's K and strength.");
+    report.plot(page, direct_shear::mohr_coulomb_plot(shear_.campaign, direct_shear::fit(shear_.campaign)),
+                "mohr_coulomb", "Strength over normal stress.");
+    if (!has_rolled() || !constants) return;
+    for (const Compared& q : compared) {
+      report.plot(page, circle_plot(*constants, wheel_.campaign, wheel_.settings, q), q.name,
+                  "The wheel in the grains, and predicted from the constants.");
+    }
+  }
+
+  std::array<direct_shear::ShearWorld, 1> shear_world_;
+  plate_sinkage::PlateRig plates_;
+  direct_shear::ShearRig shear_;
+  rigid_wheel::WheelRig wheel_;
+  std::string chrono_problem_ = {};
+};
+
+}  // namespace dem::rig::bevameter

@@ -1,0 +1,168 @@
+#pragma once
+// The constants of a soil from the curves of plates and shear tests, with confidence intervals.
+
+#include <dem/rig/direct_shear/evaluate.hpp>
+#include <dem/rig/plate_sinkage/results.hpp>
+#include <dem/terramechanics/bevameter_fit.hpp>
+#include <dem/terramechanics/confidence.hpp>
+#include <dem/terramechanics/shear_fit.hpp>
+#include <dem/terramechanics/soil.hpp>
+
+#include <array>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace dem::rig::bevameter {
+
+using terramechanics::Estimate;
+
+/// What is known of a soil.
+struct Constants {
+  std::array<Estimate, 3> bekker = {};  ///< k_c (Pa/m^(n-1)), k_phi (Pa/m^n), n; a modulus that came out negative is 0
+  std::array<Estimate, 3> reece = {};   ///< k_c', k_phi', n; k_c' is 0 without cohesion
+  Estimate cohesion = {};               ///< Pa
+  Estimate friction_angle = {};         ///< rad
+  Estimate displacement = {};           ///< K, m
+  Estimate unloading = {};              ///< Pa/m
+  double bekker_r_squared = 0.0, reece_r_squared = 0.0;
+  bool has_cohesion = false;    ///< false: it does not differ from none, and the strength goes through the origin
+  Estimate free_cohesion = {};  ///< Pa, of the line that does not go through the origin; value NaN of too few stresses
+  double unit_weight = 0.0;     ///< N/m^3
+  double relative_density = 0.0;
+  std::vector<terramechanics::JanosiFit> shear_curves = {};
+  terramechanics::Soil bekker_soil = {}, reece_soil = {};
+};
+
+/// Curves cut into so many pieces of equal sinkage each; those with fewer than two points are left out.
+inline std::vector<terramechanics::PlateCurve> pieces_of(std::span<const terramechanics::PlateCurve> curves,
+                                                         std::size_t pieces) {
+  std::vector<terramechanics::PlateCurve> result;
+  for (const auto& curve : curves) {
+    const double first = curve.sinkage.front(), step = (curve.sinkage.back() - first) / static_cast<double>(pieces);
+    for (std::size_t k = 0; k < pieces; ++k) {
+      terramechanics::PlateCurve piece{.width = curve.width, .sinkage = {}, .pressure = {}};
+      for (std::size_t i = 0; i < curve.sinkage.size(); ++i) {
+        const auto at =
+            std::min(pieces - 1, static_cast<std::size_t>(std::max(0.0, (curve.sinkage[i] - first) / step)));
+        if (at != k) continue;
+        piece.sinkage.push_back(curve.sinkage[i]);
+        piece.pressure.push_back(curve.pressure[i]);
+      }
+      if (piece.sinkage.size() > 1) result.push_back(std::move(piece));
+    }
+  }
+  return result;
+}
+
+/// The curve of a load up to its strength, for Janosi's fit.
+inline terramechanics::ShearCurve shear_curve(const direct_shear::LoadResult& r, const direct_shear::Settings& s) {
+  terramechanics::ShearCurve curve{.normal_stress = r.normal_at_maximum, .displacement = {}, .stress = {}};
+  const auto stress = direct_shear::smoothed(r.samples, &direct_shear::Sample::stress, s.smoothing);
+  for (std::size_t i = 0; i < stress.size(); ++i) {
+    const double j = r.samples[i].displacement;
+    if (j <= 0.0 || j > r.at_maximum) continue;
+    curve.displacement.push_back(j);
+    curve.stress.push_back(stress[i]);
+  }
+  return curve;
+}
+
+/// The mean of some values with its standard error.
+inline Estimate mean_estimate(std::span<const double> values) {
+  const double n = static_cast<double>(values.size());
+  double mean = 0.0, squares = 0.0;
+  for (const double v : values) mean += v / n;
+  for (const double v : values) squares += (v - mean) * (v - mean);
+  if (values.empty()) return {};
+  if (values.size() < 2) return {values.front(), std::nan(""), 0};
+  return {mean, std::sqrt(squares / (n - 1.0) / n), values.size() - 1};
+}
+
+/// Cohesion and friction angle of the strengths, and K of the curves. The cohesion is kept where it differs from none
+/// with the confidence; else the line goes through the origin.
+inline void find_strength(Constants& c, const direct_shear::Campaign& shear, const direct_shear::Settings& s,
+                          double confidence) {
+  using terramechanics::Intercept;
+  std::vector<double> sigma, tau, bends;
+  for (const auto& r : shear.loads) {
+    if (!r.finished || !(r.maximum > 0.0)) continue;
+    sigma.push_back(r.normal_at_maximum);
+    tau.push_back(r.maximum);
+    try {
+      c.shear_curves.push_back(terramechanics::fit_janosi(shear_curve(r, s)));
+      bends.push_back(c.shear_curves.back().displacement);
+    } catch (const Error&) {  // a curve that does not bend says nothing of K
+    }
+  }
+  if (sigma.size() > 2) {
+    const auto line = terramechanics::fit_mohr_coulomb(sigma, tau, Intercept::free);
+    c.free_cohesion = {line.cohesion, line.cohesion_error, sigma.size() - 2};
+    c.has_cohesion = line.cohesion > c.free_cohesion.half_width(confidence);
+    c.cohesion = c.free_cohesion;
+    c.friction_angle = {line.friction_angle, line.friction_angle_error, sigma.size() - 2};
+  }
+  if (!c.has_cohesion) {
+    const auto line = terramechanics::fit_mohr_coulomb(sigma, tau, Intercept::zero);
+    c.cohesion = {0.0, 0.0, sigma.size() - 1};
+    c.friction_angle = {line.friction_angle, line.friction_angle_error, sigma.size() - 1};
+  }
+  if (bends.empty()) fail("no shear curve bends towards its strength, so K is not known; raise --shear-travel");
+  c.displacement = mean_estimate(bends);
+}
+
+/// Bekker's and Reece's constants of the plates, each with its error over `pieces` of every curve.
+inline void find_moduli(Constants& c, std::span<const terramechanics::PlateCurve> curves, std::size_t pieces) {
+  using namespace terramechanics;
+  constexpr auto kind = PlateFit::weighted_logarithms;
+  const auto cut = pieces_of(curves, pieces);
+  const BekkerFit b = fit_bekker_not_negative(curves, kind);
+  const bool cohesive = b.law.k_c > 0.0, frictional = b.law.k_phi > 0.0;
+  c.bekker = jackknife<3>(std::span<const PlateCurve>(cut), [&](std::span<const PlateCurve> some) {
+    const Bekker law = cohesive && frictional ? fit_bekker(some, kind).law : fit_bekker_one(some, frictional, kind).law;
+    return std::array{law.k_c, law.k_phi, law.n};
+  });
+  c.bekker_r_squared = b.r_squared;
+  double cohesion = c.cohesion.value;
+  if (cohesion > 0.0) {
+    const Reece law = fit_reece(curves, cohesion, c.unit_weight, kind).law;
+    if (law.k_c < 0.0 || law.k_phi < 0.0) cohesion = 0.0;
+  }
+  c.reece = jackknife<3>(std::span<const PlateCurve>(cut), [&](std::span<const PlateCurve> some) {
+    const Reece law = fit_reece(some, cohesion, c.unit_weight, kind).law;
+    return std::array{law.k_c, law.k_phi, law.n};
+  });
+  c.reece_r_squared = fit_reece(curves, cohesion, c.unit_weight, kind).r_squared;
+}
+
+/// All constants. Throws Error where plates or shear curves are too few.
+inline Constants find_constants(const plate_sinkage::VariantResult& plates, const direct_shear::Campaign& shear,
+                                const direct_shear::Settings& shear_settings, double pieces, double confidence) {
+  using namespace terramechanics;
+  Constants c;
+  c.unit_weight = 9.81 * plates.variant.settings.grains.density * plates.solid_fraction;
+  c.relative_density = soil::relative_density(plates.solid_fraction, soil::cube8_limits);
+  find_strength(c, shear, shear_settings, confidence);
+  const auto curves = plate_sinkage::fitted_curves(plates);
+  if (curves.size() < 2) fail("{} plates can be fitted, but two are needed; raise --sinkage", curves.size());
+  find_moduli(c, curves, static_cast<std::size_t>(pieces));
+  std::vector<double> slopes;
+  for (const auto& r : plates.plates) {
+    if (std::isfinite(r.unloading_stiffness)) slopes.push_back(r.unloading_stiffness);
+  }
+  c.unloading = mean_estimate(slopes);
+
+  Soil soil;
+  soil.shear = {c.cohesion.value, c.friction_angle.value, c.displacement.value};
+  soil.a0 = c.relative_density < 0.5 ? 0.18 : 0.43;  // Wong and Reece's loose and dense sand
+  if (std::isfinite(c.unloading.value)) soil.unloading_stiffness = c.unloading.value;
+  soil.pressure = Bekker{c.bekker[0].value, c.bekker[1].value, c.bekker[2].value};
+  c.bekker_soil = soil;
+  soil.pressure = Reece{c.reece[0].value, c.reece[1].value, c.reece[2].value, c.cohesion.value, c.unit_weight};
+  c.reece_soil = soil;
+  check_soil(c.bekker_soil);
+  check_soil(c.reece_soil);
+  return c;
+}
+
+}  // namespace dem::rig::bevameter

@@ -1,0 +1,204 @@
+#pragma once
+// What a bevameter found, as tables and plots, and the wheel beside what its constants predict.
+
+#include <dem/report/plot_data.hpp>
+#include <dem/report/table.hpp>
+#include <dem/rig/bevameter/constants.hpp>
+#include <dem/rig/bevameter/settings.hpp>
+#include <dem/rig/rigid_wheel/tables.hpp>
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace dem::rig::bevameter {
+
+using rigid_wheel::number;
+using terramechanics::degrees;
+using terramechanics::WheelForces;
+
+/// A constant under its name, in the unit that it is shown in.
+struct NamedConstant {
+  const char* name;
+  const char* unit;
+  Estimate estimate;
+  double scale;
+};
+inline std::vector<NamedConstant> list(const Constants& c) {
+  return {{"Bekker k_c", "kPa/m^(n-1)", c.bekker[0], 1e-3},
+          {"Bekker k_phi", "kPa/m^n", c.bekker[1], 1e-3},
+          {"Bekker n", "", c.bekker[2], 1.0},
+          {"Reece k_c'", "", c.reece[0], 1.0},
+          {"Reece k_phi'", "", c.reece[1], 1.0},
+          {"Reece n", "", c.reece[2], 1.0},
+          {"cohesion c", "kPa", c.cohesion, 1e-3},
+          {"friction angle phi", "deg", c.friction_angle, degrees(1.0)},
+          {"shear displacement K", "mm", c.displacement, 1e3},
+          {"unloading stiffness", "MPa/m", c.unloading, 1e-6}};
+}
+
+inline io::Table constants_table(const Constants& c, double confidence) {
+  io::Table t{.caption = text("Constants of the soil, with intervals of {:g} % confidence", 100.0 * confidence),
+              .header = {"constant", "value", "± interval", "standard error", "deg. of freedom", "unit"}};
+  for (const NamedConstant& n : list(c)) {
+    // A constant that was left out is 0, without an error.
+    const bool is_given = n.estimate.error == 0.0 && n.estimate.value == 0.0;
+    const auto cell = [&](double value) { return is_given ? "left out" : number(n.scale * value, "{:.4g}"); };
+    t.row(n.name, number(n.scale * n.estimate.value, "{:.4g}"), cell(n.estimate.half_width(confidence)),
+          cell(n.estimate.error), is_given ? "-" : text("{}", n.estimate.freedom), n.unit);
+  }
+  return t;
+}
+
+inline std::string constants_text(const Constants& c, double confidence) {
+  return text(
+      "Unit weight {:.2f} kN/m³, relative density {:.2f}. R² of Bekker's pressure {:.3f}, of Reece's {:.3f}. Errors of "
+      "the "
+      "moduli are those of the jackknife over pieces of the curves, as neighbouring points err alike; of phi, those of "
+      "the line through the strengths; of K and of the unloading, the scatter between the curves. The line of the "
+      "strengths has the cohesion {} ± {} kPa ({:g} %){}.{}",
+      1e-3 * c.unit_weight, c.relative_density, c.bekker_r_squared, c.reece_r_squared,
+      number(1e-3 * c.free_cohesion.value), number(1e-3 * c.free_cohesion.half_width(confidence)), 100.0 * confidence,
+      c.has_cohesion ? "" : ", which is no more than none: it goes through the origin",
+      c.bekker[0].value == 0.0   ? " Bekker's k_c came out negative, as wide plates carry more: it is left out."
+      : c.bekker[1].value == 0.0 ? " Bekker's k_phi came out negative: it is left out."
+                                 : "");
+}
+
+/// Janosi's fit of each load.
+inline io::Table shear_table(const Constants& c) {
+  io::Table t{.caption = "tau = tau_max (1 - exp(-j/K)) of each normal stress, up to the strength",
+              .header = {"normal [kPa]", "tau_max [kPa]", "K [mm]", "R²"}};
+  for (const auto& f : c.shear_curves) {
+    t.row(number(1e-3 * f.normal_stress), number(1e-3 * f.strength), number(1e3 * f.displacement, "{:.3f}"),
+          number(f.r_squared, "{:.4f}"));
+  }
+  return t;
+}
+
+/// Curves of the plates beside Bekker's and Reece's.
+inline io::Plot plates_plot(const plate_sinkage::VariantResult& v, const std::optional<Constants>& c) {
+  const double deepest = v.variant.settings.sinkage;
+  io::Plot plot{.title = "Pressure over sinkage",
+                .x_label = "sinkage [mm]",
+                .y_label = "pressure [kPa]",
+                .x_range = {.min = 0.0, .max = 1e3 * deepest},
+                .y_range = {.min = 0.0}};
+  int color = 0;
+  for (const auto& r : v.plates) {
+    const auto add = [&](std::string name, io::SeriesStyle style, auto&& pressure) {
+      io::Series line{.name = std::move(name), .style = style, .color = color};
+      for (int k = 1; k <= 100; ++k) {
+        const double z = 0.01 * k * deepest;
+        line.x.push_back(1e3 * z);
+        line.y.push_back(1e-3 * pressure(z));
+      }
+      plot.series.push_back(std::move(line));
+    };
+    const std::string width = text("{:.0f} mm", 1e3 * r.width);
+    add(width, io::SeriesStyle::Line, [&](double z) { return plate_sinkage::pressure_at(r.curve, z); });
+    if (c) {
+      const auto bekker = under(c->bekker_soil.pressure, r.width), reece = under(c->reece_soil.pressure, r.width);
+      add(color == 0 ? "Bekker" : "", io::SeriesStyle::Dashed, [&](double z) { return bekker.pressure(z); });
+      add(color == 0 ? "Reece" : "", io::SeriesStyle::Dotted, [&](double z) { return reece.pressure(z); });
+    }
+    ++color;
+  }
+  return plot;
+}
+
+/// Shear curves beside Janosi's and Hanamoto's, with the constants of the soil.
+inline io::Plot shear_plot(const direct_shear::Campaign& d, const direct_shear::Settings& s,
+                           const std::optional<Constants>& c) {
+  io::Plot plot{.title = "Shear stress over displacement",
+                .x_label = "shear displacement [mm]",
+                .y_label = "shear stress [kPa]",
+                .x_range = {.min = 0.0, .max = 1e3 * s.travel},
+                .y_range = {.min = 0.0}};
+  int color = 0;
+  for (const auto& r : d.loads) {
+    io::Series line{.name = text("{:.1f} kPa", 1e-3 * r.normal_stress), .color = color};
+    io::Series law{.name = color == 0 ? "Janosi and Hanamoto" : "", .style = io::SeriesStyle::Dashed, .color = color++};
+    const auto stress = direct_shear::smoothed(r.samples, &direct_shear::Sample::stress, s.smoothing);
+    for (std::size_t i = 0; i < stress.size(); ++i) {
+      const double j = r.samples[i].displacement;
+      line.x.push_back(1e3 * j);
+      line.y.push_back(1e-3 * stress[i]);
+      if (!c || j < 0.0) continue;
+      law.x.push_back(1e3 * j);
+      law.y.push_back(1e-3 * c->bekker_soil.shear.stress(r.normal_stress, j));
+    }
+    plot.series.push_back(std::move(line));
+    if (c) plot.series.push_back(std::move(law));
+  }
+  return plot;
+}
+
+/// A quantity of the wheel: of the grains, and as predicted.
+struct Compared {
+  const char* name;
+  const char* unit;
+  MeanAndDeviation rigid_wheel::SlipResult::*grains;
+  double WheelForces::*predicted;
+  double scale;
+  const char* format;
+};
+inline constexpr Compared compared[] = {
+    {"pull", "N", &rigid_wheel::SlipResult::pull, &WheelForces::pull, 1.0, "{:.1f}"},
+    {"torque", "N m", &rigid_wheel::SlipResult::torque, &WheelForces::torque, 1.0, "{:.2f}"},
+    {"sinkage", "mm", &rigid_wheel::SlipResult::sinkage, &WheelForces::sinkage, 1e3, "{:.1f}"}};
+
+/// The circle closed: pull, torque and sinkage of the wheel in the grains, predicted from the constants, and the error
+/// at each slip.
+inline io::Table circle_table(const Constants& c, const rigid_wheel::Campaign& w, const rigid_wheel::Settings& s) {
+  io::Table t{.caption = "The wheel in the same soil, and what the constants predict; slip s = 1 - v/(omega r)",
+              .header = {"slip", "quantity", "grains", "± in time", "Bekker", "error", "Reece", "error", "unit"}};
+  for (const auto& r : w.slips) {
+    const auto bekker = reference_at(c.bekker_soil, r.slip, s), reece = reference_at(c.reece_soil, r.slip, s);
+    for (const Compared& q : compared) {
+      const MeanAndDeviation& grains = r.*q.grains;
+      const auto value = [&](const std::optional<WheelForces>& f) { return f ? (*f).*q.predicted : std::nan(""); };
+      const auto cell = [&](double v) { return number(q.scale * v, q.format); };
+      t.row(&q == compared ? number(r.slip) : "", q.name, cell(grains.mean), cell(grains.deviation),
+            cell(value(bekker)), cell(value(bekker) - grains.mean), cell(value(reece)),
+            cell(value(reece) - grains.mean), q.unit);
+    }
+  }
+  return t;
+}
+
+/// One of these quantities over slip.
+inline io::Plot circle_plot(const Constants& c, const rigid_wheel::Campaign& w, const rigid_wheel::Settings& s,
+                            const Compared& q) {
+  io::Plot plot{.title = text("{} over slip", q.name),
+                .x_label = "slip s = 1 - v/(ω r)",
+                .y_label = text("{} [{}]", q.name, q.unit)};
+  io::Series points{.name = "grains", .style = io::SeriesStyle::LinePoints, .color = 0};
+  io::Series low{.name = "± standard deviation in time", .style = io::SeriesStyle::Dotted, .color = 0}, high = low;
+  high.name = "";
+  for (const auto& r : w.slips) {
+    const MeanAndDeviation& m = r.*q.grains;
+    if (!std::isfinite(m.mean)) continue;
+    for (io::Series* line : {&points, &low, &high}) line->x.push_back(r.slip);
+    points.y.push_back(q.scale * m.mean);
+    low.y.push_back(q.scale * (m.mean - m.deviation));
+    high.y.push_back(q.scale * (m.mean + m.deviation));
+  }
+  for (auto* line : {&points, &low, &high}) plot.series.push_back(*line);
+  int color = 1;
+  for (const auto& [name, soil] :
+       {std::pair{"Bekker and Wong", &c.bekker_soil}, std::pair{"Reece and Wong", &c.reece_soil}}) {
+    io::Series line{.name = name, .style = io::SeriesStyle::Dashed, .color = color++};
+    for (int k = 0; k <= 40; ++k) {
+      const double slip = s.slips.front() + 0.025 * k * (s.slips.back() - s.slips.front());
+      const auto f = reference_at(*soil, slip, s);
+      if (!f) continue;
+      line.x.push_back(slip);
+      line.y.push_back(q.scale * (*f).*q.predicted);
+    }
+    plot.series.push_back(std::move(line));
+  }
+  return plot;
+}
+
+}  // namespace dem::rig::bevameter

@@ -1,0 +1,188 @@
+#pragma once
+
+#include <dem/rig/calibrate/search.hpp>
+#include <dem/rig/calibrate/tables.hpp>
+#include <dem/rig/calibrate/tried.hpp>
+#include <dem/rig/rig.hpp>
+#include <dem/rig/settings_file.hpp>
+#include <dem/rig/side_by_side.hpp>
+
+#include <omp.h>
+
+#include <algorithm>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace dem::rig::calibrate {
+
+/// The search for constants of grains as a program. Points are chosen in batches, each from all that was found before
+/// it, so that what is found does not depend on the number of threads; the runs of a batch go side by side.
+class CalibrateRig : public Rig {
+ public:
+  CalibrateRig(const Worlds& worlds, Minimise* minimise) : worlds_(worlds), minimise_(minimise) {}
+
+  void declare(Options& options) override { calibrate::declare(options, settings); }
+  void find_idle(IdleOptions& idle) const override { calibrate::find_idle(idle, settings); }
+  void resolve() override { calibrate::resolve(settings); }
+  [[nodiscard]] std::string output() const override { return settings.output; }
+  [[nodiscard]] ResultNames results() const override {
+    ResultNames names{.files = {"found.csv"},
+                      .plots = {"response_phi", "response_repose", "response_pressure", "search"}};
+    if (!settings.go_on) names.files.push_back("tried.csv");
+    return names;
+  }
+
+  void run(Session& session) override {
+    const Settings& s = settings;
+    const std::size_t d = constants_of(s).size(), batch = s.batch;
+    table_ = session.folder() / "tried.csv";
+    if (s.go_on) {
+      const auto earlier = session.folder() / "settings.toml";
+      if (!std::filesystem::exists(earlier) || !std::filesystem::exists(table_)) {
+        fail("there is no search in '{}' to go on with; leave out --go-on to begin one", s.output);
+      }
+      require_same_settings(io::read_file(earlier), session.config(), {"threads", "output", "trials"}, s.output);
+      tried = load_tried(table_, s);
+    }
+    const std::size_t batches = (s.trials + batch - 1) / batch;
+    session.begin_run(static_cast<int>(batches) + (s.known.empty() ? 0 : 1));
+    if (!s.known.empty()) {
+      std::vector<Trial> making;
+      for (std::uint64_t k = 0; k < 2 * s.repeats; ++k) making.push_back({0, s.seed + 1000 + k, s.known, {}});
+      session.begin("target", static_cast<double>(making.size()));
+      run_all(session, making);
+    }
+    goals = find_goals();
+    for (std::size_t b = 0; b < batches; ++b) {
+      std::vector<Trial> next;
+      for (std::size_t k = b * batch; k < std::min<std::size_t>(s.trials, (b + 1) * batch); ++k) {
+        std::vector<double> values;
+        const auto place = next_place(k, d, known_before(k - k % batch));
+        for (std::size_t i = 0; i < d; ++i) values.push_back(value_at(s, constants_of(s)[i], place[i]));
+        for (std::uint64_t r = 0; r < s.repeats; ++r) next.push_back({k + 1, s.seed + r, values, {}});
+      }
+      session.begin(text("points {} to {}", b * batch + 1, std::min<std::size_t>(s.trials, (b + 1) * batch)),
+                    static_cast<double>(next.size()));
+      run_all(session, next);
+      found = known_before(s.trials);
+      session.finish(found ? found_text(s, *found) : "");
+    }
+    if (!found) found = find_constants(measurements(s.trials), goals, minimise_);
+  }
+
+  bool report(Report& report) const override {
+    const Settings& s = settings;
+    std::vector<io::Table> tables;
+    if (found) tables = {found_table(s, *found), goals_table(s, *found, goals)};
+    tables.push_back(tried_table(s, tried));
+    if (found) report.part("found.csv", [&] { write_found(report.folder() / "found.csv", s, *found); });
+    report.part("the printed report", [&] {
+      fmt::print("\n");
+      for (const auto& table : tables) {
+        io::print(table);
+        fmt::print("\n");
+      }
+      if (found) fmt::print("{}\n", found_text(s, *found));
+      fmt::print("{} of wall time.\n", io::format_duration(report.outcome().wall_time));
+    });
+    report.page(list_settings(s), [&](io::HtmlReport& page) {
+      page.paragraph(method_text);
+      if (found) page.paragraph(found_text(s, *found));
+      for (const auto& table : tables) page.table(table);
+      if (!found) return;
+      page.heading("Plots");
+      const auto quantities = quantities_of(s);
+      for (std::size_t q = 0; q < quantities.size(); ++q) {
+        const std::string name = text("response_{}", names_of_quantities[static_cast<int>(quantities[q])]);
+        report.plot(
+            page, response_plot(s, tried, *found, goals, q), name.c_str(),
+            "What was measured over the first constant; the surface along it through what was found; the target.");
+      }
+      report.plot(page, search_plot(s, tried), "search", "Points in the order in which they were tried.");
+    });
+    return false;
+  }
+
+  Settings settings;
+  std::vector<Trial> tried = {};  ///< in the order of points and seeds
+  std::vector<Goal> goals = {};
+  std::optional<Found> found = {};
+
+ private:
+  /// Runs those of the trials that were not tried yet, side by side, and keeps the table.
+  void run_all(Session& session, std::vector<Trial>& trials) {
+    std::erase_if(trials, [&](const Trial& t) {
+      return std::any_of(tried.begin(), tried.end(),
+                         [&](const Trial& x) { return x.point == t.point && x.seed == t.seed; });
+    });
+    const int workers = settings.threads > 0 ? settings.threads : std::max(1, omp_get_max_threads());
+    side_by_side(trials.size(), workers, session, [&](std::size_t k, SharedStages& shared) {
+      StagesOfOne own(shared, k);
+      run_trial(settings, trials[k], worlds_, session.folder() / "runs", own);
+      shared.alone([&] {
+        tried.push_back(trials[k]);
+        std::sort(tried.begin(), tried.end(), [](const Trial& a, const Trial& b) {
+          return a.point != b.point ? a.point < b.point : a.seed < b.seed;
+        });
+        save_tried(table_, settings, tried);
+      });
+    });
+  }
+
+  /// Of points 1 to `points`.
+  [[nodiscard]] Measurements measurements(std::size_t points) const {
+    const auto constants = constants_of(settings);
+    Measurements m;
+    m.dimensions = constants.size();
+    m.values.resize(quantities_of(settings).size());
+    for (const Trial& t : tried) {
+      if (t.point == 0 || t.point > points) continue;
+      for (std::size_t i = 0; i < constants.size(); ++i) {
+        m.places.push_back(place_of(settings, constants[i], t.values[i]));
+      }
+      for (std::size_t q = 0; q < m.values.size(); ++q) m.values[q].push_back(t.results[q]);
+    }
+    return m;
+  }
+  /// What the first points say; none while they are too few.
+  [[nodiscard]] std::optional<Found> known_before(std::size_t points) const {
+    const std::size_t least = Surrogate::terms(constants_of(settings).size(), false) + 1;
+    if (points < least) return {};
+    try {
+      return find_constants(measurements(points), goals, minimise_);
+    } catch (const Error&) {  // too many runs have failed
+      return {};
+    }
+  }
+  /// The targets: as given, or the means of what was made.
+  [[nodiscard]] std::vector<Goal> find_goals() const {
+    const Settings& s = settings;
+    std::vector<Goal> list;
+    const auto quantities = quantities_of(s);
+    for (std::size_t q = 0; q < quantities.size(); ++q) {
+      if (s.known.empty()) {
+        list.push_back(quantities[q] == Quantity::phi      ? Goal{s.phi, s.phi_error}
+                       : quantities[q] == Quantity::repose ? Goal{s.repose, s.repose_error}
+                                                           : Goal{s.pressure, s.pressure_error});
+        continue;
+      }
+      double n = 0.0, sum = 0.0, squares = 0.0;
+      for (const Trial& t : tried) {
+        if (t.point == 0 && std::isfinite(t.results[q])) n += 1.0, sum += t.results[q];
+      }
+      for (const Trial& t : tried) {
+        if (t.point == 0 && std::isfinite(t.results[q])) squares += std::pow(t.results[q] - sum / n, 2);
+      }
+      if (n < 2.0) throw Stopped(text("{} runs have made a target, but two are needed", n));
+      list.push_back({sum / n, std::sqrt(squares / (n - 1.0) / n)});
+    }
+    return list;
+  }
+
+  Worlds worlds_;
+  Minimise* minimise_;
+  std::filesystem::path table_;
+};
+
+}  // namespace dem::rig::calibrate

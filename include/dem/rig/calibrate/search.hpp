@@ -1,0 +1,147 @@
+#pragma once
+// Where the constants are that measurements ask for, how sure that is, and where to try next.
+
+#include <dem/math/solve_positive.hpp>
+#include <dem/rig/calibrate/surrogate.hpp>
+#include <dem/terramechanics/confidence.hpp>
+
+#include <algorithm>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+namespace dem::rig::calibrate {
+
+/// Number `index` (from 1) of the even spread of numbers in [0, 1) that J. H. Halton found (1960), for a prime base.
+inline double halton(std::size_t index, unsigned base) {
+  double value = 0.0, share = 1.0;
+  for (; index > 0; index /= base) {
+    share /= base;
+    value += share * static_cast<double>(index % base);
+  }
+  return value;
+}
+
+/// One measured quantity over the places that were tried. Values that are not finite are runs that failed.
+struct Measurements {
+  std::size_t dimensions = 1;
+  std::vector<double> places = {};               ///< of the unit cube, one after the other
+  std::vector<std::vector<double>> values = {};  ///< of each quantity, as many as there are places
+};
+
+/// What each quantity shall be.
+struct Goal {
+  double value, error;  ///< with its standard error
+};
+
+/// Finds the least value of a function over the unit cube. `start` is where it begins.
+using Minimise = std::vector<double>(double (*function)(const double* x, const void* data), const void* data,
+                                     const std::vector<double>& start);
+
+/// The constants that fit the goals best.
+struct Found {
+  std::vector<double> place = {};  ///< in the unit cube
+  std::vector<double> error = {};  ///< standard errors there; infinite where the goals do not determine a constant
+  std::size_t freedom = 0;         ///< of the errors
+  std::vector<Surrogate> surrogates = {};
+};
+
+namespace detail {
+
+struct Misfit {
+  const std::vector<Surrogate>* surrogates;
+  std::span<const Goal> goals;
+  std::size_t dimensions;
+};
+
+/// Squares of what the surrogates miss the goals by, over their variances.
+inline double misfit(const double* x, const void* data) {
+  const auto& m = *static_cast<const Misfit*>(data);
+  const std::span<const double> place(x, m.dimensions);
+  double sum = 0.0;
+  for (std::size_t q = 0; q < m.goals.size(); ++q) {
+    const double rest = (*m.surrogates)[q].value(place) - m.goals[q].value, scatter = (*m.surrogates)[q].scatter();
+    sum += rest * rest / std::max(1e-300, m.goals[q].error * m.goals[q].error + scatter * scatter);
+  }
+  return sum;
+}
+
+inline std::size_t distinct_places(const std::vector<double>& places, std::size_t d) {
+  std::size_t count = 0;
+  for (std::size_t i = 0; i * d < places.size(); ++i) {
+    bool is_new = true;
+    for (std::size_t j = 0; j < i && is_new; ++j) {
+      is_new = !std::equal(places.begin() + static_cast<std::ptrdiff_t>(i * d),
+                           places.begin() + static_cast<std::ptrdiff_t>((i + 1) * d),
+                           places.begin() + static_cast<std::ptrdiff_t>(j * d));
+    }
+    count += is_new ? 1 : 0;
+  }
+  return count;
+}
+
+}  // namespace detail
+
+/// Surfaces through the measurements, and the constants at which they are nearest to the goals. Errors are those of the
+/// surfaces and of the goals, carried over by the surfaces' slopes. Throws Error for too few measurements.
+inline Found find_constants(const Measurements& m, std::span<const Goal> goals, Minimise* minimise) {
+  Found found;
+  const std::size_t d = m.dimensions;
+  for (const auto& values : m.values) {
+    std::vector<double> places, known;
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      if (!std::isfinite(values[i])) continue;
+      places.insert(places.end(), m.places.begin() + static_cast<std::ptrdiff_t>(i * d),
+                    m.places.begin() + static_cast<std::ptrdiff_t>((i + 1) * d));
+      known.push_back(values[i]);
+    }
+    found.surrogates.emplace_back(places, known, d, detail::distinct_places(places, d));
+  }
+  const detail::Misfit data{&found.surrogates, goals, d};
+  found.place = minimise(&detail::misfit, &data, std::vector<double>(d, 0.5));
+  // (G^T W G)^-1, and the least freedom of the surfaces.
+  std::vector<double> information(d * d, 0.0);
+  found.freedom = found.surrogates.front().freedom();
+  for (std::size_t q = 0; q < goals.size(); ++q) {
+    const auto slopes = found.surrogates[q].gradient(found.place);
+    const double error = found.surrogates[q].error(found.place);
+    const double weight = 1.0 / std::max(1e-300, error * error + goals[q].error * goals[q].error);
+    for (std::size_t a = 0; a < d; ++a) {
+      for (std::size_t b = 0; b < d; ++b) information[a * d + b] += weight * slopes[a] * slopes[b];
+    }
+    found.freedom = std::min(found.freedom, found.surrogates[q].freedom());
+  }
+  std::vector<double> factor = information;
+  factorise_positive(factor, d, 1e-9);
+  bool is_determined = true;
+  for (std::size_t a = 0; a < d; ++a) is_determined = is_determined && factor[a * d + a] > 0.0;
+  for (std::size_t a = 0; a < d; ++a) {
+    std::vector<double> matrix = information, unit(d, 0.0);
+    unit[a] = 1.0;
+    solve_positive(matrix, unit);
+    found.error.push_back(is_determined ? std::sqrt(unit[a]) : std::numeric_limits<double>::infinity());
+  }
+  return found;
+}
+
+/// Place number `index` (from 0) to try: the first ones are spread over the cube, later ones about what was found so
+/// far, within three standard errors and at least a tenth of the cube each way, so that the surfaces know their slopes
+/// there.
+inline std::vector<double> next_place(std::size_t index, std::size_t dimensions, const std::optional<Found>& found) {
+  static constexpr unsigned primes[] = {2, 3, 5, 7};
+  std::vector<double> place(dimensions);
+  for (std::size_t k = 0; k < dimensions; ++k) {
+    const double even = halton(index + 1, primes[k]);
+    if (!found) {
+      place[k] = even;
+      continue;
+    }
+    const double reach = std::clamp(3.0 * found->error[k], 0.1, 0.5);
+    const double middle = std::clamp(found->place[k], reach, 1.0 - reach);
+    place[k] = std::clamp(middle + (2.0 * even - 1.0) * reach, 0.0, 1.0);
+  }
+  return place;
+}
+
+}  // namespace dem::rig::calibrate

@@ -1,0 +1,179 @@
+#pragma once
+// What a search found, as tables and plots.
+
+#include <dem/io/csv.hpp>
+#include <dem/report/plot_data.hpp>
+#include <dem/report/table.hpp>
+#include <dem/rig/bed/grain_settings.hpp>
+#include <dem/rig/calibrate/search.hpp>
+#include <dem/rig/calibrate/trial.hpp>
+
+#include <string>
+#include <vector>
+
+namespace dem::rig::calibrate {
+
+inline constexpr const char* method_text =
+    "Each measured quantity is fitted by a polynomial over the constants, of first degree, or of second where the "
+    "points "
+    "allow it: what runs with other seeds scatter about it is noise. The constants are those at which these surfaces "
+    "are "
+    "nearest to the targets; their errors are those of surfaces and targets, divided by the slopes. New points are "
+    "tried "
+    "about what was found, within three standard errors.";
+
+/// The name of a constant with its unit.
+inline std::string titled(Constant c) {
+  const std::string unit = units_of_constants[static_cast<int>(c)];
+  return names_of_constants[static_cast<int>(c)] + (unit.empty() ? "" : " [" + unit + "]");
+}
+inline std::string titled(Quantity q) {
+  return text("{} [{}]", names_of_quantities[static_cast<int>(q)], units_of_quantities[static_cast<int>(q)]);
+}
+inline std::string number(double value, const char* format = "{:.4g}") {
+  return std::isfinite(value) ? dem::text_of(format, {value}) : "-";
+}
+
+/// A constant that was found, with its standard error in its own unit.
+inline terramechanics::Estimate estimate_of(const Settings& s, const Found& f, std::size_t k) {
+  const Constant c = constants_of(s)[k];
+  const double step = 1e-4;
+  const double slope = (value_at(s, c, f.place[k] + step) - value_at(s, c, f.place[k] - step)) / (2.0 * step);
+  return {value_at(s, c, f.place[k]), slope * f.error[k], f.freedom};
+}
+
+inline std::string found_text(const Settings& s, const Found& f) {
+  std::string words;
+  const auto constants = constants_of(s);
+  for (std::size_t k = 0; k < constants.size(); ++k) {
+    const auto e = estimate_of(s, f, k);
+    words += text("{}{} {} ± {}", words.empty() ? "" : ", ", names_of_constants[static_cast<int>(constants[k])],
+                  number(e.value), number(e.half_width(), "{:.2g}"));
+    if (f.place[k] < 1e-3 || f.place[k] > 1.0 - 1e-3) words += " (at the end of its range)";
+    if (!s.known.empty()) words += text(" (made with {:g})", s.known[k]);
+  }
+  return words;
+}
+
+inline io::Table found_table(const Settings& s, const Found& f) {
+  io::Table t{.caption = "Constants of the grains that reproduce the targets",
+              .header = {"constant", "found", "standard error", "± 95 %", "deg. of freedom", "made with"}};
+  const auto constants = constants_of(s);
+  for (std::size_t k = 0; k < constants.size(); ++k) {
+    const auto e = estimate_of(s, f, k);
+    t.row(titled(constants[k]), number(e.value), number(e.error, "{:.2g}"), number(e.half_width(), "{:.2g}"),
+          text("{}", e.freedom), s.known.empty() ? "-" : number(s.known[k]));
+  }
+  return t;
+}
+
+inline io::Table goals_table(const Settings& s, const Found& f, const std::vector<Goal>& goals) {
+  io::Table t{
+      .caption = "Targets, and the surfaces at what was found",
+      .header = {"quantity", "target", "its error", "surface", "its error", "one run scatters by", "surface is"}};
+  const auto quantities = quantities_of(s);
+  for (std::size_t q = 0; q < quantities.size(); ++q) {
+    const Surrogate& y = f.surrogates[q];
+    t.row(titled(quantities[q]), number(goals[q].value), number(goals[q].error, "{:.2g}"), number(y.value(f.place)),
+          number(y.error(f.place), "{:.2g}"), number(y.scatter(), "{:.2g}"),
+          y.is_quadratic() ? "of second degree" : "plane");
+  }
+  return t;
+}
+
+inline io::Table tried_table(const Settings& s, const std::vector<Trial>& tried) {
+  io::Table t{.caption = "What was tried (tried.csv); point 0 made the target", .header = {"point", "seed"}};
+  for (const Constant c : constants_of(s)) t.header.push_back(titled(c));
+  for (const Quantity q : quantities_of(s)) t.header.push_back(titled(q));
+  for (const Trial& x : tried) {
+    std::vector<std::string> cells{text("{}", x.point), text("{}", x.seed)};
+    for (const double v : x.values) cells.push_back(number(v));
+    for (const double v : x.results) cells.push_back(number(v));
+    t.rows.push_back(std::move(cells));
+  }
+  return t;
+}
+
+/// A quantity over the first constant, the others as they were found.
+inline io::Plot response_plot(const Settings& s, const std::vector<Trial>& tried, const Found& f,
+                              const std::vector<Goal>& goals, std::size_t q) {
+  const Constant first = constants_of(s).front();
+  io::Plot plot{.title = text("{} over {}", names_of_quantities[static_cast<int>(quantities_of(s)[q])],
+                              names_of_constants[static_cast<int>(first)]),
+                .x_label = titled(first),
+                .y_label = titled(quantities_of(s)[q])};
+  io::Series points{.name = "runs", .style = io::SeriesStyle::Points, .color = 0};
+  for (const Trial& t : tried) {
+    if (t.point == 0) continue;
+    points.x.push_back(t.values.front());
+    points.y.push_back(t.results[q]);
+  }
+  io::Series line{.name = "surface", .style = io::SeriesStyle::Line, .color = 0};
+  io::Series low{.name = "± standard error", .style = io::SeriesStyle::Dotted, .color = 0}, high = low;
+  high.name = "";
+  std::vector<double> place = f.place;
+  for (int k = 0; k <= 60; ++k) {
+    place.front() = k / 60.0;
+    const double x = value_at(s, first, place.front()), y = f.surrogates[q].value(place);
+    const double error = f.surrogates[q].error(place);
+    for (auto* series : {&line, &low, &high}) series->x.push_back(x);
+    line.y.push_back(y), low.y.push_back(y - error), high.y.push_back(y + error);
+  }
+  const auto& range = range_of(s, first);
+  io::Series goal{.name = "target",
+                  .x = range,
+                  .y = {goals[q].value, goals[q].value},
+                  .style = io::SeriesStyle::Dashed,
+                  .color = 1};
+  io::Series here{.name = "found",
+                  .x = {value_at(s, first, f.place.front())},
+                  .y = {f.surrogates[q].value(f.place)},
+                  .style = io::SeriesStyle::Points,
+                  .color = 2};
+  plot.series = {points, line, low, high, goal, here};
+  return plot;
+}
+
+/// The points in the order in which they were tried, as shares of their ranges.
+inline io::Plot search_plot(const Settings& s, const std::vector<Trial>& tried) {
+  io::Plot plot{.title = "Points that were tried",
+                .x_label = "point",
+                .y_label = "share of the range [-]",
+                .y_range = {.min = 0.0, .max = 1.0}};
+  const auto constants = constants_of(s);
+  for (std::size_t k = 0; k < constants.size(); ++k) {
+    io::Series line{.name = names_of_constants[static_cast<int>(constants[k])], .style = io::SeriesStyle::LinePoints};
+    for (const Trial& t : tried) {
+      if (t.point == 0 || (!line.x.empty() && line.x.back() == static_cast<double>(t.point))) continue;
+      line.x.push_back(static_cast<double>(t.point));
+      line.y.push_back(place_of(s, constants[k], t.values[k]));
+    }
+    plot.series.push_back(std::move(line));
+  }
+  return plot;
+}
+
+inline void write_found(const std::filesystem::path& path, const Settings& s, const Found& f) {
+  io::CsvWriter csv(path, {"constant", "value", "standard_error", "half_interval_95", "degrees_of_freedom", "unit"});
+  const auto constants = constants_of(s);
+  for (std::size_t k = 0; k < constants.size(); ++k) {
+    const auto e = estimate_of(s, f, k);
+    const int c = static_cast<int>(constants[k]);
+    csv.row(names_of_constants[c], e.value, e.error, e.half_width(), e.freedom, units_of_constants[c]);
+  }
+  csv.flush();
+}
+
+/// Names and values for the report.
+inline NamesAndValues list_settings(const Settings& s) {
+  NamesAndValues list{{"size of the rigs", s.size}};
+  for (const Constant c : constants_of(s)) {
+    list.emplace_back(
+        names_of_constants[static_cast<int>(c)],
+        text("from {:g} to {:g} {}", range_of(s, c)[0], range_of(s, c)[1], units_of_constants[static_cast<int>(c)]));
+  }
+  list.emplace_back("points", text("{}, {} seeds each, chosen {} at once", s.trials, s.repeats, s.batch));
+  return list;
+}
+
+}  // namespace dem::rig::calibrate

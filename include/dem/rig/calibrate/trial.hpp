@@ -1,0 +1,145 @@
+#pragma once
+// One run of the rigs at one place: what they measure with these constants.
+
+#include <dem/rig/calibrate/settings.hpp>
+#include <dem/rig/direct_shear/evaluate.hpp>
+#include <dem/rig/direct_shear/resolve.hpp>
+#include <dem/rig/plate_sinkage/tables.hpp>
+#include <dem/rig/sand_pile/resolve.hpp>
+#include <dem/rig/sand_pile/results.hpp>
+#include <dem/rig/session.hpp>
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+namespace dem::rig::calibrate {
+
+/// The worlds that the rigs are run with, compiled beside it: what the examples of these rigs have.
+struct Worlds {
+  void (*shear)(const direct_shear::Settings&, direct_shear::Campaign&, Session&);
+  void (*press)(const plate_sinkage::Settings&, plate_sinkage::Campaign&, Session&);
+  void (*cubes)(const sand_pile::Settings&, sand_pile::PileResult&, report::Replay*, Session&);
+  void (*spheres)(const sand_pile::Settings&, sand_pile::PileResult&, report::Replay*, Session&);
+};
+
+/// What is told by one of several rigs that run one after the other.
+class ShareOf final : public Stages {
+ public:
+  ShareOf(Stages& all, std::size_t part, std::size_t of) : all_(all), part_(part), of_(of) {}
+  void update(double done, std::string_view status = {}) override {
+    all_.update((static_cast<double>(part_) + done) / static_cast<double>(of_), status);
+  }
+  void message(std::string_view text) override { all_.message(text); }
+
+ private:
+  Stages& all_;
+  std::size_t part_, of_;
+};
+
+/// A set of values of the constants, with the seed of the grains.
+struct Trial {
+  std::size_t point = 0;  ///< 0: of the target that is made
+  std::uint64_t seed = 1;
+  std::vector<double> values = {};   ///< of the constants, in their order
+  std::vector<double> results = {};  ///< of the quantities; NaN of a run that did not come to its end
+};
+
+namespace detail {
+
+/// Sets what rigs call alike.
+template <class RigSettings>
+void set_constants(RigSettings& grains, const std::vector<Constant>& constants, const std::vector<double>& values) {
+  for (std::size_t k = 0; k < constants.size(); ++k) {
+    if (constants[k] == Constant::friction) grains.friction = values[k];
+    if (constants[k] == Constant::stiffness) grains.stiffness = values[k];
+  }
+}
+inline void set_density(double& density, const std::vector<Constant>& constants, const std::vector<double>& values) {
+  for (std::size_t k = 0; k < constants.size(); ++k) {
+    if (constants[k] == Constant::density) density = values[k];
+  }
+}
+
+inline double measure_phi(const Settings& s, const Trial& t, const Worlds& worlds, Session& session) {
+  direct_shear::Settings d;
+  d.size = s.size;
+  d.loads = s.loads;
+  set_constants(d, constants_of(s), t.values);
+  set_density(d.relative_density, constants_of(s), t.values);
+  d.seed = t.seed;
+  d.threads = 1;
+  d.replay = d.vtk = false;
+  d.output = session.folder().string();
+  direct_shear::resolve(d);
+  direct_shear::Campaign campaign;
+  worlds.shear(d, campaign, session);
+  const auto line = direct_shear::fit(campaign).origin;
+  return line ? terramechanics::degrees(line->friction_angle) : std::nan("");
+}
+
+inline double measure_pressure(const Settings& s, const Trial& t, const Worlds& worlds, Session& session) {
+  plate_sinkage::Settings p;
+  p.size = s.size;
+  p.widths = s.plates.empty() ? std::vector{size_named(s.size) == Size::smoke ? 0.03 : 0.05} : s.plates;
+  set_constants(p.grains, constants_of(s), t.values);
+  set_density(p.bed.relative_density, constants_of(s), t.values);
+  p.bed.seed = t.seed;
+  p.bed.threads = 1;
+  p.replay = p.vtk = false;
+  p.output = session.folder().string();
+  plate_sinkage::resolve(p);
+  plate_sinkage::Campaign campaign;
+  worlds.press(p, campaign, session);
+  return plate_sinkage::mean_pressure(campaign.variants.front().plates.front(), p);
+}
+
+inline double measure_repose(const Settings& s, const Trial& t, const Worlds& worlds, Session& session) {
+  sand_pile::Settings p;
+  p.size = s.size;
+  p.kinds = s.kind;
+  const auto constants = constants_of(s);
+  set_constants(p, constants, t.values);
+  p.seed = t.seed;
+  p.threads = 1;
+  p.replay = p.vtk = false;
+  p.output = session.folder().string();
+  p.creep_time = 0.01;
+  sand_pile::resolve(p);
+  for (std::size_t k = 0; k < constants.size(); ++k) {
+    if (constants[k] == Constant::rolling) p.rolling_length = p.plate_rolling_length = t.values[k] * p.half_edge;
+  }
+  sand_pile::PileResult result;
+  result.kind = sand_pile::kind_named(s.kind);
+  result.seed = t.seed;
+  session.begin_run(4);
+  (s.kind == "cube8" ? worlds.cubes : worlds.spheres)(p, result, nullptr, session);
+  return terramechanics::degrees(result.flank.angle);
+}
+
+}  // namespace detail
+
+/// Runs the rigs of a trial one after the other, each on one thread and in a folder of its own, and fills in its
+/// results. A run that the simulation stops leaves NaN, and a message says why.
+inline void run_trial(const Settings& s, Trial& t, const Worlds& worlds, const std::filesystem::path& folder,
+                      Stages& stages) {
+  const auto quantities = quantities_of(s);
+  t.results.assign(quantities.size(), std::nan(""));
+  for (std::size_t q = 0; q < quantities.size(); ++q) {
+    ShareOf share(stages, q, quantities.size());
+    const std::string name = text("{}_{}_{}", t.point, t.seed, names_of_quantities[static_cast<int>(quantities[q])]);
+    try {
+      Session session({"calibrate", (folder / name).string(), "", {}, {}, {}, &share});
+      t.results[q] = quantities[q] == Quantity::phi      ? detail::measure_phi(s, t, worlds, session)
+                     : quantities[q] == Quantity::repose ? detail::measure_repose(s, t, worlds, session)
+                                                         : detail::measure_pressure(s, t, worlds, session);
+      session.end();
+    } catch (const Interrupted&) {
+      throw;
+    } catch (const std::exception& problem) {
+      stages.message(text("warning: run {} found nothing: {}", name, problem.what()));
+    }
+  }
+}
+
+}  // namespace dem::rig::calibrate

@@ -1,0 +1,75 @@
+#pragma once
+// Runs of rigs as stages of the run of another one: a campaign of several apparatus.
+
+#include <dem/rig/report.hpp>
+#include <dem/rig/rig.hpp>
+
+#include <exception>
+#include <string>
+#include <utility>
+
+namespace dem::rig {
+
+/// A part of a run that has no world. It is done as soon as it is completed: a run all of whose parts are runs of their
+/// own keeps one, as a run without any has nothing to go on with.
+class PartWithoutWorld final : public Part {
+ public:
+  using Part::Part;
+
+ private:
+  void collect(void*, const void*, io::StateColumns&) const override { fail("a part without a world was given one"); }
+  void restore_state(void*, const void*, io::StateColumns&) const override {
+    fail("a part without a world was given one");
+  }
+};
+
+/// The text of a settings file that repeats a rig's run with the values that it has now.
+inline std::string settings_as_they_are(Rig& rig) {
+  Options options;
+  rig.declare(options);
+  for (Option& option : options.all()) option.default_text = text_of(option);
+  IdleOptions idle;
+  rig.find_idle(idle);
+  return settings_text(options, idle);
+}
+
+/// Runs a rig, whose settings are resolved, in its own output folder as a stage of another run, and makes its report
+/// there. `session` has begun that stage with the total 1. What ends the run early is thrown here, after the report.
+/// It is kept and gone on with as the other run is; the files that it goes on from stay until forget_run_within().
+inline void run_within(Session& session, Rig& rig, const char* program, const char* title) {
+  CheckpointOptions checkpoints = session.checkpoints();
+  checkpoints.free_settings.clear();
+  Options options;
+  rig.declare(options);
+  for (const Option& option : options.all()) {
+    if (!option.changes_results) checkpoints.free_settings.push_back(option.key());
+  }
+  const std::string config = settings_as_they_are(rig);
+  const CheckpointFolder kept(program, rig.output(), config, checkpoints);
+  checkpoints.resume = checkpoints.resume && !kept.parts().empty();
+  Session own({program, rig.output(), config, rig.results(), rig.words(), std::move(checkpoints),
+               static_cast<Stages*>(&session)});
+  std::exception_ptr thrown;
+  std::string problem;
+  try {
+    rig.run(own);
+  } catch (const Interrupted&) {
+    thrown = std::current_exception();
+    own.outcome.interrupted = true;
+  } catch (const std::exception& error) {
+    thrown = std::current_exception();
+    problem = error.what();
+  }
+  if (!own.has_begun()) std::rethrow_exception(thrown);
+  own.end(problem);
+  Report report(own, title);
+  bool has_frames = false;
+  report.part("the report", [&] { has_frames = rig.report(report); });
+  report.finish(has_frames);
+  if (thrown) std::rethrow_exception(thrown);
+}
+
+/// Removes what a run within another one was to go on from: that other one is done.
+inline void forget_run_within(const Rig& rig) { CheckpointFolder("", rig.output(), "", {}).clear(); }
+
+}  // namespace dem::rig

@@ -1,0 +1,178 @@
+#include "catch.hpp"
+
+#include <dem/rig/bevameter/constants.hpp>
+#include <dem/rig/bevameter/settings.hpp>
+#include <dem/rig/session.hpp>
+
+#include <cmath>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+using Catch::Approx;
+using namespace dem::rig;
+namespace mechanics = dem::terramechanics;
+
+namespace {
+
+/// Plates and shear tests of a soil that obeys a pressure law and Janosi's.
+struct MadeSoil {
+  plate_sinkage::VariantResult plates;
+  direct_shear::Campaign shear;
+  direct_shear::Settings shear_settings;
+
+  MadeSoil(const mechanics::PressureLaw& law, const mechanics::JanosiHanamoto& strength) {
+    plates.variant.settings.sinkage = 0.02;
+    plates.variant.settings.threshold = 1e-3;
+    plates.variant.settings.smoothing = 0.0;
+    plates.solid_fraction = 0.8;
+    for (const double b : {0.03, 0.05, 0.08}) {
+      plate_sinkage::PlateResult r{.width = b};
+      for (int i = 0; i <= 400; ++i) {
+        const double z = 5.1e-5 * i, p = under(law, b).pressure(z);
+        r.samples.push_back({0.0, z, 0.0, p, p, p});
+      }
+      for (int i = 0; i < 20; ++i) r.unloading.push_back({0.02 - 1e-5 * i, 4e4 - 2e7 * 1e-5 * i * 10.0});
+      r.finished = true;
+      plate_sinkage::evaluate(r, plates.variant.settings);
+      plates.plates.push_back(std::move(r));
+    }
+    direct_shear::resolve(shear_settings);
+    for (const double sigma : {5e3, 1e4, 2e4, 4e4}) {
+      direct_shear::LoadResult r;
+      r.normal_stress = r.normal_at_maximum = sigma;
+      r.finished = true;
+      for (int i = 1; i <= 400; ++i) {
+        const double j = 2e-5 * i;
+        direct_shear::Sample s{};
+        s.displacement = j;
+        s.stress = strength.stress(sigma, j);
+        r.samples.push_back(s);
+      }
+      r.maximum = strength.strength(sigma);
+      r.at_maximum = 8e-3;
+      shear.loads.push_back(r);
+    }
+    shear_settings.smoothing = 0.0;
+  }
+  [[nodiscard]] bevameter::Constants constants() const {
+    return bevameter::find_constants(plates, shear, shear_settings, 5.0, 0.95);
+  }
+};
+
+constexpr mechanics::JanosiHanamoto dry{.cohesion = 0.0, .friction_angle = 0.6, .displacement = 8e-4};
+
+}  // namespace
+
+TEST_CASE("a bevameter gives back the constants of a soil that obeys the laws") {
+  SECTION("Bekker, with cohesion") {
+    const mechanics::Bekker law{.k_c = 2e4, .k_phi = 3e6, .n = 0.9};
+    const auto c = MadeSoil(law, {.cohesion = 800.0, .friction_angle = 0.6, .displacement = 8e-4}).constants();
+    // The curves are exact but for the sinkage's zero, at 1 mPa.
+    CHECK(c.bekker[0].value == Approx(2e4).epsilon(1e-4));
+    CHECK(c.bekker[1].value == Approx(3e6).epsilon(1e-4));
+    CHECK(c.bekker[2].value == Approx(0.9).epsilon(1e-5));
+    CHECK(c.bekker[2].freedom == 12);  // 3 plates in 5 pieces each, 3 constants
+    CHECK(c.bekker[2].error < 1e-5);
+    CHECK(c.has_cohesion);
+    CHECK(c.cohesion.value == Approx(800.0).epsilon(1e-9));
+    CHECK(c.friction_angle.value == Approx(0.6).epsilon(1e-9));
+    CHECK(c.displacement.value == Approx(8e-4).epsilon(1e-6));
+    CHECK(c.displacement.freedom == 3);
+    CHECK(c.unit_weight == Approx(9.81 * 2650.0 * 0.8));
+    CHECK(c.unloading.value == Approx(2e8).epsilon(1e-6));
+    CHECK(mechanics::under(c.bekker_soil.pressure, 0.05).pressure(0.01) ==
+          Approx(law.under(0.05).pressure(0.01)).epsilon(1e-4));
+  }
+  SECTION("Reece, without cohesion: Bekker's k_c would be negative, and is left out") {
+    const mechanics::Reece law{.k_phi = 90.0, .n = 0.7, .unit_weight = 9.81 * 2650.0 * 0.8};
+    const auto c = MadeSoil(law, dry).constants();
+    CHECK(c.reece[0].value == 0.0);
+    CHECK(c.reece[1].value == Approx(90.0).epsilon(1e-4));
+    CHECK(c.reece[2].value == Approx(0.7).epsilon(1e-5));
+    CHECK(c.bekker[0].value == 0.0);
+    CHECK(c.bekker[1].value > 0.0);
+    CHECK(c.bekker_r_squared < c.reece_r_squared);
+    CHECK_FALSE(c.has_cohesion);
+    CHECK(c.cohesion.value == 0.0);
+  }
+}
+
+TEST_CASE("a soil whose shear curves do not bend, or with one plate, has no constants, in words") {
+  MadeSoil one(mechanics::Bekker{.k_c = 0.0, .k_phi = 3e6, .n = 0.9}, dry);
+  one.plates.plates.resize(1);
+  CHECK_THROWS_WITH(one.constants(), Catch::Contains("--sinkage"));
+  MadeSoil straight(mechanics::Bekker{.k_c = 0.0, .k_phi = 3e6, .n = 0.9}, dry);
+  for (auto& r : straight.shear.loads) {
+    for (auto& s : r.samples) s.stress = r.maximum * s.displacement / 8e-3;
+  }
+  CHECK_THROWS_WITH(straight.constants(), Catch::Contains("--shear-travel"));
+}
+
+TEST_CASE(
+    "the apparatus of a bevameter have the same grains, and its settings are refused by the names of their options") {
+  bevameter::Settings s;
+  s.grains.friction = 0.31;
+  s.grains.half_edge = 5e-3;
+  bevameter::resolve(s);
+  const auto plates = bevameter::plates_of(s);
+  const auto shear = bevameter::shear_of(s, 0.2);
+  const auto wheel = bevameter::wheel_of(s, "");
+  CHECK(plates.grains.friction == 0.31);
+  CHECK(shear.friction == 0.31);
+  CHECK(wheel.grains.friction == 0.31);
+  // K of the contacts as they act.
+  CHECK(plates.grains.scale() * plates.grains.stiffness ==
+        Approx(direct_shear::contact_scale(shear) * shear.stiffness));
+  CHECK(plates.grains.scale() == wheel.grains.scale());
+  CHECK(shear.normal_stress(shear.loads.front()) == Approx(5e3));
+  CHECK(shear.relative_density == 0.2);
+  CHECK(plates.unload);
+  const auto refuses = [](auto&& change, const char* option) {
+    bevameter::Settings wrong;
+    change(wrong);
+    CHECK_THROWS_WITH(bevameter::resolve(wrong), Catch::Contains(option));
+  };
+  refuses([](auto& x) { x.widths = {0.05}; }, "--plates");
+  refuses([](auto& x) { x.normal_stresses = {1e4}; }, "--normal-stresses");
+  refuses([](auto& x) { x.normal_stresses = {1e4, -1.0}; }, "--normal-stresses");
+  refuses([](auto& x) { x.confidence = 1.0; }, "--confidence");
+  refuses([](auto& x) { x.pieces = 1.0; }, "--pieces");
+  refuses([](auto& x) { x.grains.half_edge = -1.0; }, "--half-edge");
+}
+
+TEST_CASE("a run within another one tells it how far it is, and leaves its progress alone") {
+  struct Heard : Stages {
+    void update(double done, std::string_view status = {}) override {
+      share = done;
+      words = status;
+    }
+    void message(std::string_view text) override { said = text; }
+    double share = -1.0;
+    std::string words, said;
+  } heard;
+  const auto folder = std::filesystem::temp_directory_path() / ("dem_within_" + std::to_string(::getpid()));
+  {
+    Session session({"inner", folder.string(), "a=1\n", {.files = {"old.csv"}}, {}, {}, &heard});
+    CHECK_FALSE(session.has_begun());
+    dem::io::write_file(folder / "old.csv", "1\n");
+    session.begin_run(4);
+    CHECK(session.has_begun());
+    CHECK(heard.said.find("old.csv") != std::string::npos);  // it is said what is replaced
+    CHECK_FALSE(std::filesystem::exists(folder / "old.csv"));
+    session.begin("rain", 10.0);
+    session.update(5.0, "0.1 s");
+    CHECK(heard.share == Approx(0.125));
+    CHECK(heard.words == "rain: 0.1 s");
+    session.begin("level");  // of unknown length
+    CHECK(heard.share == Approx(0.25));
+    session.update(3.0);
+    CHECK(heard.share == Approx(0.25));
+    session.begin("press", 2.0);
+    session.update(7.0);  // no more than all of it
+    CHECK(heard.share == Approx(0.75));
+    session.end();
+    CHECK(session.outcome.problem.empty());
+  }
+  std::filesystem::remove_all(folder);
+}
