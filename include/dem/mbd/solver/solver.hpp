@@ -178,7 +178,11 @@ class Solver {
   }
   /// What was changed of what the user gave: sub-steps, velocities at the start. Empty if nothing.
   DEM_COLD std::string note(const Mechanism& m) const {
-    return note_of(m.parts(), assembly_, joints_, raised_.given(m.substeps), m.substeps);
+    std::string text = note_of(m.parts(), assembly_, joints_, raised_.given(m.substeps), m.substeps);
+    for (const TerrainPart& t : m.parts().terrains) {
+      if (const std::string problem = t->problem(); !problem.empty()) text += (text.empty() ? "" : " ") + problem;
+    }
+    return text;
   }
   /// What became of the velocities that were given, at the start.
   const AssemblyReport& assembly() const { return assembly_; }
@@ -249,7 +253,7 @@ class Solver {
   void complete(Mechanism& m, int stage, double start, double dt, const Vec3& gravity) {
     Parts& parts = m.parts();
     const bool last = stage == I::stages - 1;
-    add_forces(parts, stage_time(start, dt, stage), dt, last);
+    add_forces(parts, stage_time(start, dt, stage), dt, last, !sampling_);
     const auto sample = [&] {
       if (last && sampling_ && parts.sample_sensors) parts.sample_sensors(parts, dt);
     };
