@@ -44,6 +44,7 @@ struct Settings {
   double confidence = 0.95;  ///< of the intervals
   std::string output = "bevameter_output";
   bool replay = true;
+  std::uint64_t replay_forces = 2000;  ///< force chains of a frame of the replay, the largest; 0: none
   bool vtk = true;
 
   [[nodiscard]] bool has_wheel() const { return wheel != "none"; }
@@ -115,6 +116,7 @@ inline plate_sinkage::Settings plates_of(const Settings& s) {
   p.unload = true;
   p.output = s.output + "/plates";
   p.replay = s.replay;
+  p.replay_forces = s.replay_forces;
   p.vtk = s.vtk;
   plate_sinkage::resolve(p);
   return p;
@@ -150,6 +152,7 @@ inline direct_shear::Settings shear_of(const Settings& s, double relative_densit
   d.threads = s.threads;
   d.output = s.output + "/shear";
   d.replay = s.replay;
+  d.replay_forces = s.replay_forces;
   d.vtk = s.vtk;
   direct_shear::resolve(d);
   return d;
@@ -169,6 +172,7 @@ inline rigid_wheel::Settings wheel_of(const Settings& s, const std::string& soil
   w.soil = soil;
   w.output = s.output + "/wheel";
   w.replay = s.replay;
+  w.replay_forces = s.replay_forces;
   w.vtk = s.vtk;
   rigid_wheel::resolve(w);
   return w;
