@@ -79,4 +79,15 @@ TEST_CASE("a map shows what arrived, and the word of what did not") {
   CHECK(map.value[0] == 3.0);
   CHECK(std::isnan(map.value[1]));
   CHECK(map.texts == std::vector<std::string>{"go", "dug in", "?"});
+  c.cases.resize(3);
+  const auto over = [&](double mobility::Result::*value) {
+    return mobility::plot_over(
+        c, "plot", "x", "y", [](const auto&, std::size_t k) { return static_cast<double>(k); },
+        [&](const auto& r) { return r.*value; });
+  };
+  const auto speed = over(&mobility::Result::speed);
+  REQUIRE(speed.annotations.size() == 1);
+  CHECK(speed.annotations[0].text == "dug in");
+  CHECK_NOTHROW(dem::io::check_plot(speed));
+  CHECK_NOTHROW(dem::io::check_plot(over(&mobility::Result::energy_per_metre)));  // which what did not go has not
 }

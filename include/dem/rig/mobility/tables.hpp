@@ -65,11 +65,17 @@ template <class X, class Y>
 io::Plot plot_over(const Campaign& c, const char* title, const char* x_label, const char* y_label, X&& x, Y&& y) {
   io::Plot plot{.title = title, .x_label = x_label, .y_label = y_label, .legend = io::Legend::None};
   io::Series line{.style = io::SeriesStyle::LinePoints};
+  std::string before;
   for (std::size_t k = 0; k < c.results.size(); ++k) {
     if (c.results[k].ended.empty()) continue;
     line.x.push_back(x(c.cases[k], k));
     line.y.push_back(y(c.results[k]));
-    if (!c.results[k].goes()) plot.annotations.push_back({line.x.back(), line.y.back(), c.results[k].ended, false});
+    // Once for those that end alike one after the other.
+    const std::string& ended = c.results[k].ended;
+    if (!c.results[k].goes() && ended != before && std::isfinite(line.y.back())) {
+      plot.annotations.push_back({line.x.back(), line.y.back(), ended, false});
+    }
+    before = ended;
   }
   plot.series = {std::move(line)};
   return plot;
