@@ -123,30 +123,30 @@ class MobilityRig : public Rig {
     const auto words = [](const Result& r) {
       return text("{:.1f} m/s\n{:.1f} kJ/m", r.speed, 1e-3 * r.energy_per_metre);
     };
+    // Cells of one size, whatever the steps of their axes are.
+    const auto add_table_map = [&](io::HeatMap map, const char* caption) {
+      map.width = 240 + 130 * static_cast<int>(map.x.size());
+      map.height = 140 + 80 * static_cast<int>(map.y.size());
+      add_map(map, "map", caption);
+    };
     if (s.study == "map") {
       auto map = map_of(
-          c, "Where the car goes on " + c.cases[0].lane[0].soil.name, s.slopes, s.side_slopes,
-          [](const Result& r) { return r.speed; }, words);
-      map.x_label = "slope [%]", map.y_label = "side slope [%]", map.c_label = "speed [m/s]";
+          c, "Where the car goes on " + ground_of(c.cases[0]), numbers_to(s.slopes.size()),
+          numbers_to(s.side_slopes.size()), [](const Result& r) { return r.speed; }, words);
+      map.x_label = "slope", map.y_label = "side slope", map.c_label = "speed [m/s]";
+      for (const double slope : s.slopes) map.x_ticks.push_back(text("{:g} %", slope));
+      for (const double side : s.side_slopes) map.y_ticks.push_back(text("{:g} %", side));
       map.range = {0.0, s.speed};
-      map.width = 200 + 110 * static_cast<int>(s.slopes.size());
-      map.height = 140 + 80 * static_cast<int>(s.side_slopes.size());
-      add_map(map, "map", "Speed and energy for a metre over slope and side slope; grey: it does not go.");
+      add_table_map(std::move(map), "Speed and energy for a metre over slope and side slope; grey: it does not go.");
     }
     if (s.study == "loads") {
-      std::vector<double> tonnes;
-      for (std::size_t k = 0; k < s.loads.size(); ++k) tonnes.push_back(static_cast<double>(k));
-      std::vector<double> soils;
-      for (std::size_t k = 0; k < s.soils_of_loads_.size(); ++k) soils.push_back(static_cast<double>(k));
       auto map = map_of(
-          c, "Energy for a metre over load and soil", tonnes, soils,
+          c, "Energy for a metre over load and soil", numbers_to(s.loads.size()), numbers_to(s.soils_of_loads_.size()),
           [](const Result& r) { return 1e-3 * r.energy_per_metre; }, words);
-      map.x_label = "load", map.y_label = "soil", map.c_label = "energy [kJ/m]";
-      for (std::size_t k = 0; k < s.loads.size(); ++k) map.x_ticks.push_back(text("{:g} kg", s.loads[k]));
+      map.x_label = "sprung mass", map.y_label = "soil", map.c_label = "energy [kJ/m]";
+      for (const double mass : s.loads) map.x_ticks.push_back(text("{:g} kg", mass));
       for (const auto& soil : s.soils_of_loads_) map.y_ticks.push_back(soil.name);
-      map.width = 240 + 130 * static_cast<int>(s.loads.size());
-      map.height = 140 + 80 * static_cast<int>(s.soils_of_loads_.size());
-      add_map(map, "map", "Energy for a metre and speed over soil and load; grey: it does not go.");
+      add_table_map(std::move(map), "Energy for a metre and speed over soil and load; grey: it does not go.");
     }
     if (c.shown.samples.size() > 2) {
       using W = vehicle::WheelSample;
@@ -161,6 +161,12 @@ class MobilityRig : public Rig {
       }
       add_map(rut_map(c.shown.field), "ruts", "Height of the soil at the end.");
     }
+  }
+
+  static std::vector<double> numbers_to(std::size_t n) {
+    std::vector<double> numbers;
+    for (std::size_t k = 0; k < n; ++k) numbers.push_back(static_cast<double>(k));
+    return numbers;
   }
 
   void write_results(const std::filesystem::path& path) const {
