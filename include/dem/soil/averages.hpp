@@ -34,7 +34,7 @@ std::vector<Vec3> shifts_of(const Domain& domain) {
 template <class Model>
 Averages averages(const World<Model>& world, const AverageGrid& grid, const Kernel& kernel = Kernel::cell()) {
   AverageSums sums(grid, kernel);
-  std::vector<int> touching(world.state().particles.row_of.size(), 0);
+  std::vector<int> touching(world.state().particles.given, 0);
   const ContactForce* before = nullptr;
   const auto contacts = contacts_of(world);
   const auto shifts = detail::shifts_of(world.state().domain);
