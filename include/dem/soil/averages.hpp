@@ -27,7 +27,7 @@ std::vector<Vec3> shifts_of(const Domain& domain) {
 /// Adds the grains and contacts of a world as it stands.
 template <class Model>
 void add_world(AverageSums& sums, const World<Model>& world) {
-  std::vector<int> touching(world.state().particles.row_of.size(), 0);
+  std::vector<int> touching(world.state().particles.given, 0);
   const ContactForce* before = nullptr;
   const auto contacts = contacts_of(world);
   const auto shifts = shifts_of(world.state().domain);
