@@ -58,7 +58,7 @@ endfunction()
 
 # dem_needs_hdf5(<out> <source>...): whether one of the sources includes a header that needs HDF5.
 function(dem_needs_hdf5 out)
-  dem_includes(needs "hdf5\\.h|dem/io/checkpoint(/hdf5_file)?\\.hpp|dem/rig/hdf5_checkpoints\\.hpp" ${ARGN})
+  dem_includes(needs "hdf5\\.h|dem/io/checkpoint(/hdf5_file)?\\.hpp|dem/rig/hdf5_checkpoints\\.hpp|dem/soil/tile_file\\.hpp" ${ARGN})
   set(${out} ${needs} PARENT_SCOPE)
 endfunction()
 

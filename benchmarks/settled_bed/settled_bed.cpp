@@ -2,41 +2,23 @@
 // number of steps and threads. The works are those that the tables in benchmarks/RESULTS.md give for other programs:
 // linear spring and dashpot, restitution 0.3, friction 0.4 with history.
 
-#include <dem/dem.hpp>
+#include "works.hpp"
+
 #include <dem/geometry/polyhedron/polyhedra.hpp>
-#include <dem/geometry/shapes.hpp>
 #include <dem/report/ascii_table.hpp>
 
 #include <CLI/CLI.hpp>
 
-#include <algorithm>
-#include <chrono>
 #include <ctime>
-#include <numbers>
-#include <random>
 
 namespace {
 
-using Seconds = std::chrono::duration<double>;
+using namespace bench;
 
-struct Cubes : dem::Model {
-  using Shape = dem::shape::SphereCluster<8>;
-  using Integrator = dem::integrator::SymplecticEuler;
-  static Shape grain() { return dem::shape::cube8(1.2e-3); }
-  static constexpr double width = 0.045, pitch = 0.0045, stiffness = 2000.0;
-  static constexpr int grains = 4000, per_row = 10;
-};
 struct SharpCubes : Cubes {
   using Shape = dem::shape::Polyhedron;
   static Shape grain() { return dem::shape::cube(1.2e-3); }
 };
-struct Spheres : dem::Model {
-  using Integrator = dem::integrator::SymplecticEuler;
-  static Shape grain() { return dem::shape::Sphere(1e-3); }
-  static constexpr double width = 0.040, pitch = 0.0025, stiffness = 2000.0;
-  static constexpr int grains = 20000, per_row = 16;
-};
-
 /// Rounded cubes as wide as those of spheres, with a contact a pair or with points.
 template <class S>
 struct RoundedCubes : Cubes {
@@ -47,62 +29,6 @@ struct Superquadrics : RoundedCubes<dem::shape::Superquadric> {};
 struct Points : RoundedCubes<dem::shape::SuperquadricPoints> {
   static Shape grain() { return Shape(dem::Vec3::Constant(1.2e-3), dem::Vec3::Constant(8), 4); }
 };
-
-struct Settings {
-  std::string work = "both", shape = "cube8";
-  int steps = 5000, settle = 60000, repeats = 3, threads = 0;
-  double skin = 0.0;
-};
-
-/// Constants of a contact with restitution 0.3 for an effective mass (kg): C = 2 zeta sqrt(K m), zeta = 0.3579.
-template <class Model>
-dem::ContactParameters<Model> contact(double effective_mass) {
-  const double stiffness = Model::stiffness, damping = 2.0 * 0.3579 * std::sqrt(stiffness * effective_mass);
-  return {{stiffness, damping, 1.0}, {0.4, 2.0 / 7.0 * stiffness, 0.5 * damping, 1.0}};
-}
-
-/// A loose lattice of grains with random orientations and velocities, in an open box.
-template <class Model>
-dem::World<Model> loose_bed(const Settings& settings) {
-  // The step, like all else, is that of the same works in other programs: half to two thirds of the stable one.
-  dem::World<Model> world({.time_step = 1e-5, .skin = settings.skin});
-  const auto grain = world.add_species(Model::grain());
-  const double mass = world.species(grain).mass, w = Model::width, thick = 0.02, high = 0.3;
-  world.set_contact("grain", "grain", contact<Model>(0.5 * mass));
-  world.set_contact("grain", "wall", contact<Model>(mass));
-  const auto wall = [&](const dem::Vec3& middle, const dem::Vec3& edges) {
-    world.add_surface(world.ground(), dem::surface::Box(edges), {.position = middle});
-  };
-  wall({w / 2, w / 2, -thick / 2}, {w + 2 * thick, w + 2 * thick, thick});
-  for (const double side : {-thick / 2, w + thick / 2}) {
-    wall({side, w / 2, high / 2}, {thick, w + 2 * thick, high});
-    wall({w / 2, side, high / 2}, {w + 2 * thick, thick, high});
-  }
-  std::mt19937 random(20240501);
-  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
-  std::normal_distribution<double> normal;
-  for (int k = 0; k < Model::grains; ++k) {
-    const int n = Model::per_row;
-    const dem::Vec3 cell(k % n + 0.5, k / n % n + 0.5, k / (n * n) + 0.5);
-    const dem::Vec3 jitter = 0.05e-3 * dem::Vec3(uniform(random), uniform(random), uniform(random));
-    const dem::Quaternion turn = dem::Quaternion(normal(random), normal(random), normal(random), normal(random));
-    world.add_particle({.species = grain,
-                        .position = Model::pitch * cell + jitter,
-                        .velocity = 0.2 * dem::Vec3(uniform(random), uniform(random), uniform(random)),
-                        .rotation = turn.normalized().toRotationMatrix()});
-  }
-  return world;
-}
-
-template <class World>
-void run_or_fail(World& world, int steps) {
-  if (const auto report = world.run(static_cast<std::uint64_t>(steps)); !report) dem::fail("{}", report.text);
-}
-
-double median(std::vector<double> values) {
-  std::sort(values.begin(), values.end());
-  return values[values.size() / 2];
-}
 
 template <class Model>
 void run(const char* name, const Settings& settings) {
@@ -179,8 +105,19 @@ int main(int argc, char** argv) {
   app.add_option("--threads", settings.threads, "most threads (0: all)")->check(CLI::NonNegativeNumber);
   app.add_option("--skin", settings.skin, "reach of the neighbour list in m (0: automatic)")
       ->check(CLI::NonNegativeNumber);
+  app.add_option(
+         "--sizes", settings.sizes,
+         "grains of beds of cubes and of spheres, such as 4000,40000,300000,2000000: boxes of 4,000 beside each "
+         "other, so that only their number differs. --settle is of the first box, --steps of the first size: larger "
+         "ones are timed for fewer, at least 100")
+      ->delimiter(',')
+      ->check(CLI::Range(std::size_t{1}, std::size_t{100'000'000}));
   CLI11_PARSE(app, argc, argv);
   try {
+    if (!settings.sizes.empty()) {
+      time_sizes(settings);
+      return 0;
+    }
     const bool cubes = settings.work != "spheres";
     if (cubes && settings.shape == "cube8") run<Cubes>("cubes", settings);
     if (cubes && settings.shape == "polyhedron") run<SharpCubes>("polyhedra", settings);

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # The replay of a report in a headless browser: the page loads without errors and asks for nothing from outside, frames
-# advance, mouse, keys and controls change the picture. Leaves replay_<frame>.png in the output folder, to look at.
+# advance, mouse, keys and controls change the picture. Leaves replay_*.png in the output folder, to look at.
 #
 #   replay.sh <replay_page> <output folder>
 set -euo pipefail
@@ -91,13 +91,13 @@ call Runtime.evaluate "{\"expression\":$(awk '
   BEGIN { printf "\"" } { gsub(/\\/, "\\\\"); gsub(/"/, "\\\""); printf "%s\\n", $0 } END { print "\"" }' "$probe")}"
 evaluate 'tryControls()'
 printf '%b' "$(field value)" > "$output/probe.txt"
-expect 'right grains 50 and 50, wrong 0' 'right turns 100' 'frame of the start 0' 'frame of the slider 15' 'clock 0.240 s' 'grains are seen true' 'shades are many true' \
+expect 'right grains 50 and 50, wrong 0' 'right turns 100' 'right forces 75 and 25, wrong 0, lost 0, falling 0' 'frame of the start 0' 'frame of the slider 15' 'clock 0.240 s' 'grains are seen true' 'shades are many true' \
   'the same without a change true' 'sand is yellow true' 'legend is hidden true' 'cut hides grains true' \
   'not moved without a button true' 'play advances true' 'pause stops true' 'play ends true' 'requests 0' \
   'legend of sleep asleep or awakeasleepawake' \
-  'parts floor|bottom box|top box|wheel <of tin>' 'end true'
+  'parts floor|bottom box|top box|wheel <of tin>' 'force chains are off true' 'end true'
 grep -q '^legend displacement (m)0.*≥ 0\.0' "$output/probe.txt" || fail "The legend is not that of the displacement" "$(cat "$output/probe.txt")"
-[ "$(grep -c '^changed by .* true$' "$output/probe.txt")" = 15 ] ||
+[ "$(grep -c '^changed by .* true$' "$output/probe.txt")" = 19 ] ||
   fail "Not all controls change the picture:" "$(cat "$output/probe.txt")"
 
 # The mouse as the browser itself has it.
@@ -112,15 +112,20 @@ mouse mouseWheel 300 200 -240
 zoomed=$(picture)
 [ "$first" != "$turned" ] && [ "$turned" != "$zoomed" ] && [ "$first" != "$zoomed" ] || fail "The mouse does not turn and zoom"
 
-# Pictures to look at: grains falling, and sheared, the latter for readers who like it dark.
+# Pictures to look at: grains falling, and sheared, the latter for readers who like it dark; and force chains alone.
+picture_to() {
+  call Page.captureScreenshot '{"format":"png"}'
+  field data | base64 -d > "$output/$1"
+  [ "$(wc -c < "$output/$1")" -gt 20000 ] || fail "$1 shows next to nothing"
+}
 for frame in 1 25; do
   [ $frame != 25 ] || call Emulation.setEmulatedMedia '{"features":[{"name":"prefers-color-scheme","value":"dark"}]}'
   open_page "$output/report.html"
   evaluate "(async () => { const time = document.querySelector('.controls input'); time.value = $frame; time.dispatchEvent(new Event('input')); for (let k = 0; k < 3; ++k) await new Promise(requestAnimationFrame); return ''; })()"
-  call Page.captureScreenshot '{"format":"png"}'
-  field data | base64 -d > "$output/replay_$frame.png"
-  [ "$(wc -c < "$output/replay_$frame.png")" -gt 20000 ] || fail "replay_$frame.png shows next to nothing"
+  picture_to replay_$frame.png
 done
+evaluate "(async () => { for (const box of document.querySelectorAll('.controls > div input[type=checkbox]')) box.click(); for (let k = 0; k < 3; ++k) await new Promise(requestAnimationFrame); return ''; })()"
+picture_to replay_chains.png
 ! cmp -s "$output/replay_1.png" "$output/replay_25.png" || fail "Two frames look the same"
 
 # Errors of scripts, and words of the page to the console. The driver's own word on reading pixels comes from the probe.

@@ -43,6 +43,18 @@ ReplayGrain cube(int i, int j, int k, double time) {
   return g;
 }
 
+/// What a cube that has landed bears down with, on the cube below it or on the floor: the weight of its column.
+dem::report::ReplayForce load(const ReplayGrain& g, int k) {
+  constexpr std::size_t layer = kAlong * kAlong;
+  const bool lowest = g.number < layer;
+  return {.grain = g.number,
+          .partner = lowest ? 0 : g.number - layer,
+          .on_surface = lowest,
+          .from = g.position,
+          .to = g.position - Vec3(0, 0, lowest ? 0.5 * kPlace : kPlace),
+          .force = 2e-4 * (kUp - k)};
+}
+
 /// Four walls that are open above and below, centred at the origin.
 dem::io::SurfaceMesh walls(double edge, double height) {
   dem::io::SurfaceMesh mesh = dem::io::box_mesh({edge, edge, height});
@@ -74,11 +86,15 @@ int main(int argc, char** argv) {
   replay.add_part("wheel <of tin>", dem::io::cylinder_mesh(2e-3, 4e-3));
 
   std::vector<ReplayGrain> grains;
+  std::vector<dem::report::ReplayForce> forces;
   for (int step = 0; step <= 400; ++step) {
     const double time = step * 1e-3;
     grains.clear();
+    forces.clear();
     for (int n = 0; n < kAlong * kAlong * kUp; ++n) {
-      grains.push_back(cube(n % kAlong, n / kAlong % kAlong, n / kAlong / kAlong, time));
+      const int k = n / kAlong / kAlong;
+      grains.push_back(cube(n % kAlong, n / kAlong % kAlong, k, time));
+      if (grains.back().force > 0.0) forces.push_back(load(grains.back(), k));
     }
     const double sheared = 3e-3 * std::max(0.0, time - kFall) / (kEnd - kFall),
                  rolled = 0.8 * inside * (time - 0.25) / kEnd;
@@ -88,7 +104,8 @@ int main(int argc, char** argv) {
                                           {.position = {sheared, 0, 1.5 * half}},
                                           {.position = {rolled, 0, 2 * half + 2e-3},
                                            .rotation = turned(rolled / 2e-3, Vec3::UnitY()),
-                                           .shown = time >= kFall}});
+                                           .shown = time >= kFall}},
+                  forces);
   }
   dem::io::HtmlReport report("A replay");
   report.paragraph("Cubes fall into a split box, are sheared by its upper half, and a wheel rolls over them.")

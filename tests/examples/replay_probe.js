@@ -59,6 +59,25 @@ function rightTurns() {
   return right;
 }
 
+// How many force chains are where replay_page.cpp has them, and as large: none while all fall, in the end one under each
+// grain, straight down to the next one or to the floor. From frame 5 on each line is known in the next frame.
+function rightForces() {
+  const {forces: {frames, low, size}, head} = figure.demReplay, place = 1.06 * 2e-3, last = frames[frames.length - 1];
+  const most = head.forces.most, right = {down: 0, floor: 0, wrong: 0, lost: 0};
+  const at = (k, end, axis) => low[axis] + size[axis] * last.ends[6 * k + 3 * end + axis];
+  last.force.forEach((steps, k) => {
+    const [x, y, z] = [0, 1, 2].map((axis) => at(k, 0, axis) - at(k, 1, axis)), force = (steps / 255) ** 2 * most;
+    // Layers by their heights, of which the lowest bears down on the floor; both ends are off by half a step each.
+    const layer = Math.round((at(k, 0, 2) - low[2]) / place - 0.5), expected = 2e-4 * (4 - layer);
+    const good = Math.abs(x) <= size[0] && Math.abs(y) <= size[1] &&
+        Math.abs(z - (layer === 0 ? 0.5 : 1) * place) <= size[2] &&
+        Math.abs(force - expected) <= Math.sqrt(expected * most) / 255 + most / 260100;
+    ++right[good ? layer === 0 ? "floor" : "down" : "wrong"];
+  });
+  for (const {next} of frames.slice(5, -1)) right.lost += next.filter((line) => line < 0).length;
+  return `${right.down} and ${right.floor}, wrong ${right.wrong}, lost ${right.lost}, falling ${frames[0].force.length}`;
+}
+
 async function tryControls() {
   let lines = "";
   const note = (name, value) => lines += `${name} ${value}\n`;
@@ -83,6 +102,7 @@ async function tryControls() {
 
   note("right grains", rightGrains());
   note("right turns", rightTurns());
+  note("right forces", rightForces());
   note("the same without a change", (await look()).hash === before.hash);
   note("frame of the start", figure.dataset.frame);
   await changes("time", () => set(time, 15));
@@ -123,8 +143,16 @@ async function tryControls() {
   note("cut hides grains", less.solid < half.solid);
   await changes("solid parts", () => [set(cut, 0), set(sliders[1], 1)]);
   note("parts", [...figure.querySelectorAll("details label")].map((label) => label.textContent).join("|"));
-  figure.querySelectorAll("input[type=checkbox]")[2].click();
+  figure.querySelectorAll("details input[type=checkbox]")[2].click();
   note("part is hidden", (await look()).hash !== before.hash);
+  const [grains, chains] = figure.querySelectorAll(".controls > div input[type=checkbox]");
+  note("force chains are off", !chains.checked && chains.labels[0].textContent === "force chains (widest: \u2265 8.0e-4 N)");
+  set(sliders[1], 0.1);
+  before = await look();
+  await changes("force chains", () => chains.click());
+  await changes("grains left out", () => grains.click());
+  await changes("force chains left out", () => chains.click());
+  await changes("grains", () => grains.click());
 
   // At its fastest, so that a slow machine, which shows few pictures a second, need not wait.
   const play = figure.querySelector("button"), frame = () => Number(figure.dataset.frame), last = Number(time.max);

@@ -104,6 +104,23 @@ class HistoryCarrier {
     });
   }
 
+  /// Forgets the contacts of grains that are gone, so that their ids may be given again.
+  template <class Particles>
+  void forget_gone(const Particles& p) {
+    std::erase_if(pairs_, [&](const Entry& r) { return p.row_of[r.i] == p.gone || p.row_of[r.j] == p.gone; });
+    std::erase_if(surfaces_, [&](const Entry& r) { return p.row_of[r.i] == p.gone; });
+  }
+  /// The history of a contact that grains bring with them: of grains i and j (ids), as i sees it.
+  void add_pair(std::uint32_t i, std::uint32_t j, std::uint32_t feature,
+                const std::array<double, static_cast<std::size_t>(size)>& history) {
+    pairs_.push_back({i, j, feature, history});
+  }
+  /// The same of grain i on a surface; of the key, the grain's place in its chunk does not count.
+  void add_surface(std::uint32_t i, std::uint64_t key,
+                   const std::array<double, static_cast<std::size_t>(size)>& history) {
+    surfaces_.push_back({i, static_cast<std::uint32_t>(key >> 32), static_cast<std::uint32_t>(key), history});
+  }
+
   /// Hands them to the chunks that own the contacts now, with the keys of the new candidate lists. Those of grains that
   /// were removed or have parted are dropped.
   template <class Executor, class Particles>

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <dem/core/aligned.hpp>
+#include <dem/core/ids.hpp>
 #include <dem/grain/partner_view.hpp>
 #include <dem/integrator/motion.hpp>
 #include <dem/law/state.hpp>
@@ -65,7 +66,17 @@ struct Particles {
   AlignedVector<double> pose;                                                       ///< Shape::pose_size a grain
   std::vector<std::uint32_t> species, id;
   std::vector<std::uint32_t> row_of;  ///< by id; `gone` for grains that were removed
+  // Ids of grains whose rows are gone are given again, the last first; each then has a generation more.
+  std::vector<std::uint32_t> generation;         ///< by id, as far as there are grains of later ones
+  std::vector<std::uint32_t> freed, free_again;  ///< ids: since the last release_ids(); that may be given again
   static constexpr std::uint32_t gone = 0xffffffffu;
+
+  /// What names the grain of an id from outside.
+  ParticleId name(std::uint32_t of) const { return ParticleId(of, of < generation.size() ? generation[of] : 0); }
+  /// The name that the next grain gets.
+  ParticleId next_name() const {
+    return name(free_again.empty() ? static_cast<std::uint32_t>(row_of.size()) : free_again.back());
+  }
 
   std::size_t chunks() const { return (count + chunk_size - 1) / chunk_size; }
   const double* pose_of(std::size_t i) const { return pose.data() + i * Shape::pose_size; }
@@ -154,8 +165,8 @@ struct Particles {
     id.resize(rows, 0xffffffffu);
   }
 
-  /// Adds a grain with the next id, at rest in what integrators remember; `turning` in rad/s, body frame. Returns its
-  /// row.
+  /// Adds a grain with the id of next_name(), at rest in what integrators remember; `turning` in rad/s, body frame.
+  /// Returns its row.
   std::size_t append(std::uint32_t kind, const Vector3<double>& x, const Vector3<double>& v,
                      const Matrix3<double>& rotation, const Vector3<double>& turning) {
     const std::size_t row = count;
@@ -167,8 +178,10 @@ struct Particles {
     for (Columns3* c : {&force, &torque}) c->set(row, {0, 0, 0});
     set_memory(row, {});
     species[row] = kind;
-    id[row] = static_cast<std::uint32_t>(row_of.size());
-    row_of.push_back(static_cast<std::uint32_t>(row));
+    id[row] = next_name().value;
+    if (free_again.empty()) row_of.push_back(0);
+    else free_again.pop_back();
+    row_of[id[row]] = static_cast<std::uint32_t>(row);
     return row;
   }
 
@@ -182,6 +195,16 @@ struct Particles {
     }
     permute(kept, executor);
     resize(kept.size());
+    freed.insert(freed.end(), ids.begin(), ids.end());
+  }
+  /// From here on, the ids of grains whose rows are gone may be given again. Nobody may know them any more.
+  void release_ids() {
+    for (const std::uint32_t k : freed) {
+      if (generation.size() <= k) generation.resize(row_of.size(), 0);
+      ++generation[k];
+    }
+    free_again.insert(free_again.end(), freed.begin(), freed.end());
+    freed.clear();
   }
 
   /// Puts the padding rows where the last grain is and stops them, so that bounds and displacements stay right.

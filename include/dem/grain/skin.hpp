@@ -19,10 +19,11 @@ namespace dem::grain {
 struct SkinChoice {
   /// What a new list costs, a grain, in units of a candidate that is looked at once; measured with spheres.
   static constexpr double new_list = 100.0, per_candidate = 10.0;
-  /// In largest bounding radii.
+  /// In mean bounding radii: skins that suit a few large grains would fill the lists of all small ones.
   static constexpr std::array<double, 9> ladder = {0.1, 0.14, 0.2, 0.28, 0.4, 0.55, 0.75, 1.0, 1.3};
   static constexpr std::uint64_t never = ~std::uint64_t{0};
 
+  double radius = 0.0;            ///< m, mean bounding radius of the grains
   double skin = 0.0;              ///< m, of the present list; 0: there was none yet
   double diameter = 0.0;          ///< m, mean of the grains' bounding spheres, with the range of cohesion
   double candidates = 0.0;        ///< of a grain, in the present list
@@ -33,7 +34,8 @@ struct SkinChoice {
 
   template <class V>
   void fields(V& v) {
-    v("skin", skin, "m"), v("diameter", diameter, "m"), v("candidates", candidates), v("moved", moved, "m");
+    v("radius", radius, "m"), v("skin", skin, "m"), v("diameter", diameter, "m"), v("candidates", candidates),
+        v("moved", moved, "m");
     v("made", made), v("look_at", look_at), v("looked_at", looked_at);
   }
 
@@ -46,10 +48,10 @@ struct SkinChoice {
 
   /// The best skin (m) for grains of which the fastest goes half of `speed` (m) in a step. `evaluations`: of forces, a
   /// step; `lists`: new lists a step that are made whatever the skin is.
-  double best(double largest_radius, double speed, double evaluations, double lists) const {
+  double best(double speed, double evaluations, double lists) const {
     double best = 0.0, least = 0.0;
     for (const double share : ladder) {
-      const double s = share * largest_radius;
+      const double s = share * radius;
       const double cost = evaluations * candidates_at(s) + list_cost(s) * std::max(lists, speed / s);
       if (best > 0.0 && cost >= least) continue;
       best = s;
@@ -60,33 +62,32 @@ struct SkinChoice {
 
   /// Before a new list: its skin (m), the same as before where nobody knows how far grains have moved. `step`: steps so
   /// far.
-  double choose(double largest_radius, std::uint64_t step, double evaluations) {
-    if (skin == 0.0) skin = ladder[0] * largest_radius;
+  double choose(std::uint64_t step, double evaluations) {
+    if (skin == 0.0) skin = ladder[0] * radius;
     else if (moved >= 0.0) {
       const double steps = static_cast<double>(std::max<std::uint64_t>(1, step - made));
       const bool outlived = looked_at || 2.0 * moved >= skin;  // else something other than motion asked for it
-      skin = best(largest_radius, 2.0 * moved / steps, evaluations, outlived ? 0.0 : 1.0 / steps);
+      skin = best(2.0 * moved / steps, evaluations, outlived ? 0.0 : 1.0 / steps);
     }
     looked_at = false;
     moved = -1.0;
     return skin;
   }
-  /// After a new list was made.
-  void made_list(double largest_radius, double mean_diameter, double candidates_of_a_grain, std::uint64_t step,
-                 double evaluations) {
-    diameter = mean_diameter;
+  /// After a new list was made; `range`: m, of cohesion.
+  void made_list(double range, double candidates_of_a_grain, std::uint64_t step, double evaluations) {
+    diameter = 2.0 * radius + range;
     candidates = candidates_of_a_grain;
     made = step;
     look_at = never;
-    const double least = ladder[0] * largest_radius;
+    const double least = ladder[0] * radius;
     const double needless = evaluations * (candidates - candidates_at(least));
     if (skin > least && needless > 0.0) look_at = step + 1 + static_cast<std::uint64_t>(list_cost(least) / needless);
   }
   /// After `step` steps, when the list is due to be looked at: whether a new list is better, with grains that have
   /// moved so far (m).
-  bool is_too_wide(double largest_radius, double so_far, std::uint64_t step, double evaluations) {
+  bool is_too_wide(double so_far, std::uint64_t step, double evaluations) {
     const std::uint64_t steps = step - made;
-    looked_at = best(largest_radius, 2.0 * so_far / static_cast<double>(steps), evaluations, 0.0) < skin;
+    looked_at = best(2.0 * so_far / static_cast<double>(steps), evaluations, 0.0) < skin;
     look_at = step + steps;
     return looked_at;
   }

@@ -13,6 +13,7 @@ using ClutchId = Id<struct ClutchTag>;          ///< a clutch or a brake
 using BrakeId = ClutchId;                       ///< a brake is a clutch to what its joint stands on
 using LoadId = Id<struct LoadTag>;              ///< an applied force or torque
 using MotionId = Id<struct MotionTag>;          ///< a prescribed motion
+using TerrainId = Id<struct TerrainTag>;        ///< ground that gives way and remembers it
 using SensorId = Id<struct SensorTag>;          ///< a force sensor
 
 }  // namespace dem

@@ -83,8 +83,11 @@ class Machine : public Mechanism {
   }
   /// What was changed of the velocities that were given, at the start: see given_velocities.
   const AssemblyReport& assembly() const { return solver_.assembly(); }
-  /// Does that now: velocities that joints do not allow are changed, as given_velocities says.
+  /// Does that now: velocities that joints do not allow are changed, as given_velocities says. What is prescribed moves
+  /// as it does at the machine's time. Later changes of velocities need another call: the first step asks once.
   DEM_COLD const AssemblyReport& assemble() {
+    solver_.check_motions(*this);
+    if (parts().apply_motions) parts().apply_motions(parts(), time(), 0.0, false);
     solver_.assemble(*this);
     return solver_.assembly();
   }

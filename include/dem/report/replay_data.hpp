@@ -21,6 +21,8 @@ struct ReplayOptions {
   double interval = 0.0;
   /// At most so many grains are drawn, spread evenly over their numbers; the page says how many there were.
   std::size_t grains = 50'000;
+  /// So many of the contacts of a frame are drawn as force chains, those with the largest forces; 0: none.
+  std::size_t force_lines = 2'000;
   /// Edge of the square (m) that shows a plane of a world, which has no end.
   double plane_size = 1.0;
   /// File of three.js (its build as one script); empty: found by find_three_js.
@@ -66,6 +68,16 @@ struct ReplayPose {
   bool shown = true;
 };
 
+/// What passes between a grain and another grain or a surface in a frame: a line of a force chain.
+struct ReplayForce {
+  std::size_t grain = 0;     ///< number of the grain, the same in all frames
+  std::size_t partner = 0;   ///< number of the other grain or of the surface, likewise
+  bool on_surface = false;   ///< what `partner` is
+  Vec3 from = Vec3::Zero();  ///< m, where the line begins: in the grain's centre
+  Vec3 to = Vec3::Zero();    ///< m, where it ends: in the other grain's centre, or where the grain touches the surface
+  double force = 0.0;        ///< N, its size; a line whose numbers are not all finite is not drawn
+};
+
 /// A part of a machine.
 struct ReplayPart {
   std::string name;
@@ -86,6 +98,20 @@ struct KeptGrain {
   float force = 0.0F;                  ///< N
 };
 
+/// What is kept of a force in a frame: 36 bytes.
+struct KeptForce {
+  std::uint32_t grain = 0;         ///< number
+  std::uint32_t partner : 31 = 0;  ///< number
+  std::uint32_t on_surface : 1 = 0;
+  std::array<float, 3> from = {}, to = {};  ///< m, from the replay's origin
+  float force = 0.0F;                       ///< N
+
+  /// Tells which pair it is of.
+  [[nodiscard]] std::uint64_t key() const {
+    return std::uint64_t{grain} << 32U | std::uint64_t{on_surface} << 31U | partner;
+  }
+};
+
 /// What is kept of a part in a frame: position (m, from the replay's origin) and quaternion (w, x, y, z), all zeros
 /// where the part is not shown.
 using KeptPose = std::array<float, 7>;
@@ -94,10 +120,11 @@ using KeptPose = std::array<float, 7>;
 struct KeptFrame {
   double time = 0.0;  ///< s
   std::vector<KeptGrain> grains = {};
-  std::vector<KeptPose> poses = {};  ///< of the parts that there were at that time
+  std::vector<KeptPose> poses = {};    ///< of the parts that there were at that time
+  std::vector<KeptForce> forces = {};  ///< by their keys
   template <class V>
   void fields(V& v) {
-    v("time", time, "s"), v.bytes("grains", grains), v.bytes("poses", poses);
+    v("time", time, "s"), v.bytes("grains", grains), v.bytes("poses", poses), v.bytes("forces", forces);
   }
 };
 

@@ -2,6 +2,7 @@
 // A replay as what a page holds of it: a head to read, and bytes.
 
 #include <dem/report/deflate.hpp>
+#include <dem/report/replay_forces.hpp>
 #include <dem/report/replay_mesh.hpp>
 #include <dem/report/replay_planes.hpp>
 #include <dem/report/replay_recorder.hpp>
@@ -143,6 +144,29 @@ inline std::string add_poses(Deflate& out, const Replay& replay, std::size_t par
   return fmt::format(R"("poses":{})", poses.size());
 }
 
+/// The force chains: how to read them, as JSON; null if there are none.
+inline std::string add_forces(Deflate& out, const Replay& replay) {
+  const ForcePlanes planes = force_planes(replay.frames());
+  if (planes.most == 0.0) return "null";
+  const Box& box = planes.box;
+  std::string head =
+      fmt::format(R"({{"most":{:.9g},"low":[{:.9g},{:.9g},{:.9g}],"high":[{:.9g},{:.9g},{:.9g}],"added":[)",
+                  planes.most, box.low.x(), box.low.y(), box.low.z(), box.high.x(), box.high.y(), box.high.z());
+  const char* comma = "";
+  for (const std::size_t count : planes.added) {
+    head += fmt::format("{}{}", comma, count);
+    comma = ",";
+  }
+  head += "],\"planes\":[";
+  comma = "";
+  for (const std::string& plane : planes.bytes) {
+    out.add(plane);
+    head += fmt::format("{}{}", comma, plane.size());
+    comma = ",";
+  }
+  return head + "]}";
+}
+
 /// A string of JSON that may stand inside a page: no "<".
 [[nodiscard]] inline std::string json_text(std::string_view text) {
   std::string result = "\"";
@@ -194,7 +218,8 @@ inline std::string add_poses(Deflate& out, const Replay& replay, std::size_t par
     head += fmt::format("{}{:.9g}", comma, frame.time);
     comma = ",";
   }
-  return {.head = head + "]}", .bytes = out.finish()};
+  head += "],\"forces\":" + detail::add_forces(out, replay);
+  return {.head = head + "}", .bytes = out.finish()};
 }
 
 }  // namespace dem::report

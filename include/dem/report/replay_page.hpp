@@ -6,6 +6,7 @@
 #include <dem/report/replay_encode.hpp>
 #include <dem/report/replay_script_camera.hpp>
 #include <dem/report/replay_script_data.hpp>
+#include <dem/report/replay_script_forces.hpp>
 #include <dem/report/replay_script_page.hpp>
 #include <dem/report/replay_script_scene.hpp>
 #include <dem/report/replay_script_view.hpp>
@@ -69,8 +70,8 @@ struct ReplayPage {
         encoded.head, io::base64(encoded.bytes));
     page.scripts = "<script>\n" + three.script + "\n</script>\n<script>\n(() => {\n\"use strict\";\n";
     for (const std::string_view part :
-         {detail::kReplayScriptData, detail::kReplayScriptCamera, detail::kReplayScriptScene, detail::kReplayScriptView,
-          detail::kReplayScriptPage}) {
+         {detail::kReplayScriptData, detail::kReplayScriptCamera, detail::kReplayScriptScene,
+          detail::kReplayScriptForces, detail::kReplayScriptView, detail::kReplayScriptPage}) {
       page.scripts += part;
     }
     page.scripts += "})();\n</script>\n";

@@ -8,9 +8,11 @@
 #include <dem/report/replay_thinning.hpp>
 #include <dem/report/three_js.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <iterator>
 #include <span>
 #include <string>
 #include <type_traits>
@@ -28,7 +30,8 @@ namespace dem::report {
 ///     }
 ///     html_report.replay(replay, "The bed while it is sheared.");
 ///
-/// It needs 28 bytes a grain and frame. Without a world: add_shape, add_part, and the other record().
+/// It needs 28 bytes a grain and frame, and 36 a force and frame. Without a world: add_shape, add_part, and the other
+/// record().
 class Replay {
  public:
   /// Throws dem::Error for options outside of their ranges, and when a file of three.js is named that is not there.
@@ -64,15 +67,18 @@ class Replay {
   /// Whether record() at this time (s) would make a frame.
   [[nodiscard]] bool due(double time) const { return frames_.empty() || (time > last_time_ && ticks_.due(time)); }
 
-  /// Makes a frame, if one is due, of all grains that are there and of all parts, a pose each. Returns whether one was
-  /// made; a time that was recorded before is passed over. Throws dem::Error for a time that is not finite or goes
-  /// back, a shape that was never added or is not that of earlier frames, and another number of poses than parts.
-  bool record(double time, std::span<const ReplayGrain> grains, std::span<const ReplayPose> poses = {}) {
+  /// Makes a frame, if one is due, of all grains that are there, of all parts, a pose each, and of the forces at
+  /// contacts, one for each pair that touches; of these the largest are kept. Returns whether one was made; a time that
+  /// was recorded before is passed over. Throws dem::Error for a time that is not finite or goes back, a shape that was
+  /// never added or is not that of earlier frames, and another number of poses than parts.
+  bool record(double time, std::span<const ReplayGrain> grains, std::span<const ReplayPose> poses = {},
+              std::span<const ReplayForce> forces = {}) {
     check_frame(time, grains, poses);
+    for (const ReplayForce& f : forces) check_number(f.grain), check_number(f.partner);
     if (!frames_.empty() && time == last_time_) return false;
     if (due(time) && frames_.size() == static_cast<std::size_t>(options_.frames)) drop_every_second();
     const bool is_due = due(time);
-    if (is_due) keep(time, grains, poses);
+    if (is_due) keep(time, grains, poses, forces);
     ticks_.count(time);
     last_time_ = time;
     return is_due;
@@ -118,6 +124,10 @@ class Replay {
   }
 
  private:
+  static void check_number(std::size_t number) {
+    if (number >= std::size_t{1} << 31)
+      fail("replay: a grain has the number {}; number grains and surfaces from 0 on", number);
+  }
   void check_frame(double time, std::span<const ReplayGrain> grains, std::span<const ReplayPose> poses) const {
     if (!std::isfinite(time)) fail("replay: the time of a frame is {}; give a finite time in seconds", time);
     if (!frames_.empty() && time < last_time_) {
@@ -132,7 +142,7 @@ class Replay {
         fail("replay: grain {} has shape {}, but {} were added (from 0 on); use what add_shape returned", g.number,
              g.shape, shapes_.size());
       }
-      if (g.number >= std::size_t{1} << 31) fail("replay: a grain has the number {}; number them from 0 on", g.number);
+      check_number(g.number);
       const std::uint32_t before = sample_.shape_of(g.number);
       if (before != GrainSample::kUnmet && before != g.shape) {
         fail("replay: grain {} has shape {}, but had {} before; give a grain of another shape another number", g.number,
@@ -163,9 +173,44 @@ class Replay {
     if (count > 0.0) origin_ = sum / count;
   }
 
-  void keep(double time, std::span<const ReplayGrain> grains, std::span<const ReplayPose> poses) {
+  /// The largest forces, by their pairs. Of several of one pair, as two grains have in a narrow periodic cell, the
+  /// largest one.
+  [[nodiscard]] std::vector<ReplayForce> strongest(std::span<const ReplayForce> forces) const {
+    const auto is_known = [](const ReplayForce& f) {
+      return f.from.allFinite() && f.to.allFinite() && std::isfinite(f.force) && f.force > 0.0;
+    };
+    const auto same_pair = [](const ReplayForce& a, const ReplayForce& b) {
+      return a.grain == b.grain && a.on_surface == b.on_surface && a.partner == b.partner;
+    };
+    const auto by_pair = [](const ReplayForce& a, const ReplayForce& b) {
+      if (a.grain != b.grain) return a.grain < b.grain;
+      if (a.on_surface != b.on_surface) return b.on_surface;
+      return a.partner != b.partner ? a.partner < b.partner : a.force > b.force;
+    };
+    std::vector<ReplayForce> kept;
+    if (options_.force_lines > 0) std::copy_if(forces.begin(), forces.end(), std::back_inserter(kept), is_known);
+    std::sort(kept.begin(), kept.end(), by_pair);
+    kept.erase(std::unique(kept.begin(), kept.end(), same_pair), kept.end());
+    if (kept.size() <= options_.force_lines) return kept;
+    // Equal forces by their pairs, so that the order in which they are given does not count.
+    const auto end = kept.begin() + static_cast<std::ptrdiff_t>(options_.force_lines);
+    std::nth_element(kept.begin(), end, kept.end(), [&](const ReplayForce& a, const ReplayForce& b) {
+      return a.force != b.force ? a.force > b.force : by_pair(a, b);
+    });
+    kept.erase(end, kept.end());
+    std::sort(kept.begin(), kept.end(), by_pair);
+    return kept;
+  }
+
+  void keep(double time, std::span<const ReplayGrain> grains, std::span<const ReplayPose> poses,
+            std::span<const ReplayForce> forces) {
     if (frames_.empty()) find_origin(grains, poses);
-    KeptFrame frame{.time = time, .grains = {}, .poses = {}};
+    KeptFrame frame{.time = time, .grains = {}, .poses = {}, .forces = {}};
+    for (const ReplayForce& f : strongest(forces)) {
+      frame.forces.push_back({static_cast<std::uint32_t>(f.grain), static_cast<std::uint32_t>(f.partner) & 0x7fffffffU,
+                              f.on_surface ? 1U : 0U, single(f.from - origin_), single(f.to - origin_),
+                              static_cast<float>(f.force)});
+    }
     for (const ReplayGrain& g : grains) sample_.meet(g.number, g.shape);
     for (const ReplayGrain& g : grains) {
       if (!sample_.draws(g.number)) continue;

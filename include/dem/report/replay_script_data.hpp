@@ -107,6 +107,38 @@ function readFrames(head, reader) {
   return {place, turn, scalar, asleep, first};
 }
 
+// The force chains: of each frame the ends of its lines (six 16-bit steps each), their forces (8 bits), and which line
+// of the next frame each is (-1: none).
+function readForces(head, reader) {
+  const planes = head.planes.map((count) => reader.plane(count)), at = new Array(planes.length).fill(0);
+  const take = (plane) => planes[plane][at[plane]++], unfold = (folded) => (folded >>> 1) ^ -(folded & 1);
+  const frames = [];
+  const read = (frame, what, before, force, isNew) => {
+    const line = before.slice();
+    for (let k = 0; k < 6; ++k) {
+      if (isNew && k >= 3) line[k] = line[k - 3];
+      if (what & 2) line[k] = line[k] + unfold(take(1 + 2 * k) | take(2 + 2 * k) << 8) & 65535;
+    }
+    frame.ends.push(...line);
+    frame.force.push(what & 4 ? force + unfold(take(13)) & 255 : force);
+    return line;
+  };
+  let last = {ends: [], force: [], next: []};
+  for (const added of head.added) {
+    const frame = {ends: [], force: []};
+    last.next = Int32Array.from(last.force, (force, k) => {
+      const what = take(0);
+      if (what === 0) return -1;
+      read(frame, what, last.ends.slice(6 * k, 6 * k + 6), force, false);
+      return frame.force.length - 1;
+    });
+    for (let k = 0, before = [0, 0, 0, 0, 0, 0]; k < added; ++k) before = read(frame, take(0), before, 0, true);
+    frame.next = new Int32Array(frame.force.length).fill(-1);
+    frames.push(last = frame);
+  }
+  return frames.map(({ends, force, next}) => ({ends: Uint16Array.from(ends), force: Uint8Array.from(force), next}));
+}
+
 // The quaternion x, y, z, w of a packed turn, into to[at...at + 3], times 32767.
 function writeTurn(packed, to, at) {
   const most = packed >>> 30, step = 1 / (Math.SQRT2 * 511);

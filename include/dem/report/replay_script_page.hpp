@@ -22,6 +22,11 @@ function choice(names, chosen, changed) {
   select.addEventListener("change", () => changed(Number(select.value)));
   return select;
 }
+function ticked(text, checked, changed) {
+  const check = make("input", {type: "checkbox", checked});
+  check.addEventListener("change", () => changed(check.checked));
+  return make("label", {}, check, make("span", {textContent: text}));
+}
 function slider(most, step, value, moved) {
   const input = make("input", {type: "range", min: 0, max: most, step});
   input.value = value;
@@ -130,7 +135,11 @@ function controls(figure, view) {
     const names = view.colourings.map(({name}) => name);
     rows.unshift(labelled("colour", choice(names, colour, (k) => [colour = k, recolour()]),
                           choice(["scale of the run", "scale of each frame"], 0, (k) => [ofFrame = k === 1, recolour()])));
-    rows.push(labelled("cut", along, where));
+    rows.push(labelled("cut", along, where), ticked("grains", true, (value) => view.setGrains(value)));
+  }
+  if (view.forces) {
+    const name = `force chains (widest: \u2265 ${inWords(view.forces.most)} N)`;
+    rows.push(ticked(name, false, (value) => view.setForces(value)));
   }
   if (view.parts.length > 0) {
     const opacity = view.grains.length > 0 ? 0.12 : 1;
@@ -139,14 +148,10 @@ function controls(figure, view) {
   const reset = make("button", {type: "button", textContent: "First view"});
   reset.addEventListener("click", () => view.orbit.reset());
   rows.push(reset);
-  const boxes = view.parts.map((part) => {
-    const check = make("input", {type: "checkbox", checked: true});
-    check.addEventListener("change", () => {
-      part.wanted = check.checked;
-      view.redraw();
-    });
-    return make("label", {}, check, make("span", {textContent: part.name}));
-  });
+  const boxes = view.parts.map((part) => ticked(part.name, true, (value) => {
+    part.wanted = value;
+    view.redraw();
+  }));
   const parts = make("details", {hidden: boxes.length === 0}, make("summary", {textContent: "Parts"}), ...boxes);
   return make("div", {className: "controls"}, make("div", {}, button, position, clock), make("div", {}, ...rows), parts,
               make("small", {textContent: notes(view.head)}));

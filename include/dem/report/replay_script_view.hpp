@@ -78,6 +78,7 @@ class View {
       const mesh = reader.mesh(part);
       return new Part(part, mesh, reader.floats(7 * part.poses), this.sun.uniforms);
     });
+    this.forces = head.forces && new Forces(head.forces, readForces(head.forces, reader), this.uniforms);
     for (const {object} of [...this.grains, ...this.parts]) this.scene.add(object);
     for (const {caster} of [...this.grains, ...this.parts]) this.sun.scene.add(caster);
     this.renderer = new THREE.WebGLRenderer({canvas, context, antialias: true, alpha: true});
@@ -123,6 +124,15 @@ class View {
 
   setOpacity(opacity) {
     for (const part of this.parts) part.setOpacity(opacity);
+    this.redraw();
+  }
+  // Force chains lie over the grains, which can be left out.
+  setForces(wanted) {
+    this.forces.wanted = wanted;
+    this.redraw(false);
+  }
+  setGrains(wanted) {
+    for (const {object, caster} of this.grains) object.visible = caster.visible = wanted;
     this.redraw();
   }
   setColouring(colouring, ofFrame) {
@@ -188,6 +198,13 @@ class View {
     this.moved = false;
     this.renderer.setClearColor(0x000000, 0);
     this.renderer.render(this.scene, this.orbit.camera);
+    if (this.forces && this.forces.wanted) {
+      this.forces.show(frame, next, between);
+      this.renderer.autoClear = false;
+      this.renderer.clearDepth();
+      this.renderer.render(this.forces.scene, this.orbit.camera);
+      this.renderer.autoClear = true;
+    }
     if (this.drawn) this.drawn(frame, this.scale);
   }
   resize() {

@@ -6,7 +6,10 @@
 #include <dem/io/drawn_surface.hpp>
 #include <dem/io/grain_mesh.hpp>
 #include <dem/report/replay_recorder.hpp>
+#include <dem/world/contacts.hpp>
+#include <dem/world/force_lines.hpp>
 
+#include <algorithm>
 #include <cstddef>
 #include <numbers>
 #include <string>
@@ -72,12 +75,34 @@ void meet_world(Replay& replay, const World& world, const std::vector<io::DrawnB
   }
 }
 
+/// The force chains of a world whose grains are all somewhere; none of one that has blown up, which has no neighbours.
+template <class World>
+std::vector<ReplayForce> replay_forces(const World& world, const std::vector<ReplayGrain>& grains) {
+  const auto is_somewhere = [](const ReplayGrain& g) { return g.position.allFinite() && g.rotation.allFinite(); };
+  if (!std::all_of(grains.begin(), grains.end(), is_somewhere)) return {};
+  std::vector<ReplayForce> forces;
+  for (const ForceLine& line : force_lines(contacts_of(world))) {
+    const bool on_surface = line.surface.valid();
+    ReplayForce f{line.grain.index(),
+                  on_surface ? line.surface.index() : line.other_grain.index(),
+                  on_surface,
+                  line.from,
+                  line.to,
+                  line.force.norm()};
+    // A pair keeps its direction, whichever of its grains comes first among the rows.
+    if (!on_surface && f.partner < f.grain) std::swap(f.grain, f.partner), std::swap(f.from, f.to);
+    forces.push_back(f);
+  }
+  return forces;
+}
+
 }  // namespace detail
 
 /// Replay::record(world, bodies): makes a frame of a world as it is now, if one is due. Grains are drawn by their
 /// shapes, coloured by their speeds, the sizes of their net contact forces, or whether they sleep; so are all active
-/// surfaces where their bodies are, and besides `bodies` as meshes, the same ones in the same order each time. Throws
-/// dem::Error for a body without a mesh, and as Replay::record does.
+/// surfaces where their bodies are, and besides `bodies` as meshes, the same ones in the same order each time. The
+/// largest forces at contacts are kept as force chains, ReplayOptions::force_lines of them, which costs what
+/// contacts_of(world) does. Throws dem::Error for a body without a mesh, and as Replay::record and contacts_of do.
 template <class World>
 bool record_world(Replay& replay, const World& world, const std::vector<io::DrawnBody>& bodies = {}) {
   const double time = world.time();
@@ -103,7 +128,9 @@ bool record_world(Replay& replay, const World& world, const std::vector<io::Draw
     poses[known.bodies[k]] = {machine.reference_point(d.body, d.position),
                               machine.reference_rotation(d.body) * d.rotation, true};
   }
-  return replay.record(time, grains, poses);
+  std::vector<ReplayForce> forces;
+  if (replay.options().force_lines > 0) forces = detail::replay_forces(world, grains);
+  return replay.record(time, grains, poses, forces);
 }
 
 }  // namespace dem::report

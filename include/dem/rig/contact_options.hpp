@@ -32,6 +32,16 @@ void check_contact_options(const Settings& s, const char* stiffness_unit = "N/m"
   require_positive(s.constants_for, "--constants-for", "m");
 }
 
+/// Names the option that all replays have.
+template <class Settings>
+void add_replay_forces(Options& options, Settings& s) {
+  options.add("--replay-forces", s.replay_forces, "force chains of a frame of the replay, the largest; 0: none");
+}
+template <class Settings>
+void find_idle_replay(IdleOptions& idle, const Settings& s) {
+  idle.unless(s.replay, "with a replay, without --no-replay", {"--replay-forces"});
+}
+
 /// Names the options of what a rig with grains leaves in its folder, in a group of their own. `replayed` is what its
 /// replay shows: "a plate".
 template <class Settings>
@@ -40,6 +50,7 @@ void add_output_options(Options& options, Settings& s, const char* replayed) {
   options.add("--output", s.output, "folder; results of an earlier run in it are replaced").changes_no_result();
   options.flag("--replay", s.replay, text("replay of {} in the report (--replay=true) or none (--no-replay)", replayed))
       .off("--no-replay");
+  add_replay_forces(options, s);
   options.flag("--vtk", s.vtk, "files for ParaView (--vtk=true) or none (--no-vtk)").off("--no-vtk");
 }
 

@@ -104,6 +104,10 @@ struct Bulldozing {
     return top;
   }
 
+  /// Columns around what is touched where soil rolls: it grows as it has to, and is part of the state.
+  std::size_t margin() const { return margin_; }
+  void set_margin(std::size_t columns) { margin_ = columns; }
+
  private:
   template <class F>
   static void each_neighbour(const ColumnGrid& g, std::size_t row, F&& f) {

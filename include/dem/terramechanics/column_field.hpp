@@ -45,6 +45,7 @@ struct ColumnField {
   std::vector<ShearMemory> shear;
   std::vector<std::uint32_t> touched;    ///< number of the step that touched the column last
   std::vector<std::int32_t> touched_by;  ///< part of that step; -1: none yet
+  std::vector<std::uint8_t> soil;        ///< number of the column's soil; empty: all are of the first
 
   /// m, height of the soil's surface without load.
   double surface(std::size_t row) const { return ground[row] - sunk[row] + heap[row]; }

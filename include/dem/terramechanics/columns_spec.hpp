@@ -51,6 +51,9 @@ struct ColumnPart {
   Vector3<double> position = {0, 0, 0};  ///< m, of the shape in the body's frame
   Matrix3<double> rotation = Matrix3<double>::identity();  ///< shape -> body
   double width = 0.0;                                      ///< b of the pressure law, m; 0: the shape's
+  double friction = rough;                                 ///< mu of the part on the soil
+
+  static constexpr double rough = 1e9;  ///< the soil shears in itself
 
   ShapePose pose() const { return {body.position + body.rotation * position, body.rotation * rotation}; }
 };

@@ -1,36 +1,47 @@
 #pragma once
 
-#include <dem/mbd/load/load.hpp>
-#include <dem/mbd/solver/mechanism.hpp>
-#include <dem/terramechanics/soil_columns.hpp>
+#include <dem/terramechanics/column_terrain.hpp>
 
-#include <limits>
 #include <memory>
-#include <string>
 #include <utility>
 #include <vector>
 
 namespace dem::terramechanics {
 
-/// Soil columns under a machine, as loads on its bodies at every evaluation of the forces. What columns remember is
-/// kept once a step, when time has gone on: integrators may look at a step more than once.
+/// Soil columns under a machine: its own, or that of a world, which step with it, are copied with it, and are part of
+/// its saved state (dem::save, dem::load).
 ///
 ///     MachineColumns soil(machine, {.length_x = 5, .length_y = 1, .soil = melanz_sand});
 ///     soil.add(wheel, std::make_shared<ColumnCylinder>(0.13, 0.16), machine.body(wheel).position());
 ///
-/// The machine must stay where it is in memory. Its stable time step does not know the soil: a step below sqrt(m/k)
-/// with k = loads()[part].stiffness is safe.
+///     auto soil = world.add_soil_columns(ColumnsSpec{.length_x = 5, .length_y = 1, .soil = melanz_sand});
+///
+/// This is a handle: the machine has the columns. of() makes one for a copy of the machine. Grains do not feel the
+/// columns, only machine parts do. The force on each body is a load, "soil under <body>", which can be switched off and
+/// is counted as work like any other. The stable time step does not know the soil: a step below sqrt(m/k) with
+/// k = loads()[part].stiffness is safe.
 class MachineColumns {
  public:
-  /// Throws Error for a field that cannot be (check_columns).
-  MachineColumns(mbd::Mechanism& machine, const ColumnsSpec& spec)
-      : machine_(&machine), state_(std::make_shared<State>(machine, spec)) {}
+  /// Throws Error for a field that cannot be (check_columns), or a name that another terrain of the machine has.
+  MachineColumns(mbd::Mechanism& machine, const ColumnsSpec& spec, std::string name = {}) : machine_(&machine) {
+    auto terrain = std::make_unique<ColumnTerrain>(spec);
+    id_ = mbd::add_terrain(machine, std::move(name), std::move(terrain));
+  }
+  /// The same columns in a machine that was copied from this one. Throws Error if it has none.
+  [[nodiscard]] MachineColumns of(mbd::Mechanism& machine) const {
+    MachineColumns other = *this;
+    other.machine_ = &machine;
+    if (dynamic_cast<ColumnTerrain*>(&mbd::terrain_of(machine, id_)) == nullptr)
+      fail("terrain {} of the machine is no field of soil columns; give a copy of the machine that has them",
+           id_.value);
+    return other;
+  }
 
   /// A shape fixed to a body: where its frame is now (m, global) and how it is turned. `width` (m) is b of the pressure
-  /// law; 0: the shape's. Returns the part's number in loads(). Throws Error for a body that is not there, no shape, or
-  /// no width.
+  /// law; 0: the shape's. `friction` is mu of the part on the soil. Returns the part's number in loads(). Throws Error
+  /// for a body that is not there, no shape, no width, or a negative friction.
   std::size_t add(BodyId body, std::shared_ptr<const ColumnShape> shape, const Vec3& at,
-                  const Mat3& rotation = Mat3::Identity(), double width = 0.0) {
+                  const Mat3& rotation = Mat3::Identity(), double width = 0.0, double friction = ColumnPart::rough) {
     const Body& b = machine_->body(body);
     if (!shape)
       fail("body '{}' was given no shape for the soil columns; give it one, such as a ColumnCylinder", b.name);
@@ -38,65 +49,48 @@ class MachineColumns {
       fail("the shape of body '{}' for the soil columns tells no width, which the pressure law asks for; give one",
            b.name);
     }
+    require_non_negative(friction, "friction of a part on soil columns", "(no unit)");
     const Matrix3<double>& r = b.motion.rotation;
-    bool known = false;
-    for (const BodyId other : state_->bodies) known |= other == body;
-    if (!known) {
-      const bool first = state_->bodies.empty();
-      machine_->add_load(
-          mbd::custom_load("soil under " + b.name, body, [state = state_, body, first](double time, const Body&) {
-            if (first) state->evaluate(time);
-            return state->load_on(body);
-          }));
-    }
-    state_->bodies.push_back(body);
-    state_->parts.push_back({.shape = std::move(shape),
+    const ColumnPart part = {.shape = std::move(shape),
                              .body = b.motion,
                              .position = transpose_times(r, from_eigen(at) - b.motion.position),
                              .rotation = transposed(r) * from_eigen(rotation),
-                             .width = width});
-    return state_->parts.size() - 1;
+                             .width = width,
+                             .friction = friction};
+    LoadId load;
+    for (std::size_t k = 0; k < terrain().parts.size(); ++k) {
+      if (terrain().body_of[k] == body) load = terrain().load_of[k];
+    }
+    if (!load.valid()) {
+      const std::string on = machine_->parts().terrains.size() > 1 ? terrain_name() : "soil";
+      load = machine_->add_load(mbd::terrain_load(on + " under " + b.name, body));
+      terrain().own_loads.push_back(load);
+    }
+    ColumnTerrain& t = terrain();
+    t.parts.push_back(part);
+    t.body_of.push_back(body);
+    t.load_of.push_back(load);
+    return t.parts.size() - 1;
   }
 
-  SoilColumns& soil() { return state_->soil; }
-  const SoilColumns& soil() const { return state_->soil; }
+  SoilColumns& soil() { return terrain().soil; }
+  const SoilColumns& soil() const { return terrain().soil; }
   /// What each part feels, in the newest evaluation of the forces.
-  const std::vector<ColumnLoad>& loads() const { return state_->soil.loads(); }
-  /// What became of the newest evaluation: a part that leaves the soil is told here.
-  const ColumnsReport& report() const { return state_->report; }
+  const std::vector<ColumnLoad>& loads() const { return soil().loads(); }
+  /// What became of the newest evaluation: a part that leaves the soil is told here, and in the notes of the reports of
+  /// machine and world.
+  const ColumnsReport& report() const { return terrain().report; }
+  TerrainId id() const { return id_; }
 
  private:
-  struct State {
-    State(mbd::Mechanism& m, const ColumnsSpec& spec) : machine(&m), soil(spec) {}
-
-    /// The first of the loads does it for all.
-    void evaluate(double time) {
-      if (time > evaluated && evaluated >= 0.0) {
-        soil.commit();
-        kept = evaluated;
-      }
-      for (std::size_t k = 0; k < parts.size(); ++k) parts[k].body = machine->bodies()[bodies[k].index()].motion;
-      report = soil.evaluate(parts, kept >= 0.0 && time > kept ? time - kept : 0.0);
-      evaluated = time;
-    }
-    Wrench load_on(BodyId body) const {
-      Wrench sum;
-      for (std::size_t k = 0; k < soil.loads().size(); ++k) {
-        if (bodies[k] == body) sum = sum + Wrench{soil.loads()[k].force, soil.loads()[k].torque};
-      }
-      return sum;
-    }
-
-    mbd::Mechanism* machine;
-    SoilColumns soil;
-    std::vector<ColumnPart> parts;
-    std::vector<BodyId> bodies;  ///< of the parts
-    ColumnsReport report;
-    double evaluated = -1.0, kept = -1.0;  ///< s, of the newest evaluation and of what is kept
-  };
+  ColumnTerrain& terrain() const { return static_cast<ColumnTerrain&>(mbd::terrain_of(*machine_, id_)); }
+  const std::string& terrain_name() const { return machine_->parts().terrains[id_.index()].name; }
 
   mbd::Mechanism* machine_;
-  std::shared_ptr<State> state_;
+  TerrainId id_;
 };
+
+/// Adds soil columns to a machine: what World::add_soil_columns calls.
+inline MachineColumns make_soil_columns(mbd::Mechanism& machine, const ColumnsSpec& spec) { return {machine, spec}; }
 
 }  // namespace dem::terramechanics

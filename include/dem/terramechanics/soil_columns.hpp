@@ -3,6 +3,7 @@
 #include <dem/parallel/threads.hpp>
 #include <dem/terramechanics/bulldozing.hpp>
 #include <dem/terramechanics/column_force.hpp>
+#include <dem/terramechanics/column_memory.hpp>
 #include <dem/terramechanics/columns_spec.hpp>
 
 #include <algorithm>
@@ -39,6 +40,7 @@ class SoilColumns {
     claim_.assign(g.size(), free);
     claim_height_.assign(g.size(), 0.0);
     top_ = spec.height;
+    soils_ = {spec.soil};
     bulldozing_.share = spec.bulldozing;
     bulldozing_.steepest = std::tan(spec.angle_of_repose);
     threads_.set_threads(1);
@@ -63,6 +65,29 @@ class SoilColumns {
     }
   }
 
+  /// Lays other soils beside that of the spec, which is number 0: which(x, y) says the number of the soil at a place
+  /// (m), 1 for the first of `others`. To be called before anything presses. Throws Error for soils that cannot be, or
+  /// numbers that no soil has.
+  template <class F>
+  void lay_soils(std::span<const Soil> others, F&& which) {
+    if (others.size() > 254) fail("{} soils are to be laid, but at most 254 can be", others.size());
+    for (const Soil& other : others) check_soil(other);
+    const ColumnGrid& g = field_.grid;
+    std::vector<std::uint8_t> number(g.size());
+    for (std::size_t iy = 0; iy < g.ny; ++iy) {
+      for (std::size_t ix = 0; ix < g.nx; ++ix) {
+        const auto k = static_cast<long long>(which(g.x(ix), g.y(iy)));
+        if (k < 0 || k > static_cast<long long>(others.size()))
+          fail("soil {} is to lie at ({:g}, {:g}) m, but there are 0 to {}", k, g.x(ix), g.y(iy), others.size());
+        number[g.row(ix, iy)] = static_cast<std::uint8_t>(k);
+      }
+    }
+    soils_.resize(1);
+    soils_.insert(soils_.end(), others.begin(), others.end());
+    field_.soil = std::move(number);
+  }
+  const std::vector<Soil>& soils() const { return soils_; }
+
   /// A step of dt (s): the loads on the parts where they are now, and what the columns keep of it. Never throws for
   /// what happens while running; a part that is not fit to be used (no shape, no width) throws Error.
   ColumnsReport apply(std::span<const ColumnPart> parts, double dt) {
@@ -84,6 +109,17 @@ class SoilColumns {
   /// Steps that were kept.
   std::uint32_t steps() const { return step_; }
 
+  /// Appends all that the columns remember, for a saved state; restore() takes it back from a place in `numbers` on.
+  /// Throws Error if they are not those of so many columns.
+  void collect(std::vector<double>& numbers) const { ColumnMemory::collect(field_, {step_, top_, margin()}, numbers); }
+  void restore(std::span<const double> numbers) {
+    const ColumnMemory::Rest rest = ColumnMemory::restore(field_, numbers);
+    step_ = rest.step;
+    top_ = rest.top;
+    bulldozing_.set_margin(rest.margin);
+    strip_count_ = 0;
+  }
+
  private:
   static constexpr std::int32_t free = -1;
 
@@ -103,7 +139,8 @@ class SoilColumns {
   bool lay_out(std::span<const ColumnPart> parts, ColumnsReport& report);
   void look(const ColumnPart& part, Strip& strip) const;
   void claim(std::size_t parts);
-  void press(const ColumnPart& part, const ColumnLaw& law, double dt, bool shared, Strip& strip) const;
+  void press(const ColumnPart& part, double dt, bool shared, Strip& strip) const;
+  std::size_t margin() const { return bulldozing_.margin(); }
 
   ColumnsSpec spec_;
   ColumnField field_;
@@ -113,7 +150,8 @@ class SoilColumns {
   std::uint32_t step_ = 0;
   std::vector<Strip> strips_;
   std::size_t strip_count_ = 0;
-  std::vector<ColumnLaw> laws_;
+  std::vector<Soil> soils_;
+  std::vector<ColumnLaw> laws_;  ///< of the parts: for each one after the other soil
   std::vector<ColumnLoad> loads_;
   std::vector<Vector3<double>> velocity_;  ///< of the parts' bodies
   std::vector<std::int32_t> claim_;        ///< the part that has a column, while an evaluation runs
@@ -135,7 +173,7 @@ inline bool SoilColumns::lay_out(std::span<const ColumnPart> parts, ColumnsRepor
     if (!(width > 0.0)) {
       fail("part {} on soil columns has no width, which the pressure law asks for; set width to its smaller side", p);
     }
-    laws_.emplace_back(spec_.soil, width, spec_.thickness);
+    for (const Soil& soil : soils_) laws_.emplace_back(soil, width, spec_.thickness);
     velocity_.push_back(part.body.velocity);
     const ShapePose pose = part.pose();
     const Vector3<double> spin = part.body.rotation * part.body.angular_velocity;
@@ -207,7 +245,8 @@ inline void SoilColumns::claim(std::size_t parts) {
 }
 
 /// The forces of a strip, summed along it.
-inline void SoilColumns::press(const ColumnPart& part, const ColumnLaw& law, double dt, bool shared, Strip& s) const {
+inline void SoilColumns::press(const ColumnPart& part, double dt, bool shared, Strip& s) const {
+  const ColumnLaw* laws = &laws_[static_cast<std::size_t>(s.part) * soils_.size()];
   s.changes.clear();
   s.load = {};
   const Vector3<double> spin = part.body.rotation * part.body.angular_velocity;
@@ -216,8 +255,9 @@ inline void SoilColumns::press(const ColumnPart& part, const ColumnLaw& law, dou
     const Vector3<double> arm = hit.touch.point - part.body.position, velocity = part.body.velocity + cross(spin, arm);
     const bool in_contact = step_ > 0 && field_.touched[hit.row] == step_ && field_.touched_by[hit.row] == s.part;
     ColumnChange change{.row = hit.row, .part = s.part, .shear = {}};
-    const ColumnForce f =
-        column_force(field_, law, spec_.soil.shear, spec_.damping, hit.touch, velocity, dt, in_contact, change);
+    const std::size_t kind = field_.soil.empty() ? 0 : field_.soil[hit.row];
+    const ColumnForce f = column_force(field_, laws[kind], soils_[kind].shear, part.friction, spec_.damping, hit.touch,
+                                       velocity, dt, in_contact, change);
     if (!f.acts) continue;
     s.changes.push_back(change);
     s.load.force += f.force;
@@ -238,7 +278,7 @@ inline ColumnsReport SoilColumns::evaluate(std::span<const ColumnPart> parts, do
   claim(parts.size());
   threads_.for_each(strip_count_, [&](std::size_t k) {
     const auto p = static_cast<std::size_t>(strips_[k].part);
-    press(parts[p], laws_[p], dt, parts.size() > 1, strips_[k]);
+    press(parts[p], dt, parts.size() > 1, strips_[k]);
   });
   for (std::size_t k = 0; k < strip_count_; ++k) {
     const Strip& s = strips_[k];

@@ -44,7 +44,7 @@ template <class Model>
 StepReport find_problem(WorldState<Model>& w) {
   const auto& p = w.particles;
   const auto problem = [&](StepReport::Problem kind, std::size_t row, std::string text) {
-    return StepReport{kind, w.time, w.step, row < p.count ? ParticleId(p.id[row]) : ParticleId{}, std::move(text), {}};
+    return StepReport{kind, w.time, w.step, row < p.count ? p.name(p.id[row]) : ParticleId{}, std::move(text), {}};
   };
   const auto when = [&] { return dem::text("at t = {:.6g} s (step {})", w.time, w.step); };
   for (std::size_t c = 0; c < w.chunks.size(); ++c) {

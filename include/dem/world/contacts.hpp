@@ -58,8 +58,8 @@ class ContactFinder {
       const auto geometry = grain::touch_of_hit<Model>(pairs, scratch_.pairs, k).geometry();
       Contact<Model>& contact = add(hit, geometry, p.view[hit.i], p.view[hit.partner], scratch_.pairs.forces, k);
       contact.kind = ContactKind::grains;
-      contact.grain = ParticleId(p.id[hit.i]);
-      contact.other_grain = ParticleId(p.id[hit.partner]);
+      contact.grain = p.name(p.id[hit.i]);
+      contact.other_grain = p.name(p.id[hit.partner]);
       remember(contact, chunk.pair_contacts, hit.key, k);
     }
     coupling::SurfaceScratch& s = scratch_.surfaces;
@@ -71,7 +71,7 @@ class ContactFinder {
       Contact<Model>& contact = add(hit, s.touches[k].geometry(), coupling::view_of<Model>(s, k, p),
                                     surfaces_[hit.partner].view, s.forces, k);
       contact.kind = ContactKind::grain_on_surface;
-      contact.grain = ParticleId(p.id[hit.i]);
+      contact.grain = p.name(p.id[hit.i]);
       contact.surface = SurfaceId(hit.partner);
       remember(contact, chunk.surface_contacts, hit.key, k);
     }

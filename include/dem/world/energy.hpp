@@ -129,7 +129,9 @@ void count_step(WorldState<Model>& w) {
   for (std::size_t row = 0; row < p.count; ++row) {
     const std::uint32_t id = p.id[row];
     const Vector3<double> v = p.velocity[row], s = p.angular_velocity(row);
-    grains[id] = id < known ? Mean{0.5 * (ledger.velocity[id] + v), 0.5 * (ledger.spin[id] + s)} : Mean{v, s};
+    // The velocities of an id that is given again are those of another grain.
+    const bool is_known = id < known && (p.row_of[id] == p.gone || !std::isnan(ledger.energy[id]));
+    grains[id] = is_known ? Mean{0.5 * (ledger.velocity[id] + v), 0.5 * (ledger.spin[id] + s)} : Mean{v, s};
     ledger.velocity[id] = v;
     ledger.spin[id] = s;
     if (p.row_of[id] == p.gone) continue;

@@ -52,12 +52,28 @@ void place_images(WorldState<Model>& w) {
   }
 }
 
+/// The mean bounding radius (m) of the grains that there are: that of all if they have one size.
+template <class Model>
+double mean_radius(const WorldState<Model>& w) {
+  std::vector<std::size_t> grains(w.species.size(), 0);
+  for (std::size_t i = 0; i < w.particles.count; ++i) ++grains[w.particles.species[i]];
+  double sum = 0.0, smallest = HUGE_VAL, largest = 0.0;
+  for (std::size_t k = 0; k < grains.size(); ++k) {
+    if (grains[k] == 0) continue;
+    const double radius = w.species[k].shape.bounding_radius();
+    smallest = std::min(smallest, radius), largest = std::max(largest, radius);
+    sum += static_cast<double>(grains[k]) * radius;
+  }
+  return smallest == largest ? largest : sum / static_cast<double>(w.particles.count);
+}
+
 /// The skin of the next list (m): the one that was given, or the one that suits the grains' motion. A periodic cell
 /// bounds it, as no grain may be listed with two images of another.
 template <class Model>
 double choose_skin(WorldState<Model>& w) {
   if (w.options.skin > 0.0) return w.options.skin;
-  double skin = w.skin_choice.choose(w.largest_radius, w.step, Model::Integrator::stages);
+  w.skin_choice.radius = mean_radius(w);
+  double skin = w.skin_choice.choose(w.step, Model::Integrator::stages);
   if constexpr (Model::Domain::has_images) {
     for (const double period : w.domain.period()) {
       if (period > 0.0) skin = std::min(skin, 0.499 * period - 2.0 * w.largest_radius - w.materials.range());
@@ -67,9 +83,10 @@ double choose_skin(WorldState<Model>& w) {
   return skin;
 }
 
-/// Sorts the grains in space, lists their neighbours, and carries the contact histories over.
-template <class Model>
-void rebuild_neighbours(WorldState<Model>& w) {
+/// Sorts the grains in space, lists their neighbours, and carries the contact histories over. `change(histories)` may
+/// put grains in, with their histories, when those that left are out.
+template <class Model, class Change>
+void rebuild_neighbours(WorldState<Model>& w, Change&& change) {
   auto& p = w.particles;
   grain::HistoryCarrier<Model> histories;
   histories.collect(w.executor, std::span<const Chunk<Model>>(w.chunks), p, w.images);
@@ -77,6 +94,7 @@ void rebuild_neighbours(WorldState<Model>& w) {
     p.remove(w.to_remove, w.executor);
     w.to_remove.clear();
   }
+  change(histories);
 
   if (p.count == 0) {
     w.images = {};
@@ -88,22 +106,29 @@ void rebuild_neighbours(WorldState<Model>& w) {
   give_up_list(w);
   const double skin = choose_skin(w);
   const double reach = 2.0 * w.largest_radius + w.materials.range() + skin;
-  const auto positions = [&](std::size_t rows) {
-    return broadphase::Positions{p.position.x.data(), p.position.y.data(), p.position.z.data(), rows};
+  const auto build = [&](std::size_t rows) {
+    const broadphase::Positions at = {p.position.x.data(), p.position.y.data(), p.position.z.data(), rows};
+    if constexpr (broadphase::KnowsSizes<typename Model::BroadPhase>) {
+      std::vector<double> radii;
+      for (const auto& kind : w.species) radii.push_back(kind.shape.bounding_radius());
+      w.broad_phase.build(at, broadphase::Sizes{radii, p.species.data(), w.materials.range() + skin});
+    } else {
+      w.broad_phase.build(at, reach);
+    }
   };
   wrap_grains(w);
-  w.broad_phase.build(positions(p.count), reach);
+  build(p.count);
   if (const auto order = w.broad_phase.order(); !order.empty()) {
     const std::vector<std::uint32_t> sorted(order.begin(), order.end());
     p.permute(sorted, w.executor);
     if constexpr (requires { w.broad_phase.reordered(); }) w.broad_phase.reordered();
-    else w.broad_phase.build(positions(p.count), reach);
+    else build(p.count);
   }
   p.listed_at = p.position;
   p.pad();
   if constexpr (Model::Domain::has_images) {
     make_images(w, reach);
-    w.broad_phase.build(positions(p.position.x.size()), reach);
+    build(p.position.x.size());
   }
 
   w.chunks.resize(p.chunks());
@@ -118,13 +143,17 @@ void rebuild_neighbours(WorldState<Model>& w) {
   w.list_skin = skin;
   ++w.rebuilds;
   if (w.options.skin == 0.0) {
-    double radii = 0.0, candidates = 0.0;
-    for (std::size_t i = 0; i < p.count; ++i) radii += p.view[i].radius;
+    double candidates = 0.0;
     for (const auto& chunk : w.chunks) candidates += static_cast<double>(chunk.candidate.size());
     const auto count = static_cast<double>(p.count);
-    w.skin_choice.made_list(w.largest_radius, 2.0 * radii / count + w.materials.range(), candidates / count, w.step,
-                            Model::Integrator::stages);
+    w.skin_choice.made_list(w.materials.range(), candidates / count, w.step, Model::Integrator::stages);
   }
+}
+
+/// The same grains as before.
+template <class Model>
+void rebuild_neighbours(WorldState<Model>& w) {
+  rebuild_neighbours(w, [](grain::HistoryCarrier<Model>&) {});
 }
 
 /// After a step: a list that has lasted, and holds more than the motion asks for, is made anew.
@@ -132,7 +161,7 @@ template <class Model>
 void look_at_skin(WorldState<Model>& w) {
   if (w.step < w.skin_choice.look_at) [[likely]]
     return;
-  if (w.skin_choice.is_too_wide(w.largest_radius, w.moved(), w.step, Model::Integrator::stages)) give_up_list(w);
+  if (w.skin_choice.is_too_wide(w.moved(), w.step, Model::Integrator::stages)) give_up_list(w);
 }
 
 }  // namespace dem

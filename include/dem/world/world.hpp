@@ -77,6 +77,7 @@ class World : public WorldSetup<M> {
       unfinished_ = true;
       if (state_.put_in) state_.put_in(state_);
       advance(state_);
+      release_ids(state_);
       take_out(state_);
       unfinished_ = false;
       state_.machine_solver.close_joints(state_.machine);
@@ -135,11 +136,13 @@ class World : public WorldSetup<M> {
   // ---- looking -----------------------------------------------------------------------------------------------------
 
   std::size_t particle_count() const { return state_.particles.count - state_.to_remove.size(); }
-  /// All grains that are there, in the order in which they were added.
+  /// All grains that are there, in the order of their numbers: that in which they were added, until numbers of grains
+  /// that were removed are given again.
   std::vector<ParticleId> particles() const {
     std::vector<ParticleId> ids;
     for (std::size_t k = 0; k < state_.particles.row_of.size(); ++k) {
-      if (state_.particles.row_of[k] != state_.particles.gone) ids.push_back(ParticleId(k));
+      if (state_.particles.row_of[k] == state_.particles.gone) continue;
+      ids.push_back(state_.particles.name(static_cast<std::uint32_t>(k)));
     }
     return ids;
   }

@@ -88,7 +88,8 @@ class WorldSetup {
   /// Adds a grain. Throws Error for an unknown species, a position that is not finite, or a rotation that is none.
   ParticleId add_particle(const NewParticle& n) {
     auto& p = state_.particles;
-    const std::size_t id = p.row_of.size();
+    const ParticleId name = p.next_name();
+    const std::uint32_t id = name.value;
     if (n.species.index() >= state_.species.size()) {
       fail("a grain was given species {}, but the world has {}; call add_species first", n.species.value,
            state_.species.size());
@@ -108,7 +109,7 @@ class WorldSetup {
     p.append(n.species.value, from_eigen(n.position), from_eigen(n.velocity), from_eigen(rotation),
              from_eigen(Vec3(rotation.transpose() * n.angular_velocity)));
     touched();
-    return ParticleId(id);
+    return name;
   }
 
   /// Attaches a grain of a species that is held (SpeciesOptions::held) to a body, as if glued to it where both are now:
@@ -124,7 +125,8 @@ class WorldSetup {
     attach_grain(state_, p, row(p), body);
     initialised_ = false;
   }
-  /// Takes a grain out of the world; its id is not given again. The ids of others stay.
+  /// Takes a grain out of the world. The ids of others stay. Its number is given again after the next step, to a grain
+  /// of another generation: who asks for the old id is told that its grain was removed.
   void remove_particle(ParticleId p) {
     take_out_row(state_, row(p));
     touched();
@@ -158,6 +160,12 @@ class WorldSetup {
   /// Bodies, joints, actuators, sensors. The world moves them.
   mbd::Mechanism& machine() { return state_.machine; }
   const mbd::Mechanism& machine() const { return state_.machine; }
+  /// Columns of semi-empirical soil under the machine, of a terramechanics::ColumnsSpec; include
+  /// <dem/terramechanics/machine_columns.hpp>, which says what is returned: a MachineColumns.
+  template <class Spec>
+  auto add_soil_columns(const Spec& spec) {
+    return make_soil_columns(state_.machine, spec);
+  }
   /// The fixed body of the world: carries walls that never move.
   BodyId ground() { return state_.machine.ground(); }
 
@@ -285,6 +293,10 @@ class WorldSetup {
   std::size_t row(ParticleId p) const {
     const std::uint32_t row = known(state_.particles.row_of, p, "grain");
     if (row == state_.particles.gone) fail("grain {} is asked for, but it was removed", p.value);
+    if (state_.particles.name(p.value) != p) [[unlikely]] {
+      fail("grain {} is asked for, but it was removed, and another grain has its number now; use the id that {}",
+           p.value, "add_particle or particles() returned");
+    }
     return row;
   }
   /// What an id names. Throws Error for an id that this world never gave.

@@ -1,9 +1,11 @@
 #include "catch.hpp"
 
 #include <dem/grain/broadphase/all_pairs.hpp>
+#include <dem/grain/broadphase/hierarchical_grid.hpp>
 #include <dem/grain/broadphase/uniform_grid.hpp>
 #include <dem/math/vector.hpp>
 
+#include <algorithm>
 #include <functional>
 #include <random>
 #include <set>
@@ -55,6 +57,10 @@ std::size_t check_same(const Scene& s, double reach) {
   CHECK(grid.order().size() == s.x.size());
   CHECK(rows.size() == s.x.size());
   CHECK((rows.empty() || *rows.rbegin() == s.x.size() - 1));
+  // With grains of one size the hierarchical grid is this one.
+  dem::broadphase::HierarchicalGrid levels;
+  CHECK(pairs_within(s, levels, reach) == expected);
+  CHECK(std::equal(grid.order().begin(), grid.order().end(), levels.order().begin(), levels.order().end()));
   return expected.size();
 }
 

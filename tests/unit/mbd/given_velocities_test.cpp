@@ -83,3 +83,20 @@ TEST_CASE("couplings and prescribed motions take their shares of velocities that
   CHECK(m.speed(i) == Approx(0.6).epsilon(1e-12));
   CHECK(m.speed(o) == Approx(1.2).epsilon(1e-12));
 }
+
+TEST_CASE("assemble() before the first step knows how fast drives turn") {
+  // The wheel is driven at 3 rad/s and the gear of ratio 2 takes its shaft along, as the first step would have it.
+  Machine<VelocityVerlet> m;
+  m.gravity.setZero();
+  const BodyId in = m.add_body(ball("in")), out = m.add_body(ball("out").at({1, 0, 0}));
+  const JointId i = m.add_joint(revolute("i", m.ground(), in, {0, 0, 0}, Z));
+  const JointId o = m.add_joint(revolute("o", m.ground(), out, {1, 0, 0}, Z));
+  m.add_coupling(gear("gear", i, o, 2.0));
+  const MotionId drive = m.add_motion(prescribed_speed("drive", i, 3.0));
+  CHECK(m.assemble().has_changed());
+  CHECK(m.speed(i) == Approx(3.0).epsilon(1e-12));
+  CHECK(m.speed(o) == Approx(6.0).epsilon(1e-12));
+  REQUIRE(m.run(0.1, 1e-3));
+  CHECK(m.speed(o) == Approx(6.0).epsilon(1e-9));
+  CHECK(std::abs(m.motion(drive).drive.force) < 1e-9);  // nothing had to be brought up to speed
+}

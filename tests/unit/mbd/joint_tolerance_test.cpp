@@ -86,3 +86,30 @@ TEST_CASE("a machine that needs no sub-steps takes none") {
   CHECK(report.note.empty());
   CHECK(m.substeps == 1);
 }
+
+TEST_CASE("what holds is not jolted when sub-steps are raised for another joint") {
+  // A gear of ratio 2 under 50 N m, which a brake of 30 N m holds with 25. Far from it a ball joint is loaded until
+  // sub-steps are needed: gear and brake get some hundred times as stiff, and nothing of theirs moves or slips.
+  Machine<VelocityVerlet> m;
+  m.gravity.setZero();
+  const BodyId in = m.add_body(ball("in")), out = m.add_body(ball("out").at({1, 0, 0}));
+  const JointId i = m.add_joint(revolute("i", m.ground(), in, {0, 0, 0}, Z));
+  const JointId o = m.add_joint(revolute("o", m.ground(), out, {1, 0, 0}, Z));
+  const CouplingId g = m.add_coupling(gear("gear", i, o, 2.0));
+  const BrakeId held = m.add_brake(brake("brake", o, 30.0));
+  m.add_load(applied_torque("torque", in, Z, Signal::smooth_step(0.0, 50.0, 0.0, 0.3)));
+  const BodyId other = m.add_body(ball("other").at({3, 0, 0}));
+  m.add_joint(spherical("joint", m.ground(), other, {3, 0, 0}));
+  m.add_load(applied_force("pull", other, {3, 0, 0}, -Z, Signal::smooth_step(0.0, 2e4, 1.0, 1.1)));
+  REQUIRE(m.run(1.0, 1e-3));
+  const int substeps = m.substeps;
+  double most = 0.0, fastest = 0.0;
+  REQUIRE(m.run(0.5, 1e-3, [&] {
+    most = std::max(most, std::abs(m.coupling(g).multiplier));
+    fastest = std::max(fastest, std::abs(m.speed(i)));
+  }));
+  CHECK(m.substeps > 10 * substeps);
+  CHECK(most == Approx(25.0).epsilon(1e-9));
+  CHECK(fastest < 1e-9);
+  CHECK(m.brake(held).history.slip_work == 0.0);
+}

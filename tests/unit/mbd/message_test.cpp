@@ -60,6 +60,28 @@ TEST_CASE("couplings that lock a shaft are refused, those that agree or give way
   CHECK_NOTHROW(start(3.0, true));
 }
 
+TEST_CASE("gears that lock a shaft are refused when they are switched on or changed, and not before the next step") {
+  Machine<VelocityVerlet> m;
+  m.gravity.setZero();
+  const BodyId a = m.add_body(ball("a").moving({0, 0, 0}, {0, 0, 1})), b = m.add_body(ball("b").at({1, 0, 0}));
+  const JointId i = m.add_joint(revolute("in", m.ground(), a, {0, 0, 0}, Z));
+  const JointId o = m.add_joint(revolute("out", m.ground(), b, {1, 0, 0}, Z));
+  const CouplingId first = m.add_coupling(gear("first", i, o, 2.0));
+  const CouplingId second = m.add_coupling(gear("second", i, o, 3.0).switched_off());
+  REQUIRE(m.run(0.01, 1e-3));
+  const double speed = m.speed(i);
+  m.switch_on(second);
+  for (int k = 0; k < 2; ++k) check_refused([&] { (void)m.step(1e-3); }, "'first', 'second'", "leave it no turn");
+  CHECK(m.speed(i) == speed);  // nothing has moved
+  m.switch_on(first, false);   // in whatever order a gear is changed
+  CHECK_NOTHROW((void)m.step(1e-3));
+  m.set_ratio(first, 3.0);
+  m.switch_on(first);
+  CHECK_NOTHROW((void)m.step(1e-3));
+  m.set_ratio(second, 2.5);
+  check_refused([&] { (void)m.step(1e-3); }, "'first', 'second'");
+}
+
 TEST_CASE("friction of a joint that has no bearing is refused for that reason") {
   Machine<VelocityVerlet> m;
   const BodyId a = m.add_body(ball("a"));

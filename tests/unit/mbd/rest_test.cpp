@@ -49,10 +49,20 @@ TEST_CASE("a linkage finds the pose of least energy, and what has nothing to res
   CHECK(m.reaction(top).force.z == Approx(2 * 0.8 * 9.81).epsilon(1e-6));
 
   Machine<PredictorCorrector> falling;
-  falling.add_body(ball("stone"));
+  const BodyId stone = falling.add_body(ball("stone"));
   const RestReport none = find_rest(falling, 1e-4);
   CHECK_FALSE(none);
+  CHECK(none.moved > 1.0);
+  CHECK(falling.body(stone).position() == Vec3::Zero());  // it is put back
   CHECK_THAT(none.text, Contains("no rest was found") && Contains("body 'stone'") && Contains("nothing to rest on"));
+
+  Machine<PredictorCorrector> windy;  // a NaN is no rest, however small the other forces are
+  const BodyId sail = windy.add_body(ball("sail"));
+  windy.add_body(ball("stone"));
+  windy.add_load(custom_load("wind", sail, [](double, const Body&) { return Wrench{{0, std::nan(""), 0}, {}}; }));
+  const RestReport nowhere = find_rest(windy, 1e-4);
+  CHECK_FALSE(nowhere);
+  CHECK_THAT(nowhere.text, Contains("body 'sail' are not finite") && Contains("load 'wind' is not a number"));
 
   const JointId other = m.add_joint(free_joint("gauge", m.ground(), b, {0, 0, 0}, Y));
   m.add_motion(prescribed_joint("turn", middle, Signal::held(m.coordinate(middle), 0.0)));

@@ -6,6 +6,8 @@
 #include <dem/report/replay_world.hpp>
 #include <dem/world/world.hpp>
 
+#include <array>
+#include <cmath>
 #include <numbers>
 #include <vector>
 
@@ -111,4 +113,61 @@ TEST_CASE("frames of a world hold its grains, surfaces and bodies where they are
   replay.pass(world.time());
   REQUIRE(world.run_for(0.002));
   check_refused([&] { replay.record(world, without); }, "drawn body 1 has no mesh", "DrawnBody::mesh");
+}
+
+TEST_CASE("frames of a world hold the largest forces at contacts") {
+  dem::World<dem::Model> world({.gravity = {0, 0, -9.81}});
+  world.set_contact({{2000.0, 0.5, 1.0}, {0.4, 2000.0, 0.015, 0.975}});
+  const double r = 1e-3;
+  const auto ball = world.add_species(dem::shape::Sphere(r), {.density = 2500});
+  world.add_surface(world.ground(), dem::surface::Plane{}, {.name = "wall", .position = {0, 0, -1}});
+  const auto floor = world.add_surface(world.ground(), dem::surface::Plane{}, {.name = "floor"});
+  // Towers of three, whose upper balls came first, and whose steps down are to their bearers.
+  std::vector<dem::ParticleId> top, middle, low;
+  for (int k = 0; k < 4; ++k) top.push_back(world.add_particle({.species = ball, .position = {0.01 * k, 0, 5 * r}}));
+  for (int k = 0; k < 4; ++k) middle.push_back(world.add_particle({.species = ball, .position = {0.01 * k, 0, 3 * r}}));
+  for (int k = 0; k < 4; ++k) low.push_back(world.add_particle({.species = ball, .position = {0.01 * k, 0, r}}));
+  const double weight = world.species(ball).mass * 9.81;
+
+  // They are found of a world that has never moved too: the lowest balls are pressed in by nothing yet.
+  Replay all({.plane_size = 0.1}), strongest({.force_lines = 6, .plane_size = 0.1}), none({.force_lines = 0});
+  CHECK(all.record(world));
+  CHECK(all.frames().at(0).forces.empty());
+  // Dampers and springs make a time of 0.5/2000 s, of which a tower of three takes some; 0.02 s are 80 of it.
+  REQUIRE(world.run_for(0.02));
+  for (Replay* replay : {&all, &strongest, &none}) CHECK(replay->record(world));
+  CHECK(none.frames().at(0).forces.empty());
+  REQUIRE(all.frames().at(1).forces.size() == 12);
+
+  const auto place = [&](const Replay& replay, const std::array<float, 3>& x) {
+    return Vec3(replay.origin() + Vec3(x[0], x[1], x[2]));
+  };
+  for (std::size_t k = 0; k < 4; ++k) {
+    const auto find = [&](dem::ParticleId grain, std::size_t partner, bool on_surface) {
+      for (const KeptForce& f : all.frames().at(1).forces) {
+        if (f.grain == grain.index() && f.partner == partner && (f.on_surface != 0) == on_surface) return f;
+      }
+      FAIL("no such line");
+      return KeptForce{};
+    };
+    // A pair's line begins in the grain with the smaller number.
+    const KeptForce upper = find(top[k], middle[k].index(), false), under = find(middle[k], low[k].index(), false),
+                    foot = find(low[k], floor.index(), true);
+    CHECK(upper.force == Approx(weight).epsilon(1e-5));
+    CHECK(under.force == Approx(2 * weight).epsilon(1e-5));
+    CHECK(foot.force == Approx(3 * weight).epsilon(1e-5));
+    CHECK((place(all, upper.from) - world.position(top[k])).norm() < 1e-8);
+    CHECK((place(all, upper.to) - world.position(middle[k])).norm() < 1e-8);
+    CHECK((place(all, foot.from) - world.position(low[k])).norm() < 1e-8);
+    CHECK((place(all, foot.to) - Vec3(0.01 * static_cast<double>(k), 0, 0)).norm() < 1e-7);
+  }
+  // The feet are the largest, then come two of the four that carry two balls.
+  REQUIRE(strongest.frames().at(0).forces.size() == 6);
+  int feet = 0;
+  for (const KeptForce& f : strongest.frames()[0].forces) feet += f.on_surface != 0;
+  CHECK(feet == 4);
+
+  // Of grains that are nowhere no contacts are looked for.
+  const std::vector<ReplayGrain> nowhere = {{.position = Vec3::Constant(std::nan(""))}};
+  CHECK(detail::replay_forces(world, nowhere).empty());
 }

@@ -10,6 +10,7 @@ namespace {
 /// A list of a dense bed of balls of 1 mm: 3.6 candidates a grain with a tenth of a radius.
 SkinChoice list_of_dense_bed(double skin = 1e-4) {
   SkinChoice choice;
+  choice.radius = 1e-3;
   choice.skin = skin;
   choice.diameter = 2e-3;
   const double ratio = (2e-3 + skin) / 2.1e-3;
@@ -36,15 +37,15 @@ TEST_CASE("faster grains are given wider skins, and more candidates narrower one
   const SkinChoice choice = list_of_dense_bed();
   double last = 0.0;
   for (const double speed : {0.0, 1e-9, 1e-7, 1e-6, 1e-5, 1e-4}) {
-    const double skin = choice.best(1e-3, speed, 1.0, 0.0);
+    const double skin = choice.best(speed, 1.0, 0.0);
     CHECK(skin >= last);
-    CHECK(choice.best(1e-3, speed, 2.0, 0.0) <= skin);
+    CHECK(choice.best(speed, 2.0, 0.0) <= skin);
     // The choice is the least of what the ladder offers.
     const auto cost = [&](double s) { return choice.candidates_at(s) + choice.list_cost(s) * speed / s; };
     for (const double share : SkinChoice::ladder) CHECK(cost(skin) <= cost(share * 1e-3));
     last = skin;
   }
-  CHECK(choice.best(1e-3, 0.0, 1.0, 0.0) == 1e-4);
+  CHECK(choice.best(0.0, 1.0, 0.0) == 1e-4);
   CHECK(last >= 1e-3);
 }
 
@@ -52,32 +53,32 @@ TEST_CASE("lists that are made anew for other reasons need no skin that outlasts
   SkinChoice choice = list_of_dense_bed();
   choice.made = 100;
   // Motion at 1e-5 m a step would ask for a wide skin, but a list is made every second step anyway.
-  CHECK(choice.best(1e-3, 2e-5, 1.0, 0.0) > 3e-4);
+  CHECK(choice.best(2e-5, 1.0, 0.0) > 3e-4);
   choice.moved = 2e-5;
-  CHECK(choice.choose(1e-3, 102, 1.0) == 1e-4);
+  CHECK(choice.choose(102, 1.0) == 1e-4);
   // Where the list was given up by hand, nothing is known of the motion.
   choice.skin = 4e-4;
-  CHECK(choice.choose(1e-3, 104, 1.0) == 4e-4);
+  CHECK(choice.choose(104, 1.0) == 4e-4);
 }
 
 TEST_CASE("a list that has lasted is narrowed when its needless candidates have cost a new one") {
   SkinChoice choice = list_of_dense_bed(1e-3);
-  choice.made_list(1e-3, 2e-3, choice.candidates, 500, 1.0);
+  choice.made_list(0.0, choice.candidates, 500, 1.0);
   CHECK(choice.look_at > 510);
   CHECK(choice.look_at < 700);
   SkinChoice resting = choice, moving = choice;
   const std::uint64_t then = choice.look_at, steps = then - 500;
-  CHECK(resting.is_too_wide(1e-3, 0.0, then, 1.0));
+  CHECK(resting.is_too_wide(0.0, then, 1.0));
   resting.moved = 0.0;
-  CHECK(resting.choose(1e-3, then, 1.0) == 1e-4);
+  CHECK(resting.choose(then, 1.0) == 1e-4);
   // Still moving as fast as the skin was made for: looked at again after as many steps.
   const double farthest = 0.45e-3;
-  CHECK(moving.is_too_wide(1e-3, farthest, then, 1.0) ==
-        (moving.best(1e-3, 2 * farthest / static_cast<double>(steps), 1.0, 0.0) < 1e-3));
+  CHECK(moving.is_too_wide(farthest, then, 1.0) ==
+        (moving.best(2 * farthest / static_cast<double>(steps), 1.0, 0.0) < 1e-3));
   CHECK(moving.look_at == then + steps);
   // The narrowest is never looked at.
   SkinChoice narrow = list_of_dense_bed();
-  narrow.made_list(1e-3, 2e-3, 3.6, 500, 1.0);
+  narrow.made_list(0.0, 3.6, 500, 1.0);
   CHECK(narrow.look_at == SkinChoice::never);
 }
 

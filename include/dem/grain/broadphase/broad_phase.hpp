@@ -15,11 +15,19 @@ struct Positions {
   std::size_t n;
 };
 
+/// How far grains reach that are of several sizes.
+struct Sizes {
+  std::span<const double> radius_of_kind;  ///< m, bounding radius
+  const std::uint32_t* kind;               ///< of each grain; null: all have the radius 0
+  double gap;                              ///< m: grains nearer than their radii and this are to be found
+};
+
 /// A broad phase finds candidates for contact. It has
 ///   build(positions, reach)   takes note of all grains; two grains farther apart than `reach` need not be found;
-///   finder()                  an object of which each thread has its own, with for_each_candidate(i, f): calls f(j)
-///   once
-///                             for each j > i within reach of i (and for others), in any order;
+///   build(positions, sizes)   optional, then called instead: two farther apart than their radii and the gap need not
+///   be; finder()                  an object of which each thread has its own, with for_each_candidate(i, f): calls
+///   f(j)
+///                             once for each j > i within reach of i (and for others), in any order;
 ///   order()                   a permutation that puts grains near in space near in memory (or an empty span);
 ///   memory_bytes()            what it holds;
 ///   reordered()               optional: the grains were put in order(). Without it they are built anew.
@@ -29,6 +37,12 @@ concept BroadPhase = requires(B& b, const B& built, const Positions& positions, 
   built.finder().for_each_candidate(std::size_t{0}, [](std::uint32_t) {});
   { built.memory_bytes() } -> std::convertible_to<std::size_t>;
   { built.order() } -> std::convertible_to<std::span<const std::uint32_t>>;
+};
+
+/// A broad phase that can use that grains are of several sizes.
+template <class B>
+concept KnowsSizes = requires(B& b, const Positions& positions, const Sizes& sizes) {
+  b.build(positions, sizes);
 };
 
 template <class B>

@@ -63,6 +63,7 @@ void grain_fields(Fields& v, Particles& p) {
   std::uint64_t count = p.count, ids = p.row_of.size();
   v("count", count);
   v("ids_given", ids);
+  v("generation_of_id", p.generation), v("ids_freed", p.freed), v("ids_free", p.free_again);
   if (v.task() == Fields::Task::restore) p.resize(0), p.resize(count);
   const auto columns = [&](const char* name, auto& c, const char* unit) {
     v.group(name, [&] {
@@ -86,6 +87,11 @@ void grain_fields(Fields& v, Particles& p) {
     v.rows("integrator_memory" + std::to_string(k), ColumnKind::real, 1, p.memory[k].data(), count);
   }
   if (v.task() != Fields::Task::restore) return;
+  for (const auto* list : {&p.freed, &p.free_again}) {
+    for (const std::uint32_t id : *list) {
+      if (id >= ids) fail("the saved state gives the id {} again, but has only {} ids", id, ids);
+    }
+  }
   p.row_of.assign(ids, p.gone);
   for (std::size_t i = 0; i < count; ++i) p.row_of.at(p.id[i]) = static_cast<std::uint32_t>(i);
   p.pad();

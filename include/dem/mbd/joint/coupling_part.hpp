@@ -143,6 +143,7 @@ inline constexpr PartKind coupling_kind = {
 DEM_COLD inline void switch_on(Parts& parts, Coupling& g, bool on) {
   if (on && !g.spec.on) g.offset = coupling_sum(g.spec, parts.joints, parts.bodies);
   g.spec.on = on;
+  parts.couplings_changed |= on;
   if (!on) g.error = g.multiplier = 0.0;
 }
 
@@ -168,6 +169,7 @@ DEM_COLD inline void set_ratio(Parts& parts, Coupling& g, std::size_t term, doub
   };
   const double error = coupling_sum(g.spec, parts.joints, parts.bodies) - g.offset, k = g.k, before = inverse_mass();
   g.spec.terms[term].ratio = ratio;
+  parts.couplings_changed = true;
   const double after = inverse_mass();
   if (!g.spec.stiffness && after > 0.0) g.k *= before / after;
   if (!g.spec.damping) g.c = Derivation::damping(g.k, after);
@@ -177,6 +179,7 @@ DEM_COLD inline void set_ratio(Parts& parts, Coupling& g, std::size_t term, doub
 DEM_COLD inline CouplingId add_coupling(Parts& parts, CouplingSpec spec) {
   settle_name(spec.name, parts.couplings, "coupling", "couplings", name_in_spec);
   use(parts, coupling_kind);
+  parts.couplings_changed = true;
   return keep<CouplingId>(parts, parts.couplings, make_coupling(parts, std::move(spec)));
 }
 

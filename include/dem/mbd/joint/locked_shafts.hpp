@@ -89,5 +89,11 @@ DEM_COLD inline void check_locked(const Parts& m) {
         m.joint_specs[columns[alone].first].name, names, name_of(columns[alone].second));
   }
 }
+/// The same, if a coupling was added, switched on or given another ratio since. To be called before each step.
+inline void check_changed_couplings(Parts& m) {
+  if (!m.couplings_changed) return;
+  check_locked(m);
+  m.couplings_changed = false;
+}
 
 }  // namespace dem::mbd::detail

@@ -36,7 +36,8 @@ struct LoadSpec {
   LoadLaw law = {};           ///< if given, it stands for direction, size and point
   BodyId a = {};              ///< the other body of a law between two
   PairLoadLaw pair_law = {};  ///< likewise, between body a and `body`
-  bool has_law() const { return law || pair_law; }
+  bool by_terrain = false;    ///< a terrain writes the force: see terrain_load()
+  bool has_law() const { return law || pair_law || by_terrain; }
 };
 
 DEM_COLD inline LoadSpec applied_force(std::string name, BodyId body, const Vec3& at, const Vec3& direction,
@@ -86,10 +87,12 @@ struct Load {
 };
 
 inline void apply_load(Load& load, std::vector<Body>& bodies, double time, double dt) {
-  load.wrench = {};
+  if (!load.spec.by_terrain || !load.spec.on) load.wrench = {};
   if (!load.spec.on) return;
   Body& b = bodies[load.spec.body.index()];
-  if (load.spec.law) {
+  if (load.spec.by_terrain) {
+    // The terrain has written it.
+  } else if (load.spec.law) {
     load.wrench = load.spec.law(time, b);
   } else if (load.spec.pair_law) {
     Body& a = bodies[load.spec.a.index()];

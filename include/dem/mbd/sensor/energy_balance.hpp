@@ -58,8 +58,8 @@ inline double speed_of(const Parts& m, const PrescribedMotion& p) {
 /// Powers are integrated with the trapezoidal rule, from the states at both ends of a step, so that the balance closes
 /// with the order of the integrator; across an impact, a jump of a load or the end of a slip, with dt. What closes it
 /// not: a joint, coupling or spring that is switched on or off, a ratio that is changed, a body that is fixed while it
-/// moves, and derived stiffness that is lowered in another pose. Begin anew after these (a new EnergyBalance). It
-/// refers to the machine, which has to outlive it and must not be moved.
+/// moves, sub-steps that are raised, and derived stiffness that is lowered in another pose. Begin anew after these (a
+/// new EnergyBalance). It refers to the machine, which has to outlive it and must not be moved.
 class EnergyBalance {
  public:
   EnergyBalance(const Mechanism& machine, const Vec3& gravity, double time = 0.0)

@@ -104,8 +104,9 @@ DEM_COLD inline AssemblyReport joined_velocities(Parts& m, GivenVelocities how =
   return report;
 }
 
-/// Moves the bodies so that joints with derived stiffness stand open by `part` of what they do, with the least change
-/// of positions as masses weigh them, and takes the speeds at which they open or close.
+/// Moves the bodies so that joints and couplings with derived stiffness are off by `part` of what they are, with the
+/// least change of positions as masses weigh them, and takes the speeds at which they open or close. Brakes and
+/// clutches go on with the torque that they have.
 DEM_COLD inline void close_openings(Parts& m, double part) {
   using namespace detail;
   const std::vector<HeldRow> rows = held_rows(m);
@@ -119,11 +120,19 @@ DEM_COLD inline void close_openings(Parts& m, double part) {
       if (gives_way(m, s.body)) by[s.body] = by[s.body] + errors[k] * response(s.body, s.push);
     }
   }
+  const auto slips = [&m] {
+    std::vector<double> all;
+    for (const Clutch& u : m.clutches) all.push_back(slip_of(u, m.joints, m.bodies).value);
+    return all;
+  };
+  const std::vector<double> before = slips();
   for (std::size_t i = 0; i < m.bodies.size(); ++i) {
     integrator::Motion<double>& x = m.bodies[i].motion;
     x.position += by[i].force;
     x.rotation = rotation_from_vector(by[i].torque) * x.rotation;
   }
+  const std::vector<double> after = slips();
+  for (std::size_t i = 0; i < m.clutches.size(); ++i) m.clutches[i].history.anchor += after[i] - before[i];
   joined_velocities(m);
 }
 

@@ -19,7 +19,7 @@ DEM_COLD inline std::string not_a_number(const Parts& parts) {
 }
 
 /// Why a machine blew up at steps of dt (s, with all `substeps`), in words: a number that is none, a step that was too
-/// large from the start or became so in another pose, a joint that folded, or none of these.
+/// large from the start or became so in another pose, a joint that folded or that no pose closes, or none of these.
 template <class I>
 std::string cause_of_blow_up(const Parts& parts, const StableTimeStep& at_start, const StepWatch<I>& later,
                              const JointWatch& joints, double dt, int substeps) {
@@ -44,6 +44,10 @@ std::string cause_of_blow_up(const Parts& parts, const StableTimeStep& at_start,
         "{}), lower the load, or give the joint more room to bend.",
         detail::joint_in_words(parts, folded.joint.index()), folded.time, folded.violation.rotation * 57.29577951308232,
         dt, substeps);
+  }
+  if (joints.is_exceeded() && parts.joints[joints.worst().joint.index()].rigid) {
+    return dem::text("Before, {}: no pose closes all joints. Let parts that contradict each other go.",
+                     in_words(parts, joints.worst()));
   }
   return dem::text(
       "The time step, {:g} s, was stable at the start of the run{}: check the applied forces, set points and contacts, "

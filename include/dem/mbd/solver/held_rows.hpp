@@ -21,7 +21,7 @@ struct HeldRow {
   };
   std::vector<Side> sides;
   double rate = 0.0;   ///< wanted, m/s or rad/s
-  double error = 0.0;  ///< m or rad, by which a joint stands open along it; of what is no joint 0
+  double error = 0.0;  ///< m or rad, by which a joint or a coupling is off along it; of prescribed motions 0
 };
 
 inline HeldRow row_of(const Coordinate& q, std::uint32_t a, std::uint32_t b, double rate = 0.0, double error = 0.0) {
@@ -106,6 +106,7 @@ DEM_COLD inline std::vector<HeldRow> held_rows(Parts& m) {
   for (const Coupling& g : m.couplings) {
     if (g.spec.stiffness || !is_on(g.spec)) continue;
     HeldRow row;
+    row.error = coupling_sum(g.spec, m.joints, m.bodies) - g.offset;
     for (const auto& term : g.spec.terms) {
       const Joint& j = m.joints[term.joint.index()];
       const Coordinate q = coordinate_of(j, m.bodies[j.a], m.bodies[j.b], term.dof);

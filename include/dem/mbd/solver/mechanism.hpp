@@ -28,7 +28,8 @@ class Mechanism {
   int substeps = 1, most_substeps = 1000;
   /// m, how far a joint whose stiffness is derived may open, and be out of line: rad times the size of the machine that
   /// it belongs to. 0: 1e-4 of that size, which is the diagonal of the box about its joints and bodies. A joint that
-  /// opens farther with most_substeps is reported; infinity: none is.
+  /// opens farther with most_substeps is reported; infinity: none is. Read when the machine is laid out: before the
+  /// first step, and before the next one after something was added or `substeps` changed.
   double joint_tolerance = 0.0;
   /// What becomes of velocities that joints do not allow, at the start.
   GivenVelocities given_velocities = GivenVelocities::project;

@@ -45,6 +45,7 @@ struct Element {
 struct Evaluation {
   double time, dt;
   bool is_last_stage;
+  bool is_trial;  ///< sub-steps that are taken again: nothing is to be remembered
   double followed() const { return is_last_stage ? dt : 0.0; }
 };
 

@@ -10,6 +10,7 @@
 #include <dem/mbd/joint/limits.hpp>
 #include <dem/mbd/load/load.hpp>
 #include <dem/mbd/load/spring.hpp>
+#include <dem/mbd/load/terrain.hpp>
 #include <dem/mbd/sensor/sensor.hpp>
 
 #include <string>
@@ -57,6 +58,7 @@ struct Parts {
   std::vector<Actuator> actuators;
   std::vector<Spring> springs;
   std::vector<Load> loads;
+  std::vector<TerrainPart> terrains;
   std::vector<PrescribedMotion> motions;
   std::vector<Sensor> sensors;
 
@@ -66,7 +68,8 @@ struct Parts {
   void (*check_holds)(Parts& parts, double time) = nullptr;
   void (*sample_sensors)(Parts& parts, double dt) = nullptr;
 
-  std::uint64_t revision = 0;  ///< grows with each body, joint, coupling ... that is added, set free or fixed
+  bool couplings_changed = false;  ///< added, switched on or given another ratio since a lock was looked for
+  std::uint64_t revision = 0;      ///< grows with each body, joint, coupling ... that is added, set free or fixed
 
   template <class V>
   void fields(V& v) {
@@ -76,6 +79,7 @@ struct Parts {
     v.list("actuators", actuators, "actuator"), v.list("clutches", clutches, "clutch or brake"),
         v.list("springs", springs, "spring"), v.list("loads", loads, "load");
     v.list("motions", motions, "prescribed motion"), v.list("sensors", sensors, "sensor");
+    if (!terrains.empty()) v.list("terrains", terrains, "terrain");
     v("revision", revision), v("spin", spin, "rad/s"), v("outside", outside);
   }
 

@@ -27,7 +27,7 @@ struct RestReport {
   double force = 0.0;   ///< N, the largest that is left on a body
   double torque = 0.0;  ///< N m, the largest that is left, about a centre of mass
   double share = 0.0;   ///< the residual as a share of the weight or of the largest force
-  double moved = 0.0;   ///< m, the farthest that a body was moved
+  double moved = 0.0;   ///< m, the farthest that a body was moved, also if it was put back
   std::string body;     ///< with the largest residual
   std::string text;     ///< in words, if it was not found
   explicit operator bool() const { return ok; }
@@ -51,7 +51,7 @@ class RestSearch {
       if (b.fixed) continue;
       b.motion.velocity = b.motion.angular_velocity = {0, 0, 0};
       free_.push_back(i);
-      start_.push_back(b.motion.position);
+      start_.push_back(b.motion);
       weight += b.mass * norm(gravity_);
     }
     evaluate(force_);
@@ -61,10 +61,15 @@ class RestSearch {
     for (const Load& l : parts.loads) scale_ = std::max(scale_, norm(l.wrench.force) + norm(l.wrench.torque) / size_);
   }
 
+  /// Puts the bodies where they were.
+  void put_back() {
+    for (std::size_t k = 0; k < free_.size(); ++k) m_.bodies[free_[k]].motion = start_[k];
+  }
+
   DEM_COLD RestReport run(const RestOptions& o) {
     RestReport report;
     double tau = 0.1, last = residual();
-    for (; report.iterations < o.most_iterations; ++report.iterations) {
+    for (; std::isfinite(last) && report.iterations < o.most_iterations; ++report.iterations) {
       if (worst_share(report) <= o.tolerance) {
         report.ok = true;
         break;
@@ -78,13 +83,20 @@ class RestSearch {
       move(step);
       evaluate(force_);
       const double now = residual();
-      if (!std::isfinite(now)) break;
       tau *= std::clamp(last / std::max(now, 1e-300), 0.3, 4.0);
       tau = std::min(tau, longest_);
       last = now;
     }
+    if (!std::isfinite(last)) {
+      const std::string cause = not_a_number(m_);
+      report.text = dem::text("no rest was found: after {} iterations the forces on body '{}' are not finite. {}",
+                              report.iterations, body_without_number(),
+                              cause.empty() ? "Start nearer to rest, or check the loads."
+                                            : cause + " is not a number: check the function that gives it.");
+      return report;
+    }
     for (std::size_t k = 0; k < free_.size(); ++k) {
-      report.moved = std::max(report.moved, norm(m_.bodies[free_[k]].motion.position - start_[k]));
+      report.moved = std::max(report.moved, norm(m_.bodies[free_[k]].motion.position - start_[k].position));
     }
     if (!report.ok) {
       report.text = dem::text(
@@ -119,6 +131,14 @@ class RestSearch {
     double sum = 0.0;
     for (std::size_t i = 0; i < force_.size(); ++i) sum += force_[i] * force_[i] / mass(i);
     return std::sqrt(sum);
+  }
+  const std::string& body_without_number() const {
+    std::size_t k = 0;
+    while (k + 1 < free_.size() &&
+           std::all_of(&force_[6 * k], &force_[6 * k] + 6, [](double f) { return std::isfinite(f); })) {
+      ++k;
+    }
+    return m_.bodies[free_[k]].name;
   }
   double worst_share(RestReport& report) const {
     report.share = report.force = report.torque = 0.0;
@@ -204,7 +224,7 @@ class RestSearch {
   Vector3<double> gravity_;
   double time_, dt_, size_ = 1e-6, scale_ = 0.0, longest_ = 1e3;
   std::vector<std::size_t> free_;
-  std::vector<Vector3<double>> start_;
+  std::vector<integrator::Motion<double>> start_;
   std::vector<double> force_, K_;
 };
 
@@ -219,16 +239,35 @@ DEM_COLD inline void stop_for_rest(Parts& parts) {
   for (Body& b : parts.bodies) b.motion.velocity = b.motion.angular_velocity = {0, 0, 0};
 }
 
+/// What is held exactly gets springs for the search, so stiff that they hardly give way. All else (limits, brakes,
+/// friction) keeps the stiffness that it has in steps of dt (s): it is what the run goes on with.
+DEM_COLD inline void put_springs_on(Parts& parts, double dt) {
+  constexpr double stiffer = 100.0;
+  std::vector<Joint*> joints;
+  std::vector<Coupling*> couplings;
+  for (Joint& j : parts.joints) {
+    if (j.rigid) joints.push_back(&j);
+    j.rigid = false;
+  }
+  for (Coupling& g : parts.couplings) {
+    if (g.k == 0.0 && g.c == 0.0) couplings.push_back(&g);
+  }
+  derive_stiffness(parts, dt);
+  for (Joint* j : joints) {
+    j->k *= stiffer;
+    j->kr *= stiffer;
+  }
+  for (Coupling* g : couplings) g->k *= stiffer;
+}
+
 /// Searches, with joints as they are in steps of dt (s).
 template <class Joints, class PutForces>
 RestReport search_rest(Parts& parts, const Vec3& gravity, double time, double dt, const RestOptions& options,
                        PutForces&& put_forces) {
-  if constexpr (Joints::projects) {  // springs for the search, so stiff that they hardly give way
-    for (Joint& j : parts.joints) j.rigid = false;
-    derive_stiffness(parts, 0.1 * dt);
-  }
+  if constexpr (Joints::projects) put_springs_on(parts, dt);
   RestSearch<std::decay_t<PutForces>> search(parts, gravity, time, dt, put_forces);
   const RestReport report = search.run(options);
+  if (!report) search.put_back();
   Joints::State::take_springs_off(parts);
   settle_turns(parts);
   return report;
@@ -239,7 +278,8 @@ RestReport search_rest(Parts& parts, const Vec3& gravity, double time, double dt
 /// Brings a machine to rest: moves its bodies to where gravity, springs, loads, actuators, limits and joints are in
 /// balance, and stops them. Loads are asked at the machine's present time and at speed 0; friction, dampers and motors
 /// hold nothing. Joints stand open as they will in steps of dt (s), so the run that follows stays where it is. A
-/// direction in which nothing holds and nothing pulls, as a wheel about its axle, stays as it is.
+/// direction in which nothing holds and nothing pulls, as a wheel about its axle, stays as it is. If no rest is found,
+/// the bodies are stopped where they were. Velocities that are given afterwards fit the joints by Machine::assemble.
 ///
 /// Throws Error for a prescribed motion of a body that is not fixed, and what Machine::run throws. Of a machine in a
 /// world: <dem/world/rest.hpp>.

@@ -100,9 +100,10 @@ class Solver {
   /// Whether what is derived belongs to steps of dt (s), and nothing was added since.
   bool is_designed_for(const Mechanism& m, double dt) const { return is_initialised(m) && dt == design_dt_; }
 
-  /// Throws Error if a prescribed motion that was added, switched on or given another signal would have to jump to take
+  /// Throws Error if couplings that were added or changed lock a shaft, or such a motion would have to jump to take
   /// hold of its coordinate. To be called before a step begins, so that one that has begun is never refused.
   void check_motions(Mechanism& m) const {
+    detail::check_changed_couplings(m.parts());
     if (m.parts().check_holds) m.parts().check_holds(m.parts(), time_);
   }
 
@@ -113,7 +114,6 @@ class Solver {
   DEM_COLD void initialise(Mechanism& m, double time, const Vec3& gravity, PutForces&& put_forces) {
     Parts& parts = m.parts();
     if (design_dt_ <= 0.0) require_derived(parts);
-    if (!parts.couplings.empty()) detail::check_locked(parts);
     clear_forces(parts);
     put_forces();
     time_ = time;
@@ -178,7 +178,11 @@ class Solver {
   }
   /// What was changed of what the user gave: sub-steps, velocities at the start. Empty if nothing.
   DEM_COLD std::string note(const Mechanism& m) const {
-    return note_of(m.parts(), assembly_, joints_, raised_.given(m.substeps), m.substeps);
+    std::string text = note_of(m.parts(), assembly_, joints_, raised_.given(m.substeps), m.substeps);
+    for (const TerrainPart& t : m.parts().terrains) {
+      if (const std::string problem = t->problem(); !problem.empty()) text += (text.empty() ? "" : " ") + problem;
+    }
+    return text;
   }
   /// What became of the velocities that were given, at the start.
   const AssemblyReport& assembly() const { return assembly_; }
@@ -249,7 +253,7 @@ class Solver {
   void complete(Mechanism& m, int stage, double start, double dt, const Vec3& gravity) {
     Parts& parts = m.parts();
     const bool last = stage == I::stages - 1;
-    add_forces(parts, stage_time(start, dt, stage), dt, last);
+    add_forces(parts, stage_time(start, dt, stage), dt, last, !sampling_);
     const auto sample = [&] {
       if (last && sampling_ && parts.sample_sensors) parts.sample_sensors(parts, dt);
     };

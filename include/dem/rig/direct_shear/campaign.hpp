@@ -133,7 +133,8 @@ void run_campaign(const DirectShear<Model>& shear, Campaign& campaign, Session& 
     detail::warn_of_speed(r, s, session);
     const bool in_the_middle = campaign.loads.size() - 1 == s.loads.size() / 2;
     if (s.replay && in_the_middle) {
-      campaign.replay.emplace(report::ReplayOptions{.frames = 100, .interval = s.travel / s.shear_speed / 80.0});
+      campaign.replay.emplace(report::ReplayOptions{
+          .frames = 100, .interval = s.travel / s.shear_speed / 80.0, .force_lines = s.replay_forces});
     }
     detail::test_load(shear, packing, r, s.replay && in_the_middle ? &*campaign.replay : nullptr, session);
     session.finish(text("maximum {:.1f} kPa", 1e-3 * r.maximum));

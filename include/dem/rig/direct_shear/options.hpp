@@ -110,7 +110,8 @@ inline void find_idle(IdleOptions& idle, const Settings& s) {
   idle.unless(!s.packing_only, "without --packing-only, for it is of the test",
               {"--stable-share", "--strike-off", "--loads", "--lid-speed", "--rest-speed", "--consolidation-limit",
                "--shear-speed", "--travel", "--ramp-time", "--smoothing", "--residual-share", "--area-correction",
-               "--replay", "--vtk-spheres", "--vtk-interval"});
+               "--replay", "--replay-forces", "--vtk-spheres", "--vtk-interval"});
+  find_idle_replay(idle, s);
   idle.unless(s.scale_contacts, "with --scale-contacts true", {"--constants-for"});
   idle.unless(s.time_step == 0.0, "without --time-step, which sets the step", {"--stable-share"});
   idle.unless(s.time_step != 0.0, "with --time-step", {"--allow-unstable-time-step"});

@@ -94,7 +94,8 @@ struct Settings {
 
   // Output
   std::string output = "direct_shear_output";
-  bool replay = true;  ///< of the load in the middle, in the report
+  bool replay = true;                  ///< of the load in the middle, in the report
+  std::uint64_t replay_forces = 2000;  ///< force chains of a frame of the replay, the largest; 0: none
   bool vtk = true;
   bool vtk_spheres = false;   ///< also the eight spheres of each grain
   double vtk_interval = 0.0;  ///< m of travel between two frames; 0: a twentieth of the travel

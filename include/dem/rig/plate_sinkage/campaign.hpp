@@ -97,8 +97,8 @@ void run_campaign(const Settings& settings, ShapeOf&& shape_of, Campaign& campai
       PlateResult& r = result.plates.emplace_back(PlateResult{.width = v.settings.widths[k]});
       const bool shown = settings.replay && v.name.empty() && k == v.settings.widths.size() / 2;
       if (shown)
-        campaign.replay.emplace(
-            report::ReplayOptions{.frames = 80, .interval = settings.sinkage / settings.speed / 60.0});
+        campaign.replay.emplace(report::ReplayOptions{
+            .frames = 80, .interval = settings.sinkage / settings.speed / 60.0, .force_lines = settings.replay_forces});
       detail::press(variant, *bed, v, r, shown ? &*campaign.replay : nullptr, session);
     }
   }

@@ -31,6 +31,7 @@ struct Settings {
   std::string study = "none";  ///< none, box, speed or seeds
   std::string output = "plate_sinkage_output";
   bool replay = true;
+  std::uint64_t replay_forces = 2000;  ///< force chains of a frame of the replay, the largest; 0: none
   bool vtk = true;
 
   [[nodiscard]] double sample_interval() const { return sinkage / 400.0 / speed; }  ///< s
@@ -69,6 +70,7 @@ inline void declare(Options& options, Settings& s) {
 inline void find_idle(IdleOptions& idle, const Settings& s) {
   rig::find_idle(idle, s.grains);
   rig::find_idle(idle, s.bed);
+  find_idle_replay(idle, s);
 }
 
 /// Fills in what depends on the size, and checks every option against its range. Throws Error.

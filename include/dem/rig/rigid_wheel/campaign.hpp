@@ -51,7 +51,9 @@ void run_campaign(const Settings& settings, ShapeOf&& shape_of, Campaign& campai
   // The slip that is shown: that of the greatest number up to 0.3.
   std::size_t shown = 0;
   for (std::size_t k = 0; k < s.slips.size(); ++k) shown = s.slips[k] <= 0.301 ? k : shown;
-  if (s.replay) campaign.replay.emplace(report::ReplayOptions{.frames = 80, .interval = s.duration() / 60.0});
+  if (s.replay)
+    campaign.replay.emplace(
+        report::ReplayOptions{.frames = 80, .interval = s.duration() / 60.0, .force_lines = s.replay_forces});
   const int threads = s.bed.threads > 0 ? s.bed.threads : std::max(1, omp_get_max_threads());
   session.begin("roll", static_cast<double>(s.slips.size()));
   side_by_side(s.slips.size(), threads, session, [&](std::size_t k, SharedStages& stages) {

@@ -34,6 +34,7 @@ struct Settings {
   std::string soil;  ///< file of a soil, whose Bekker-Wong curves are drawn too
   std::string output = "rigid_wheel_output";
   bool replay = true;
+  std::uint64_t replay_forces = 2000;  ///< force chains of a frame of the replay, the largest; 0: none
   bool vtk = true;
 
   [[nodiscard]] double spin() const { return spin_deg * std::numbers::pi / 180.0; }       ///< rad/s
@@ -81,6 +82,7 @@ inline void declare(Options& options, Settings& s) {
 inline void find_idle(IdleOptions& idle, const Settings& s) {
   rig::find_idle(idle, s.grains);
   rig::find_idle(idle, s.bed);
+  find_idle_replay(idle, s);
   idle.unless(s.wheel == "grousers", "with --wheel grousers",
               {"--grousers", "--grouser-height", "--grouser-thickness"});
 }

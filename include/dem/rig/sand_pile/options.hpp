@@ -70,6 +70,7 @@ inline void find_idle(IdleOptions& idle, const Settings& s) {
   idle.unless(!lift, "with --method funnel or drain", {"--flow-limit"});
   idle.unless(s.kinds.empty() || s.kinds.find("sphere-rolling") != std::string::npos, "with --kinds sphere-rolling",
               {"--rolling-length", "--plate-rolling-length"});
+  find_idle_replay(idle, s);
   idle.unless(s.scale_contacts, "with --scale-contacts true", {"--constants-for"});
   idle.unless(s.vtk, "with files for ParaView, without --no-vtk", {"--frame-time"});
 }

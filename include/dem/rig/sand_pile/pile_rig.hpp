@@ -51,7 +51,9 @@ class PileRig : public Rig {
         r.kind = kind;
         r.seed = settings.seed + k;
         const bool first = campaign.piles.size() == 1 && settings.replay;
-        if (first) campaign.replay.emplace(report::ReplayOptions{.frames = 100, .interval = settings.frame_time});
+        if (first)
+          campaign.replay.emplace(report::ReplayOptions{
+              .frames = 100, .interval = settings.frame_time, .force_lines = settings.replay_forces});
         world_of(kind).make(settings, r, first ? &*campaign.replay : nullptr, session);
         session.finish(text("{:.1f} deg", degrees * r.flank.angle));
       }

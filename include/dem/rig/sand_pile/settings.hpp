@@ -69,7 +69,8 @@ struct Settings {
 
   // Output
   std::string output = "sand_pile_output";
-  bool replay = true;  ///< of the first pile, in the report
+  bool replay = true;                  ///< of the first pile, in the report
+  std::uint64_t replay_forces = 2000;  ///< force chains of a frame of the replay, the largest; 0: none
   bool vtk = true;
   double frame_time = 0.05;  ///< s, between two frames
 };

@@ -36,7 +36,9 @@ void run_campaign(const Settings& settings, ShapeOf&& shape_of, Campaign& c, Ses
   session.begin_run(bed_stages(s.bed) + (s.slope_angle() != 0.0 ? 4 : 3));
 
   const io::SurfaceMesh hull = drawn_hull(s.car);
-  if (s.replay) c.replay.emplace(report::ReplayOptions{.frames = 90, .interval = 0.05, .grains = 12'000});
+  if (s.replay)
+    c.replay.emplace(
+        report::ReplayOptions{.frames = 90, .interval = 0.05, .grains = 12'000, .force_lines = s.replay_forces});
   std::optional<Frames> frames;
   frames.emplace(session, s.vtk ? "soft_lane" : "", 0.05);
   const auto look = [&](const auto& stand) {

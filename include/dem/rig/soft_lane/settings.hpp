@@ -45,6 +45,7 @@ struct Settings {
 
   std::string output = "humvee_soil_output";
   bool replay = true;
+  std::uint64_t replay_forces = 2000;  ///< force chains of a frame of the replay, the largest; 0: none
   bool vtk = false;
 
   [[nodiscard]] bool is_bed() const { return layout == "bed"; }
@@ -93,12 +94,14 @@ inline void declare(Options& options, Settings& s) {
   options.group("Output");
   add("--output", s.output, "folder; results of an earlier run in it are replaced");
   options.flag("--replay", s.replay, "replay in the report (--replay=true) or none (--no-replay)").off("--no-replay");
+  add_replay_forces(options, s);
   options.flag("--vtk", s.vtk, "files for ParaView (--vtk=true) or none (--no-vtk)").off("--no-vtk");
 }
 
 inline void find_idle(IdleOptions& idle, const Settings& s) {
   rig::find_idle(idle, s.grains);
   rig::find_idle(idle, s.bed);
+  find_idle_replay(idle, s);
   idle.unless(s.tyre == "mesh", "with --tyre mesh", {"--tyre-triangles"});
   idle.unless(s.scene == "slope" || s.scene == "side-slope", "with --scene slope or side-slope", {"--slope"});
   idle.unless(s.scene == "turn", "with --scene turn", {"--steer", "--steer-rate"});

@@ -1,0 +1,129 @@
+// Beds of 4,000 grains and of many more. A box of 4,000 grains is settled once, and put beside itself as often as the
+// size asks for, with its velocities. So a grain of the largest bed has the surroundings of one of the smallest.
+
+#include "works.hpp"
+
+#include <dem/report/ascii_table.hpp>
+
+#include <cmath>
+#include <cstdio>
+#include <ctime>
+
+namespace bench {
+
+namespace {
+
+constexpr int grains_a_box = 4000, per_row = 10;
+
+/// Bytes that this machine can still give, as Linux counts them; 0 where nobody knows.
+double free_bytes() {
+  std::FILE* file = std::fopen("/proc/meminfo", "r");
+  if (file == nullptr) return 0.0;
+  char line[128];
+  double kilobytes = 0.0;
+  while (std::fgets(line, sizeof line, file) != nullptr) {
+    if (std::sscanf(line, "MemAvailable: %lf kB", &kilobytes) == 1) break;
+  }
+  std::fclose(file);
+  return 1024.0 * kilobytes;
+}
+
+/// Refuses a bed that does not fit, with what making a list and a copy of a column take besides.
+void check_memory(std::size_t grains, double bytes_a_grain) {
+  const double needed = 1.3 * bytes_a_grain * static_cast<double>(grains), there = free_bytes();
+  if (there > 0.0 && needed > 0.9 * there) {
+    dem::fail("a bed of {} grains needs {:.3g} GB of memory, but only {:.3g} GB are free; give smaller --sizes", grains,
+              1e-9 * needed, 1e-9 * there);
+  }
+}
+
+/// Boxes that share their walls, filled one after the other until there are so many grains.
+template <class Model>
+dem::World<Model> boxes(const dem::World<Model>& one, std::size_t grains, double width, const Settings& settings) {
+  dem::World<Model> world = empty_world<Model>(settings);
+  const std::vector<dem::ParticleId> ids = one.particles();
+  const auto count = static_cast<double>((grains + ids.size() - 1) / ids.size());
+  const double nx = std::ceil(std::sqrt(count)), ny = std::ceil(count / nx);
+  const double thick = 0.02, high = 0.3, pitch = width + thick;
+  const auto wall = [&](const dem::Vec3& middle, const dem::Vec3& edges) {
+    world.add_surface(world.ground(), dem::surface::Box(edges), {.position = middle});
+  };
+  const double lx = nx * pitch + thick, ly = ny * pitch + thick;  // walls included; the first box begins at 0
+  const dem::Vec3 middle(lx / 2 - thick, ly / 2 - thick, 0);
+  wall(middle - dem::Vec3(0, 0, thick / 2), {lx, ly, thick});
+  for (double k = 0; k <= nx; ++k) wall({k * pitch - thick / 2, middle.y(), high / 2}, {thick, ly, high});
+  for (double k = 0; k <= ny; ++k) wall({middle.x(), k * pitch - thick / 2, high / 2}, {lx, thick, high});
+  for (std::size_t k = 0; k < grains; ++k) {
+    const dem::ParticleId from = ids[k % ids.size()];
+    const auto box = static_cast<double>(k / ids.size());
+    const dem::Vec3 corner(pitch * std::fmod(box, nx), pitch * std::floor(box / nx), 0);
+    world.add_particle({.species = dem::SpeciesId(0),
+                        .position = one.position(from) + corner,
+                        .velocity = one.velocity(from),
+                        .rotation = one.rotation(from),
+                        .angular_velocity = one.angular_velocity(from)});
+  }
+  return world;
+}
+
+template <class Model>
+void run(const char* name, const Settings& settings) {
+  const double width = Model::width * per_row / Model::per_row;
+  dem::World<Model> one = loose_bed<Model>(settings, grains_a_box, per_row, width);
+  const int most_threads = settings.threads > 0 ? settings.threads : one.threads();
+  one.set_threads(most_threads);
+  fmt::print("{}: settling a box of {} grains for {} steps\n", name, grains_a_box, settings.settle);
+  run_or_fail(one, settings.settle);
+  const double bytes_a_grain = double(dem::memory_bytes(one.state())) / grains_a_box;
+
+  dem::io::Table table{
+      .header = {"grains", "threads", "million grain-steps/s", "lowest", "highest", "ratio", "per CPU second",
+                 "of the first size", "lists made", "s a list", "contacts a grain", "bytes a grain"},
+      .digits = 3};
+  std::vector<double> of_first;  // by threads
+  for (const std::size_t grains : settings.sizes) {
+    check_memory(grains, bytes_a_grain);
+    dem::World<Model> world = boxes(one, grains, width, settings);
+    world.set_threads(most_threads);
+    run_or_fail(world, 200);  // friction springs are loaded anew
+    // As much work as --steps of the first size.
+    const double share = double(settings.sizes.front()) / double(grains);
+    const int steps = std::max(100, static_cast<int>(settings.steps * share));
+    double one_thread = 0.0;
+    for (int threads = 1; threads <= most_threads; ++threads) {
+      world.set_threads(threads);
+      run_or_fail(world, 20);
+      std::vector<double> rates, per_cpu_second;
+      const std::uint64_t lists = world.state().rebuilds;
+      world.state().stopwatch.switch_on(true);
+      for (int k = 0; k < settings.repeats; ++k) {
+        const auto start = std::chrono::steady_clock::now();
+        const std::clock_t cpu = std::clock();
+        run_or_fail(world, steps);
+        const double done = 1e-6 * double(grains) * steps;
+        rates.push_back(done / Seconds(std::chrono::steady_clock::now() - start).count());
+        per_cpu_second.push_back(done * CLOCKS_PER_SEC / double(std::clock() - cpu));
+      }
+      const double rate = median(rates), cpu_rate = median(per_cpu_second);
+      if (threads == 1) one_thread = rate;
+      if (of_first.size() < static_cast<std::size_t>(threads)) of_first.push_back(rate);
+      const std::uint64_t made = world.state().rebuilds - lists;
+      const double list = world.state().stopwatch.seconds(dem::Phase::neighbours) / double(std::max(made, 1ul));
+      table.row(grains, threads, rate, *std::min_element(rates.begin(), rates.end()),
+                *std::max_element(rates.begin(), rates.end()), rate / one_thread, cpu_rate,
+                rate / of_first[static_cast<std::size_t>(threads - 1)], made, list, contacts_a_grain(world),
+                std::to_string(dem::memory_bytes(world.state()) / grains));
+      world.state().stopwatch.switch_on(false);
+    }
+    print(table);  // as far as it is: the next size may take long
+  }
+}
+
+}  // namespace
+
+void time_sizes(const Settings& settings) {
+  if (settings.work != "spheres") run<Cubes>("cubes", settings);
+  if (settings.work != "cubes") run<Spheres>("spheres", settings);
+}
+
+}  // namespace bench
