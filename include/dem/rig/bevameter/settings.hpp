@@ -5,6 +5,7 @@
 #include <dem/rig/plate_sinkage/settings.hpp>
 #include <dem/rig/rigid_wheel/settings.hpp>
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -44,6 +45,7 @@ struct Settings {
   double confidence = 0.95;  ///< of the intervals
   std::string output = "bevameter_output";
   bool replay = true;
+  std::uint64_t replay_forces = 2000;  ///< force chains of a frame of a replay, the largest; 0: none
   bool vtk = true;
 
   [[nodiscard]] bool has_wheel() const { return wheel != "none"; }
@@ -86,6 +88,7 @@ inline void declare(Options& options, Settings& s) {
 
 inline void find_idle(IdleOptions& idle, const Settings& s) {
   rig::find_idle(idle, s.grains);
+  find_idle_replay(idle, s);
   const bool rolls = s.has_wheel() && !(s.wheel.empty() && s.size == "smoke");
   idle.unless(
       rolls, "with a --wheel",
@@ -115,6 +118,7 @@ inline plate_sinkage::Settings plates_of(const Settings& s) {
   p.unload = true;
   p.output = s.output + "/plates";
   p.replay = s.replay;
+  p.replay_forces = s.replay_forces;
   p.vtk = s.vtk;
   plate_sinkage::resolve(p);
   return p;
@@ -150,6 +154,7 @@ inline direct_shear::Settings shear_of(const Settings& s, double relative_densit
   d.threads = s.threads;
   d.output = s.output + "/shear";
   d.replay = s.replay;
+  d.replay_forces = s.replay_forces;
   d.vtk = s.vtk;
   direct_shear::resolve(d);
   return d;
@@ -169,6 +174,7 @@ inline rigid_wheel::Settings wheel_of(const Settings& s, const std::string& soil
   w.soil = soil;
   w.output = s.output + "/wheel";
   w.replay = s.replay;
+  w.replay_forces = s.replay_forces;
   w.vtk = s.vtk;
   rigid_wheel::resolve(w);
   return w;
