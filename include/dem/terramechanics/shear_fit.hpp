@@ -81,6 +81,42 @@ inline JanosiFit fit_janosi(const ShearCurve& curve) {
           .points = n};
 }
 
+/// The same with a strength (Pa) that is known, as the greatest stress that was measured: K alone is fitted. A curve
+/// that still rises at its end then has a K of the size of its displacements, and not one from beyond them. Throws
+/// Error for a strength that is not positive, and as fit_janosi does but for curves that do not bend.
+inline JanosiFit fit_janosi_below(const ShearCurve& curve, double strength) {
+  require_positive(strength, "strength that a shear curve is fitted below", "Pa");
+  const std::size_t n = curve.displacement.size();
+  if (n != curve.stress.size()) {
+    fail("shear curve at {:g} Pa: {} displacements and {} stresses; give as many of both", curve.normal_stress, n,
+         curve.stress.size());
+  }
+  double reached = 0.0;  // where 63 % are first passed
+  for (std::size_t i = n; i-- > 0;) {
+    if (curve.displacement[i] > 0.0 && curve.stress[i] >= 0.632 * strength) reached = curve.displacement[i];
+  }
+  if (!(reached > 0.0)) {
+    fail("shear curve at {:g} Pa does not reach two thirds of its strength, {:g} Pa; shear further",
+         curve.normal_stress, strength);
+  }
+  const auto model = [&](std::size_t i, const std::array<double, 1>& values, std::array<double, 1>& slopes) {
+    const double ratio = curve.displacement[i] / std::exp(values[0]);
+    slopes = {-strength * ratio * std::exp(-ratio)};
+    return -strength * std::expm1(-ratio);
+  };
+  const auto fit = least_squares<1>(
+      "fit of a shear curve", n, {std::log(reached)}, model, [&](std::size_t i) { return curve.stress[i]; },
+      [](std::size_t) { return 1.0; });
+  const double k = std::exp(fit.value[0]);
+  return {.normal_stress = curve.normal_stress,
+          .strength = strength,
+          .strength_error = 0.0,
+          .displacement = k,
+          .displacement_error = k * fit.error[0],
+          .r_squared = fit.r_squared,
+          .points = n};
+}
+
 /// Strength and shear displacement of a soil from shear curves at several normal stresses.
 struct ShearConstants {
   JanosiHanamoto law;

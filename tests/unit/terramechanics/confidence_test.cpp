@@ -67,7 +67,7 @@ TEST_CASE(
         curve.sinkage.push_back(z);
         curve.pressure.push_back(truth.under(b).pressure(z) * (1.0 + 0.08 * off));
       }
-      for (std::size_t k = 0; k < 5; ++k) pieces.push_back(within(curve, 4e-3 * k + 1e-9, 4e-3 * (k + 1) + 1e-9));
+      for (int k = 0; k < 5; ++k) pieces.push_back(within(curve, 4e-3 * k + 1e-9, 4e-3 * (k + 1) + 1e-9));
       curves.push_back(std::move(curve));
     }
     const auto n = jackknife<3>(std::span<const PlateCurve>(pieces), [](std::span<const PlateCurve> some) {

@@ -88,3 +88,21 @@ TEST_CASE("shear curves that cannot be fitted are refused") {
   CHECK_THROWS_WITH(fit_janosi({1e4, line, {0.0, -1e3, -2e3, -2e3}}),
                     ContainsSubstring("in the direction of shearing"));
 }
+
+TEST_CASE(
+    "below a known strength K alone is fitted: exact on the law's curve, and of the travel's size where it rises") {
+  ShearCurve exact{.normal_stress = 1e4, .displacement = {}, .stress = {}}, rising = exact;
+  for (int i = 1; i <= 200; ++i) {
+    const double j = 2e-5 * i;
+    exact.displacement.push_back(j);
+    exact.stress.push_back(-7e3 * std::expm1(-j / 8e-4));
+    rising.displacement.push_back(j);
+    rising.stress.push_back(7e3 * j / 4e-3);
+  }
+  CHECK(fit_janosi_below(exact, 7e3).displacement == Approx(8e-4).epsilon(1e-6));
+  CHECK(fit_janosi_below(exact, 7e3).strength == 7e3);
+  // The least squares of x - 1 + exp(-x/k) over 0 to 1 have k = 0.6143 (by a search of its own).
+  CHECK(fit_janosi_below(rising, 7e3).displacement == Approx(0.6143 * 4e-3).epsilon(0.01));
+  CHECK_THROWS_WITH(fit_janosi_below(exact, 2e4), Catch::Contains("does not reach two thirds"));
+  CHECK_THROWS_WITH(fit_janosi_below(exact, 0.0), Catch::Contains("strength"));
+}

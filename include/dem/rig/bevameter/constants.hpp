@@ -84,16 +84,13 @@ inline Estimate mean_estimate(std::span<const double> values) {
 inline void find_strength(Constants& c, const direct_shear::Campaign& shear, const direct_shear::Settings& s,
                           double confidence) {
   using terramechanics::Intercept;
-  std::vector<double> sigma, tau, bends;
+  std::vector<double> sigma, tau, bends;  // of the latter K, m
   for (const auto& r : shear.loads) {
     if (!r.finished || !(r.maximum > 0.0)) continue;
     sigma.push_back(r.normal_at_maximum);
     tau.push_back(r.maximum);
-    try {
-      c.shear_curves.push_back(terramechanics::fit_janosi(shear_curve(r, s)));
-      bends.push_back(c.shear_curves.back().displacement);
-    } catch (const Error&) {  // a curve that does not bend says nothing of K
-    }
+    c.shear_curves.push_back(terramechanics::fit_janosi_below(shear_curve(r, s), r.maximum));
+    bends.push_back(c.shear_curves.back().displacement);
   }
   if (sigma.size() > 2) {
     const auto line = terramechanics::fit_mohr_coulomb(sigma, tau, Intercept::free);
@@ -107,7 +104,6 @@ inline void find_strength(Constants& c, const direct_shear::Campaign& shear, con
     c.cohesion = {0.0, 0.0, sigma.size() - 1};
     c.friction_angle = {line.friction_angle, line.friction_angle_error, sigma.size() - 1};
   }
-  if (bends.empty()) fail("no shear curve bends towards its strength, so K is not known; raise --shear-travel");
   c.displacement = mean_estimate(bends);
 }
 

@@ -5,6 +5,7 @@
 #include <dem/rig/plate_sinkage/settings.hpp>
 #include <dem/rig/rigid_wheel/settings.hpp>
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -44,7 +45,7 @@ struct Settings {
   double confidence = 0.95;  ///< of the intervals
   std::string output = "bevameter_output";
   bool replay = true;
-  std::uint64_t replay_forces = 2000;  ///< force chains of a frame of the replay, the largest; 0: none
+  std::uint64_t replay_forces = 2000;  ///< force chains of a frame of a replay, the largest; 0: none
   bool vtk = true;
 
   [[nodiscard]] bool has_wheel() const { return wheel != "none"; }
@@ -87,6 +88,7 @@ inline void declare(Options& options, Settings& s) {
 
 inline void find_idle(IdleOptions& idle, const Settings& s) {
   rig::find_idle(idle, s.grains);
+  find_idle_replay(idle, s);
   const bool rolls = s.has_wheel() && !(s.wheel.empty() && s.size == "smoke");
   idle.unless(
       rolls, "with a --wheel",

@@ -126,7 +126,7 @@ inline Found find_constants(const Measurements& m, std::span<const Goal> goals, 
 }
 
 /// Place number `index` (from 0) to try: the first ones are spread over the cube, later ones about what was found so
-/// far, within three standard errors and at least a tenth of the cube each way, so that the surfaces know their slopes
+/// far, within three standard errors and at least a fifth of the cube each way, so that the surfaces know their slopes
 /// there.
 inline std::vector<double> next_place(std::size_t index, std::size_t dimensions, const std::optional<Found>& found) {
   static constexpr unsigned primes[] = {2, 3, 5, 7};
@@ -137,7 +137,7 @@ inline std::vector<double> next_place(std::size_t index, std::size_t dimensions,
       place[k] = even;
       continue;
     }
-    const double reach = std::clamp(3.0 * found->error[k], 0.1, 0.5);
+    const double reach = std::clamp(3.0 * found->error[k], 0.2, 0.5);
     const double middle = std::clamp(found->place[k], reach, 1.0 - reach);
     place[k] = std::clamp(middle + (2.0 * even - 1.0) * reach, 0.0, 1.0);
   }

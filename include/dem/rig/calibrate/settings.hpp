@@ -4,7 +4,9 @@
 #include <dem/rig/sizes.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
+#include <iterator>
 #include <string>
 #include <utility>
 #include <vector>

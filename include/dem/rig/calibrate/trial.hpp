@@ -117,6 +117,16 @@ inline double measure_repose(const Settings& s, const Trial& t, const Worlds& wo
   return terramechanics::degrees(result.flank.angle);
 }
 
+/// The constants and the seed of a trial, for the file settings.toml of its runs.
+inline std::string values_text(const Settings& s, const Trial& t) {
+  std::string lines = text("size=\"{}\"\nseed={}\n", s.size, t.seed);
+  const auto constants = constants_of(s);
+  for (std::size_t k = 0; k < constants.size(); ++k) {
+    lines += text("{}={}\n", names_of_constants[static_cast<int>(constants[k])], t.values[k]);
+  }
+  return lines;
+}
+
 }  // namespace detail
 
 /// Runs the rigs of a trial one after the other, each on one thread and in a folder of its own, and fills in its
@@ -129,7 +139,7 @@ inline void run_trial(const Settings& s, Trial& t, const Worlds& worlds, const s
     ShareOf share(stages, q, quantities.size());
     const std::string name = text("{}_{}_{}", t.point, t.seed, names_of_quantities[static_cast<int>(quantities[q])]);
     try {
-      Session session({"calibrate", (folder / name).string(), "", {}, {}, {}, &share});
+      Session session({"calibrate", (folder / name).string(), detail::values_text(s, t), {}, {}, {}, &share});
       t.results[q] = quantities[q] == Quantity::phi      ? detail::measure_phi(s, t, worlds, session)
                      : quantities[q] == Quantity::repose ? detail::measure_repose(s, t, worlds, session)
                                                          : detail::measure_pressure(s, t, worlds, session);
