@@ -1,5 +1,5 @@
-// What sleep saves and changes: a blade is drawn through a settled bed of cubes twice from the same state, awake and
-// with sleeping grains, for several seeds. Prints CPU time and mean forces of both.
+// What sleep saves and changes: a settled bed of cubes or spheres goes on twice from the same state, awake and with
+// sleeping grains, for several seeds: at rest, and with a blade drawn through it. Prints CPU time and mean forces.
 
 #include <dem/dem.hpp>
 #include <dem/report/ascii_table.hpp>
@@ -11,18 +11,27 @@
 
 using namespace dem;
 
-struct Soil : Model {
+struct Cubes : Model {
   using Shape = shape::SphereCluster<8>;
   using Integrator = integrator::VelocityVerlet;
+  static Shape grain() { return shape::cube8(1.2e-3); }
+  static constexpr double pitch = 3.48e-3;  // m, of the lattice that is poured
 };
-constexpr double half_edge = 1.2e-3;  // m
+struct Spheres : Model {
+  using Integrator = integrator::VelocityVerlet;
+  static Shape grain() { return shape::Sphere(1.5e-3); }
+  static constexpr double pitch = 3.22e-3;
+};
 
 struct Settings {
   double length = 0.12, width = 0.06, height = 0.06, settle = 0.7, travel = 0.01, speed = 0.05, share = 0.01;
+  double blade = 0.03, rest = 0.05, start = -0.3, fill = 1.9;
+  std::string shape = "cubes";
   int seeds = 3, threads = 1;
 };
 
 /// Loose grains in an open box, and a blade that stands in them from the start.
+template <class Soil>
 struct Bed {
   World<Soil> world;
   SurfaceId blade;
@@ -39,20 +48,20 @@ struct Bed {
       wall({side * (s.length + t) / 2, 0, high / 2}, {t, s.width + 2 * t, high});
       wall({0, side * (s.width + t) / 2, high / 2}, {s.length, t, high});
     }
-    const Vec3 edges(4e-3, 0.5 * s.width, s.height);
-    const double x = -0.3 * s.length;
+    const Vec3 edges(4e-3, s.blade, s.height);
+    const double x = s.start * s.length;
     const BodyId body = world.machine().add_fixed_body("blade", Vec3(x, 0, 0.75 * s.height + edges.z() / 2));
     blade = world.add_surface(body, surface::Box(edges), {.name = "blade"});
-    world.machine().add_motion(
-        mbd::prescribed_position("draw", body, Vec3::UnitX(), mbd::Signal::ramp(0.0, s.speed, s.settle + 0.02)));
-    const SpeciesId cube = world.add_species(shape::cube8(half_edge), {.density = 2650});
+    world.machine().add_motion(mbd::prescribed_position("draw", body, Vec3::UnitX(),
+                                                        mbd::Signal::ramp(0.0, s.speed, s.settle + 0.02 + s.rest)));
+    const SpeciesId cube = world.add_species(Soil::grain(), {.density = 2650});
     std::mt19937 random(seed);
     std::uniform_real_distribution<double> turn(-1.0, 1.0), shift(-1e-4, 1e-4);
-    const double pitch = 2.9 * half_edge;
-    for (double z = pitch / 2; z < 1.9 * s.height; z += pitch) {
+    constexpr double pitch = Soil::pitch;
+    for (double z = pitch / 2; z < s.fill * s.height; z += pitch) {
       for (double gx = -s.length / 2 + pitch / 2; gx < s.length / 2 - pitch / 3; gx += pitch) {
         for (double y = -s.width / 2 + pitch / 2; y < s.width / 2 - pitch / 3; y += pitch) {
-          if (std::abs(gx - x) < 2e-3 + 0.6 * pitch && std::abs(y) < 0.25 * s.width + 0.6 * pitch &&
+          if (std::abs(gx - x) < 2e-3 + 0.6 * pitch && std::abs(y) < 0.5 * s.blade + 0.6 * pitch &&
               z > 0.75 * s.height - pitch) {
             continue;  // here stands the blade
           }
@@ -72,14 +81,21 @@ struct Bed {
 
 struct Drawn {
   double force = 0.0, lift = 0.0, seconds = 0.0, asleep = 0.0;  // N, N, CPU s, mean share
+  double at_rest = 0.0, asleep_at_rest = 0.0;                   // before the blade moves: CPU s, share at the end
 };
 
 /// The second half of the travel counts for the forces, all of it for the time.
+template <class Soil>
 Drawn draw(World<Soil> world, SurfaceId blade, const Settings& s, bool sleep) {
   if (sleep) world.set_sleep(SleepOptions{.share = s.share});
   if (const StepReport report = world.run_for(0.02); !report) fail("{}", report.text);  // time to fall asleep
   Drawn d;
-  const std::clock_t start = std::clock();
+  const auto seconds = [] { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; };
+  d.at_rest = -seconds();
+  if (const StepReport report = world.run_for(s.rest); !report) fail("{}", report.text);
+  d.at_rest += seconds();
+  d.asleep_at_rest = static_cast<double>(world.asleep_count()) / static_cast<double>(world.particle_count());
+  d.seconds = -seconds();
   const int samples = 200;
   for (int k = 0; k < samples; ++k) {
     if (const StepReport report = world.run_for(s.travel / s.speed / samples); !report) fail("{}", report.text);
@@ -88,34 +104,52 @@ Drawn draw(World<Soil> world, SurfaceId blade, const Settings& s, bool sleep) {
     d.force -= world.surface_force(blade).x() / (samples / 2);
     d.lift += world.surface_force(blade).z() / (samples / 2);
   }
-  d.seconds = static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
+  d.seconds += seconds();
   return d;
+}
+
+template <class Soil>
+void compare(const Settings& s) {
+  io::Table still{.caption = "nothing moves",
+                  .header = {"seed", "grains", "asleep", "CPU s awake", "CPU s asleep", "share (%)"},
+                  .digits = 3};
+  io::Table table{.caption = "the blade is drawn",
+                  .header = {"seed", "grains", "asleep", "CPU s awake", "CPU s asleep", "times faster",
+                             "force awake (N)", "asleep (N)", "change (%)", "lift awake (N)", "asleep (N)"},
+                  .digits = 4};
+  for (int seed = 1; seed <= s.seeds; ++seed) {
+    Bed<Soil> bed(s, static_cast<unsigned>(seed));
+    const Drawn awake = draw(bed.world, bed.blade, s, false), asleep = draw(bed.world, bed.blade, s, true);
+    still.row(seed, bed.grains, asleep.asleep_at_rest, awake.at_rest, asleep.at_rest,
+              100.0 * asleep.at_rest / awake.at_rest);
+    table.row(seed, bed.grains, asleep.asleep, awake.seconds, asleep.seconds, awake.seconds / asleep.seconds,
+              awake.force, asleep.force, 100.0 * (asleep.force / awake.force - 1.0), awake.lift, asleep.lift);
+    io::print(still), io::print(table);
+    std::fflush(stdout);
+  }
 }
 
 int main(int argc, char** argv) {
   Settings s;
-  CLI::App app("A blade through a bed of cubes, awake and with sleeping grains");
+  CLI::App app("A blade through a bed, awake and with sleeping grains");
   app.add_option("--length", s.length, "of the bed [m]")->capture_default_str();
   app.add_option("--width", s.width, "[m]")->capture_default_str();
   app.add_option("--height", s.height, "[m]")->capture_default_str();
   app.add_option("--settle", s.settle, "time to settle [s]")->capture_default_str();
   app.add_option("--travel", s.travel, "of the blade [m]")->capture_default_str();
   app.add_option("--speed", s.speed, "[m/s]")->capture_default_str();
+  app.add_option("--shape", s.shape, "of the grains")->check(CLI::IsMember({"cubes", "spheres"}));
+  app.add_option("--blade", s.blade, "width of the blade [m]")->capture_default_str();
+  app.add_option("--start", s.start, "where the blade starts, in lengths of the bed from its middle");
+  app.add_option("--fill", s.fill, "height to which loose grains are put, in --height");
+  app.add_option("--rest", s.rest, "time before the blade moves that is measured as well [s]");
   app.add_option("--share", s.share, "of what a grain bears that leaves it asleep")->capture_default_str();
   app.add_option("--seeds", s.seeds, "beds")->capture_default_str()->check(CLI::Range(1, 100));
   app.add_option("--threads", s.threads, "of the worlds")->capture_default_str()->check(CLI::Range(1, 64));
   CLI11_PARSE(app, argc, argv);
   try {
-    io::Table table{.header = {"seed", "grains", "asleep", "CPU s awake", "CPU s asleep", "times faster",
-                               "force awake (N)", "asleep (N)", "change (%)", "lift awake (N)", "asleep (N)"},
-                    .digits = 4};
-    for (int seed = 1; seed <= s.seeds; ++seed) {
-      Bed bed(s, static_cast<unsigned>(seed));
-      const Drawn awake = draw(bed.world, bed.blade, s, false), asleep = draw(bed.world, bed.blade, s, true);
-      table.row(seed, bed.grains, asleep.asleep, awake.seconds, asleep.seconds, awake.seconds / asleep.seconds,
-                awake.force, asleep.force, 100.0 * (asleep.force / awake.force - 1.0), awake.lift, asleep.lift);
-      io::print(table);
-    }
+    if (s.shape == "cubes") compare<Cubes>(s);
+    else compare<Spheres>(s);
   } catch (const std::exception& e) {
     fmt::print(stderr, "{}\n", e.what());
     return 1;
