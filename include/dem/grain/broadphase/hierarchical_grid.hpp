@@ -59,14 +59,12 @@ class HierarchicalGrid {
 
     template <class F>
     void for_each_candidate(std::size_t i, F&& f) {
-      const std::uint64_t key = grid_.cells_[grid_.cell_of_[i]].key;
-      const unsigned own = level_of_key(key);
-      for (unsigned level = own; level < grid_.levels_; ++level) {
-        Around& around = around_[level];
-        if (const std::uint64_t here = key >> 3 * (level - own); around.key != here) look_around(here, level);
+      if (grid_.cell_of_[i] != cell_) look_from(grid_.cell_of_[i]);
+      for (unsigned level = own_; level < grid_.levels_; ++level) {
+        const Around& around = around_[level];
         for (int k = 0; k < around.count; ++k) visit(i, around.first[k], around.last[k], f);
       }
-      for (unsigned level = 0; level < own; ++level) search_below(i, level, f);
+      for (unsigned level = 0; level < own_; ++level) search_below(i, level, f);
     }
 
    private:
@@ -83,6 +81,15 @@ class HierarchicalGrid {
       }
     }
 
+    /// The surroundings of a cell on its own level and those above.
+    void look_from(std::uint32_t cell) {
+      const std::uint64_t key = grid_.cells_[cell].key;
+      cell_ = cell;
+      own_ = level_of_key(key);
+      for (unsigned level = own_; level < grid_.levels_; ++level) {
+        if (const std::uint64_t here = key >> 3 * (level - own_); around_[level].key != here) look_around(here, level);
+      }
+    }
     void look_around(std::uint64_t here, unsigned level) {
       Around& around = around_[level];
       around.key = here;
@@ -140,6 +147,8 @@ class HierarchicalGrid {
     }
 
     const HierarchicalGrid& grid_;
+    std::uint32_t cell_ = CellTable::none;
+    unsigned own_ = 0;  // level of the cell
     std::array<Around, most_levels> around_;
   };
   Finder finder() const { return Finder(*this); }
