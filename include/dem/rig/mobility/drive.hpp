@@ -39,7 +39,7 @@ struct PullPoint {
 
 /// What a drive finds. Means are over the second half of the way, forces of all four wheels together.
 struct Result {
-  std::string ended;                                   ///< one of vehicle::ending; empty: not yet
+  std::string ended = {};                              ///< one of vehicle::ending; empty: not yet
   double way = 0.0, time = 0.0;                        ///< m, s
   double speed = not_known, slip = not_known;          ///< m/s; (omega r - v)/max
   double sinkage = not_known;                          ///< m
@@ -53,7 +53,7 @@ struct Result {
   double weight = not_known;                           ///< N
   double widest_joint = 0.0;                           ///< m
   double computing = not_known;                        ///< s of one core for a second of the car
-  std::vector<PullPoint> pulls;                        ///< of a car on a load cell
+  std::vector<PullPoint> pulls = {};                   ///< of a car on a load cell
 
   [[nodiscard]] bool goes() const { return ended == vehicle::ending::arrived; }
   template <class V>
