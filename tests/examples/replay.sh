@@ -60,7 +60,7 @@ start() {
 call() {
   calls=$((calls + 1))
   printf '{"id":%d,"method":"%s","params":%s%s}\0' "$calls" "$1" "$2" "$session" >&5
-  while IFS= read -r -d '' -t 200 reply <&6; do
+  while IFS= read -r -d '' -t 500 reply <&6; do
     case $reply in
       "{\"id\":$calls,\"error\""*) fail "The browser refuses $1: $reply" ;;
       "{\"id\":$calls,"*) return ;;

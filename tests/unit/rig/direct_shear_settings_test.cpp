@@ -133,6 +133,8 @@ TEST_CASE("an option that would do nothing is refused, on the command line and i
   refused({"--relative-density=0"}, {"--densify-time", "--shake-amplitude", "--shake-frequency"}, "5");
   refused({"--packing-only"}, {"--loads", "--lid-speed", "--shear-speed", "--travel", "--smoothing", "--vtk-interval"},
           "5");
+  refused({"--packing-only"}, {"--replay-forces"}, "5");
+  refused({"--no-replay"}, {"--replay-forces"}, "5");
   refused({"--packing-only"}, {"--area-correction", "--vtk-spheres"}, "true");
   refused({"--packing-only"}, {"--replay"}, "false");  // in a file, its default is no request
   refused({"--packing-only"}, {"--stable-share", "--strike-off"}, "0.5");
