@@ -4,9 +4,11 @@
 
 #include <dem/core/error.hpp>
 
+#include <algorithm>
 #include <cstdlib>
 #include <map>
 #include <string>
+#include <vector>
 
 class Arguments {
  public:
@@ -21,11 +23,19 @@ class Arguments {
   }
   double number(const std::string& name, double otherwise) {
     const std::string text = take(name, "");
+    return text.empty() ? otherwise : number_in(text, name);
+  }
+  /// Numbers with commas between them, at least one.
+  std::vector<double> numbers(const std::string& name, std::vector<double> otherwise) {
+    const std::string text = take(name, "");
     if (text.empty()) return otherwise;
-    char* end = nullptr;
-    const double value = std::strtod(text.c_str(), &end);
-    if (*end != '\0') dem::fail("{} is {}, but must be a number", name, text);
-    return value;
+    std::vector<double> values;
+    for (std::size_t from = 0; from <= text.size();) {
+      const std::size_t to = std::min(text.find(',', from), text.size());
+      values.push_back(number_in(text.substr(from, to - from), name));
+      from = to + 1;
+    }
+    return values;
   }
   std::string take(const std::string& name, const std::string& otherwise) {
     const auto found = given_.find(name);
@@ -40,5 +50,12 @@ class Arguments {
   }
 
  private:
+  static double number_in(const std::string& text, const std::string& name) {
+    char* end = nullptr;
+    const double value = std::strtod(text.c_str(), &end);
+    if (text.empty() || *end != '\0') dem::fail("{} is '{}', but must be a number", name, text);
+    return value;
+  }
+
   std::map<std::string, std::string> given_;
 };

@@ -1,142 +1,124 @@
-// Mixtures of two sizes of spheres: what neighbour lists and steps cost with a uniform grid, whose cells are as large
-// as the largest grain, and with a hierarchical one. Half of the solid volume is large grains.
+// Mixtures of two sizes of spheres: what neighbour lists cost with a uniform grid, whose cells are as large as the
+// largest grain's reach, and with a hierarchical one. Half of the solid volume is large grains.
 
-#include <dem/dem.hpp>
 #include <dem/grain/broadphase/hierarchical_grid.hpp>
+#include <dem/grain/broadphase/uniform_grid.hpp>
+#include <dem/math/random.hpp>
 #include <dem/report/ascii_table.hpp>
 
 #include <CLI/CLI.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <ctime>
-#include <random>
 
 namespace {
 
-struct Uniform : dem::Model {
-  using BroadPhase = dem::broadphase::UniformGrid;
-  using Integrator = dem::integrator::SymplecticEuler;
-};
-struct Levels : Uniform {
-  using BroadPhase = dem::broadphase::HierarchicalGrid;
-};
+constexpr double radius = 1e-3, skin = 0.14e-3;  // m, of the small grains
 
-struct Settings {
-  std::size_t grains = 100'000;
-  std::vector<double> ratios = {1, 5, 20};
-  int settle = 1000, steps = 200, lists = 2, threads = 1;
-};
-
-constexpr double radius = 1e-3;  // m, of the small grains
-
-template <class Model>
-dem::World<Model> box(double width, double ratio, int threads) {
-  dem::World<Model> world({.time_step = 1e-5, .threads = threads});
-  world.set_contact({.normal = {2000, 0.02, 1.0}, .friction = {0.4, 600.0, 0.01, 1.0}});
-  const double thick = 0.1, high = 2.0 * width;
-  const auto wall = [&](const dem::Vec3& middle, const dem::Vec3& edges) {
-    world.add_surface(world.ground(), dem::surface::Box(edges), {.position = middle});
-  };
-  wall({width / 2, width / 2, -thick / 2}, {width + 2 * thick, width + 2 * thick, thick});
-  for (const double side : {-thick / 2, width + thick / 2}) {
-    wall({side, width / 2, high / 2}, {thick, width + 2 * thick, high});
-    wall({width / 2, side, high / 2}, {width + 2 * thick, thick, high});
+struct Heap {
+  std::vector<double> x = {}, y = {}, z = {}, radius_of_kind = {};
+  std::vector<std::uint32_t> kind = {};
+  void add(std::uint32_t k, const dem::Vec3& p) {
+    x.push_back(p.x()), y.push_back(p.y()), z.push_back(p.z()), kind.push_back(k);
   }
-  world.add_species(dem::shape::Sphere(radius));
-  world.add_species(dem::shape::Sphere(ratio * radius));
-  return world;
-}
+  dem::broadphase::Positions positions() const { return {x.data(), y.data(), z.data(), x.size()}; }
+  dem::broadphase::Sizes sizes() const { return {radius_of_kind, kind.data(), skin}; }
+  double largest_reach() const { return 2.0 * radius_of_kind.back() + skin; }
+  /// Rows are put in this order, as a world does.
+  void put_in_order(std::vector<std::uint32_t> order) {
+    const Heap old = *this;
+    for (std::size_t k = 0; k < order.size(); ++k) {
+      x[k] = old.x[order[k]], y[k] = old.y[order[k]], z[k] = old.z[order[k]], kind[k] = old.kind[order[k]];
+    }
+  }
+};
 
 /// A cubical heap: large grains on a lattice of their own, small ones on a tight one where these leave room.
-std::vector<dem::NewParticle> loose_heap(std::size_t grains, double ratio, double& width) {
-  std::mt19937 random(7);
-  std::uniform_real_distribution<double> shift(-0.01, 0.01);
-  const double r3 = ratio * ratio * ratio, pitch = 2.06 * radius;
-  const double large = ratio > 1.0 ? std::max(1.0, std::round(double(grains) / (1.0 + r3))) : 0.0;
-  // Small ones in their lattice, large ones in cells of their own; as high as it is wide.
-  const double large_pitch = 2.1 * ratio * radius;
-  width = std::cbrt((double(grains) - large) * std::pow(pitch, 3) + large * std::pow(large_pitch, 3));
-  width = std::max(width, large_pitch);
-  std::vector<dem::NewParticle> heap;
-  const double n = std::floor(width / large_pitch), cell = width / std::max(n, 1.0);
+Heap heap_of(std::size_t grains, double ratio) {
+  dem::RandomStream random(7);
+  Heap heap{.radius_of_kind = {radius, ratio * radius}};
+  const double pitch = 2.06 * radius, large_pitch = 2.1 * ratio * radius;
+  const double large = ratio > 1.0 ? std::max(1.0, std::round(double(grains) / (1.0 + std::pow(ratio, 3)))) : 0.0;
+  const double volume = (double(grains) - large) * std::pow(pitch, 3) + large * std::pow(large_pitch, 3);
+  const double width = std::max(std::cbrt(volume), large_pitch);
+  const double n = std::floor(width / large_pitch), cell = width / n;
+  std::vector<dem::Vec3> places;
+  const auto of_lattice = [](double k, double a_row) {
+    return dem::Vec3(std::fmod(k, a_row) + 0.5, std::fmod(std::floor(k / a_row), a_row) + 0.5,
+                     std::floor(k / a_row / a_row) + 0.5);
+  };
   for (double k = 0; k < large; ++k) {
-    const dem::Vec3 at(std::fmod(k, n) + 0.5, std::fmod(std::floor(k / n), n) + 0.5, std::floor(k / n / n) + 0.5);
-    heap.push_back({.species = dem::SpeciesId(1), .position = cell * at});
+    places.push_back(cell * of_lattice(k, n));
+    heap.add(1, places.back());
   }
-  const std::size_t of_large = heap.size();
-  const double m = std::floor(width / pitch), step = width / m, apart = (ratio + 1.02) * radius;
-  for (double k = 0; heap.size() < grains; ++k) {
-    const dem::Vec3 at(std::fmod(k, m) + 0.5, std::fmod(std::floor(k / m), m) + 0.5, std::floor(k / m / m) + 0.5);
-    const dem::Vec3 x(step * at.x() + shift(random) * radius, step * at.y() + shift(random) * radius, pitch * at.z());
-    bool is_free = true;
-    for (std::size_t b = 0; b < of_large && is_free; ++b) is_free = (heap[b].position - x).norm() > apart;
-    if (is_free) heap.push_back({.species = dem::SpeciesId(0), .position = x});
+  const double m = std::floor(width / pitch), step = width / m, apart = (ratio + 1.0) * radius;
+  for (double k = 0; heap.x.size() < grains; ++k) {
+    const dem::Vec3 at = of_lattice(k, m);
+    const dem::Vec3 x = dem::Vec3(step * at.x(), step * at.y(), pitch * at.z()) + random.in_ball(0.03 * radius);
+    const bool is_free = std::none_of(places.begin(), places.end(),
+                                      [&](const dem::Vec3& p) { return (p - x).squaredNorm() < apart * apart; });
+    if (is_free) heap.add(0, x);
   }
   return heap;
 }
 
-template <class World>
-void run_or_fail(World& world, int steps) {
-  if (const auto report = world.run(static_cast<std::uint64_t>(steps)); !report) dem::fail("{}", report.text);
-}
-double cpu_seconds() { return double(std::clock()) / CLOCKS_PER_SEC; }
-
-template <class Model>
-void time_grid(const char* name, double ratio, double width, const std::vector<dem::NewParticle>& heap,
-               const Settings& s, dem::io::Table& table) {
-  auto world = box<Model>(width, ratio, s.threads);
-  for (const auto& grain : heap) world.add_particle(grain);
-  run_or_fail(world, 1);
-  double lists = 0.0;
-  for (int k = 0; k < s.lists; ++k) {
-    world.state().list_valid = false;
-    const double start = cpu_seconds();
-    run_or_fail(world, 1);
-    lists += (cpu_seconds() - start) / s.lists;
+/// Builds the grid and looks all candidates up, as a world does for a list.
+template <class Grid>
+void time_grid(const char* name, Heap heap, double ratio, int repeats, dem::io::Table& table) {
+  Grid grid;
+  const auto build = [&] {
+    if constexpr (dem::broadphase::KnowsSizes<Grid>) grid.build(heap.positions(), heap.sizes());
+    else grid.build(heap.positions(), heap.largest_reach());
+  };
+  build();
+  heap.put_in_order({grid.order().begin(), grid.order().end()});
+  double building = 0.0, looking = 0.0;
+  std::size_t tried = 0, near = 0;
+  for (int k = 0; k < repeats; ++k) {
+    const std::clock_t start = std::clock();
+    build();
+    const std::clock_t built = std::clock();
+    tried = near = 0;
+    auto finder = grid.finder();
+    for (std::size_t i = 0; i < heap.x.size(); ++i) {
+      const double x = heap.x[i], y = heap.y[i], z = heap.z[i], r = heap.radius_of_kind[heap.kind[i]] + skin;
+      finder.for_each_candidate(i, [&](std::uint32_t j) {
+        const double dx = heap.x[j] - x, dy = heap.y[j] - y, dz = heap.z[j] - z;
+        const double reach = r + heap.radius_of_kind[heap.kind[j]];
+        ++tried;
+        near += dx * dx + dy * dy + dz * dz < reach * reach;
+      });
+    }
+    building += double(built - start) / CLOCKS_PER_SEC / repeats;
+    looking += double(std::clock() - built) / CLOCKS_PER_SEC / repeats;
   }
-  const auto made = world.state().rebuilds;
-  const double start = cpu_seconds();
-  run_or_fail(world, s.steps);
-  const double seconds = cpu_seconds() - start;
-  double candidates = 0.0, contacts = 0.0;
-  for (const auto& chunk : world.state().chunks) {
-    candidates += double(chunk.candidate.size());
-    contacts += chunk.pair_contacts.committed() + chunk.surface_contacts.committed();
-  }
-  const double n = double(heap.size());
-  table.row(dem::text("1:{:g}", ratio), std::to_string(heap.size()), name, lists, candidates / n, contacts / n,
-            1e-6 * n * s.steps / seconds, std::to_string(world.state().rebuilds - made),
-            std::to_string(dem::memory_bytes(world.state()) / heap.size()));
+  const double n = double(heap.x.size());
+  table.row(dem::text("1:{:g}", ratio), std::to_string(heap.x.size()), name, building, looking,
+            1e6 * (building + looking) / n, double(tried) / n, double(near) / n);
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  Settings s;
-  CLI::App app("Mixtures of two sizes, with a uniform and a hierarchical grid");
-  app.add_option("--grains", s.grains, "of both sizes together")->capture_default_str();
-  app.add_option("--ratios", s.ratios, "of the sizes")->delimiter(',')->check(CLI::Range(1.0, 1000.0));
-  app.add_option("--settle", s.settle, "steps before the times are taken")->capture_default_str();
-  app.add_option("--steps", s.steps, "that are timed")->capture_default_str()->check(CLI::PositiveNumber);
-  app.add_option("--lists", s.lists, "new neighbour lists that are timed")->capture_default_str();
-  app.add_option("--threads", s.threads, "of the worlds")->capture_default_str()->check(CLI::Range(1, 64));
+  std::vector<std::size_t> grains = {10'000, 100'000};
+  std::vector<double> ratios = {1, 5, 20};
+  int repeats = 3;
+  CLI::App app("Neighbour lists of mixtures of two sizes, with a uniform and a hierarchical grid");
+  app.add_option("--grains", grains, "of both sizes together")->delimiter(',')->check(CLI::Range(1000, 10'000'000));
+  app.add_option("--ratios", ratios, "of the sizes")->delimiter(',')->check(CLI::Range(1.0, 1000.0));
+  app.add_option("--repeats", repeats, "lists that the times are means of")->check(CLI::Range(1, 1000));
   CLI11_PARSE(app, argc, argv);
   try {
-    dem::io::Table table{.header = {"sizes", "grains", "grid", "CPU s a list", "candidates a grain", "contacts a grain",
-                                    "million grain-steps/CPU s", "lists made", "bytes a grain"},
+    dem::io::Table table{.header = {"sizes", "grains", "grid", "CPU s to build", "to look up", "us a grain",
+                                    "pairs tried a grain", "candidates a grain"},
                          .digits = 3};
-    for (const double ratio : s.ratios) {
-      double width = 0.0;
-      std::vector<dem::NewParticle> heap = loose_heap(s.grains, ratio, width);
-      auto world = box<Levels>(width, ratio, s.threads);
-      for (const auto& grain : heap) world.add_particle(grain);
-      run_or_fail(world, s.settle);
-      for (std::size_t k = 0; k < heap.size(); ++k) {
-        const dem::ParticleId p(k);
-        heap[k].position = world.position(p), heap[k].velocity = world.velocity(p);
+    for (const std::size_t n : grains) {
+      for (const double ratio : ratios) {
+        const Heap heap = heap_of(n, ratio);
+        time_grid<dem::broadphase::HierarchicalGrid>("hierarchical", heap, ratio, repeats, table);
+        time_grid<dem::broadphase::UniformGrid>("uniform", heap, ratio, repeats, table);
       }
-      time_grid<Levels>("hierarchical", ratio, width, heap, s, table);
-      time_grid<Uniform>("uniform", ratio, width, heap, s, table);
       print(table);  // as far as it is
     }
   } catch (const std::exception& error) {

@@ -52,21 +52,14 @@ int main(int argc, char** argv) {
 
   // The floor: beads that are held, in two staggered layers at uneven heights. The rest is a loose lattice that falls.
   RandomStream random(1);
-  for (int k = 0; k < 2; ++k) {
-    for (int j = 0; j < 8; ++j) {
-      for (int i = 0; i < 12; ++i) {
-        const Vec3 x = d * Vec3(i + 0.5 * k + 0.25, j + 0.5 * k + 0.25, -0.7 * k + random.between(-0.25, 0.25));
-        world.add_particle({floor, x});
-      }
-    }
+  for (int n = 0; n < 2 * 8 * 12; ++n) {
+    const int i = n % 12, j = n / 12 % 8, k = n / 96;
+    world.add_particle(
+        {floor, d * Vec3(i + 0.5 * k + 0.25, j + 0.5 * k + 0.25, -0.7 * k + random.between(-0.25, 0.25))});
   }
-  for (int k = 0; k < 15; ++k) {
-    for (int j = 0; j < 7; ++j) {
-      for (int i = 0; i < 10; ++i) {
-        const Vec3 x = d * Vec3(1.2 * i + 0.6, 1.16 * j + 0.5, 1.4 + 1.17 * k);
-        world.add_particle({.species = beads[random.bits() % 4], .position = x, .velocity = {0.1, 0, 0}});
-      }
-    }
+  for (int n = 0; n < 15 * 7 * 10; ++n) {
+    const Vec3 x = d * Vec3(1.2 * (n % 10) + 0.6, 1.16 * (n / 10 % 7) + 0.5, 1.4 + 1.17 * (n / 70));
+    world.add_particle({.species = beads[random.bits() % 4], .position = x, .velocity = {0.1, 0, 0}});
   }
   const auto run = [&](double time) {
     if (const auto report = world.run_for(time); !report) fmt::print("{}\n", report.text), std::exit(1);
@@ -76,29 +69,22 @@ int main(int argc, char** argv) {
   // Means over as long again, in slices of a bead's size.
   constexpr int slices = 20, samples = 1000;
   const double top = slices * d;
-  std::vector<soil::Average> mean(slices);
+  soil::TimeAverages over_time({{{0, 0, 0}, {length, width, top}}, {1, 1, slices}});
   for (int s = 0; s < samples; ++s) {
     run(seconds / samples);
-    const auto now = soil::average_slices(world, {{0, 0, 0}, {length, width, top}}, 2, slices);
-    for (int k = 0; k < slices; ++k) {
-      mean[k].density += now[k].density / samples;
-      mean[k].solid_fraction += now[k].solid_fraction / samples;
-      mean[k].velocity += now[k].momentum() / samples;
-      mean[k].contact_stress += now[k].stress() / samples;
-    }
+    over_time.add(world);
   }
-  double above = 0.0;                                        // kg/m^2, mass over a slice's middle
-  double height = 0.0;                                       // m, of the free surface
-  double carried = 0.0, sheared = 0.0, slices_inside = 0.0;  // over the slices between a quarter and 3/4 of the height
+  const std::vector<soil::Average> mean = over_time.averages().values;
+  double above = 0.0, height = 0.0;                   // kg/m^2, mass over a slice's middle; m, of the free surface
+  double carried = 0.0, sheared = 0.0, inside = 0.0;  // over the slices between a quarter and 3/4 of the height
   io::Series measured{.name = "measured", .style = io::SeriesStyle::Points}, bagnold{.name = "Bagnold"};
   fmt::print("height  solid   velocity  pressure  weight above  shear/pressure (tan {:g} deg = {:.4f})\n", angle,
              std::tan(slope));
   for (int k = slices - 1; k >= 0; --k) {
-    soil::Average& a = mean[k];
-    if (a.density > 0.0) a.velocity /= a.density;
+    const soil::Average& a = mean[k];
     const double half = 0.5 * a.density * top / slices;
     above += half;
-    const double z = (k + 0.5) * top / slices, pressure = a.contact_stress(2, 2), shear = -a.contact_stress(0, 2);
+    const double z = (k + 0.5) * top / slices, pressure = a.stress()(2, 2), shear = -a.stress()(0, 2);
     if (a.solid_fraction > 0.3 && height == 0.0) height = z + 0.5 * d;
     if (a.solid_fraction > 0.02) {
       fmt::print("{:4.1f} mm  {:.3f}  {:.3f} m/s  {:6.1f} Pa     {:6.1f} Pa  {:.4f}\n", 1e3 * z, a.solid_fraction,
@@ -107,13 +93,13 @@ int main(int argc, char** argv) {
       if (z > 0.25 * height && z < 0.75 * height) {
         carried += pressure / (above * g * std::cos(slope));
         sheared += shear / pressure / std::tan(slope);
-        slices_inside += 1.0;
+        inside += 1.0;
       }
     }
     above += half;
   }
-  fmt::print("inside, pressure is {:.3f} of the weight above, shear {:.3f} of tan {:g} deg of it\n",
-             carried / slices_inside, sheared / slices_inside, angle);
+  fmt::print("inside, pressure is {:.3f} of the weight above, shear {:.3f} of tan {:g} deg of it\n", carried / inside,
+             sheared / inside, angle);
   // Through the velocity at the free surface, where Bagnold's law has no more shear.
   const double fastest = mean[static_cast<std::size_t>(height / d) - 1].velocity.x();
   for (double z = 0.0; z <= height; z += 0.2 * d) {

@@ -1,7 +1,7 @@
 // A rotating drum with a rough lining: the slope of the flowing grains over the Froude number w^2 R/g. The drum's
 // torque is set beside the weight of the grains times the lever of their centre of mass, which it lifts.
 //
-//   drum --seconds 1 --output out/drum       (for each speed)
+//   drum --froude 0.001,0.01,0.05,0.2 --seconds 1 --output out/drum       (seconds for each speed)
 //
 // Writes slope.gp (slope over Froude number) and picture.gp, and draws them where gnuplot is installed.
 
@@ -26,6 +26,7 @@ struct Beads : Model {
 int main(int argc, char** argv) {
   Arguments arguments(argc, argv);
   const double seconds = arguments.number("--seconds", 1.0);
+  const std::vector<double> froude_numbers = arguments.numbers("--froude", {1e-3, 1e-2, 5e-2, 0.2});
   const std::string folder = arguments.take("--output", "drum");
   arguments.check();
   const double d = 3e-3, radius = 14 * d, length = 6 * d, g = 9.81, pi = std::numbers::pi;  // m; m/s^2
@@ -50,7 +51,7 @@ int main(int argc, char** argv) {
   auto& machine = world.machine();
   const BodyId drum = machine.add_body(mbd::cylinder_body("drum", radius, length, 1000));
   const JointId axle = machine.add_joint(mbd::revolute("axle", machine.ground(), drum, {0, 0, 0}, Vec3::UnitY()));
-  double speed = std::sqrt(1e-3 * g / radius);  // rad/s
+  double speed = std::sqrt(froude_numbers[0] * g / radius);  // rad/s
   machine.add_motion(mbd::prescribed_speed("turning", axle, mbd::Signal::function([&](double) { return speed; })));
   const SensorId load = machine.add_sensor(mbd::contact_sensor("grains on the drum", drum, 0.5 * seconds));
   const int around = static_cast<int>(2 * pi * radius / d), across = static_cast<int>(length / d);
@@ -73,7 +74,7 @@ int main(int argc, char** argv) {
   fmt::print("{} beads of {:g} mm in a drum of {:.0f} mm\n", world.inlet(rain).grains(), 1e3 * d, 2e3 * radius);
 
   io::Series slope{.name = "of the line through the centre of mass", .style = io::SeriesStyle::LinePoints};
-  for (const double froude : {1e-3, 1e-2, 5e-2, 0.2}) {
+  for (const double froude : froude_numbers) {
     speed = std::sqrt(froude * g / radius);
     run(seconds);
     Vec3 centre = Vec3::Zero();  // mean over the second half
@@ -92,12 +93,13 @@ int main(int argc, char** argv) {
     fmt::print("Froude number {:7.4f}: slope {:4.1f} deg, torque {:8.5f} N m, {:.3f} of weight times lever\n", froude,
                angle, torque, torque / -lever);
     slope.x.push_back(froude), slope.y.push_back(angle);
-    if (froude == 5e-2) {
+    if (froude == froude_numbers[froude_numbers.size() / 2]) {
       Picture picture({1, 0, 0}, {0, 0, 1});
       picture.grains(world, [&](ParticleId p) {
         return world.species_of(p) == lining ? 0x808080u : Picture::heat(world.velocity(p).norm() / 0.5);
       });
-      picture.save(folder + "/picture", "A drum at Froude number 0.05: beads from blue (at rest) to red (0.5 m/s)");
+      picture.save(folder + "/picture",
+                   fmt::format("A drum at Froude number {:g}: beads from blue (at rest) to red (0.5 m/s)", froude));
     }
   }
   io::render_plot({.x_label = "Froude number", .y_label = "slope [deg]", .series = {slope}, .log_x = true},

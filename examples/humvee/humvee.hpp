@@ -22,6 +22,7 @@ struct Setup {
   double speed = 0.0;          ///< m/s, at the start
   double friction = 0.8;       ///< of the tyres
   double slope = 0.0;          ///< rise over run; the car points up it
+  bool free_front = false;     ///< the front axle is not driven: its bevel gear is open
   double time_step = 5e-5;     ///< s
   double wheel_centre = 0.46;  ///< m above the road at the start
 };
@@ -53,6 +54,7 @@ class Car {
     const Assembly in(machine, "car", Vec3(0, 0, s.wheel_centre - spec.front.points.wheel.z()), Mat3::Identity(),
                       s.speed);
     vehicle = add_vehicle(in, spec, Road{});
+    if (s.free_front) machine.switch_on(vehicle.driveline.front.bevel_gear, false);
     machine.design_for(s.time_step);
     machine.initialise(0.0, machine.gravity);
     start_ = stored();

@@ -1,7 +1,8 @@
 // The Humvee of the thesis by itself on hard ground: at rest, driving off, braking, turning, held on a slope.
 //
 //   humvee                    # all scenes, results in the folder humvee
-//   humvee brake out/brake    # one scene: rest, launch, brake, turn or slope; the folder may also follow --output
+//   humvee brake out/brake    # one scene: rest, launch, brake, turn, turn_free or slope; the folder may also follow
+//                             # --output. turn_free: the front axle is not driven
 //
 // Each scene writes <scene>.csv (100 rows a second, with units) and plots of speed, loads and wheel travel, and prints
 // what was measured beside what was expected.
@@ -12,6 +13,7 @@
 
 #include <chrono>
 #include <ctime>
+#include <numbers>
 #include <string>
 #include <utility>
 #include <vector>
@@ -122,7 +124,8 @@ Lines turn(Car& car) {
   Lines lines;
   const double wheelbase = car.vehicle.spec.wheelbase();
   for (const double wanted : {2.0, 4.0, 6.0}) {
-    double yaw = 0.0, sideways = 0.0, samples = 0.0, run = 0.0, steer = 0.0;
+    double yaw = 0.0, sideways = 0.0, samples = 0.0, run = 0.0, steer = 0.0, front = 0.0, rear = 0.0;
+    double pulls[2] = {};
     const double begin = car.machine.time();
     car.drive(10.0, [&](Car& c) {
       c.now = hold(c.speed(), wanted, 0.01);
@@ -136,6 +139,10 @@ Lines turn(Car& car) {
         // Ackermann: the cotangent of the middle is the mean of both.
         const double left = steer_of(c.machine, c.vehicle, 0), right = steer_of(c.machine, c.vehicle, 1);
         steer += 2.0 / (1.0 / std::tan(left) + 1.0 / std::tan(right));
+        const auto& w = c.vehicle.wheels;
+        front += 0.5 * (w[0].tyre->slip_angle + w[1].tyre->slip_angle);
+        rear += 0.5 * (w[2].tyre->slip_angle + w[3].tyre->slip_angle);
+        for (std::size_t axle : {0, 1}) pulls[axle] += w[2 * axle].tyre->pull + w[2 * axle + 1].tyre->pull;
         samples += 1.0;
       }
       return true;
@@ -143,6 +150,14 @@ Lines turn(Car& car) {
     const double radius = run / yaw, tangent = steer / samples;
     lines.push_back({fmt::format("radius at {:g} m/s ({:.2f} m/s^2 sideways)", wanted, sideways / samples), radius,
                      wheelbase / tangent, "m"});
+    // The paths of the axles' middles lead round a centre: the same radius, if the tyres' slip angles explain it.
+    front /= samples, rear /= samples;
+    lines.push_back({"  the same from the paths of the axles, by their slip angles", radius,
+                     wheelbase / (std::tan(std::atan(tangent) + front) - std::tan(rear)), "m"});
+    lines.push_back({"  slip angle of the front axle, to the left", front * 180.0 / std::numbers::pi, 0.0, "deg"});
+    lines.push_back({"  slip angle of the rear axle", rear * 180.0 / std::numbers::pi, 0.0, "deg"});
+    lines.push_back({"  pull of the front tyres", pulls[0] / samples, 0.0, "N"});
+    lines.push_back({"  pull of the rear tyres", pulls[1] / samples, 0.0, "N"});
   }
   return lines;
 }
@@ -175,6 +190,7 @@ int main(int argc, char** argv) {
                                      {"launch", {}, launch},
                                      {"brake", {.speed = 60.0 / 3.6, .friction = 0.5}, brake},
                                      {"turn", {}, turn},
+                                     {"turn_free", {.free_front = true}, turn},
                                      {"slope", {.slope = 0.3}, slope}};
   bool found = false;
   try {
@@ -215,7 +231,7 @@ int main(int argc, char** argv) {
     return 1;
   }
   if (!found) {
-    fmt::print(stderr, "there is no scene '{}': all, rest, launch, brake, turn or slope\n", wanted);
+    fmt::print(stderr, "there is no scene '{}': all, rest, launch, brake, turn, turn_free or slope\n", wanted);
     return 2;
   }
   fmt::print("\nresults in {}\n", folder);

@@ -2,6 +2,8 @@
 // of the same soil, and the rut that it leaves.
 //
 //   soil_columns --load 130 --soil sand.toml --output out/soil_columns
+//   soil_columns --wheel grousers --grouser 0.01        also smooth; rough is the default
+//   soil_columns --halve                                how much the results change with columns half as wide
 //
 // prints a table, and writes it as CSV, plots, and the last rut as CSV, PGM picture and ParaView surface.
 
@@ -29,6 +31,7 @@ using namespace dem::terramechanics;
 struct Settings {
   NamedSoil soil = {"sand P1", "D. Melanz", melanz_sand};
   Wheel wheel = {.radius = 0.13, .width = 0.16};
+  double friction = ColumnPart::rough;  // mu of the rim on the soil
   double load = 130.0, spacing = 0.01, travel = 0.3, dt = 2.5e-4, spin = radians(17.0);
 };
 struct Result {  // N, N m, m
@@ -38,7 +41,9 @@ struct Result {  // N, N m, m
 /// The wheel on a hub that slides up and down on a carriage, which is moved along. Slip is 1 - v/(omega r). Joints are
 /// springs as stiff as the masses at them and the time step allow: so nearly all of the load is the hub's.
 Result roll(const Settings& s, double slip, ColumnField& field) {
-  const double r = s.wheel.radius, v = s.spin * r * (1.0 - slip), wheel_mass = 1.5;
+  // With grousers the soil shears off at their tips: the columns meet a wheel of that radius.
+  const double rim = s.wheel.radius, r = s.wheel.shear_radius();
+  const double v = s.spin * rim * (1.0 - slip), wheel_mass = 1.5;
   mbd::Machine<integrator::VelocityVerlet> machine;
   const BodyId carriage = machine.add_fixed_body("carriage", {0, 0, 3 * r});
   const double hub_density = (s.load / 9.81 - wheel_mass) / (0.3 * 0.3 * 0.3);
@@ -59,14 +64,15 @@ Result roll(const Settings& s, double slip, ColumnField& field) {
                                 .spacing = s.spacing,
                                 .soil = s.soil.soil,
                                 .bulldozing = 0.5});
-  soil.add(wheel, std::make_shared<ColumnCylinder>(r, s.wheel.width), machine.body(wheel).position());
+  soil.add(wheel, std::make_shared<ColumnCylinder>(r, s.wheel.width), machine.body(wheel).position(), Mat3::Identity(),
+           0.0, s.friction);
   Result mean;
   double count = 0.0;
   const auto report = machine.run(s.travel / v, s.dt, [&] {
     if (machine.time() < 0.5 * s.travel / v) return;  // set down and settled
     mean.pull += soil.loads()[0].force.x;
     mean.torque -= soil.loads()[0].torque.y;
-    mean.sinkage += r - machine.body(wheel).position().z();
+    mean.sinkage += rim - machine.body(wheel).position().z();
     ++count;
   });
   if (!report) fail("{}", report.text);
@@ -77,9 +83,19 @@ Result roll(const Settings& s, double slip, ColumnField& field) {
 
 int main(int argc, char** argv) {
   Settings s;
-  std::string soil_file, output = "soil_columns";
+  std::string soil_file, output = "soil_columns", kind = "rough";
+  double grouser = 0.01, friction = 0.3;
+  bool halve = false;
   CLI::App app("A rigid wheel on soil columns, beside the semi-empirical curves");
   app.add_option("--soil", soil_file, "file of a soil; without, the sand P1");
+  app.add_option("--wheel", kind, "rough (soil shears on soil), smooth or grousers")
+      ->capture_default_str()
+      ->check(CLI::IsMember({"rough", "smooth", "grousers"}));
+  app.add_option("--grouser", grouser, "height of grousers [m]")->capture_default_str()->check(CLI::Range(1e-3, 0.1));
+  app.add_option("--friction", friction, "mu of a smooth rim on the soil")
+      ->capture_default_str()
+      ->check(CLI::Range(0.0, 2.0));
+  app.add_flag("--halve", halve, "the same on columns half as wide, and how much that changes");
   app.add_option("--load", s.load, "on the wheel [N]")->capture_default_str()->check(CLI::Range(20.0, 1e4));
   app.add_option("--spacing", s.spacing, "of the columns [m]")->capture_default_str()->check(CLI::Range(1e-3, 0.05));
   app.add_option("--travel", s.travel, "[m]")->capture_default_str()->check(CLI::Range(0.05, 10.0));
@@ -87,16 +103,20 @@ int main(int argc, char** argv) {
   CLI11_PARSE(app, argc, argv);
   try {
     if (!soil_file.empty()) s.soil = load_soil(soil_file);
+    if (kind == "grousers") s.wheel.grouser_height = grouser;
+    if (kind == "smooth") s.friction = friction;
     // What columns assume: pressure largest at the lowest point, shear along the way that the rim slides.
     Soil plain = s.soil.soil;
     plain.a0 = plain.a1 = 0.0;
     const WheelModel one_path = {.braked = BrakedShear::one_path};
     const char* quantities[3] = {"pull [N]", "torque [N m]", "sinkage [mm]"};
     const char* models[3] = {"columns", "thesis eqs. 1-11", "eqs. with a0 = a1 = 0, one path"};
-    io::Table table{.caption = fmt::format("{}, {} N: columns / thesis eqs. 1-11 / the same with a0 = a1 = 0, one path",
-                                           s.soil.name, s.load),
-                    .header = {"slip"},
-                    .digits = 4};
+    io::Table table{
+        .caption = fmt::format("{}, {} N, {} wheel: columns / thesis eqs. 1-11 / the same with a0 = a1 = 0, "
+                               "one path",
+                               s.soil.name, s.load, kind),
+        .header = {"slip"},
+        .digits = 4};
     io::Plot plots[3];
     for (int q = 0; q < 3; ++q) {
       plots[q] = {.title = fmt::format("Wheel on {}, {} N", s.soil.name, s.load),
@@ -110,12 +130,25 @@ int main(int argc, char** argv) {
     io::CsvWriter csv(output + "/wheel.csv",
                       {"slip", "pull_N", "eqs_pull_N", "plain_pull_N", "torque_Nm", "eqs_torque_Nm", "plain_torque_Nm",
                        "sinkage_mm", "eqs_sinkage_mm", "plain_sinkage_mm"});
+    if (kind == "smooth") fmt::print("The equations know no smooth rim: theirs are of soil on soil.\n");
     const std::clock_t start = std::clock();
     double simulated = 0.0;
     ColumnField field;
+    double largest[3] = {}, changed[3] = {};  // of each quantity, and by how much columns half as wide change it
     for (const double slip : {-0.7, -0.5, -0.3, -0.2, -0.1, -0.05, 0.0, 0.05, 0.1, 0.2, 0.3, 0.5, 0.7}) {
       const Result c = roll(s, slip, field);
       simulated += s.travel / (s.spin * s.wheel.radius * (1.0 - slip));
+      if (halve) {
+        Settings half = s;
+        half.spacing *= 0.5;
+        simulated += s.travel / (s.spin * s.wheel.radius * (1.0 - slip));
+        const Result f = roll(half, slip, field);
+        const double pairs[3][2] = {{c.pull, f.pull}, {c.torque, f.torque}, {c.sinkage, f.sinkage}};
+        for (int q = 0; q < 3; ++q) {
+          largest[q] = std::max(largest[q], std::abs(pairs[q][0]));
+          changed[q] = std::max(changed[q], std::abs(pairs[q][0] - pairs[q][1]));
+        }
+      }
       const WheelForces e = wheel_under_load(s.wheel, s.soil.soil, {slip}, s.load),
                         p = wheel_under_load(s.wheel, plain, {slip}, s.load, one_path);
       const std::vector<double> row = {slip,     c.pull,   e.pull,          p.pull,          c.torque,
@@ -130,6 +163,10 @@ int main(int argc, char** argv) {
     const double seconds = static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
     fmt::print("{}{:.0f} s of rolling took {:.2f} s of one core: {:.1f} times real time; results in {}\n",
                io::to_text(table), simulated, seconds, simulated / seconds, output);
+    for (int q = 0; q < 3 && halve; ++q) {
+      fmt::print("columns half as wide change the {} by {:.2f} % of its largest at most\n", quantities[q],
+                 100.0 * changed[q] / largest[q]);
+    }
     // The last rut, across its middle.
     io::Plot across{.title = "Rut behind the wheel at slip 0.7", .x_label = "across [mm]", .y_label = "height [mm]"};
     across.series.push_back({.name = "surface"});

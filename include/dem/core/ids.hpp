@@ -23,18 +23,21 @@ using BodyId = Id<struct BodyTag>;                ///< a rigid body of a machine
 using SurfaceId = Id<struct SurfaceTag>;          ///< a surface that a body shows to the grains
 using BodyContactId = Id<struct BodyContactTag>;  ///< two surfaces of bodies that may touch each other
 
-/// A grain; stays the same when storage is re-sorted. The number of a grain that was removed is given again, to a grain
-/// of another generation: so an id that is out of date is told from that of the grain that has its number now.
+/// A grain; stays the same when storage is re-sorted. Grains are numbered in the order in which they are added, and no
+/// number is given twice. Where a world keeps what it knows of a grain is used again when the grain is gone; an id that
+/// is out of date is told by its number.
 struct ParticleId {
-  std::uint32_t value = 0xffffffffu;  ///< its number
-  std::uint32_t generation = 0;       ///< how many grains had the number before
+  static constexpr std::uint32_t anywhere = 0xffffffffu;
+  std::uint32_t value = 0xffffffffu;  ///< the grain's number
+  std::uint32_t slot = anywhere;      ///< of the world's tables; an id that is made from a number is looked for
 
   constexpr ParticleId() = default;
-  constexpr explicit ParticleId(std::size_t index, std::uint32_t generation_of_number = 0)
-      : value(static_cast<std::uint32_t>(index)), generation(generation_of_number) {}
+  constexpr explicit ParticleId(std::size_t number, std::uint32_t slot_of_world = anywhere)
+      : value(static_cast<std::uint32_t>(number)), slot(slot_of_world) {}
   constexpr std::size_t index() const { return value; }
   constexpr bool valid() const { return value != 0xffffffffu; }
-  constexpr auto operator<=>(const ParticleId&) const = default;
+  constexpr bool operator==(const ParticleId& other) const { return value == other.value; }
+  constexpr auto operator<=>(const ParticleId& other) const { return value <=> other.value; }
 };
 
 }  // namespace dem

@@ -10,6 +10,7 @@
 #include <array>
 #include <bit>
 #include <cstdint>
+#include <numeric>
 #include <span>
 #include <vector>
 
@@ -66,16 +67,23 @@ struct Particles {
   AlignedVector<double> pose;                                                       ///< Shape::pose_size a grain
   std::vector<std::uint32_t> species, id;
   std::vector<std::uint32_t> row_of;  ///< by id; `gone` for grains that were removed
-  // Ids of grains whose rows are gone are given again, the last first; each then has a generation more.
-  std::vector<std::uint32_t> generation;         ///< by id, as far as there are grains of later ones
-  std::vector<std::uint32_t> freed, free_again;  ///< ids: since the last release_ids(); that may be given again
+  // An id is a slot of tables. Those of grains whose rows are gone are used again, the last one first.
+  std::uint32_t given = 0;                       ///< grains that were added so far
+  std::vector<std::uint32_t> number;             ///< by id: which of them it is; empty while that is the id
+  std::vector<std::uint32_t> freed, free_again;  ///< ids: since the last release_ids(); that may be used again
   static constexpr std::uint32_t gone = 0xffffffffu;
 
-  /// What names the grain of an id from outside.
-  ParticleId name(std::uint32_t of) const { return ParticleId(of, of < generation.size() ? generation[of] : 0); }
-  /// The name that the next grain gets.
-  ParticleId next_name() const {
-    return name(free_again.empty() ? static_cast<std::uint32_t>(row_of.size()) : free_again.back());
+  std::uint32_t number_of(std::uint32_t of) const { return number.empty() ? of : number[of]; }
+  /// What the grain of an id is called outside.
+  ParticleId name(std::uint32_t of) const { return ParticleId(number_of(of), of); }
+  /// The id of a grain, which may be gone; `gone` if its id has another grain now, or it never was.
+  std::uint32_t find(ParticleId p) const {
+    const auto holds = [&](std::uint32_t at) { return at < row_of.size() && number_of(at) == p.value; };
+    if (holds(p.slot)) return p.slot;
+    if (holds(p.value)) return p.value;
+    if (p.slot != ParticleId::anywhere) return gone;
+    const auto at = std::find(number.begin(), number.end(), p.value);
+    return at == number.end() ? gone : static_cast<std::uint32_t>(at - number.begin());
   }
 
   std::size_t chunks() const { return (count + chunk_size - 1) / chunk_size; }
@@ -165,7 +173,7 @@ struct Particles {
     id.resize(rows, 0xffffffffu);
   }
 
-  /// Adds a grain with the id of next_name(), at rest in what integrators remember; `turning` in rad/s, body frame.
+  /// Adds a grain, at rest in what integrators remember; `turning` in rad/s, body frame.
   /// Returns its row.
   std::size_t append(std::uint32_t kind, const Vector3<double>& x, const Vector3<double>& v,
                      const Matrix3<double>& rotation, const Vector3<double>& turning) {
@@ -178,11 +186,27 @@ struct Particles {
     for (Columns3* c : {&force, &torque}) c->set(row, {0, 0, 0});
     set_memory(row, {});
     species[row] = kind;
-    id[row] = next_name().value;
-    if (free_again.empty()) row_of.push_back(0);
-    else free_again.pop_back();
-    row_of[id[row]] = static_cast<std::uint32_t>(row);
+    give_id(row);
     return row;
+  }
+
+  /// Gives the grain of a new row an id and the next number.
+  void give_id(std::size_t row) {
+    if (free_again.empty()) {
+      id[row] = static_cast<std::uint32_t>(row_of.size());
+      row_of.push_back(0);
+      if (!number.empty()) number.push_back(0);
+    } else {
+      if (number.empty()) {
+        number.resize(row_of.size());
+        std::iota(number.begin(), number.end(), 0u);
+      }
+      id[row] = free_again.back();
+      free_again.pop_back();
+    }
+    if (!number.empty()) number[id[row]] = given;
+    ++given;
+    row_of[id[row]] = static_cast<std::uint32_t>(row);
   }
 
   /// Takes grains (ids) out; the others keep their order.
@@ -197,12 +221,8 @@ struct Particles {
     resize(kept.size());
     freed.insert(freed.end(), ids.begin(), ids.end());
   }
-  /// From here on, the ids of grains whose rows are gone may be given again. Nobody may know them any more.
+  /// From here on, the ids of grains whose rows are gone may be used again. Nobody may know them any more.
   void release_ids() {
-    for (const std::uint32_t k : freed) {
-      if (generation.size() <= k) generation.resize(row_of.size(), 0);
-      ++generation[k];
-    }
     free_again.insert(free_again.end(), freed.begin(), freed.end());
     freed.clear();
   }

@@ -61,6 +61,21 @@ bool is_disturbed(std::size_t begin, std::size_t end, const Particles& p,
   return false;
 }
 
+/// Stops the grains of a chunk that falls asleep.
+template <class Shape, class Particles>
+void put_to_sleep(std::size_t begin, std::size_t end, Particles& p, std::span<const Species<Shape>> species,
+                  Sleepers& s) {
+  bool stops = false;
+  for (std::size_t i = begin; i < end; ++i) {
+    Rest& rest = s.grains[p.id[i]];
+    if (rest.asleep) continue;
+    p.velocity.set(i, {0, 0, 0});
+    p.spin.set(i, {0, 0, 0});
+    rest.asleep = stops = true;
+  }
+  if (stops) refresh_views(begin, end, p, species);
+}
+
 /// Ends a window for the grains of a chunk that is awake: counts those that were quiet. Puts all of them to sleep when
 /// each was quiet for long enough, and returns whether it did.
 template <class Model, class Particles>
@@ -95,12 +110,7 @@ bool end_window(std::size_t begin, std::size_t end, std::span<const Chunk<Model>
     sleeps &= rest.quiet_windows == Sleepers::windows_to_sleep;
   }
   if (!sleeps) return false;
-  for (std::size_t i = begin; i < end; ++i) {
-    p.velocity.set(i, {0, 0, 0});
-    p.spin.set(i, {0, 0, 0});
-    s.grains[p.id[i]].asleep = true;
-  }
-  refresh_views(begin, end, p, species);
+  put_to_sleep<typename Model::Shape>(begin, end, p, species, s);
   return true;
 }
 

@@ -49,28 +49,29 @@ namespace detail {
 
 }  // namespace detail
 
-/// Draws `plot` to `<base>.svg` and `<base>.png`, and writes `<base>.gp`: the script, data included, to draw or change
-/// the plot by hand. `gnuplot` is the name of the program, searched for along PATH.
-///
-/// A plot that cannot be drawn (no gnuplot, no finite data) is no error: the result says why, and the script is there.
-/// Throws dem::Error for a wrong plot (check_plot), a file that cannot be written, and a base name with control
-/// characters.
-inline PlotResult render_plot(const Plot& plot, const std::filesystem::path& base,
-                              std::string_view gnuplot = "gnuplot") {
-  const std::string name = base.filename().string();
+namespace detail {
+
+/// The base name of a plot's files. Throws Error for one that cannot name them.
+inline std::string checked_name(const std::string& title, const std::filesystem::path& base) {
+  std::string name = base.filename().string();
   if (name.empty() || name != one_line(name)) {
-    fail("plot '{}': '{}' cannot name its files; give a name without control characters", plot.title, one_line(name));
+    fail("plot '{}': '{}' cannot name its files; give a name without control characters", title, one_line(name));
   }
+  return name;
+}
+
+/// Writes a script that draws `<base>.svg` and `<base>.png`, and runs it if there is anything to draw.
+inline PlotResult render_script(const std::string& script, bool any_data, const std::filesystem::path& base,
+                                std::string_view gnuplot) {
+  const std::string name = base.filename().string();
   const auto with_ending = [&](const char* ending) { return base.parent_path() / (name + ending); };
   PlotResult result{.script = with_ending(".gp")};
-  write_file(result.script, gnuplot_script(plot, name));
+  write_file(result.script, script);
   const auto svg = with_ending(".svg"), png = with_ending(".png");
   std::error_code ignored;
   std::filesystem::remove(svg, ignored);  // no plot is better than that of an earlier run
   std::filesystem::remove(png, ignored);
 
-  const bool any_data =
-      std::any_of(plot.series.begin(), plot.series.end(), [&](const Series& s) { return detail::has_points(plot, s); });
   if (!any_data) {
     result.reason = "the plot has no finite data";
     return result;
@@ -97,6 +98,22 @@ inline PlotResult render_plot(const Plot& plot, const std::filesystem::path& bas
   result.svg = svg;
   result.png = png;
   return result;
+}
+
+}  // namespace detail
+
+/// Draws `plot` to `<base>.svg` and `<base>.png`, and writes `<base>.gp`: the script, data included, to draw or change
+/// the plot by hand. `gnuplot` is the name of the program, searched for along PATH.
+///
+/// A plot that cannot be drawn (no gnuplot, no finite data) is no error: the result says why, and the script is there.
+/// Throws dem::Error for a wrong plot (check_plot), a file that cannot be written, and a base name with control
+/// characters.
+inline PlotResult render_plot(const Plot& plot, const std::filesystem::path& base,
+                              std::string_view gnuplot = "gnuplot") {
+  const std::string name = detail::checked_name(plot.title, base);
+  const bool any_data =
+      std::any_of(plot.series.begin(), plot.series.end(), [&](const Series& s) { return detail::has_points(plot, s); });
+  return detail::render_script(gnuplot_script(plot, name), any_data, base, gnuplot);
 }
 
 }  // namespace dem::io

@@ -135,7 +135,10 @@ function controls(figure, view) {
     const names = view.colourings.map(({name}) => name);
     rows.unshift(labelled("colour", choice(names, colour, (k) => [colour = k, recolour()]),
                           choice(["scale of the run", "scale of each frame"], 0, (k) => [ofFrame = k === 1, recolour()])));
-    rows.push(labelled("cut", along, where), ticked("grains", true, (value) => view.setGrains(value)));
+    rows.push(labelled("cut", along, where), ticked("grains", true, (value) => {
+      view.setGrains(value);
+      box.hidden = !value || !view.colouring.value;
+    }));
   }
   if (view.forces) {
     const name = `force chains (widest: \u2265 ${inWords(view.forces.most)} N)`;

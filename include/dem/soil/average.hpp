@@ -102,19 +102,24 @@ class AverageSums {
     const Mat3 product = force * (to - from).transpose();
     for_each_near(from, to, [&](Sum& sum, double weight) { sum.contact += weight * product; });
   }
-  Averages averages() const {
+  /// What one moment has added up to, or the mean over several: a place that has no grains for half of the moments has
+  /// half the density, and its velocity is that of the mass. How velocities change from moment to moment counts in the
+  /// kinetic stress. `moments` > 0 is how many were added.
+  Averages averages(double moments = 1.0) const {
+    require_positive(moments, "number of moments of an average", "(no unit)");
+    const double share = 1.0 / moments;
     Averages result{grid_, std::vector<Average>(sums_.size())};
     for (std::size_t k = 0; k < sums_.size(); ++k) {
       const Sum& sum = sums_[k];
       Average& a = result.values[k];
-      a.contact_stress = sum.contact;
+      a.contact_stress = share * sum.contact;
       if (!(sum.mass > 0.0)) continue;
-      a.density = sum.mass;
-      a.solid_fraction = sum.volume;
-      a.grains = sum.grains;
+      a.density = share * sum.mass;
+      a.solid_fraction = share * sum.volume;
+      a.grains = share * sum.grains;
       a.coordination = sum.touching / sum.grains;
       a.velocity = sum.momentum / sum.mass;
-      a.kinetic_stress = sum.flow - Mat3(sum.momentum * a.velocity.transpose());
+      a.kinetic_stress = share * (sum.flow - Mat3(sum.momentum * a.velocity.transpose()));
     }
     return result;
   }

@@ -24,20 +24,13 @@ std::vector<Vec3> shifts_of(const Domain& domain) {
   return shifts;
 }
 
-}  // namespace detail
-
-/// Density, velocity, stress, ... of a world's grains as it stands, at the middle of each cell of a grid; see Average.
-/// Images of a periodic cell count too, one cell on. The world is not changed. Throws Error for a grid that is none,
-/// and as contacts_of does.
-///
-///     const auto field = soil::averages(world, {{low, high}, {20, 20, 10}}, soil::Kernel::lucy(4 * radius));
+/// Adds the grains and contacts of a world as it stands.
 template <class Model>
-Averages averages(const World<Model>& world, const AverageGrid& grid, const Kernel& kernel = Kernel::cell()) {
-  AverageSums sums(grid, kernel);
-  std::vector<int> touching(world.state().particles.row_of.size(), 0);
+void add_world(AverageSums& sums, const World<Model>& world) {
+  std::vector<int> touching(world.state().particles.given, 0);
   const ContactForce* before = nullptr;
   const auto contacts = contacts_of(world);
-  const auto shifts = detail::shifts_of(world.state().domain);
+  const auto shifts = shifts_of(world.state().domain);
   for (const auto& c : contacts) {
     if (c.kind == ContactKind::bodies) continue;
     for (const Vec3& shift : shifts) {
@@ -59,8 +52,53 @@ Averages averages(const World<Model>& world, const AverageGrid& grid, const Kern
       sums.add_grain(kind.mass, kind.shape.volume(), world.position(p) + shift, world.velocity(p), touching[p.index()]);
     }
   }
+}
+
+}  // namespace detail
+
+/// Density, velocity, stress, ... of a world's grains as it stands, at the middle of each cell of a grid; see Average.
+/// Images of a periodic cell count too, one cell on. The world is not changed. Throws Error for a grid that is none,
+/// and as contacts_of does.
+///
+///     const auto field = soil::averages(world, {{low, high}, {20, 20, 10}}, soil::Kernel::lucy(4 * radius));
+template <class Model>
+Averages averages(const World<Model>& world, const AverageGrid& grid, const Kernel& kernel = Kernel::cell()) {
+  AverageSums sums(grid, kernel);
+  detail::add_world(sums, world);
   return sums.averages();
 }
+
+/// The same over time: means over the moments at which a world was added.
+///
+///     soil::TimeAverages mean({{low, high}, {1, 1, 20}});
+///     for (int k = 0; k < 1000; ++k) {
+///       if (const auto report = world.run_for(1e-3); !report) return fmt::print("{}\n", report.text), 1;
+///       mean.add(world);
+///     }
+///     for (const soil::Average& slice : mean.averages().values) fmt::print("{} m/s\n", slice.velocity.x());
+class TimeAverages {
+ public:
+  /// Throws Error for a grid that is none.
+  explicit TimeAverages(const AverageGrid& grid, const Kernel& kernel = Kernel::cell()) : sums_(grid, kernel) {}
+
+  /// Adds a world as it stands. Throws as contacts_of does.
+  template <class Model>
+  void add(const World<Model>& world) {
+    detail::add_world(sums_, world);
+    moments_ += 1.0;
+  }
+
+  [[nodiscard]] double moments() const { return moments_; }  ///< that were added
+  /// Throws Error if no world was added.
+  [[nodiscard]] Averages averages() const {
+    if (moments_ == 0.0) fail("averages over time have no moments; add(world) while the world runs");
+    return sums_.averages(moments_);
+  }
+
+ private:
+  AverageSums sums_;
+  double moments_ = 0.0;
+};
 
 /// The average over a box.
 template <class Model>

@@ -112,10 +112,9 @@ LaidTiles lay_tiles(World<Model>& world, const Tile& tile, const TileLayout& o =
   if (most > 4e9) fail("a bed of {:g} grains is more than ids can name, 4e9; lay fewer tiles", most);
   w.materials.find_range(w.largest_radius);
   check_period(w);
-  std::vector<std::uint32_t> none;
   detail::TileIds ids(a0, a1 - a0, b0, b1 - b0, tile.grains.size());
   relist(w, [&](grain::HistoryCarrier<Model>& histories) {
-    layer.lay(ids, a0, a1, none);
+    layer.lay(ids, a0, a1);
     layer.remember(ids, histories);
   });
   LaidTiles result{layer.laid, layer.held, layer.left_out, layer.histories, layer.surface_histories, {}};

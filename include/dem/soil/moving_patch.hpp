@@ -160,7 +160,8 @@ class MovingPatch {
       v.given("tiles_at_the_start", options_.tiles), v.given("tiles_along_y", options_.along_y);
       v.given("rim", options_.rim, "m"), v.given("rut_cell", options_.rut_cell, "m");
       v("tiles", tiles_), v("ahead", ahead_, "m"), v("begin", begin_), v("end", end_), v("shifts", shifts_);
-      v("ids_from", last_.a0), v("ids", last_.id), v.bytes("ids_are", last_.is), v("rut", rut_);
+      v("ids_from", last_.a0), v("ids", last_.id), v("grain_numbers", numbers_), v.bytes("ids_are", last_.is),
+          v("rut", rut_);
       v("sum_short", sum_short_), v("sum_long", sum_long_);
       v("readings_before", effect_.readings_before), v("readings_after", effect_.readings_after);
     });
@@ -221,22 +222,21 @@ class MovingPatch {
       }
     }
     relist(w, [&](grain::HistoryCarrier<Model>& histories) {
-      std::vector<std::uint32_t> free;
       if (known > 0) {
         histories.forget_gone(p);
-        for (std::size_t id = p.row_of.size(); id-- > 0;) {
-          if (p.row_of[id] == p.gone) free.push_back(static_cast<std::uint32_t>(id));
-        }
+        release_ids(w);
       }
-      layer.lay(ids, first, end_, free);
+      layer.lay(ids, first, end_);
       layer.remember(ids, histories);
     });
     last_ = detail::TileIds(end_ - 1, 1, 0, options_.along_y, tile_.grains.size());
+    numbers_.assign(last_.id.size(), 0);
     for (int b = 0; b < options_.along_y; ++b) {
       for (std::size_t k = 0; k < tile_.grains.size(); ++k) {
         const std::size_t from = ids.at(end_ - 1, b, k), to = last_.at(end_ - 1, b, k);
         last_.id[to] = ids.id[from];
         last_.is[to] = ids.is[from] == InWorld::no ? InWorld::no : InWorld::old;
+        if (last_.is[to] != InWorld::no) numbers_[to] = p.number_of(last_.id[to]);
       }
     }
   }
@@ -246,6 +246,7 @@ class MovingPatch {
     auto& p = w.particles;
     const std::size_t from = last_.at(a, b, k), to = ids.at(a, b, k);
     if (last_.is[from] == InWorld::no || p.row_of[last_.id[from]] == p.gone) return;
+    if (p.number_of(last_.id[from]) != numbers_[from]) return;  // it left, and another grain has its id
     ids.id[to] = last_.id[from];
     ids.is[to] = InWorld::old;
     const std::size_t row = p.row_of[last_.id[from]];
@@ -261,7 +262,8 @@ class MovingPatch {
   double ahead_;
   int begin_ = 0, end_;  // tiles along x, counted from the corner
   std::uint64_t shifts_ = 0;
-  detail::TileIds last_;  // of the tile at the front
+  detail::TileIds last_;                // of the tile at the front
+  std::vector<std::uint32_t> numbers_;  // of its grains
   HeightField rut_;
   double sum_short_ = 0.0, sum_long_ = 0.0;
   LengthEffect effect_;

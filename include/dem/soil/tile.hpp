@@ -217,12 +217,11 @@ Tile take_tile(const World<Model>& world, const TileOptions& o = {}) {
   for (const auto& c : found) {
     const auto history = detail::numbers_of<Model>(c.last);
     if (c.kind == ContactKind::grain_on_surface) {
-      t.on_surfaces.push_back(
-          {p.row_of[c.grain.index()], c.surface.value, c.point_key & ((std::uint64_t{1} << 40) - 1)});
+      t.on_surfaces.push_back({p.row_of[c.grain.slot], c.surface.value, c.point_key & ((std::uint64_t{1} << 40) - 1)});
       t.surface_histories.insert(t.surface_histories.end(), history.begin(), history.end());
     }
     if (c.kind != ContactKind::grains) continue;
-    const std::uint32_t i = p.row_of[c.grain.index()], j = p.row_of[c.other_grain.index()];
+    const std::uint32_t i = p.row_of[c.grain.slot], j = p.row_of[c.other_grain.slot];
     const Vec3 shift = c.other_centre() - to_eigen(p.position[j]);
     const auto cells = [&](double along, double of) {
       return of > 0.0 ? static_cast<std::int32_t>(std::lround(along / of)) : 0;

@@ -84,8 +84,8 @@ struct TileLayer {
     return corner + (turn == 0.0 ? x : rotation() * x);
   }
 
-  /// Lays the cells from `from` to `to` (along x) of the range. Ids are taken from `free` as long as there are some.
-  void lay(TileIds& ids, int from, int to, std::vector<std::uint32_t>& free) {
+  /// Lays the cells from `from` to `to` (along x) of the range.
+  void lay(TileIds& ids, int from, int to) {
     auto& p = w.particles;
     struct New {
       std::uint32_t grain, at, species;
@@ -113,9 +113,6 @@ struct TileLayer {
         }
       }
     }
-    std::vector<std::uint32_t> again;
-    while (again.size() < list.size() && !free.empty()) again.push_back(free.back()), free.pop_back();
-    forget_ids(w, again);
     const std::size_t first = p.count;
     p.resize(first + list.size());
     const Matrix3<double> r = rotation();
@@ -130,11 +127,8 @@ struct TileLayer {
       for (Columns3* c : {&p.force, &p.torque}) c->set(row, {0, 0, 0});
       p.set_memory(row, {});
       p.species[row] = list[n].species;
-      const auto id = n < again.size() ? again[n] : static_cast<std::uint32_t>(p.row_of.size());
-      if (n >= again.size()) p.row_of.push_back(0);
-      p.id[row] = id;
-      p.row_of[id] = static_cast<std::uint32_t>(row);
-      ids.id[list[n].at] = id;
+      p.give_id(row);
+      ids.id[list[n].at] = p.id[row];
     }
     laid += list.size();
   }

@@ -28,7 +28,8 @@ inline ColumnForce column_force(const ColumnField& field, const ColumnLaw& law, 
   const ColumnStress stress = law.at(sinkage, before);
   // The surface over a fixed place sinks with the speed of its normal over the normal's steepness.
   const double steep = std::max(-touch.normal.z, 0.1), normal_speed = dot(velocity, touch.normal);
-  const double pressure = std::max(0.0, stress.pressure + damping * normal_speed / steep);
+  const double pulled = stress.pressure + damping * normal_speed / steep;
+  const double pressure = pulled < 0.0 ? 0.0 : pulled;  // what is no number stays so, and is reported with the part
   const Vector3<double> sliding = velocity - normal_speed * touch.normal;
   change.deepest = stress.deepest;
   change.modulus = law.curve.modulus;

@@ -21,6 +21,7 @@ class ColumnTerrain final : public mbd::Terrain {
 
   void evaluate(const std::vector<Body>& bodies, std::vector<mbd::Load>& loads, const mbd::TerrainStep& step) override {
     for (std::size_t k = 0; k < parts.size(); ++k) parts[k].body = bodies[body_of[k].index()].motion;
+    if (step.time < kept_) kept_ = step.time;  // the machine's clock was set back
     report = soil.evaluate(parts, kept_ >= 0.0 && step.time > kept_ ? step.time - kept_ : 0.0);
     for (const LoadId l : own_loads) loads[l.index()].wrench = {};
     for (std::size_t k = 0; k < soil.loads().size(); ++k) {

@@ -2,10 +2,12 @@
 
 #include <dem/io/vtk_data.hpp>
 #include <dem/io/vtk_file.hpp>
+#include <dem/io/vtk_series.hpp>
 #include <dem/terramechanics/column_field.hpp>
 
 #include <cstdint>
 #include <filesystem>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -53,6 +55,14 @@ inline void write_rut_vtk(const std::filesystem::path& path, const ColumnField& 
   file.array("offsets", 1, std::move(ends));
   file.xml("</Polys>\n</Piece>\n");
   file.save(path);
+}
+
+/// Adds the soil as it is at a time (s) to a series, as `part`: beside the frames of its world and machine.
+inline void add_vtk_frame(io::VtkSeries& series, double time, const ColumnField& field,
+                          std::string_view part = "soil") {
+  const auto path = series.next_path(part);
+  write_rut_vtk(path, field, {.single_precision = true, .time_s = time});
+  series.add(time, path, part);
 }
 
 }  // namespace dem::terramechanics

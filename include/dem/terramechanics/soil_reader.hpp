@@ -138,13 +138,16 @@ inline NamedSoil load_soil(const std::string& path) {
   return read_soil(text, path);
 }
 
-/// Writes a soil file. Throws Error for a soil that check_soil refuses, and if the file cannot be written.
+/// Writes a soil file, complete or not at all. Throws Error for a soil that check_soil refuses, and if the file cannot
+/// be written.
 inline void save_soil(const std::string& path, const NamedSoil& named) {
-  const std::string text = to_text(named);
-  std::FILE* file = std::fopen(path.c_str(), "wb");
+  const std::string text = to_text(named), part = path + ".part";
+  std::FILE* file = std::fopen(part.c_str(), "wb");
   const bool written = file && std::fwrite(text.data(), 1, text.size(), file) == text.size();
   const bool closed = file && std::fclose(file) == 0;
-  if (!written || !closed) fail("cannot write the soil file '{}'; check that the folder exists and has room", path);
+  const bool named_so = written && closed && std::rename(part.c_str(), path.c_str()) == 0;
+  if (file && !named_so) std::remove(part.c_str());
+  if (!named_so) fail("cannot write the soil file '{}'; check that the folder exists and has room", path);
 }
 
 }  // namespace dem::terramechanics

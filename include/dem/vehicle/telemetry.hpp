@@ -79,6 +79,50 @@ inline CarSample sample_of(const mbd::Mechanism& m, const Vehicle& v, const Cont
           .engine_power = engine.power()};
 }
 
+/// One wheel over a sample's interval: forces of the ground are means over it, or those at its end.
+struct WheelSample {
+  double slip = 0.0;  ///< (omega r - v)/max(|omega r|, |v|), r: unloaded radius; v: of the wheel's middle, forward
+  double slip_angle = 0.0;    ///< rad, of the middle's path to the left of the wheel's plane
+  double load = 0.0;          ///< N, up across the lane
+  double pull = 0.0;          ///< N, forward along the lane's surface in the wheel's plane
+  double side = 0.0;          ///< N, to the left
+  double torque = 0.0;        ///< N m, that drives the wheel against the ground
+  double sinkage = 0.0;       ///< m, of the wheel's lowest point below the level of the ground
+  double travel = 0.0;        ///< m, of the suspension, up
+  double brake_torque = 0.0;  ///< N m
+  double spin = 0.0;          ///< rad/s, of the wheel on its knuckle
+
+  template <class F>
+  void each(F&& f) const {
+    f("slip", slip), f("slip_angle_rad", slip_angle), f("load_N", load), f("pull_N", pull), f("side_N", side);
+    f("torque_Nm", torque), f("sinkage_m", sinkage), f("travel_m", travel), f("brake_torque_Nm", brake_torque);
+    f("spin_rad_per_s", spin);
+  }
+};
+
+/// Of a wheel (0 to 3) under the force (N) and torque (N m, about its middle) of soft ground at a level (m). `radius`
+/// (m) is that of the unloaded wheel. Ground without a slope: across it is z.
+inline WheelSample wheel_sample_of(const mbd::Mechanism& m, const Vehicle& v, std::size_t corner, const Wrench& ground,
+                                   double level, double radius) {
+  const Wheel& wheel = v.wheels[corner];
+  const Body& body = m.body(wheel.body);
+  const Vec3 force = to_eigen(ground.force), torque = to_eigen(ground.torque), speed = body.velocity();
+  const Vec3 axle = m.reference_rotation(v.suspension[corner].knuckle) * Vec3::UnitY();
+  const Vec3 across = axle.cross(Vec3::UnitZ()), ahead = across.normalized(), left = Vec3::UnitZ().cross(ahead);
+  WheelSample w;
+  w.spin = m.speed(wheel.turn);
+  w.slip = slip_of(body.angular_velocity().dot(axle) * radius, speed.dot(ahead));
+  w.slip_angle = std::abs(speed.dot(ahead)) > 1e-3 ? std::atan2(speed.dot(left), std::abs(speed.dot(ahead))) : 0.0;
+  w.load = force.z();
+  w.pull = force.dot(ahead);
+  w.side = force.dot(left);
+  w.torque = -torque.dot(axle);
+  w.sinkage = level - (body.position().z() - radius);
+  w.travel = travel_of(m, v, corner);
+  w.brake_torque = -m.actuator(wheel.brake).force;
+  return w;
+}
+
 /// Names of the columns of something with each(), after a prefix.
 template <class Sample>
 void add_columns(std::vector<std::string>& names, const Sample& sample, const std::string& prefix = "") {

@@ -228,7 +228,7 @@ void count_energy(World<Model>& world) {
   for (const auto& c : contacts_of(world)) {
     if (c.kind == ContactKind::bodies) continue;
     const bool on_surface = c.kind == ContactKind::grain_on_surface;
-    ledger.last.push_back({c.grain.value, on_surface ? c.surface.value : c.other_grain.value, on_surface,
+    ledger.last.push_back({c.grain.slot, on_surface ? c.surface.value : c.other_grain.slot, on_surface,
                            from_eigen(c.normal), from_eigen(c.arm), from_eigen(c.other_arm), from_eigen(c.force),
                            from_eigen(c.rolling_torque())});
   }

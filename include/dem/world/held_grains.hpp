@@ -74,16 +74,17 @@ void load_by_held(WorldState<Model>& w) {
 
 /// Attaches a held grain to a body, where both are now.
 template <class Model>
-void attach_grain(WorldState<Model>& w, ParticleId grain, std::size_t row, BodyId to) {
+void attach_grain(WorldState<Model>& w, std::size_t row, BodyId to) {
   auto& p = w.particles;
+  const std::uint32_t grain = p.id[row];
   for (grain::HeldGrains& held : w.held) {
-    std::erase_if(held.grains, [&](const auto& g) { return g.id == grain.value; });
+    std::erase_if(held.grains, [&](const auto& g) { return g.id == grain; });
   }
   auto of_body = std::find_if(w.held.begin(), w.held.end(), [&](const auto& h) { return h.body == to; });
   if (of_body == w.held.end()) of_body = w.held.insert(w.held.end(), {to, {}, {}});
   const auto& motion = w.machine.bodies()[to.index()].motion;
   const Vector3<double> place = transpose_times(motion.rotation, p.position[row] - motion.position);
-  of_body->grains.push_back({grain.value, place, transposed(motion.rotation) * p.rotation(row)});
+  of_body->grains.push_back({grain, place, transposed(motion.rotation) * p.rotation(row)});
   of_body->carried_to.velocity = {HUGE_VAL, 0, 0};  // nowhere yet
   w.carry_held = &carry_held<Model>;
   w.load_by_held = &load_by_held<Model>;

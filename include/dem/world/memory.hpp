@@ -12,7 +12,7 @@ std::size_t memory_bytes(const WorldState<Model>& w) {
   std::size_t sum = 0;
   auto& p = const_cast<WorldState<Model>&>(w).particles;  // for_each_column has no const form; nothing is changed
   p.for_each_column([&](const AlignedVector<double>& column) { sum += bytes(column); });
-  sum += bytes(p.view) + bytes(p.pose) + bytes(p.species) + bytes(p.id) + bytes(p.row_of) + bytes(p.generation) +
+  sum += bytes(p.view) + bytes(p.pose) + bytes(p.species) + bytes(p.id) + bytes(p.row_of) + bytes(p.number) +
          bytes(p.freed) + bytes(p.free_again);
   sum += bytes(w.incoming_first) + bytes(w.incoming) + w.broad_phase.memory_bytes();
   const auto of_memories = [&](const auto& memories) {

@@ -1,13 +1,8 @@
 #pragma once
 
 #include <dem/world/neighbours.hpp>
+#include <dem/world/release_ids.hpp>
 #include <dem/world/sleep.hpp>
-
-#include <algorithm>
-#include <cstdint>
-#include <limits>
-#include <span>
-#include <vector>
 
 namespace dem {
 
@@ -21,28 +16,6 @@ void relist(WorldState<Model>& w, Change&& change) {
   choose_working_chunks(w);
   w.sleepers.all_work = true;
   w.stopwatch.stop(Phase::neighbours);
-}
-
-/// Ids of grains that left, before they are given to others: what was known of the old ones is forgotten. To be called
-/// when no contact of them is remembered.
-template <class Model>
-void forget_ids(WorldState<Model>& w, std::span<const std::uint32_t> ids) {
-  if (ids.empty()) return;
-  std::vector<std::uint32_t> sorted(ids.begin(), ids.end());
-  std::sort(sorted.begin(), sorted.end());
-  const auto is_one = [&](std::uint32_t id) { return std::binary_search(sorted.begin(), sorted.end(), id); };
-  std::erase_if(w.known_lost, is_one);
-  for (grain::HeldGrains& held : w.held) std::erase_if(held.grains, [&](const auto& g) { return is_one(g.id); });
-  grain::EnergyLedger& ledger = w.ledger;
-  std::erase_if(ledger.last,
-                [&](const grain::ContactWork& c) { return is_one(c.i) || (!c.on_surface && is_one(c.partner)); });
-  for (const std::uint32_t id : sorted) {
-    if (id < w.sleepers.grains.size()) w.sleepers.grains[id] = {};
-    if (id >= ledger.energy.size()) continue;
-    if (ledger.energy[id] == ledger.energy[id]) ledger.came -= ledger.energy[id];
-    ledger.energy[id] = std::numeric_limits<double>::quiet_NaN();
-    ledger.velocity[id] = ledger.spin[id] = {0, 0, 0};
-  }
 }
 
 /// The species of grains that are held and are otherwise like those of `s`; made when the world has none.

@@ -1,6 +1,7 @@
 #pragma once
 
-// Static equilibrium of the machine of a world. Not among what <dem/dem.hpp> includes.
+// Static equilibrium of the machine of a world, and velocities that its joints allow. Not among what <dem/dem.hpp>
+// includes.
 
 #include <dem/mbd/solver/rest.hpp>
 #include <dem/world/world.hpp>
@@ -29,6 +30,20 @@ mbd::RestReport find_rest(World<Model>& world, const mbd::RestOptions& options =
       [&w] { evaluate_contacts(w); });
   world.set_gravity(w.options.gravity);  // what integrators remember of forces is out of date, and grains may wake
   return report;
+}
+
+/// Changes the velocities of a world's machine to what its joints allow, as given_velocities says. The first step does
+/// that by itself; velocities that are given later, or after find_rest, need this. What is prescribed moves as it does
+/// at the world's time. Throws what World::run throws.
+template <class Model>
+const mbd::AssemblyReport& assemble(World<Model>& world) {
+  WorldState<Model>& w = world.state();
+  world.prepare();
+  auto& parts = w.machine.parts();
+  if (parts.apply_motions) parts.apply_motions(parts, w.time, 0.0, false);
+  w.machine_solver.assemble(w.machine);
+  world.set_gravity(w.options.gravity);  // what integrators remember of velocities is out of date
+  return w.machine_solver.assembly();
 }
 
 }  // namespace dem

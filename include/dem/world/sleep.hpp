@@ -29,21 +29,29 @@ void wake_around(WorldState<Model>& w, std::size_t row) {
   wake_chunk(w, c);
 }
 
-/// New neighbour lists: chunks hold other grains than before.
+/// New neighbour lists: chunks hold other grains than before. One sleeps if each of its grains slept, or was at rest
+/// for as long as grains are that fall asleep. Grains beside which there is one that does not rest go on being at rest:
+/// else one that moves would, list by list, wake the chunks after it along the curve.
 template <class Model>
 void find_sleeping_chunks(WorldState<Model>& w) {
   auto& s = w.sleepers;
+  auto& p = w.particles;
   s.all_work = true;
   if (!w.options.sleep) return;
-  s.grains.resize(w.particles.row_of.size());
+  s.grains.resize(p.row_of.size());
   s.borne.assign(w.chunks.size() * chunk_size, 0.0);
   grain::list_chunks_around<Model>(w.chunks, w.images);
   for (std::size_t c = 0; c < w.chunks.size(); ++c) {
+    const std::size_t begin = c * chunk_size, end = std::min(begin + chunk_size, p.count);
     bool asleep = true;
-    const std::size_t end = std::min((c + 1) * chunk_size, w.particles.count);
-    for (std::size_t i = c * chunk_size; i < end; ++i) asleep &= s.grains[w.particles.id[i]].asleep;
+    for (std::size_t i = begin; i < end; ++i) {
+      const grain::Rest& rest = s.grains[p.id[i]];
+      asleep &= rest.asleep || rest.quiet_windows == grain::Sleepers::windows_to_sleep;
+    }
     w.chunks[c].asleep = asleep;
-    if (!asleep) wake_chunk(w, c);
+    if (asleep) grain::put_to_sleep<typename Model::Shape>(begin, end, p, w.species, s);
+    else
+      for (std::size_t i = begin; i < end; ++i) s.grains[p.id[i]].asleep = false;
   }
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <dem/world/release_ids.hpp>
 #include <dem/world/sleep.hpp>
 
 #include <algorithm>
@@ -17,23 +18,6 @@ void take_out_row(WorldState<Model>& w, std::size_t row) {
   const std::uint32_t id = w.particles.id[row];
   w.particles.row_of[id] = w.particles.gone;
   w.to_remove.push_back(id);
-}
-
-/// At the end of a step: the ids of grains whose rows are gone are given again from here on, so all forget them.
-template <class Model>
-void release_ids(WorldState<Model>& w) {
-  auto& p = w.particles;
-  if (p.freed.empty()) [[likely]]
-    return;
-  const auto is_gone = [&](std::uint32_t id) { return p.row_of[id] == p.gone; };
-  for (grain::HeldGrains& held : w.held) {
-    std::erase_if(held.grains, [&](const grain::HeldGrain& h) { return is_gone(h.id); });
-  }
-  for (const std::uint32_t id : p.freed) {
-    w.known_lost.erase(id);
-    if (id < w.sleepers.grains.size()) w.sleepers.grains[id] = {};
-  }
-  p.release_ids();
 }
 
 /// Takes the grains out that are in an outlet, or beyond a domain that removes them. Costs a look at the bounds of each

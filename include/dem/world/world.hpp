@@ -136,14 +136,14 @@ class World : public WorldSetup<M> {
   // ---- looking -----------------------------------------------------------------------------------------------------
 
   std::size_t particle_count() const { return state_.particles.count - state_.to_remove.size(); }
-  /// All grains that are there, in the order of their numbers: that in which they were added, until numbers of grains
-  /// that were removed are given again.
+  /// All grains that are there, in the order in which they were added.
   std::vector<ParticleId> particles() const {
     std::vector<ParticleId> ids;
     for (std::size_t k = 0; k < state_.particles.row_of.size(); ++k) {
       if (state_.particles.row_of[k] == state_.particles.gone) continue;
       ids.push_back(state_.particles.name(static_cast<std::uint32_t>(k)));
     }
+    if (!state_.particles.number.empty()) std::sort(ids.begin(), ids.end());
     return ids;
   }
   Vec3 position(ParticleId p) const { return to_eigen(state_.particles.position[row(p)]); }

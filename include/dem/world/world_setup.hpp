@@ -88,8 +88,7 @@ class WorldSetup {
   /// Adds a grain. Throws Error for an unknown species, a position that is not finite, or a rotation that is none.
   ParticleId add_particle(const NewParticle& n) {
     auto& p = state_.particles;
-    const ParticleId name = p.next_name();
-    const std::uint32_t id = name.value;
+    const std::uint32_t id = p.given;
     if (n.species.index() >= state_.species.size()) {
       fail("a grain was given species {}, but the world has {}; call add_species first", n.species.value,
            state_.species.size());
@@ -106,10 +105,10 @@ class WorldSetup {
       fail("grain {} was given a rotation matrix that is no rotation; normalise it (R^T R = I, det R = 1)", id);
     }
     const Mat3 rotation = Shape::has_orientation ? n.rotation : Mat3(Mat3::Identity());
-    p.append(n.species.value, from_eigen(n.position), from_eigen(n.velocity), from_eigen(rotation),
-             from_eigen(Vec3(rotation.transpose() * n.angular_velocity)));
+    const std::size_t row = p.append(n.species.value, from_eigen(n.position), from_eigen(n.velocity),
+                                     from_eigen(rotation), from_eigen(Vec3(rotation.transpose() * n.angular_velocity)));
     touched();
-    return name;
+    return p.name(p.id[row]);
   }
 
   /// Attaches a grain of a species that is held (SpeciesOptions::held) to a body, as if glued to it where both are now:
@@ -122,11 +121,10 @@ class WorldSetup {
            p.value);
     }
     known(state_.machine.bodies(), body, "body");
-    attach_grain(state_, p, row(p), body);
+    attach_grain(state_, row(p), body);
     initialised_ = false;
   }
-  /// Takes a grain out of the world. The ids of others stay. Its number is given again after the next step, to a grain
-  /// of another generation: who asks for the old id is told that its grain was removed.
+  /// Takes a grain out of the world; its number is not given again. The ids of others stay.
   void remove_particle(ParticleId p) {
     take_out_row(state_, row(p));
     touched();
@@ -291,20 +289,23 @@ class WorldSetup {
     return SurfaceId(state_.surfaces.size() - 1);
   }
   std::size_t row(ParticleId p) const {
-    const std::uint32_t row = known(state_.particles.row_of, p, "grain");
-    if (row == state_.particles.gone) fail("grain {} is asked for, but it was removed", p.value);
-    if (state_.particles.name(p.value) != p) [[unlikely]] {
-      fail("grain {} is asked for, but it was removed, and another grain has its number now; use the id that {}",
-           p.value, "add_particle or particles() returned");
-    }
-    return row;
+    const auto& grains = state_.particles;
+    const std::uint32_t at = grains.find(p), row = at == grains.gone ? grains.gone : grains.row_of[at];
+    if (row != grains.gone) [[likely]]
+      return row;
+    if (p.value >= grains.given) fail_unknown(p, grains.given, "grain");
+    fail("grain {} is asked for, but it was removed", p.value);
   }
   /// What an id names. Throws Error for an id that this world never gave.
   template <class List, class Id>
   static auto& known(List& list, Id id, const char* what) {
-    if (id.index() < list.size()) return list[id.index()];
+    if (id.index() >= list.size()) fail_unknown(id, list.size(), what);
+    return list[id.index()];
+  }
+  template <class Id>
+  [[noreturn]] static void fail_unknown(Id id, std::size_t count, const char* what) {
     if (!id.valid()) fail("a {} is asked for by an id that was never set; use the one that the world returned", what);
-    fail("{} {} is asked for, but this world has {}; use the id that it returned", what, id.value, list.size());
+    fail("{} {} is asked for, but this world has {}; use the id that it returned", what, id.value, count);
   }
   static void check_moments(const Vec3& moments) {
     const double largest = moments.maxCoeff();

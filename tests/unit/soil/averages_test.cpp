@@ -213,3 +213,40 @@ TEST_CASE("grids and kernels that are none are refused, and fields go into files
   CHECK_FALSE(content.bytes.at("stress").empty());
   std::filesystem::remove(file);
 }
+
+TEST_CASE("averages over time are means over moments, and velocities those of the mass") {
+  dem::World<Balls> w(options({0, 0, 0}, 1e-5));
+  w.set_contact(sand<Balls>());
+  w.add_species(Sphere(radius));
+  // Two balls alone: one is at rest, the other flies out of the box between the moments.
+  w.add_particle({SpeciesId(0), {0.05, 0.05, 0.05}});
+  w.add_particle({SpeciesId(0), {0.05, 0.09, 0.095}, {0, 0, 1}});
+  const AverageGrid grid{{Vec3(0, 0, 0), Vec3(0.1, 0.1, 0.1)}};
+  dem::soil::TimeAverages mean(grid);
+  check_refused([&] { (void)mean.averages(); }, "no moments", "add(world)");
+  for (int k = 0; k < 4; ++k) {
+    mean.add(w);
+    REQUIRE(w.run_for(4e-3));  // it is inside at 0 and 4 ms, outside at 8 and 12 ms
+  }
+  CHECK(mean.moments() == 4);
+  const Average a = mean.averages().values.at(0);
+  const double mass = w.species(SpeciesId(0)).mass, volume = 1e-3;
+  CHECK(a.density == Approx((4 + 2) * mass / volume / 4));
+  CHECK(a.grains == Approx(6 / volume / 4));
+  CHECK((a.velocity - Vec3(0, 0, 2.0 / 6)).norm() < 1e-12);
+  CHECK((a.momentum() - Vec3(0, 0, 2 * mass / volume / 4)).norm() < 1e-12);
+  // What is left of the flow of momentum, the mean of m v^2 over moments, when that of the mean velocity is taken off.
+  CHECK(a.kinetic_stress(2, 2) == Approx((2 * mass / volume - 6 * mass / volume / 9) / 4));
+
+  // One moment is what averages() tells.
+  dem::World<Balls> block = moving_block(4);
+  const AverageGrid cells{{Vec3(0, 0, 0), Vec3(8e-3, 8e-3, 8e-3)}, {2, 2, 2}};
+  dem::soil::TimeAverages once(cells, Kernel::lucy(2e-3));
+  once.add(block);
+  const Averages now = averages(block, cells, Kernel::lucy(2e-3)), same = once.averages();
+  for (std::size_t k = 0; k < now.values.size(); ++k) {
+    CHECK(now.values[k].density == same.values[k].density);
+    CHECK(now.values[k].contact_stress == same.values[k].contact_stress);
+    CHECK(now.values[k].kinetic_stress == same.values[k].kinetic_stress);
+  }
+}

@@ -77,4 +77,9 @@ TEST_CASE("a rut is written for ParaView") {
   line.grid = {0.0, 0.0, 1.0, 5, 1};
   line.resize(0.0);
   CHECK_THROWS_WITH(write_rut_vtk(folder.path / "line.vtp", line), ContainsSubstring("make no surface"));
+  io::VtkSeries series(folder.path / "drive.pvd");
+  add_vtk_frame(series, 0.5, f);
+  add_vtk_frame(series, 1.0, f);
+  CHECK(std::filesystem::exists(folder.path / "drive" / "soil_000001.vtp"));
+  CHECK_THAT(io::read_file(series.path()), ContainsSubstring("timestep=\"1\""));
 }

@@ -286,3 +286,44 @@ TEST_CASE("fields and parts that cannot be are refused in words") {
   CHECK_THROWS_WITH(soil.apply(bare, 1e-3), ContainsSubstring("part 0 on soil columns has no shape"));
   CHECK_THROWS_WITH(soil.apply(ball, 1e-3), ContainsSubstring("has no width"));
 }
+
+TEST_CASE("a smooth part slides on the soil at its own friction, and not above the strength of the soil") {
+  const auto drag = [](double friction) {
+    SoilColumns soil({.low_x = -0.2, .low_y = -0.2, .length_x = 0.6, .length_y = 0.4, .soil = melanz_sand});
+    const auto plate = std::make_shared<ColumnBox>(Vector3<double>{0.1, 0.05, 0.01});
+    std::array<double, 2> drag_and_load = {};
+    for (int k = 0; k < 100; ++k) {  // 20 mm: 39 times the shear displacement, from which the stress is the strength
+      const std::array<ColumnPart, 1> parts = {
+          ColumnPart{.shape = plate,
+                     .body = {{2e-4 * k, 0, 0.0}, {0.2, 0, 0}, {0, 0, 0}, Matrix3<double>::identity()},
+                     .friction = friction}};
+      REQUIRE(soil.apply(parts, 1e-3).ok);
+      drag_and_load = {-soil.loads()[0].force.x, soil.loads()[0].force.z};
+    }
+    return drag_and_load;
+  };
+  const auto smooth = drag(0.1), rough = drag(ColumnPart::rough), sticky = drag(5.0);
+  // Columns at the leading edge were only just met: a fiftieth of the plate's length.
+  CHECK(smooth[0] == Catch::Approx(0.1 * smooth[1]).epsilon(0.02));
+  const double tangent = std::tan(melanz_sand.shear.friction_angle);
+  CHECK(rough[0] == Catch::Approx(0.1 * 0.05 * melanz_sand.shear.cohesion + tangent * rough[1]).epsilon(0.02));
+  CHECK(sticky[0] == rough[0]);
+}
+
+TEST_CASE("soils that differ over a field answer each by its own law") {
+  Soil firm = melanz_sand;
+  firm.pressure = WongReece{.k = 10.0 * 2.54e5, .n = 1.387, .plate_width = 0.03};
+  const std::array<Soil, 1> others = {firm};
+  SoilColumns soil({.low_x = 0, .low_y = 0, .length_x = 1.0, .length_y = 0.2, .soil = melanz_sand});
+  soil.lay_soils(others, [](double x, double) { return x > 0.5 ? 1 : 0; });
+  const auto plate = std::make_shared<ColumnBox>(Vector3<double>{0.1, 0.05, 0.01});
+  std::array<ColumnPart, 2> parts;
+  for (std::size_t k = 0; k < 2; ++k) {
+    const double x = k == 0 ? 0.25 : 0.75;
+    parts[k] = {.shape = plate, .body = {{x, 0.1, 0.0}, {0, 0, 0}, {0, 0, 0}, Matrix3<double>::identity()}};
+  }
+  REQUIRE(soil.apply(parts, 1e-3).ok);
+  CHECK(soil.loads()[1].force.z == Catch::Approx(10.0 * soil.loads()[0].force.z).epsilon(1e-9));
+  CHECK_THROWS_WITH(soil.lay_soils(others, [](double, double) { return 2; }),
+                    Catch::Matchers::ContainsSubstring("soil 2 is to lie at"));
+}

@@ -1,15 +1,16 @@
-// Numbers of grains that are gone are given again: to grains of another generation.
+// No number is given to two grains, and the tables of a world are used again when grains are gone.
 
 #include "core/error_of.hpp"
 #include "scenes.hpp"
 
 #include <dem/world/energy.hpp>
 
+#include <algorithm>
 #include <set>
 
 using Catch::Approx;
 
-TEST_CASE("a stream of grains needs as many numbers as there are grains at a time") {
+TEST_CASE("the tables of a stream hold as many grains as there are at a time") {
   dem::World<Balls> w(options({0, 0, 0}, 2e-5));
   w.set_contact(sand<Balls>());
   w.add_species(Sphere(1e-3));
@@ -28,12 +29,18 @@ TEST_CASE("a stream of grains needs as many numbers as there are grains at a tim
     CHECK(now.size() == w.particle_count());
     CHECK(now.size() == w.inlet(in).grains() - w.outlet(out).grains());
     seen.insert(now.begin(), now.end());
-    for (const ParticleId p : now) REQUIRE(w.position(p).z() > 0.0);
+    for (const ParticleId p : now) {
+      REQUIRE(w.position(p).z() > 0.0);
+      REQUIRE(w.position(ParticleId(p.index())) == w.position(p));  // an id that is made from a number
+    }
+    CHECK(std::is_sorted(now.begin(), now.end()));
   }
   CHECK(w.outlet(out).grains() > 350);
   CHECK(seen.size() > 380);                        // every grain has a name of its own,
   CHECK(w.state().particles.row_of.size() < 100);  // in tables that do not grow
   check_refused([&] { w.velocity(early); }, "was removed");
+  check_refused([&] { w.velocity(ParticleId(early.index())); }, "was removed");
+  check_refused([&] { w.velocity(ParticleId(w.inlet(in).grains())); }, "but this world has");
   CHECK(w.particles().size() == w.particle_count());
   // Grains come and go with their energies: 0.02 mJ each, 400 of them. Without weight no integrator errs, and the rest
   // is rounding: none is left out or counted as another's.
@@ -41,7 +48,7 @@ TEST_CASE("a stream of grains needs as many numbers as there are grains at a tim
   CHECK(std::abs(e.balance() - balance) < 1e-13);
 }
 
-TEST_CASE("a part does not carry the grain that has the number of one that was attached to it") {
+TEST_CASE("a part does not carry the grain that has the place of one that was attached to it") {
   dem::World<Balls> w(options({0, 0, 0}, 1e-5));
   w.set_contact(sand<Balls>());
   const auto held = w.add_species(Sphere(1e-3), {.held = true}), moving = w.add_species(Sphere(1e-3));
@@ -54,13 +61,15 @@ TEST_CASE("a part does not carry the grain that has the number of one that was a
   w.remove_particle(glued);
   REQUIRE(w.run(10));
   const auto other = w.add_particle({moving, Vec3(0.05, 0, 0)});
-  REQUIRE(other.value == glued.value);
+  REQUIRE(other.slot == glued.slot);
+  CHECK(other != glued);
+  CHECK(other.index() == 1);
   REQUIRE(w.run(100));
   CHECK(w.position(other).x() == 0.05);
-  check_refused([&] { w.position(glued); }, "another grain has its number now");
+  check_refused([&] { w.position(glued); }, "was removed");
 }
 
-TEST_CASE("a grain with a number that was lost before is reported when it is lost") {
+TEST_CASE("a grain in the place of one that was lost is reported when it is lost") {
   dem::WorldOptions o = options(Vec3(0, 0, 0), 1e-5);
   o.domain = {{Vec3(-1, -1, -1), Vec3(1, 1, 1)}};
   dem::World<Balls> w(o);
@@ -69,8 +78,8 @@ TEST_CASE("a grain with a number that was lost before is reported when it is los
   std::set<ParticleId> lost;
   for (int k = 0; k < 3; ++k) {
     const auto p = w.add_particle({ball, Vec3(0.9999, 0, 0), Vec3(10, 0, 0)});
-    CHECK(p.value == 0);
-    CHECK(p.generation == static_cast<std::uint32_t>(k));
+    CHECK(p.slot == 0);
+    CHECK(p.index() == static_cast<std::size_t>(k));
     const auto report = w.run(100);
     REQUIRE(report.problem == dem::StepReport::Problem::lost);
     CHECK(report.particle == p);
@@ -81,7 +90,7 @@ TEST_CASE("a grain with a number that was lost before is reported when it is los
   CHECK(lost.size() == 3);
 }
 
-TEST_CASE("a number that was freed is given again only after a step") {
+TEST_CASE("the place of a grain is used again only after a step") {
   // Until then the energies that are counted, the parts and the sleepers still know the grain that had it.
   dem::World<Balls> w(options(Vec3::Zero(), 1e-5));
   w.set_contact(sand<Balls>());
@@ -91,10 +100,11 @@ TEST_CASE("a number that was freed is given again only after a step") {
   count_energy(w);
   w.remove_particle(a);
   w.prepare();  // lists neighbours anew
-  CHECK(w.add_particle({ball, Vec3(0.2, 0, 0)}).value == 2);
+  CHECK(w.add_particle({ball, Vec3(0.2, 0, 0)}).slot == 2);
   REQUIRE(w.run(1));
   const auto again = w.add_particle({ball, Vec3(0.3, 0, 0), Vec3(1, 0, 0)});
-  CHECK(again.value == a.value);
+  CHECK(again.slot == a.slot);
+  CHECK(again.index() == 3);
   REQUIRE(w.run(10));
   const auto e = energy_of(w);
   CHECK(e.came == Approx(e.translation).epsilon(1e-12));

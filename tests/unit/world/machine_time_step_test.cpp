@@ -102,6 +102,31 @@ TEST_CASE("a world judges its machine with what is derived for the step, as a ma
   CHECK(world.run(100));
 }
 
+TEST_CASE("the stable step that a world's refusal names is accepted when it is taken") {
+  const auto build = [](auto& m) {
+    m.most_substeps = 1;  // or a world takes as many as the step needs
+    const BodyId arm = m.add_body(dem::mbd::box_body("arm", {0.5, 0.05, 0.05}, 1000).at({0.25, 0, 0}));
+    const BodyId wheel = m.add_body(dem::mbd::given_body("wheel", 0.5, Vec3(0.01, 0.01, 0.01)).at({0.5, 0, 0}));
+    m.add_joint(dem::mbd::revolute("pivot", m.ground(), arm, {0, 0, 0}, {0, 1, 0}));
+    m.add_joint(dem::mbd::revolute("axle", arm, wheel, {0.5, 0, 0}, {0, 1, 0}));
+    m.add_spring(dem::mbd::spring("strut", m.ground(), {0.5, 0, 0.4}, wheel, {0.5, 0, 0.01}, 1e5, 800.0));
+  };
+  dem::World<Balls> world({.time_step = 5e-2});
+  build(world.machine());
+  const std::string text = message_of([&] { world.prepare(); });
+  const std::string before = "largest stable one, ";
+  const auto at = text.find(before);
+  INFO(text);
+  REQUIRE(at != std::string::npos);
+  const double named = std::stod(text.substr(at + before.size()));
+  for (const double share : {1.0, 1.01}) {  // a step that is 1 % longer is refused
+    dem::World<Balls> again({.time_step = share * named});
+    build(again.machine());
+    if (share > 1.0) CHECK_THROWS_AS(again.prepare(), dem::Error);
+    else CHECK_NOTHROW(again.prepare());
+  }
+}
+
 TEST_CASE("a world that refuses its time step for a joint of given stiffness names the joint") {
   dem::World<Balls> world({.time_step = 1e-3});
   auto& m = world.machine();

@@ -53,3 +53,25 @@ TEMPLATE_TEST_CASE("a plate on a spring comes to rest under its weight and a gra
   CHECK(world.position(grain).z() == 0.5e-3 + radius - d);  // it was held
   REQUIRE(world.run(10));
 }
+
+TEMPLATE_TEST_CASE("velocities that a world's machine is given later move all that hangs together", "", Balls,
+                   VerletBalls) {
+  dem::World<TestType> world({.gravity = {0, 0, 0}, .time_step = 1e-4});
+  auto& m = world.machine();
+  const dem::Vec3 z(0, 0, 1);
+  const dem::BodyId a = m.add_body(dem::mbd::given_body("a", 1.0, dem::Vec3(0.1, 0.1, 0.1)));
+  const dem::BodyId b = m.add_body(dem::mbd::given_body("b", 1.0, dem::Vec3(0.2, 0.2, 0.2)).at({1, 0, 0}));
+  const auto in = m.add_joint(dem::mbd::revolute("in", m.ground(), a, {0, 0, 0}, z));
+  const auto out = m.add_joint(dem::mbd::revolute("out", m.ground(), b, {1, 0, 0}, z));
+  m.add_coupling(dem::mbd::gear("gear", in, out, 2.0));
+  REQUIRE(world.run(2));
+  m.body(a).motion.angular_velocity = {0, 0, 3};
+  CHECK(assemble(world).kinetic_before == Approx(0.5 * 0.1 * 9.0));
+  // The change of least energy to speeds w and 2 w: 0.1 (3 - w) = 0.2 (2 w) 2.
+  const double w = 1.0 / 3.0;
+  CHECK(m.speed(in) == Approx(w).epsilon(1e-9));
+  CHECK(m.speed(out) == Approx(2.0 * w).epsilon(1e-9));
+  REQUIRE(world.run(2000));
+  CHECK(m.speed(in) == Approx(w).epsilon(1e-6));
+  CHECK(m.speed(out) == Approx(2.0 * w).epsilon(1e-6));
+}

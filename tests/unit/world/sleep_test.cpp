@@ -2,6 +2,8 @@
 
 #include "core/error_of.hpp"
 
+#include <set>
+
 using Catch::Approx;
 
 namespace {
@@ -119,6 +121,42 @@ TEST_CASE("a grain that lands wakes its surroundings, and is held") {
   CHECK(bed.w.asleep_count() == bed.grains.size() + 1);
   CHECK(bed.w.position(visitor).z() > top);
   CHECK(bed.on_floor() == Approx(bed.weight * (1.0 + 1.0 / static_cast<double>(bed.grains.size()))).epsilon(0.01));
+}
+
+TEST_CASE("a grain that flies past wakes its own chunk at most, however often lists are made anew") {
+  // It rises beside the towers and touches nothing. On its way it comes to be sorted into all three chunks, all of it
+  // in less than the two windows after which a grain that was woken may sleep again.
+  Towers bed(true);
+  bed.w.set_sleep(dem::SleepOptions{.window = 600});
+  REQUIRE(bed.w.run_for(0.15));
+  REQUIRE(bed.w.asleep_count() == bed.grains.size());
+  const double high = 2e-3 * Towers::high, beside = Towers::pitch * (Towers::across - 1) + 6e-3, speed = 4.0;
+  const auto flier = bed.w.add_particle({SpeciesId(0), Vec3(beside, 7e-3, 1e-3), {0, 0, speed}});
+  const auto lists = bed.w.state().rebuilds, steps = bed.w.steps();
+  std::size_t least = bed.grains.size();
+  std::set<std::size_t> chunks;
+  while (bed.w.position(flier).z() < high) {
+    REQUIRE(bed.w.run(5));
+    least = std::min(least, bed.w.asleep_count());
+    chunks.insert(bed.w.state().particles.row_of[flier.value] / dem::chunk_size);
+  }
+  CHECK(chunks.size() >= 2);
+  CHECK(bed.w.state().rebuilds - lists > 5);
+  CHECK(bed.w.steps() - steps < 2 * 600);
+  CHECK(least + dem::chunk_size > bed.grains.size());
+}
+
+TEST_CASE("a bed falls asleep although neighbours are listed anew again and again") {
+  // A grain far away is so fast that there is a new list in each of the windows that grains must be at rest for.
+  Towers bed(true);
+  const auto flier = bed.w.add_particle({SpeciesId(0), Vec3(0.5, 0.5, 0.5), {3.0, 0, 0}});
+  REQUIRE(bed.w.run_for(0.08));
+  const auto lists = bed.w.state().rebuilds, steps = bed.w.steps();
+  CHECK(bed.w.asleep_count() + dem::chunk_size > bed.grains.size());
+  REQUIRE(bed.w.run(1000));
+  CHECK(bed.w.steps() - steps < 50 * (bed.w.state().rebuilds - lists));
+  CHECK(bed.w.asleep_count() + dem::chunk_size > bed.grains.size());
+  CHECK(!bed.w.is_asleep(flier));
 }
 
 TEST_CASE("sleeping worlds are the same bits on any number of threads") {

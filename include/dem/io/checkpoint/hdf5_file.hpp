@@ -103,6 +103,19 @@ inline bool read_attribute(hid_t object, const char* name, std::string& value) {
   return true;
 }
 
+/// Makes the groups that a data set of this name lies in. Like all objects they tell no time of their making: the same
+/// state is the same file.
+inline void make_groups(hid_t file, const std::string& name) {
+  for (auto end = name.find('/'); end != std::string::npos; end = name.find('/', end + 1)) {
+    const std::string group = name.substr(0, end), problem = "cannot write '" + group + "'";
+    if (group.empty() || H5Lexists(file, group.c_str(), H5P_DEFAULT) > 0) continue;
+    Hdf5 creation(H5Pcreate(H5P_GROUP_CREATE), H5Pclose, problem);
+    H5Pset_obj_track_times(creation, false);
+    Hdf5 made(H5Gcreate2(file, group.c_str(), H5P_DEFAULT, creation, H5P_DEFAULT), H5Gclose, problem);
+    if (!made.close()) throw Error(problem);
+  }
+}
+
 /// A data set of a column: in pieces of about a megabyte, their bytes shuffled, compressed and checksummed.
 inline void write_column(hid_t file, const std::string& name, const Column& c) {
   const std::string problem = "cannot write '" + name + "'";
@@ -119,9 +132,9 @@ inline void write_column(hid_t file, const std::string& name, const Column& c) {
   const hsize_t size[2] = {c.rows(), c.width};
   const int rank = c.width > 1 ? 2 : 1;
   Hdf5 space(H5Screate_simple(rank, size, nullptr), H5Sclose, problem);
-  Hdf5 creation(H5Pcreate(H5P_DATASET_CREATE), H5Pclose, problem), links(H5Pcreate(H5P_LINK_CREATE), H5Pclose, problem);
-  H5Pset_create_intermediate_group(links, 1);
-  H5Pset_obj_track_times(creation, false);  // the same state is the same file
+  make_groups(file, name);
+  Hdf5 creation(H5Pcreate(H5P_DATASET_CREATE), H5Pclose, problem);
+  H5Pset_obj_track_times(creation, false);
   if (c.rows() > 0) {
     const std::size_t row = is_text ? length : c.row_bytes();
     const hsize_t piece[2] = {std::min<hsize_t>(c.rows(), std::max<std::size_t>(1, (std::size_t{1} << 20) / row)),
@@ -132,7 +145,7 @@ inline void write_column(hid_t file, const std::string& name, const Column& c) {
     H5Pset_fletcher32(creation);
   }
   Hdf5 type(is_text ? text_type(length) : H5Tcopy(type_in_file(c.kind)), H5Tclose, problem);
-  Hdf5 set(H5Dcreate2(file, name.c_str(), type, space, links, creation, H5P_DEFAULT), H5Dclose, problem);
+  Hdf5 set(H5Dcreate2(file, name.c_str(), type, space, H5P_DEFAULT, creation, H5P_DEFAULT), H5Dclose, problem);
   if (c.rows() > 0 &&
       H5Dwrite(set, is_text ? hid_t{type} : type_in_memory(c.kind), H5S_ALL, H5S_ALL, H5P_DEFAULT, data) < 0) {
     throw Error(problem);
@@ -194,6 +207,7 @@ inline void write_columns(const std::filesystem::path& path, const StateColumns&
     detail::Hdf5 creation(H5Pcreate(H5P_FILE_CREATE), H5Pclose, "no memory");
     detail::Hdf5 access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose, "no memory");
     H5Pset_userblock(creation, detail::Seal::size);
+    H5Pset_obj_track_times(creation, false);
     H5Pset_libver_bounds(access, H5F_LIBVER_V110, H5F_LIBVER_V110);  // whose headers are checksummed too
     detail::Hdf5 file(H5Fcreate(temporary.c_str(), H5F_ACC_TRUNC, creation, access), H5Fclose,
                       "cannot open '" + temporary.string() + "'");

@@ -63,7 +63,7 @@ void grain_fields(Fields& v, Particles& p) {
   std::uint64_t count = p.count, ids = p.row_of.size();
   v("count", count);
   v("ids_given", ids);
-  v("generation_of_id", p.generation), v("ids_freed", p.freed), v("ids_free", p.free_again);
+  v("grains_given", p.given), v("number_of_id", p.number), v("ids_freed", p.freed), v("ids_free", p.free_again);
   if (v.task() == Fields::Task::restore) p.resize(0), p.resize(count);
   const auto columns = [&](const char* name, auto& c, const char* unit) {
     v.group(name, [&] {
@@ -87,6 +87,9 @@ void grain_fields(Fields& v, Particles& p) {
     v.rows("integrator_memory" + std::to_string(k), ColumnKind::real, 1, p.memory[k].data(), count);
   }
   if (v.task() != Fields::Task::restore) return;
+  if (!p.number.empty() && p.number.size() != ids) {
+    fail("the saved state has the numbers of {} grains, but {} ids", p.number.size(), ids);
+  }
   for (const auto* list : {&p.freed, &p.free_again}) {
     for (const std::uint32_t id : *list) {
       if (id >= ids) fail("the saved state gives the id {} again, but has only {} ids", id, ids);

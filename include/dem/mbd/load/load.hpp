@@ -81,7 +81,7 @@ struct Load {
   template <class V>
   void fields(V& v) {
     v.given("name", spec.name), v.given("body", spec.body), v.given("is_torque", spec.is_torque);
-    v.given("follows_body", spec.follows_body), v.given("has_law", static_cast<bool>(spec.law)), v("on", spec.on);
+    v.given("follows_body", spec.follows_body), v.given("has_law", spec.has_law()), v("on", spec.on);
     v("signal", spec.size), v("point", point, "m"), v("direction", direction), v("size", size), v("wrench", wrench);
   }
 };

@@ -47,6 +47,9 @@ DEM_COLD inline MachineReport report_of_opening(const Parts& m, const JointOpeni
 DEM_COLD inline std::string note_of(const Parts& m, const AssemblyReport& assembly, const JointWatch& joints, int from,
                                     int to) {
   std::string text = assembly.has_changed() ? assembly.text() : "";
+  for (const TerrainPart& t : m.terrains) {
+    if (const std::string problem = t->problem(); !problem.empty()) text += (text.empty() ? "" : " ") + problem;
+  }
   if (from == 0) return text;
   text += dem::text("{}The machine takes {} substeps instead of {}, to keep its joints within joint_tolerance.",
                     text.empty() ? "" : " ", to, from);

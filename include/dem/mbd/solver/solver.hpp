@@ -178,11 +178,7 @@ class Solver {
   }
   /// What was changed of what the user gave: sub-steps, velocities at the start. Empty if nothing.
   DEM_COLD std::string note(const Mechanism& m) const {
-    std::string text = note_of(m.parts(), assembly_, joints_, raised_.given(m.substeps), m.substeps);
-    for (const TerrainPart& t : m.parts().terrains) {
-      if (const std::string problem = t->problem(); !problem.empty()) text += (text.empty() ? "" : " ") + problem;
-    }
-    return text;
+    return note_of(m.parts(), assembly_, joints_, raised_.given(m.substeps), m.substeps);
   }
   /// What became of the velocities that were given, at the start.
   const AssemblyReport& assembly() const { return assembly_; }

@@ -3,6 +3,7 @@
 #include <dem/report/replay_recorder.hpp>
 #include <dem/rig/bed/surface_profile.hpp>
 #include <dem/rig/soft_lane/settings.hpp>
+#include <dem/vehicle/ending.hpp>
 #include <dem/vehicle/telemetry.hpp>
 
 #include <array>
@@ -16,26 +17,7 @@ namespace dem::rig::soft_lane {
 
 inline constexpr double not_known = std::numeric_limits<double>::quiet_NaN();
 
-/// One wheel over a sample's interval: forces of the grains are means over it.
-struct WheelSample {
-  double slip = 0.0;  ///< (omega r - v)/max(|omega r|, |v|), r: unloaded radius; v: of the wheel's middle, forward
-  double slip_angle = 0.0;    ///< rad, of the middle's path to the left of the wheel's plane
-  double load = 0.0;          ///< N, up across the lane
-  double pull = 0.0;          ///< N, forward along the lane's surface in the wheel's plane
-  double side = 0.0;          ///< N, to the left
-  double torque = 0.0;        ///< N m, that drives the wheel against the grains
-  double sinkage = 0.0;       ///< m, of the wheel's lowest point below the level of the lane
-  double travel = 0.0;        ///< m, of the suspension, up
-  double brake_torque = 0.0;  ///< N m
-  double spin = 0.0;          ///< rad/s, of the wheel on its knuckle
-
-  template <class F>
-  void each(F&& f) const {
-    f("slip", slip), f("slip_angle_rad", slip_angle), f("load_N", load), f("pull_N", pull), f("side_N", side);
-    f("torque_Nm", torque), f("sinkage_m", sinkage), f("travel_m", travel), f("brake_torque_Nm", brake_torque);
-    f("spin_rad_per_s", spin);
-  }
-};
+using vehicle::WheelSample;
 
 /// A row of telemetry. The time is that since the driver was told to go.
 struct Sample {
@@ -69,16 +51,7 @@ struct Sample {
   }
 };
 
-/// How a run ended, in a word for a table.
-namespace ending {
-inline constexpr const char* arrived = "arrived";          ///< at the end of the path
-inline constexpr const char* stopped = "stopped";          ///< by its brakes, or coasting
-inline constexpr const char* dug_in = "dug in";            ///< for a second it slipped by 0.8 and more and hardly moved
-inline constexpr const char* rolled_over = "rolled over";  ///< roll or pitch beyond 60 deg
-inline constexpr const char* left_lane = "left the lane";  ///< a wheel's middle is beyond the side of its grains
-inline constexpr const char* slid_back = "slid back";      ///< 0.3 m behind the start
-inline constexpr const char* too_slow = "too slow";        ///< not there in four times the path's time and 3 s
-}  // namespace ending
+namespace ending = vehicle::ending;
 
 /// Means over the second half of the way; where the car brakes or coasts from half of the path on, over the quarter of
 /// the path before.

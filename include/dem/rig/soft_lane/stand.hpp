@@ -99,23 +99,7 @@ Sample sample_of(const Stand<Model>& stand, const vehicle::Controls& controls, d
   x.overlap = deepest_overlap(stand.world);
   x.asleep = static_cast<double>(stand.world.asleep_count()) / static_cast<double>(stand.world.particle_count());
   for (std::size_t k = 0; k < 4; ++k) {
-    const vehicle::Wheel& wheel = stand.car.wheels[k];
-    const Body& body = m.body(wheel.body);
-    const Wrench grains = m.sensor(stand.grains[k]).mean();
-    const Vec3 force = to_eigen(grains.force), torque = to_eigen(grains.torque), v = body.velocity();
-    const Vec3 axle = m.reference_rotation(stand.car.suspension[k].knuckle) * Vec3::UnitY();
-    const Vec3 across = axle.cross(Vec3::UnitZ()), ahead = across.normalized(), left = Vec3::UnitZ().cross(ahead);
-    WheelSample& w = x.wheels[k];
-    w.spin = m.speed(wheel.turn);
-    w.slip = vehicle::slip_of(body.angular_velocity().dot(axle) * radius, v.dot(ahead));
-    w.slip_angle = std::abs(v.dot(ahead)) > 1e-3 ? std::atan2(v.dot(left), std::abs(v.dot(ahead))) : 0.0;
-    w.load = force.z();
-    w.pull = force.dot(ahead);
-    w.side = force.dot(left);
-    w.torque = -torque.dot(axle);
-    w.sinkage = stand.level - (body.position().z() - radius);
-    w.travel = vehicle::travel_of(m, stand.car, k);
-    w.brake_torque = -m.actuator(wheel.brake).force;
+    x.wheels[k] = vehicle::wheel_sample_of(m, stand.car, k, m.sensor(stand.grains[k]).mean(), stand.level, radius);
   }
   return x;
 }

@@ -1,0 +1,61 @@
+#pragma once
+
+#include <dem/rig/mobility/drive.hpp>
+
+#include <string>
+#include <vector>
+
+namespace dem::rig::mobility {
+
+/// The drives of a study, in the order of its table. Those of `passes` follow each other in one lane, all others start
+/// on soil of their own.
+inline std::vector<Case> cases_of(const Settings& s) {
+  const Case plain = {.name = "drive",
+                      .slope = s.slopes.front(),
+                      .side_slope = s.side_slopes.front(),
+                      .sprung_mass = s.sprung_mass,
+                      .lane = s.stretches_};
+  std::vector<Case> cases;
+  const auto add = [&](std::string name) -> Case& {
+    cases.push_back(plain);
+    cases.back().name = std::move(name);
+    return cases.back();
+  };
+  const auto signed_name = [](double x) { return text("{}{:g}", x < 0.0 ? "m" : "", std::abs(x)); };
+  if (s.study == "slopes") {
+    for (const double slope : s.slopes) add("slope_" + signed_name(slope)).slope = slope;
+  } else if (s.study == "side-slopes") {
+    for (const double side : s.side_slopes) add("side_" + signed_name(side)).side_slope = side;
+  } else if (s.study == "drawbar") {
+    add("drawbar").is_held = true;
+  } else if (s.study == "passes") {
+    for (int k = 1; k <= s.passes; ++k) add(text("pass_{}", k));
+  } else if (s.study == "map") {
+    for (const double side : s.side_slopes) {
+      for (const double slope : s.slopes) {
+        Case& c = add("slope_" + signed_name(slope) + "_side_" + signed_name(side));
+        c.slope = slope, c.side_slope = side;
+      }
+    }
+  } else if (s.study == "loads") {
+    for (const auto& soil : s.soils_of_loads_) {
+      for (const double mass : s.loads) {
+        Case& c = add(text("{}_{:g}_kg", soil.name, mass));
+        c.sprung_mass = mass;
+        c.lane = {{soil, s.path}};
+      }
+    }
+  } else {
+    add("drive");
+  }
+  return cases;
+}
+
+/// Everything that a run finds.
+struct Campaign {
+  std::vector<Case> cases;
+  std::vector<Result> results;  ///< of the cases
+  Driven shown;                 ///< the only drive, or the last pass; empty where a study has many
+};
+
+}  // namespace dem::rig::mobility

@@ -1,0 +1,217 @@
+#pragma once
+
+#include <dem/io/csv.hpp>
+#include <dem/report/replay_page.hpp>
+#include <dem/rig/mobility/run.hpp>
+#include <dem/rig/mobility/tables.hpp>
+#include <dem/rig/rig.hpp>
+#include <dem/terramechanics/rut_files.hpp>
+#include <dem/terramechanics/rut_vtk.hpp>
+
+#include <optional>
+
+namespace dem::rig::mobility {
+
+/// The Humvee on columns of soil as a program: single drives, slopes, side slopes, drawbar pull, passes, and maps of
+/// where it goes.
+class MobilityRig : public Rig {
+ public:
+  /// `read_soil` reads a soil's file.
+  explicit MobilityRig(ReadSoil* read_soil) : read_soil_(read_soil) {}
+
+  void declare(Options& options) override { mobility::declare(options, settings); }
+  void find_idle(IdleOptions& idle) const override { mobility::find_idle(idle, settings); }
+  void resolve() override { mobility::resolve(settings, read_soil_); }
+  [[nodiscard]] std::string output() const override { return settings.output; }
+  [[nodiscard]] ResultNames results() const override {
+    return {.files = {"results.csv", "telemetry.csv", "pull.csv", "rut.csv", "rut.pgm", "rut.vtp"},
+            .plots = {"speed", "slip", "sinkage", "load", "pull", "energy", "drift", "resistance", "ruts", "map"},
+            .frames = {}};
+  }
+  [[nodiscard]] bool can_resume() const override { return true; }
+  [[nodiscard]] std::vector<OwnWord> words() const override { return {}; }
+  void run(Session& session) override { run_campaign(settings, campaign, replay, session); }
+
+  bool report(Report& report) const override {
+    const Campaign& c = campaign;
+    report.part("results.csv", [&] { write_results(report.folder() / "results.csv"); });
+    if (!c.shown.samples.empty()) {
+      report.part("telemetry.csv", [&] {
+        io::CsvWriter csv(report.folder() / "telemetry.csv", Sample{}.columns(), {.digits = 7});
+        for (const Sample& x : c.shown.samples) csv.row(x.row());
+        csv.flush();
+      });
+      report.part("the rut", [&] {
+        terramechanics::write_rut_csv(report.folder() / "rut.csv", c.shown.field);
+        terramechanics::write_rut_pgm(report.folder() / "rut.pgm", c.shown.field);
+        terramechanics::write_rut_vtk(report.folder() / "rut.vtp", c.shown.field);
+      });
+    }
+    std::vector<io::Table> tables{drive_table(c)};
+    if (is_held()) {
+      tables.push_back(pull_table(c.results[0]));
+      report.part("pull.csv", [&] { write_pulls(report.folder() / "pull.csv"); });
+    }
+    report.part("the printed report", [&] {
+      fmt::print("\n{}\n\n", words_text);
+      for (const auto& table : tables) io::print(table), fmt::print("\n");
+      fmt::print("{} of wall time.\n", io::format_duration(report.outcome().wall_time));
+    });
+    report.page(list_settings(), [&](io::HtmlReport& page) {
+      page.paragraph(words_text);
+      for (const auto& table : tables) page.table(table);
+      add_plots(report, page);
+      if (replay && replay->frames().size() > 1) {
+        page.heading("Replay").replay(*replay, "The car from above its lane until the end of the drive.");
+      }
+    });
+    return false;
+  }
+
+  Settings settings;
+  Campaign campaign;
+  std::optional<report::Replay> replay;
+
+ private:
+  [[nodiscard]] bool is_held() const { return settings.study == "drawbar" && !campaign.results.empty(); }
+
+  [[nodiscard]] std::vector<std::pair<std::string, std::string>> list_settings() const {
+    const Settings& s = settings;
+    return {{"size", s.size},
+            {"study", s.study},
+            {"ground", campaign.cases.empty() || s.study == "loads" ? s.study : ground_of(campaign.cases[0])},
+            {"engine", s.engine},
+            {"speed", text("{:g} m/s, reached at {:g} m/s²", s.speed, s.acceleration)},
+            {"path", text("{:g} m", s.path)},
+            {"columns", text("{:g} mm, damping {:g} Pa s/m", 1e3 * s.spacing, s.damping)},
+            {"time step of the car", text("{:g} s", s.time_step)}};
+  }
+
+  void add_plots(Report& report, io::HtmlReport& page) const {
+    const Settings& s = settings;
+    const Campaign& c = campaign;
+    page.heading("Plots");
+    const auto add = [&](const io::Plot& plot, const char* name, const char* caption) {
+      report.plot(page, plot, name, caption);
+    };
+    const auto add_map = [&](const io::HeatMap& map, const char* name, const char* caption) {
+      const auto drawn = io::render_map(map, report.folder() / name);
+      if (drawn) page.picture(drawn.svg, caption);
+      else page.paragraph(text("{}: not drawn ({})", caption, drawn.reason));
+    };
+    const auto over = [&](const char* x_label, auto&& x) {
+      add(plot_over(c, "Speed", x_label, "speed [m/s]", x, [](const Result& r) { return r.speed; }), "speed",
+          "Mean speed over the second half of the way; words where the car did not arrive.");
+      add(plot_over(c, "Slip", x_label, "slip", x, [](const Result& r) { return r.slip; }), "slip", "Mean slip.");
+      add(plot_over(c, "Sinkage", x_label, "sinkage [mm]", x, [](const Result& r) { return 1e3 * r.sinkage; }),
+          "sinkage", "Mean sinkage of the wheels.");
+      add(plot_over(c, "Energy", x_label, "energy [kJ/m]", x,
+                    [](const Result& r) { return 1e-3 * r.energy_per_metre; }),
+          "energy", "Energy of the engine for a metre.");
+      add(plot_over(c, "Resistance", x_label, "resistance [kN]", x,
+                    [](const Result& r) { return 1e-3 * r.resistance; }),
+          "resistance", "What the soil takes of the thrust.");
+      add(plot_over(c, "Drift", x_label, "to the left [mm]", x, [](const Result& r) { return 1e3 * r.drift; }), "drift",
+          "Drift of the car at the end of its way.");
+    };
+    if (s.study == "slopes") over("slope [%]", [](const Case& of, std::size_t) { return of.slope; });
+    if (s.study == "side-slopes") over("side slope [%]", [](const Case& of, std::size_t) { return of.side_slope; });
+    if (s.study == "passes") over("pass", [](const Case&, std::size_t k) { return static_cast<double>(k + 1); });
+    if (is_held()) {
+      add(pull_plot(c.cases[0], c.results[0], vehicle::humvee().tyre), "pull", "Pull on the load cell over slip.");
+    }
+    const auto words = [](const Result& r) {
+      return text("{:.1f} m/s\n{:.1f} kJ/m", r.speed, 1e-3 * r.energy_per_metre);
+    };
+    // Cells of one size, whatever the steps of their axes are.
+    const auto add_table_map = [&](io::HeatMap map, const char* caption) {
+      map.width = 240 + 130 * static_cast<int>(map.x.size());
+      map.height = 140 + 80 * static_cast<int>(map.y.size());
+      add_map(map, "map", caption);
+    };
+    if (s.study == "map") {
+      auto map = map_of(
+          c, "Where the car goes on " + ground_of(c.cases[0]), numbers_to(s.slopes.size()),
+          numbers_to(s.side_slopes.size()), [](const Result& r) { return r.speed; }, words);
+      map.x_label = "slope", map.y_label = "side slope", map.c_label = "speed [m/s]";
+      for (const double slope : s.slopes) map.x_ticks.push_back(text("{:g} %", slope));
+      for (const double side : s.side_slopes) map.y_ticks.push_back(text("{:g} %", side));
+      map.range = {0.0, s.speed};
+      add_table_map(std::move(map), "Speed and energy for a metre over slope and side slope; grey: it does not go.");
+    }
+    if (s.study == "loads") {
+      auto map = map_of(
+          c, "Energy for a metre over load and soil", numbers_to(s.loads.size()), numbers_to(s.soils_of_loads_.size()),
+          [](const Result& r) { return 1e-3 * r.energy_per_metre; }, words);
+      map.x_label = "sprung mass", map.y_label = "soil", map.c_label = "energy [kJ/m]";
+      for (const double mass : s.loads) map.x_ticks.push_back(text("{:g} kg", mass));
+      for (const auto& soil : s.soils_of_loads_) map.y_ticks.push_back(soil.name);
+      add_table_map(std::move(map), "Energy for a metre and speed over soil and load; grey: it does not go.");
+    }
+    if (c.shown.samples.size() > 2) {
+      using W = vehicle::WheelSample;
+      if (s.is_drive()) {
+        io::Plot speed{.title = "Speed", .x_label = "way [m]", .y_label = "speed [m/s]"};
+        speed.series = {line_of(c.shown, "car", 0, [](const Sample& x) { return x.car.speed; })};
+        add(speed, "speed", "Speed of the car.");
+        add(wheel_plot(c.shown, &W::slip, 1.0, "Slip", "slip"), "slip", "Slip of the wheels.");
+        add(wheel_plot(c.shown, &W::sinkage, 1e3, "Sinkage", "sinkage [mm]"), "sinkage", "Sinkage of the wheels.");
+        add(wheel_plot(c.shown, &W::load, 1e-3, "Load", "load [kN]"), "load", "Load of the wheels.");
+        add(wheel_plot(c.shown, &W::pull, 1e-3, "Pull", "pull [kN]"), "pull", "Net forward force on the wheels.");
+      }
+      add_map(rut_map(c.shown.field), "ruts", "Height of the soil at the end.");
+    }
+  }
+
+  static std::vector<double> numbers_to(std::size_t n) {
+    std::vector<double> numbers;
+    for (std::size_t k = 0; k < n; ++k) numbers.push_back(static_cast<double>(k));
+    return numbers;
+  }
+
+  void write_results(const std::filesystem::path& path) const {
+    io::CsvWriter csv(path, {"soil",
+                             "slope_percent",
+                             "side_slope_percent",
+                             "sprung_mass_kg",
+                             "ended",
+                             "way_m",
+                             "time_s",
+                             "speed_m_per_s",
+                             "slip",
+                             "sinkage_m",
+                             "pull_N",
+                             "torque_Nm",
+                             "resistance_N",
+                             "power_W",
+                             "energy_per_metre_J_per_m",
+                             "cost_of_transport",
+                             "drift_m",
+                             "rut_left_m",
+                             "rut_right_m",
+                             "weight_N",
+                             "widest_joint_m"});
+    const auto cell = [](double value) { return std::isfinite(value) ? text("{}", value) : std::string(); };
+    for (std::size_t k = 0; k < campaign.results.size(); ++k) {
+      const Case& of = campaign.cases[k];
+      const Result& r = campaign.results[k];
+      csv.row(ground_of(of), of.slope, of.side_slope, of.sprung_mass, r.ended, cell(r.way), cell(r.time), cell(r.speed),
+              cell(r.slip), cell(r.sinkage), cell(r.pull), cell(r.torque), cell(r.resistance), cell(r.power),
+              cell(r.energy_per_metre), cell(r.cost_of_transport), cell(r.drift), cell(r.rut_left), cell(r.rut_right),
+              cell(r.weight), cell(r.widest_joint));
+    }
+    csv.flush();
+  }
+
+  void write_pulls(const std::filesystem::path& path) const {
+    io::CsvWriter csv(path, {"slip", "pull_N", "torque_Nm", "sinkage_m", "power_W", "efficiency"});
+    for (const PullPoint& p : campaign.results[0].pulls) {
+      csv.row(p.slip, p.pull, p.torque, p.sinkage, p.power, p.efficiency);
+    }
+    csv.flush();
+  }
+
+  ReadSoil* read_soil_;
+};
+
+}  // namespace dem::rig::mobility

@@ -1,0 +1,222 @@
+#pragma once
+
+#include <dem/integrator/velocity_verlet.hpp>
+#include <dem/mbd/machine.hpp>
+#include <dem/terramechanics/column_shapes.hpp>
+#include <dem/terramechanics/machine_columns.hpp>
+#include <dem/vehicle/telemetry.hpp>
+
+#include <array>
+#include <cmath>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace dem::vehicle {
+
+/// A stretch of a lane: one soil for a length.
+struct LaneStretch {
+  terramechanics::NamedSoil soil;
+  double length = 0.0;  ///< m
+};
+
+/// A car on soil columns, as it is asked for. x runs along the lane, up a grade; y to the left.
+struct ColumnCarSpec {
+  VehicleSpec car;
+  std::vector<LaneStretch> lane;  ///< one after the other from x = 0
+  double margin = 4.0;            ///< m, of soil before the lane's start and beyond its end
+  double half_width = 1.6;        ///< m, of soil on either side of the middle
+  double spacing = 0.05;          ///< m, of the columns
+  double damping = 2e3;           ///< Pa s/m, of the columns
+  double bulldozing = 0.3;        ///< share of the soil that is pushed aside
+  double grade = 0.0;             ///< rise over run along the lane
+  double side_grade = 0.0;        ///< of the left side over the right one
+  double tyre_friction = 0.8;     ///< mu of the tyres on the soil
+  double time_step = 5e-5;        ///< s
+  double set_down_speed = 0.5;    ///< m/s, of the crane
+  double hitch_height = 0.6;      ///< m, over the ground, of the hitch behind the rear axle
+};
+
+/// What holds a car on a load cell: a sled behind it that goes with a given speed. It pulls through a stiff damper, so
+/// the car goes with it, whatever the car's wheels do.
+struct Hitch {
+  bool on = false;
+  double speed = 1.0;     ///< m/s, of the sled
+  double damping = 2e5;   ///< N s/m
+  double constant = 0.0;  ///< N, backwards, besides: a trailer
+  double force = 0.0;     ///< N, backwards on the car, in the newest evaluation
+};
+
+/// A vehicle of humvee.hpp or the like on soil columns (dynamic Bekker): its rigid tyres are cylinders on them. A
+/// machine alone, without grains, so it runs faster than real time.
+///
+///     ColumnCar car({.car = humvee({.rubber_rear = false}), .lane = {{known_soil("dry-sand"), 30.0}}});
+///     car.set_down();
+///     while (car.way() < 20.0) car.advance({.throttle = 0.3});
+class ColumnCar {
+ public:
+  using Machine = mbd::Machine<integrator::VelocityVerlet>;
+  static constexpr double interval = 0.01;  ///< s, of advance()
+
+  /// Throws Error for a lane that is none, and what check_columns refuses.
+  explicit ColumnCar(const ColumnCarSpec& spec) : spec_(spec), soil_(machine, columns(spec)) {
+    const TyreSpec& tyre = spec.car.tyre;
+    machine.gravity = Vec3(0, 0, -9.81);
+    machine.joint_tolerance = 0.5;  // m: light shafts wind up
+    const double height = tyre.radius - spec.car.front.points.wheel.z();
+    car = add_vehicle(Assembly(machine, "car", Vec3(-spec.car.rear.points.wheel.x(), 0, height)), spec.car);
+    const auto wheel = std::make_shared<terramechanics::ColumnCylinder>(tyre.radius, tyre.width);
+    for (const Wheel& w : car.wheels) {
+      parts_.push_back(
+          soil_.add(w.body, wheel, machine.body(w.body).position(), Mat3::Identity(), 0.0, spec.tyre_friction));
+    }
+    lay_soils();
+    weight = weight_of(machine);
+    crane_ = add_crane();
+    add_hitch();
+    // An engine's own damping comes on top of what is derived: that is made softer until the step bears both.
+    double design = spec.time_step;
+    machine.design_for(design);
+    for (int k = 0; k < 10 && machine.stable_time_step().dt < spec.time_step; ++k) machine.design_for(design *= 1.05);
+    machine.initialise(0.0, machine.gravity);
+  }
+  ColumnCar(const ColumnCar&) = delete;
+  ColumnCar& operator=(const ColumnCar&) = delete;
+
+  /// Lowers the car on its brakes by a crane for 1.2 s, lets it stand for 0.5 s, then turns gravity to that of the
+  /// slope within half a second.
+  void set_down() {
+    const Controls brakes{.brake = 1.0};
+    for (int k = 0; k < 120; ++k) advance(brakes);
+    machine.switch_on(crane_, false);
+    for (int k = 0; k < 50; ++k) advance(brakes);
+    const double size = std::sqrt(1.0 + spec_.grade * spec_.grade + spec_.side_grade * spec_.side_grade);
+    const Vec3 whole = 9.81 / size * Vec3(-spec_.grade, -spec_.side_grade, -1.0), flat = machine.gravity;
+    if (size == 1.0) return;
+    for (int k = 1; k <= 70; ++k) {
+      const double t = std::min(1.0, k / 50.0), share = t * t * (3.0 - 2.0 * t);
+      machine.gravity = (1.0 - share) * flat + share * whole;
+      advance(brakes);
+    }
+  }
+
+  /// Ten milliseconds with these controls. Nothing moves on once something has failed.
+  void advance(const Controls& controls) {
+    const double dt = spec_.time_step;
+    controls_ = controls;
+    for (long k = std::lround(interval / dt); k > 0 && failed.empty(); --k) {
+      drive(machine, car, controls, dt);
+      if (const auto report = machine.step(dt); !report) failed = report.text;
+    }
+    if (failed.empty() && !soil_.report().ok) failed = soil_.report().text;
+  }
+
+  /// m, of the wheels' middles along the lane, on the mean: 0 where the rear wheels stood at the start.
+  double way() const {
+    double sum = 0.0;
+    for (const Wheel& w : car.wheels) sum += machine.body(w.body).position().x();
+    return 0.25 * sum - 0.5 * spec_.car.wheelbase();
+  }
+  double speed() const { return speed_of(machine, car); }
+  Vec3 middle_of(std::size_t corner) const { return machine.body(car.wheels[corner].body).position(); }
+  CarSample sample() const { return sample_of(machine, car, controls_, machine.time()); }
+  WheelSample wheel(std::size_t corner) const {
+    const terramechanics::ColumnLoad& load = soil_.loads()[parts_[corner]];
+    return wheel_sample_of(machine, car, corner, {load.force, load.torque}, 0.0, spec_.car.tyre.radius);
+  }
+  /// m/s, of the rims, as the drive shaft turns: their mean.
+  double rim_speed() const {
+    return machine.speed(car.driveline.shaft_turn) / spec_.car.driveline.front.ratio * spec_.car.tyre.radius;
+  }
+  /// m, mean depth of the rut of the left (0) or right (1) wheels between two places along the lane, over the middle
+  /// half of the tyre's width; NaN if there is none.
+  double rut_depth(std::size_t side, double from, double to) const {
+    const auto& f = soil_.soil().field();
+    const double middle = (side == 0 ? 0.5 : -0.5) * spec_.car.track(), half = 0.25 * spec_.car.tyre.width;
+    double sum = 0.0, count = 0.0;
+    for (std::size_t iy = 0; iy < f.grid.ny; ++iy) {
+      if (std::abs(f.grid.y(iy) - middle) > half) continue;
+      for (std::size_t ix = 0; ix < f.grid.nx; ++ix) {
+        if (f.grid.x(ix) < from || f.grid.x(ix) > to) continue;
+        sum -= f.surface(f.grid.row(ix, iy));
+        count += 1.0;
+      }
+    }
+    return sum / count;
+  }
+  terramechanics::MachineColumns& soil() { return soil_; }
+  const terramechanics::MachineColumns& soil() const { return soil_; }
+  const ColumnCarSpec& spec() const { return spec_; }
+  Hitch& hitch() { return *hitch_; }
+
+  Machine machine;
+  Vehicle car;
+  double weight = 0.0;  ///< N
+  std::string failed;   ///< what ended the run, in words
+
+ private:
+  static terramechanics::ColumnsSpec columns(const ColumnCarSpec& s) {
+    if (s.lane.empty()) fail("a lane of soil columns has no stretch; give at least one soil with its length");
+    double length = 0.0;
+    for (const LaneStretch& part : s.lane) {
+      length += require_positive(part.length, ("length of the stretch of " + part.soil.name).c_str(), "m");
+    }
+    const double reach = s.car.track() + s.car.tyre.width;
+    if (!(2.0 * s.half_width > reach)) {
+      fail("a lane of soil columns is {:g} m wide, but the car is {:g} m wide; raise half_width", 2.0 * s.half_width,
+           reach);
+    }
+    return {.low_x = -s.margin,
+            .low_y = -s.half_width,
+            .length_x = length + s.car.wheelbase() + 2.0 * s.margin,
+            .length_y = 2.0 * s.half_width,
+            .spacing = s.spacing,
+            .soil = s.lane[0].soil.soil,
+            .damping = s.damping,
+            .bulldozing = s.bulldozing};
+  }
+  void lay_soils() {
+    if (spec_.lane.size() < 2) return;
+    std::vector<terramechanics::Soil> others;
+    for (std::size_t k = 1; k < spec_.lane.size(); ++k) others.push_back(spec_.lane[k].soil.soil);
+    // Where the car has gone as far as a stretch is long its front wheels meet the next one.
+    soil_.soil().lay_soils(others, [&](double x, double) {
+      std::size_t k = 0;
+      double end = spec_.lane[0].length + spec_.car.wheelbase();
+      while (k + 1 < spec_.lane.size() && x > end) end += spec_.lane[++k].length;
+      return k;
+    });
+  }
+  /// A damper against sinking, rolling and pitching: the car's weight sinks at the set-down speed.
+  LoadId add_crane() {
+    const double up = weight / spec_.set_down_speed, turn = up * spec_.car.wheelbase();
+    return machine.add_load(mbd::custom_load("crane", car.chassis, [up, turn](double, const Body& b) {
+      const Vec3 v = b.velocity(), w = b.angular_velocity();
+      return Wrench{{0, 0, -up * v.z()}, {-turn * w.x(), -turn * w.y(), 0}};
+    }));
+  }
+  void add_hitch() {
+    const Body& b = machine.body(car.chassis);
+    const Vec3 at(middle_of(2).x() - 0.9, 0, spec_.hitch_height);
+    const Vector3<double> point = transpose_times(b.motion.rotation, from_eigen(at) - b.motion.position);
+    machine.add_load(mbd::custom_load("hitch", car.chassis, [point, h = hitch_](double, const Body& body) {
+      h->force = 0.0;
+      if (!h->on) return Wrench{};
+      const Vector3<double> arm = body.motion.rotation * point;
+      const Vector3<double> spin = body.motion.rotation * body.motion.angular_velocity;
+      h->force = h->constant + h->damping * (body.motion.velocity.x + cross(spin, arm).x - h->speed);
+      const Vector3<double> force = {-h->force, 0, 0};
+      return Wrench{force, cross(arm, force)};
+    }));
+  }
+
+  ColumnCarSpec spec_;
+  terramechanics::MachineColumns soil_;
+  std::vector<std::size_t> parts_;  ///< of the wheels
+  std::shared_ptr<Hitch> hitch_ = std::make_shared<Hitch>();
+  LoadId crane_;
+  Controls controls_;
+};
+
+}  // namespace dem::vehicle

@@ -1,0 +1,93 @@
+#include <dem/rig/mobility/cases.hpp>
+#include <dem/rig/mobility/tables.hpp>
+
+#include <cmath>
+
+#include "catch.hpp"
+
+using namespace dem::rig;
+using Catch::Approx;
+using Catch::Matchers::ContainsSubstring;
+namespace ending = dem::vehicle::ending;
+
+namespace {
+
+mobility::Settings resolved_study(const char* study, const char* lane = "") {
+  mobility::Settings s;
+  s.study = study;
+  s.lane = lane;
+  mobility::resolve(s, [](const std::string&) { return dem::terramechanics::NamedSoil{}; });
+  return s;
+}
+
+}  // namespace
+
+TEST_CASE("a study has the drives that its lists ask for, each with a name of its own") {
+  auto s = resolved_study("map");
+  s.slopes = {-10, 0, 10};
+  s.side_slopes = {0, 20};
+  const auto cases = mobility::cases_of(s);
+  REQUIRE(cases.size() == 6);
+  CHECK(cases[0].name == "slope_m10_side_0");
+  CHECK(cases[5].slope == 10.0);
+  CHECK(cases[5].side_slope == 20.0);
+  s = resolved_study("loads");
+  CHECK(mobility::cases_of(s).size() == s.loads.size() * 5);
+  CHECK(mobility::cases_of(s).front().lane[0].soil.name == "sandy-loam");
+  CHECK(mobility::cases_of(resolved_study("passes")).size() == 3);
+  CHECK(mobility::cases_of(resolved_study("drawbar"))[0].is_held);
+}
+
+TEST_CASE("a lane of stretches is as long as they are, and one that cannot be read is refused in words") {
+  const auto s = resolved_study("drive", "hard:8,dry-sand:12.5");
+  REQUIRE(s.stretches_.size() == 2);
+  CHECK(s.stretches_[1].soil.name == "dry-sand");
+  CHECK(s.path == 20.5);
+  CHECK_THROWS_WITH(mobility::stretches_of("hard"), ContainsSubstring("--lane has the stretch 'hard'"));
+  CHECK_THROWS_WITH(mobility::stretches_of("hard:2x"), ContainsSubstring("'hard:2x'"));
+  CHECK_THROWS_WITH(mobility::stretches_of("mud:2"), ContainsSubstring("there is no soil 'mud'"));
+  mobility::Settings longer;
+  longer.lane = "hard:3";
+  longer.path = 4.0;
+  CHECK_THROWS_WITH(mobility::resolve(longer, nullptr), ContainsSubstring("longer than the --lane of 3 m"));
+}
+
+TEST_CASE("means of a drive are those of its second half, and resistance is the thrust that does not pull") {
+  std::vector<mobility::Sample> samples(101);
+  for (std::size_t k = 0; k < samples.size(); ++k) {
+    auto& x = samples[k];
+    x.car.time = 0.01 * static_cast<double>(k);
+    x.way = 0.02 * static_cast<double>(k);
+    x.car.speed = k < 50 ? 9.0 : 2.0;
+    x.car.engine_power = k < 50 ? 1e6 : 4e3;
+    for (auto& w : x.wheels) w.torque = 485.0, w.pull = 400.0, w.slip = 0.2, w.sinkage = 0.1;
+  }
+  mobility::Result r{.way = 2.0, .time = 1.0, .weight = 5e4};
+  mobility::evaluate(r, samples, 0.485);
+  CHECK(r.speed == Approx(2.0));
+  CHECK(r.slip == Approx(0.2));
+  CHECK(r.resistance == Approx(4.0 * 600.0));  // 485/0.485 - 400 a wheel
+  CHECK(r.energy_per_metre == Approx(2e3));    // 4 kW at 2 m/s
+  CHECK(r.cost_of_transport == Approx(2e3 / 5e4));
+}
+
+TEST_CASE("a map shows what arrived, and the word of what did not") {
+  mobility::Campaign c;
+  c.results = {{.ended = ending::arrived, .speed = 3.0}, {.ended = ending::dug_in, .speed = 0.1}, {}};
+  const auto map = mobility::map_of(
+      c, "map", {0, 1, 2}, {0}, [](const auto& r) { return r.speed; }, [](const auto&) { return std::string("go"); });
+  CHECK(map.value[0] == 3.0);
+  CHECK(std::isnan(map.value[1]));
+  CHECK(map.texts == std::vector<std::string>{"go", "dug in", "?"});
+  c.cases.resize(3);
+  const auto over = [&](double mobility::Result::*value) {
+    return mobility::plot_over(
+        c, "plot", "x", "y", [](const auto&, std::size_t k) { return static_cast<double>(k); },
+        [&](const auto& r) { return r.*value; });
+  };
+  const auto speed = over(&mobility::Result::speed);
+  REQUIRE(speed.annotations.size() == 1);
+  CHECK(speed.annotations[0].text == "dug in");
+  CHECK_NOTHROW(dem::io::check_plot(speed));
+  CHECK_NOTHROW(dem::io::check_plot(over(&mobility::Result::energy_per_metre)));  // which what did not go has not
+}

@@ -1,0 +1,127 @@
+#include "core/error_of.hpp"
+#include "worlds.hpp"
+
+#include <dem/soil/bed.hpp>
+
+#include <numbers>
+
+using Catch::Approx;
+using dem::ParticleId;
+using dem::SpeciesId;
+using dem::Vec3;
+using dem::soil::Container;
+using models::Balls;
+
+namespace {
+
+/// Well damped balls of 1 mm, which come to rest soon.
+struct SoilOfBalls {
+  dem::World<Balls> world{{.time_step = 1.5e-5, .threads = 1}};
+  SpeciesId ball;
+  SoilOfBalls() {
+    set_friction(1.0);
+    ball = world.add_species(models::Sphere(1e-3));
+  }
+  void set_friction(double share) { world.set_contact({{2000.0, 0.05, 1.0}, {0.5 * share, 1000.0, 0.02, 1.0}}); }
+};
+
+/// What holds of every bed that is made.
+void check_bed(const dem::World<Balls>& w, const dem::soil::Bed<Balls>& bed) {
+  double highest = 0.0, solid = 0.0;
+  for (const ParticleId p : w.particles()) {
+    // A ball bears less than 100 weights of 1.1e-4 N: it is pressed in by less than 6e-6 m.
+    REQUIRE(bed.container().clearance(w.position(p)) > 1e-3 - 6e-6);
+    highest = std::max(highest, w.position(p).z() + 1e-3);
+    solid += 4.0 / 3 * std::numbers::pi * 1e-9;
+  }
+  // What was let go of may rise by its springs' stretch, and the bed reaches up to a ball's diameter below its level.
+  CHECK(highest < bed.height() + 2e-5);
+  CHECK(highest > bed.height() - 2e-3);
+  // Layers hold what is in the bed, but for what of the topmost balls bulges above the level.
+  double in_layers = 0.0;
+  for (const auto& layer : bed.layers(2e-3)) {
+    in_layers += layer.fraction * (bed.container().volume(layer.to) - bed.container().volume(layer.from));
+    CHECK(layer.fraction > 0.1);
+    CHECK(layer.fraction < 0.75);
+  }
+  CHECK(in_layers == Approx(solid).epsilon(1e-4));
+  CHECK(dem::soil::rms_speed(w) < dem::soil::rest_speed(2e-3));
+}
+
+}  // namespace
+
+TEST_CASE("the share of a ball below a height is that of its cap") {
+  // pi h^2 (3 r - h)/3 of 4 pi r^3/3.
+  for (const double h : {0.0, 0.3, 1.0, 1.6, 2.0}) {
+    CHECK(dem::soil::share_below(h - 1.0) == Approx(h * h * (3.0 - h) / 4.0).margin(1e-15));
+  }
+  CHECK(dem::soil::share_below(-7.0) == 0.0);
+  CHECK(dem::soil::share_below(7.0) == 1.0);
+}
+
+TEST_CASE("containers have the sizes of what they are") {
+  const auto box = Container::box(0.2, 0.1), trough = Container::trough(0.2, 0.1, std::atan(0.5)),
+             round = Container::cylinder(0.1);
+  CHECK(box.volume(0.05) == Approx(0.2 * 0.1 * 0.05));
+  CHECK(trough.volume(0.05) == Approx(0.2 * 0.05 * (0.1 + 0.15) / 2));
+  CHECK(trough.width(0.05) == Approx(0.15));
+  CHECK(round.volume(0.05) == Approx(std::numbers::pi * 0.01 * 0.05));
+  CHECK(box.clearance({0.09, 0, 0.05}) == Approx(0.01));
+  CHECK(box.clearance({0, -0.06, 0.05}) == Approx(-0.01));
+  // A side that leans as 1 : 2 is nearer than along y by the cosine of its lean.
+  CHECK(trough.clearance({0, 0.04, 0.02}) == Approx(0.02 * 2 / std::sqrt(5.0)));
+  CHECK(round.clearance({0.03, 0.04, 0.2}) == Approx(0.05));
+  CHECK(box.clearance({0, 0, 0.01}) == Approx(0.01));
+}
+
+TEST_CASE("a bed fills a box, a trough and a cylinder to its height, level and at rest") {
+  for (const Container& container :
+       {Container::box(0.018, 0.014), Container::trough(0.018, 0.008, 0.4), Container::cylinder(0.0085)}) {
+    SoilOfBalls soil;
+    dem::soil::Bed<Balls> bed(soil.world, container, soil.ball, {.height = 0.012, .time_limit = 2.0});
+    bed.make();
+    check_bed(soil.world, bed);
+    CHECK(bed.solid_fraction() > 0.45);  // walls loosen a bed of eight balls across
+    CHECK(bed.solid_fraction() < 0.64);
+  }
+}
+
+TEST_CASE("a bed is as dense as it was asked for, with all of its friction in the end") {
+  SoilOfBalls loose;
+  dem::soil::Bed<Balls> as_settled(loose.world, Container::box(0.018, 0.014), loose.ball, {.height = 0.012});
+  as_settled.make();
+  const double settled = as_settled.solid_fraction();
+  CHECK(std::isnan(as_settled.relative_density()));
+
+  SoilOfBalls dense;
+  double share = -1.0, least = 1.0;
+  const dem::soil::DensityLimits limits = {settled, settled + 0.05};
+  dem::soil::Bed<Balls> bed(dense.world, Container::box(0.018, 0.014), dense.ball,
+                            {.height = 0.012, .relative_density = 0.4, .limits = limits, .densify_time = 0.2});
+  bed.make([&](double s) {
+    dense.set_friction(share = s);
+    least = std::min(least, s);
+  });
+  check_bed(dense.world, bed);
+  CHECK(share == 1.0);
+  CHECK(least < 0.9);
+  // Struck off and settled again: a small bed is not as exact as the sample before.
+  CHECK(bed.solid_fraction() > settled + 0.01);
+  CHECK(bed.relative_density() > 0.2);
+}
+
+TEST_CASE("a bed that makes no sense is refused in words") {
+  SoilOfBalls soil;
+  const auto box = Container::box(0.02, 0.02);
+  const auto bed_of = [&](const dem::soil::BedOptions& o) { dem::soil::Bed<Balls>(soil.world, box, soil.ball, o); };
+  check_refused([&] { bed_of({.height = 0.0}); }, "height of a bed");
+  check_refused([&] { bed_of({.height = 0.01, .relative_density = 0.5}); }, "set BedOptions::limits");
+  check_refused([&] { Container::cylinder(-1.0); }, "radius of a container");
+  check_refused([&] { Container::trough(0.1, 0.1, 1.5); }, "lean of a trough's sides");
+  dem::soil::Bed<Balls> dense(soil.world, box, soil.ball,
+                              {.height = 0.01, .relative_density = 0.5, .limits = {0.55, 0.63}});
+  check_refused([&] { dense.make(); }, "give make() a function that sets it");
+  SoilOfBalls other;
+  dem::soil::Bed<Balls> narrow(other.world, Container::box(0.001, 0.02), other.ball, {.height = 0.01});
+  check_refused([&] { narrow.make(); }, "has no place for a grain");
+}
