@@ -139,6 +139,8 @@ class MovingPatch {
   double front() const { return options_.corner.x() + end_ * tile_.period[0]; }   ///< m
   int tiles() const { return end_ - begin_; }                                     ///< along x, now
   std::uint64_t shifts() const { return shifts_; }                                ///< how often it went on
+  /// Grains that lay where a tile had to come, as those that roll far ahead of a wheel, and were taken away for it.
+  std::uint64_t strays() const { return strays_; }
   const Tile& tile() const { return tile_; }
   /// The surface that was left behind, from the corner of the first tile to back(); with `world`, all of it.
   const HeightField& rut() const { return rut_; }
@@ -160,6 +162,7 @@ class MovingPatch {
       v.given("tiles_at_the_start", options_.tiles), v.given("tiles_along_y", options_.along_y);
       v.given("rim", options_.rim, "m"), v.given("rut_cell", options_.rut_cell, "m");
       v("tiles", tiles_), v("ahead", ahead_, "m"), v("begin", begin_), v("end", end_), v("shifts", shifts_);
+      v("strays", strays_);
       v("ids_from", last_.a0), v("ids", last_.id), v("grain_numbers", numbers_), v.bytes("ids_are", last_.is),
           v("rut", rut_);
       v("sum_short", sum_short_), v("sum_long", sum_long_);
@@ -182,29 +185,71 @@ class MovingPatch {
     field.add(to_eigen(w.particles.position[row]), std::cbrt(0.75 * volume / std::numbers::pi));
   }
 
+  /// Ids of grains that machine parts hold, in order.
+  static std::vector<std::uint32_t> attached(const WorldState<Model>& w) {
+    std::vector<std::uint32_t> ids;
+    for (const grain::HeldGrains& held : w.held) {
+      for (const auto& g : held.grains) ids.push_back(g.id);
+    }
+    std::sort(ids.begin(), ids.end());
+    return ids;
+  }
+  static void take(WorldState<Model>& w, std::size_t row) {
+    w.particles.row_of[w.particles.id[row]] = w.particles.gone;
+    w.to_remove.push_back(w.particles.id[row]);
+  }
+
+  /// Whether a grain of the tile at the front is still in the world, and no other has its id.
+  bool is_there(const WorldState<Model>& w, std::size_t at) const {
+    const auto& p = w.particles;
+    return last_.is[at] != InWorld::no && p.row_of[last_.id[at]] != p.gone && p.number_of(last_.id[at]) == numbers_[at];
+  }
+
   /// Takes the tiles away that lie behind, and holds the grains of the new rim there.
   void take_away(WorldState<Model>& w, const Layer& layer, int goes) {
     if (goes == 0) return;
     begin_ += goes;
     auto& p = w.particles;
-    std::vector<std::uint32_t> attached;
-    for (const grain::HeldGrains& held : w.held) {
-      for (const auto& g : held.grains) attached.push_back(g.id);
-    }
-    std::sort(attached.begin(), attached.end());
+    const auto parts = attached(w);
     const double border = back();
     for (std::size_t i = 0; i < p.count; ++i) {
       const double x = p.position.x[i];
-      const std::uint32_t id = p.id[i], kind = p.species[i];
-      if (!(x < border + options_.rim) || p.row_of[id] == p.gone) continue;
-      if (std::binary_search(attached.begin(), attached.end(), id)) continue;  // a part of the machine
+      if (!(x < border + options_.rim) || p.row_of[p.id[i]] == p.gone) continue;
+      if (std::binary_search(parts.begin(), parts.end(), p.id[i])) continue;
       if (x < border) {
         if (options_.rut_cell > 0.0) add_to(rut_, w, i);
-        p.row_of[id] = p.gone;
-        w.to_remove.push_back(id);
-      } else if (kind < layer.twins.size()) {
-        change_species(w, i, layer.twins[kind]);
+        take(w, i);
+      } else if (p.species[i] < layer.twins.size()) {
+        change_species(w, i, layer.twins[p.species[i]]);
       }
+    }
+  }
+
+  /// Takes the grains away that lie where tiles come: all that reach over the border (m), not above the bed, but for
+  /// those of the last tile which are where they were laid.
+  void take_strays(WorldState<Model>& w, const Layer& layer, double border) {
+    auto& p = w.particles;
+    std::vector<std::uint32_t> stays = attached(w);
+    double top = -HUGE_VAL;  // m, of the bed
+    for (const TileGrain& g : tile_.grains) top = std::max(top, g.position.z + tile_.species[g.species].radius);
+    top += options_.corner.z();
+    for (int b = 0; b < options_.along_y; ++b) {
+      for (std::size_t k = 0; k < tile_.grains.size(); ++k) {
+        const std::size_t at = last_.at(last_.a0, b, k);
+        if (!is_there(w, at)) continue;
+        Vector3<double> moved = p.position[p.row_of[last_.id[at]]] - layer.place(last_.a0, b, k);
+        const double across = options_.along_y * tile_.period[1];
+        if (layer.wraps[1]) moved.y -= across * std::round(moved.y / across);
+        if (norm(moved) <= 0.05 * tile_.species[tile_.grains[k].species].radius) stays.push_back(last_.id[at]);
+      }
+    }
+    std::sort(stays.begin(), stays.end());
+    for (std::size_t i = 0; i < p.count; ++i) {
+      const double r = w.species[p.species[i]].shape.bounding_radius();
+      if (!(p.position.x[i] + r > border && p.position.z[i] - r < top) || p.row_of[p.id[i]] == p.gone) continue;
+      if (std::binary_search(stays.begin(), stays.end(), p.id[i])) continue;
+      take(w, i);
+      ++strays_;
     }
   }
 
@@ -217,6 +262,7 @@ class MovingPatch {
     layer.cells[0] = end_ - begin_;
     detail::TileIds ids(first - known, end_ - first + known, 0, options_.along_y, tile_.grains.size());
     if (known > 0) {
+      take_strays(w, layer, options_.corner.x() + first * tile_.period[0]);
       for (int b = 0; b < options_.along_y; ++b) {
         for (std::size_t k = 0; k < tile_.grains.size(); ++k) let_go(w, layer, ids, first - 1, b, k);
       }
@@ -261,7 +307,7 @@ class MovingPatch {
   int tiles_;
   double ahead_;
   int begin_ = 0, end_;  // tiles along x, counted from the corner
-  std::uint64_t shifts_ = 0;
+  std::uint64_t shifts_ = 0, strays_ = 0;
   detail::TileIds last_;                // of the tile at the front
   std::vector<std::uint32_t> numbers_;  // of its grains
   HeightField rut_;

@@ -36,12 +36,20 @@ SpeciesId held_twin(World& world, SpeciesId s) {
 }
 
 /// A grain stands still from now on, or moves by itself again, as the species says that it is of now; its contacts go
-/// on. Its neighbours have to be listed anew after it.
+/// on. Its neighbours have to be listed anew after it. Where energy is counted, held grains have none.
 template <class Model>
 void change_species(WorldState<Model>& w, std::size_t row, SpeciesId to) {
   auto& p = w.particles;
+  const auto& from = w.species[p.species[row]];
+  const bool stands = w.species[to.index()].is_held();
+  if (w.ledger.on && from.is_held() != stands) {
+    const Vector3<double> v = p.velocity[row], s = p.spin[row],
+                          turn = {from.inertia.x() * s.x, from.inertia.y() * s.y, from.inertia.z() * s.z};
+    const double fall = from.mass * dot(from_eigen(w.options.gravity), p.position[row]);
+    w.ledger.came += (stands ? -1.0 : 1.0) * (0.5 * from.mass * dot(v, v) + 0.5 * dot(s, turn) - fall);
+  }
   p.species[row] = to.value;
-  if (!w.species[to.index()].is_held()) return;
+  if (!stands) return;
   p.velocity.set(row, {0, 0, 0});
   p.spin.set(row, {0, 0, 0});
   p.set_memory(row, {});
