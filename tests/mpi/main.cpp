@@ -1,5 +1,5 @@
-// A program on ranks: mpirun -np 2 ./test_ranks spheres cubes ...; ends with 0 if all scenes have the bits that they have
-// on one process.
+// A program on ranks: mpirun -np 2 ./test_ranks spheres cubes ...; ends with 0 if all scenes have the bits that they
+// have on one process.
 
 #include "scene_list.hpp"
 
