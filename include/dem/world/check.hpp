@@ -101,10 +101,10 @@ StepReport first_report(WorldState<Model>& w, StepReport mine) {
   const int first = d.smallest(mine ? d.ranks() : d.rank());
   if (first == d.ranks()) return mine;
   using Problem = StepReport::Problem;
-  if (first != d.rank() && mine.problem == Problem::lost) w.known_lost.erase(mine.particle.value);  // to be told later
+  if (first != d.rank() && mine.problem == Problem::lost) w.known_lost.erase(mine.particle.slot);  // to be told later
   mine.problem = static_cast<Problem>(std::stoi(d.text_of(first, std::to_string(static_cast<int>(mine.problem)))));
-  const auto grain = static_cast<std::uint32_t>(std::stoul(d.text_of(first, std::to_string(mine.particle.value))));
-  mine.particle = ParticleId(grain);
+  const auto grain = static_cast<std::uint32_t>(std::stoul(d.text_of(first, std::to_string(mine.particle.slot))));
+  mine.particle = w.particles.name(grain);
   mine.text = d.text_of(first, std::move(mine.text));
   if (mine.problem == Problem::lost) w.known_lost.insert(grain);
   return mine;
