@@ -62,6 +62,12 @@ function(dem_needs_hdf5 out)
   set(${out} ${needs} PARENT_SCOPE)
 endfunction()
 
+# dem_needs_mpi(<out> <source>...): whether one of the sources includes a header that needs MPI.
+function(dem_needs_mpi out)
+  dem_includes(needs "mpi\\.h|dem/domain/(messages|ranks|session)\\.hpp" ${ARGN})
+  set(${out} ${needs} PARENT_SCOPE)
+endfunction()
+
 # dem_with(<package> <purpose>): an optional package. Afterwards DEM_WITH_<PACKAGE> says whether it is used: the
 # user did not switch it off, and it was found.
 macro(dem_with package purpose)

@@ -152,6 +152,9 @@ function(dem_add_header_checks include_dir)
   if(NOT DEM_WITH_HDF5)
     dem_drop(HDF5 headers)
   endif()
+  if(NOT DEM_WITH_MPI)
+    dem_drop(MPI headers)
+  endif()
   list(TRANSFORM headers REPLACE "^${include_dir}/" "")
   set(tried_in_others "")
   foreach(header IN LISTS headers)
@@ -180,6 +183,10 @@ function(dem_add_header_checks include_dir)
   if(DEM_WITH_HDF5)
     list(TRANSFORM HDF5_C_INCLUDE_DIRS PREPEND -isystem OUTPUT_VARIABLE hdf5)
   endif()
+  set(mpi)
+  if(DEM_WITH_MPI)
+    list(TRANSFORM MPI_CXX_INCLUDE_DIRS PREPEND -isystem OUTPUT_VARIABLE mpi)
+  endif()
   set(all_headers ${headers})
   list(REMOVE_ITEM headers ${tried_in_others})
   set(stamps)
@@ -198,7 +205,7 @@ function(dem_add_header_checks include_dir)
     file(MAKE_DIRECTORY "${folder}")
     add_custom_command(
       OUTPUT "${stamp}"
-      COMMAND ${DEM_LOOK} $<$<BOOL:${CMAKE_COMPILE_WARNING_AS_ERROR}>:-Werror> ${cli11} ${hdf5} ${given}
+      COMMAND ${DEM_LOOK} $<$<BOOL:${CMAKE_COMPILE_WARNING_AS_ERROR}>:-Werror> ${cli11} ${hdf5} ${mpi} ${given}
               -include "${include_dir}/${header}" -x c++ /dev/null -MD -MF "${stamp}.d" -MT "${stamp}"
       COMMAND ${CMAKE_COMMAND} -E touch "${stamp}"
       DEPENDS "${include_dir}/${header}" ${depends}
@@ -215,7 +222,7 @@ function(dem_add_header_checks include_dir)
   set(stamp "${together_source}.ok")
   add_custom_command(
     OUTPUT "${stamp}"
-    COMMAND ${DEM_LOOK} ${cli11} ${hdf5} "${together_source}" -MD -MF "${stamp}.d" -MT "${stamp}"
+    COMMAND ${DEM_LOOK} ${cli11} ${hdf5} ${mpi} "${together_source}" -MD -MF "${stamp}.d" -MT "${stamp}"
     COMMAND ${CMAKE_COMMAND} -E touch "${stamp}"
     DEPENDS "${together_source}"
     DEPFILE "${stamp}.d"
@@ -339,6 +346,16 @@ function(dem_add_clang_test)
   add_test(NAME clang.run COMMAND ${program})
   set_tests_properties(clang.build PROPERTIES FIXTURES_SETUP clang LABELS checks)
   set_tests_properties(clang.run PROPERTIES FIXTURES_REQUIRED clang LABELS checks)
+endfunction()
+
+# dem_add_ranks_test(<name> <ranks> <arg>...): the program test_ranks runs on so many processes, all on this machine, by
+# whoever it is.
+function(dem_add_ranks_test name ranks)
+  add_test(NAME mpi.${name} COMMAND ${MPIEXEC_EXECUTABLE} ${MPIEXEC_NUMPROC_FLAG} ${ranks} $<TARGET_FILE:test_ranks> ${ARGN})
+  set_tests_properties(
+    mpi.${name}
+    PROPERTIES LABELS mpi TIMEOUT 600 PROCESSORS ${ranks}
+               ENVIRONMENT "OMPI_ALLOW_RUN_AS_ROOT=1;OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1;OMPI_MCA_rmaps_base_oversubscribe=1")
 endfunction()
 
 # dem_add_consumer_test(<way> <option>...): configures, builds and runs the project consumers/<way>.

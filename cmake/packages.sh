@@ -9,6 +9,7 @@ packages=(
   libcli11-dev gnuplot-nox libjs-three libnlopt-cxx-dev  # examples: command lines, plots, replays, calibration
   catch2 clang-format          # tests
   libbenchmark-dev             # benchmarks
+  libopenmpi-dev openmpi-bin   # worlds that several processes share
   libhdf5-dev zlib1g-dev       # states that are saved and loaded; compressed files for ParaView
   "$@"
 )

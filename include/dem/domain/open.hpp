@@ -4,7 +4,7 @@ namespace dem::domain {
 
 /// Space without borders: grains go anywhere. The default.
 struct Open {
-  static constexpr bool has_images = false;
+  static constexpr bool has_images = false, has_ranks = false;
 };
 
 }  // namespace dem::domain

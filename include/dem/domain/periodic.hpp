@@ -20,7 +20,7 @@ namespace dem::domain {
 /// positions are not put back: a wheel may roll through any number of cells.
 class Periodic {
  public:
-  static constexpr bool has_images = true;
+  static constexpr bool has_images = true, has_ranks = false;
 
   Periodic() = default;
   /// Directions that repeat have finite corners, low < high.

@@ -122,15 +122,17 @@ class HistoryCarrier {
   }
 
   /// Hands them to the chunks that own the contacts now, with the keys of the new candidate lists. Those of grains that
-  /// were removed or have parted are dropped.
-  template <class Executor, class Particles>
+  /// were removed or have parted are dropped. `send_home(entries)` puts entries, which know their rows, into the
+  /// process that has the chunk.
+  template <class Executor, class Particles, class SendHome>
   void hand_out(Executor& executor, std::span<Chunk<Model>> chunks, const Particles& p,
-                const Images<typename Model::Domain>& images) {
+                const Images<typename Model::Domain>& images, SendHome&& send_home) {
     const auto by_chunk = [&](std::vector<Entry>& entries, auto&& rename) {
       constexpr std::size_t block = 4096;
       executor.for_each((entries.size() + block - 1) / block, [&](std::size_t b) {
         for (std::size_t k = b * block; k < std::min((b + 1) * block, entries.size()); ++k) rename(entries[k]);
       });
+      send_home(entries);
       return group(entries, chunks.size(), p.gone);
     };
     const Groups of_pairs = by_chunk(pairs_, [&](Entry& r) {

@@ -13,6 +13,9 @@ namespace dem {
 /// so a kill at any moment leaves the last good one. Throws Error if it cannot be written, and after a step that an
 /// exception broke off.
 ///
+/// Where ranks share the grains, all ranks call it at once and rank 0 writes. The file does not tell how many ranks
+/// there were: any number of ranks goes on from it, and so does a world whose Domain is Open.
+///
 /// `others` are what else the program needs to go on: structs with a member function `fields` (see io::Fields).
 ///
 ///     struct Progress {
@@ -23,7 +26,15 @@ namespace dem {
 ///     dem::save(world, "bed.h5", progress);
 template <class Model, class... Others>
 void save(const World<Model>& world, const std::filesystem::path& path, const Others&... others) {
-  io::write_columns(path, io::columns_of(world, others...));
+  const io::StateColumns columns = io::columns_of(world, others...);
+  if constexpr (Model::Domain::has_ranks) {
+    world.state().domain.guarded([&] {
+      if (process_writes_files) io::write_columns(path, columns);
+      world.state().domain.wait_for_all();
+    });
+  } else {
+    io::write_columns(path, columns);
+  }
 }
 
 /// Puts a world into a state that was saved. The program has to set it up first, as it did before it saved: options,

@@ -67,6 +67,10 @@ inline PlotResult render_script(const std::string& script, bool any_data, const 
   const auto with_ending = [&](const char* ending) { return base.parent_path() / (name + ending); };
   PlotResult result{.script = with_ending(".gp")};
   write_file(result.script, script);
+  if (!process_writes_files) {
+    result.reason = "another process draws it";
+    return result;
+  }
   const auto svg = with_ending(".svg"), png = with_ending(".png");
   std::error_code ignored;
   std::filesystem::remove(svg, ignored);  // no plot is better than that of an earlier run

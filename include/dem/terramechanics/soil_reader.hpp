@@ -1,5 +1,6 @@
 #pragma once
 
+#include <dem/core/output.hpp>
 #include <dem/terramechanics/soil_text.hpp>
 
 #include <charconv>
@@ -142,6 +143,7 @@ inline NamedSoil load_soil(const std::string& path) {
 /// be written.
 inline void save_soil(const std::string& path, const NamedSoil& named) {
   const std::string text = to_text(named), part = path + ".part";
+  if (!process_writes_files) return;
   std::FILE* file = std::fopen(part.c_str(), "wb");
   const bool written = file && std::fwrite(text.data(), 1, text.size(), file) == text.size();
   const bool closed = file && std::fclose(file) == 0;

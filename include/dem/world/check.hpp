@@ -3,6 +3,9 @@
 #include <dem/world/report.hpp>
 #include <dem/world/state.hpp>
 
+#include <string>
+#include <utility>
+
 namespace dem {
 
 /// A surface in words: its name, or its number if it has none.
@@ -38,16 +41,17 @@ std::string misfit_in_period(const WorldState<Model>& w, std::size_t number,
   return {};
 }
 
-/// Looks for grains that are not finite, lost, or pressed too deep into something. Costs a look at each chunk; only
-/// when something is wrong the grain is searched.
+/// Looks for grains of this process's chunks that are not finite, lost, or pressed too deep into something. Costs a
+/// look at each chunk; only when something is wrong the grain is searched.
 template <class Model>
-StepReport find_problem(WorldState<Model>& w) {
+StepReport find_problem_of_grains(WorldState<Model>& w) {
   const auto& p = w.particles;
   const auto problem = [&](StepReport::Problem kind, std::size_t row, std::string text) {
-    return StepReport{kind, w.time, w.step, row < p.count ? p.name(p.id[row]) : ParticleId{}, std::move(text), {}};
+    return StepReport{kind, w.time, w.step, p.name(p.id[row]), std::move(text), {}};
   };
   const auto when = [&] { return dem::text("at t = {:.6g} s (step {})", w.time, w.step); };
-  for (std::size_t c = 0; c < w.chunks.size(); ++c) {
+  const auto [first, last] = w.own_chunks();
+  for (std::size_t c = first; c < last; ++c) {
     const auto& chunk = w.chunks[c];
     const std::size_t begin = c * chunk_size, end = std::min(begin + chunk_size, p.count);
     if (!chunk.finite) [[unlikely]] {
@@ -87,10 +91,39 @@ StepReport find_problem(WorldState<Model>& w) {
                     deepest.overlap, when(), w.options.overlap_limit, w.time_step));
     }
   }
+  return {StepReport::Problem::none, w.time, w.step, {}, {}, {}};
+}
+
+/// The report of the lowest rank that has one, on every rank: that of the first chunk.
+template <class Model>
+StepReport first_report(WorldState<Model>& w, StepReport mine) {
+  auto& d = w.domain;
+  const int first = d.smallest(mine ? d.ranks() : d.rank());
+  if (first == d.ranks()) return mine;
+  using Problem = StepReport::Problem;
+  if (first != d.rank() && mine.problem == Problem::lost) w.known_lost.erase(mine.particle.slot);  // to be told later
+  mine.problem = static_cast<Problem>(std::stoi(d.text_of(first, std::to_string(static_cast<int>(mine.problem)))));
+  const auto grain = static_cast<std::uint32_t>(std::stoul(d.text_of(first, std::to_string(mine.particle.slot))));
+  mine.particle = w.particles.name(grain);
+  mine.text = d.text_of(first, std::move(mine.text));
+  if (mine.problem == Problem::lost) w.known_lost.insert(grain);
+  return mine;
+}
+
+/// Looks for grains that are not finite, lost, or pressed too deep into something, and at the machine.
+template <class Model>
+StepReport find_problem(WorldState<Model>& w) {
+  const auto problem = [&](StepReport::Problem kind, std::string text) {
+    return StepReport{kind, w.time, w.step, {}, std::move(text), {}};
+  };
+  const auto when = [&] { return dem::text("at t = {:.6g} s (step {})", w.time, w.step); };
+  StepReport of_grains = find_problem_of_grains(w);
+  if constexpr (Model::Domain::has_ranks) of_grains = first_report(w, std::move(of_grains));
+  if (!of_grains) return of_grains;
   if (w.body_contacts.worst_overlap > w.options.overlap_limit) [[unlikely]] {
     const coupling::BodyPair& pair = w.body_contacts.pairs[w.body_contacts.worst_pair];
     const auto body = [&](SurfaceId s) { return w.machine.bodies()[w.surfaces[s.index()].body.index()].name; };
-    return problem(StepReport::Problem::overlap, p.count,
+    return problem(StepReport::Problem::overlap,
                    dem::text("body '{}' overlaps body '{}' by {:.3g} of their effective diameter {}, more than "
                              "overlap_limit {:g}; raise the normal stiffness between their materials, lower time_step "
                              "(now {:g} s), or start with the bodies apart",
@@ -101,15 +134,15 @@ StepReport find_problem(WorldState<Model>& w) {
     for (std::size_t s = 0; s < w.surfaces.size(); ++s) {
       if (!w.surfaces[s].moved) continue;
       if (const std::string why = misfit_in_period(w, s, w.surfaces[s]); !why.empty()) {
-        return problem(StepReport::Problem::machine, p.count, why + dem::text(" ({})", when()));
+        return problem(StepReport::Problem::machine, why + dem::text(" ({})", when()));
       }
     }
   }
   if (const auto report = w.machine_solver.report(w.machine); !report) {
-    return problem(StepReport::Problem::machine, p.count, report.text);
+    return problem(StepReport::Problem::machine, report.text);
   }
   if (const auto report = w.machine_solver.newly_opened(w.machine); !report) {
-    return problem(StepReport::Problem::joint, p.count, report.text);
+    return problem(StepReport::Problem::joint, report.text);
   }
   return {StepReport::Problem::none, w.time, w.step, {}, {}, {}};
 }

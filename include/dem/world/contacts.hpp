@@ -1,5 +1,6 @@
 #pragma once
 
+#include <dem/world/complete.hpp>
 #include <dem/world/contact.hpp>
 #include <dem/world/world.hpp>
 
@@ -143,17 +144,21 @@ class ContactFinder {
 /// In a periodic cell, a contact across a border is with an image: `other_grain` is the grain that it shows, the places
 /// are those of the image.
 ///
+/// Where ranks share the grains, all ranks call it at once, and each gets all contacts.
+///
 /// It costs about one evaluation on one thread, and a copy of the world where it was changed by hand or its neighbour
-/// lists are due, or where it has a periodic cell. Throws Error as World::prepare does.
+/// lists are due, or where it has a periodic cell or is shared by ranks. Throws Error as World::prepare does.
 template <class Model>
 std::vector<Contact<Model>> contacts_of(const World<Model>& world) {
-  if (!Model::Domain::has_images && world.is_prepared() && !neighbours_outdated(world.state())) {
+  constexpr bool copies = Model::Domain::has_images || Model::Domain::has_ranks;
+  if (!copies && world.is_prepared() && !neighbours_outdated(world.state())) {
     return detail::ContactFinder<Model>(world.state()).find();
   }
   World<Model> copy = world;
   copy.prepare();
   if (neighbours_outdated(copy.state())) rebuild_neighbours(copy.state());
   place_images(copy.state());
+  if constexpr (Model::Domain::has_ranks) complete_chunks(copy.state());
   return detail::ContactFinder<Model>(copy.state()).find();
 }
 

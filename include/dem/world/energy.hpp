@@ -218,6 +218,11 @@ GrainEnergy energy_of(const World<Model>& world) {
 ///     const GrainEnergy e = energy_of(world);   // e.balance() is what it was
 template <class Model>
 void count_energy(World<Model>& world) {
+  if constexpr (Model::Domain::has_ranks) {
+    if (world.state().domain.is_shared()) {
+      fail("count_energy adds up every contact of a step, which no rank has alone: run it on one rank");
+    }
+  }
   world.prepare();
   WorldState<Model>& w = world.state();
   w.ledger = {};

@@ -47,25 +47,65 @@ void carry_held(WorldState<Model>& w) {
       chunks.size(), [&](std::size_t k) { grain::refresh_chunk<Model>(chunks[k], w.chunks[chunks[k]], p, w.species); });
 }
 
+/// Force (N) and torque (N m) of the contacts of an attached grain.
+struct HeldLoad {
+  Vector3<double> force, torque;
+};
+template <class Model>
+HeldLoad load_of_held(const WorldState<Model>& w, std::size_t row) {
+  HeldLoad load = {w.particles.force[row], w.particles.torque[row]};
+  // A chunk that does not work keeps the whole sum of the last time.
+  const auto c = static_cast<std::uint32_t>(row / chunk_size);
+  if (!w.options.sleep || std::binary_search(w.sleepers.working.begin(), w.sleepers.working.end(), c)) {
+    grain::add_incoming<Model>(row, std::span<const Chunk<Model>>(w.chunks), w.incoming_first, w.incoming, load.force,
+                               load.torque);
+  }
+  return load;
+}
+
+/// Those of all attached grains, in the order in which they were attached. Each is known to the rank that owns the
+/// grain.
+template <class Model>
+std::vector<HeldLoad> loads_of_held(const WorldState<Model>& w) {
+  std::vector<double> numbers;
+  std::vector<HeldLoad> loads;
+  for (const grain::HeldGrains& held : w.held) {
+    for (const grain::HeldGrain& g : held.grains) {
+      const std::size_t row = w.particles.row_of[g.id];
+      HeldLoad load = {{0, 0, 0}, {0, 0, 0}};
+      if constexpr (Model::Domain::has_ranks) {
+        if (row != w.particles.gone && w.domain.owns(row / chunk_size)) load = load_of_held(w, row);
+        for (const auto* v : {&load.force, &load.torque}) numbers.insert(numbers.end(), {v->x, v->y, v->z});
+      } else if (row != w.particles.gone) {
+        load = load_of_held(w, row);
+      }
+      loads.push_back(load);
+    }
+  }
+  if constexpr (Model::Domain::has_ranks) {
+    w.domain.share_sums(numbers);
+    for (std::size_t k = 0; k < loads.size(); ++k) {
+      const double* n = &numbers[6 * k];
+      loads[k] = {{n[0], n[1], n[2]}, {n[3], n[4], n[5]}};
+    }
+  }
+  return loads;
+}
+
 /// Hands the forces of the contacts of attached grains to their parts. Forces are summed by grain, in the order in
 /// which grains were attached: the same sum whatever thread found them.
 template <class Model>
 void load_by_held(WorldState<Model>& w) {
-  const auto& p = w.particles;
+  const std::vector<HeldLoad> loads = loads_of_held(w);
+  std::size_t next = 0;
   for (const grain::HeldGrains& held : w.held) {
     Body& body = w.machine.body(held.body);
     Vector3<double> force = {0, 0, 0}, torque = {0, 0, 0};
     for (const grain::HeldGrain& g : held.grains) {
-      const std::size_t row = p.row_of[g.id];
-      if (row == p.gone) continue;
-      Vector3<double> f = p.force[row], t = p.torque[row];
-      // A chunk that does not work keeps the whole sum of the last time.
-      const auto c = static_cast<std::uint32_t>(row / chunk_size);
-      if (!w.options.sleep || std::binary_search(w.sleepers.working.begin(), w.sleepers.working.end(), c)) {
-        grain::add_incoming<Model>(row, w.chunks, w.incoming_first, w.incoming, f, t);
-      }
-      force += f;
-      torque += t + cross(body.motion.rotation * g.place, f);
+      const HeldLoad& load = loads[next++];
+      if (w.particles.row_of[g.id] == w.particles.gone) continue;
+      force += load.force;
+      torque += load.torque + cross(body.motion.rotation * g.place, load.force);
     }
     body.force += force;
     body.torque += torque;

@@ -2,7 +2,7 @@
 
 #include <dem/grain/carry_histories.hpp>
 #include <dem/grain/neighbours.hpp>
-#include <dem/world/state.hpp>
+#include <dem/world/gather.hpp>
 
 namespace dem {
 
@@ -10,9 +10,7 @@ namespace dem {
 template <class Model>
 bool neighbours_outdated(const WorldState<Model>& w) {
   if (!w.list_valid) return w.particles.count > 0;
-  double moved2 = 0.0;
-  for (const auto& chunk : w.chunks) moved2 = std::max(moved2, chunk.moved2);
-  return 4.0 * moved2 > w.list_skin * w.list_skin;
+  return 4.0 * w.moved2() > w.list_skin * w.list_skin;
 }
 
 /// Puts the grains of a periodic cell back into it, and takes the images away that were beyond its borders.
@@ -88,6 +86,10 @@ double choose_skin(WorldState<Model>& w) {
 template <class Model, class Change>
 void rebuild_neighbours(WorldState<Model>& w, Change&& change) {
   auto& p = w.particles;
+  if constexpr (Model::Domain::has_ranks) {
+    count_work(w);
+    gather_rows(w);
+  }
   grain::HistoryCarrier<Model> histories;
   histories.collect(w.executor, std::span<const Chunk<Model>>(w.chunks), p, w.images);
   if (!w.to_remove.empty()) {
@@ -100,6 +102,7 @@ void rebuild_neighbours(WorldState<Model>& w, Change&& change) {
     w.images = {};
     w.chunks.clear();
     w.incoming.clear();
+    if constexpr (Model::Domain::has_ranks) cut_chunks(w), make_borders(w);
     w.list_valid = true;
     return;
   }
@@ -132,19 +135,26 @@ void rebuild_neighbours(WorldState<Model>& w, Change&& change) {
   }
 
   w.chunks.resize(p.chunks());
-  w.executor.for_each(w.chunks.size(), [&](std::size_t c) {
+  if constexpr (Model::Domain::has_ranks) cut_chunks(w);
+  const auto [begin, end] = w.own_chunks();
+  w.executor.for_each(end - begin, [&, first = begin](std::size_t k) {
+    const std::size_t c = first + k;
     grain::list_candidates<Model>(c, w.chunks[c], p, w.broad_phase, w.images, w.species, w.materials.range() + skin);
     grain::refresh_chunk<Model>(c, w.chunks[c], p, w.species);
   });
+  if constexpr (Model::Domain::has_ranks) make_borders(w);
   grain::list_incoming<Model>(std::span<const Chunk<Model>>(w.chunks), p.count, w.images, w.incoming_first, w.incoming);
-  histories.hand_out(w.executor, std::span<Chunk<Model>>(w.chunks), p, w.images);
+  histories.hand_out(w.executor, std::span<Chunk<Model>>(w.chunks), p, w.images, [&](auto& entries) {
+    if constexpr (Model::Domain::has_ranks) send_home(w, entries);
+  });
   place_images(w);
   w.list_valid = true;
   w.list_skin = skin;
   ++w.rebuilds;
   if (w.options.skin == 0.0) {
     double candidates = 0.0;
-    for (const auto& chunk : w.chunks) candidates += static_cast<double>(chunk.candidate.size());
+    for (std::size_t c = begin; c < end; ++c) candidates += static_cast<double>(w.chunks[c].candidate.size());
+    if constexpr (Model::Domain::has_ranks) candidates = w.domain.total(candidates);
     const auto count = static_cast<double>(p.count);
     w.skin_choice.made_list(w.materials.range(), candidates / count, w.step, Model::Integrator::stages);
   }

@@ -26,6 +26,10 @@ void set_period(WorldState<Model>& w) {
     for (std::size_t k = 0; k < 3; ++k) {
       if (repeats[k]) d.low.data()[k] = -HUGE_VAL, d.high.data()[k] = HUGE_VAL;
     }
+  } else if (Model::Domain::has_ranks && any) {
+    fail(
+        "WorldOptions::periodic is set, but ranks do not share periodic cells: take domain::Periodic, on one rank, or "
+        "an open domain");
   } else if (any) {
     fail(
         "WorldOptions::periodic is set, but the world's model has an open Domain: say `using Domain = "

@@ -104,6 +104,7 @@ void put_in(WorldState<Model>& w) {
   bool is_wanted = false;
   for (Inlet& inlet : w.inlets) is_wanted |= inlet.want(w.time, mass_of);
   if (!is_wanted || (w.step < w.put_in_at && !neighbours_outdated(w))) return;
+  if constexpr (Model::Domain::has_ranks) gather_rows(w);  // every rank puts the same grains in
   w.put_in_at = w.step + most_steps;
   const std::size_t before = w.particles.count;
   for (Inlet& inlet : w.inlets) {

@@ -10,6 +10,11 @@ namespace dem {
 /// machine go on as they were: nothing is initialised again.
 template <class Model, class Change>
 void relist(WorldState<Model>& w, Change&& change) {
+  if constexpr (Model::Domain::has_ranks) {
+    if (w.domain.is_shared()) {
+      fail("ranks do not share beds whose grains come or go with their contacts, as tiles do: run this on one rank");
+    }
+  }
   w.stopwatch.start();
   rebuild_neighbours(w, change);
   find_sleeping_chunks(w);

@@ -25,7 +25,15 @@ template <class Model>
 void wake_around(WorldState<Model>& w, std::size_t row) {
   const std::size_t c = row / chunk_size;
   if (!w.options.sleep || c >= w.chunks.size()) return;
-  for (const std::uint32_t other : w.chunks[c].around) wake_chunk(w, other);
+  if constexpr (Model::Domain::has_ranks) {  // only the owners of chunks know what is around them
+    const auto [begin, end] = w.own_chunks();
+    for (std::size_t own = begin; own < end; ++own) {
+      const auto& around = w.chunks[own].around;
+      if (std::find(around.begin(), around.end(), c) != around.end()) wake_chunk(w, own);
+    }
+  } else {
+    for (const std::uint32_t other : w.chunks[c].around) wake_chunk(w, other);
+  }
   wake_chunk(w, c);
 }
 
@@ -55,6 +63,16 @@ void find_sleeping_chunks(WorldState<Model>& w) {
   }
 }
 
+/// Tells all ranks which chunks sleep. Each knows it of its own.
+template <class Model>
+void share_sleep(WorldState<Model>& w) {
+  std::vector<std::uint8_t> asleep;
+  const auto [begin, end] = w.own_chunks();
+  for (std::size_t c = begin; c < end; ++c) asleep.push_back(w.chunks[c].asleep);
+  asleep = w.domain.gathered(asleep);
+  for (std::size_t c = 0; c < asleep.size(); ++c) w.chunks[c].asleep = asleep[c] != 0;
+}
+
 /// Chooses the chunks whose contacts are evaluated: those that are awake, and those of the others that somebody awake
 /// or a surface that moves may touch. After neighbours were listed it is all of them, as forces are kept by chunk.
 template <class Model>
@@ -69,7 +87,11 @@ void choose_working_chunks(WorldState<Model>& w) {
     }
     return false;
   };
-  for (std::size_t c = 0; c < w.chunks.size(); ++c) {
+  if constexpr (Model::Domain::has_ranks) {
+    if (w.options.sleep) share_sleep(w);
+  }
+  const auto [begin, end] = w.own_chunks();
+  for (std::size_t c = begin; c < end; ++c) {
     const Chunk<Model>& chunk = w.chunks[c];
     const bool works = s.all_work || !chunk.asleep ||
                        std::any_of(chunk.around.begin(), chunk.around.end(),

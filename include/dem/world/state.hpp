@@ -116,12 +116,21 @@ struct WorldState {
     v("held", held);
   }
 
-  /// m, farthest that a grain went since the neighbour list was made.
-  double moved() const {
-    double moved2 = 0.0;
-    for (const auto& chunk : chunks) moved2 = std::max(moved2, chunk.moved2);
-    return std::sqrt(moved2);
+  /// The chunks that this process works on, from first to second: all, unless ranks share them.
+  std::pair<std::size_t, std::size_t> own_chunks() const {
+    if constexpr (Model::Domain::has_ranks) return domain.own();
+    return {0, chunks.size()};
   }
+  /// m^2, of the farthest that a grain went since the neighbour list was made.
+  double moved2() const {
+    double moved2 = 0.0;
+    const auto [begin, end] = own_chunks();
+    for (std::size_t c = begin; c < end; ++c) moved2 = std::max(moved2, chunks[c].moved2);
+    if constexpr (Model::Domain::has_ranks) return domain.largest(moved2);
+    return moved2;
+  }
+  /// m, the same.
+  double moved() const { return std::sqrt(moved2()); }
 };
 
 /// A new neighbour list is due, whether grains have left this one or not.
@@ -175,10 +184,22 @@ void sample_surface_sensors(WorldState<Model>& w) {
 template <class Model>
 void load_bodies(WorldState<Model>& w) {
   for (auto& s : w.surfaces) s.force = s.torque = {0, 0, 0};
-  for (const auto& chunk : w.chunks) {
-    for (const SurfaceLoad& load : chunk.surface_loads) {
-      w.surfaces[load.surface.index()].force += load.force;
-      w.surfaces[load.surface.index()].torque += load.torque;
+  const auto add = [&](const SurfaceLoad& load) {
+    w.surfaces[load.surface.index()].force += load.force;
+    w.surfaces[load.surface.index()].torque += load.torque;
+  };
+  if constexpr (Model::Domain::has_ranks) {
+    std::vector<SurfaceLoad> loads;
+    const auto [begin, end] = w.own_chunks();
+    for (std::size_t c = begin; c < end; ++c) {
+      const auto& of_chunk = w.chunks[c].surface_loads;
+      loads.insert(loads.end(), of_chunk.begin(), of_chunk.end());
+    }
+    if (!w.surfaces.empty()) loads = w.domain.gathered(loads);
+    for (const SurfaceLoad& load : loads) add(load);
+  } else {
+    for (const auto& chunk : w.chunks) {
+      for (const SurfaceLoad& load : chunk.surface_loads) add(load);
     }
   }
   for (const auto& s : w.surfaces) {

@@ -3,6 +3,7 @@
 #include <dem/coupling/surface_contacts.hpp>
 #include <dem/grain/move.hpp>
 #include <dem/grain/pair_contacts.hpp>
+#include <dem/world/border.hpp>
 #include <dem/world/neighbours.hpp>
 #include <dem/world/sleep.hpp>
 
@@ -48,9 +49,24 @@ void evaluate_contacts(WorldState<Model>& w) {
   place_surfaces(w);
   w.scratch.resize(static_cast<std::size_t>(w.executor.threads()));
   choose_working_chunks(w);
-  w.executor.for_each(w.sleepers.working.size(), [&](std::size_t k, int thread) {
-    find_chunk_contacts(w, w.sleepers.working[k], w.scratch[static_cast<std::size_t>(thread)]);
-  });
+  const auto find_contacts = [&](const std::vector<std::uint32_t>& working) {
+    w.executor.for_each(working.size(), [&](std::size_t k, int thread) {
+      find_chunk_contacts(w, working[k], w.scratch[static_cast<std::size_t>(thread)]);
+    });
+  };
+  if constexpr (Model::Domain::has_ranks) {
+    w.domain.is_whole = !w.domain.is_shared();
+    // What touches no grain of other ranks is worked on while these come.
+    std::vector<std::uint32_t> inner, outer;
+    for (const std::uint32_t c : w.sleepers.working) (w.domain.is_at_border[c] ? outer : inner).push_back(c);
+    send_motion(w);
+    find_contacts(inner);
+    take_motion(w);
+    find_contacts(outer);
+    swap_loads(w);
+  } else {
+    find_contacts(w.sleepers.working);
+  }
   w.stopwatch.stop(Phase::contacts);
 
   w.stopwatch.start();
@@ -122,15 +138,19 @@ void advance(WorldState<Model>& w) {
 template <class Model>
 void initialise(WorldState<Model>& w) {
   w.sleepers.all_work = true;
+  const auto for_each_own_chunk = [&](auto&& f) {
+    const auto [begin, end] = w.own_chunks();
+    w.executor.for_each(end - begin, [&, first = begin](std::size_t k) { f(first + k); });
+  };
   if (w.list_valid) {
-    w.executor.for_each(w.chunks.size(),
-                        [&](std::size_t c) { grain::refresh_chunk<Model>(c, w.chunks[c], w.particles, w.species); });
+    for_each_own_chunk([&](std::size_t c) { grain::refresh_chunk<Model>(c, w.chunks[c], w.particles, w.species); });
   }
   w.machine_solver.initialise(w.machine, w.time, w.options.gravity, [&] { evaluate_contacts(w); });
-  w.executor.for_each(w.chunks.size(), [&](std::size_t c) {
+  for_each_own_chunk([&](std::size_t c) {
     grain::gather_forces<Model>(c, w.chunks, w.particles, w.incoming_first, w.incoming);
     grain::initialise_chunk<Model>(c, w.particles, w.inertia, w.options.gravity);
   });
+  if constexpr (Model::Domain::has_ranks) gather_rows(w);
 }
 
 }  // namespace dem

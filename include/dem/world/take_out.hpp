@@ -28,15 +28,22 @@ void take_out(WorldState<Model>& w) {
   if (w.outlets.empty() && !ends) [[likely]]
     return;
   const auto& p = w.particles;
+  std::vector<std::uint32_t> rows;
   const auto take = [&](Outlet& outlet, auto&& reaches, auto&& holds) {
-    for (std::size_t c = 0; c < w.chunks.size(); ++c) {
+    rows.clear();
+    const auto [begin, end] = w.own_chunks();
+    for (std::size_t c = begin; c < end; ++c) {
       if (!reaches(w.chunks[c])) continue;
       for (std::size_t i = c * chunk_size; i < std::min((c + 1) * chunk_size, p.count); ++i) {
         if (p.row_of[p.id[i]] == p.gone || !holds(to_eigen(p.position[i]))) continue;
         if (w.species[p.species[i]].is_held()) continue;  // a part of the apparatus
-        outlet.take(w.species[p.species[i]].mass);
-        take_out_row(w, i);
+        rows.push_back(static_cast<std::uint32_t>(i));
       }
+    }
+    if constexpr (Model::Domain::has_ranks) rows = w.domain.gathered(rows);
+    for (const std::uint32_t i : rows) {
+      outlet.take(w.species[p.species[i]].mass);
+      take_out_row(w, i);
     }
     outlet.end_step(w.time_step);
   };

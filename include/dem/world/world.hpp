@@ -4,6 +4,7 @@
 #include <dem/world/check.hpp>
 #include <dem/world/period.hpp>
 #include <dem/world/report.hpp>
+#include <dem/world/run_shared.hpp>
 #include <dem/world/step.hpp>
 #include <dem/world/thin_sheets.hpp>
 #include <dem/world/world_setup.hpp>
@@ -37,6 +38,7 @@ class World : public WorldSetup<M> {
           "new one",
           time());
     }
+    if constexpr (Model::Domain::has_ranks) check_agreement(state_, checked_, !initialised_);
     if (!checked_ || !machine_is_initialised()) {
       state_.materials.check_complete();
       state_.materials.check_names(used_materials());
@@ -66,31 +68,20 @@ class World : public WorldSetup<M> {
   /// Runs n steps, or fewer if a problem shows. A lost grain is reported once: a run may go on without it. An exception
   /// of a law, a shape or a function of your own arrives here, from whichever thread; the world may then be looked at,
   /// but not run on.
-  [[nodiscard]] StepReport run(std::uint64_t n) {
-    return run(n, [] { return true; });
-  }
+  [[nodiscard]] StepReport run(std::uint64_t n) { return run(n, always); }
   /// The same, asking `goes_on()` after each step: false ends the run there, with all well.
   template <std::predicate F>
   [[nodiscard]] StepReport run(std::uint64_t n, F&& goes_on) {
     prepare();
-    for (std::uint64_t k = 0; k < n; ++k) {
-      unfinished_ = true;
-      if (state_.put_in) state_.put_in(state_);
-      advance(state_);
-      release_ids(state_);
-      take_out(state_);
-      unfinished_ = false;
-      state_.machine_solver.close_joints(state_.machine);
-      if (StepReport report = find_problem(state_); !report) return report;
-      if (!goes_on()) break;
+    if constexpr (Model::Domain::has_ranks) {
+      return run_shared(state_, n, [&] { return run_steps(n, goes_on); });
+    } else {
+      return run_steps(n, goes_on);
     }
-    return ok();
   }
   /// Runs for a time span (s) in whole steps; what a span leaves of a step counts in the next one. Throws Error for
   /// more steps than 9e15.
-  [[nodiscard]] StepReport run_for(double seconds) {
-    return run_for(seconds, [] { return true; });
-  }
+  [[nodiscard]] StepReport run_for(double seconds) { return run_for(seconds, always); }
   /// The same, asking `goes_on()` after each step: false ends the run there, with all well and nothing owed.
   ///
   ///     world.run_for(10.0, [] { return !io::interrupted(); });   // Ctrl-C ends it after the present step
@@ -220,6 +211,31 @@ class World : public WorldSetup<M> {
   }
 
  private:
+  /// What goes on to the end.
+  struct Always {
+    constexpr bool operator()() const { return true; }
+  };
+  static constexpr Always always = {};
+
+  template <class F>
+  StepReport run_steps(std::uint64_t n, F& goes_on) {
+    for (std::uint64_t k = 0; k < n; ++k) {
+      unfinished_ = true;
+      if (state_.put_in) state_.put_in(state_);
+      advance(state_);
+      release_ids(state_);
+      take_out(state_);
+      unfinished_ = false;
+      state_.machine_solver.close_joints(state_.machine);
+      if (StepReport report = find_problem(state_); !report) return report;
+      if constexpr (!std::is_same_v<F, const Always>) {
+        bool goes = goes_on();
+        if constexpr (Model::Domain::has_ranks) goes = state_.domain.all(goes);
+        if (!goes) break;
+      }
+    }
+    return ok();
+  }
   std::vector<MaterialId> used_materials() const {
     std::vector<MaterialId> used;
     for (const auto& s : state_.species) used.push_back(s.material);

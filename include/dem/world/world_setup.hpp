@@ -43,6 +43,7 @@ class WorldSetup {
     state_.options = options;
     set_period(state_);
     if (options.threads != 0) state_.executor.set_threads(options.threads);
+    else if constexpr (Model::Domain::has_ranks) state_.executor.set_threads(Model::Domain::threads_of_a_rank());
   }
 
   /// A kind of grain. Throws Error unless the density is positive, and for a shape whose volume, radius or moments of
@@ -289,6 +290,11 @@ class WorldSetup {
     return SurfaceId(state_.surfaces.size() - 1);
   }
   std::size_t row(ParticleId p) const {
+    if constexpr (Model::Domain::has_ranks) {
+      if (!state_.domain.is_whole) {
+        fail("grain {} is asked for within a run, when no rank knows all grains; end the run first", p.value);
+      }
+    }
     const auto& grains = state_.particles;
     const std::uint32_t at = grains.find(p), row = at == grains.gone ? grains.gone : grains.row_of[at];
     if (row != grains.gone) [[likely]]

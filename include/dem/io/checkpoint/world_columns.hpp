@@ -5,6 +5,7 @@
 #include <dem/core/type_name.hpp>
 #include <dem/io/checkpoint/fields.hpp>
 #include <dem/io/checkpoint/sleep_columns.hpp>
+#include <dem/world/complete.hpp>
 #include <dem/world/world.hpp>
 
 #include <string>
@@ -228,6 +229,7 @@ void settle_restored(WorldState<Model>& w, bool is_checked) {
   for (std::size_t c = 0; c < std::min(w.chunks.size(), w.particles.chunks()); ++c) {
     grain::refresh_chunk<Model>(c, w.chunks[c], w.particles, w.species);
   }
+  if constexpr (Model::Domain::has_ranks) share_chunks(w);
   if (!w.list_valid || w.chunks.empty()) return;
   if constexpr (Model::Domain::has_images) {
     grain::make_rows(w.particles, w.images);
@@ -240,11 +242,26 @@ void settle_restored(WorldState<Model>& w, bool is_checked) {
 }  // namespace detail
 
 /// The state of a world, and of what else the program keeps (`others`, structs with fields: see Fields). The columns
-/// refer to the world: they are good until it changes. Throws Error after a step that an exception broke off.
+/// refer to the world: they are good until it changes. Where ranks share the grains, all ranks call it at once, and
+/// each gets all of it. Throws Error after a step that an exception broke off.
 template <class Model, class... Others>
 StateColumns columns_of(const World<Model>& world, const Others&... others) {
   StateColumns columns;
   Fields v(Fields::Task::collect, columns);
+  if constexpr (Model::Domain::has_ranks) {  // no rank has all of it: a copy gets it, and what is borrowed of that is
+                                             // kept
+    if (world.state().domain.is_shared() && !world.state().domain.is_complete) {
+      World<Model> copy = world;
+      complete_chunks(copy.state());
+      detail::world_fields(v, copy, const_cast<Others&>(others)...);
+      for (auto& [name, column] : columns) {
+        if (column.borrowed.empty()) continue;
+        column.own.assign(column.borrowed.begin(), column.borrowed.end());
+        column.borrowed = {};
+      }
+      return columns;
+    }
+  }
   // One list of fields serves both ways. Collecting changes nothing.
   detail::world_fields(v, const_cast<World<Model>&>(world), const_cast<Others&>(others)...);
   return columns;

@@ -1,0 +1,84 @@
+// Spheres settle in a long box, shared by as many processes as mpirun starts. Prints what sharing costs, and a hash of
+// the state, which is the same for any number of processes and threads.
+//
+//   mpirun -np 4 settle_ranks --grains 20000 --settle 3000 --steps 300 --threads 1 --output out/settle_ranks
+//
+// Writes settled.csv: positions and speeds of the grains, once, whatever the number of processes.
+
+#include "arguments.hpp"
+
+#include <dem/dem.hpp>
+#include <dem/domain/ranks.hpp>
+#include <dem/io/checkpoint/world_columns.hpp>
+#include <dem/io/csv.hpp>
+
+#include <chrono>
+#include <cmath>
+#include <filesystem>
+
+using namespace dem;
+
+struct Beads : Model {
+  using Normal = contact::LinearSpringDashpot;
+  using Friction = friction::CundallStrack;
+  using Integrator = integrator::VelocityVerlet;
+  using Domain = domain::Ranks;
+};
+
+int main(int argc, char** argv) {
+  const domain::Session mpi(argc, argv);
+  Arguments arguments(argc, argv);
+  const int grains = static_cast<int>(arguments.number("--grains", 20000));
+  const int settle = static_cast<int>(arguments.number("--settle", 3000));
+  const int steps = static_cast<int>(arguments.number("--steps", 300));
+  const int threads = static_cast<int>(arguments.number("--threads", 0));
+  const std::filesystem::path folder = arguments.take("--output", "settle_ranks");
+  arguments.check();
+
+  const double r = 1e-3, pitch = 2.2 * r;  // m
+  World<Beads> world({.threads = threads});
+  world.set_contact({.normal = contact::LinearSpringDashpot::with_restitution(1000, 0.5), .friction = {0.4, 700, 0.1}});
+  // Ten times as long as wide, some 20 grains deep.
+  const int across = std::max(3, static_cast<int>(std::sqrt(grains / 200.0))), along = 10 * across;
+  const double width = across * pitch, length = along * pitch;
+  const auto wall = [&](const Vec3& middle, const Vec3& edges) {
+    world.add_surface(world.ground(), surface::Box(edges), {.position = middle});
+  };
+  const double t = 0.01, h = 0.2;
+  wall({length / 2, width / 2, -t / 2}, {length + 2 * t, width + 2 * t, t});
+  for (const double side : {0.0, 1.0}) {
+    wall({side * length + (side - 0.5) * t, width / 2, h / 2}, {t, width + 2 * t, h});
+    wall({length / 2, side * width + (side - 0.5) * t, h / 2}, {length + 2 * t, t, h});
+  }
+  const SpeciesId bead = world.add_species(shape::Sphere(r), {.density = 2500});
+  for (int k = 0; k < grains; ++k) {
+    const int i = k % along, j = k / along % across, level = k / (along * across);
+    const double shake = 0.04 * std::sin(12.9898 * k);
+    world.add_particle({bead, pitch * Vec3(i + 0.5 + shake, j + 0.5 - shake, level + 0.5)});
+  }
+
+  const auto run = [&](int n) {
+    const StepReport report = world.run(static_cast<std::uint64_t>(n));
+    if (!report) fail("{}", report.text);
+  };
+  run(settle);
+  const domain::Traffic before = world.state().domain.traffic();
+  const auto start = std::chrono::steady_clock::now();
+  run(steps);
+  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  const domain::Traffic after = world.state().domain.traffic();
+  const auto& d = world.state().domain;
+  const double most_bytes = d.largest(static_cast<double>(after.step_bytes - before.step_bytes));
+  const double most_wait = d.largest(after.step_seconds - before.step_seconds);
+  fmt::print("{} grains, {} ranks of {} threads, {} steps in {:.2f} s: {:.3g} grain steps a second\n", grains,
+             d.ranks(), world.threads(), steps, seconds, grains * double(steps) / seconds);
+  fmt::print("exchange: {:.0f} bytes a step and rank at the most, {:.1f} % of the time in steps, {:.1f} % for lists\n",
+             most_bytes / steps, 100 * most_wait / seconds, 100 * (after.list_seconds - before.list_seconds) / seconds);
+  fmt::print("state {:016x}\n", io::hash_of(io::columns_of(world)));
+
+  io::CsvWriter csv(folder / "settled.csv", {"x_m", "y_m", "z_m", "speed_m_s"});
+  for (const ParticleId p : world.particles()) {
+    const Vec3 x = world.position(p);
+    csv.row(x.x(), x.y(), x.z(), world.velocity(p).norm());
+  }
+}

@@ -1,0 +1,122 @@
+#pragma once
+
+// Grains that several processes share (MPI: link dem::mpi).
+
+#include <dem/domain/messages.hpp>
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <thread>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+namespace dem::domain {
+
+/// Space without borders whose grains several processes share. Every rank owns a range of whole chunks of the one order
+/// of grains. Its contacts have the same partners in the same order as on one rank, so the results are the same bits
+/// for any number of ranks and threads.
+///
+///     struct Sand : dem::Model { using Domain = dem::domain::Ranks; };
+///     int main(int argc, char** argv) {
+///       dem::domain::Session mpi(argc, argv);
+///       dem::World<Sand> world;            // the same set-up on every rank
+///       ...
+///       world.run_for(1.0);                // shared; afterwards every rank knows all grains
+///     }
+///
+/// Calls that change or run a world are made on every rank, with the same arguments. Queries of grains work on any rank
+/// by itself, but only between runs: at the end of run() and run_for() every rank is told of all grains, which costs as
+/// much as a step or more. So give run() many steps. contacts_of, energy_of and save are made on every rank.
+///
+/// Within a step a rank works on its own chunks alone. All ranks hold the rows of all grains, some 400 bytes each, and
+/// sort them when neighbours are listed: that bounds how many grains they can share.
+class Ranks : public Messages {
+ public:
+  static constexpr bool has_images = false, has_ranks = true;
+
+  /// Throws Error where there is no Session.
+  Ranks() { first_.assign(static_cast<std::size_t>(ranks_) + 1, 0); }
+
+  /// As many threads as the ranks of one machine leave to each.
+  static int threads_of_a_rank() {
+    MPI_Comm machine;
+    MPI_Comm_split_type(MPI_COMM_WORLD, MPI_COMM_TYPE_SHARED, 0, MPI_INFO_NULL, &machine);
+    int here = 1;
+    MPI_Comm_size(machine, &here);
+    MPI_Comm_free(&machine);
+    return std::max(1, static_cast<int>(std::thread::hardware_concurrency()) / here);
+  }
+
+  // ---- which chunks are whose ----
+
+  /// The chunks from first to second are this rank's.
+  std::pair<std::size_t, std::size_t> own() const { return chunks_of(rank_); }
+  std::pair<std::size_t, std::size_t> chunks_of(int rank) const {
+    return {first_[static_cast<std::size_t>(rank)], first_[static_cast<std::size_t>(rank) + 1]};
+  }
+  bool owns(std::size_t chunk) const { return chunk >= own().first && chunk < own().second; }
+  int owner(std::size_t chunk) const {
+    return static_cast<int>(std::upper_bound(first_.begin() + 1, first_.end() - 1, chunk) - first_.begin()) - 1;
+  }
+  /// Cuts the chunks, with the work that each of them is, into ranges of nearly the same work.
+  void cut(const std::vector<double>& of_chunks) {
+    double all = 0.0, before = 0.0;
+    for (const double w : of_chunks) all += w;
+    first_.assign(static_cast<std::size_t>(ranks_) + 1, static_cast<std::uint32_t>(of_chunks.size()));
+    first_[0] = 0;
+    std::size_t next = 1;
+    for (std::size_t c = 0; c < of_chunks.size(); ++c) {
+      // A chunk goes to the rank in whose part of the work its middle lies.
+      while (next < first_.size() - 1 && before + 0.5 * of_chunks[c] >= all * double(next) / ranks_) {
+        first_[next++] = static_cast<std::uint32_t>(c);
+      }
+      before += of_chunks[c];
+    }
+  }
+
+  /// What goes over between this rank and another one in a step.
+  struct Border {
+    std::vector<std::uint32_t> rows_out, rows_in;  ///< grains whose motion is sent, or comes
+    std::vector<std::uint32_t> chunks_out;         ///< own chunks with partners there
+    std::vector<std::uint32_t> first_out;          ///< of each of these in candidates_out, and one entry more
+    std::vector<std::uint32_t> candidates_out;     ///< their candidates that are grains of the other rank
+    std::vector<std::uint32_t> chunks_in;          ///< chunks of the other rank with partners here
+    std::vector<double> motion_out, motion_in;
+    std::vector<std::byte> loads_out;
+  };
+  std::vector<Border> borders;             ///< of each rank
+  std::vector<std::uint8_t> is_at_border;  ///< of each chunk: it has candidates of other ranks
+  std::vector<float> work;                 ///< of each grain (id), counted in its last list
+  bool is_whole = true;                    ///< this rank's rows of all grains are up to date
+  bool is_complete = false;                ///< so are the contacts of all chunks
+
+  /// Of a column with `width` numbers a chunk, every rank's own chunks go to all.
+  template <class T>
+  void gather_chunks(T* column, std::size_t width) const {
+    std::vector<int> sizes;
+    for (int r = 0; r < ranks_; ++r) sizes.push_back(number(chunks_of(r).second - chunks_of(r).first));
+    gather_column(column, sizes, width);
+  }
+
+  /// f(), whose exceptions end all ranks if there are several: the others would wait for this one.
+  template <class F>
+  auto guarded(F&& f) const {
+    try {
+      return f();
+    } catch (...) {
+      if (is_shared()) {
+        detail::print_exception("in a step");
+        MPI_Abort(MPI_COMM_WORLD, 1);
+      }
+      throw;
+    }
+  }
+
+ private:
+  std::vector<std::uint32_t> first_;  // chunk of each rank, and one entry more
+};
+
+}  // namespace dem::domain

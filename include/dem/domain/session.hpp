@@ -1,0 +1,109 @@
+#pragma once
+
+// One program on several processes (MPI: link dem::mpi). Programs include <dem/domain/ranks.hpp>.
+
+#include <dem/core/error.hpp>
+#include <dem/core/output.hpp>
+
+#include <cstdio>
+#include <cstdlib>
+#include <exception>
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#ifndef OMPI_SKIP_MPICXX
+#define OMPI_SKIP_MPICXX 1  // the C interface is enough
+#endif
+#include <mpi.h>
+
+namespace dem::domain {
+
+namespace detail {
+
+inline int rank_of_process() {
+  int rank = 0;
+  MPI_Comm_rank(MPI_COMM_WORLD, &rank);
+  return rank;
+}
+inline int count_of_ranks() {
+  int count = 1;
+  MPI_Comm_size(MPI_COMM_WORLD, &count);
+  return count;
+}
+/// The exception that is under way, in words.
+inline void print_exception(const char* where) {
+  std::fflush(stdout);
+  try {
+    throw;
+  } catch (const std::exception& e) {
+    std::fprintf(stderr, "rank %d of %d, %s: %s\n", rank_of_process(), count_of_ranks(), where, e.what());
+  } catch (...) {
+    std::fprintf(stderr, "rank %d of %d, %s: an exception that is no std::exception\n", rank_of_process(),
+                 count_of_ranks(), where);
+  }
+  std::fflush(stderr);
+}
+/// Nobody catches the exception: all ranks end, as the others would wait for this one for ever.
+[[noreturn]] inline void end_all_ranks() {
+  if (std::current_exception()) print_exception("no one caught");
+  MPI_Abort(MPI_COMM_WORLD, 1);
+  std::abort();
+}
+
+}  // namespace detail
+
+/// What makes a program one of several ranks. Make one at the start of main(), before any world, and let it live to the
+/// end:
+///
+///     int main(int argc, char** argv) {
+///       dem::domain::Session mpi(argc, argv);
+///       ...
+///     }
+///
+///     mpirun -np 4 ./program
+///
+/// All ranks run the whole program. What it prints and the files that it writes through this library come from rank 0
+/// alone: standard output of the others goes nowhere. Standard error stays. Without mpirun there is one rank.
+///
+/// An exception that leaves main() or a step ends all ranks, in words. One that is caught outside the life of the
+/// Session and ends main() does so too. But do not catch one within it and return: this rank would wait at its end for
+/// others that wait for it.
+class Session {
+ public:
+  /// Throws Error where there is a Session already.
+  Session(int& argc, char**& argv) : unwinding_(std::uncaught_exceptions()) {
+    int is_running = 0;
+    MPI_Initialized(&is_running);
+    if (is_running)
+      fail("a program has one domain::Session, and MPI runs already; make it once, at the start of main()");
+    int offered = 0;
+    MPI_Init_thread(&argc, &argv, MPI_THREAD_FUNNELED, &offered);
+    rank_ = detail::rank_of_process();
+    ranks_ = detail::count_of_ranks();
+    process_writes_files = rank_ == 0;
+    if (rank_ != 0) {
+      std::fflush(stdout);
+      const int nowhere = ::open("/dev/null", O_WRONLY);
+      if (nowhere >= 0) ::dup2(nowhere, STDOUT_FILENO), ::close(nowhere);
+    }
+    if (ranks_ > 1) std::set_terminate(detail::end_all_ranks);
+  }
+  Session(const Session&) = delete;
+  Session& operator=(const Session&) = delete;
+  ~Session() {
+    // An exception passes. Who catches it has something to say; mpirun ends the others when this process ends.
+    if (std::uncaught_exceptions() > unwinding_) return;
+    MPI_Finalize();
+  }
+
+  int rank() const { return rank_; }
+  int ranks() const { return ranks_; }
+  /// Whether this is the rank that prints and writes.
+  bool is_root() const { return rank_ == 0; }
+
+ private:
+  int rank_ = 0, ranks_ = 1, unwinding_;
+};
+
+}  // namespace dem::domain

@@ -1,0 +1,124 @@
+#pragma once
+
+// What ranks tell each other between steps and when neighbours are listed (domain::Ranks): all of it by all ranks at
+// once.
+
+#include <dem/world/state.hpp>
+
+#include <cstddef>
+#include <utility>
+#include <vector>
+
+namespace dem {
+
+/// Counts the work that each grain of this rank's chunks is, and tells all ranks: in candidates that are looked at.
+/// Counted, not measured: so every rank cuts alike.
+template <class Model>
+void count_work(WorldState<Model>& w) {
+  constexpr float motion = 10, contact = shape::BitShape<typename Model::Shape> ? 8 : 40, asleep = 1;
+  auto& d = w.domain;
+  const auto& p = w.particles;
+  d.work.resize(p.row_of.size(), 0.0f);
+  if (!d.is_shared() || w.chunks.empty()) return;
+  std::vector<float> mine;
+  const auto [begin, end] = d.own();
+  for (std::size_t c = begin; c < end; ++c) {
+    const Chunk<Model>& chunk = w.chunks[c];
+    const std::size_t rows = std::min((c + 1) * chunk_size, p.count) - c * chunk_size, first = mine.size();
+    for (std::size_t k = 0; k < rows; ++k) {
+      const auto candidates = static_cast<float>(chunk.candidate_first[k + 1] - chunk.candidate_first[k]);
+      mine.push_back(chunk.asleep ? asleep : motion + candidates);
+    }
+    if (chunk.asleep) continue;
+    const auto& contacts = chunk.pair_contacts.last;
+    for (int k = 0; k < contacts.count; ++k) {
+      mine[first + chunk.owner[contacts.key[static_cast<std::size_t>(k)] >> 32]] += contact;
+    }
+  }
+  const std::vector<float> all = d.gathered(mine, false);
+  for (std::size_t row = 0; row < all.size(); ++row) d.work[p.id[row]] = all[row];
+}
+
+/// Cuts the chunks into the ranges of the ranks. Of a grain whose work was not counted yet nothing is known but the
+/// mean.
+template <class Model>
+void cut_chunks(WorldState<Model>& w) {
+  const auto& p = w.particles;
+  auto& work = w.domain.work;
+  work.resize(p.row_of.size(), 0.0f);
+  double sum = 0.0, known = 0.0;
+  for (const float x : work) sum += x, known += x > 0.0f ? 1.0 : 0.0;
+  const double mean = known > 0.0 ? sum / known : 1.0;
+  std::vector<double> of_chunks(w.chunks.size(), 0.0);
+  for (std::size_t c = 0; c < of_chunks.size(); ++c) {
+    for (std::size_t i = c * chunk_size; i < std::min((c + 1) * chunk_size, p.count); ++i) {
+      of_chunks[c] += work[p.id[i]] > 0.0f ? work[p.id[i]] : mean;
+    }
+  }
+  w.domain.cut(of_chunks);
+}
+
+/// Every rank's rows of all grains become those of their owners, and so do the bounds of chunks and what is known of
+/// resting grains. Nothing where they are already.
+template <class Model>
+void gather_rows(WorldState<Model>& w) {
+  auto& d = w.domain;
+  if (d.is_whole) return;
+  auto& p = w.particles;
+  p.for_each_column([&](AlignedVector<double>& column) { d.gather_chunks(column.data(), chunk_size); });
+
+  struct Summary {
+    double low[3], high[3], moved2;
+    DeepestContact deepest;
+    bool finite, asleep;
+  };
+  std::vector<Summary> summaries;
+  const auto [begin, end] = d.own();
+  for (std::size_t c = begin; c < end; ++c) {
+    const Chunk<Model>& k = w.chunks[c];
+    summaries.push_back({{k.low.x(), k.low.y(), k.low.z()},
+                         {k.high.x(), k.high.y(), k.high.z()},
+                         k.moved2,
+                         k.deepest,
+                         k.finite,
+                         k.asleep});
+  }
+  summaries = d.gathered(summaries, false);
+  for (std::size_t c = 0; c < summaries.size(); ++c) {
+    const Summary& s = summaries[c];
+    Chunk<Model>& chunk = w.chunks[c];
+    chunk.low = Vec3(s.low[0], s.low[1], s.low[2]);
+    chunk.high = Vec3(s.high[0], s.high[1], s.high[2]);
+    chunk.moved2 = s.moved2;
+    chunk.deepest = s.deepest;
+    chunk.finite = s.finite;
+    chunk.asleep = s.asleep;
+  }
+
+  if (w.options.sleep) {
+    auto& resting = w.sleepers.grains;
+    std::vector<grain::Rest> rests;
+    for (std::size_t i = begin * chunk_size; i < std::min(end * chunk_size, p.count); ++i) {
+      rests.push_back(p.id[i] < resting.size() ? resting[p.id[i]] : grain::Rest{});
+    }
+    rests = d.gathered(rests, false);
+    for (std::size_t row = 0; row < rests.size(); ++row) {
+      if (p.id[row] < resting.size()) resting[p.id[row]] = rests[row];
+    }
+  }
+  d.is_whole = true;
+}
+
+/// Contact histories that were collected, and know their new rows, go to the ranks that own these.
+template <class Model, class Entry>
+void send_home(WorldState<Model>& w, std::vector<Entry>& entries) {
+  auto& d = w.domain;
+  if (!d.is_shared()) return;
+  std::vector<std::vector<Entry>> to(static_cast<std::size_t>(d.ranks()));
+  for (const Entry& e : entries) {
+    if (e.i != w.particles.gone) to[static_cast<std::size_t>(d.owner(e.i / chunk_size))].push_back(e);
+  }
+  entries = d.exchanged(to).first;
+}
+
+}  // namespace dem

@@ -1,0 +1,48 @@
+#include "scenes.hpp"
+
+#include <dem/geometry/cluster/sphere_cluster.hpp>
+#include <dem/integrator/velocity_verlet.hpp>
+
+namespace scenes {
+
+namespace {
+
+struct CubesAlone : dem::Model {
+  using Shape = dem::shape::SphereCluster<8>;
+  using Integrator = dem::integrator::VelocityVerlet;
+};
+struct CubesShared : CubesAlone {
+  using Domain = dem::domain::Ranks;
+};
+
+/// Cubes float and fall asleep. A block of triangles with grains glued to it flies into them, and a flap is pushed.
+constexpr auto machine_on_cubes = []<class Model>() {
+  dem::World<Model> world(
+      {.gravity = {0, 0, 0}, .sleep = dem::SleepOptions{.share = 0.2, .motion = 0.01, .window = 20}});
+  world.set_contact({.normal = {2000, 0.05, 0.05}, .friction = {0.4, 2000, 0.015, 0.975}});
+  const double width = 0.15, depth = 0.01;
+  add_box(world, width, depth, 0.05);
+  const auto cube = world.add_species(dem::shape::cube8(0.7e-3));
+  const auto held = world.add_species(dem::shape::cube8(0.7e-3), {.held = true});
+  pour(world, cube, 1500, 60, 4, 2.5e-3, 0.0);
+  auto& m = world.machine();
+  const dem::Vec3 edges(2e-3, 0.008, 0.012), top(5e-3, depth / 2, 0.0245);
+  const auto flap = m.add_body(dem::mbd::box_body("flap", edges, 2650).at(top));
+  const auto rail = m.add_joint(dem::mbd::prismatic("rail", m.ground(), flap, top, {0, 0, 1}));
+  m.add_actuator(dem::mbd::joint_actuator("push", rail, 50, 0.5, dem::mbd::Signal::smooth_step(0, -6e-3, 0, 3e-3)));
+  world.add_surface(flap, dem::surface::Box(edges));
+  const auto block = m.add_body(
+      dem::mbd::box_body("block", {8e-3, 8e-3, 8e-3}, 2650).at({0.03, depth / 2, 0.0235}).moving({0, 0, -1}));
+  world.add_surface(block, dem::surface::TriangleMesh(dem::mesh::box({8e-3, 8e-3, 8e-3})));
+  for (const double x : {0.027, 0.033}) world.attach(world.add_particle({held, {x, depth / 2, 0.0195}}), block);
+  run(world, 900);
+  require(world.asleep_count() > 0, "no grain sleeps");
+  require(world.asleep_count() < world.particle_count(), "all grains sleep");
+  return world;
+};
+
+}  // namespace
+
+bool cubes() { return same_bits<CubesShared, CubesAlone>("cubes", machine_on_cubes); }
+
+}  // namespace scenes

@@ -1,0 +1,23 @@
+// A program on ranks: mpirun -np 2 ./test_ranks spheres cubes ...; ends with 0 if all scenes have the bits that they
+// have on one process.
+
+#include "scene_list.hpp"
+
+#include <dem/domain/session.hpp>
+
+#include <string>
+
+int main(int argc, char** argv) {
+  const dem::domain::Session mpi(argc, argv);
+  bool same = true;
+  for (int k = 1; k < argc; ++k) {
+    const std::string scene = argv[k];
+    if (scene == "spheres") same = scenes::spheres() && same;
+    else if (scene == "cubes") same = scenes::cubes() && same;
+    else if (scene == "checkpoint") same = scenes::checkpoint() && same;
+    else if (scene == "mistake") scenes::mistake();
+    else if (scene == "disagree") scenes::disagree();
+    else dem::fail("there is no scene '{}'", scene);
+  }
+  return same ? 0 : 1;
+}

@@ -1,0 +1,89 @@
+#pragma once
+
+// Scenes that ranks share, and the same ones on one process: the states must be the same in every bit.
+
+#include "scene_list.hpp"
+
+#include <dem/dem.hpp>
+#include <dem/domain/ranks.hpp>
+#include <dem/geometry/mesh/mesh_shapes.hpp>
+#include <dem/io/checkpoint/world_columns.hpp>
+
+#include <cstdint>
+#include <cstdio>
+#include <string>
+
+namespace scenes {
+
+inline constexpr double dt = 1e-5;  // s
+
+/// Numbers from 0 to 1.
+struct Numbers {
+  std::uint64_t state = 7;
+  double operator()() {
+    state = state * 6364136223846793005ULL + 1442695040888963407ULL;
+    return static_cast<double>(state >> 11) * 0x1p-53;
+  }
+};
+
+template <class World>
+void add_box(World& world, double width, double depth, double height) {
+  const auto wall = [&](const dem::Vec3& middle, const dem::Vec3& edges) {
+    world.add_surface(world.ground(), dem::surface::Box(edges), {.material = "wall", .position = middle});
+  };
+  const double t = 0.01;
+  wall({width / 2, depth / 2, -t / 2}, {width + 2 * t, depth + 2 * t, t});
+  for (const double side : {0.0, 1.0}) {
+    wall({side * width + (side - 0.5) * t, depth / 2, height / 2}, {t, depth + 2 * t, height});
+    wall({width / 2, side * depth + (side - 0.5) * t, height / 2}, {width + 2 * t, t, height});
+  }
+}
+
+/// n grains on a lattice of this pitch, a little shaken, in columns of nx times ny.
+template <class World>
+void pour(World& world, dem::SpeciesId grain, int n, int nx, int ny, double pitch, double speed) {
+  Numbers number;
+  for (int k = 0; k < n; ++k) {
+    const double cell[] = {k % nx + 0.5, k / nx % ny + 0.5, k / (nx * ny) + 0.5};
+    dem::Vec3 x;
+    for (int i = 0; i < 3; ++i) x[i] = pitch * (cell[i] + 0.05 * (number() - 0.5));
+    const dem::Mat3 r = dem::Quaternion(1, number(), number(), number()).normalized().toRotationMatrix();
+    const double u = number(), v = number();
+    world.add_particle({.species = grain, .position = x, .velocity = {u * speed, v * speed, -speed}, .rotation = r});
+  }
+}
+
+/// Ends the program, on all ranks, where something went wrong.
+inline void require(bool is_well, const std::string& what) {
+  if (!is_well) dem::fail("{}", what);
+}
+template <class World>
+void run(World& world, std::uint64_t steps) {
+  const dem::StepReport report = world.run(steps);
+  require(bool(report), report.text);
+}
+
+/// Runs a scene as ranks share it, on all of them, and as one process has it, on rank 0; says whether every bit is the
+/// same. The scene is a function template of the model, which calls world.run() itself.
+template <class Shared, class Alone, class Scene>
+bool same_bits(const char* name, const Scene& scene) {
+  const dem::World<Shared> shared = scene.template operator()<Shared>();
+  const dem::io::StateColumns columns = dem::io::columns_of(shared);
+  const auto& d = shared.state().domain;
+  // Otherwise nothing was shared. A rank may be without work where most of the grains sleep.
+  const double at_work = d.total(d.own().second > d.own().first ? 1.0 : 0.0);
+  require(at_work > 1.0 || !d.is_shared(), "one rank has all chunks");
+  if (d.rank() != 0) return true;
+  const dem::World<Alone> alone = scene.template operator()<Alone>();
+  const dem::io::StateColumns expected = dem::io::columns_of(alone);
+  const auto differences = dem::io::differences(expected, columns);
+  std::printf("%-10s %d ranks: %s, hash %016llx, %zu grains, %llu lists, %.0f bytes a step\n", name, d.ranks(),
+              differences.empty() ? "same bits" : "OTHER BITS",
+              static_cast<unsigned long long>(dem::io::hash_of(columns)), shared.particle_count(),
+              static_cast<unsigned long long>(shared.state().rebuilds),
+              double(d.traffic().step_bytes) / double(shared.steps()));
+  for (const std::string& column : differences) std::printf("  %s\n", column.c_str());
+  return differences.empty();
+}
+
+}  // namespace scenes
