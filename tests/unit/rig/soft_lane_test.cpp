@@ -153,3 +153,10 @@ TEST_CASE("the depth and the width of a rut are those of its profile") {
   CHECK(depth == Approx(0.06));
   CHECK(width == Approx(0.3));
 }
+
+TEST_CASE("each option of a lane has a name of its own, and grains sleep unless they are asked not to") {
+  soft_lane::Settings s;
+  Options options;
+  REQUIRE_NOTHROW(declare(options, s));
+  CHECK(s.bed.sleep);
+}

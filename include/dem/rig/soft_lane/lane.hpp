@@ -40,7 +40,7 @@ World<Model> make_lane(const Settings& s, const typename Model::Shape& shape, st
                       .domain = surface::Bounds{Vec3(-far_x, -far_y, -t), Vec3(far_x, far_y, top)},
                       .beyond_domain = BeyondDomain::remove,
                       .threads = s.bed.threads > 0 ? s.bed.threads : threads_for(grains.size()),
-                      .sleep = s.sleep ? std::optional<SleepOptions>(SleepOptions{}) : std::nullopt});
+                      .sleep = s.bed.sleep ? std::optional<SleepOptions>(SleepOptions{}) : std::nullopt});
   const SpeciesId species = world.add_species(shape, {.material = "grain", .density = s.grains.density});
   world.set_contact("grain", "grain", grain_contact<Model>(s.grains, s.grains.friction));
   world.set_contact("grain", "wall", grain_contact<Model>(s.grains, s.grains.wall_friction));

@@ -39,9 +39,8 @@ struct Settings {
   /// Of one trough: length along x, width, depth. There are two of them, one under each track, with the same grains,
   /// turned by half a turn; or one bed under the whole car. The lid presses with 5 kPa, on one wide bed with 1 kPa:
   /// while it comes down few grains carry all of it.
-  BedSettings bed{.lid_pressure = 0.0, .stage_limit = 6.0, .file = {}, .save = {}};
+  BedSettings bed{.lid_pressure = 0.0, .stage_limit = 6.0, .sleep = true, .file = {}, .save = {}};
   std::string layout;  ///< troughs or bed; empty: troughs, but a bed for a turn
-  bool sleep = true;
 
   std::string output = "humvee_soil_output";
   bool replay = true;
@@ -90,7 +89,6 @@ inline void declare(Options& options, Settings& s) {
   add_grain_options(options, s.grains);
   add_bed_options(options, s.bed);
   add("--layout", s.layout, "troughs (two, one a track) or bed (one under the car); empty: by scene");
-  options.flag("--sleep", s.sleep, "grains at rest sleep (--sleep=true) or not (--no-sleep)").off("--no-sleep");
   options.group("Output");
   add("--output", s.output, "folder; results of an earlier run in it are replaced");
   options.flag("--replay", s.replay, "replay in the report (--replay=true) or none (--no-replay)").off("--no-replay");
