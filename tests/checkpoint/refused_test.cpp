@@ -1,5 +1,6 @@
 // What is not the state of this program is refused in words.
 
+#include "io/comma_locale.hpp"
 #include "scenes_to_save.hpp"
 
 #include <chrono>
@@ -128,4 +129,15 @@ TEST_CASE("a file that cannot be written leaves the last one as it is") {
   dem::save(world.world, path);
   CHECK((bytes_of(path) == good));  // the same state is the same file, at whatever time
   CHECK(!std::filesystem::exists(folder / "state.h5.tmp"));
+}
+
+TEST_CASE("a state is saved and loaded alike under a locale with commas") {
+  const Folder folder;
+  auto world = scene<Balls>();
+  dem::save(world.world, folder / "plain.h5");
+  const CommaLocale commas;
+  dem::save(world.world, folder / "commas.h5");
+  CHECK((bytes_of(folder / "commas.h5") == bytes_of(folder / "plain.h5")));
+  auto other = scene<Balls>();
+  CHECK_NOTHROW(dem::load(other.world, folder / "plain.h5"));
 }

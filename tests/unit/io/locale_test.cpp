@@ -1,15 +1,15 @@
 #include "catch.hpp"
+#include "comma_locale.hpp"
 #include "files.hpp"
 
 #include <dem/io/csv.hpp>
 #include <dem/io/obj.hpp>
 #include <dem/io/stl.hpp>
 #include <dem/io/vtk.hpp>
+#include <dem/report/replay_encode.hpp>
 #include <dem/report/report.hpp>
 #include <dem/soil/packing_file.hpp>
 
-#include <clocale>
-#include <locale>
 #include <string>
 #include <utility>
 #include <vector>
@@ -20,32 +20,6 @@ using namespace dem::io;
 using dem::Vec3;
 
 namespace {
-
-/// Numbers as in German. Needs no locale that is installed.
-class Commas : public std::numpunct<char> {
-  char do_decimal_point() const override { return ','; }
-  char do_thousands_sep() const override { return '.'; }
-  std::string do_grouping() const override { return "\3"; }
-};
-
-/// While it lives, C++ writes numbers with commas, and C as well where a locale of that kind is installed.
-class CommaLocale {
- public:
-  CommaLocale() : before_(std::locale::global(std::locale(std::locale::classic(), new Commas))) {
-    for (const char* name : {"de_DE.UTF-8", "de_DE.utf8", "fr_FR.UTF-8", "nl_NL.UTF-8", "ru_RU.UTF-8"}) {
-      if (std::setlocale(LC_ALL, name) != nullptr) break;
-    }
-  }
-  CommaLocale(const CommaLocale&) = delete;
-  CommaLocale& operator=(const CommaLocale&) = delete;
-  ~CommaLocale() {
-    std::locale::global(before_);
-    std::setlocale(LC_ALL, "C");
-  }
-
- private:
-  std::locale before_;
-};
 
 dem::IndexedMesh tetrahedron() {
   return {{{0, 0, 0}, {0.5, 0, 0}, {0, 1234.5, 0}, {0, 0, 1e-7}}, {{{0, 2, 1}}, {{0, 1, 3}}, {{1, 2, 3}}, {{0, 3, 2}}}};
@@ -94,6 +68,15 @@ std::vector<std::pair<std::string, std::string>> written() {
   HtmlReport report("r");
   report.table(table).settings({{"a", format_number(0.125)}});
   all.emplace_back("html", report.html());
+
+  dem::report::Replay replay({.frames = 3, .force_lines = 5});
+  for (const double t : {0.0, 0.25}) {
+    const std::vector<dem::report::ReplayForce> forces = {
+        {3, 7, true, Vec3(0.5 + t, -20.25, 1234.5), Vec3(0.5, -20.5, 1234), 1234.5 + t}};
+    replay.record(t, {}, {}, forces);
+  }
+  const dem::report::EncodedReplay encoded = dem::report::encode(replay);
+  all.emplace_back("replay", encoded.head + encoded.bytes);
 
   Captured out;
   double now = 0;
