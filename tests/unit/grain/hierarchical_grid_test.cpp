@@ -12,7 +12,7 @@ using dem::broadphase::HierarchicalGrid;
 namespace {
 
 /// Grains of several kinds, at random places in a cube about a middle.
-struct Mixture {
+struct SizedPoints {
   std::vector<double> radius_of_kind;
   double gap = 0.0;
   std::vector<double> x = {}, y = {}, z = {};
@@ -39,7 +39,7 @@ struct Mixture {
 
 using MixedPairs = std::set<std::pair<std::size_t, std::size_t>>;
 
-MixedPairs pairs_by_trying_all(const Mixture& m) {
+MixedPairs pairs_by_trying_all(const SizedPoints& m) {
   MixedPairs found;
   for (std::size_t i = 0; i < m.x.size(); ++i) {
     for (std::size_t j = i + 1; j < m.x.size(); ++j) {
@@ -49,7 +49,7 @@ MixedPairs pairs_by_trying_all(const Mixture& m) {
   return found;
 }
 
-MixedPairs pairs_of_grid(const Mixture& m, const HierarchicalGrid& grid, std::size_t* candidates = nullptr) {
+MixedPairs pairs_of_grid(const SizedPoints& m, const HierarchicalGrid& grid, std::size_t* candidates = nullptr) {
   MixedPairs found, all;
   auto finder = grid.finder();
   for (std::size_t i = 0; i < m.x.size(); ++i) {
@@ -65,12 +65,12 @@ MixedPairs pairs_of_grid(const Mixture& m, const HierarchicalGrid& grid, std::si
 }
 
 /// The pairs, with the grains as they are and put in order. Returns how many there are.
-std::size_t check_mixture(Mixture m, HierarchicalGrid& grid) {
+std::size_t check_mixture(SizedPoints m, HierarchicalGrid& grid) {
   grid.build(m.positions(), m.sizes());
   CHECK(pairs_of_grid(m, grid) == pairs_by_trying_all(m));
   const std::vector<std::uint32_t> order(grid.order().begin(), grid.order().end());
   REQUIRE(std::set<std::uint32_t>(order.begin(), order.end()).size() == m.x.size());
-  const Mixture old = m;
+  const SizedPoints old = m;
   for (std::size_t k = 0; k < order.size(); ++k) {
     m.x[k] = old.x[order[k]], m.y[k] = old.y[order[k]], m.z[k] = old.z[order[k]], m.kind[k] = old.kind[order[k]];
   }
@@ -91,7 +91,7 @@ TEST_CASE("a grid of levels finds what all pairs find, whatever the sizes") {
       for (const double shift : {0.0, 1e4}) {
         const dem::Vec3 middle(shift, -0.3 * shift, 7 * shift);
         CAPTURE(ratio, gap, shift);
-        Mixture m{{0.05, 0.05 * std::sqrt(ratio), 0.05 * ratio}, gap};
+        SizedPoints m{{0.05, 0.05 * std::sqrt(ratio), 0.05 * ratio}, gap};
         m.fill(0, 300, 1.0, middle, engine);
         m.fill(1, 40, 1.0, middle, engine);
         m.fill(2, 10, 1.0, middle, engine);
@@ -104,7 +104,7 @@ TEST_CASE("a grid of levels finds what all pairs find, whatever the sizes") {
 TEST_CASE("a grid of levels has as many as the sizes ask for") {
   HierarchicalGrid grid;
   const auto levels = [&](std::vector<double> radii, double gap) {
-    Mixture m{std::move(radii), gap};
+    SizedPoints m{std::move(radii), gap};
     for (std::uint32_t k = 0; k < m.radius_of_kind.size(); ++k) m.add(k, k, 0, 0);
     grid.build(m.positions(), m.sizes());
     return grid.levels();
@@ -117,7 +117,7 @@ TEST_CASE("a grid of levels has as many as the sizes ask for") {
   CHECK(levels({1e-9, 1.0}, 0.0) == 16);  // and no more
   CHECK(levels({0.0, 1.0}, 0.0) == 16);
   // A kind of which there is no grain asks for nothing.
-  Mixture m{{1.0, 20.0}, 0.0};
+  SizedPoints m{{1.0, 20.0}, 0.0};
   m.add(0, 0, 0, 0);
   grid.build(m.positions(), m.sizes());
   CHECK(grid.levels() == 1);
@@ -125,7 +125,7 @@ TEST_CASE("a grid of levels has as many as the sizes ask for") {
 
 TEST_CASE("a grid of levels that was put in order finds the same") {
   std::mt19937 engine(5);
-  Mixture m{{0.03, 0.6}, 0.01};
+  SizedPoints m{{0.03, 0.6}, 0.01};
   m.fill(0, 800, 1.0, dem::Vec3::Zero(), engine);
   m.fill(1, 6, 1.0, dem::Vec3::Zero(), engine);
   HierarchicalGrid grid;
@@ -145,7 +145,7 @@ TEST_CASE("a large grain costs the small ones no candidates") {
   // 4,000 small grains in a cube of edge 2: with cells of their own reach, 0.1, each pair of 27 cells once makes
   // 4000^2/2 * 27/8000 = 27,000. The large grain adds its 4,000. In cells of 2.1 all 8,000,000 pairs were candidates.
   std::mt19937 engine(7);
-  Mixture m{{0.05, 1.0}, 0.0};
+  SizedPoints m{{0.05, 1.0}, 0.0};
   m.fill(0, 4000, 1.0, dem::Vec3::Zero(), engine);
   m.add(1, 0, 0, 0);
   HierarchicalGrid grid;
@@ -159,14 +159,14 @@ TEST_CASE("a large grain costs the small ones no candidates") {
 
 TEST_CASE("a grid of levels loses no grain far away") {
   std::mt19937 engine(9);
-  Mixture m{{0.05, 1.0}, 0.0};
+  SizedPoints m{{0.05, 1.0}, 0.0};
   m.fill(0, 300, 1.0, dem::Vec3::Zero(), engine);
   m.fill(1, 3, 1.0, dem::Vec3::Zero(), engine);
   HierarchicalGrid grid;
   const std::size_t near = check_mixture(m, grid);
   for (const double far : {1e6, -1e12, 1e300}) {
     for (const std::uint32_t k : {0u, 1u}) {
-      Mixture with = m;
+      SizedPoints with = m;
       with.add(k, far, -far, far);
       CHECK(check_mixture(with, grid) == near);
     }

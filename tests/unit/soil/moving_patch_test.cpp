@@ -54,7 +54,7 @@ TEST_CASE("a patch at rest stays at rest as it goes on, with as many grains and 
   CHECK(shifts == patch.shifts());
   CHECK(shifts == 11);
   CHECK(w.state().particles.row_of.size() == ids);  // ids of the tiles that go are given to those that come
-  CHECK(dem::memory_bytes(w.state()) < 1.1 * static_cast<double>(bytes));
+  CHECK(10 * dem::memory_bytes(w.state()) < 11 * bytes);
   // A fall through 1e-8 m: far less than the overlap of 6 cubes' weight on a stiffness of 2 kN/m, 6e-7 m.
   const double mass = w.species(SpeciesId(0)).mass;
   CHECK(most < mass * g * 1e-8);
