@@ -125,7 +125,9 @@ TEST_CASE(
   // It is drawn up until the grains push with a twentieth, by less than it was pressed.
   REQUIRE(second.unloading.size() > 2);
   CHECK(second.unloading.back().pressure <= 0.05 * second.samples.back().pressure);
-  CHECK(second.unloading.back().travel < second.samples.back().travel);
+  // Coarse grains let go of a plate that stops. Its drive (1e7 N/m, damped critically) stops 0.07 kg at 0.1 m/s within
+  // v sqrt(m/k), 8 um.
+  CHECK(second.unloading.back().travel < second.samples.back().travel + 8.4e-6);
   CHECK(second.unloading.back().travel > second.samples.back().travel - 0.25 * 2e-3 - 1e-4);
   REQUIRE(first.samples.size() == second.samples.size());
   bool same = true;
