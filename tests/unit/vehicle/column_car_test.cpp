@@ -48,7 +48,8 @@ TEST_CASE("a car is set down on soil columns with its weight on its wheels, as o
   double load = 0.0;
   for (std::size_t k = 0; k < 4; ++k) load += car.wheel(k).load;
   CHECK(load == Approx(car.weight).epsilon(0.01));  // it still swings a little
-  // Columns are not mirror images of each other about the car: a row of them under a tyre more or less, 1 % of its load.
+  // Columns are not mirror images of each other about the car: a row of them under a tyre more or less, 1 % of its
+  // load.
   CHECK(car.wheel(0).load == Approx(car.wheel(1).load).epsilon(0.02));
   CHECK(car.wheel(0).load + car.wheel(1).load == Approx(25032.0).epsilon(0.02));  // moments of the weights
   CHECK(std::abs(car.speed()) < 0.01);
