@@ -126,9 +126,7 @@ class ColumnCar {
     return wheel_sample_of(machine, car, corner, {load.force, load.torque}, 0.0, spec_.car.tyre.radius);
   }
   /// m/s, of the rims, as the drive shaft turns: their mean.
-  double rim_speed() const {
-    return machine.speed(car.driveline.shaft_turn) / spec_.car.driveline.front.ratio * spec_.car.tyre.radius;
-  }
+  double rim_speed() const { return rim_speed_of(machine, car); }
   /// m, mean depth of the rut of the left (0) or right (1) wheels between two places along the lane, over the middle
   /// half of the tyre's width; NaN if there is none.
   double rut_depth(std::size_t side, double from, double to) const {

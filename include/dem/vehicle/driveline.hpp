@@ -25,6 +25,7 @@ struct EngineSpec {
   std::vector<double> gears = {};  ///< turns of the motor for one turn of the transfer case, from low to high
   double transfer = 1.0;           ///< turns of the transfer case for one turn of the drive shaft
   double shift_up = 350.0, shift_down = 150.0;  ///< rad/s of the motor
+  double governor_lag = 2e-3;                   ///< s, of the governor's valve; see Controls
 };
 
 struct DrivelineSpec {
@@ -42,7 +43,8 @@ struct Driveline {
   Axle front, rear;
   ActuatorId engine;
   EngineSpec spec;
-  std::size_t gear = 0;  ///< from 0
+  std::size_t gear = 0;   ///< from 0
+  double governed = 1.0;  ///< share of the throttle that the governor's valve leaves now
 };
 
 namespace detail {
@@ -65,6 +67,7 @@ DEM_COLD inline void check_engine(const EngineSpec& e) {
   if (e.gears.empty()) fail("the engine has no gears, but needs at least 1; give EngineSpec::gears a ratio");
   if (e.torque.empty()) fail("the engine has no torque curve; give EngineSpec::torque points (rad/s, N m)");
   require_positive(e.transfer, "ratio of the transfer case", "(no unit)");
+  require_positive(e.governor_lag, "lag of the engine's governor", "s");
   double widest = 1.0;
   for (std::size_t k = 0; k < e.gears.size(); ++k) {
     require_positive(e.gears[k], "ratio of a gear", "(no unit)");

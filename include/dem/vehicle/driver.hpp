@@ -12,8 +12,22 @@
 namespace dem::vehicle {
 
 /// What a driver does: throttle and brake 0 to 1; the angle of the steered wheels in rad, positive to the left.
+///
+/// A motor has a governor as well. Above a speed of the rims it takes the throttle back, in proportion, to none at a
+/// second speed. It looks at every time step: a driver who looks a hundred times a second is too slow for it, as light
+/// shafts and wheels get faster by metres per second in that time, and would switch the engine on and off. Its valve
+/// lags by EngineSpec::governor_lag: on the light drive shaft it then acts as a spring and damper in a row, which takes
+/// energy, and is stable with steps up to some 1e-4 s for bands of 0.2 m/s and more.
 struct Controls {
   double throttle = 0.0, brake = 0.0, steer = 0.0;
+  double ease_from = no_limit, ease_to = no_limit;  ///< m/s, of the rims' mean, as the drive shaft turns
+
+  static constexpr double no_limit = 1e300;
+  /// Share of the throttle that the governor leaves at a speed of the rims (m/s).
+  double governed(double rims) const {
+    if (rims <= ease_from) return 1.0;
+    return rims < ease_to ? (ease_to - rims) / (ease_to - ease_from) : 0.0;
+  }
 };
 
 /// Holds a speed by throttle and brake: a PI controller whose integral stands still where the output is at its limit.
@@ -31,14 +45,19 @@ struct SpeedHold {
 };
 
 /// Follows a path in the plane by preview steering: it aims at the point of the path that is a preview distance ahead,
-/// and steers for the circle that leads there (pure pursuit).
+/// and steers for the circle that leads there (pure pursuit). On a side slope this alone leaves the car beside the
+/// path: it has to head up the slope, which it does only as far as it is below the path. `trim` makes that go away,
+/// over some reach/trim of way: the steering angle grows with the sum of the car's offset from the path over the way.
 struct PathFollower {
   std::vector<Vec3> path;      ///< m, global; straight lines between the points
   double wheelbase = 3.378;    ///< m
   double preview = 5.0;        ///< m, at rest
   double preview_time = 0.6;   ///< s, of driving added to it
   double largest_steer = 0.6;  ///< rad
+  double trim = 0.0;           ///< of reach^3/wheelbase; 0: none, from 4 on the car swings ever more about the path
   std::size_t next = 0;        ///< point of the path that the car heads for
+  std::size_t beside = 0;      ///< piece of the path that the car is beside
+  double offset_sum = 0.0;     ///< m^2, of the offset over the way, to the right
 
   /// Angle of the wheels (rad) at a position (m, of the rear axle), a heading (unit vector) and a speed (m/s). Throws
   /// Error for a path of less than two points.
@@ -51,12 +70,32 @@ struct PathFollower {
     const double left = heading.x() * (aim.y() - at.y()) - heading.y() * (aim.x() - at.x());
     const double square = ahead * ahead + left * left;
     const double curvature = square > 0.0 ? 2.0 * left / square : 0.0;
-    return std::clamp(std::atan(wheelbase * curvature), -largest_steer, largest_steer);
+    const double wanted = std::atan(wheelbase * curvature) + trim * wheelbase / (reach * reach * reach) * offset_sum;
+    const double steer = std::clamp(wanted, -largest_steer, largest_steer);
+    // The sum stands still while the wheels are turned as far as they go.
+    if (steer == wanted && has_last) offset_sum -= distance(at, last) * offset(at);
+    last = at, has_last = true;
+    return steer;
   }
+  /// m, of a position to the left of the path: of its piece beside the position.
+  double offset(const Vec3& at) {
+    const auto along = [&](std::size_t k) {
+      const Vec3 piece = path[k + 1] - path[k], to = at - path[k];
+      return (piece.x() * to.x() + piece.y() * to.y()) /
+             std::max(1e-300, piece.x() * piece.x() + piece.y() * piece.y());
+    };
+    while (beside + 2 < path.size() && along(beside) > 1.0) ++beside;
+    const Vec3 piece = path[beside + 1] - path[beside], to = at - path[beside];
+    return (piece.x() * to.y() - piece.y() * to.x()) / std::max(1e-300, std::hypot(piece.x(), piece.y()));
+  }
+
   /// True when the end of the path is nearer than the preview.
   bool at_end() const { return next + 1 >= path.size(); }
 
  private:
+  Vec3 last = Vec3::Zero();
+  bool has_last = false;
+
   static double distance(const Vec3& p, const Vec3& q) { return std::hypot(p.x() - q.x(), p.y() - q.y()); }
   /// Where the path leaves the circle of radius `reach` about `at`, on its present piece.
   Vec3 aim_at(const Vec3& at, double reach) const {

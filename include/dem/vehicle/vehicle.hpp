@@ -85,6 +85,10 @@ inline Vec3 forward_of(const mbd::Mechanism& m, const Vehicle& v) {
 inline double speed_of(const mbd::Mechanism& m, const Vehicle& v) {
   return m.body(v.chassis).velocity().dot(forward_of(m, v));
 }
+/// m/s, of the rims, as the drive shaft turns: the mean of the four.
+inline double rim_speed_of(const mbd::Mechanism& m, const Vehicle& v) {
+  return m.speed(v.driveline.shaft_turn) / v.spec.driveline.front.ratio * v.spec.tyre.radius;
+}
 /// Global position (m) of a point that is given in the axes and from the origin of the vehicle.
 inline Vec3 point_of(const mbd::Mechanism& m, const Vehicle& v, const Vec3& p) {
   return m.reference_point(v.chassis, p - v.spec.chassis_centre);
@@ -114,7 +118,11 @@ inline double travel_of(const mbd::Mechanism& m, const Vehicle& v, std::size_t c
 /// turns no faster than `steer_rate` (rad/s of the wheels).
 inline void drive(mbd::Mechanism& m, Vehicle& v, const Controls& c, double dt, double steer_rate = 0.5) {
   for (Wheel& w : v.wheels) set_brake(m, w, c.brake);
-  if (v.driveline.spec.kind == EngineSpec::Kind::motor) set_throttle(m, v.driveline, c.throttle);
+  Driveline& d = v.driveline;
+  if (d.spec.kind == EngineSpec::Kind::motor) {
+    d.governed += (c.governed(rim_speed_of(m, v)) - d.governed) * -std::expm1(-dt / d.spec.governor_lag);
+    set_throttle(m, d, c.throttle * d.governed);
+  }
   mbd::PrescribedMotion& steer = m.parts().motions[v.steering.steer.index()];
   const double limit = v.steering.largest_angle, now = steer.drive.value;
   const double wanted = std::clamp(c.steer * v.pinion_per_steer, -limit, limit);

@@ -140,6 +140,24 @@ TEST_CASE("the memory of sliding turns with the contact and keeps its size") {
   CHECK(m.mobilised.z == Approx(size * s));
 }
 
+TEST_CASE("a load that trembles elastically does not wear off the shear stress") {
+  ShearMemory m = slide({}, {5e-4, 0, 0}, {0, 0, -1}, 1e4, false, 1e-3);
+  const double share = m.mobilised.x;
+  CHECK(share == Approx(1.0 - std::exp(-0.5)));
+  for (int k = 0; k < 100; ++k) {
+    m = slide(m, {0, 0, 0}, {0, 0, -1}, 0.8e4, false, 1e-3);
+    CHECK(m.mobilised.x == Approx(share / std::sqrt(0.8)));  // K tau^2/(2 strength) stays
+    m = slide(m, {0, 0, 0}, {0, 0, -1}, 1.2e4, false, 1e-3);
+  }
+  m = slide(m, {0, 0, 0}, {0, 0, -1}, 1e4, false, 1e-3);
+  CHECK(m.mobilised.x == Approx(share).epsilon(1e-12));
+  // It is never more than the strength; what is lost by that stays lost.
+  m = slide(m, {0, 0, 0}, {0, 0, -1}, 1e2, false, 1e-3);
+  CHECK(m.mobilised.x == 1.0);
+  m = slide(m, {0, 0, 0}, {0, 0, -1}, 1e4, false, 1e-3);
+  CHECK(m.mobilised.x == Approx(0.1));
+}
+
 TEST_CASE("no energy comes from sliding to and fro, also while the load changes elastically") {
   // Never more comes back than went in. Against the force at the end of each short step the work is right to |dj|/K.
   std::mt19937 engine(5);

@@ -93,14 +93,37 @@ TEST_CASE("a car rolls from hard ground into soil, where it sinks; a sled that i
   CHECK(car.rut_depth(0, 4.7, 5.0) > 2.0 * on_hard);
 }
 
-TEST_CASE("a car that stands on its brakes on a side slope gives way downhill, and its lower wheels carry more") {
+TEST_CASE("a car on its brakes gives way on a side slope until the soil holds it, and its lower wheels carry more") {
   auto spec = car_on("dry-sand", 4.0);
-  spec.side_grade = 0.3;  // the left side is high
+  spec.side_grade = 0.3;  // the left side is high; the soil's friction is 0.53
   ColumnCar car(spec);
   car.set_down();
   REQUIRE(car.failed.empty());
   CHECK(car.wheel(1).load > 1.2 * car.wheel(0).load);
-  CHECK(car.middle_of(2).y() + car.middle_of(3).y() < -0.02);
+  const double before = 0.5 * (car.middle_of(2).y() + car.middle_of(3).y());
+  CHECK(before < -0.02);
+  for (int k = 0; k < 100; ++k) car.advance({.brake = 1.0});
+  // It swings on its springs by some 10 mm, and stands.
+  CHECK(0.5 * (car.middle_of(2).y() + car.middle_of(3).y()) == Approx(before).margin(0.02));
+}
+
+TEST_CASE("a governor keeps the rims at a speed on soil without switching the engine on and off") {
+  ColumnCar car(car_on("dry-sand", 6.0));
+  car.set_down();
+  car.hitch() = {.on = true, .speed = 0.5};
+  const Controls controls{.throttle = 1.0, .ease_from = 1.0, .ease_to = 1.4};
+  double slowest = 1e9, fastest = 0.0, largest = 0.0, mean = 0.0;
+  for (int k = 0; k < 200; ++k) {
+    car.advance(controls);
+    if (k < 100) continue;
+    slowest = std::min(slowest, car.rim_speed()), fastest = std::max(fastest, car.rim_speed());
+    const double torque = car.sample().engine_torque;
+    largest = std::max(largest, torque), mean += 0.01 * torque;
+  }
+  REQUIRE(car.failed.empty());
+  CHECK(slowest > 1.0);
+  CHECK(fastest < 1.4);
+  CHECK(largest < 2.0 * mean);  // a switch would give all of its torque half of the time
 }
 
 TEST_CASE("lanes that are none, soils that are not known, and a lane narrower than the car are refused in words") {

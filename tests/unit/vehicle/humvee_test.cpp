@@ -163,24 +163,58 @@ TEST_CASE("a driver holds a speed, and follows a circle") {
   }
   CHECK(v == Approx(5.0).epsilon(1e-3));  // the integral leaves no error
   CHECK(fastest < 6.0);                   // and does not wind up while the throttle is at its limit
-  // A kinematic car on a circle of 20 m, drawn with pieces of 0.5 m.
-  PathFollower path{.path = {}, .preview = 3.0, .preview_time = 0.0};
-  const double r = 20.0;
-  for (int k = 0; k <= 400; ++k) {
-    const double a = 0.025 * k;
-    path.path.push_back(Vec3(r * std::sin(a), r - r * std::cos(a), 0));
+  // A kinematic car on a circle of 20 m, drawn with pieces of 0.5 m; with the trim as well, as there is no offset.
+  for (const double trim : {0.0, 1.0}) {
+    PathFollower path;
+    path.preview = 3.0, path.preview_time = 0.0, path.trim = trim;
+    const double r = 20.0;
+    for (int k = 0; k <= 400; ++k) {
+      const double a = 0.025 * k;
+      path.path.push_back(Vec3(r * std::sin(a), r - r * std::cos(a), 0));
+    }
+    Vec3 at = Vec3::Zero();
+    double yaw = 0.0, worst = 0.0;
+    for (int k = 0; k < 3000 && !path.at_end(); ++k) {
+      const Vec3 heading(std::cos(yaw), std::sin(yaw), 0);
+      const double steer = path(at, heading, 5.0);
+      at += 0.01 * 5.0 * heading;
+      yaw += 0.01 * 5.0 * std::tan(steer) / path.wheelbase;
+      worst = std::max(worst, std::abs((at - Vec3(0, r, 0)).norm() - r));
+    }
+    CHECK(yaw > 6.0);
+    // Pure pursuit of a circle is exact; chords of 0.5 m lie 1.6 mm inside.
+    CHECK(worst < 0.05);
   }
-  Vec3 at = Vec3::Zero();
-  double yaw = 0.0, worst = 0.0;
-  for (int k = 0; k < 3000 && !path.at_end(); ++k) {
-    const Vec3 heading(std::cos(yaw), std::sin(yaw), 0);
-    const double steer = path(at, heading, 5.0);
-    at += 0.01 * 5.0 * heading;
-    yaw += 0.01 * 5.0 * std::tan(steer) / path.wheelbase;
-    worst = std::max(worst, std::abs((at - Vec3(0, r, 0)).norm() - r));
-  }
-  CHECK(yaw > 6.0);
-  // Pure pursuit of a circle is exact; chords of 0.5 m lie 1.6 mm inside.
-  CHECK(worst < 0.05);
   CHECK_THAT(message_of([] { PathFollower{}({0, 0, 0}, {1, 0, 0}, 1.0); }), Contains("a path has 0 points"));
+}
+
+TEST_CASE("a car that drifts off a side slope comes back to its path with trim, and stays beside it without") {
+  // It goes 1 m to the right for 10 m that it drives. To stay on the line it heads 0.0997 rad to the left. Without trim
+  // the point that it aims at must then be 0.0997 rad to the left of the path: it stands reach x sin of that beside it.
+  for (const double trim : {0.0, 1.0}) {
+    PathFollower follow;
+    follow.path = {Vec3(-10, 0, 0), Vec3(1000, 0, 0)};
+    follow.preview = 4.0, follow.preview_time = 0.0, follow.trim = trim;
+    Vec3 at = Vec3::Zero();
+    double yaw = 0.0;
+    for (int k = 0; k < 4000; ++k) {
+      const double steer = follow(at, Vec3(std::cos(yaw), std::sin(yaw), 0), 2.0);
+      at += 0.02 * (Vec3(std::cos(yaw), std::sin(yaw), 0) + Vec3(0, -0.1, 0));
+      yaw += 0.02 * std::tan(steer) / follow.wheelbase;
+    }
+    CHECK(yaw == Approx(std::asin(0.1)).epsilon(0.01));
+    CHECK(follow.offset(at) == Approx(trim > 0.0 ? 0.0 : -0.4).margin(0.002));
+  }
+}
+
+TEST_CASE("a motor's governor takes the throttle back between two speeds of the rims") {
+  Controls c{.throttle = 1.0};
+  CHECK(c.governed(1e6) == 1.0);  // none unless asked for
+  c.ease_from = 2.0, c.ease_to = 4.0;
+  CHECK(c.governed(-1.0) == 1.0);
+  CHECK(c.governed(2.5) == Approx(0.75));
+  CHECK(c.governed(4.0) == 0.0);
+  c.ease_to = 2.0;  // a limit without a band
+  CHECK(c.governed(2.0) == 1.0);
+  CHECK(c.governed(2.1) == 0.0);
 }

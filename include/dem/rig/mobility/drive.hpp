@@ -118,8 +118,8 @@ inline vehicle::ColumnCarSpec car_of(const Settings& s, const Case& c) {
 }
 
 /// Holds a speed by throttle and brakes, and the middle of the lane by steering. The throttle begins with what it takes
-/// to stand on the slope. It eases off where rims are faster than the car by more than the spin limit, to none at twice
-/// that.
+/// to stand on the slope. The engine's governor takes it back where rims are faster than the car by more than the spin
+/// limit, to none at twice that.
 class Driver {
  public:
   Driver(const Settings& s, const vehicle::ColumnCar& car) : settings_(s) {
@@ -132,6 +132,7 @@ class Driver {
     follow_.wheelbase = car.spec().car.wheelbase();
     follow_.path = {Vec3(-100.0, 0, 0), Vec3(1000.0, 0, 0)};
     follow_.preview = 4.0;
+    follow_.trim = 1.0;
   }
 
   /// `time` (s) since the start.
@@ -139,15 +140,14 @@ class Driver {
     const double speed = car.speed();
     vehicle::Controls c =
         hold_(speed, std::min(settings_.speed, settings_.acceleration * time), vehicle::ColumnCar::interval);
-    c.throttle *= std::clamp(2.0 - (car.rim_speed() - speed) / settings_.spin_limit, 0.0, 1.0);
+    c.ease_from = speed + settings_.spin_limit, c.ease_to = speed + 2.0 * settings_.spin_limit;
     c.steer = steer(car);
     return c;
   }
-  /// Turns the rims with a speed (m/s), whatever the car does.
-  vehicle::Controls rims(const vehicle::ColumnCar& car, double wanted) {
-    vehicle::Controls c = hold_(car.rim_speed(), wanted, vehicle::ColumnCar::interval);
-    c.steer = steer(car);
-    return c;
+  /// Turns the rims with a speed (m/s), or up to half of `band` (m/s) slower or faster, whatever the car does: by the
+  /// governor alone, at full throttle. It does not brake them.
+  vehicle::Controls rims(const vehicle::ColumnCar& car, double wanted, double band = 0.4) {
+    return {.throttle = 1.0, .steer = steer(car), .ease_from = wanted - 0.5 * band, .ease_to = wanted + 0.5 * band};
   }
 
  private:
@@ -189,7 +189,7 @@ class Judge {
   double slips_since_ = -1.0;  // s
 };
 
-/// Slips that a car on a load cell goes through, in 32 s.
+/// Slips that a car on a load cell goes through, in 32 s. Where it rolls with more slip than that it is towed.
 inline double slip_of_hold(double time) { return std::clamp(-0.10 + 0.9 * (time - 4.0) / 28.0, -0.10, 0.80); }
 inline constexpr double hold_time = 32.0;  ///< s
 
@@ -218,23 +218,24 @@ inline void evaluate(Result& r, const std::vector<Sample>& samples, double radiu
 }
 
 /// Means of what the load cell saw in steps of slip of 0.05.
-inline void evaluate_pulls(Result& r, const std::vector<Sample>& samples, const vehicle::ColumnCar& car, double speed) {
+inline void evaluate_pulls(Result& r, const std::vector<Sample>& samples, const vehicle::ColumnCar& car) {
   const double radius = car.spec().car.tyre.radius;
   for (double low = -0.075; low < 0.79; low += 0.05) {
     PullPoint p;
-    double n = 0.0, omega = 0.0;
+    double n = 0.0, omega = 0.0, way = 0.0;
     for (const Sample& x : samples) {
       const double slip = slip_of_hold(x.car.time);
       if (x.car.time < 4.0 || slip < low || slip >= low + 0.05) continue;
       n += 1.0;
       p.slip += slip, p.pull += x.hitch, p.torque += 4.0 * x.mean(&vehicle::WheelSample::torque);
       p.sinkage += x.mean(&vehicle::WheelSample::sinkage), p.power += x.car.engine_power;
-      omega += x.mean(&vehicle::WheelSample::spin);
+      omega += x.mean(&vehicle::WheelSample::spin), way += x.car.speed;
     }
     if (n < 10.0) continue;
     for (double* mean : {&p.slip, &p.pull, &p.torque, &p.sinkage, &p.power}) *mean /= n;
-    p.slip = 1.0 - speed / (omega / n * radius);
-    p.efficiency = p.pull * speed / (p.torque * omega / n);
+    omega /= n, way /= n;  // the hitch gives by some hundredths of a m/s: the car is not as fast as the sled
+    p.slip = 1.0 - way / (omega * radius);
+    p.efficiency = p.pull * way / (p.torque * omega);
     r.pulls.push_back(p);
   }
 }
@@ -292,7 +293,7 @@ Driven drive(const Settings& s, Case c, std::vector<double>& memory, Stages& sta
     }
   }
   evaluate(r, samples, radius);
-  if (c.is_held) evaluate_pulls(r, samples, car, s.speed);
+  if (c.is_held) evaluate_pulls(r, samples, car);
   const double rear = car.middle_of(2).x() - 0.4;
   r.rut_left = car.rut_depth(0, 0.5, rear);
   r.rut_right = car.rut_depth(1, 0.5, rear);

@@ -39,7 +39,7 @@ struct Settings {
   double spacing = 0.05;    ///< m, of the columns
   double damping = 2e3;     ///< Pa s/m, of the columns
   double bulldozing = 0.3;  ///< share of the soil that is pushed aside
-  double half_width = 2.0;  ///< m, of the soil on either side of the middle
+  double half_width = 3.0;  ///< m, of the soil on either side of the middle
   double time_step = 5e-5;  ///< s
   int threads = 0;          ///< cells side by side; 0: as many as there are processors
   std::string output = "humvee_columns_output";

@@ -9,8 +9,8 @@
 namespace dem::rig::soft_lane {
 
 /// Drives a scene: holds a speed by throttle and brakes and keeps to the middle of the lane, or brakes, coasts or turns
-/// after half of the path. It eases off the throttle where the wheels spin: from the full throttle at the spin limit
-/// (mean of the rims less the car's speed) to none at twice that. Asked every hundredth of a second.
+/// after half of the path. The engine's governor takes back the throttle where the wheels spin: from the spin limit
+/// (mean of the rims less the car's speed) on, down to none at twice that. Asked every hundredth of a second.
 class Driver {
  public:
   /// `force` (N) is what it takes to stand on the slope; the throttle begins with it, so that the car does not roll
@@ -25,6 +25,7 @@ class Driver {
     follow_.wheelbase = s.car.wheelbase();
     follow_.path = {Vec3(-s.bed.length, 0, 0), Vec3(s.bed.length + 20.0, 0, 0)};
     follow_.preview = 4.0;
+    follow_.trim = 1.0;
   }
 
   vehicle::Controls operator()(const mbd::Mechanism& m, const vehicle::Vehicle& v, double time, double way, double dt) {
@@ -35,8 +36,7 @@ class Driver {
     if (has_braked_) return {.brake = 1.0};
     if (is_beyond && s.scene == "coast") return {};
     vehicle::Controls c = hold_(speed, std::min(s.speed, s.acceleration * time), dt);
-    const double rims = m.speed(v.driveline.shaft_turn) / s.car.driveline.front.ratio * s.car.tyre.radius;
-    c.throttle *= std::clamp(2.0 - (rims - speed) / s.spin_limit, 0.0, 1.0);
+    c.ease_from = speed + s.spin_limit, c.ease_to = speed + 2.0 * s.spin_limit;
     if (s.scene == "turn") {
       const double degrees = is_beyond || way > 0.15 * s.path ? s.steer_deg : 0.0;
       c.steer = degrees * std::numbers::pi / 180.0;
