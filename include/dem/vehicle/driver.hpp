@@ -55,7 +55,7 @@ struct PathFollower {
   double preview_time = 0.6;   ///< s, of driving added to it
   double largest_steer = 0.6;  ///< rad
   double trim = 0.0;           ///< of reach^3/wheelbase; 0: none, from 4 on the car swings ever more about the path
-  std::size_t next = 0;        ///< point of the path that the car heads for
+  std::size_t next = 1;        ///< point of the path that the car heads for
   std::size_t beside = 0;      ///< piece of the path that the car is beside
   double offset_sum = 0.0;     ///< m^2, of the offset over the way, to the right
 
@@ -64,6 +64,8 @@ struct PathFollower {
   double operator()(const Vec3& at, const Vec3& heading, double speed) {
     if (path.size() < 2) fail("a path has {} points, but needs at least 2", path.size());
     const double reach = preview + preview_time * std::abs(speed);
+    const double beside_path = offset(at);
+    next = std::max(next, beside + 1);
     while (next + 1 < path.size() && distance(path[next], at) < reach) ++next;
     const Vec3 aim = aim_at(at, reach);
     const double ahead = (aim - at).dot(heading);
@@ -73,18 +75,13 @@ struct PathFollower {
     const double wanted = std::atan(wheelbase * curvature) + trim * wheelbase / (reach * reach * reach) * offset_sum;
     const double steer = std::clamp(wanted, -largest_steer, largest_steer);
     // The sum stands still while the wheels are turned as far as they go.
-    if (steer == wanted && has_last) offset_sum -= distance(at, last) * offset(at);
+    if (steer == wanted && has_last) offset_sum -= distance(at, last) * beside_path;
     last = at, has_last = true;
     return steer;
   }
   /// m, of a position to the left of the path: of its piece beside the position.
   double offset(const Vec3& at) {
-    const auto along = [&](std::size_t k) {
-      const Vec3 piece = path[k + 1] - path[k], to = at - path[k];
-      return (piece.x() * to.x() + piece.y() * to.y()) /
-             std::max(1e-300, piece.x() * piece.x() + piece.y() * piece.y());
-    };
-    while (beside + 2 < path.size() && along(beside) > 1.0) ++beside;
+    while (beside + 2 < path.size() && along(beside, at) > 1.0) ++beside;
     const Vec3 piece = path[beside + 1] - path[beside], to = at - path[beside];
     return (piece.x() * to.y() - piece.y() * to.x()) / std::max(1e-300, std::hypot(piece.x(), piece.y()));
   }
@@ -97,12 +94,18 @@ struct PathFollower {
   bool has_last = false;
 
   static double distance(const Vec3& p, const Vec3& q) { return std::hypot(p.x() - q.x(), p.y() - q.y()); }
-  /// Where the path leaves the circle of radius `reach` about `at`, on its present piece.
+  /// How far along a piece of the path a position is: 0 at its begin, 1 at its end.
+  double along(std::size_t k, const Vec3& at) const {
+    const Vec3 piece = path[k + 1] - path[k], to = at - path[k];
+    return (piece.x() * to.x() + piece.y() * to.y()) / std::max(1e-300, piece.x() * piece.x() + piece.y() * piece.y());
+  }
+  /// Where the path leaves the circle of radius `reach` about `at`, on the piece that ends at `next`; what of it is
+  /// nearest if all of it is farther away.
   Vec3 aim_at(const Vec3& at, double reach) const {
-    if (next == 0) return path[1];
     const Vec3 from = path[next - 1], to = path[next];
-    double low = 0.0, high = 1.0;
-    if (distance(to, at) < reach || distance(from, at) > reach) return to;
+    double low = std::clamp(along(next - 1, at), 0.0, 1.0), high = 1.0;
+    if (distance(to, at) < reach) return to;
+    if (distance(from + low * (to - from), at) >= reach) return from + low * (to - from);
     for (int k = 0; k < 40; ++k) {
       const double middle = 0.5 * (low + high);
       (distance(from + middle * (to - from), at) < reach ? low : high) = middle;
