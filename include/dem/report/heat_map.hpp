@@ -34,13 +34,15 @@ inline double cell_edge(const std::vector<double>& x, std::size_t k, bool upper)
   return upper ? x[k] + half : x[k] - half;
 }
 
-/// Words instead of numbers along an axis, if there are any.
+/// Words instead of numbers along an axis, if there are any. gnuplot reads them as formats of the number.
 inline std::string gnuplot_ticks(std::string_view axis, const std::vector<double>& at,
                                  const std::vector<std::string>& words) {
   if (words.empty()) return {};
   std::string ticks;
   for (std::size_t k = 0; k < std::min(at.size(), words.size()); ++k) {
-    ticks += (ticks.empty() ? "" : ", ") + gnuplot_quote(to_utf8(words[k])) + fmt::format(" {}", at[k]);
+    std::string word = to_utf8(words[k]);
+    for (std::size_t i = word.find('%'); i != std::string::npos; i = word.find('%', i + 2)) word.insert(i, 1, '%');
+    ticks += (ticks.empty() ? "" : ", ") + gnuplot_quote(word) + fmt::format(" {}", at[k]);
   }
   return fmt::format("set {}tics ({})\n", axis, ticks);
 }

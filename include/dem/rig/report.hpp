@@ -2,6 +2,7 @@
 // What a rig's program shows at its end: tables, files, plots and one page.
 
 #include <dem/report/ascii_table.hpp>
+#include <dem/report/heat_map.hpp>
 #include <dem/report/html_report.hpp>
 #include <dem/report/plot.hpp>
 #include <dem/rig/session.hpp>
@@ -54,6 +55,18 @@ class Report {
   void plot(io::HtmlReport& html, const io::Plot& plot, const char* name, const char* caption) {
     has_plots_ = true;
     const auto drawn = io::render_plot(plot, folder() / name);
+    if (drawn) {
+      html.picture(drawn.svg, caption);
+    } else {
+      not_drawn_ = drawn.reason;
+      html.paragraph(text("{}: not drawn ({})", caption, drawn.reason));
+    }
+  }
+
+  /// The same with a map.
+  void map(io::HtmlReport& html, const io::HeatMap& map, const char* name, const char* caption) {
+    has_plots_ = true;
+    const auto drawn = io::render_map(map, folder() / name);
     if (drawn) {
       html.picture(drawn.svg, caption);
     } else {

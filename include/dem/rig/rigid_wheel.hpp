@@ -4,6 +4,7 @@
 #include <dem/rig/bed/make_bed.hpp>
 #include <dem/rig/rigid_wheel/results.hpp>
 #include <dem/rig/smooth_start.hpp>
+#include <dem/world/contacts.hpp>
 
 #include <utility>
 
@@ -37,6 +38,7 @@ class RigidWheel {
     BodyId carriage = {}, shaft = {}, wheel = {};
     JointId rail = {}, guide = {}, axle = {};
     ActuatorId drive = {}, servo = {}, motor = {};
+    SurfaceId rim = {};
     SensorId grains = {}, drive_sensor = {}, motor_sensor = {};
   };
 
@@ -127,6 +129,7 @@ class RigidWheel {
                                 -m.sensor(stand.drive_sensor).mean().force.x,
                                 m.sensor(stand.motor_sensor).mean().force.x});
       const double share = (world.time() - n.start) / duration;
+      if (share > 0.5 && result.samples.size() % 2 == 0) look_under(stand, result.print);
       look(std::as_const(world), share);
       stages.update(std::min(1.0, share), text("slip {:g}: pull {:.1f} N", result.slip, grains.force.x));
     }
@@ -143,6 +146,18 @@ class RigidWheel {
   static Settings resolved(Settings s) {
     rigid_wheel::resolve(s);
     return s;
+  }
+
+  /// Adds what the grains do to the wheel at this moment to a print.
+  void look_under(const Stand& stand, rigid_wheel::ContactPrint& print) const {
+    if (print.across == 0) print.set_up(settings_.radius, settings_.width, settings_.grains.edge());
+    const auto& world = stand.bed.world;
+    const Vec3 middle = world.machine().body(stand.wheel).position();
+    for (const auto& contact : contacts_of(world)) {
+      if (contact.kind != ContactKind::grain_on_surface || contact.surface != stand.rim) continue;
+      print.add(contact.point - middle, -contact.force);
+    }
+    print.moments += 1.0;
   }
 
   [[nodiscard]] Stand build(Bed<Model> bed) const {
@@ -172,9 +187,9 @@ class RigidWheel {
                                  .grousers = s.grousers,
                                  .grouser_height = s.grouser_height,
                                  .grouser_thickness = s.grouser_thickness};
-      world.add_surface(stand.wheel, surface::TriangleMesh(mesh::wheel(shape)), as_wheel);
+      stand.rim = world.add_surface(stand.wheel, surface::TriangleMesh(mesh::wheel(shape)), as_wheel);
     } else {
-      world.add_surface(stand.wheel, surface::Cylinder(s.radius, s.width), as_wheel);
+      stand.rim = world.add_surface(stand.wheel, surface::Cylinder(s.radius, s.width), as_wheel);
     }
     stand.rail = m.add_joint(mbd::prismatic("rail", m.ground(), stand.carriage, at, Vec3::UnitX()));
     stand.guide = m.add_joint(mbd::prismatic("guide", stand.carriage, stand.shaft, at, Vec3::UnitZ()));

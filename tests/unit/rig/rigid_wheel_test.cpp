@@ -68,6 +68,31 @@ TEST_CASE("a groove in a flat surface is found with its depth and width") {
   CHECK(r.rut_width == Approx(8 * 8e-3));  // the eight strips whose middles lie within 30 mm
 }
 
+TEST_CASE("the print of a wheel under given stresses has them back, with the area that carries") {
+  // 10 kPa and a shear stress of 3 kPa from -15 to 30 deg, on the middle half of the width; 40 moments.
+  rigid_wheel::ContactPrint print;
+  print.set_up(0.1, 0.08, 0.01);
+  REQUIRE(print.across == 8);
+  const double from = -15.0, to = 30.0, degree = 3.14159265358979 / 180.0, da = 0.5 * degree, dy = 0.002;
+  for (int moment = 0; moment < 40; ++moment) {
+    for (double a = (from + 0.25) * degree; a < to * degree; a += da) {
+      for (double y = -0.02 + 0.5 * dy; y < 0.02; y += dy) {
+        const double area = 0.1 * da * dy, c = std::cos(a), s = std::sin(a);
+        print.add({0.1 * s, y, -0.1 * c}, area * (1e4 * dem::Vec3(-s, 0, c) + 3e3 * dem::Vec3(c, 0, s)));
+      }
+    }
+    print.moments += 1.0;
+  }
+  CHECK(print.area() == Approx(0.95 * 0.1 * 45.0 * degree * 0.04).epsilon(0.03));  // whole cells: one of 36
+  CHECK(print.mean_pressure() == Approx(1e4).epsilon(0.03));
+  for (std::size_t a = 0; a < print.along; ++a) {
+    const double angle = print.angle(a) / degree, share = angle > from && angle < to ? 0.5 : 0.0;
+    CHECK(print.pressure(a) == Approx(share * 1e4).margin(1.0));
+    CHECK(print.shear(a) == Approx(share * 3e3).margin(1.0));
+    CHECK(print.pressure(a, 0) == 0.0);
+  }
+}
+
 TEST_CASE("settings of wheels that make no sense are refused by the names of their options") {
   const auto refuses = [](auto&& change, const char* option) {
     auto s = small();
@@ -105,6 +130,19 @@ TEST_CASE("a wheel is set down gently, carries its load, and keeps its slip") {
   double carried = 0.0;
   for (const auto& x : run.samples) carried += x.carried / static_cast<double>(run.samples.size());
   CHECK(carried == Approx(5.0).epsilon(0.08));
+  // What was seen under the wheel, at a hundred moments of the second half, is what the sensor felt all of that time.
+  double up = 0.0, forward = 0.0, lift = 0.0, pull = 0.0;
+  for (std::size_t a = 0; a < run.print.along; ++a) {
+    const double area = run.print.cell_area() * static_cast<double>(run.print.across), angle = run.print.angle(a);
+    up += area * (run.print.pressure(a) * std::cos(angle) + run.print.shear(a) * std::sin(angle));
+    forward += area * (run.print.shear(a) * std::cos(angle) - run.print.pressure(a) * std::sin(angle));
+  }
+  for (std::size_t i = run.samples.size() / 2; i < run.samples.size(); ++i) {
+    lift += 2.0 * run.samples[i].carried / static_cast<double>(run.samples.size());
+    pull += 2.0 * run.samples[i].pull / static_cast<double>(run.samples.size());
+  }
+  CHECK(up == Approx(lift).epsilon(0.08));  // single moments instead of means; cells are 5 degrees long
+  CHECK(forward == Approx(pull).margin(0.08 * lift));
 }
 
 TEST_CASE("a wheel that spins on the spot on one heavy grain is braked by mu N r, and pushed by mu N") {

@@ -172,13 +172,15 @@ class Judge {
     const double far = std::numbers::pi / 3.0;
     if (std::abs(x.car.roll) > far || std::abs(x.car.pitch) > far) return vehicle::ending::rolled_over;
     for (std::size_t k = 0; k < 4; ++k) {
-      if (std::abs(car.middle_of(k).y()) > car.spec().half_width - 0.3) return vehicle::ending::left_lane;
+      // The soil ends some way beyond the wheel that leaves: half its width, and its lean.
+      if (std::abs(car.middle_of(k).y()) > car.spec().half_width - 0.5) return vehicle::ending::left_lane;
       if (x.wheels[k].sinkage > car.spec().car.tyre.radius) return vehicle::ending::dug_in;
     }
     if (x.way < -0.3) return vehicle::ending::slid_back;
-    const bool slips = x.mean(&vehicle::WheelSample::slip) > 0.8 && x.car.speed < 0.1 * s.speed;
+    // A car that just gets under way on a steep slope spins its wheels too.
+    const bool slips = x.mean(&vehicle::WheelSample::slip) > 0.8 && x.car.speed < 0.05 * s.speed;
     slips_since_ = !slips ? -1.0 : slips_since_ < 0.0 ? x.car.time : slips_since_;
-    if (slips && x.car.time - slips_since_ >= 1.0) return vehicle::ending::dug_in;
+    if (slips && x.car.time - slips_since_ >= 2.0) return vehicle::ending::dug_in;
     if (x.way >= s.path) return vehicle::ending::arrived;
     if (x.car.time > 4.0 * s.path / s.speed + 3.0) return vehicle::ending::too_slow;
     return {};

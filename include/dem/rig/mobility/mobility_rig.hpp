@@ -95,9 +95,7 @@ class MobilityRig : public Rig {
       report.plot(page, plot, name, caption);
     };
     const auto add_map = [&](const io::HeatMap& map, const char* name, const char* caption) {
-      const auto drawn = io::render_map(map, report.folder() / name);
-      if (drawn) page.picture(drawn.svg, caption);
-      else page.paragraph(text("{}: not drawn ({})", caption, drawn.reason));
+      report.map(page, map, name, caption);
     };
     const auto over = [&](const char* x_label, auto&& x) {
       add(plot_over(c, "Speed", x_label, "speed [m/s]", x, [](const Result& r) { return r.speed; }), "speed",

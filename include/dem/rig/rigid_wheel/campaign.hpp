@@ -48,9 +48,7 @@ void run_campaign(const Settings& settings, ShapeOf&& shape_of, Campaign& campai
   session.finish(text("{:.2f} mm deep", 1e3 * campaign.set_down_sinkage));
 
   for (const double slip : s.slips) campaign.slips.push_back({.slip = slip});
-  // The slip that is shown: that of the greatest number up to 0.3.
-  std::size_t shown = 0;
-  for (std::size_t k = 0; k < s.slips.size(); ++k) shown = s.slips[k] <= 0.301 ? k : shown;
+  const std::size_t shown = shown_slip(s.slips);
   if (s.replay)
     campaign.replay.emplace(
         report::ReplayOptions{.frames = 80, .interval = s.duration() / 60.0, .force_lines = s.replay_forces});

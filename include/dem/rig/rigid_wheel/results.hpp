@@ -2,6 +2,7 @@
 
 #include <dem/report/replay_recorder.hpp>
 #include <dem/rig/bed/surface_profile.hpp>
+#include <dem/rig/rigid_wheel/contact_print.hpp>
 #include <dem/rig/rigid_wheel/settings.hpp>
 #include <dem/rig/samples.hpp>
 #include <dem/rig/steady_window.hpp>
@@ -56,6 +57,7 @@ struct SlipResult {
   bool finished = false;
   std::vector<Sample> samples = {};
   std::vector<double> rut_y = {}, rut_z = {};  ///< m: height of the surface behind the wheel, across; empty: no rut yet
+  ContactPrint print = {};                     ///< under the wheel, over the second half of the run
 
   // Of the samples, by evaluate()
   double window_from = not_known;  ///< s, where the steady window begins
@@ -69,8 +71,16 @@ struct SlipResult {
   template <class V>
   void fields(V& v) {
     v("finished", finished), v.numbers("samples", samples), v("rut_y", rut_y), v("rut_z", rut_z);
+    v("print", print);
   }
 };
+
+/// The run that is shown: that of the greatest slip up to 0.3, or else the first.
+inline std::size_t shown_slip(const std::vector<double>& slips) {
+  std::size_t shown = 0;
+  for (std::size_t k = 0; k < slips.size(); ++k) shown = slips[k] <= 0.301 ? k : shown;
+  return shown;
+}
 
 /// Everything that a run finds.
 struct Campaign {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <dem/io/duration.hpp>
+#include <dem/report/heat_map.hpp>
 #include <dem/report/plot_data.hpp>
 #include <dem/report/table.hpp>
 #include <dem/rig/bed/bed.hpp>
@@ -143,6 +144,75 @@ inline io::Plot rut_plot(const Campaign& c) {
     if (!line.x.empty()) plot.series.push_back(std::move(line));
   }
   return plot;
+}
+
+inline io::Table print_table(const Campaign& c) {
+  io::Table t{.caption = "Under the wheel, means over the second half of each run",
+              .header = {"slip", "contact area [cm²]", "pressure there [kPa]", "largest pressure [kPa]", "at [deg]",
+                         "shear stress there [kPa]"}};
+  for (const SlipResult& r : c.slips) {
+    const ContactPrint& p = r.print;
+    if (p.empty()) continue;
+    const std::size_t a = p.peak();
+    t.row(number(r.slip), number(1e4 * p.area(), "{:.0f}"), number(1e-3 * p.mean_pressure()),
+          number(1e-3 * p.pressure(a)), number(p.angle(a) * 180.0 / std::numbers::pi, "{:.1f}"),
+          number(1e-3 * p.shear(a)));
+  }
+  return t;
+}
+inline constexpr const char* print_text =
+    "Under the wheel: cells of 5 degrees along the rim and of some grain's edge across it. The contact area is that of "
+    "the cells of most pressure that carry 95 % of the radial force. The largest pressure is a mean across the wheel's "
+    "width. Angles count from the lowest point, forward.";
+
+/// Pressure and shear stress along the rim of a run, beside the soils by Bekker and Wong at this slip.
+inline io::Plot print_plot(const Settings& s, const SlipResult& r) {
+  io::Plot plot{.title = text("Stress under the wheel, s = {:g}", r.slip),
+                .x_label = "angle from the lowest point, forward [deg]",
+                .y_label = "stress [kPa]"};
+  const double degree = std::numbers::pi / 180.0;
+  io::Series pressure{.name = "pressure of the grains", .style = io::SeriesStyle::LinePoints, .color = 0};
+  io::Series shear{.name = "shear stress of the grains", .style = io::SeriesStyle::LinePoints, .color = 1};
+  for (std::size_t a = 0; a < ContactPrint::along; ++a) {
+    for (auto* series : {&pressure, &shear}) series->x.push_back(r.print.angle(a) / degree);
+    pressure.y.push_back(1e-3 * r.print.pressure(a));
+    shear.y.push_back(1e-3 * r.print.shear(a));
+  }
+  plot.series = {pressure, shear};
+  int color = 2;
+  for (const auto& [name, soil] : references(s)) {
+    const auto f = reference_at(soil, r.slip, s);
+    if (!f) continue;
+    using namespace terramechanics;
+    const WheelContact contact({.radius = s.radius, .width = s.width}, soil, {r.slip, SlipDefinition::wheel_speed},
+                               f->sinkage);
+    io::Series p{.name = name + ", pressure", .style = io::SeriesStyle::Dashed, .color = color};
+    io::Series t{.name = name + ", shear stress", .style = io::SeriesStyle::Dotted, .color = color++};
+    for (int k = 0; k <= 60; ++k) {
+      const double angle = f->exit + (f->entry - f->exit) * k / 60.0, sigma = contact.pressure(angle);
+      p.x.push_back(angle / degree), p.y.push_back(1e-3 * sigma);
+      t.x.push_back(angle / degree), t.y.push_back(1e-3 * contact.shear(angle, sigma));
+    }
+    plot.series.push_back(std::move(p));
+    plot.series.push_back(std::move(t));
+  }
+  return plot;
+}
+
+/// Pressure under the wheel of a run: seen from above, unrolled.
+inline io::HeatMap print_map(const SlipResult& r) {
+  io::HeatMap map{.title = text("Pressure under the wheel, s = {:g}", r.slip),
+                  .x_label = "angle from the lowest point, forward [deg]",
+                  .y_label = "across [mm]",
+                  .c_label = "pressure [kPa]"};
+  for (std::size_t a = 0; a < ContactPrint::along; ++a) {
+    map.x.push_back(std::round(10.0 * r.print.angle(a) * 180.0 / std::numbers::pi) / 10.0);
+  }
+  for (std::size_t w = 0; w < r.print.across; ++w) {
+    map.y.push_back(1e3 * r.print.place(w));
+    for (std::size_t a = 0; a < ContactPrint::along; ++a) map.value.push_back(1e-3 * r.print.pressure(a, w));
+  }
+  return map;
 }
 
 inline std::string bed_text(const Settings& s, const Campaign& c) {

@@ -23,8 +23,9 @@ class WheelRig : public Rig {
   }
   [[nodiscard]] std::string output() const override { return settings.output; }
   [[nodiscard]] ResultNames results() const override {
-    return {.files = {"results.csv", "rut.csv", "slip_#+.csv", "slip_m#+.csv", "slip_#+.pvd", "slip_m#+.pvd"},
-            .plots = {"pull", "torque", "sinkage", "pull_over_time", "sinkage_over_time", "rut"},
+    return {.files = {"results.csv", "rut.csv", "under_wheel.csv", "slip_#+.csv", "slip_m#+.csv", "slip_#+.pvd",
+                      "slip_m#+.pvd"},
+            .plots = {"pull", "torque", "sinkage", "pull_over_time", "sinkage_over_time", "rut", "stress", "print"},
             .frames = {"grains", "surfaces"}};
   }
   [[nodiscard]] bool can_resume() const override { return true; }
@@ -34,9 +35,11 @@ class WheelRig : public Rig {
   bool report(Report& report) const override {
     const Settings& s = settings;
     report.part("results.csv", [&] { write_results(report.folder() / "results.csv"); });
-    const std::vector<io::Table> tables{slip_table(s, campaign), reference_table(s, campaign), rut_table(campaign)};
+    const std::vector<io::Table> tables{slip_table(s, campaign), reference_table(s, campaign), rut_table(campaign),
+                                        print_table(campaign)};
+    report.part("under_wheel.csv", [&] { write_print(report.folder() / "under_wheel.csv"); });
     report.part("the printed report", [&] {
-      fmt::print("\n{}\n{}\n\n", bed_text(s, campaign), window_text);
+      fmt::print("\n{}\n{}\n{}\n\n", bed_text(s, campaign), window_text, print_text);
       for (const auto& table : tables) {
         io::print(table);
         fmt::print("\n");
@@ -44,7 +47,7 @@ class WheelRig : public Rig {
       fmt::print("{} of wall time.\n", io::format_duration(report.outcome().wall_time));
     });
     report.page(list_settings(s), [&](io::HtmlReport& page) {
-      page.paragraph(bed_text(s, campaign)).paragraph(window_text);
+      page.paragraph(bed_text(s, campaign)).paragraph(window_text).paragraph(print_text);
       for (const auto& table : tables) page.table(table);
       if (any_rolled()) add_plots(report, page);
       if (campaign.replay && campaign.replay->frames().size() > 1) {
@@ -90,6 +93,10 @@ class WheelRig : public Rig {
     if (auto rut = rut_plot(c); !rut.series.empty()) {
       report.plot(page, rut, "rut", "Height of the surface behind the wheel, across its way.");
     }
+    const SlipResult& shown = c.slips[std::min(shown_slip(s.slips), c.slips.size() - 1)];
+    if (shown.print.empty()) return;
+    report.plot(page, print_plot(s, shown), "stress", "Stress along the rim, a mean across the wheel's width.");
+    report.map(page, print_map(shown), "print", "Pressure under the wheel, unrolled.");
   }
 
   void write_results(const std::filesystem::path& path) const {
@@ -101,6 +108,15 @@ class WheelRig : public Rig {
       csv.row(r.slip, cell(r.pull.mean), cell(r.pull.deviation), cell(r.torque.mean), cell(r.torque.deviation),
               cell(r.sinkage.mean), cell(r.sinkage.deviation), cell(r.efficiency), cell(r.carried.mean),
               cell(r.window_from), r.is_steady, cell(r.rut_depth), cell(r.rut_width), r.finished);
+    }
+    csv.flush();
+  }
+
+  void write_print(const std::filesystem::path& path) const {
+    io::CsvWriter csv(path, {"slip_1-v/(omega*r)", "angle_rad", "pressure_Pa", "shear_stress_Pa"});
+    for (const SlipResult& r : campaign.slips) {
+      for (std::size_t a = 0; a < ContactPrint::along && !r.print.empty(); ++a)
+        csv.row(r.slip, r.print.angle(a), r.print.pressure(a), r.print.shear(a));
     }
     csv.flush();
   }
