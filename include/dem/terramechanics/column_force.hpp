@@ -17,9 +17,10 @@ struct ColumnForce {
 /// pressure acts on the area of the part's surface over the column, along its normal, as in thesis eqs. 2 and 3; the
 /// shear stress acts in the tangent plane against the way that the surface slid. `damping` (Pa s/m) resists sinking and
 /// rising, but never pulls. Steep surfaces count with the area of one of 84 degrees.
-/// `friction` (mu of the part on the soil) limits the shear stress to mu p: a smooth part slides on the soil.
+/// `slope` is the tangent of the soil's angle of friction. `friction` (mu of the part on the soil) limits the shear
+/// stress to mu p: a smooth part slides on the soil.
 inline ColumnForce column_force(const ColumnField& field, const ColumnLaw& law, const JanosiHanamoto& shear,
-                                double friction, double damping, const ColumnTouch& touch,
+                                double slope, double friction, double damping, const ColumnTouch& touch,
                                 const Vector3<double>& velocity, double dt, bool in_contact, ColumnChange& change) {
   const std::size_t row = change.row;
   const double sinkage = field.reference(row) - touch.point.z;
@@ -36,8 +37,9 @@ inline ColumnForce column_force(const ColumnField& field, const ColumnLaw& law, 
   change.sunk = stress.compacts ? stress.residual : field.sunk[row];
   change.pressure = pressure;
   change.on_base = stress.on_base;
-  change.shear = slide(in_contact ? field.shear[row] : ShearMemory{}, dt * sliding, touch.normal,
-                       std::min(shear.strength(pressure), friction * pressure), stress.compacts, shear.displacement);
+  change.shear =
+      slide(in_contact ? field.shear[row] : ShearMemory{}, dt * sliding, touch.normal,
+            std::min(shear.cohesion + pressure * slope, friction * pressure), stress.compacts, shear.displacement);
   const double area = field.grid.area() * touch.share / steep;
   ColumnForce f;
   f.force = (-area * pressure) * touch.normal - (area * change.shear.strength) * change.shear.mobilised;

@@ -63,8 +63,8 @@ class ColumnCylinder final : public ColumnShape {
     const double level2 = 1.0 - a.z * a.z;
     Vector3<double> q = {place.at_x - pose.position.x, place.at_y - pose.position.y, 0.0};
     // Most columns that are asked lie before or behind what presses. Along the axis the height changes by its slope.
-    const bool low = level2 > 1e-12 && mantle(a, level2, q) &&
-                     pose.position.z + q.z < top + 2.0 * place.spacing * std::abs(a.z) / level2;
+    const bool low =
+        level2 > 1e-12 && mantle(a, level2, q, top - pose.position.z + 2.0 * place.spacing * std::abs(a.z) / level2);
     if (low) {
       // The share along the axis is the whole column's, the height that of its point.
       Vector3<double> centre = {place.x - pose.position.x, place.y - pose.position.y, 0.0};
@@ -95,12 +95,14 @@ class ColumnCylinder final : public ColumnShape {
   static Vector3<double> axis(const ShapePose& pose) {
     return {pose.rotation.row0.y, pose.rotation.row1.y, pose.rotation.row2.y};
   }
-  /// The lower of the heights at which the vertical through q, from the centre, leaves the endless cylinder.
-  bool mantle(const Vector3<double>& a, double level2, Vector3<double>& q) const {
+  /// The lower of the heights at which the vertical through q, from the centre, leaves the endless cylinder; false
+  /// where it does not, or not below `top` (m, from the centre), which is found without the root.
+  bool mantle(const Vector3<double>& a, double level2, Vector3<double>& q, double top = 1e300) const {
     const double along = a.x * q.x + a.y * q.y;
     const double rest =
         (radius_ * radius_ - q.x * q.x - q.y * q.y + along * along) * level2 + a.z * a.z * along * along;
-    if (!(rest > 0.0)) return false;
+    const double down = a.z * along - top * level2;  // the root has to be more
+    if (!(rest > 0.0) || (down > 0.0 && rest < down * down)) return false;
     q.z = (a.z * along - std::sqrt(rest)) / level2;
     return true;
   }

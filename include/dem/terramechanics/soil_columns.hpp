@@ -152,6 +152,7 @@ class SoilColumns {
   std::size_t strip_count_ = 0;
   std::vector<Soil> soils_;
   std::vector<ColumnLaw> laws_;  ///< of the parts: for each one after the other soil
+  std::vector<double> slopes_;   ///< tangents of the soils' angles of friction
   std::vector<ColumnLoad> loads_;
   std::vector<Vector3<double>> velocity_;  ///< of the parts' bodies
   std::vector<std::int32_t> claim_;        ///< the part that has a column, while an evaluation runs
@@ -164,6 +165,8 @@ inline bool SoilColumns::lay_out(std::span<const ColumnPart> parts, ColumnsRepor
   const ColumnGrid& g = field_.grid;
   strip_count_ = 0;
   laws_.clear();
+  slopes_.clear();
+  for (const Soil& soil : soils_) slopes_.push_back(std::tan(soil.shear.friction_angle));
   velocity_.clear();
   loads_.assign(parts.size(), {});
   for (std::size_t p = 0; p < parts.size(); ++p) {
@@ -256,8 +259,8 @@ inline void SoilColumns::press(const ColumnPart& part, double dt, bool shared, S
     const bool in_contact = step_ > 0 && field_.touched[hit.row] == step_ && field_.touched_by[hit.row] == s.part;
     ColumnChange change{.row = hit.row, .part = s.part, .shear = {}};
     const std::size_t kind = field_.soil.empty() ? 0 : field_.soil[hit.row];
-    const ColumnForce f = column_force(field_, laws[kind], soils_[kind].shear, part.friction, spec_.damping, hit.touch,
-                                       velocity, dt, in_contact, change);
+    const ColumnForce f = column_force(field_, laws[kind], soils_[kind].shear, slopes_[kind], part.friction,
+                                       spec_.damping, hit.touch, velocity, dt, in_contact, change);
     if (!f.acts) continue;
     s.changes.push_back(change);
     s.load.force += f.force;
