@@ -122,11 +122,12 @@ class ColumnCylinder final : public ColumnShape {
 };
 
 /// A plate, shoe or block: a box centred at its frame, with its edges along the axes there. A column at its edge counts
-/// with the share that lies under it.
+/// with the share that lies under it. Of pieces in a row along x, as of a tread or a track, a column at the edge
+/// between two is whole under the one that its point is under.
 class ColumnBox final : public ColumnShape {
  public:
   /// Throws Error unless all edges (m) are positive.
-  explicit ColumnBox(const Vector3<double>& edges) : half_(0.5 * edges) {
+  explicit ColumnBox(const Vector3<double>& edges, bool is_in_a_row = false) : half_(0.5 * edges), row_(is_in_a_row) {
     for (const double e : {edges.x, edges.y, edges.z}) require_positive(e, "edge of a box on soil columns", "m");
   }
 
@@ -141,15 +142,21 @@ class ColumnBox final : public ColumnShape {
     return {p.x - ex, p.x + ex, p.y - ey, p.y + ey};
   }
   bool touch(const ShapePose& pose, const ColumnPlace& place, double top, ColumnTouch& touch) const override {
+    const Vector3<double>& up = pose.rotation.row2;
+    const double reach = std::abs(up.x) * half_.x + std::abs(up.y) * half_.y + std::abs(up.z) * half_.z;
+    if (pose.position.z - reach >= top) return false;
     const Matrix3<double> axes = transposed(pose.rotation);  // rows: the box's axes in global ones
     const std::array<Vector3<double>, 3> axis = {axes.row0, axes.row1, axes.row2};
     const std::array<double, 3> half = {half_.x, half_.y, half_.z};
     const Vector3<double> q = {place.x - pose.position.x, place.y - pose.position.y, 0.0};
+    const Vector3<double> at = {place.at_x - pose.position.x, place.at_y - pose.position.y, 0.0};
     std::size_t flattest = 0;
     for (std::size_t k = 1; k < 3; ++k) {
       if (std::abs(axis[k].z) > std::abs(axis[flattest].z)) flattest = k;
     }
-    return on_face(pose, axis, half, flattest, q, place.spacing, top, touch) || on_any(pose, axis, half, q, top, touch);
+    if (row_ && flattest != 0) return on_face(pose, axis, half, flattest, q, &at, place.spacing, top, touch);
+    return on_face(pose, axis, half, flattest, q, nullptr, place.spacing, top, touch) ||
+           on_any(pose, axis, half, q, top, touch);
   }
   /// The smaller of the edges along x and y of the box.
   double width() const override { return 2.0 * std::min(half_.x, half_.y); }
@@ -157,9 +164,11 @@ class ColumnBox final : public ColumnShape {
  private:
   using Axes = std::array<Vector3<double>, 3>;
 
-  /// The face that looks down most, with the shares of the columns at its edges.
+  /// The face that looks down most, with the shares of the columns at its edges; of a piece in a row with those at its
+  /// sides, `point` being the column's.
   static bool on_face(const ShapePose& pose, const Axes& axis, const std::array<double, 3>& half, std::size_t k,
-                      const Vector3<double>& centre, double spacing, double top, ColumnTouch& touch) {
+                      const Vector3<double>& centre, const Vector3<double>* point, double spacing, double top,
+                      ColumnTouch& touch) {
     const Vector3<double> normal = axis[k].z < 0.0 ? axis[k] : -axis[k];
     const auto drop = [&](Vector3<double> at) {
       at.z = (half[k] - normal.x * at.x - normal.y * at.y) / normal.z;
@@ -172,6 +181,12 @@ class ColumnBox final : public ColumnShape {
       // Along the face, a step of 1 over the ground in its direction is a step of 1 over its slope.
       const double level = std::sqrt(u.x * u.x + u.y * u.y);
       if (level < 1e-9) return false;
+      if (point != nullptr && side == 0) {
+        const double along = dot(u, drop(*point));
+        if (std::abs(along) > half[0]) return false;
+        shift += (along - dot(u, q)) * u;
+        continue;
+      }
       const double extent = spacing * (std::abs(u.x) + std::abs(u.y)) / (level * level), along = dot(u, q);
       double middle = along;
       share *= detail::covered(along, extent, half[side], middle);
@@ -206,6 +221,7 @@ class ColumnBox final : public ColumnShape {
   }
 
   Vector3<double> half_;
+  bool row_;
 };
 
 }  // namespace dem::terramechanics

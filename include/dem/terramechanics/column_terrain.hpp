@@ -40,8 +40,10 @@ class ColumnTerrain final : public mbd::Terrain {
                     soil.field().grid.nx, soil.field().grid.ny, s.spacing, s.low_x, s.low_y, s.height, s.thickness,
                     s.damping, s.bulldozing, s.angle_of_repose);
     for (const Soil& of : soil.soils()) words += "; " + in_words(of);
-    for (std::size_t k = 0; k < parts.size(); ++k)
+    for (std::size_t k = 0; k < parts.size(); ++k) {
       words += fmt::format("; body {} with width {}, friction {}", body_of[k].value, parts[k].width, parts[k].friction);
+      if (parts[k].continues >= 0) words += fmt::format(", goes on with part {}", parts[k].continues);
+    }
     return words;
   }
   std::vector<double> memory() const override {

@@ -52,6 +52,7 @@ struct ColumnPart {
   Matrix3<double> rotation = Matrix3<double>::identity();  ///< shape -> body
   double width = 0.0;                                      ///< b of the pressure law, m; 0: the shape's
   double friction = rough;                                 ///< mu of the part on the soil
+  std::int32_t continues = -1;  ///< number of a part before it that it goes on with, as the pieces of a tyre's tread do
 
   static constexpr double rough = 1e9;  ///< the soil shears in itself
 

@@ -73,6 +73,16 @@ class MachineColumns {
     return t.parts.size() - 1;
   }
 
+  /// A part goes on with an earlier one: soil below both stays in contact when it passes from one to the other, as
+  /// below the pieces of one tread. All parts of one tread are added one after the other. Throws Error unless `first`
+  /// is a part before it.
+  void continue_part(std::size_t part, std::size_t first) {
+    if (!(first < part && part < terrain().parts.size()))
+      fail("part {} on soil columns is to go on with part {} of {}, but can only with one before it", part, first,
+           terrain().parts.size());
+    terrain().parts[part].continues = static_cast<std::int32_t>(first);
+  }
+
   SoilColumns& soil() { return terrain().soil; }
   const SoilColumns& soil() const { return terrain().soil; }
   /// What each part feels, in the newest evaluation of the forces.

@@ -129,7 +129,7 @@ class SoilColumns {
   };
   /// A row of columns under a part: the unit of work for threads and of sums.
   struct Strip {
-    std::int32_t part;
+    std::int32_t part, owner;  ///< the owner is the part that this one goes on with, or itself
     std::size_t iy, from, to;
     std::vector<Hit> hits;
     std::vector<ColumnChange> changes;
@@ -178,6 +178,12 @@ inline bool SoilColumns::lay_out(std::span<const ColumnPart> parts, ColumnsRepor
     }
     for (const Soil& soil : soils_) laws_.emplace_back(soil, width, spec_.thickness);
     velocity_.push_back(part.body.velocity);
+    const std::int32_t owner = part.continues >= 0 ? part.continues : static_cast<std::int32_t>(p);
+    if (part.continues >= 0) {  // the mean of the pieces: a tread turns about its axle
+      Vector3<double>& mean = velocity_[static_cast<std::size_t>(owner)];
+      const double pieces = static_cast<double>(p - static_cast<std::size_t>(owner)) + 1.0;
+      mean += (1.0 / pieces) * (part.body.velocity - mean);
+    }
     const ShapePose pose = part.pose();
     const Vector3<double> spin = part.body.rotation * part.body.angular_velocity;
     const Matrix3<double>& r = pose.rotation;
@@ -215,6 +221,7 @@ inline bool SoilColumns::lay_out(std::span<const ColumnPart> parts, ColumnsRepor
       if (strip_count_ == strips_.size()) strips_.emplace_back();
       Strip& s = strips_[strip_count_++];
       s.part = static_cast<std::int32_t>(p);
+      s.owner = owner;
       s.iy = iy;
       s.from = x0;
       s.to = x1;
@@ -256,8 +263,9 @@ inline void SoilColumns::press(const ColumnPart& part, double dt, bool shared, S
   for (const Hit& hit : s.hits) {
     if (shared && claim_[hit.row] != s.part) continue;
     const Vector3<double> arm = hit.touch.point - part.body.position, velocity = part.body.velocity + cross(spin, arm);
-    const bool in_contact = step_ > 0 && field_.touched[hit.row] == step_ && field_.touched_by[hit.row] == s.part;
-    ColumnChange change{.row = hit.row, .part = s.part, .shear = {}};
+    // A column that passes from one piece of a tread to the next is still in contact.
+    const bool in_contact = step_ > 0 && field_.touched[hit.row] == step_ && field_.touched_by[hit.row] == s.owner;
+    ColumnChange change{.row = hit.row, .part = s.owner, .shear = {}};
     const std::size_t kind = field_.soil.empty() ? 0 : field_.soil[hit.row];
     const ColumnForce f = column_force(field_, laws[kind], soils_[kind].shear, slopes_[kind], part.friction,
                                        spec_.damping, hit.touch, velocity, dt, in_contact, change);
@@ -306,10 +314,10 @@ inline void SoilColumns::commit() {
     }
   }
   for (std::size_t k = 0; k < strip_count_;) {
-    const std::int32_t part = strips_[k].part;
+    const std::int32_t owner = strips_[k].owner;
     double risen = 0.0;
     rows_.clear();
-    for (; k < strip_count_ && strips_[k].part == part; ++k) {
+    for (; k < strip_count_ && strips_[k].owner == owner; ++k) {
       for (const ColumnChange& c : strips_[k].changes) {
         risen += c.sunk - field_.sunk[c.row];
         field_.ground[c.row] = field_.reference(c.row);  // loose soil is pressed in, or becomes soil like any other
@@ -323,7 +331,8 @@ inline void SoilColumns::commit() {
       }
     }
     if (!(bulldozing_.share > 0.0) || rows_.empty()) continue;
-    const Vector3<double>& v = velocity_[static_cast<std::size_t>(part)];
+    std::sort(rows_.begin(), rows_.end());  // those of several pieces
+    const Vector3<double>& v = velocity_[static_cast<std::size_t>(owner)];
     bulldozing_.deposit(field_, rows_, risen * field_.grid.area(), v.x, v.y, step_);
     top_ = std::max(top_, bulldozing_.roll(field_, rows_, step_));
   }

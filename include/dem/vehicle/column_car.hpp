@@ -4,11 +4,13 @@
 #include <dem/mbd/machine.hpp>
 #include <dem/terramechanics/column_shapes.hpp>
 #include <dem/terramechanics/machine_columns.hpp>
+#include <dem/vehicle/ring_tyre.hpp>
 #include <dem/vehicle/telemetry.hpp>
 
 #include <array>
 #include <cmath>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -24,18 +26,19 @@ struct LaneStretch {
 /// A car on soil columns, as it is asked for. x runs along the lane, up a grade; y to the left.
 struct ColumnCarSpec {
   VehicleSpec car;
-  std::vector<LaneStretch> lane;  ///< one after the other from x = 0
-  double margin = 4.0;            ///< m, of soil before the lane's start and beyond its end
-  double half_width = 1.6;        ///< m, of soil on either side of the middle
-  double spacing = 0.05;          ///< m, of the columns
-  double damping = 2e3;           ///< Pa s/m, of the columns
-  double bulldozing = 0.3;        ///< share of the soil that is pushed aside
-  double grade = 0.0;             ///< rise over run along the lane
-  double side_grade = 0.0;        ///< of the left side over the right one
-  double tyre_friction = 0.8;     ///< mu of the tyres on the soil
-  double time_step = 5e-5;        ///< s
-  double set_down_speed = 0.5;    ///< m/s, of the crane
-  double hitch_height = 0.6;      ///< m, over the ground, of the hitch behind the rear axle
+  std::vector<LaneStretch> lane;          ///< one after the other from x = 0
+  double margin = 4.0;                    ///< m, of soil before the lane's start and beyond its end
+  double half_width = 1.6;                ///< m, of soil on either side of the middle
+  double spacing = 0.05;                  ///< m, of the columns
+  double damping = 2e3;                   ///< Pa s/m, of the columns
+  double bulldozing = 0.3;                ///< share of the soil that is pushed aside
+  double grade = 0.0;                     ///< rise over run along the lane
+  double side_grade = 0.0;                ///< of the left side over the right one
+  double tyre_friction = 0.8;             ///< mu of the tyres on the soil
+  std::optional<RingTyreSpec> ring = {};  ///< pneumatic tyres instead of rigid ones, with their radius and width
+  double time_step = 5e-5;                ///< s
+  double set_down_speed = 0.5;            ///< m/s, of the crane
+  double hitch_height = 0.6;              ///< m, over the ground, of the hitch behind the rear axle
 };
 
 /// What holds a car on a load cell: a sled behind it that goes with a given speed. It pulls through a stiff damper, so
@@ -65,11 +68,12 @@ class ColumnCar {
     machine.gravity = Vec3(0, 0, -9.81);
     machine.joint_tolerance = 0.5;  // m: light shafts wind up
     const double height = tyre.radius - spec.car.front.points.wheel.z();
-    car = add_vehicle(Assembly(machine, "car", Vec3(-spec.car.rear.points.wheel.x(), 0, height)), spec.car);
-    const auto wheel = std::make_shared<terramechanics::ColumnCylinder>(tyre.radius, tyre.width);
-    for (const Wheel& w : car.wheels) {
-      parts_.push_back(
-          soil_.add(w.body, wheel, machine.body(w.body).position(), Mat3::Identity(), 0.0, spec.tyre_friction));
+    const Assembly in(machine, "car", Vec3(-spec.car.rear.points.wheel.x(), 0, height));
+    if (spec.ring) spec_.car = on_ring_tyres(spec.car, *spec.ring);
+    car = add_vehicle(in, spec_.car);
+    for (std::size_t corner = 0; corner < 4; ++corner) {
+      if (spec.ring) add_ring(in, corner);
+      else add_rigid_tyre(corner);
     }
     lay_soils();
     weight = weight_of(machine);
@@ -122,8 +126,14 @@ class ColumnCar {
   Vec3 middle_of(std::size_t corner) const { return machine.body(car.wheels[corner].body).position(); }
   CarSample sample() const { return sample_of(machine, car, controls_, machine.time()); }
   WheelSample wheel(std::size_t corner) const {
-    const terramechanics::ColumnLoad& load = soil_.loads()[parts_[corner]];
-    return wheel_sample_of(machine, car, corner, {load.force, load.torque}, 0.0, spec_.car.tyre.radius);
+    const Vector3<double> middle = machine.body(car.wheels[corner].body).motion.position;
+    Wrench soil;
+    for (const Piece& p : pieces_[corner]) {
+      const terramechanics::ColumnLoad& load = soil_.loads()[p.part];
+      const Vector3<double> arm = machine.body(p.body).motion.position - middle;
+      soil = soil + Wrench{load.force, load.torque + cross(arm, load.force)};
+    }
+    return wheel_sample_of(machine, car, corner, soil, 0.0, spec_.car.tyre.radius);
   }
   /// m/s, of the rims, as the drive shaft turns: their mean.
   double rim_speed() const { return rim_speed_of(machine, car); }
@@ -154,6 +164,45 @@ class ColumnCar {
   std::string failed;   ///< what ended the run, in words
 
  private:
+  /// A part on the soil, and its body.
+  struct Piece {
+    std::size_t part;
+    BodyId body;
+  };
+
+  /// The belts take their mass from the wheels.
+  static VehicleSpec on_ring_tyres(VehicleSpec car, const RingTyreSpec& ring) {
+    check_ring_tyre(ring);
+    if (!(ring.mass < 0.8 * car.wheel.mass.mass)) {
+      fail("the belt of a ring tyre weighs {:g} kg, but a wheel with it {:g} kg; lower mass", ring.mass,
+           car.wheel.mass.mass);
+    }
+    const double left = 1.0 - ring.mass / car.wheel.mass.mass;
+    car.wheel.mass = {left * car.wheel.mass.mass, left * car.wheel.mass.inertia};
+    car.tyre.radius = ring.radius, car.tyre.width = ring.width;
+    return car;
+  }
+  void add_rigid_tyre(std::size_t corner) {
+    const TyreSpec& tyre = spec_.car.tyre;
+    const BodyId wheel = car.wheels[corner].body;
+    const auto shape = std::make_shared<terramechanics::ColumnCylinder>(tyre.radius, tyre.width);
+    const std::size_t part =
+        soil_.add(wheel, shape, machine.body(wheel).position(), Mat3::Identity(), 0.0, spec_.tyre_friction);
+    pieces_[corner] = {{part, wheel}};
+  }
+  void add_ring(const Assembly& in, std::size_t corner) {
+    const DoubleWishboneSpec& side = corner < 2 ? spec_.car.front : spec_.car.rear;
+    Vec3 middle = side.points.wheel;
+    if (corner % 2 == 1) middle.y() = -middle.y();
+    const RingTyre tyre = add_ring_tyre(in, corner_names[corner], car.wheels[corner].body, middle, *spec_.ring);
+    const auto shape = std::make_shared<terramechanics::ColumnBox>(tyre.edges(), true);
+    for (const BodyId b : tyre.segments) {
+      const std::size_t part = soil_.add(b, shape, machine.body(b).position(), machine.reference_rotation(b),
+                                         tyre.spec.width, spec_.tyre_friction);
+      if (!pieces_[corner].empty()) soil_.continue_part(part, pieces_[corner].front().part);
+      pieces_[corner].push_back({part, b});
+    }
+  }
   static terramechanics::ColumnsSpec columns(const ColumnCarSpec& s) {
     if (s.lane.empty()) fail("a lane of soil columns has no stretch; give at least one soil with its length");
     double length = 0.0;
@@ -211,7 +260,7 @@ class ColumnCar {
 
   ColumnCarSpec spec_;
   terramechanics::MachineColumns soil_;
-  std::vector<std::size_t> parts_;  ///< of the wheels
+  std::array<std::vector<Piece>, 4> pieces_;  ///< of the tyres
   std::shared_ptr<Hitch> hitch_ = std::make_shared<Hitch>();
   LoadId crane_;
   Controls controls_;

@@ -114,6 +114,7 @@ inline vehicle::ColumnCarSpec car_of(const Settings& s, const Case& c) {
           .grade = 0.01 * c.slope,
           .side_grade = 0.01 * c.side_slope,
           .tyre_friction = s.tyre_friction,
+          .ring = s.tyre == "ring" ? std::optional(vehicle::RingTyreSpec{.pressure = s.tyre_pressure}) : std::nullopt,
           .time_step = s.time_step};
 }
 

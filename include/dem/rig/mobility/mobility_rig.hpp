@@ -83,6 +83,7 @@ class MobilityRig : public Rig {
             {"engine", s.engine},
             {"speed", text("{:g} m/s, reached at {:g} m/s²", s.speed, s.acceleration)},
             {"path", text("{:g} m", s.path)},
+            {"tyres", s.tyre + (s.tyre == "ring" ? text(", {:g} kPa", 1e-3 * s.tyre_pressure) : "")},
             {"columns", text("{:g} mm, damping {:g} Pa s/m", 1e3 * s.spacing, s.damping)},
             {"time step of the car", text("{:g} s", s.time_step)}};
   }

@@ -30,6 +30,8 @@ struct Settings {
 
   std::string engine = "motor";  ///< motor, gears or low-range
   double sprung_mass = 4430.0;   ///< kg
+  std::string tyre = "rigid";    ///< rigid, or ring: a pneumatic tyre
+  double tyre_pressure = 2e5;    ///< Pa, of a ring
   double tyre_friction = 0.8;    ///< mu of the tyres on the soil
   double speed = 0.0;            ///< m/s, that the driver holds; 0: by study
   double acceleration = 2.0;     ///< m/s^2, at which the driver reaches it
@@ -76,6 +78,9 @@ inline void declare(Options& options, Settings& s) {
   options.group("Car");
   add("--engine", s.engine, "motor (no gears), gears (a diesel), low-range").one_of({"motor", "gears", "low-range"});
   add("--sprung-mass", s.sprung_mass, "of the car [kg]");
+  add("--tyre", s.tyre, "rigid, or ring: pneumatic, a ring of small bodies, five times as dear")
+      .one_of({"rigid", "ring"});
+  add("--tyre-pressure", s.tyre_pressure, "of a ring [Pa]");
   add("--tyre-friction", s.tyre_friction, "mu, tyre on soil");
   add("--speed", s.speed, "that the driver holds [m/s]; 0: 5, and of the sled of drawbar 1");
   add("--acceleration", s.acceleration, "at which the driver reaches it [m/s^2]");
@@ -98,6 +103,7 @@ inline void find_idle(IdleOptions& idle, const Settings& s) {
   idle.unless(s.lane.empty() || loads, "without --lane", {"--soil", "--soil-file"});
   idle.unless(s.soil_file.empty() || loads || !s.lane.empty(), "without --soil-file", {"--soil"});
   idle.unless(s.study == "drive", "with --study drive", {"--replay"});
+  idle.unless(s.tyre == "ring", "with --tyre ring", {"--tyre-pressure"});
   idle.unless(s.study != "drawbar", "with another study than drawbar", {"--path", "--spin-limit", "--acceleration"});
 }
 
@@ -176,6 +182,7 @@ inline void resolve(Settings& s, ReadSoil* read_soil) {
   require_non_negative(s.tyre_friction, "--tyre-friction", "(no unit)");
   require_within(s.speed, 0.1, 20.0, "--speed (m/s)");
   require_within(s.acceleration, 0.05, 10.0, "--acceleration (m/s^2)");
+  require_within(s.tyre_pressure, 2e4, 5e5, "--tyre-pressure (Pa)");
   require_within(s.spin_limit, 0.01, 100.0, "--spin-limit (m/s)");
   require_within(s.path, 1.0, 500.0, "--path (m)");
   require_within(s.spacing, 0.005, 0.1, "--spacing (m; the print of a wheel is 0.3 m long)");

@@ -74,6 +74,8 @@ class Judge {
     const bool slips = x.mean(&WheelSample::slip) > 0.8 && x.car.speed < 0.1 * s.speed;
     slips_since_ = !slips ? -1.0 : slips_since_ < 0.0 ? x.car.time : slips_since_;
     if (slips && x.car.time - slips_since_ >= 1.0) return ending::dug_in;
+    if (x.way > furthest_ + 0.1) furthest_ = x.way, moved_at_ = x.car.time;
+    if (x.mean(&WheelSample::slip) > 0.2 && x.car.time - moved_at_ >= 3.0) return ending::dug_in;
     const bool slows = (s.scene == "brake" || s.scene == "coast") && x.way >= 0.5 * s.path;
     stands_since_ = !(slows && std::abs(x.car.speed) < 0.02) ? -1.0 : stands_since_ < 0.0 ? x.car.time : stands_since_;
     if (stands_since_ >= 0.0 && x.car.time - stands_since_ >= 0.2) return ending::stopped;
@@ -85,6 +87,7 @@ class Judge {
  private:
   const Settings& settings_;
   double slips_since_ = -1.0, stands_since_ = -1.0;  // s
+  double furthest_ = 0.0, moved_at_ = 0.0;           // m, s: where it last gained a tenth of a metre
 };
 
 }  // namespace dem::rig::soft_lane
