@@ -16,26 +16,26 @@ namespace dem::vehicle {
 /// tension holds them together, sidewalls hold them on the rim. Where the ring is pressed flat the tension has no
 /// part that points inwards any more, so the air is carried by the ground: a contact pressure of about that of the air.
 ///
-///   belt       a spring and damper along the line between neighbours; free so long that the ring has its radius
+///   belt       hinges with a spring and damper between neighbours, tight so that the inflated ring has its radius
 ///   air        p b ds outwards on each segment, along the rim's radius, and its opposite on the rim
 ///   sidewalls  a bushing between rim and segment: radial, along the belt, sideways, and against turning
 ///
-/// The belt is a membrane without bending stiffness. The sidewalls' radial stiffness rises with the pressure, so that
+/// The belt bends freely. The sidewalls' radial stiffness rises with the pressure, so that
 /// the tyre's vertical stiffness is that of Rhyne's formula; see rhyne_stiffness().
 struct RingTyreSpec {
   double radius = 0.485;     ///< m, of the inflated, unloaded tyre
   double width = 0.254;      ///< b, m, of the belt
   double rim_radius = 0.21;  ///< m
   int segments = 48;
-  double mass = 20.0;                 ///< kg, of the belt
-  double thickness = 0.02;            ///< m, of belt and tread
-  double pressure = 2.0e5;            ///< Pa, above that of the air around
-  double belt_stiffness = 1.5e6;      ///< EA, N
-  double sidewall_stiffness = 5e4;    ///< N/m for a metre of belt, radial, without pressure
-  double sidewall_by_pressure = 1.7;  ///< m/m, what a pressure (Pa) adds to that
-  double along_stiffness = 3e5;       ///< N/m for a metre of belt, along it
-  double lateral_stiffness = 2e5;     ///< N/m for a metre of belt, sideways
-  double damping = 0.1;               ///< of critical, of each spring with a segment's mass
+  double mass = 20.0;                  ///< kg, of the belt
+  double thickness = 0.02;             ///< m, of belt and tread
+  double pressure = 2.0e5;             ///< Pa, above that of the air around
+  double belt_stiffness = 1.5e6;       ///< EA, N
+  double sidewall_stiffness = 1e4;     ///< N/m for a metre of belt, radial, without pressure
+  double sidewall_by_pressure = 1.65;  ///< m/m, what a pressure (Pa) adds to that
+  double along_stiffness = 3e5;        ///< N/m for a metre of belt, along it
+  double lateral_stiffness = 2e5;      ///< N/m for a metre of belt, sideways
+  double damping = 0.1;                ///< of critical, of each spring with a segment's mass
 
   double arc() const { return 2.0 * std::numbers::pi * radius / segments; }  ///< ds, m
   double radial_stiffness() const { return sidewall_stiffness + sidewall_by_pressure * pressure; }
@@ -131,19 +131,29 @@ DEM_COLD inline RingTyre add_ring_tyre(const Assembly& in, const std::string& co
     };
     m.add_load(mbd::custom_load(in.name(part + " air"), rim, body, law));
   }
-  // The free length is that of a ring of the given radius under this tension: p b ds = 2 T sin(pi/n).
-  const double chord = 2.0 * ring * std::sin(std::numbers::pi / n), stiffness = s.belt_stiffness / chord;
-  const double tension = s.pressure * s.width * ds / (2.0 * std::sin(std::numbers::pi / n));
-  const double free = chord - tension / stiffness, damping = damper(stiffness, mass);
+  // Neighbours are hinged where their ends meet, by a spring in all directions, so that they lie along the belt. The
+  // ends stop so far short of each other that the spring's pull holds the air: p b ds = 2 T sin(pi/n).
+  const double half_angle = std::numbers::pi / n, chord = 2.0 * ring * std::sin(half_angle);
+  const double stiffness = s.belt_stiffness / chord, damping = damper(stiffness, mass);
+  const double tension = s.pressure * s.width * ds / (2.0 * std::sin(half_angle));
+  const double half = 0.5 * (chord - tension / stiffness) / std::cos(half_angle);
   for (int i = 0; i < n; ++i) {
-    const auto belt = [=](double, const Body& a, const Body& b) {
-      const Vector3<double> link = b.motion.position - a.motion.position;
-      const double length = norm(link), rate = dot(b.motion.velocity - a.motion.velocity, link) / length;
-      const double pull = stiffness * (length - free) + damping * rate;
-      return Wrench{(-pull / length) * link, {0, 0, 0}};
+    const BodyId first = tyre.segments[i], second = tyre.segments[(i + 1) % n];
+    // In the order of the angle, from x = 0 forward, the belt runs along minus x of the segments.
+    const auto end_of = [&](BodyId b, double at) {
+      return transpose_times(m.body(b).motion.rotation, from_eigen(m.reference_rotation(b) * Vec3(at, 0, 0)));
     };
-    m.add_load(mbd::custom_load(in.name(corner + " belt " + std::to_string(i)), tyre.segments[i],
-                                tyre.segments[(i + 1) % n], belt));
+    const Vector3<double> end = end_of(first, -half), begin = end_of(second, half);
+    const auto hinge = [=](double, const Body& a, const Body& b) {
+      const auto &x = a.motion, &y = b.motion;
+      const Vector3<double> of_a = x.rotation * end, of_b = y.rotation * begin;
+      const Vector3<double> gap = (y.position + of_b) - (x.position + of_a);
+      const Vector3<double> opening = (y.velocity + cross(y.rotation * y.angular_velocity, of_b)) -
+                                      (x.velocity + cross(x.rotation * x.angular_velocity, of_a));
+      const Vector3<double> force = -stiffness * gap - damping * opening;
+      return Wrench{force, cross(of_b, force)};
+    };
+    m.add_load(mbd::custom_load(in.name(corner + " belt " + std::to_string(i)), first, second, hinge));
   }
   return tyre;
 }
