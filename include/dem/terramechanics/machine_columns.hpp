@@ -74,13 +74,21 @@ class MachineColumns {
   }
 
   /// A part goes on with an earlier one: soil below both stays in contact when it passes from one to the other, as
-  /// below the pieces of one tread. All parts of one tread are added one after the other. Throws Error unless `first`
+  /// below the pieces of one tread. `first` is the tread's first part; the others
+  /// follow it one after the other. Throws Error otherwise.
   /// is a part before it.
   void continue_part(std::size_t part, std::size_t first) {
-    if (!(first < part && part < terrain().parts.size()))
-      fail("part {} on soil columns is to go on with part {} of {}, but can only with one before it", part, first,
-           terrain().parts.size());
-    terrain().parts[part].continues = static_cast<std::int32_t>(first);
+    std::vector<ColumnPart>& parts = terrain().parts;
+    const bool follows = part > first && part < parts.size() &&
+                         (part == first + 1 || parts[part - 1].continues == static_cast<std::int32_t>(first));
+    if (!follows || parts[first].continues >= 0) {
+      fail(
+          "part {} on soil columns is to go on with part {} of {}; name the tread's first part, and its other parts "
+          "one "
+          "after the other",
+          part, first, parts.size());
+    }
+    parts[part].continues = static_cast<std::int32_t>(first);
   }
 
   SoilColumns& soil() { return terrain().soil; }

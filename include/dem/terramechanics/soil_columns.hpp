@@ -179,6 +179,8 @@ inline bool SoilColumns::lay_out(std::span<const ColumnPart> parts, ColumnsRepor
     for (const Soil& soil : soils_) laws_.emplace_back(soil, width, spec_.thickness);
     velocity_.push_back(part.body.velocity);
     const std::int32_t owner = part.continues >= 0 ? part.continues : static_cast<std::int32_t>(p);
+    if (part.continues >= static_cast<std::int32_t>(p))
+      fail("part {} on soil columns goes on with part {}, but can only with one before it", p, part.continues);
     if (part.continues >= 0) {  // the mean of the pieces: a tread turns about its axle
       Vector3<double>& mean = velocity_[static_cast<std::size_t>(owner)];
       const double pieces = static_cast<double>(p - static_cast<std::size_t>(owner)) + 1.0;

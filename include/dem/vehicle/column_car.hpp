@@ -51,8 +51,9 @@ struct Hitch {
   double force = 0.0;     ///< N, backwards on the car, in the newest evaluation
 };
 
-/// A vehicle of humvee.hpp or the like on soil columns (dynamic Bekker): its rigid tyres are cylinders on them. A
-/// machine alone, without grains, so it runs faster than real time.
+/// A vehicle of humvee.hpp or the like on soil columns (dynamic Bekker): its tyres are rigid cylinders on them, or
+/// rings. A machine alone, without grains: a second of driving takes half a second to one on rigid tyres, three on
+/// rings.
 ///
 ///     ColumnCar car({.car = humvee({.rubber_rear = false}), .lane = {{known_soil("dry-sand"), 30.0}}});
 ///     car.set_down();
@@ -63,14 +64,14 @@ class ColumnCar {
   static constexpr double interval = 0.01;  ///< s, of advance()
 
   /// Throws Error for a lane that is none, and what check_columns refuses.
-  explicit ColumnCar(const ColumnCarSpec& spec) : spec_(spec), soil_(machine, columns(spec)) {
+  explicit ColumnCar(const ColumnCarSpec& given) : spec_(on_its_tyres(given)), soil_(machine, columns(spec_)) {
+    const ColumnCarSpec& spec = spec_;
     const TyreSpec& tyre = spec.car.tyre;
     machine.gravity = Vec3(0, 0, -9.81);
     machine.joint_tolerance = 0.5;  // m: light shafts wind up
     const double height = tyre.radius - spec.car.front.points.wheel.z();
     const Assembly in(machine, "car", Vec3(-spec.car.rear.points.wheel.x(), 0, height));
-    if (spec.ring) spec_.car = on_ring_tyres(spec.car, *spec.ring);
-    car = add_vehicle(in, spec_.car);
+    car = add_vehicle(in, spec.car);
     for (std::size_t corner = 0; corner < 4; ++corner) {
       if (spec.ring) add_ring(in, corner);
       else add_rigid_tyre(corner);
@@ -170,17 +171,30 @@ class ColumnCar {
     BodyId body;
   };
 
-  /// The belts take their mass from the wheels.
-  static VehicleSpec on_ring_tyres(VehicleSpec car, const RingTyreSpec& ring) {
+  /// With ring tyres: their size, and wheels without the mass and inertia of the belts.
+  static ColumnCarSpec on_its_tyres(ColumnCarSpec s) {
+    if (!s.ring) return s;
+    const RingTyreSpec& ring = *s.ring;
     check_ring_tyre(ring);
-    if (!(ring.mass < 0.8 * car.wheel.mass.mass)) {
-      fail("the belt of a ring tyre weighs {:g} kg, but a wheel with it {:g} kg; lower mass", ring.mass,
-           car.wheel.mass.mass);
+    if (!(s.time_step <= ring.stable_time_step())) {
+      fail(
+          "a time step of {:g} s is too long for the ring tyres, whose belts bear {:.2g} s; lower it, or "
+          "belt_stiffness",
+          s.time_step, ring.stable_time_step());
     }
-    const double left = 1.0 - ring.mass / car.wheel.mass.mass;
-    car.wheel.mass = {left * car.wheel.mass.mass, left * car.wheel.mass.inertia};
-    car.tyre.radius = ring.radius, car.tyre.width = ring.width;
-    return car;
+    PartMass& wheel = s.car.wheel.mass;
+    const double square = (ring.radius - 0.5 * ring.thickness) * (ring.radius - 0.5 * ring.thickness);
+    const double across = 0.5 * square + ring.width * ring.width / 12.0;
+    const PartMass rim = {wheel.mass - ring.mass, wheel.inertia - ring.mass * Vec3(across, square, across)};
+    if (!(rim.mass > 0.0 && rim.inertia.minCoeff() > 0.0)) {
+      fail(
+          "the belt of a ring tyre weighs {:g} kg at {:g} m, but a wheel with it {:g} kg, with {:.3g} kg m^2 about its "
+          "axle; lower the belt's mass",
+          ring.mass, std::sqrt(square), wheel.mass, wheel.inertia.y());
+    }
+    wheel = rim;
+    s.car.tyre.radius = ring.radius, s.car.tyre.width = ring.width;
+    return s;
   }
   void add_rigid_tyre(std::size_t corner) {
     const TyreSpec& tyre = spec_.car.tyre;

@@ -16,13 +16,22 @@ namespace dem::vehicle {
 /// A motor has a governor as well. Above a speed of the rims it takes the throttle back, in proportion, to none at a
 /// second speed. It looks at every time step: a driver who looks a hundred times a second is too slow for it, as light
 /// shafts and wheels get faster by metres per second in that time, and would switch the engine on and off. Its valve
-/// lags by EngineSpec::governor_lag: on the light drive shaft it then acts as a spring and damper in a row, which takes
-/// energy, and is stable with steps up to some 1e-4 s for bands of 0.2 m/s and more.
+/// lags by EngineSpec::governor_lag (an engine that is an actuator has none): on the light drive shaft it then acts as
+/// a spring and damper in a row, which takes energy, and is stable with steps up to some 1e-4 s for bands of 0.2 m/s
+/// and more.
 struct Controls {
   double throttle = 0.0, brake = 0.0, steer = 0.0;
   double ease_from = no_limit, ease_to = no_limit;  ///< m/s, of the rims' mean, as the drive shaft turns
 
   static constexpr double no_limit = 1e300;
+  /// Throws Error unless both limits are given or none, the first not above the second.
+  void check() const {
+    if ((ease_from < no_limit) == (ease_to < no_limit) && ease_from <= ease_to) return;
+    fail(
+        "the governor is to ease off from {:g} to {:g} m/s of the rims; give both ease_from and ease_to, the first not "
+        "above the second, or neither",
+        ease_from, ease_to);
+  }
   /// Share of the throttle that the governor leaves at a speed of the rims (m/s).
   double governed(double rims) const {
     if (rims <= ease_from) return 1.0;
@@ -58,15 +67,16 @@ struct PathFollower {
   std::size_t next = 1;        ///< point of the path that the car heads for
   std::size_t beside = 0;      ///< piece of the path that the car is beside
   double offset_sum = 0.0;     ///< m^2, of the offset over the way, to the right
+  Vec3 last = Vec3::Zero();    ///< m, where the car was at the last call
+  bool has_last = false, is_near_end = false;
 
   /// Angle of the wheels (rad) at a position (m, of the rear axle), a heading (unit vector) and a speed (m/s). Throws
   /// Error for a path of less than two points.
   double operator()(const Vec3& at, const Vec3& heading, double speed) {
-    if (path.size() < 2) fail("a path has {} points, but needs at least 2", path.size());
-    const double reach = preview + preview_time * std::abs(speed);
-    const double beside_path = offset(at);
+    const double reach = preview + preview_time * std::abs(speed), beside_path = offset(at);
     next = std::max(next, beside + 1);
     while (next + 1 < path.size() && distance(path[next], at) < reach) ++next;
+    is_near_end = next + 1 == path.size() && distance(path[next], at) < reach;
     const Vec3 aim = aim_at(at, reach);
     const double ahead = (aim - at).dot(heading);
     const double left = heading.x() * (aim.y() - at.y()) - heading.y() * (aim.x() - at.x());
@@ -74,30 +84,35 @@ struct PathFollower {
     const double curvature = square > 0.0 ? 2.0 * left / square : 0.0;
     const double wanted = std::atan(wheelbase * curvature) + trim * wheelbase / (reach * reach * reach) * offset_sum;
     const double steer = std::clamp(wanted, -largest_steer, largest_steer);
-    // The sum stands still while the wheels are turned as far as they go.
-    if (steer == wanted && has_last) offset_sum -= distance(at, last) * beside_path;
+    // The sum does not grow while the wheels are turned as far as they go.
+    const double change = has_last ? -distance(at, last) * beside_path : 0.0;
+    if (steer == wanted || change * offset_sum < 0.0) offset_sum += change;
     last = at, has_last = true;
     return steer;
   }
-  /// m, of a position to the left of the path: of its piece beside the position.
+  /// m, of a position to the left of the path: of its piece beside the position, which goes on from call to call.
+  /// Throws Error for a path of less than two points.
   double offset(const Vec3& at) {
-    while (beside + 2 < path.size() && along(beside, at) > 1.0) ++beside;
+    if (path.size() < 2) fail("a path has {} points, but needs at least 2", path.size());
+    while (beside + 2 < path.size() && (along(beside, at) > 1.0 || away(beside + 1, at) <= away(beside, at))) ++beside;
     const Vec3 piece = path[beside + 1] - path[beside], to = at - path[beside];
     return (piece.x() * to.y() - piece.y() * to.x()) / std::max(1e-300, std::hypot(piece.x(), piece.y()));
   }
 
-  /// True when the end of the path is nearer than the preview.
-  bool at_end() const { return next + 1 >= path.size(); }
+  /// True when the end of the path was nearer than the preview at the last call.
+  bool at_end() const { return is_near_end; }
 
  private:
-  Vec3 last = Vec3::Zero();
-  bool has_last = false;
-
   static double distance(const Vec3& p, const Vec3& q) { return std::hypot(p.x() - q.x(), p.y() - q.y()); }
-  /// How far along a piece of the path a position is: 0 at its begin, 1 at its end.
+  /// How far along a piece of the path a position is: 0 at its begin, 1 at its end; past the end of one without length.
   double along(std::size_t k, const Vec3& at) const {
     const Vec3 piece = path[k + 1] - path[k], to = at - path[k];
-    return (piece.x() * to.x() + piece.y() * to.y()) / std::max(1e-300, piece.x() * piece.x() + piece.y() * piece.y());
+    const double square = piece.x() * piece.x() + piece.y() * piece.y();
+    return square > 0.0 ? (piece.x() * to.x() + piece.y() * to.y()) / square : 2.0;
+  }
+  /// m, from a piece of the path.
+  double away(std::size_t k, const Vec3& at) const {
+    return distance(path[k] + std::clamp(along(k, at), 0.0, 1.0) * (path[k + 1] - path[k]), at);
   }
   /// Where the path leaves the circle of radius `reach` about `at`, on the piece that ends at `next`; what of it is
   /// nearest if all of it is farther away.

@@ -38,6 +38,9 @@ struct RingTyreSpec {
   double damping = 0.1;                ///< of critical, of each spring with a segment's mass
 
   double arc() const { return 2.0 * std::numbers::pi * radius / segments; }  ///< ds, m
+  /// s, an estimate: neighbours that turn against each other on their hinges are the fastest motion, with omega^2 of
+  /// some 10.4 k/m. The machine's own limit does not know the hinges.
+  double stable_time_step() const { return 2.0 / std::sqrt(10.4 * belt_stiffness / arc() * segments / mass); }
   double radial_stiffness() const { return sidewall_stiffness + sidewall_by_pressure * pressure; }
 };
 

@@ -115,9 +115,10 @@ inline double travel_of(const mbd::Mechanism& m, const Vehicle& v, std::size_t c
 // ------------------------------------------------------------------------------------------------------ steering
 
 /// Passes a driver's controls on, to be called before every step: `dt` is the time (s) to the next call. The steering
-/// turns no faster than `steer_rate` (rad/s of the wheels).
+/// turns no faster than `steer_rate` (rad/s of the wheels). Throws Error for a governor's limits that make no sense.
 inline void drive(mbd::Mechanism& m, Vehicle& v, const Controls& c, double dt, double steer_rate = 0.5) {
   for (Wheel& w : v.wheels) set_brake(m, w, c.brake);
+  c.check();
   Driveline& d = v.driveline;
   if (d.spec.kind == EngineSpec::Kind::motor) {
     d.governed += (c.governed(rim_speed_of(m, v)) - d.governed) * -std::expm1(-dt / d.spec.governor_lag);

@@ -207,6 +207,32 @@ TEST_CASE("a car that drifts off a side slope comes back to its path with trim, 
   }
 }
 
+TEST_CASE("a path with a sharp corner and doubled points is followed to its end, with and without trim") {
+  for (const double trim : {0.0, 1.0}) {
+    CAPTURE(trim);
+    PathFollower follow{.path = {Vec3(-10, 0, 0), Vec3(30, 0, 0), Vec3(30, 0, 0), Vec3(0, 20, 0), Vec3(-60, 60, 0)},
+                        .preview = 3.0,
+                        .preview_time = 0.0,
+                        .trim = trim};
+    Vec3 at = Vec3::Zero();
+    double yaw = 0.0;
+    int k = 0;
+    for (; k < 20000 && !follow.at_end(); ++k) {
+      const double steer = follow(at, Vec3(std::cos(yaw), std::sin(yaw), 0), 3.0);
+      at += 0.01 * Vec3(std::cos(yaw), std::sin(yaw), 0);
+      yaw += 0.01 * std::tan(steer) / follow.wheelbase;
+    }
+    CHECK(follow.at_end());
+    CHECK(k < 18000);  // the path is 138 m long
+    CHECK(std::abs(follow.offset(at)) < 0.3);
+    CHECK((at - Vec3(-60, 60, 0)).norm() < 3.1);
+  }
+  PathFollower straight{.path = {Vec3(0, 0, 0), Vec3(100, 0, 0)}};
+  straight(Vec3::Zero(), Vec3::UnitX(), 1.0);
+  CHECK(!straight.at_end());
+  CHECK_THAT(message_of([] { PathFollower{}.offset({0, 0, 0}); }), Contains("a path has 0 points"));
+}
+
 TEST_CASE("a motor's governor takes the throttle back between two speeds of the rims") {
   Controls c{.throttle = 1.0};
   CHECK(c.governed(1e6) == 1.0);  // none unless asked for
@@ -217,4 +243,7 @@ TEST_CASE("a motor's governor takes the throttle back between two speeds of the 
   c.ease_to = 2.0;  // a limit without a band
   CHECK(c.governed(2.0) == 1.0);
   CHECK(c.governed(2.1) == 0.0);
+  CHECK_NOTHROW(c.check());
+  c.ease_from = Controls::no_limit;
+  CHECK_THAT(message_of([&] { c.check(); }), Contains("give both ease_from and ease_to"));
 }

@@ -67,7 +67,7 @@ struct PressedTyre {
 
 }  // namespace
 
-TEST_CASE("an inflated ring keeps its radius, and presses with nothing on its rim") {
+TEST_CASE("an inflated ring keeps its radius: air and tension are in balance") {
   RingTyreSpec s;
   s.pressure = 2.5e5;
   PressedTyre t(s);
@@ -113,6 +113,9 @@ TEST_CASE("a car on ring tyres stands with its weight on them, and sinks less th
   double load = 0.0;
   for (std::size_t k = 0; k < 4; ++k) load += car.wheel(k).load;
   CHECK(car.weight == Approx(rigid.weight).epsilon(1e-9));
+  // Belt and rim turn like the wheel that they are made from.
+  const double whole = spec.car.wheel.mass.inertia.y(), belt = 20.0 * 0.475 * 0.475;
+  CHECK(car.spec().car.wheel.mass.inertia.y() + belt == Approx(whole).epsilon(1e-9));
   CHECK(load == Approx(car.weight).epsilon(0.05));  // it swings longer than on rigid tyres
   // The rut is what the belt pressed, without the tyre's deflection. Under the rigid wheels the soil carries some 107
   // kPa in the middle of the print; the ring presses with its air and some of its carcass.
@@ -133,4 +136,6 @@ TEST_CASE("ring tyres that cannot be are refused in words") {
   ColumnCarSpec spec{.car = humvee(), .lane = {{terramechanics::known_soil("dry-sand"), 2.0}}};
   spec.ring = RingTyreSpec{.mass = 45.0};
   CHECK_THROWS_WITH(ColumnCar(spec), ContainsSubstring("weighs 45 kg"));
+  spec.ring = RingTyreSpec{.segments = 200};
+  CHECK_THROWS_WITH(ColumnCar(spec), ContainsSubstring("too long for the ring tyres"));
 }

@@ -78,7 +78,7 @@ inline void declare(Options& options, Settings& s) {
   options.group("Car");
   add("--engine", s.engine, "motor (no gears), gears (a diesel), low-range").one_of({"motor", "gears", "low-range"});
   add("--sprung-mass", s.sprung_mass, "of the car [kg]");
-  add("--tyre", s.tyre, "rigid, or ring: pneumatic, a ring of small bodies, five times as dear")
+  add("--tyre", s.tyre, "rigid, or ring: pneumatic, a ring of small bodies, three times as dear")
       .one_of({"rigid", "ring"});
   add("--tyre-pressure", s.tyre_pressure, "of a ring [Pa]");
   add("--tyre-friction", s.tyre_friction, "mu, tyre on soil");
@@ -188,7 +188,8 @@ inline void resolve(Settings& s, ReadSoil* read_soil) {
   require_within(s.spacing, 0.005, 0.1, "--spacing (m; the print of a wheel is 0.3 m long)");
   require_within(s.damping, 0.0, 1e5, "--soil-damping (Pa s/m)");
   require_within(s.bulldozing, 0.0, 2.0, "--bulldozing");
-  require_within(s.half_width, 1.3, 10.0, "--half-width (m)");
+  require_within(s.half_width, 1.6, 10.0,
+                 "--half-width (m; the wheels stand at 0.9 m, soil ends 0.5 m beyond the lane)");
   require_within(s.time_step, 1e-6, 1e-4, "--machine-step (s)");
   require_within(s.threads, 0, 1000, "--threads");
   if (s.lane.empty())
