@@ -1,5 +1,7 @@
 #pragma once
 
+#include <dem/core/error.hpp>
+
 namespace dem {
 
 /// When grains fall asleep, and what wakes them (WorldOptions::sleep).
@@ -15,5 +17,12 @@ struct SleepOptions {
   double motion = 1e-4;  ///< of a grain's bounding radius
   int window = 100;      ///< steps
 };
+
+/// Throws Error for options that make no sense.
+inline void check_sleep(const SleepOptions& s) {
+  require_within(s.share, 1e-9, 1.0, "share of what a grain bears that leaves it asleep");
+  require_positive(s.motion, "motion in a window that leaves a grain asleep", "radii");
+  if (s.window < 1) fail("the window after which grains may sleep is {} steps, but must be at least 1", s.window);
+}
 
 }  // namespace dem

@@ -35,7 +35,7 @@ class WorldSetup {
     require_non_negative(options.skin, "skin", "m (0 chooses one)");
     require_positive(options.overlap_limit, "overlap limit", "effective diameters");
     require_finite(options.gravity, "gravity");
-    check_sleep(options.sleep);
+    if (options.sleep) check_sleep(*options.sleep);
     if (const auto& d = options.domain; d && !all_below(d->low, d->high)) {
       fail("the domain's lower corner ({:g}, {:g}, {:g}) m is not below its upper one, ({:g}, {:g}, {:g}) m",
            d->low.x(), d->low.y(), d->low.z(), d->high.x(), d->high.y(), d->high.z());
@@ -322,12 +322,6 @@ class WorldSetup {
           "than the sum of the others; check the mass properties that the shape was given",
           moments.x(), moments.y(), moments.z());
     }
-  }
-  static void check_sleep(const std::optional<SleepOptions>& s) {
-    if (!s) return;
-    require_within(s->share, 1e-9, 1.0, "share of what a grain bears that leaves it asleep");
-    require_positive(s->motion, "motion in a window that leaves a grain asleep", "radii");
-    if (s->window < 1) fail("the window after which grains may sleep is {} steps, but must be at least 1", s->window);
   }
   static void require_finite(const Vec3& v, const char* what) {
     if (!is_finite(v)) fail("{} is ({:g}, {:g}, {:g}), but must be finite", what, v.x(), v.y(), v.z());
