@@ -53,26 +53,12 @@ class Report {
 
   /// Draws a plot into the folder, as <name>.svg and <name>.png beside the script <name>.gp, and into the page.
   void plot(io::HtmlReport& html, const io::Plot& plot, const char* name, const char* caption) {
-    has_plots_ = true;
-    const auto drawn = io::render_plot(plot, folder() / name);
-    if (drawn) {
-      html.picture(drawn.svg, caption);
-    } else {
-      not_drawn_ = drawn.reason;
-      html.paragraph(text("{}: not drawn ({})", caption, drawn.reason));
-    }
+    show(html, io::render_plot(plot, folder() / name), caption);
   }
 
   /// The same with a map.
   void map(io::HtmlReport& html, const io::HeatMap& map, const char* name, const char* caption) {
-    has_plots_ = true;
-    const auto drawn = io::render_map(map, folder() / name);
-    if (drawn) {
-      html.picture(drawn.svg, caption);
-    } else {
-      not_drawn_ = drawn.reason;
-      html.paragraph(text("{}: not drawn ({})", caption, drawn.reason));
-    }
+    show(html, io::render_map(map, folder() / name), caption);
   }
 
   /// Says what there is and what is missing. `has_frames`: there are files for ParaView. Returns whether all parts were
@@ -94,6 +80,16 @@ class Report {
   }
 
  private:
+  void show(io::HtmlReport& html, const io::PlotResult& drawn, const char* caption) {
+    has_plots_ = true;
+    if (drawn) {
+      html.picture(drawn.svg, caption);
+    } else {
+      not_drawn_ = drawn.reason;
+      html.paragraph(text("{}: not drawn ({})", caption, drawn.reason));
+    }
+  }
+
   [[nodiscard]] std::string frames_text() const {
     return "Files for ParaView are missing: " + outcome().frames_problem;
   }
