@@ -333,7 +333,7 @@ inline void SoilColumns::commit() {
       }
     }
     if (!(bulldozing_.share > 0.0) || rows_.empty()) continue;
-    std::sort(rows_.begin(), rows_.end());  // those of several pieces
+    if (!std::is_sorted(rows_.begin(), rows_.end())) std::sort(rows_.begin(), rows_.end());  // of several pieces
     const Vector3<double>& v = velocity_[static_cast<std::size_t>(owner)];
     bulldozing_.deposit(field_, rows_, risen * field_.grid.area(), v.x, v.y, step_);
     top_ = std::max(top_, bulldozing_.roll(field_, rows_, step_));

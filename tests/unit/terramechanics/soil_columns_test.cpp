@@ -327,3 +327,43 @@ TEST_CASE("soils that differ over a field answer each by its own law") {
   CHECK_THROWS_WITH(soil.lay_soils(others, [](double, double) { return 2; }),
                     Catch::Matchers::ContainsSubstring("soil 2 is to lie at"));
 }
+
+TEST_CASE(
+    "a tread of pieces in a row presses and shears the soil as one part, also while it slides from one to the next") {
+  // A plate of 200 x 100 mm, whole or as four pieces of 50 mm, 2 mm deep, slides by 30 mm along its row, 1.5 K. Columns
+  // of 5 mm pass from piece to piece. At its two ends the tread counts whole columns, one in forty.
+  const auto sheared = [](int pieces, bool as_one) {
+    Soil soil = sand();
+    soil.shear.displacement = 0.02;
+    SoilColumns columns(field(soil, 0.005));
+    const double length = 0.2 / pieces;
+    const auto shape = std::make_shared<ColumnBox>(Vector3<double>{length, 0.1, 0.02}, pieces > 1);
+    const double dt = 1e-3, speed = 0.3;
+    Vector3<double> force = {0, 0, 0};
+    for (int k = 0; k <= 100; ++k) {
+      std::vector<ColumnPart> parts;
+      for (int i = 0; i < pieces; ++i) {
+        const double x = -0.1 + (i + 0.5) * length + k * dt * speed - 0.015;
+        parts.push_back(part(shape, {x, 0, 0.01 - 0.002}, {speed, 0, 0}));
+        if (as_one && i > 0) parts.back().continues = 0;
+      }
+      CHECK(columns.apply(parts, dt).ok);
+      force = {0, 0, 0};
+      for (const ColumnLoad& load : columns.loads()) force += load.force;
+    }
+    return force;
+  };
+  const auto whole = sheared(1, true), tread = sheared(4, true), loose = sheared(4, false);
+  CHECK(tread.z == Approx(whole.z).epsilon(0.03));
+  CHECK(tread.x == Approx(whole.x).epsilon(0.03));
+  CHECK(loose.z == Approx(tread.z).epsilon(1e-9));
+  // Columns that began on the way have slid by 0 to 30 mm, the others by all of it: 15 % began on the way under the
+  // plate, 60 % under pieces where each counts for itself.
+  const double all = 1.0 - std::exp(-1.5), some = 1.0 - all / 1.5;
+  CHECK(-tread.x == Approx(tread.z * std::tan(0.6) * (0.85 * all + 0.15 * some)).epsilon(0.03));
+  CHECK(-loose.x == Approx(loose.z * std::tan(0.6) * (0.4 * all + 0.6 * some)).epsilon(0.03));
+  SoilColumns columns(field(sand()));
+  std::vector<ColumnPart> wrong = {part(std::make_shared<ColumnBox>(Vector3<double>{0.1, 0.1, 0.02}), {0, 0, 0})};
+  wrong[0].continues = 0;
+  CHECK_THROWS_WITH(columns.apply(wrong, 1e-3), ContainsSubstring("goes on with part 0, but can only with one before"));
+}
