@@ -2,10 +2,8 @@
 
 #include <dem/mbd/joint/bushing.hpp>
 #include <dem/vehicle/assembly.hpp>
-#include <dem/vehicle/tyre.hpp>
 
 #include <cmath>
-#include <memory>
 #include <numbers>
 #include <string>
 #include <vector>
@@ -20,8 +18,8 @@ namespace dem::vehicle {
 ///   air        p b ds outwards on each segment, along the rim's radius, and its opposite on the rim
 ///   sidewalls  a bushing between rim and segment: radial, along the belt, sideways, and against turning
 ///
-/// The belt bends freely. The sidewalls' radial stiffness rises with the pressure, so that
-/// the tyre's vertical stiffness is that of Rhyne's formula; see rhyne_stiffness().
+/// The belt bends freely. The sidewalls' radial stiffness rises with the pressure, so that the tyre's vertical
+/// stiffness is that of Rhyne's formula; see rhyne_stiffness().
 struct RingTyreSpec {
   double radius = 0.485;     ///< m, of the inflated, unloaded tyre
   double width = 0.254;      ///< b, m, of the belt
@@ -74,9 +72,9 @@ DEM_COLD inline void check_ring_tyre(const RingTyreSpec& s) {
 }
 
 /// N/m, vertical stiffness of a belted radial tyre by T. B. Rhyne, "Development of a vertical stiffness relationship
-/// for belted radial tires", Tire Science and Technology 33 (2005): K = 0.00028 p sqrt((1.03 - 0.004 AR) S (S AR/50 +
-/// D)) + 3.45 in kg/mm, with p in kPa, the section's width S and the rim's diameter D in mm, and the aspect ratio AR in
-/// percent. `pressure` in Pa, lengths in m.
+/// for belted radial tires", Tire Science and Technology 33, 136 (2005), doi 10.2346/1.2174340, as it is quoted: K =
+/// 0.00028 p sqrt((1.03 - 0.004 AR) S (S AR/50 + D)) + 3.45 in kg/mm, with p in kPa, the section's width S and the
+/// rim's diameter D in mm, and the aspect ratio AR in percent. `pressure` in Pa, lengths in m.
 inline double rhyne_stiffness(double pressure, double section_width, double radius, double rim_radius) {
   const double s = 1e3 * section_width, d = 2e3 * rim_radius, aspect = 100.0 * (radius - rim_radius) / section_width;
   return 9.81e3 * (0.00028 * 1e-3 * pressure * std::sqrt((1.03 - 0.004 * aspect) * s * (s * aspect / 50.0 + d)) + 3.45);

@@ -116,6 +116,20 @@ TEST_CASE("a car that rolls over, digs in, slides back or leaves the lane ends i
   CHECK(word([&](auto& x) {
           if (x.car.time < 0.9) spin(x);  // not for a second
         }) == "");
+  // Half of the wheels spin, and the car gains less than 0.1 m in 3 s; it may stand for 2.
+  const auto stuck = [&](double from, double to) {
+    soft_lane::Judge judge(s);
+    std::string found;
+    for (double t = 0.01; found.empty() && t < 5.0; t += 0.01) {
+      auto x = driving(t);
+      x.way = t < from ? 0.3 * t : t < to ? 0.3 * from : 0.3 * (from + t - to);
+      x.wheels[0].slip = x.wheels[1].slip = 0.7;
+      found = judge(x, wheels);
+    }
+    return found;
+  };
+  CHECK(stuck(1.0, 3.0) == "");
+  CHECK(stuck(1.0, 5.0) == soft_lane::ending::dug_in);
   auto beside = wheels;
   beside[1] -= Vec3(0, 0.5, 0);
   CHECK(soft_lane::Judge(s)(driving(0.1), beside) == soft_lane::ending::left_lane);
