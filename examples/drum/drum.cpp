@@ -1,7 +1,7 @@
 // A rotating drum with a rough lining: the slope of the flowing grains over the Froude number w^2 R/g. The drum's
 // torque is set beside the weight of the grains times the lever of their centre of mass, which it lifts.
 //
-//   drum --froude 0.001,0.01,0.05,0.2 --seconds 1 --output out/drum       (seconds for each speed)
+//   drum --froude 0.001,0.01,0.05,0.2 --seconds 1 --threads 2 --output out/drum       (seconds for each speed)
 //
 // Writes slope.gp (slope over Froude number) and picture.gp, and draws them where gnuplot is installed.
 
@@ -28,10 +28,11 @@ int main(int argc, char** argv) {
   const double seconds = arguments.number("--seconds", 1.0);
   const std::vector<double> froude_numbers = arguments.numbers("--froude", {1e-3, 1e-2, 5e-2, 0.2});
   const std::string folder = arguments.take("--output", "drum");
+  const int threads = static_cast<int>(arguments.number("--threads", 1));
   arguments.check();
   const double d = 3e-3, radius = 14 * d, length = 6 * d, g = 9.81, pi = std::numbers::pi;  // m; m/s^2
 
-  World<Beads> world;
+  World<Beads> world({.threads = threads});
   const ContactParameters<Beads> rough = {.normal = contact::LinearSpringDashpot::with_restitution(500, 0.6),
                                           .friction = {0.5, 350, 0.1}};
   ContactParameters<Beads> smooth = rough;

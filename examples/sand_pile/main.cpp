@@ -11,8 +11,11 @@
 #include <dem/rig/sand_pile/pile_rig.hpp>
 
 int main(int argc, char** argv) {
-  static constexpr pile::PileWorld worlds[] = {
-      {"cube8", cube8}, {"polyhedron", polyhedron}, {"superquadric", superquadric}, {"sphere", sphere}};
+  static constexpr pile::PileWorld worlds[] = {{"cube8", cube8},
+                                               {"polyhedron", polyhedron},
+                                               {"superquadric", superquadric},
+                                               {"sphere", sphere},
+                                               {"sphere-braked", sphere_braked}};
   pile::PileRig rig(worlds);
   return dem::rig::run_program({.name = "sand_pile",
                                 .title = "Sand piles",

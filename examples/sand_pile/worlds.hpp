@@ -10,4 +10,4 @@ namespace pile = dem::rig::sand_pile;
 
 // Each is in a source of its own, as a world takes a while to compile.
 using PileRun = void(const pile::Settings&, pile::PileResult&, dem::report::Replay*, dem::rig::Session&);
-PileRun cube8, polyhedron, superquadric, sphere;
+PileRun cube8, polyhedron, superquadric, sphere, sphere_braked;

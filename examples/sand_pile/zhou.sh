@@ -2,6 +2,7 @@
 # Spheres with rolling resistance, left on the floor of a box that is emptied through a slot, beside the fit of
 # Zhou, Xu, Yu and Zulli (Powder Technology 125, 2002): phi = 68.61 mu_pp^0.27 mu_pw^0.22 m_pp^0.06 m_pw^0.12 d^-0.2,
 # with the rolling lengths m and the diameter d in mm. Prints a table. Runs that are there already are not made again.
+# Rolling meets a constant torque, as in the simulations of the fit. KIND=sphere-rolling has springs instead.
 #
 #   zhou.sh <sand_pile> <folder> [seeds]
 set -euo pipefail
@@ -9,6 +10,7 @@ set -euo pipefail
 [ $# -ge 2 ] || { sed -n 's/^#   //p' "$0" >&2 && exit 2; }
 rig=$(realpath "$1")
 seeds=${3:-1}
+kind=${KIND:-sphere-braked}
 mkdir -p "$2"
 cd "$2"
 
@@ -28,7 +30,7 @@ while read -r d mu_pp mu_pw m_pp m_pw; do
   # the fit: 3.6 kN/m for 10 mm.
   read -r half width slot length m1 m2 <<< "$(awk -v d="$d" -v a="$m_pp" -v b="$m_pw" 'BEGIN {
     print d * 4.02998e-4, 12e-3 * d, 5e-3 * d, 28e-3 * d, 1e-3 * a, 1e-3 * b }')"
-  [ -s "$name/results.csv" ] || "$rig" --size quick --method drain --plate flat --kinds sphere-rolling --density 2400 \
+  [ -s "$name/results.csv" ] || "$rig" --size quick --method drain --plate flat --kinds "$kind" --density 2400 \
     --half-edge "$half" --grains "${GRAINS:-5000}" --box-width "$width" --slot-width "$slot" --box-length "$length" \
     --friction "$mu_pp" --plate-friction "$mu_pw" --rolling-length "$m1" --plate-rolling-length "$m2" \
     --stiffness 200 --rest-limit 2 --creep-time 0.2 --seeds "$seeds" --no-vtk --no-replay \

@@ -7,82 +7,25 @@
 //
 // prints a table, and writes it as CSV, plots, and the last rut as CSV, PGM picture and ParaView surface.
 
-#include <dem/integrator/velocity_verlet.hpp>
 #include <dem/io/csv.hpp>
-#include <dem/math/rotation.hpp>
-#include <dem/mbd/machine.hpp>
 #include <dem/report/ascii_table.hpp>
 #include <dem/report/plot.hpp>
-#include <dem/terramechanics/column_shapes.hpp>
-#include <dem/terramechanics/machine_columns.hpp>
+#include <dem/terramechanics/column_wheel.hpp>
 #include <dem/terramechanics/rut_files.hpp>
 #include <dem/terramechanics/rut_vtk.hpp>
 #include <dem/terramechanics/soil_reader.hpp>
-#include <dem/terramechanics/wheel_load.hpp>
 
 #include <CLI/CLI.hpp>
 
 #include <array>
 #include <ctime>
-#include <numbers>
 
 using namespace dem;
 using namespace dem::terramechanics;
-struct Settings {
-  NamedSoil soil = {"sand P1", "D. Melanz", melanz_sand};
-  Wheel wheel = {.radius = 0.13, .width = 0.16};
-  double friction = ColumnPart::rough;  // mu of the rim on the soil
-  double load = 130.0, spacing = 0.01, travel = 0.3, dt = 2.5e-4, spin = radians(17.0);
-};
-struct Result {  // N, N m, m
-  double pull = 0.0, torque = 0.0, sinkage = 0.0;
-};
-
-/// The wheel on a hub that slides up and down on a carriage, which is moved along. Slip is 1 - v/(omega r). Joints are
-/// springs as stiff as the masses at them and the time step allow: so nearly all of the load is the hub's.
-Result roll(const Settings& s, double slip, ColumnField& field) {
-  // With grousers the soil shears off at their tips: the columns meet a wheel of that radius.
-  const double rim = s.wheel.radius, r = s.wheel.shear_radius();
-  const double v = s.spin * rim * (1.0 - slip), wheel_mass = 1.5;
-  mbd::Machine<integrator::VelocityVerlet> machine;
-  const BodyId carriage = machine.add_fixed_body("carriage", {0, 0, 3 * r});
-  const double hub_density = (s.load / 9.81 - wheel_mass) / (0.3 * 0.3 * 0.3);
-  const BodyId hub = machine.add_body(mbd::box_body("hub", {0.3, 0.3, 0.3}, hub_density).at({0, 0, r}));
-  const double density = wheel_mass / (std::numbers::pi * r * r * s.wheel.width);
-  const Mat3 axle_along_y = to_eigen(rotation_from_vector(Vector3<double>{-std::numbers::pi / 2, 0, 0}));
-  const BodyId wheel =
-      machine.add_body(mbd::cylinder_body("wheel", r, s.wheel.width, density).at({0, 0, r}, axle_along_y));
-  machine.add_joint(mbd::prismatic("slide", carriage, hub, {0, 0, r}, Vec3::UnitZ()));
-  const auto axle = machine.add_joint(mbd::revolute("axle", hub, wheel, {0, 0, r}, Vec3::UnitY()));
-  machine.add_motion(mbd::prescribed_position("travel", carriage, Vec3::UnitX(), mbd::Signal::ramp(0.0, v)));
-  machine.add_motion(mbd::prescribed_joint("spin", axle, mbd::Signal::ramp(0.0, s.spin)));
-  const double margin = 1.2 * r, width = s.wheel.width + 0.16;
-  MachineColumns soil(machine, {.low_x = -margin,
-                                .low_y = -0.5 * width,
-                                .length_x = s.travel + 2 * margin,
-                                .length_y = width,
-                                .spacing = s.spacing,
-                                .soil = s.soil.soil,
-                                .bulldozing = 0.5});
-  soil.add(wheel, std::make_shared<ColumnCylinder>(r, s.wheel.width), machine.body(wheel).position(), Mat3::Identity(),
-           0.0, s.friction);
-  Result mean;
-  double count = 0.0;
-  const auto report = machine.run(s.travel / v, s.dt, [&] {
-    if (machine.time() < 0.5 * s.travel / v) return;  // set down and settled
-    mean.pull += soil.loads()[0].force.x;
-    mean.torque -= soil.loads()[0].torque.y;
-    mean.sinkage += rim - machine.body(wheel).position().z();
-    ++count;
-  });
-  if (!report) fail("{}", report.text);
-  if (!soil.report()) fail("{}", soil.report().text);
-  field = soil.soil().field();
-  return {mean.pull / count, mean.torque / count, mean.sinkage / count};
-}
 
 int main(int argc, char** argv) {
-  Settings s;
+  ColumnWheel s = {.spin = radians(17.0)};
+  NamedSoil named = {"sand P1", "D. Melanz", melanz_sand};
   std::string soil_file, output = "soil_columns", kind = "rough";
   double grouser = 0.01, friction = 0.3;
   bool halve = false;
@@ -102,11 +45,12 @@ int main(int argc, char** argv) {
   app.add_option("--output", output, "folder for the results")->capture_default_str();
   CLI11_PARSE(app, argc, argv);
   try {
-    if (!soil_file.empty()) s.soil = load_soil(soil_file);
+    if (!soil_file.empty()) named = load_soil(soil_file);
+    s.soil = named.soil;
     if (kind == "grousers") s.wheel.grouser_height = grouser;
     if (kind == "smooth") s.friction = friction;
     // What columns assume: pressure largest at the lowest point, shear along the way that the rim slides.
-    Soil plain = s.soil.soil;
+    Soil plain = s.soil;
     plain.a0 = plain.a1 = 0.0;
     const WheelModel one_path = {.braked = BrakedShear::one_path};
     const char* quantities[3] = {"pull [N]", "torque [N m]", "sinkage [mm]"};
@@ -114,12 +58,12 @@ int main(int argc, char** argv) {
     io::Table table{
         .caption = fmt::format("{}, {} N, {} wheel: columns / thesis eqs. 1-11 / the same with a0 = a1 = 0, "
                                "one path",
-                               s.soil.name, s.load, kind),
+                               named.name, s.load, kind),
         .header = {"slip"},
         .digits = 4};
     io::Plot plots[3];
     for (int q = 0; q < 3; ++q) {
-      plots[q] = {.title = fmt::format("Wheel on {}, {} N", s.soil.name, s.load),
+      plots[q] = {.title = fmt::format("Wheel on {}, {} N", named.name, s.load),
                   .x_label = "slip 1 - v/(ωr)",
                   .y_label = quantities[q]};
       for (const char* model : models) {
@@ -136,20 +80,22 @@ int main(int argc, char** argv) {
     ColumnField field;
     double largest[3] = {}, changed[3] = {};  // of each quantity, and by how much columns half as wide change it
     for (const double slip : {-0.7, -0.5, -0.3, -0.2, -0.1, -0.05, 0.0, 0.05, 0.1, 0.2, 0.3, 0.5, 0.7}) {
-      const Result c = roll(s, slip, field);
+      const ColumnWheelRun c = roll_on_columns(s, slip);
+      field = c.field;
       simulated += s.travel / (s.spin * s.wheel.radius * (1.0 - slip));
       if (halve) {
-        Settings half = s;
+        ColumnWheel half = s;
         half.spacing *= 0.5;
         simulated += s.travel / (s.spin * s.wheel.radius * (1.0 - slip));
-        const Result f = roll(half, slip, field);
+        const ColumnWheelRun f = roll_on_columns(half, slip);
+        field = f.field;
         const double pairs[3][2] = {{c.pull, f.pull}, {c.torque, f.torque}, {c.sinkage, f.sinkage}};
         for (int q = 0; q < 3; ++q) {
           largest[q] = std::max(largest[q], std::abs(pairs[q][0]));
           changed[q] = std::max(changed[q], std::abs(pairs[q][0] - pairs[q][1]));
         }
       }
-      const WheelForces e = wheel_under_load(s.wheel, s.soil.soil, {slip}, s.load),
+      const WheelForces e = wheel_under_load(s.wheel, s.soil, {slip}, s.load),
                         p = wheel_under_load(s.wheel, plain, {slip}, s.load, one_path);
       const std::vector<double> row = {slip,     c.pull,   e.pull,          p.pull,          c.torque,
                                        e.torque, p.torque, 1e3 * c.sinkage, 1e3 * e.sinkage, 1e3 * p.sinkage};

@@ -15,12 +15,15 @@ using Catch::Approx;
 using Catch::Matchers::ContainsSubstring;
 
 TEST_CASE("kinds of grains by name") {
-  const auto kinds = kinds_in("cube8,cube8-viscous,sphere-rolling");
-  REQUIRE(kinds.size() == 3);
+  const auto kinds = kinds_in("cube8,cube8-viscous,sphere-rolling,sphere-braked");
+  REQUIRE(kinds.size() == 4);
   CHECK((kinds[0].shape == "cube8" && !kinds[0].viscous && !kinds[0].rolling));
   CHECK((kinds[1].shape == "cube8" && kinds[1].viscous));
-  CHECK((kinds[2].shape == "sphere" && kinds[2].rolling && kinds[2].name == "sphere-rolling"));
-  for (const char* wrong : {"", "cube", "cube8-", "cube8-rolling", "sphere-soft", "sphere,", "sphere, cube8"}) {
+  CHECK((kinds[2].shape == "sphere" && kinds[2].rolling && kinds[2].name == "sphere-rolling" && !kinds[2].braked));
+  CHECK((kinds[3].shape == "sphere" && kinds[3].rolling && kinds[3].braked));
+  CHECK((kinds[1].world() == "cube8" && kinds[2].world() == "sphere" && kinds[3].world() == "sphere-braked"));
+  for (const char* wrong :
+       {"", "cube", "cube8-", "cube8-rolling", "cube8-braked", "sphere-soft", "sphere,", "sphere, cube8"}) {
     INFO(wrong);
     CHECK_THROWS_WITH(kinds_in(wrong), ContainsSubstring("but must be cube8, polyhedron"));
   }

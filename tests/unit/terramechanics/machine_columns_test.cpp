@@ -2,7 +2,7 @@
 #include <dem/integrator/velocity_verlet.hpp>
 #include <dem/math/rotation.hpp>
 #include <dem/mbd/machine.hpp>
-#include <dem/terramechanics/machine_columns.hpp>
+#include <dem/terramechanics/column_wheel.hpp>
 
 #include <cmath>
 #include <numbers>
@@ -83,6 +83,24 @@ void check_rig() {
 TEST_CASE("a machine's wheel on columns does what the wheel alone does, with either kind of integrator") {
   check_rig<integrator::VelocityVerlet>();
   check_rig<integrator::PredictorCorrector>();
+}
+
+TEST_CASE("a wheel of the library's rig on columns feels what the wheel alone does") {
+  const double travel = 0.12;
+  for (const double slip : {-0.3, 0.3}) {
+    RollingWheel alone{.slip = slip};
+    SoilColumns columns(lane(travel));
+    const auto mean = alone.roll(columns, travel);
+    const ColumnWheel test{.spin = alone.spin, .travel = travel, .bulldozing = 0.0};
+    const ColumnWheelRun run = roll_on_columns(test, slip);
+    // As above: joints that give, here by up to 0.02 rad, and another time step.
+    CHECK(run.pull == Approx(mean.pull).epsilon(0.01));
+    CHECK(run.torque == Approx(mean.torque).epsilon(0.01));
+    CHECK(run.sinkage == Approx(mean.sinkage).epsilon(0.01));
+    CHECK(run.field.surface(run.field.grid.row(run.field.grid.nx / 2, run.field.grid.ny / 2)) < -0.5 * mean.sinkage);
+  }
+  CHECK_THROWS_WITH(roll_on_columns({}, 1.0), ContainsSubstring("slip of a wheel on columns"));
+  CHECK_THROWS_WITH(roll_on_columns({.load = 10.0}, 0.1), ContainsSubstring("weight of a wheel on columns"));
 }
 
 TEST_CASE("a block comes to rest on columns and weighs what it weighs") {

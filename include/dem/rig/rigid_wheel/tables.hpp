@@ -5,11 +5,10 @@
 #include <dem/report/plot_data.hpp>
 #include <dem/report/table.hpp>
 #include <dem/rig/bed/bed.hpp>
+#include <dem/rig/rigid_wheel/references.hpp>
 #include <dem/rig/rigid_wheel/results.hpp>
-#include <dem/terramechanics/soil_reader.hpp>
-#include <dem/terramechanics/wheel_load.hpp>
 
-#include <utility>
+#include <span>
 
 // What was found, as tables and plots, beside the semi-empirical soils.
 
@@ -17,27 +16,6 @@ namespace dem::rig::rigid_wheel {
 
 inline std::string number(double value, const char* format = "{:.2f}") {
   return std::isfinite(value) ? dem::text_of(format, {value}) : "-";
-}
-
-/// A soil that curves are drawn of by Bekker and Wong.
-using Reference = std::pair<std::string, terramechanics::Soil>;
-inline std::vector<Reference> references(const Settings& s) {
-  std::vector<Reference> list{{"P1", terramechanics::melanz_sand}, {"P3", terramechanics::mojave_martian_simulant}};
-  if (!s.soil.empty()) list.emplace_back(s.soil.substr(s.soil.rfind('/') + 1), terramechanics::load_soil(s.soil).soil);
-  return list;
-}
-
-/// The wheel on a soil by eqs. 2-11; none where the soil does not carry it.
-inline std::optional<terramechanics::WheelForces> reference_at(const terramechanics::Soil& soil, double slip,
-                                                               const Settings& s) {
-  const bool grousers = s.wheel == "grousers";
-  const terramechanics::Wheel wheel{
-      .radius = s.radius, .width = s.width, .grouser_height = grousers ? s.grouser_height : 0.0};
-  try {
-    return wheel_under_load(wheel, soil, {slip, terramechanics::SlipDefinition::wheel_speed}, s.load);
-  } catch (const Error&) {
-    return {};
-  }
 }
 
 inline io::Table slip_table(const Settings& s, const Campaign& c) {
@@ -53,14 +31,20 @@ inline io::Table slip_table(const Settings& s, const Campaign& c) {
   return t;
 }
 
-inline io::Table reference_table(const Settings& s, const Campaign& c) {
-  io::Table t{.caption = "Beside Bekker and Wong (eqs. 2-11) with published soils, slip s = 1 - v/(omega r)",
+inline io::Table reference_table(const Settings& s, const Campaign& c, std::span<const Reference> soils) {
+  io::Table t{.caption =
+                  "Beside Bekker and Wong (eqs. 2-11) and dynamic Bekker (soil columns) with published soils, "
+                  "slip s = 1 - v/(omega r)",
               .header = {"slip", "soil", "pull [N]", "torque [N m]", "sinkage [mm]"}};
-  for (const SlipResult& r : c.slips) {
+  const auto row = [&](const std::string& name, const std::optional<terramechanics::WheelForces>& f) {
+    if (f) t.row("", name, number(f->pull), number(f->torque), number(1e3 * f->sinkage));
+  };
+  for (std::size_t k = 0; k < c.slips.size(); ++k) {
+    const SlipResult& r = c.slips[k];
     t.row(number(r.slip), "grains", number(r.pull.mean), number(r.torque.mean), number(1e3 * r.sinkage.mean));
-    for (const auto& [name, soil] : references(s)) {
-      const auto f = reference_at(soil, r.slip, s);
-      if (f) t.row("", name, number(f->pull), number(f->torque), number(1e3 * f->sinkage));
+    for (const Reference& soil : soils) {
+      row(soil.name, reference_at(soil.soil, r.slip, s));
+      if (k < soil.on_columns.size()) row(soil.name + ", columns", soil.on_columns[k]);
     }
   }
   return t;
@@ -84,8 +68,9 @@ inline io::Table rut_table(const Campaign& c) {
 
 /// A mean over slip, beside the semi-empirical soils.
 template <class OfForces>
-io::Plot slip_plot(const Settings& s, const Campaign& c, MeanAndDeviation SlipResult::*value, double scale,
-                   OfForces&& of_forces, const char* title, const char* label) {
+io::Plot slip_plot(const Settings& s, const Campaign& c, std::span<const Reference> soils,
+                   MeanAndDeviation SlipResult::*value, double scale, OfForces&& of_forces, const char* title,
+                   const char* label) {
   io::Plot plot{.title = title, .x_label = "slip s = 1 - v/(ω r)", .y_label = label};
   io::Series points{.name = "grains", .style = io::SeriesStyle::LinePoints, .color = 0};
   io::Series low{.name = "± standard deviation", .style = io::SeriesStyle::Dotted, .color = 0}, high = low;
@@ -100,16 +85,15 @@ io::Plot slip_plot(const Settings& s, const Campaign& c, MeanAndDeviation SlipRe
   }
   for (auto* series : {&points, &low, &high}) plot.series.push_back(*series);
   int color = 1;
-  for (const auto& [name, soil] : references(s)) {
-    io::Series line{.name = name + ", Bekker and Wong", .style = io::SeriesStyle::Dashed, .color = color++};
-    for (int k = -14; k <= 16; ++k) {
-      const double slip = 0.05 * k;
-      const auto f = reference_at(soil, slip, s);
-      if (!f) continue;
-      line.x.push_back(slip);
-      line.y.push_back(scale * of_forces(*f));
-    }
-    plot.series.push_back(std::move(line));
+  for (const Reference& soil : soils) {
+    io::Series line{.name = soil.name + ", Bekker and Wong", .style = io::SeriesStyle::Dashed, .color = color};
+    io::Series columns{.name = soil.name + ", dynamic Bekker", .style = io::SeriesStyle::Points, .color = color++};
+    const auto add = [&](io::Series& to, double slip, const std::optional<terramechanics::WheelForces>& f) {
+      if (f) to.x.push_back(slip), to.y.push_back(scale * of_forces(*f));
+    };
+    for (int k = -14; k <= 16; ++k) add(line, 0.05 * k, reference_at(soil.soil, 0.05 * k, s));
+    for (std::size_t k = 0; k < soil.on_columns.size(); ++k) add(columns, c.slips[k].slip, soil.on_columns[k]);
+    for (auto* series : {&line, &columns}) plot.series.push_back(std::move(*series));
   }
   return plot;
 }
@@ -180,7 +164,7 @@ inline io::Plot print_plot(const Settings& s, const SlipResult& r) {
   }
   plot.series = {pressure, shear};
   int color = 2;
-  for (const auto& [name, soil] : references(s)) {
+  for (const auto& [name, soil, on_columns] : references(s)) {
     const auto f = reference_at(soil, r.slip, s);
     if (!f) continue;
     using namespace terramechanics;

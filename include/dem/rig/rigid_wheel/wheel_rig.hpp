@@ -3,6 +3,7 @@
 #include <dem/io/csv.hpp>
 #include <dem/report/replay_page.hpp>
 #include <dem/rig/rig.hpp>
+#include <dem/rig/rigid_wheel/columns.hpp>
 #include <dem/rig/rigid_wheel/tables.hpp>
 
 #include <algorithm>
@@ -35,8 +36,10 @@ class WheelRig : public Rig {
   bool report(Report& report) const override {
     const Settings& s = settings;
     report.part("results.csv", [&] { write_results(report.folder() / "results.csv"); });
-    const std::vector<io::Table> tables{slip_table(s, campaign), reference_table(s, campaign), rut_table(campaign),
-                                        print_table(campaign)};
+    std::vector<Reference> soils = references(s);
+    roll_on_columns(soils, campaign, s);
+    const std::vector<io::Table> tables{slip_table(s, campaign), reference_table(s, campaign, soils),
+                                        rut_table(campaign), print_table(campaign)};
     report.part("under_wheel.csv", [&] { write_print(report.folder() / "under_wheel.csv"); });
     report.part("the printed report", [&] {
       fmt::print("\n{}\n{}\n{}\n\n", bed_text(s, campaign), window_text, print_text);
@@ -49,7 +52,7 @@ class WheelRig : public Rig {
     report.page(list_settings(s), [&](io::HtmlReport& page) {
       page.paragraph(bed_text(s, campaign)).paragraph(window_text).paragraph(print_text);
       for (const auto& table : tables) page.table(table);
-      if (any_rolled()) add_plots(report, page);
+      if (any_rolled()) add_plots(report, page, soils);
       if (campaign.replay && campaign.replay->frames().size() > 1) {
         page.heading("Replay").replay(*campaign.replay, "The wheel at the largest slip up to 0.3.");
       }
@@ -66,26 +69,26 @@ class WheelRig : public Rig {
                        [](const SlipResult& r) { return r.samples.size() > 1; });
   }
 
-  void add_plots(Report& report, io::HtmlReport& page) const {
+  void add_plots(Report& report, io::HtmlReport& page, std::span<const Reference> soils) const {
     using terramechanics::WheelForces;
     const Settings& s = settings;
     const Campaign& c = campaign;
     page.heading("Plots");
     report.plot(page,
                 slip_plot(
-                    s, c, &SlipResult::pull, 1.0, [](const WheelForces& f) { return f.pull; }, "Drawbar pull",
+                    s, c, soils, &SlipResult::pull, 1.0, [](const WheelForces& f) { return f.pull; }, "Drawbar pull",
                     "drawbar pull [N]"),
                 "pull", "Drawbar pull over slip.");
-    report.plot(
-        page,
-        slip_plot(
-            s, c, &SlipResult::torque, 1.0, [](const WheelForces& f) { return f.torque; }, "Torque", "torque [N m]"),
-        "torque", "Torque that drives the wheel over slip.");
-    report.plot(
-        page,
-        slip_plot(
-            s, c, &SlipResult::sinkage, 1e3, [](const WheelForces& f) { return f.sinkage; }, "Sinkage", "sinkage [mm]"),
-        "sinkage", "Sinkage over slip.");
+    report.plot(page,
+                slip_plot(
+                    s, c, soils, &SlipResult::torque, 1.0, [](const WheelForces& f) { return f.torque; }, "Torque",
+                    "torque [N m]"),
+                "torque", "Torque that drives the wheel over slip.");
+    report.plot(page,
+                slip_plot(
+                    s, c, soils, &SlipResult::sinkage, 1e3, [](const WheelForces& f) { return f.sinkage; }, "Sinkage",
+                    "sinkage [mm]"),
+                "sinkage", "Sinkage over slip.");
     report.plot(page, time_plot(c, &Sample::pull, 1.0, "Drawbar pull over time", "drawbar pull [N]"), "pull_over_time",
                 "Drawbar pull of every run.");
     report.plot(page, time_plot(c, &Sample::sinkage, 1e3, "Sinkage over time", "sinkage [mm]"), "sinkage_over_time",

@@ -2,6 +2,7 @@
 
 #include <dem/grain/materials.hpp>
 #include <dem/integrator/velocity_verlet.hpp>
+#include <dem/law/rolling/constant_torque.hpp>
 #include <dem/law/rolling/elastic_plastic.hpp>
 #include <dem/rig/sand_pile/settings.hpp>
 #include <dem/world/model.hpp>
@@ -50,8 +51,11 @@ Grains<Model> grains_of(const Settings& s, const Kind& kind, const typename Mode
   const auto constants = [&](double mu, double rolling_length, double effective_radius) {
     ContactParameters<Model> p{{k * s.stiffness, c * s.damping, s.separation_factor},
                                {mu, spring, c * s.velocity_stiffness, s.breaking_factor}};
+    const double resistance = kind.rolling ? rolling_length / effective_radius : 0.0;
     if constexpr (std::is_same_v<typename Model::Rolling, rolling::ElasticPlastic>) {
-      p.rolling = {kind.rolling ? rolling_length / effective_radius : 0.0, k * s.stiffness, 0.3};
+      p.rolling = {resistance, k * s.stiffness, 0.3};
+    } else if constexpr (std::is_same_v<typename Model::Rolling, rolling::ConstantTorque>) {
+      p.rolling = {resistance};
     }
     return p;
   };

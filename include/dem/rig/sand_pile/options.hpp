@@ -16,7 +16,9 @@ inline void declare(Options& options, Settings& s) {
       .one_of({"lift", "funnel", "drain"});
   add("--kinds", s.kinds,
       "of grains, a pile of each: cube8 (eight spheres), polyhedron (sharp cubes), superquadric (rounded cubes), "
-      "sphere; any of them with -viscous behind it (friction without springs); sphere-rolling; empty: by size");
+      "sphere; any of them with -viscous behind it (friction without springs); sphere-rolling (springs resist "
+      "rolling); "
+      "sphere-braked (a constant torque does); empty: by size");
   add("--seed", s.seed, "of the first pile of each kind");
   add("--seeds", s.seeds, "piles of each kind; 0: by size");
   options.group("Grains");
@@ -42,7 +44,8 @@ inline void declare(Options& options, Settings& s) {
   add("--damping", s.damping, "C [N s/m], likewise");
   add_contact_options(options, s);
   add("--rolling-length", s.rolling_length,
-      "of sphere-rolling: rolling resists by this times the normal force [m]; 0: a fifth of the half-edge");
+      "of sphere-rolling and sphere-braked: rolling resists by this times the normal force [m]; 0: a fifth of the "
+      "half-edge");
   add("--plate-rolling-length", s.plate_rolling_length, "the same on plate, floor and walls; negative: the same");
   options.group("Stages");
   add("--settle-limit", s.settle_limit, "grains must be at rest in their container by then [s]");
@@ -68,8 +71,9 @@ inline void find_idle(IdleOptions& idle, const Settings& s) {
   idle.unless(funnel, "with --method funnel", {"--orifice-radius", "--orifice-height", "--funnel-angle"});
   idle.unless(drain, "with --method drain", {"--box-length", "--box-width", "--slot-width"});
   idle.unless(!lift, "with --method funnel or drain", {"--flow-limit"});
-  idle.unless(s.kinds.empty() || s.kinds.find("sphere-rolling") != std::string::npos, "with --kinds sphere-rolling",
-              {"--rolling-length", "--plate-rolling-length"});
+  const auto piles = [&](const char* kind) { return s.kinds.find(kind) != std::string::npos; };
+  idle.unless(s.kinds.empty() || piles("sphere-rolling") || piles("sphere-braked"),
+              "with --kinds sphere-rolling or sphere-braked", {"--rolling-length", "--plate-rolling-length"});
   find_idle_replay(idle, s);
   idle.unless(s.scale_contacts, "with --scale-contacts true", {"--constants-for"});
   idle.unless(s.vtk, "with files for ParaView, without --no-vtk", {"--frame-time"});

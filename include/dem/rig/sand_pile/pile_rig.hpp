@@ -14,7 +14,7 @@ namespace dem::rig::sand_pile {
 
 /// Grains that a program has a world for.
 struct PileWorld {
-  const char* shape;                                                      ///< as a kind's name begins
+  const char* name;                                                       ///< Kind::world()
   void (*make)(const Settings&, PileResult&, report::Replay*, Session&);  ///< calls make_pile() with this world
 };
 
@@ -32,7 +32,7 @@ class PileRig : public Rig {
                          .plots = {"profiles", "angles", "angle_over_time"},
                          .frames = {"grains", "apparatus", "spheres", "superquadrics", "polyhedra"}};
     for (const char* shape : {"cube8", "polyhedron", "superquadric", "sphere"}) {
-      for (const char* law : {"", "-viscous", "-rolling"}) {
+      for (const char* law : {"", "-viscous", "-rolling", "-braked"}) {
         for (const char* type : {".csv", ".txt", ".pvd"}) names.files.push_back(text("{}{}_#+{}", shape, law, type));
       }
     }
@@ -68,9 +68,9 @@ class PileRig : public Rig {
  private:
   const PileWorld& world_of(const Kind& kind) const {
     for (const PileWorld& world : worlds_) {
-      if (kind.shape == world.shape) return world;
+      if (kind.world() == world.name) return world;
     }
-    throw InAnotherProgram(text("this program has no grains of shape {}", kind.shape));
+    throw InAnotherProgram(text("this program has no world for grains of the kind {}", kind.name));
   }
 
   std::span<const PileWorld> worlds_;

@@ -81,21 +81,27 @@ struct Kind {
   std::string shape;     ///< cube8, polyhedron, superquadric or sphere
   bool viscous = false;  ///< Coulomb-viscous friction: asperities without a spring
   bool rolling = false;  ///< resistance against rolling, of spheres
+  bool braked = false;   ///< that resistance is a constant torque, without a spring
+
+  /// The world that makes it: that of its shape, or of another law of rolling.
+  [[nodiscard]] std::string world() const { return braked ? shape + "-braked" : shape; }
 };
 
-/// The kind of that name: a shape, and behind it "-viscous" or, of spheres, "-rolling". Throws Error for another name.
+/// The kind of that name: a shape, and behind it "-viscous" or, of spheres, "-rolling" or "-braked". Throws Error for
+/// another name.
 inline Kind kind_named(const std::string& name) {
   const auto dash = name.find('-');
   Kind kind = {.name = name, .shape = name.substr(0, dash)};
   const std::string law = dash == std::string::npos ? "" : name.substr(dash + 1);
   kind.viscous = law == "viscous";
-  kind.rolling = law == "rolling" && kind.shape == "sphere";
+  kind.braked = law == "braked" && kind.shape == "sphere";
+  kind.rolling = kind.braked || (law == "rolling" && kind.shape == "sphere");
   const bool known =
       kind.shape == "cube8" || kind.shape == "polyhedron" || kind.shape == "superquadric" || kind.shape == "sphere";
   if (!known || (dash != std::string::npos && !kind.viscous && !kind.rolling)) {
     fail(
         "a kind of grain is '{}', but must be cube8, polyhedron, superquadric or sphere, any of them with '-viscous' "
-        "behind it for friction without springs, or sphere-rolling",
+        "behind it for friction without springs, or sphere-rolling, or sphere-braked",
         name);
   }
   return kind;
