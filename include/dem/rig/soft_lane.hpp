@@ -1,5 +1,6 @@
 #pragma once
 
+#include <dem/io/duration.hpp>
 #include <dem/rig/bed/make_bed.hpp>
 #include <dem/rig/soft_lane/driver.hpp>
 #include <dem/rig/soft_lane/stand.hpp>
@@ -65,13 +66,14 @@ class SoftLane {
                 .level = bed.level,
                 .before = {}};
     stages.begin("settle lane");
+    const auto kept = stages.keep("lane", stand);
     settle(stand.world, s.grains.edge(), s.bed.stage_limit, "--stage-limit", stages, [] { return 0.0; });
-    stand.before = soil::placements(stand.world);
-    stand.level = soft_lane::level_of(s, stand.before);
+    if (stand.before.empty()) {  // else it is known from the run that goes on
+      stand.before = soil::placements(stand.world);
+      stand.level = soft_lane::level_of(s, stand.before);
+    }
     soft_lane::add_car(stand, s);
     lower(stand, stages, look);
-    const vehicle::Controls brakes{.brake = 1.0};
-    for (int k = 0; k < 20; ++k) soft_lane::advance(stand, brakes), look(std::as_const(stand));
     return stand;
   }
 
@@ -89,39 +91,28 @@ class SoftLane {
     const Settings& s = settings_;
     auto& world = stand.world;
     const double radius = s.car.tyre.radius, steer_rate = s.steer_deg_per_s * std::numbers::pi / 180.0;
-    result.weight = vehicle::weight_of(world.machine());
-    const auto rest = soft_lane::sample_of(stand, {}, 0.0, 0.0, radius);
-    for (std::size_t k = 0; k < 4; ++k) {
-      result.rest_sinkage[k] = rest.wheels[k].sinkage;
-      result.rest_load[k] = rest.wheels[k].load;
-    }
-    const auto overlaps = soft_lane::overlaps_under_tyres(stand, s);
-    result.level = stand.level;
-    result.overlap = mean_of(overlaps);
-    result.deep_share =
-        static_cast<double>(std::count_if(overlaps.begin(), overlaps.end(), [](double x) { return x > 0.02; })) /
-        static_cast<double>(overlaps.size());
-    const double stood = soft_lane::place_of(stand);
-    if (s.slope_angle() != 0.0) tilt(stand, stages, look);
-    result.held_way = soft_lane::place_of(stand) - stood;
-    soft_lane::Driver driver(s, s.scene == "slope" ? std::sin(s.slope_angle()) * result.weight : 0.0);
-    soft_lane::Judge judge(s);
+    const auto kept = stages.keep("lane", stand);
+    if (!std::isfinite(result.level)) look_at_rest(stand, result);
+    if (s.slope_angle() != 0.0) tilt(stand, result, stages, look);
+    soft_lane::Driving n(s, result.weight, world.time(), soft_lane::place_of(stand));
     stages.begin("drive", s.path);
-    const double start = world.time(), from = soft_lane::place_of(stand);
-    for (double way = 0.0; result.ended.empty();) {
-      const auto now = driver(world.machine(), stand.car, world.time() - start, way, soft_lane::interval);
+    const auto stage = stages.enter(world, n);
+    const double began = io::steady_seconds(), began_at = world.time();
+    while (stage && result.ended.empty()) {
+      const auto now = n.driver(world.machine(), stand.car, world.time() - n.start, n.way, soft_lane::interval);
       soft_lane::advance(stand, now, s.scene == "turn" ? steer_rate : 0.5);
-      way = soft_lane::place_of(stand) - from;
-      auto x = soft_lane::sample_of(stand, now, world.time() - start, way, radius);
+      n.way = soft_lane::place_of(stand) - n.from;
+      auto x = soft_lane::sample_of(stand, now, world.time() - n.start, n.way, radius);
       if (!result.samples.empty()) {
         x.acceleration = (x.car.speed - result.samples.back().car.speed) / soft_lane::interval;
       }
-      result.ended = judge(x, soft_lane::wheels_of(stand));
-      stages.update(std::clamp(way, 0.0, s.path),
+      result.ended = n.judge(x, soft_lane::wheels_of(stand));
+      result.samples.push_back(x);
+      result.computing = (io::steady_seconds() - began) / (world.time() - began_at);
+      look(std::as_const(stand));
+      stages.update(std::clamp(n.way, 0.0, s.path),
                     text("{:.2f} m/s, slip {:.2f}, {:.0f} mm deep", x.car.speed, x.mean(&soft_lane::WheelSample::slip),
                          1e3 * x.mean(&soft_lane::WheelSample::sinkage)));
-      result.samples.push_back(x);
-      look(std::as_const(stand));
     }
   }
 
@@ -134,45 +125,72 @@ class SoftLane {
     return s;
   }
 
-  /// Lowers the car until the crane carries next to nothing of it.
+  /// What the car does to the lane before it drives.
+  void look_at_rest(const Stand& stand, Campaign& result) const {
+    result.weight = vehicle::weight_of(stand.world.machine());
+    const auto rest = soft_lane::sample_of(stand, {}, 0.0, 0.0, settings_.car.tyre.radius);
+    for (std::size_t k = 0; k < 4; ++k) {
+      result.rest_sinkage[k] = rest.wheels[k].sinkage;
+      result.rest_load[k] = rest.wheels[k].load;
+    }
+    const auto overlaps = soft_lane::overlaps_under_tyres(stand, settings_);
+    result.level = stand.level;
+    result.overlap = mean_of(overlaps);
+    result.deep_share =
+        static_cast<double>(std::count_if(overlaps.begin(), overlaps.end(), [](double x) { return x > 0.02; })) /
+        static_cast<double>(overlaps.size());
+  }
+
+  /// Lowers the car until the crane carries next to nothing of it, and lets it stand on its brakes for 0.2 s.
   template <class Look>
   void lower(Stand& stand, Stages& stages, Look&& look) const {
     const Settings& s = settings_;
-    const auto& m = stand.world.machine();
-    const double weight = vehicle::weight_of(m), start = stand.world.time(), limit = 2.0 * s.bed.stage_limit;
+    auto& m = stand.world.machine();
+    const double weight = vehicle::weight_of(m), limit = 2.0 * s.bed.stage_limit;
+    const vehicle::Controls brakes{.brake = 1.0};
     stages.begin("set down", 1.0);
-    soil::StaysBelow carried(0.05, 0.03);
-    for (bool done = false; !done;) {
-      soft_lane::advance(stand, {.brake = 1.0});
+    soft_lane::SettingDown n{stand.world.time()};
+    const auto stage = stages.enter(stand.world, n);
+    while (stage && !n.done) {
+      soft_lane::advance(stand, brakes);
       look(std::as_const(stand));
       double on_grains = 0.0;
       for (const SensorId k : stand.grains) on_grains += m.sensor(k).mean().force.z;
       const double crane = std::abs(m.load(stand.crane).wrench.force.z);
-      done = carried(stand.world.time(), on_grains > 0.5 * weight ? crane / weight : 1.0);
+      n.done = n.carried(stand.world.time(), on_grains > 0.5 * weight ? crane / weight : 1.0);
+      if (n.done) m.switch_on(stand.crane, false);
       stages.update(std::clamp(on_grains / weight, 0.0, 1.0),
                     text("grains carry {:.1f} of {:.1f} kN", 1e-3 * on_grains, 1e-3 * weight));
-      if (!done && stand.world.time() - start > limit) {
+      if (!n.done && stand.world.time() - n.start > limit) {
         throw Stopped(
             text("the car is not set down after {:g} s: the grains carry {:.4g} N of {:.4g} N; raise "
                  "--stage-limit or --set-down-speed",
                  limit, on_grains, weight));
       }
     }
-    stand.world.machine().switch_on(stand.crane, false);
+    while (stage && n.stood < 20) {
+      soft_lane::advance(stand, brakes);
+      look(std::as_const(stand));
+      ++n.stood;
+      stages.update(1.0, "on its brakes");
+    }
   }
 
   /// Turns gravity to that of the slope, smoothly within half a second, and lets the car stand for 0.2 s more.
   template <class Look>
-  void tilt(Stand& stand, Stages& stages, Look&& look) const {
-    const double whole = settings_.slope_angle(), start = stand.world.time(), over = 0.5;
+  void tilt(Stand& stand, Campaign& result, Stages& stages, Look&& look) const {
+    const double whole = settings_.slope_angle(), over = 0.5;
     const bool is_side = settings_.scene == "side-slope";
     stages.begin("tilt", over + 0.2);
-    for (double t = 0.0; t < over + 0.2; t = stand.world.time() - start) {
+    soft_lane::Tilting n{stand.world.time(), soft_lane::place_of(stand)};
+    const auto stage = stages.enter(stand.world, n);
+    for (double t = stand.world.time() - n.start; stage && t < over + 0.2; t = stand.world.time() - n.start) {
       const double share = std::min(1.0, (t + soft_lane::interval) / over);
       const double angle = whole * share * share * (3.0 - 2.0 * share), along = -9.81 * std::sin(angle);
       stand.world.set_gravity(Vec3(is_side ? 0.0 : along, is_side ? along : 0.0, -9.81 * std::cos(angle)));
       soft_lane::advance(stand, {.brake = 1.0});
       look(std::as_const(stand));
+      result.held_way = soft_lane::place_of(stand) - n.stood;
       stages.update(t);
     }
   }

@@ -10,6 +10,10 @@ namespace dem::rig {
 /// A mean and the standard deviation of what it is the mean of.
 struct MeanAndDeviation {
   double mean = std::nan(""), deviation = std::nan("");
+  template <class V>
+  void fields(V& v) {
+    v("mean", mean), v("deviation", deviation);
+  }
 };
 inline MeanAndDeviation mean_of(std::span<const double> values) {
   if (values.empty()) return {};

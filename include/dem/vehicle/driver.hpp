@@ -51,6 +51,10 @@ struct SpeedHold {
     if (!((out >= 1.0 && error > 0.0) || (out <= -1.0 && error < 0.0))) sum += dt * error;
     return {.throttle = std::clamp(out, 0.0, 1.0), .brake = std::clamp(-out, 0.0, 1.0)};
   }
+  template <class V>
+  void fields(V& v) {
+    v("sum", sum, "m");
+  }
 };
 
 /// Follows a path in the plane by preview steering: it aims at the point of the path that is a preview distance ahead,
@@ -101,6 +105,12 @@ struct PathFollower {
 
   /// True when the end of the path was nearer than the preview at the last call.
   bool at_end() const { return is_near_end; }
+
+  template <class V>
+  void fields(V& v) {
+    v("next", next), v("beside", beside), v("offset_sum", offset_sum, "m^2"), v("last", last, "m");
+    v("has_last", has_last), v("is_near_end", is_near_end);
+  }
 
  private:
   static double distance(const Vec3& p, const Vec3& q) { return std::hypot(p.x() - q.x(), p.y() - q.y()); }

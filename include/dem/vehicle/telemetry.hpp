@@ -58,6 +58,14 @@ struct CarSample {
     f("throttle", controls.throttle), f("brake", controls.brake), f("steer_rad", steer), f("gear", gear);
     f("engine_torque_Nm", engine_torque), f("engine_speed_rad_per_s", engine_speed), f("engine_power_W", engine_power);
   }
+  template <class V>
+  void fields(V& v) {
+    v("time", time, "s"), v("position", position, "m"), v("yaw", yaw, "rad"), v("roll", roll, "rad");
+    v("pitch", pitch, "rad"), v("speed", speed, "m/s"), v("yaw_rate", yaw_rate, "rad/s");
+    v.reals("controls", controls), v("steer", steer, "rad"), v("gear", gear);
+    v("engine_torque", engine_torque, "N m"), v("engine_speed", engine_speed, "rad/s");
+    v("engine_power", engine_power, "W");
+  }
 };
 
 /// `controls`: what the driver does.

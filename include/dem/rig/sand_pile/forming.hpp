@@ -169,7 +169,8 @@ class Forming {
   }
   std::string status() const {
     const Sample& sample = result_.samples.back();
-    return text("{:.1f} deg, grains at {:.2g} mm/s", sample.angle, 1e3 * sample.speed);
+    const std::string speed = text("grains at {:.2g} mm/s", 1e3 * sample.speed);
+    return std::isfinite(sample.angle) ? text("{:.1f} deg, {}", sample.angle, speed) : speed;
   }
   /// Grains that are in the funnel, or that are in the box at all.
   std::size_t flowing() const {

@@ -5,6 +5,7 @@
 #include <dem/report/replay_world.hpp>
 #include <dem/rig/bed/bed_file.hpp>
 #include <dem/rig/frames.hpp>
+#include <dem/rig/part_of.hpp>
 #include <dem/rig/session.hpp>
 #include <dem/rig/soft_lane.hpp>
 
@@ -39,11 +40,10 @@ void run_campaign(const Settings& settings, ShapeOf&& shape_of, Campaign& c, Ses
   if (s.replay)
     c.replay.emplace(
         report::ReplayOptions{.frames = 90, .interval = 0.05, .grains = 12'000, .force_lines = s.replay_forces});
-  std::optional<Frames> frames;
-  frames.emplace(session, s.vtk ? "soft_lane" : "", 0.05);
+  Frames frames(session, s.vtk ? "soft_lane" : "", 0.05);
   const auto look = [&](const auto& stand) {
     const auto& world = stand.world;
-    frames->show(world.time(), [&](io::VtkSeries& series) {
+    frames.show(world.time(), [&](io::VtkSeries& series) {
       add_grains(series, world);
       add_surfaces(series, world);
     });
@@ -51,22 +51,35 @@ void run_campaign(const Settings& settings, ShapeOf&& shape_of, Campaign& c, Ses
       c.replay->record(world, std::vector{io::DrawnBody{stand.car.chassis, &hull}});
   };
 
-  const Bed<Model> bed = test.make_bed(start, session);
+  const auto make_bed = [&] {
+    PartOf<Model> part(session, session, "bed");
+    Bed<Model> bed = test.make_bed(start, session);
+    const auto kept = session.keep("bed", bed);
+    session.complete(bed.world);
+    return bed;
+  };
+  const Bed<Model> bed = make_bed();
   if (made) soil::save_packing(packing_of(bed), s.bed.save);
   c.solid_fraction = bed.solid_fraction(bed.level);
   session.finish(text("{:.1f} mm deep, solid fraction {:.3f}", 1e3 * bed.level, c.solid_fraction));
+
+  PartOf<Model> part(session, session, "drive");
+  report::Replay* replay = c.replay ? &*c.replay : nullptr;
+  const auto found = session.keep("found", c), series = session.keep("frames", frames),
+             pictures = session.keep("replay", replay);
   auto stand = test.set_down(bed, session, [](const auto&) {});
   c.grains = stand.world.particle_count();
   c.time_step = stand.world.time_step();
   c.substeps = stand.world.machine().substeps;
-  const double from = io::steady_seconds(), begin = stand.world.time();
-  work_and_save([&] { test.drive(stand, c, session, look); },
-                [&] {
-                  c.computing = (io::steady_seconds() - from) / std::max(1e-9, stand.world.time() - begin);
-                  look_back(stand, s, c);
-                  evaluate(c, s);
-                  if (!c.samples.empty()) save_telemetry(session.folder() / "telemetry.csv", c.samples);
-                });
+  const auto drive = [&] {
+    test.drive(stand, c, session, look);
+    session.complete(stand.world);
+  };
+  work_and_save(drive, [&] {
+    look_back(stand, s, c);
+    evaluate(c, s);
+    if (!c.samples.empty()) save_telemetry(session.folder() / "telemetry.csv", c.samples);
+  });
   session.finish(text("{} after {:.2f} m", c.ended, c.samples.back().way));
 }
 

@@ -46,6 +46,10 @@ class Driver {
     }
     return c;
   }
+  template <class V>
+  void fields(V& v) {
+    v("hold", hold_), v("follow", follow_), v("has_braked", has_braked_);
+  }
 
  private:
   const Settings& settings_;
@@ -83,11 +87,34 @@ class Judge {
     if (x.car.time > 4.0 * s.path / s.speed + 3.0) return ending::too_slow;
     return {};
   }
+  template <class V>
+  void fields(V& v) {
+    v("slips_since", slips_since_, "s"), v("stands_since", stands_since_, "s");
+    v("furthest", furthest_, "m"), v("moved_at", moved_at_, "s");
+  }
 
  private:
   const Settings& settings_;
   double slips_since_ = -1.0, stands_since_ = -1.0;  // s
   double furthest_ = 0.0, moved_at_ = 0.0;           // m, s: where it last gained a tenth of a metre
+};
+
+/// A drive: since when and from where, how far it has come, and who drives and judges.
+struct Driving {
+  Driver driver;
+  Judge judge;
+  double start, from, way = 0.0;  ///< s, m, m
+
+  /// `weight` (N) of the car.
+  Driving(const Settings& s, double weight, double start_, double from_)
+      : driver(s, s.scene == "slope" ? std::sin(s.slope_angle()) * weight : 0.0),
+        judge(s),
+        start(start_),
+        from(from_) {}
+  template <class V>
+  void fields(V& v) {
+    v("driver", driver), v("judge", judge), v("start", start, "s"), v("from", from, "m"), v("way", way, "m");
+  }
 };
 
 }  // namespace dem::rig::soft_lane

@@ -24,6 +24,7 @@ class LaneRig : public Rig {
                       "rut", "section"},
             .frames = {"grains", "surfaces"}};
   }
+  [[nodiscard]] bool can_resume() const override { return true; }
   [[nodiscard]] std::vector<OwnWord> words() const override { return bed_words(); }
   void run(Session& session) override { run_(settings, campaign, session); }
 

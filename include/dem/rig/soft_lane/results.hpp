@@ -49,6 +49,11 @@ struct Sample {
     for (const WheelSample& w : wheels) vehicle::add_values(row, w);
     return row;
   }
+  template <class V>
+  void fields(V& v) {
+    v("car", car), v("way", way, "m"), v("acceleration", acceleration, "m/s^2");
+    v("widest_joint", widest_joint, "m"), v("overlap", overlap), v("asleep", asleep), v.reals("wheels", wheels);
+  }
 };
 
 namespace ending = vehicle::ending;
@@ -97,6 +102,14 @@ struct Campaign {
   double brake_way = not_known, deceleration = not_known;    ///< m, m/s^2: of braking and coasting
   double radius = not_known, ackermann = not_known;          ///< m, of a turn: as driven, as the wheels point
   double deepest = not_known;                                ///< overlap, as a share of a grain's edge
+
+  /// What a run that goes on takes over.
+  template <class V>
+  void fields(V& v) {
+    v("level", level, "m"), v("weight", weight, "N"), v("rest_sinkage", rest_sinkage, "m");
+    v("rest_load", rest_load, "N"), v("held_way", held_way, "m"), v("overlap", overlap), v("deep_share", deep_share);
+    v("samples", samples), v("ended", ended);
+  }
 };
 
 /// Depth and width of a rut, from the surface before and after (m); `middle` is that of the track.

@@ -26,6 +26,33 @@ struct Stand {
   vehicle::Vehicle car = {};
   std::array<SensorId, 4> grains = {};  ///< on the wheels
   LoadId crane = {};
+
+  /// What is kept of it besides the world.
+  template <class V>
+  void fields(V& v) {
+    v("level", level, "m"), v("before", before), v("governed", car.driveline.governed);
+  }
+};
+
+/// What lowering the car has come to, and how long it has stood on its brakes since.
+struct SettingDown {
+  double start = 0.0;                       ///< s
+  soil::StaysBelow carried = {0.05, 0.03};  ///< by the crane, as a share of the weight
+  bool done = false;
+  int stood = 0;  ///< intervals
+  template <class V>
+  void fields(V& v) {
+    v("start", start, "s"), v("carried", carried), v("done", done), v("stood", stood);
+  }
+};
+
+/// Tilting gravity: since when, and where the car stood.
+struct Tilting {
+  double start = 0.0, stood = 0.0;  ///< s, m
+  template <class V>
+  void fields(V& v) {
+    v("start", start, "s"), v("stood", stood, "m");
+  }
 };
 
 /// Hangs the car over the lane: the wheels 0.2 m above the grains as the suspension is drawn, for they sink on their

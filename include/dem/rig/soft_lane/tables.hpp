@@ -68,7 +68,7 @@ inline io::Table cost_table(const Settings& s, const Campaign& c) {
   t.row("widest joint", number(1e3 * widest), "mm");
   t.row("grains asleep while driving", number(100.0 * asleep / static_cast<double>(c.samples.size()), "{:.0f}"), "%");
   t.row("grains that left the lane", number(c.lost, "{:.0f}"), "");
-  t.row("computing for a second of driving", number(c.computing, "{:.1f}"), "s");
+  t.row("wall time for a second of driving", number(c.computing, "{:.1f}"), "s");
   return t;
 }
 
