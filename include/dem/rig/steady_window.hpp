@@ -32,7 +32,9 @@ struct SteadyWindow {
 
 /// The marginal standard error rule MSER-5 (K. P. White, Simulation 69, 1997, 323-334): means of 5 values each; as many
 /// of them are left out at the start as make the standard error of the mean of the others least, at most half of all.
-/// Where that least is at the half, the run has not become steady. So has none of less than 50 values.
+/// Where that least is at the half, the run has not become steady. So has none of less than 50 values, and none that
+/// drifts: the means of the two halves of the window must not differ by more than the window's standard deviation. The
+/// rule alone takes a run that drifts and swings ever more for one that was steady at its quiet start.
 inline SteadyWindow steady_window(std::span<const double> values) {
   constexpr std::size_t batch = 5;
   const std::size_t count = values.size() / batch;
@@ -52,7 +54,10 @@ inline SteadyWindow steady_window(std::span<const double> values) {
       best = d;
     }
   }
-  return {batch * best, best < count / 2};
+  const auto window = values.subspan(batch * best);
+  const double drift = mean_of(window.first(window.size() / 2)).mean - mean_of(window.last(window.size() / 2)).mean;
+  if (best == count / 2 || std::abs(drift) > mean_of(window).deviation) return {batch * (count / 2), false};
+  return {batch * best, true};
 }
 
 }  // namespace dem::rig

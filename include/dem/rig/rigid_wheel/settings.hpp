@@ -98,7 +98,7 @@ inline void resolve(Settings& s) {
   // the depth that the thesis's 231,264 grains fill.
   const auto by_size =
       BySize<Defaults>{.smoke = {{0.30, 0.18, 0.03}, 6e-3, 90.0, 0.03, {0.3}},
-                       .quick = {{0.44, 0.26, 0.055}, 5e-3, 90.0, 0.18, {-0.5, -0.1, 0.1, 0.3, 0.7}},
+                       .quick = {{0.46, 0.26, 0.055}, 5e-3, 90.0, 0.15, {-0.5, -0.1, 0.1, 0.3, 0.7}},
                        .full = {{0.50, 0.40, 0.02098},
                                 1.2e-3,
                                 17.0,

@@ -212,7 +212,7 @@ inline std::string bed_text(const Settings& s, const Campaign& c) {
 
 inline constexpr const char* window_text =
     "The steady window of a run begins where both pull and sinkage are steady by the marginal standard error rule "
-    "MSER-5: as "
-    "much of the start is left out as makes the standard error of the mean of the rest least, at most half of the run.";
+    "MSER-5: as much of the start is left out as makes the standard error of the mean of the rest least, at most half "
+    "of the run. A run is not called steady if the halves of that window differ by more than it swings.";
 
 }  // namespace dem::rig::rigid_wheel
