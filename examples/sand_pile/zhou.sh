@@ -22,9 +22,10 @@ points="10 0.4 0.5 0.05 0.1
 10 0.4 0.5 0.5 0.5
 5 0.4 0.5 0.05 0.1"
 
+echo "$kind, piles of each: $seeds"
 echo "  d    mu_pp mu_pw  m_pp  m_pw    fit   here  (deg)"
 while read -r d mu_pp mu_pw m_pp m_pw; do
-  name=d${d}_${mu_pp}_${mu_pw}_${m_pp}_${m_pw}
+  name=${kind}_x${seeds}_d${d}_${mu_pp}_${mu_pw}_${m_pp}_${m_pw}
   # A floor 28 d long, 12 d wide, filled 11 d high: a slope of 22 deg reaches its back wall. A sphere of diameter d has
   # the volume of a cube of half-edge 0.403 d. K is about as soft as the 1 MPa of
   # the fit: 3.6 kN/m for 10 mm.

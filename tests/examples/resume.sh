@@ -29,11 +29,13 @@ start=$(milliseconds)
 "$rig" "$@" --output "$output/whole" > "$output/whole.txt" 2>&1 & run=$!
 wait "$run" || refuse "the run that is not stopped ended with $?"
 whole=$(($(milliseconds) - start))
+# Often enough to go on from within each stage, and seldom enough for most of the time to go into the run.
+every=$(awk -v w="$whole" 'BEGIN { e = 2e-5 * w; print e > 0.05 ? e : 0.05 }')
 
 # Each kill comes after up to a tenth of the run: so it dies in all its stages, at times before anything is kept anew.
 done=0 gone_on=0 resume=()
 for ((kill = 1; kill <= kills && done == 0; ++kill)); do
-  "$rig" "$@" --output "$output/killed" --checkpoint-every 0.05 "${resume[@]}" > "$output/killed.txt" 2>&1 & run=$!
+  "$rig" "$@" --output "$output/killed" --checkpoint-every "$every" "${resume[@]}" > "$output/killed.txt" 2>&1 & run=$!
   wait_s=$(awk -v w="$whole" -v r="$RANDOM" -v k="$kill" -v n="$kills" 'BEGIN { print 0.02 + 1e-3 * w * (3 / n + 0.1 * r / 32768) }')
   sleep "$wait_s"
   if kill -KILL "$run" 2> /dev/null; then

@@ -73,6 +73,8 @@ class SoftLane {
       stand.level = soft_lane::level_of(s, stand.before);
     }
     soft_lane::add_car(stand, s);
+    const auto kept_car = stages.keep("car", stand.car);
+    vehicle::take_controls(stand.world.machine(), stand.car);
     lower(stand, stages, look);
     return stand;
   }
@@ -91,13 +93,14 @@ class SoftLane {
     const Settings& s = settings_;
     auto& world = stand.world;
     const double radius = s.car.tyre.radius, steer_rate = s.steer_deg_per_s * std::numbers::pi / 180.0;
-    const auto kept = stages.keep("lane", stand);
-    if (!std::isfinite(result.level)) look_at_rest(stand, result);
+    const auto kept = stages.keep("lane", stand), kept_car = stages.keep("car", stand.car);
+    vehicle::take_controls(world.machine(), stand.car);
+    if (!result.has_stood) look_at_rest(stand, result);
     if (s.slope_angle() != 0.0) tilt(stand, result, stages, look);
     soft_lane::Driving n(s, result.weight, world.time(), soft_lane::place_of(stand));
     stages.begin("drive", s.path);
     const auto stage = stages.enter(world, n);
-    const double began = io::steady_seconds(), began_at = world.time();
+    const double began = io::steady_seconds() - n.computed;
     while (stage && result.ended.empty()) {
       const auto now = n.driver(world.machine(), stand.car, world.time() - n.start, n.way, soft_lane::interval);
       soft_lane::advance(stand, now, s.scene == "turn" ? steer_rate : 0.5);
@@ -108,7 +111,8 @@ class SoftLane {
       }
       result.ended = n.judge(x, soft_lane::wheels_of(stand));
       result.samples.push_back(x);
-      result.computing = (io::steady_seconds() - began) / (world.time() - began_at);
+      n.computed = io::steady_seconds() - began;
+      result.computing = n.computed / (world.time() - n.start);
       look(std::as_const(stand));
       stages.update(std::clamp(n.way, 0.0, s.path),
                     text("{:.2f} m/s, slip {:.2f}, {:.0f} mm deep", x.car.speed, x.mean(&soft_lane::WheelSample::slip),
@@ -127,6 +131,8 @@ class SoftLane {
 
   /// What the car does to the lane before it drives.
   void look_at_rest(const Stand& stand, Campaign& result) const {
+    result.has_stood = true;
+    result.grains = stand.world.particle_count();
     result.weight = vehicle::weight_of(stand.world.machine());
     const auto rest = soft_lane::sample_of(stand, {}, 0.0, 0.0, settings_.car.tyre.radius);
     for (std::size_t k = 0; k < 4; ++k) {

@@ -45,6 +45,11 @@ struct Driveline {
   EngineSpec spec;
   std::size_t gear = 0;   ///< from 0
   double governed = 1.0;  ///< share of the throttle that the governor's valve leaves now
+
+  template <class V>
+  void fields(V& v) {
+    v("gear", gear), v("governed", governed);
+  }
 };
 
 namespace detail {

@@ -42,6 +42,12 @@ struct Vehicle {
   Driveline driveline;
   VehicleSpec spec;
   double pinion_per_steer = 1.0;  ///< rad of the pinion for a rad of the mean of both wheels, about straight ahead
+
+  /// What the controls have come to, besides the state of the mechanism. See take_controls().
+  template <class V>
+  void fields(V& v) {
+    v("wheels", wheels), v("driveline", driveline);
+  }
 };
 
 /// Adds a vehicle to a mechanism. With a road it has tyres on hard ground; without, its wheels need surfaces that touch
@@ -113,6 +119,16 @@ inline double travel_of(const mbd::Mechanism& m, const Vehicle& v, std::size_t c
 }
 
 // ------------------------------------------------------------------------------------------------------ steering
+
+/// For a vehicle that was built anew and whose fields were restored: brakes and gear are set as the controls had set
+/// them, so that the mechanism is the one that was saved.
+inline void take_controls(mbd::Mechanism& m, const Vehicle& v) {
+  for (const Wheel& w : v.wheels) {
+    if (w.brake_torque > 0.0) m.parts().actuators[w.brake.index()].spec.max_force = w.brake_torque;
+  }
+  const Driveline& d = v.driveline;
+  if (d.gear > 0) m.parts().actuators[d.engine.index()].spec.torque_curve = detail::curve_at_shaft(d.spec, d.gear);
+}
 
 /// Passes a driver's controls on, to be called before every step: `dt` is the time (s) to the next call. The steering
 /// turns no faster than `steer_rate` (rad/s of the wheels). Throws Error for a governor's limits that make no sense.

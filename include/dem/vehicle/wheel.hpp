@@ -27,6 +27,11 @@ struct Wheel {
   double largest_brake = 0.0;  ///< N m
   double brake_angle = 0.0;    ///< rad, which the brake holds
   double brake_torque = 0.0;   ///< N m, asked for
+
+  template <class V>
+  void fields(V& v) {
+    v("brake_angle", brake_angle, "rad"), v("brake_torque", brake_torque, "N m");
+  }
 };
 
 DEM_COLD inline Wheel add_wheel(const Assembly& in, const std::string& corner, BodyId knuckle, const Vec3& middle,
@@ -39,7 +44,8 @@ DEM_COLD inline Wheel add_wheel(const Assembly& in, const std::string& corner, B
   w.body = in.body(corner + " wheel", s.mass, middle, Vec3(0, spin, 0));
   w.turn = in.joint(JointKind::revolute, corner + " wheel", knuckle, w.body, middle, Vec3::UnitY());
   w.brake = in.mechanism().add_actuator(
-      joint_actuator(in.name(corner + " brake"), w.turn, s.brake_stiffness, s.brake_damping).switched_off());
+      joint_actuator(in.name(corner + " brake"), w.turn, s.brake_stiffness, s.brake_damping, Signal(0.0))
+          .switched_off());
   return w;
 }
 
@@ -67,6 +73,7 @@ inline void set_brake(mbd::Mechanism& m, Wheel& w, double share) {
   w.brake_torque = torque;
   if (!(torque > 0.0)) {
     brake.spec.on = false;
+    brake.spec.max_force = mbd::ActuatorSpec{}.max_force;
     return;
   }
   if (!brake.spec.on) w.brake_angle = angle;

@@ -6,24 +6,28 @@
 
 namespace dem::rig::rigid_wheel {
 
-/// Rolls the rig's wheel on columns of these soils (dynamic Bekker), at the slips of the runs. It takes a second or so
-/// for a soil.
+/// Rolls the rig's wheel on columns of these soils (dynamic Bekker), at the slips of runs that were made. It takes some
+/// seconds a soil: columns know no rates, so the wheel turns at 1 rad/s whatever the rig's does. Slips from 0.95 on,
+/// where it hardly gets on, are left out.
 inline void roll_on_columns(std::vector<Reference>& soils, const Campaign& c, const Settings& s) {
+  // A rim that grips less than the grains do among each other is smooth for the soil as well.
+  const bool grips = s.wheel != "smooth" && s.wheel_friction >= s.grains.friction;
   for (Reference& reference : soils) {
-    const terramechanics::ColumnWheel test{
-        .wheel = reference_wheel(s),
-        .soil = reference.soil,
-        .friction = s.wheel == "smooth" ? s.wheel_friction : terramechanics::ColumnPart::rough,
-        .load = s.load,
-        .wheel_mass = 0.1 * s.load / 9.81,
-        .spin = s.spin(),
-        .travel = 1.5 * s.radius};
+    const terramechanics::ColumnWheel test{.wheel = reference_wheel(s),
+                                           .soil = reference.soil,
+                                           .friction = grips ? terramechanics::ColumnPart::rough : s.wheel_friction,
+                                           .load = s.load,
+                                           .wheel_mass = 0.1 * s.load / 9.81,
+                                           .spin = 1.0,
+                                           .travel = 1.5 * s.radius,
+                                           .spacing = s.radius / 13.0};
     for (const SlipResult& r : c.slips) {
       auto& forces = reference.on_columns.emplace_back();
+      if (r.samples.empty() || r.slip > 0.95) continue;
       try {
         const auto run = terramechanics::roll_on_columns(test, r.slip);
         forces = {.sinkage = run.sinkage, .load = s.load, .pull = run.pull, .torque = run.torque};
-      } catch (const Error&) {  // it does not carry the wheel
+      } catch (const Error&) {  // the soil does not carry the wheel
       }
     }
   }

@@ -31,7 +31,7 @@ struct Settings {
   double ramp_time = 0.05;           ///< s, of the smooth start
   double set_down_speed = 0.05;      ///< m/s
 
-  std::string soil;  ///< file of a soil, whose Bekker-Wong curves are drawn too
+  std::string soil;  ///< file of a soil, which the grains stand beside too
   std::string output = "rigid_wheel_output";
   bool replay = true;
   std::uint64_t replay_forces = 2000;  ///< force chains of a frame of the replay, the largest; 0: none
@@ -73,7 +73,8 @@ inline void declare(Options& options, Settings& s) {
   add("--path", s.path, "that the rim turns in a run [m]; 0: by size");
   add("--ramp-time", s.ramp_time, "smooth start of a run [s]");
   add("--set-down-speed", s.set_down_speed, "of the load servo [m/s]");
-  add("--soil", s.soil, "file of a soil as the bevameter writes it: its Bekker-Wong curves are drawn too");
+  add("--soil", s.soil,
+      "file of a soil as the bevameter writes it: Bekker-Wong and dynamic Bekker with it are drawn too");
   add_grain_options(options, s.grains);
   add_bed_options(options, s.bed);
   add_output_options(options, s, "a slip");

@@ -32,10 +32,9 @@ inline io::Table slip_table(const Settings& s, const Campaign& c) {
 }
 
 inline io::Table reference_table(const Settings& s, const Campaign& c, std::span<const Reference> soils) {
-  io::Table t{.caption =
-                  "Beside Bekker and Wong (eqs. 2-11) and dynamic Bekker (soil columns) with published soils, "
-                  "slip s = 1 - v/(omega r)",
-              .header = {"slip", "soil", "pull [N]", "torque [N m]", "sinkage [mm]"}};
+  io::Table t{
+      .caption = "Beside Bekker and Wong (eqs. 2-11) and dynamic Bekker (soil columns), slip s = 1 - v/(omega r)",
+      .header = {"slip", "soil", "pull [N]", "torque [N m]", "sinkage [mm]"}};
   const auto row = [&](const std::string& name, const std::optional<terramechanics::WheelForces>& f) {
     if (f) t.row("", name, number(f->pull), number(f->torque), number(1e3 * f->sinkage));
   };
@@ -44,7 +43,7 @@ inline io::Table reference_table(const Settings& s, const Campaign& c, std::span
     t.row(number(r.slip), "grains", number(r.pull.mean), number(r.torque.mean), number(1e3 * r.sinkage.mean));
     for (const Reference& soil : soils) {
       row(soil.name, reference_at(soil.soil, r.slip, s));
-      if (k < soil.on_columns.size()) row(soil.name + ", columns", soil.on_columns[k]);
+      if (k < soil.on_columns.size()) row(soil.name + ", dynamic Bekker", soil.on_columns[k]);
     }
   }
   return t;
@@ -168,8 +167,7 @@ inline io::Plot print_plot(const Settings& s, const SlipResult& r) {
     const auto f = reference_at(soil, r.slip, s);
     if (!f) continue;
     using namespace terramechanics;
-    const WheelContact contact({.radius = s.radius, .width = s.width}, soil, {r.slip, SlipDefinition::wheel_speed},
-                               f->sinkage);
+    const WheelContact contact(reference_wheel(s), soil, {r.slip, SlipDefinition::wheel_speed}, f->sinkage);
     io::Series p{.name = name + ", pressure", .style = io::SeriesStyle::Dashed, .color = color};
     io::Series t{.name = name + ", shear stress", .style = io::SeriesStyle::Dotted, .color = color++};
     for (int k = 0; k <= 60; ++k) {

@@ -158,7 +158,7 @@ inline std::vector<std::pair<std::string, std::string>> list_settings(const Sett
       {"friction, grain on grain", text("{:g}", s.friction)},
       {"friction, grain on plate", text("{:g}", s.plate_friction)},
       {"friction, grain on container", text("{:g}", s.container_friction)},
-      {"rolling length of sphere-rolling", mm(s.rolling_length)},
+      {"rolling length (sphere-rolling, sphere-braked)", mm(s.rolling_length)},
       {"normal stiffness K", text("{:g} N/m, given for {}", s.stiffness, mm(s.constants_for))},
       {"normal damping C", text("{:g} N s/m", s.damping)}};
   if (s.method == "drain") {

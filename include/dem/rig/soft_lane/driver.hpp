@@ -104,6 +104,7 @@ struct Driving {
   Driver driver;
   Judge judge;
   double start, from, way = 0.0;  ///< s, m, m
+  double computed = 0.0;          ///< s of wall time
 
   /// `weight` (N) of the car.
   Driving(const Settings& s, double weight, double start_, double from_)
@@ -113,7 +114,8 @@ struct Driving {
         from(from_) {}
   template <class V>
   void fields(V& v) {
-    v("driver", driver), v("judge", judge), v("start", start, "s"), v("from", from, "m"), v("way", way, "m");
+    v("driver", driver), v("judge", judge), v("start", start, "s"), v("from", from, "m"), v("way", way, "m"),
+        v("computed", computed, "s");
   }
 };
 

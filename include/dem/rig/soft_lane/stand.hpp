@@ -27,10 +27,10 @@ struct Stand {
   std::array<SensorId, 4> grains = {};  ///< on the wheels
   LoadId crane = {};
 
-  /// What is kept of it besides the world.
+  /// What is kept of it besides world and car.
   template <class V>
   void fields(V& v) {
-    v("level", level, "m"), v("before", before), v("governed", car.driveline.governed);
+    v("level", level, "m"), v("before", before);
   }
 };
 
