@@ -30,7 +30,7 @@ start=$(milliseconds)
 wait "$run" || refuse "the run that is not stopped ended with $?"
 whole=$(($(milliseconds) - start))
 # Often enough to go on from within each stage, and seldom enough for most of the time to go into the run.
-every=$(awk -v w="$whole" 'BEGIN { e = 2e-5 * w; print e > 0.05 ? e : 0.05 }')
+every=$(awk -v w="$whole" 'BEGIN { e = 2e-5 * w; print (e > 0.05 ? e : 0.05) }')
 
 # Each kill comes after up to a tenth of the run: so it dies in all its stages, at times before anything is kept anew.
 done=0 gone_on=0 resume=()
