@@ -6,6 +6,7 @@
 #include <dem/geometry/mesh/triangle_mesh.hpp>
 #include <dem/rig/soft_lane/lane.hpp>
 #include <dem/rig/stages.hpp>
+#include <dem/soil/rest.hpp>
 
 #include <cmath>
 #include <numbers>
