@@ -133,6 +133,8 @@ class SoftLane {
   void look_at_rest(const Stand& stand, Campaign& result) const {
     result.has_stood = true;
     result.grains = stand.world.particle_count();
+    result.time_step = stand.world.time_step();
+    result.substeps = stand.world.machine().substeps;
     result.weight = vehicle::weight_of(stand.world.machine());
     const auto rest = soft_lane::sample_of(stand, {}, 0.0, 0.0, settings_.car.tyre.radius);
     for (std::size_t k = 0; k < 4; ++k) {

@@ -68,8 +68,6 @@ void run_campaign(const Settings& settings, ShapeOf&& shape_of, Campaign& c, Ses
   const auto found = session.keep("found", c), series = session.keep("frames", frames),
              pictures = session.keep("replay", replay);
   auto stand = test.set_down(bed, session, [](const auto&) {});
-  c.time_step = stand.world.time_step();
-  c.substeps = stand.world.machine().substeps;
   const auto drive = [&] {
     test.drive(stand, c, session, look);
     session.complete(stand.world);

@@ -80,7 +80,7 @@ struct Campaign {
   std::size_t grains = 0;
   double time_step = not_known;  ///< s
   int substeps = 0;
-  bool has_stood = false;     ///< what the car does at rest is known: the weight up to deep_share
+  bool has_stood = false;     ///< it was looked at while the car stood
   double weight = not_known;  ///< N, of the car
   std::array<double, 4> rest_sinkage = {0, 0, 0, 0}, rest_load = {0, 0, 0, 0};  ///< m, N: on its brakes, on the level
   double held_way = 0.0;          ///< m, that the car moved on its brakes while gravity was tilted
@@ -107,8 +107,8 @@ struct Campaign {
   /// What a run that goes on takes over.
   template <class V>
   void fields(V& v) {
-    v("level", level, "m"), v("grains", grains), v("has_stood", has_stood), v("weight", weight, "N"),
-        v("rest_sinkage", rest_sinkage, "m");
+    v("level", level, "m"), v("grains", grains), v("has_stood", has_stood), v("time_step", time_step, "s"),
+        v("substeps", substeps), v("weight", weight, "N"), v("rest_sinkage", rest_sinkage, "m");
     v("rest_load", rest_load, "N"), v("held_way", held_way, "m"), v("overlap", overlap), v("deep_share", deep_share);
     v("samples", samples), v("ended", ended), v("computing", computing);
   }
