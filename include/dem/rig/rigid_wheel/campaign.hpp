@@ -2,6 +2,7 @@
 
 #include <dem/report/replay_world.hpp>
 #include <dem/rig/bed/bed_file.hpp>
+#include <dem/rig/bed/kept_bed.hpp>
 #include <dem/rig/frames.hpp>
 #include <dem/rig/part_of.hpp>
 #include <dem/rig/rigid_wheel.hpp>
@@ -22,14 +23,7 @@ void run_campaign(const Settings& settings, ShapeOf&& shape_of, Campaign& campai
   if (made) session.require_writable(s.bed.save, "--save-bed");
   session.begin_run(bed_stages(s.bed) + 2);
 
-  const auto made_bed = [&] {
-    PartOf<Model> part(session, session, "bed");
-    Bed<Model> bed = test.make_bed(start, session);
-    const auto kept = session.keep("bed", bed);
-    session.complete(bed.world);
-    return bed;
-  };
-  Bed<Model> bed = made_bed();
+  Bed<Model> bed = make_kept_bed(test, start, session);
   if (made) soil::save_packing(packing_of(bed), s.bed.save);
   campaign.level = bed.level;
   campaign.solid_fraction = bed.solid_fraction(bed.level);

@@ -4,6 +4,7 @@
 #include <dem/io/duration.hpp>
 #include <dem/report/replay_world.hpp>
 #include <dem/rig/bed/bed_file.hpp>
+#include <dem/rig/bed/kept_bed.hpp>
 #include <dem/rig/frames.hpp>
 #include <dem/rig/part_of.hpp>
 #include <dem/rig/session.hpp>
@@ -51,14 +52,7 @@ void run_campaign(const Settings& settings, ShapeOf&& shape_of, Campaign& c, Ses
       c.replay->record(world, std::vector{io::DrawnBody{stand.car.chassis, &hull}});
   };
 
-  const auto make_bed = [&] {
-    PartOf<Model> part(session, session, "bed");
-    Bed<Model> bed = test.make_bed(start, session);
-    const auto kept = session.keep("bed", bed);
-    session.complete(bed.world);
-    return bed;
-  };
-  const Bed<Model> bed = make_bed();
+  const Bed<Model> bed = make_kept_bed(test, start, session);
   if (made) soil::save_packing(packing_of(bed), s.bed.save);
   c.solid_fraction = bed.solid_fraction(bed.level);
   session.finish(text("{:.1f} mm deep, solid fraction {:.3f}", 1e3 * bed.level, c.solid_fraction));
