@@ -4,7 +4,8 @@
 #include <dem/mbd/machine.hpp>
 #include <dem/terramechanics/column_shapes.hpp>
 #include <dem/terramechanics/machine_columns.hpp>
-#include <dem/vehicle/ring_tyre.hpp>
+#include <dem/vehicle/hitch.hpp>
+#include <dem/vehicle/ring_wheels.hpp>
 #include <dem/vehicle/telemetry.hpp>
 
 #include <array>
@@ -41,16 +42,6 @@ struct ColumnCarSpec {
   double hitch_height = 0.6;              ///< m, over the ground, of the hitch behind the rear axle
 };
 
-/// What holds a car on a load cell: a sled behind it that goes with a given speed. It pulls through a stiff damper, so
-/// the car goes with it, whatever the car's wheels do.
-struct Hitch {
-  bool on = false;
-  double speed = 1.0;     ///< m/s, of the sled
-  double damping = 2e5;   ///< N s/m
-  double constant = 0.0;  ///< N, backwards, besides: a trailer
-  double force = 0.0;     ///< N, backwards on the car, in the newest evaluation
-};
-
 /// A vehicle of humvee.hpp or the like on soil columns (dynamic Bekker): its tyres are rigid cylinders on them, or
 /// rings. A machine alone, without grains: a second of driving takes half a second to one on rigid tyres, three on
 /// rings.
@@ -78,8 +69,8 @@ class ColumnCar {
     }
     lay_soils();
     weight = weight_of(machine);
-    crane_ = add_crane();
-    add_hitch();
+    crane_ = add_crane(machine, car, spec.set_down_speed);
+    hitch_ = add_hitch(machine, car, spec.hitch_height);
     // An engine's own damping comes on top of what is derived: that is made softer until the step bears both.
     double design = spec.time_step;
     machine.design_for(design);
@@ -171,29 +162,9 @@ class ColumnCar {
     BodyId body;
   };
 
-  /// With ring tyres: their size, and wheels without the mass and inertia of the belts.
   static ColumnCarSpec on_its_tyres(ColumnCarSpec s) {
     if (!s.ring) return s;
-    const RingTyreSpec& ring = *s.ring;
-    check_ring_tyre(ring);
-    if (!(s.time_step <= ring.stable_time_step())) {
-      fail(
-          "a time step of {:g} s is too long for the ring tyres, whose belts bear {:.2g} s; lower it, or "
-          "belt_stiffness",
-          s.time_step, ring.stable_time_step());
-    }
-    PartMass& wheel = s.car.wheel.mass;
-    const double square = (ring.radius - 0.5 * ring.thickness) * (ring.radius - 0.5 * ring.thickness);
-    const double across = 0.5 * square + ring.width * ring.width / 12.0;
-    const PartMass rim = {wheel.mass - ring.mass, wheel.inertia - ring.mass * Vec3(across, square, across)};
-    if (!(rim.mass > 0.0 && rim.inertia.minCoeff() > 0.0)) {
-      fail(
-          "the belt of a ring tyre weighs {:g} kg at {:g} m, but a wheel with it {:g} kg, with {:.3g} kg m^2 about its "
-          "axle; lower the belt's mass",
-          ring.mass, std::sqrt(square), wheel.mass, wheel.inertia.y());
-    }
-    wheel = rim;
-    s.car.tyre.radius = ring.radius, s.car.tyre.width = ring.width;
+    s.car = on_ring_tyres(s.car, *s.ring, s.time_step);
     return s;
   }
   void add_rigid_tyre(std::size_t corner) {
@@ -205,10 +176,7 @@ class ColumnCar {
     pieces_[corner] = {{part, wheel}};
   }
   void add_ring(const Assembly& in, std::size_t corner) {
-    const DoubleWishboneSpec& side = corner < 2 ? spec_.car.front : spec_.car.rear;
-    Vec3 middle = side.points.wheel;
-    if (corner % 2 == 1) middle.y() = -middle.y();
-    const RingTyre tyre = add_ring_tyre(in, corner_names[corner], car.wheels[corner].body, middle, *spec_.ring);
+    const RingTyre tyre = add_ring_tyre(in, car, corner, *spec_.ring);
     const auto shape = std::make_shared<terramechanics::ColumnBox>(tyre.edges(), true);
     for (const BodyId b : tyre.segments) {
       const std::size_t part = soil_.add(b, shape, machine.body(b).position(), machine.reference_rotation(b),
@@ -249,33 +217,11 @@ class ColumnCar {
       return k;
     });
   }
-  /// A damper against sinking, rolling and pitching: the car's weight sinks at the set-down speed.
-  LoadId add_crane() {
-    const double up = weight / spec_.set_down_speed, turn = up * spec_.car.wheelbase();
-    return machine.add_load(mbd::custom_load("crane", car.chassis, [up, turn](double, const Body& b) {
-      const Vec3 v = b.velocity(), w = b.angular_velocity();
-      return Wrench{{0, 0, -up * v.z()}, {-turn * w.x(), -turn * w.y(), 0}};
-    }));
-  }
-  void add_hitch() {
-    const Body& b = machine.body(car.chassis);
-    const Vec3 at(middle_of(2).x() - 0.9, 0, spec_.hitch_height);
-    const Vector3<double> point = transpose_times(b.motion.rotation, from_eigen(at) - b.motion.position);
-    machine.add_load(mbd::custom_load("hitch", car.chassis, [point, h = hitch_](double, const Body& body) {
-      h->force = 0.0;
-      if (!h->on) return Wrench{};
-      const Vector3<double> arm = body.motion.rotation * point;
-      const Vector3<double> spin = body.motion.rotation * body.motion.angular_velocity;
-      h->force = h->constant + h->damping * (body.motion.velocity.x + cross(spin, arm).x - h->speed);
-      const Vector3<double> force = {-h->force, 0, 0};
-      return Wrench{force, cross(arm, force)};
-    }));
-  }
 
   ColumnCarSpec spec_;
   terramechanics::MachineColumns soil_;
   std::array<std::vector<Piece>, 4> pieces_;  ///< of the tyres
-  std::shared_ptr<Hitch> hitch_ = std::make_shared<Hitch>();
+  std::shared_ptr<Hitch> hitch_;
   LoadId crane_;
   Controls controls_;
 };

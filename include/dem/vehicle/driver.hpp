@@ -39,6 +39,12 @@ struct Controls {
   }
 };
 
+/// Turns the rims with a speed (m/s), or up to half of `band` (m/s) slower or faster, whatever the car does: by the
+/// governor alone, at full throttle. It does not brake them. `steer` in rad.
+inline Controls turn_rims(double steer, double wanted, double band = 0.4) {
+  return {.throttle = 1.0, .steer = steer, .ease_from = wanted - 0.5 * band, .ease_to = wanted + 0.5 * band};
+}
+
 /// Holds a speed by throttle and brake: a PI controller whose integral stands still where the output is at its limit.
 struct SpeedHold {
   double gain = 0.5;      ///< per m/s

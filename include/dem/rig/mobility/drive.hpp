@@ -145,10 +145,9 @@ class Driver {
     c.steer = steer(car);
     return c;
   }
-  /// Turns the rims with a speed (m/s), or up to half of `band` (m/s) slower or faster, whatever the car does: by the
-  /// governor alone, at full throttle. It does not brake them.
-  vehicle::Controls rims(const vehicle::ColumnCar& car, double wanted, double band = 0.4) {
-    return {.throttle = 1.0, .steer = steer(car), .ease_from = wanted - 0.5 * band, .ease_to = wanted + 0.5 * band};
+  /// Turns the rims with a speed (m/s), whatever the car does.
+  vehicle::Controls rims(const vehicle::ColumnCar& car, double wanted) {
+    return vehicle::turn_rims(steer(car), wanted);
   }
 
  private:
