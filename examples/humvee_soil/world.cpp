@@ -2,6 +2,7 @@
 
 #include <dem/geometry/cluster/sphere_cluster.hpp>
 #include <dem/integrator/velocity_verlet.hpp>
+#include <dem/law/cohesion/constant.hpp>
 #include <dem/rig/soft_lane/campaign.hpp>
 
 namespace lanes = dem::rig::soft_lane;
@@ -10,6 +11,7 @@ namespace lanes = dem::rig::soft_lane;
 struct Sand : dem::Model {
   using Shape = dem::shape::SphereCluster<8>;
   using Surfaces = dem::surface::Set<dem::surface::Box, dem::surface::Cylinder, dem::surface::TriangleMesh>;
+  using Cohesion = dem::cohesion::Constant;  // of a second soil
   using Integrator = dem::integrator::VelocityVerlet;
 };
 

@@ -49,6 +49,10 @@ class SoftLane {
     return make_bed(bed_grains(settings_.bed, settings_.grains, shape_.volume(), shape_.bounding_radius()), quiet);
   }
 
+  /// s, for a lane of the grains of a bed: a whole number of steps between two samples.
+  [[nodiscard]] static double time_step(const Bed<Model>& bed) {
+    return soft_lane::interval / std::ceil(soft_lane::interval / bed.world.time_step() * (1.0 - 1e-9));
+  }
   /// Makes the lane of a bed, sets the car down on it until the crane carries less than 5 % of it for 30 ms, takes the
   /// crane off, and lets the car stand on its brakes for 0.2 s. Throws Stopped if that takes longer than twice the
   /// stage limit.
@@ -59,12 +63,22 @@ class SoftLane {
   /// The same with look(stand) every ten milliseconds.
   template <class Look>
   [[nodiscard]] Stand set_down(const Bed<Model>& bed, Stages& stages, Look&& look) const {
+    return set_down(soft_lane::lane_grains(settings_, soil::placements(bed.world)), bed.level, {}, time_step(bed),
+                    stages, look);
+  }
+  /// The same on grains as they lie in the lane, e.g. with the ruts of an earlier pass; `level` (m) is that of the
+  /// untouched lane, whose grains are `before`: if they are none, these ones are, once they have settled.
+  template <class Look>
+  [[nodiscard]] Stand set_down(std::span<const soil::Placement> grains, double level,
+                               std::vector<soil::Placement> before, double dt, Stages& stages, Look&& look) const {
     const Settings& s = settings_;
-    // Between two samples there is a whole number of steps.
-    const double dt = soft_lane::interval / std::ceil(soft_lane::interval / bed.world.time_step() * (1.0 - 1e-9));
-    Stand stand{.world = soft_lane::make_lane<Model>(s, shape_, soil::placements(bed.world), bed.level, dt),
-                .level = bed.level,
-                .before = {}};
+    Stand stand{.world = soft_lane::make_lane<Model>(s, shape_, grains, level, dt),
+                .level = level,
+                .before = std::move(before)};
+    if (s.scene == "step") {
+      const double hard = stand.before.empty() ? soft_lane::level_of(s, grains) : level;
+      stand.hard = soft_lane::add_hard_ground(stand.world, s, hard);
+    }
     stages.begin("settle lane");
     const auto kept = stages.keep("lane", stand);
     settle(stand.world, s.grains.edge(), s.bed.stage_limit, "--stage-limit", stages, [] { return 0.0; });
@@ -103,6 +117,7 @@ class SoftLane {
     const double began = io::steady_seconds() - n.computed;
     while (stage && result.ended.empty()) {
       const auto now = n.driver(world.machine(), stand.car, world.time() - n.start, n.way, soft_lane::interval);
+      soft_lane::pull(stand, s, world.time() - n.start);
       soft_lane::advance(stand, now, s.scene == "turn" ? steer_rate : 0.5);
       n.way = soft_lane::place_of(stand) - n.from;
       auto x = soft_lane::sample_of(stand, now, world.time() - n.start, n.way, radius);
@@ -163,7 +178,7 @@ class SoftLane {
       soft_lane::advance(stand, brakes);
       look(std::as_const(stand));
       double on_grains = 0.0;
-      for (const SensorId k : stand.grains) on_grains += m.sensor(k).mean().force.z;
+      for (std::size_t k = 0; k < 4; ++k) on_grains += soft_lane::ground_on(stand, k).force.z;
       const double crane = std::abs(m.load(stand.crane).wrench.force.z);
       n.done = n.carried(stand.world.time(), on_grains > 0.5 * weight ? crane / weight : 1.0);
       if (n.done) m.switch_on(stand.crane, false);

@@ -1,8 +1,11 @@
 #include "catch.hpp"
 
 #include <dem/rig/soft_lane/driver.hpp>
+#include <dem/rig/soft_lane/lane.hpp>
 
+#include <algorithm>
 #include <cmath>
+#include <vector>
 
 using Catch::Approx;
 using namespace dem::rig;
@@ -173,4 +176,104 @@ TEST_CASE("each option of a lane has a name of its own, and grains sleep unless 
   Options options;
   REQUIRE_NOTHROW(declare(options, s));
   CHECK(s.bed.sleep);
+}
+
+TEST_CASE("other ground lies where the rear wheels come to it, and a border beyond that is refused") {
+  using Catch::Matchers::ContainsSubstring;
+  for (const char* scene : {"step", "soils"}) {
+    auto s = quick_lane();
+    s.scene = scene;
+    soft_lane::resolve(s);
+    CAPTURE(scene, s.path, s.border);
+    CHECK(s.path - s.car.wheelbase() > s.border);
+    // The front wheels stand before it by that much.
+    CHECK(s.border_at() == Approx(s.start() + s.car.front.points.wheel.x() + s.border));
+    s.border = s.path;
+    CHECK_THAT(refusal_of(s), ContainsSubstring("are to come to the other ground within the --path"));
+  }
+  auto s = quick_lane();
+  s.scene = "soils";
+  soft_lane::resolve(s);
+  CHECK(s.border == Approx(0.5 * (s.path - s.car.wheelbase())));  // as far on one as on the other
+  s.second_share = 1.5;
+  CHECK_THAT(refusal_of(s), ContainsSubstring("--second-share is 1.5"));
+}
+
+TEST_CASE("hard ground takes the place of the grains that it would cut") {
+  auto s = quick_lane();
+  s.scene = "step";
+  soft_lane::resolve(s);
+  std::vector<dem::soil::Placement> bed;
+  for (int k = -100; k <= 100; ++k) bed.push_back({Vec3(0.03 * k, 0, 0.1), dem::Mat3::Identity()});
+  const auto grains = soft_lane::lane_grains(s, bed);
+  double first = 1e9;
+  for (const auto& g : grains) first = std::min(first, g.position.x());
+  const double corner = std::sqrt(3.0) * s.grains.half_edge;
+  CHECK(first > s.border_at() + corner);
+  CHECK(first < s.border_at() + corner + 0.03);
+  s.scene = "level";
+  CHECK(soft_lane::lane_grains(s, bed).size() == 2 * bed.size());
+}
+
+TEST_CASE("a car on a load cell goes through slips of -0.05 to 0.95 within its path") {
+  using Catch::Matchers::ContainsSubstring;
+  auto s = quick_lane();
+  s.scene = "drawbar";
+  soft_lane::resolve(s);
+  const double end = soft_lane::held_time(s), dt = 1e-3;
+  CHECK(soft_lane::held_slip(s, 0.0) == -0.05);
+  CHECK(soft_lane::held_slip(s, end) == Approx(0.95));
+  double way = 0.0;
+  for (double t = 0.5 * dt; t < end; t += dt) {
+    way += dt * soft_lane::held_rims(s, t) * (1.0 - soft_lane::held_slip(s, t));
+  }
+  CHECK(way == Approx(0.98 * s.path).epsilon(0.01));  // the start is taken as 1, but slip is -0.05 there: 1/20 of 0.4 m
+  s.speed = 0.6 * s.path;
+  CHECK_THAT(refusal_of(s), ContainsSubstring("too short for a drawbar"));
+}
+
+TEST_CASE("what a load cell shows is told by tenths of slip, with slip and efficiency of the mean speeds") {
+  auto s = quick_lane();
+  s.scene = "drawbar";
+  soft_lane::resolve(s);
+  soft_lane::Campaign c;
+  c.weight = 48e3;
+  const double r = s.car.tyre.radius;
+  for (double t = 0.0; t < soft_lane::held_time(s); t += 0.01) {
+    const double slip = soft_lane::held_slip(s, t);
+    auto x = driving(t);
+    x.car.speed = s.speed * (1.0 - slip);
+    x.hitch = 1e4 * slip;
+    for (auto& w : x.wheels) w.slip = slip, w.spin = s.speed / r, w.torque = 0.25 * 2e4 * slip * r;
+    c.samples.push_back(x);
+  }
+  soft_lane::evaluate(c, s);
+  REQUIRE(c.pulls.size() == 10);
+  for (const auto& p : c.pulls) {
+    CHECK(p.pull == Approx(1e4 * p.slip).margin(1.0));
+    CHECK(p.torque == Approx(2e4 * r * p.slip).margin(1.0));
+  }
+  // Pull over thrust is a half; the rest is what is left of the way.
+  CHECK(c.pulls[5].slip == Approx(0.5).margin(0.005));
+  CHECK(c.pulls[5].efficiency == Approx(0.25).margin(0.005));
+}
+
+TEST_CASE("where the ground changes, each stretch has its own means") {
+  auto s = quick_lane();
+  s.scene = "step";
+  soft_lane::resolve(s);
+  soft_lane::Campaign c;
+  c.weight = 48e3;
+  const double rear = s.border + s.car.wheelbase();
+  for (double t = 0.0; 1.5 * t < s.path; t += 0.01) {
+    auto x = driving(t);
+    const double slip = x.way < s.border ? 0.0 : x.way < rear ? 0.1 : 0.3;
+    for (auto& w : x.wheels) w.slip = slip;
+    c.samples.push_back(x);
+  }
+  soft_lane::evaluate(c, s);
+  CHECK(c.stretches[0].slip == Approx(0.0));
+  CHECK(c.stretches[1].slip == Approx(0.1));
+  CHECK(c.stretches[2].slip == Approx(0.3));
+  CHECK(c.stretches[1].energy_per_metre == Approx(4000.0).epsilon(0.011));
 }

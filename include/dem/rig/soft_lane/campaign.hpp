@@ -26,7 +26,8 @@ inline void save_telemetry(const std::filesystem::path& path, const std::vector<
   csv.flush();
 }
 
-/// The run of a program: a bed, the lane, the car set down on it, and the drive. What can be refused is refused before
+/// The run of a program: a bed, the lane, the car set down on it, and the drive, or several of them. Pictures are those
+/// of the first. What can be refused is refused before
 /// session.begin_run(). `c` is filled as the run goes.
 template <class Model, class ShapeOf>
 void run_campaign(const Settings& settings, ShapeOf&& shape_of, Campaign& c, Session& session) {
@@ -35,7 +36,7 @@ void run_campaign(const Settings& settings, ShapeOf&& shape_of, Campaign& c, Ses
   const bool made = s.bed.file.empty();
   const soil::Packing start = start_of_bed(s.bed, s.grains, test.shape().volume(), test.shape().bounding_radius());
   if (made) session.require_writable(s.bed.save, "--save-bed");
-  session.begin_run(bed_stages(s.bed) + (s.slope_angle() != 0.0 ? 4 : 3));
+  session.begin_run(bed_stages(s.bed) + s.passes * (s.slope_angle() != 0.0 ? 4 : 3));
 
   const io::SurfaceMesh hull = drawn_hull(s.car);
   if (s.replay)
@@ -57,21 +58,37 @@ void run_campaign(const Settings& settings, ShapeOf&& shape_of, Campaign& c, Ses
   c.solid_fraction = bed.solid_fraction(bed.level);
   session.finish(text("{:.1f} mm deep, solid fraction {:.3f}", 1e3 * bed.level, c.solid_fraction));
 
-  PartOf<Model> part(session, session, "drive");
   report::Replay* replay = c.replay ? &*c.replay : nullptr;
-  const auto found = session.keep("found", c), series = session.keep("frames", frames),
-             pictures = session.keep("replay", replay);
-  auto stand = test.set_down(bed, session, [](const auto&) {});
-  const auto drive = [&] {
-    test.drive(stand, c, session, look);
-    session.complete(stand.world);
-  };
-  work_and_save(drive, [&] {
-    look_back(stand, s, c);
-    evaluate(c, s);
-    if (!c.samples.empty()) save_telemetry(session.folder() / "telemetry.csv", c.samples);
-  });
-  session.finish(text("{} after {:.2f} m", c.ended, c.samples.back().way));
+  c.lane = lane_grains(s, soil::placements(bed.world));
+  for (int k = 1; k <= s.passes; ++k) {
+    PartOf<Model> part(session, session, k == 1 ? "drive" : text("drive {}", k));
+    const auto found = session.keep("found", c), series = session.keep("frames", frames),
+               pictures = session.keep("replay", replay);
+    if (part.is_done() && k < s.passes) {
+      session.complete();
+      continue;
+    }
+    const std::vector<soil::Placement> lane = c.lane;
+    const double level = k == 1 ? bed.level : c.level;
+    auto stand = test.set_down(lane, level, c.untouched, test.time_step(bed), session, [](const auto&) {});
+    const auto drive = [&] {
+      if (k == 1) test.drive(stand, c, session, look);
+      else test.drive(stand, c, session, [](const auto&) {});
+      if (k == s.passes) session.complete(stand.world);
+    };
+    work_and_save(drive, [&] {
+      look_back(stand, s, c);
+      evaluate(c, s);
+      if (!c.samples.empty()) save_telemetry(session.folder() / "telemetry.csv", c.samples);
+    });
+    c.passes.push_back({c.means, c.rut_depth, c.samples.back().way, c.ended});
+    session.finish(text("{} after {:.2f} m", c.ended, c.samples.back().way));
+    if (k == s.passes || c.ended != ending::arrived) break;
+    // The next one starts where this one did, on the grains as they lie now.
+    c.lane = soil::placements(stand.world), c.untouched = stand.before;
+    c.samples.clear(), c.ended.clear(), c.has_stood = false;
+    session.complete();
+  }
 }
 
 }  // namespace dem::rig::soft_lane

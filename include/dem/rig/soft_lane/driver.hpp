@@ -35,14 +35,14 @@ class Driver {
     if (is_beyond && s.scene == "brake") has_braked_ = true;
     if (has_braked_) return {.brake = 1.0};
     if (is_beyond && s.scene == "coast") return {};
+    if (s.scene == "drawbar") return vehicle::turn_rims(steer(m, v, speed), held_rims(s, time));
     vehicle::Controls c = hold_(speed, std::min(s.speed, s.acceleration * time), dt);
     c.ease_from = speed + s.spin_limit, c.ease_to = speed + 2.0 * s.spin_limit;
     if (s.scene == "turn") {
       const double degrees = is_beyond || way > 0.15 * s.path ? s.steer_deg : 0.0;
       c.steer = degrees * std::numbers::pi / 180.0;
     } else {
-      const Vec3 rear = vehicle::point_of(m, v, Vec3(s.car.rear.points.wheel.x(), 0, 0));
-      c.steer = follow_(rear, vehicle::forward_of(m, v), speed);
+      c.steer = steer(m, v, speed);
     }
     return c;
   }
@@ -52,6 +52,11 @@ class Driver {
   }
 
  private:
+  double steer(const mbd::Mechanism& m, const vehicle::Vehicle& v, double speed) {
+    const Vec3 rear = vehicle::point_of(m, v, Vec3(settings_.car.rear.points.wheel.x(), 0, 0));
+    return follow_(rear, vehicle::forward_of(m, v), speed);
+  }
+
   const Settings& settings_;
   vehicle::SpeedHold hold_;
   vehicle::PathFollower follow_;
@@ -74,6 +79,7 @@ class Judge {
       if (std::abs(wheels[k].y() - middle) > 0.5 * s.bed.width) return ending::left_lane;
       if (x.wheels[k].sinkage > s.car.tyre.radius) return ending::dug_in;
     }
+    if (s.scene == "drawbar") return x.car.time >= held_time(s) ? ending::held : "";
     if (x.way < -0.3) return ending::slid_back;
     const bool slips = x.mean(&WheelSample::slip) > 0.8 && x.car.speed < 0.1 * s.speed;
     slips_since_ = !slips ? -1.0 : slips_since_ < 0.0 ? x.car.time : slips_since_;

@@ -6,32 +6,77 @@
 #include <dem/rig/soft_lane/results.hpp>
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace dem::rig::soft_lane {
 
+/// Without the grains where a step has hard ground, and those that would reach into it.
+inline std::vector<soil::Placement> beyond_hard_ground(const Settings& s, std::vector<soil::Placement> grains) {
+  const double reach = 0.5 * std::sqrt(3.0) * s.grains.edge();
+  if (s.scene == "step") {
+    std::erase_if(grains, [&](const auto& g) { return g.position.x() < s.border_at() + reach; });
+  }
+  return grains;
+}
+
 /// Grains of a levelled bed as they lie in the lane: as they are, or in two troughs, in the right one turned by half a
 /// turn about z, so that both tracks are of the same soil but not mirror images.
+/// None where there is hard ground.
 inline std::vector<soil::Placement> lane_grains(const Settings& s, std::span<const soil::Placement> bed) {
-  if (s.is_bed()) return {bed.begin(), bed.end()};
   std::vector<soil::Placement> all;
   all.reserve(2 * bed.size());
+  if (s.is_bed()) {
+    all.assign(bed.begin(), bed.end());
+    return beyond_hard_ground(s, std::move(all));
+  }
   const Vec3 to_left(0, 0.5 * s.car.track(), 0);
   Mat3 half_turn = Mat3::Identity();
   half_turn(0, 0) = half_turn(1, 1) = -1.0;
   for (const auto& g : bed) all.push_back({g.position + to_left, g.rotation});
   for (const auto& g : bed) all.push_back({half_turn * g.position - to_left, half_turn * g.rotation});
-  return all;
+  return beyond_hard_ground(s, std::move(all));
+}
+
+inline constexpr const char* hard_ground = "hard ground";    ///< a material and a surface
+inline constexpr const char* second_grain = "second grain";  ///< a material
+
+/// Species and contacts of the soil, and of the second soil if there is one (else the first again). Grains of the two
+/// touch each other with the mean of their friction and cohesion. Throws Error for cohesion if the Model has none.
+template <class Model>
+std::array<SpeciesId, 2> add_soils(World<Model>& world, const Settings& s, const typename Model::Shape& shape) {
+  const auto touch = [&](double friction, double cohesion) {
+    ContactParameters<Model> c = grain_contact<Model>(s.grains, friction);
+    const double weight = 9.81 * s.grains.density * shape.volume();
+    if constexpr (requires { c.cohesion.force; }) {
+      c.cohesion = {.force = cohesion * weight, .depth = 1e-3 * s.grains.edge()};
+    } else if (cohesion > 0.0) {
+      fail("--second-cohesion is {:g}, but the grains of this model have no cohesion; it must be 0", cohesion);
+    }
+    return c;
+  };
+  const double mu = s.grains.friction;
+  world.set_contact("grain", "wall", touch(s.grains.wall_friction, 0.0));
+  world.set_contact("grain", "grain", touch(mu, 0.0));
+  const SpeciesId first = world.add_species(shape, {.material = "grain", .density = s.grains.density});
+  if (s.scene == "step") world.set_contact("grain", hard_ground, touch(s.grains.wall_friction, 0.0));
+  if (s.scene != "soils") return {first, first};
+  const char* second = second_grain;
+  world.set_contact(second, "wall", touch(s.grains.wall_friction, 0.0));
+  world.set_contact(second, "grain", touch(0.5 * (mu + s.second_friction), 0.5 * s.second_cohesion));
+  world.set_contact(second, second, touch(s.second_friction, s.second_cohesion));
+  return {first, world.add_species(shape, {.material = second, .density = s.grains.density})};
 }
 
 /// A world with the lane's walls and grains, without a car. Grains that leave it over the walls are taken out and
 /// counted. `time_step` in s.
 template <class Model>
-World<Model> make_lane(const Settings& s, const typename Model::Shape& shape, std::span<const soil::Placement> bed,
+World<Model> make_lane(const Settings& s, const typename Model::Shape& shape, std::span<const soil::Placement> grains,
                        double level, double time_step) {
-  const auto grains = lane_grains(s, bed);
   const double length = s.bed.length, width = s.bed.width, t = s.bed.wall_thickness;
   const double track = s.is_bed() ? 0.0 : s.car.track(), top = level + 0.5;
   const double far_x = 0.5 * length + t, far_y = 0.5 * (track + width) + t;
@@ -41,9 +86,7 @@ World<Model> make_lane(const Settings& s, const typename Model::Shape& shape, st
                       .beyond_domain = BeyondDomain::remove,
                       .threads = s.bed.threads > 0 ? s.bed.threads : threads_for(grains.size()),
                       .sleep = s.bed.sleep ? std::optional<SleepOptions>(SleepOptions{}) : std::nullopt});
-  const SpeciesId species = world.add_species(shape, {.material = "grain", .density = s.grains.density});
-  world.set_contact("grain", "grain", grain_contact<Model>(s.grains, s.grains.friction));
-  world.set_contact("grain", "wall", grain_contact<Model>(s.grains, s.grains.wall_friction));
+  const std::array<SpeciesId, 2> soils = add_soils(world, s, shape);
   const BodyId ground = world.machine().add_body(mbd::fixed_body("lane"));
   const auto wall = [&](const std::string& name, const Vec3& edges, const Vec3& at) {
     world.add_surface(ground, surface::Box(edges), {.name = name, .position = at});
@@ -60,19 +103,34 @@ World<Model> make_lane(const Settings& s, const typename Model::Shape& shape, st
       wall(name + " wall " + sign + "y", Vec3(length, t, high), Vec3(0, y + side * 0.5 * (width + t), middle));
     }
   }
-  for (const auto& g : grains) {
-    world.add_particle({.species = species, .position = g.position, .rotation = g.rotation});
+  for (std::size_t k = 0; k < grains.size(); ++k) {
+    const auto& g = grains[k];
+    // Evenly spread over the second soil, by the golden ratio.
+    const double draw = std::fmod(0.6180339887498949 * static_cast<double>(k), 1.0);
+    const bool is_second = s.scene == "soils" && g.position.x() > s.border_at() && draw < s.second_share;
+    world.add_particle({.species = soils[is_second ? 1 : 0], .position = g.position, .rotation = g.rotation});
   }
   return world;
+}
+
+/// The hard ground of a step, under both tracks and between them, level with the soil (m).
+template <class Model>
+SurfaceId add_hard_ground(World<Model>& world, const Settings& s, double level) {
+  const double from = -0.5 * s.bed.length, to = s.border_at(), track = s.is_bed() ? 0.0 : s.car.track();
+  const BodyId ground = world.machine().add_body(mbd::fixed_body(hard_ground));
+  return world.add_surface(
+      ground, surface::Box(Vec3(to - from, track + s.bed.width, level)),
+      {.material = hard_ground, .name = hard_ground, .position = Vec3(0.5 * (from + to), 0, 0.5 * level)});
 }
 
 /// Mean height (m) of the surface of the lane, away from its walls: what sinkage and ruts are measured from.
 inline double level_of(const Settings& s, std::span<const soil::Placement> grains) {
   const double away = s.grains.edge(), x = 0.5 * s.bed.length - away, y = 0.5 * s.bed.width - away;
+  const double from = s.scene == "step" ? s.border_at() + away : -x;
   double sum = 0.0, count = 0.0;
   for (int k = 0; k < s.troughs(); ++k) {
     const double middle = s.is_bed() ? 0.0 : (k == 0 ? 0.5 : -0.5) * s.car.track();
-    for (const double z : surface_profile(grains, s.grains.half_edge, -x, x, middle - y, middle + y).z) {
+    for (const double z : surface_profile(grains, s.grains.half_edge, from, x, middle - y, middle + y).z) {
       sum += z;
       count += 1.0;
     }

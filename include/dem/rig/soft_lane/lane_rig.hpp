@@ -19,9 +19,9 @@ class LaneRig : public Rig {
   void resolve() override { soft_lane::resolve(settings); }
   [[nodiscard]] std::string output() const override { return settings.output; }
   [[nodiscard]] ResultNames results() const override {
-    return {.files = {"results.csv", "telemetry.csv", "rut.csv", "soft_lane.pvd"},
+    return {.files = {"results.csv", "telemetry.csv", "rut.csv", "pull.csv", "soft_lane.pvd"},
             .plots = {"speed", "slip", "sinkage", "load", "pull", "torque", "travel", "engine", "driver", "attitude",
-                      "rut", "section"},
+                      "rut", "section", "drawbar"},
             .frames = {"grains", "surfaces"}};
   }
   [[nodiscard]] bool can_resume() const override { return true; }
@@ -32,8 +32,12 @@ class LaneRig : public Rig {
     const Settings& s = settings;
     const Campaign& c = campaign;
     report.part("results.csv", [&] { write_results(report.folder() / "results.csv"); });
+    if (s.scene == "drawbar") report.part("pull.csv", [&] { write_pulls(report.folder() / "pull.csv"); });
     report.part("rut.csv", [&] { write_ruts(report.folder() / "rut.csv"); });
-    const std::vector<io::Table> tables{drive_table(s, c), wheel_table(c), cost_table(s, c)};
+    std::vector<io::Table> tables{drive_table(s, c), wheel_table(c), cost_table(s, c)};
+    if (s.has_border()) tables.push_back(stretch_table(c));
+    if (s.scene == "drawbar") tables.push_back(pull_table(c));
+    if (s.passes > 1) tables.push_back(pass_table(c));
     report.part("the printed report", [&] {
       fmt::print("\n{}\n{}\n\n", lane_text(s, c), words_text);
       for (const auto& table : tables) {
@@ -66,6 +70,9 @@ class LaneRig : public Rig {
     page.heading("Plots");
     if (!c.section.empty()) {
       report.plot(page, section_plot(settings, c), "section", "Grains and tyres in the plane of the left wheels.");
+    }
+    if (!c.pulls.empty()) {
+      report.plot(page, pull_plot(c), "drawbar", "What a sled behind the car measures that goes ever slower.");
     }
     report.plot(page, speed_plot(c), "speed", "Speed of the car along its own axis.");
     wheels(&WheelSample::slip, 1.0, "slip", "Slip", "slip (omega r - v)/max", "Slip of each wheel.");
@@ -112,6 +119,7 @@ class LaneRig : public Rig {
                              "radius_m",
                              "ackermann_radius_m",
                              "deepest_overlap_of_edge",
+                             "weight_N",
                              "grains",
                              "grains_lost",
                              "computing_s_per_s"});
@@ -121,8 +129,14 @@ class LaneRig : public Rig {
             cell(any ? c.samples.back().car.time : not_known), cell(m.speed), cell(m.slip), cell(m.sinkage),
             cell(m.load), cell(m.pull), cell(m.torque), cell(m.resistance), cell(m.power), cell(m.energy_per_metre),
             cell(m.cost_of_transport), cell(c.rut_depth[0]), cell(c.rut_depth[1]), cell(c.rut_width), cell(c.drift),
-            cell(c.brake_way), cell(c.deceleration), cell(c.radius), cell(c.ackermann), cell(c.deepest), c.grains,
-            c.lost, cell(c.computing));
+            cell(c.brake_way), cell(c.deceleration), cell(c.radius), cell(c.ackermann), cell(c.deepest), cell(c.weight),
+            c.grains, c.lost, cell(c.computing));
+    csv.flush();
+  }
+
+  void write_pulls(const std::filesystem::path& path) const {
+    io::CsvWriter csv(path, {"slip", "pull_N", "torque_Nm", "sinkage_m", "efficiency"});
+    for (const PullPoint& p : campaign.pulls) csv.row(p.slip, p.pull, p.torque, p.sinkage, p.efficiency);
     csv.flush();
   }
 

@@ -2,6 +2,7 @@
 
 #include <dem/rig/bed/bed_settings.hpp>
 #include <dem/vehicle/humvee.hpp>
+#include <dem/vehicle/ring_tyre.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -18,22 +19,32 @@ namespace dem::rig::soft_lane {
 /// Humvee's 12 kN on 0.25 m x 0.3 m, whatever the size of the grains. The report has the overlaps that there were.
 struct Settings {
   std::string size = "quick";   ///< smoke, quick or full
-  std::string scene = "level";  ///< level, slope, side-slope, brake, turn or coast
+  std::string scene = "level";  ///< level, slope, side-slope, brake, turn, coast, step, soils or drawbar
   double slope = 20.0;  ///< percent, of slope (positive: uphill) and side-slope (positive: the left side is high)
 
   vehicle::VehicleSpec car = vehicle::humvee({.rubber_rear = false});
   std::string engine = "motor";  ///< motor, gears or low-range
-  std::string tyre = "mesh";     ///< mesh or cylinder
+  std::string tyre = "mesh";     ///< mesh, cylinder or ring (pneumatic, vehicle/ring_tyre.hpp)
   int tyre_triangles = 6662;     ///< of a mesh (thesis)
-  double tyre_friction = 0.8;    ///< mu, grain on tyre
+  double tyre_pressure = 2e5;    ///< Pa, of a ring, above the air around
+  double tread_stiffness = 8e4;  ///< N/m, of a ring's rubber under a grain: its light segments bear no stiffer contact
+  double tyre_friction = 0.8;    ///< mu, grain on tyre, and hard ground on tyre
   double machine_step = 5e-5;    ///< s, the largest step of the car
   double set_down_speed = 0.5;   ///< m/s
   double speed = 0.0;            ///< m/s, that the driver holds; 0: by size
   double acceleration = 1.0;     ///< m/s^2, at which the driver reaches it
   double spin_limit = 1.0;       ///< m/s, by which rims are faster than the car where the driver eases off the throttle
   double path = 0.0;             ///< m, that the car drives; 0: as far as the lane goes
+  int passes = 1;                ///< drives, one after the other, each from the start in the ruts of those before
   double steer_deg = 12.0;       ///< of the front wheels in a turn
   double steer_deg_per_s = 30.0;  ///< at which they turn there
+
+  /// m, way after which the front wheels come from hard ground into the soil (step), or into the second soil (soils);
+  /// 0: 0.3 m (step), or so that the wheels drive as far on the first soil as on the second.
+  double border = 0.0;
+  double second_friction = 0.2;  ///< mu, grain on grain of the second soil
+  double second_cohesion = 0.0;  ///< pull of its contact points, in weights of a grain
+  double second_share = 1.0;     ///< of its grains: the others are of the first soil
 
   GrainSettings grains{.stiffness = 4e4, .damping = 0.1};
   /// Of one trough: length along x, width, depth. There are two of them, one under each track, with the same grains,
@@ -47,6 +58,12 @@ struct Settings {
   std::uint64_t replay_forces = 2000;  ///< force chains of a frame of the replay, the largest; 0: none
   bool vtk = false;
 
+  [[nodiscard]] vehicle::RingTyreSpec ring() const {
+    return {.radius = car.tyre.radius, .width = car.tyre.width, .pressure = tyre_pressure};
+  }
+  [[nodiscard]] bool has_border() const { return scene == "step" || scene == "soils"; }
+  /// m, along x, where the other ground begins.
+  [[nodiscard]] double border_at() const { return start() + car.front.points.wheel.x() + border; }
   [[nodiscard]] bool is_bed() const { return layout == "bed"; }
   [[nodiscard]] int troughs() const { return is_bed() ? 1 : 2; }
   /// m, between the middle of a wheel and the end of the lane.
@@ -70,22 +87,33 @@ struct Settings {
 inline void declare(Options& options, Settings& s) {
   const auto add = [&](const char* name, auto& value, const char* text) { return options.add(name, value, text); };
   add("--size", s.size, "smoke (seconds), quick (minutes) or full (the thesis's 331,890 grains: days)");
-  add("--scene", s.scene, "what is driven").one_of({"level", "slope", "side-slope", "brake", "turn", "coast"});
+  add("--scene", s.scene, "what is driven")
+      .one_of({"level", "slope", "side-slope", "brake", "turn", "coast", "step", "soils", "drawbar"});
   add("--slope", s.slope, "percent: of slope (below 0: downhill) and of side-slope (above 0: its left side is high)");
   options.group("Car");
   add("--engine", s.engine, "motor (no gears), gears (a diesel), low-range").one_of({"motor", "gears", "low-range"});
-  add("--tyre", s.tyre, "mesh of triangles, as in the thesis, or cylinder").one_of({"mesh", "cylinder"});
+  add("--tyre", s.tyre, "mesh of triangles, as in the thesis, cylinder, or ring: pneumatic")
+      .one_of({"mesh", "cylinder", "ring"});
   add("--tyre-triangles", s.tyre_triangles, "of a mesh");
+  add("--tyre-pressure", s.tyre_pressure, "of a ring [Pa]");
+  add("--tread-stiffness", s.tread_stiffness, "of a ring's rubber under a grain [N/m]");
   add("--tyre-friction", s.tyre_friction, "mu, grain on tyre");
-  add("--speed", s.speed, "that the driver holds [m/s]; 0: by size");
+  add("--speed", s.speed, "that the driver holds, of the rims on a drawbar [m/s]; 0: by size");
   add("--acceleration", s.acceleration, "at which the driver reaches it [m/s^2]");
   add("--spin-limit", s.spin_limit,
       "the driver eases off the throttle where rims are faster than the car by this [m/s]");
   add("--path", s.path, "that the car drives [m]; 0: as far as the lane goes");
+  add("--passes", s.passes, "drives, each from the start in the ruts of those before");
   add("--steer", s.steer_deg, "of the front wheels in a turn, to the left [deg]");
   add("--steer-rate", s.steer_deg_per_s, "at which they turn there [deg/s]");
   add("--set-down-speed", s.set_down_speed, "of the crane that sets the car down [m/s]");
   add("--machine-step", s.machine_step, "largest time step of the car, which sub-steps keep [s]");
+  options.group("Ground that changes");
+  add("--border", s.border,
+      "way after which the front wheels come to the soil (step) or the second soil [m]; 0: chosen");
+  add("--second-friction", s.second_friction, "mu of the second soil, grain on grain");
+  add("--second-cohesion", s.second_cohesion, "pull of its contact points, in weights of a grain");
+  add("--second-share", s.second_share, "of its grains; the others are of the first soil");
   add_grain_options(options, s.grains);
   add_bed_options(options, s.bed);
   add("--layout", s.layout, "troughs (two, one a track) or bed (one under the car); empty: by scene");
@@ -101,6 +129,12 @@ inline void find_idle(IdleOptions& idle, const Settings& s) {
   rig::find_idle(idle, s.bed);
   find_idle_replay(idle, s);
   idle.unless(s.tyre == "mesh", "with --tyre mesh", {"--tyre-triangles"});
+  idle.unless(s.tyre == "ring", "with --tyre ring", {"--tyre-pressure", "--tread-stiffness"});
+  idle.unless(s.has_border(), "with --scene step or soils", {"--border"});
+  idle.unless(s.scene == "level" || s.scene == "slope" || s.scene == "side-slope" || s.scene == "step",
+              "with --scene level, slope, side-slope or step", {"--passes"});
+  idle.unless(s.scene == "soils", "with --scene soils", {"--second-friction", "--second-cohesion", "--second-share"});
+  idle.unless(s.scene != "drawbar", "without --scene drawbar", {"--acceleration", "--spin-limit"});
   idle.unless(s.scene == "slope" || s.scene == "side-slope", "with --scene slope or side-slope", {"--slope"});
   idle.unless(s.scene == "turn", "with --scene turn", {"--steer", "--steer-rate"});
 }
@@ -156,7 +190,9 @@ inline void resolve(Settings& s) {
   }
   rig::resolve(s.grains, by_size.half_edge);
   require_within(s.bed.strike_off, 0.0, 0.9, "--strike-off");
-  fill(s.bed.length, by_size.length);
+  // Longer where the rear wheels are to come to other ground as well, and where pulls are measured.
+  const bool is_held = s.scene == "drawbar";
+  fill(s.bed.length, by_size.length + (s.has_border() ? s.car.wheelbase() + 0.5 : is_held ? 1.0 : 0.0));
   fill(s.bed.width, s.is_bed() ? by_size.bed_width : by_size.trough_width);
   fill(s.bed.lid_pressure, s.is_bed() ? 1000.0 : 5000.0);
   require_positive(s.bed.length, "--bed-length", "m (0: by size)");
@@ -164,23 +200,45 @@ inline void resolve(Settings& s) {
   const double full_depth =
       depth_of(331'890.0 / s.troughs(), s.bed.strike_off, s.grains.half_edge, s.bed.length, s.bed.width);
   rig::resolve(s.bed, {s.bed.length, s.bed.width, by_size.depth > 0.0 ? by_size.depth : full_depth}, s.output);
-  fill(s.speed, by_size.speed);
+  fill(s.speed, is_held ? 0.5 * by_size.speed : by_size.speed);
   if (s.engine != "motor") {
     s.car = vehicle::humvee({.rubber_rear = false, .has_gears = true, .low_range = s.engine == "low-range"});
   }
   require_within(s.slope, -100.0, 100.0, "--slope (percent)");
+  require_within(s.tyre_pressure, 0.0, 1e6, "--tyre-pressure (Pa)");
+  require_positive(s.tread_stiffness, "--tread-stiffness", "N/m");
+  require_non_negative(s.second_friction, "--second-friction", "(no unit)");
+  require_within(s.second_cohesion, 0.0, 100.0, "--second-cohesion (weights of a grain)");
+  require_within(s.second_share, 0.0, 1.0, "--second-share");
   require_within(s.tyre_triangles, 60, 200'000, "--tyre-triangles");
   require_non_negative(s.tyre_friction, "--tyre-friction", "(no unit)");
   require_within(s.speed, 0.05, 20.0, "--speed (m/s)");
   require_within(s.acceleration, 0.05, 10.0, "--acceleration (m/s^2)");
   require_within(s.spin_limit, 0.01, 100.0, "--spin-limit (m/s)");
   require_within(s.path, 0.0, 1e4, "--path (m; 0: as far as the lane goes)");
+  require_within(s.passes, 1, 20, "--passes");
   require_within(s.steer_deg, -40.0, 40.0, "--steer (deg)");
   require_within(s.steer_deg_per_s, 1.0, 90.0, "--steer-rate (deg/s)");
   require_within(s.set_down_speed, 0.01, 1.0, "--set-down-speed (m/s)");
   require_within(s.machine_step, 1e-6, 2e-4, "--machine-step (s)");
   require_room(s);
   if (s.path == 0.0) s.path = s.longest_path();
+  if (is_held && !(s.path >= 2.0 * s.speed)) {
+    fail(
+        "a --path of {:.3g} m is too short for a drawbar at {:g} m/s, which takes at least two seconds of way; give at "
+        "least {:.3g} m, or a lower --speed",
+        s.path, s.speed, 2.0 * s.speed);
+  }
+  if (!s.has_border()) return;
+  const double rest = s.path - s.car.wheelbase();
+  if (s.border == 0.0) s.border = s.scene == "step" ? 0.3 : 0.5 * rest;
+  if (!(s.border > 0.0 && s.border < rest)) {
+    fail(
+        "--border is {:.3g} m, but must be above 0 and below {:.3g} m: the rear wheels, {:.3g} m behind the front "
+        "ones, "
+        "are to come to the other ground within the --path of {:.3g} m; change it, or --path and --bed-length",
+        s.border, std::max(0.0, rest), s.car.wheelbase(), s.path);
+  }
 }
 
 /// Names and values for the report.
@@ -193,6 +251,15 @@ inline NamesAndValues list_settings(const Settings& s) {
                            {"tyre", s.tyre + text(", {:g} m x {:g} m, friction on grains {:g}", 2.0 * s.car.tyre.radius,
                                                   s.car.tyre.width, s.tyre_friction)},
                            {"lane", s.is_bed() ? "one bed under the car" : "two troughs, one under each track"}});
+  if (s.tyre == "ring") list.push_back({"tyre pressure", text("{:g} bar", 1e-5 * s.tyre_pressure)});
+  if (s.scene == "step") list.push_back({"hard ground", text("to {:g} m before the front wheels", s.border)});
+  if (s.scene == "soils") {
+    list.push_back(
+        {"second soil", text("from {:g} m before the front wheels on: friction {:g}, cohesion of {:g} weights "
+                             "of a grain, {:g} % of the grains",
+                             s.border, s.second_friction, s.second_cohesion, 100.0 * s.second_share)});
+  }
+  if (s.passes > 1) list.push_back({"passes", text("{}", s.passes)});
   rig::list_settings(list, s.grains);
   rig::list_settings(list, s.bed);
   return list;

@@ -4,12 +4,17 @@
 #include <dem/geometry/cylinder/cylinder.hpp>
 #include <dem/geometry/mesh/mesh_shapes.hpp>
 #include <dem/geometry/mesh/triangle_mesh.hpp>
+#include <dem/rig/soft_lane/driver.hpp>
 #include <dem/rig/soft_lane/lane.hpp>
 #include <dem/rig/stages.hpp>
 #include <dem/soil/rest.hpp>
+#include <dem/vehicle/hitch.hpp>
+#include <dem/vehicle/ring_wheels.hpp>
 
 #include <cmath>
+#include <memory>
 #include <numbers>
+#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
@@ -18,6 +23,12 @@ namespace dem::rig::soft_lane {
 
 inline constexpr double interval = 0.01;  ///< s, of samples and of the driver
 
+/// A body of a tyre, and the sensor of what the ground does to it: the wheel itself, or a segment of a ring.
+struct TyrePart {
+  BodyId body;
+  SurfaceSensorId ground;
+};
+
 /// The lane with the car.
 template <class Model>
 struct Stand {
@@ -25,8 +36,10 @@ struct Stand {
   double level = 0.0;                   ///< m
   std::vector<soil::Placement> before;  ///< grains before the car came
   vehicle::Vehicle car = {};
-  std::array<SensorId, 4> grains = {};  ///< on the wheels
+  std::array<std::vector<TyrePart>, 4> tyres = {};
   LoadId crane = {};
+  std::optional<SurfaceId> hard = {};          ///< ground, of a step
+  std::shared_ptr<vehicle::Hitch> hitch = {};  ///< of a drawbar
 
   /// What is kept of it besides world and car.
   template <class V>
@@ -56,40 +69,84 @@ struct Tilting {
   }
 };
 
+/// Of a grain on a tyre: as grains on each other, but for the friction; the rubber of a ring is softer, and as damped.
+template <class Model>
+ContactParameters<Model> tyre_contact(const Settings& s) {
+  GrainSettings g = s.grains;
+  if (s.tyre == "ring") {
+    const double share = s.tread_stiffness / (g.scale() * g.stiffness);
+    g.stiffness *= share, g.friction_stiffness *= share;
+    g.damping *= std::sqrt(share), g.velocity_stiffness *= std::sqrt(share);
+  }
+  return grain_contact<Model>(g, s.tyre_friction);
+}
+
+/// Gives a wheel its tyre: surfaces that touch the grains, and the hard ground if there is one.
+template <class Model>
+void add_tyre(Stand<Model>& stand, const Settings& s, const vehicle::Assembly& in, std::size_t corner) {
+  auto& world = stand.world;
+  const BodyId wheel = stand.car.wheels[corner].body;
+  const vehicle::TyreSpec& tyre = stand.car.spec.tyre;
+  const std::string name = vehicle::corner_names[corner];
+  const auto part = [&](BodyId body, const auto& geometry, SurfaceOptions place, const std::string& part_name) {
+    place.material = "tyre", place.name = part_name;
+    const SurfaceId surface = world.add_surface(body, geometry, place);
+    if (stand.hard) world.add_body_contact(surface, *stand.hard);
+    stand.tyres[corner].push_back({body, world.add_surface_sensor(surface, interval)});
+  };
+  Mat3 about_y;  // the tyre's axis, z of its own frame, along y
+  about_y << 1, 0, 0, 0, 0, 1, 0, -1, 0;
+  if (s.tyre == "mesh") {
+    const IndexedMesh mesh = mesh::tyre(2.0 * tyre.radius, tyre.width, s.tyre_triangles);
+    part(wheel, surface::TriangleMesh(mesh), {.rotation = about_y}, name + " tyre");
+  } else if (s.tyre == "cylinder") {
+    part(wheel, surface::Cylinder(tyre.radius, tyre.width), {.rotation = about_y}, name + " tyre");
+  } else {
+    const vehicle::RingTyre ring = vehicle::add_ring_tyre(in, stand.car, corner, s.ring());
+    for (std::size_t k = 0; k < ring.segments.size(); ++k) {
+      part(ring.segments[k], surface::Box(to_eigen(ring.edges())), {}, name + " tyre " + std::to_string(k));
+    }
+  }
+}
+
+/// Mean force (N) and torque (N m, about the wheel's middle) of the ground on a wheel over the last interval.
+template <class Model>
+Wrench ground_on(const Stand<Model>& stand, std::size_t corner) {
+  const auto& m = stand.world.machine();
+  const Vector3<double> middle = m.body(stand.car.wheels[corner].body).motion.position;
+  Wrench sum;
+  for (const TyrePart& part : stand.tyres[corner]) {
+    const Wrench w = stand.world.surface_sensor(part.ground).mean();
+    sum = sum + Wrench{w.force, w.torque + cross(m.body(part.body).motion.position - middle, w.force)};
+  }
+  return sum;
+}
+
 /// Hangs the car over the lane: the wheels 0.2 m above the grains as the suspension is drawn, for they sink on their
-/// springs. The crane is a damper against sinking, rolling and pitching of the chassis: the car's weight sinks at the
-/// set-down speed.
+/// springs. The crane sets it down.
 template <class Model>
 void add_car(Stand<Model>& stand, const Settings& s) {
   auto& m = stand.world.machine();
   double top = stand.level;
   for (const auto& g : stand.before) top = std::max(top, g.position.z() + s.grains.half_edge);
-  const vehicle::TyreSpec& tyre = s.car.tyre;
-  const double height = top + tyre.radius + 0.2 - s.car.front.points.wheel.z();
+  const double step = stand.world.time_step(), car_step = step / std::ceil(step / s.machine_step * (1.0 - 1e-9));
+  const vehicle::VehicleSpec car = s.tyre == "ring" ? vehicle::on_ring_tyres(s.car, s.ring(), car_step) : s.car;
+  const double height = top + car.tyre.radius + 0.2 - s.car.front.points.wheel.z();
   m.joint_tolerance = 0.5;  // m: light shafts wind up; how far joints open is told with the results
-  m.substeps = static_cast<int>(std::ceil(stand.world.time_step() / s.machine_step * (1.0 - 1e-9)));
-  stand.car = vehicle::add_vehicle(vehicle::Assembly(m, "car", Vec3(s.start(), 0, height)), s.car);
+  m.substeps = static_cast<int>(std::lround(step / car_step));
+  const vehicle::Assembly in(m, "car", Vec3(s.start(), 0, height));
+  stand.car = vehicle::add_vehicle(in, car);
 
-  stand.world.set_contact("grain", "tyre", grain_contact<Model>(s.grains, s.tyre_friction));
-  Mat3 about_y;  // the tyre's axis, z of its own frame, along y
-  about_y << 1, 0, 0, 0, 0, 1, 0, -1, 0;
-  for (std::size_t k = 0; k < 4; ++k) {
-    const BodyId wheel = stand.car.wheels[k].body;
-    const std::string corner = vehicle::corner_names[k];
-    const SurfaceOptions place{.material = "tyre", .name = corner + " tyre", .rotation = about_y};
-    if (s.tyre == "mesh") {
-      const IndexedMesh mesh = mesh::tyre(2.0 * tyre.radius, tyre.width, s.tyre_triangles);
-      stand.world.add_surface(wheel, surface::TriangleMesh(mesh), place);
-    } else {
-      stand.world.add_surface(wheel, surface::Cylinder(tyre.radius, tyre.width), place);
-    }
-    stand.grains[k] = m.add_sensor(mbd::contact_sensor("grains on the " + corner + " tyre", wheel, interval));
+  const ContactParameters<Model> on_tyre = tyre_contact<Model>(s);
+  stand.world.set_contact("grain", "tyre", on_tyre);
+  if (s.scene == "soils") stand.world.set_contact(second_grain, "tyre", on_tyre);
+  if (stand.hard) {
+    const double k = car.tyre.stiffness, c = car.tyre.damping;  // of a rigid tyre the points are one whole contact
+    stand.world.set_contact("tyre", hard_ground, {.normal = {k, c, 1.0}, .friction = {s.tyre_friction, k, c, 1.0}});
   }
-  const double weight = vehicle::weight_of(m), up = weight / s.set_down_speed, turn = up * s.car.wheelbase();
-  stand.crane = m.add_load(mbd::custom_load("crane", stand.car.chassis, [up, turn](double, const Body& b) {
-    const Vec3 v = b.velocity(), w = b.angular_velocity();
-    return Wrench{{0, 0, -up * v.z()}, {-turn * w.x(), -turn * w.y(), 0}};
-  }));
+  for (std::size_t corner = 0; corner < 4; ++corner) add_tyre(stand, s, in, corner);
+  stand.crane = vehicle::add_crane(m, stand.car, s.set_down_speed);
+  if (s.scene == "drawbar") stand.hitch = vehicle::add_hitch(m, stand.car, 0.6);
 }
 
 /// Ten milliseconds with the driver's controls. Steering turns at `steer_rate` (rad/s) at most. Throws Stopped for a
@@ -98,6 +155,12 @@ template <class Model>
 void advance(Stand<Model>& stand, const vehicle::Controls& controls, double steer_rate = 0.5) {
   const double dt = stand.world.time_step();
   run(stand.world, interval, [&] { vehicle::drive(stand.world.machine(), stand.car, controls, dt, steer_rate); });
+}
+
+/// On a drawbar: the sled goes as fast as it is to, `time` (s) after the start.
+template <class Model>
+void pull(Stand<Model>& stand, const Settings& s, double time) {
+  if (stand.hitch) stand.hitch->on = true, stand.hitch->speed = held_rims(s, time) * (1.0 - held_slip(s, time));
 }
 
 /// m, the middles of the wheels.
@@ -124,10 +187,11 @@ Sample sample_of(const Stand<Model>& stand, const vehicle::Controls& controls, d
   for (std::size_t j = 0; j < m.parts().joints.size(); ++j) {
     x.widest_joint = std::max(x.widest_joint, m.violation(JointId(j)).displacement);
   }
+  x.hitch = stand.hitch ? stand.hitch->force : 0.0;
   x.overlap = deepest_overlap(stand.world);
   x.asleep = static_cast<double>(stand.world.asleep_count()) / static_cast<double>(stand.world.particle_count());
   for (std::size_t k = 0; k < 4; ++k) {
-    x.wheels[k] = vehicle::wheel_sample_of(m, stand.car, k, m.sensor(stand.grains[k]).mean(), stand.level, radius);
+    x.wheels[k] = vehicle::wheel_sample_of(m, stand.car, k, ground_on(stand, k), stand.level, radius);
   }
   return x;
 }
@@ -136,7 +200,9 @@ Sample sample_of(const Stand<Model>& stand, const vehicle::Controls& controls, d
 /// 0.2 m from both.
 inline SurfaceProfile track_profile(const Settings& s, std::span<const soil::Placement> grains, std::size_t side,
                                     double rear) {
-  const double from = s.start() + s.car.rear.points.wheel.x() + 0.2, to = rear - 0.2;
+  double from = s.start() + s.car.rear.points.wheel.x() + 0.2;
+  if (s.scene == "step") from = std::max(from, s.border_at() + 0.2);
+  const double to = std::max(from, rear - 0.2);
   const double half = s.is_bed() ? 0.25 * s.bed.width : 0.5 * s.bed.width;
   const double middle = (side == 0 ? 1.0 : -1.0) * (s.is_bed() ? half : 0.5 * s.car.track());
   return surface_profile(grains, s.grains.half_edge, from, to, middle - half, middle + half);

@@ -31,6 +31,46 @@ inline io::Table drive_table(const Settings& s, const Campaign& c) {
   return t;
 }
 
+/// Of a step or of two soils: what the car did on each of them.
+inline io::Table stretch_table(const Campaign& c) {
+  io::Table t{
+      .caption = "Where the ground changes; means over the way on each",
+      .header = {"wheels", "speed [m/s]", "slip", "sinkage [mm]", "resistance [kN]", "of the weight", "energy [kJ/m]"}};
+  const char* where[] = {"all on the first ground", "front wheels on the other", "all on the other"};
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Means& m = c.stretches[k];
+    t.row(where[k], number(m.speed), number(m.slip, "{:.3f}"), number(1e3 * m.sinkage, "{:.1f}"),
+          number(1e-3 * m.resistance), number(m.resistance / c.weight, "{:.3f}"), number(1e-3 * m.energy_per_metre));
+  }
+  return t;
+}
+
+/// Of several passes.
+inline io::Table pass_table(const Campaign& c) {
+  io::Table t{.caption = "Passes in the same ruts; means over the second half of the way; ruts from before the first",
+              .header = {"pass", "ended", "way [m]", "speed [m/s]", "slip", "sinkage [mm]", "resistance [kN]",
+                         "of the weight", "energy [kJ/m]", "ruts, left and right [mm]"}};
+  for (std::size_t k = 0; k < c.passes.size(); ++k) {
+    const Pass& p = c.passes[k];
+    const Means& m = p.means;
+    t.row(k + 1, p.ended, number(p.way), number(m.speed), number(m.slip, "{:.3f}"), number(1e3 * m.sinkage, "{:.1f}"),
+          number(1e-3 * m.resistance), number(m.resistance / c.weight, "{:.3f}"), number(1e-3 * m.energy_per_metre),
+          number(1e3 * p.rut_depth[0], "{:.0f}") + ", " + number(1e3 * p.rut_depth[1], "{:.0f}"));
+  }
+  return t;
+}
+
+/// Of a car on a load cell.
+inline io::Table pull_table(const Campaign& c) {
+  io::Table t{.caption = "On the load cell; means over a tenth of slip",
+              .header = {"slip", "pull [kN]", "of the weight", "torque [kN m]", "sinkage [mm]", "efficiency"}};
+  for (const PullPoint& p : c.pulls) {
+    t.row(number(p.slip), number(1e-3 * p.pull), number(p.pull / c.weight, "{:.3f}"), number(1e-3 * p.torque),
+          number(1e3 * p.sinkage, "{:.0f}"), number(p.efficiency));
+  }
+  return t;
+}
+
 inline io::Table wheel_table(const Campaign& c) {
   io::Table t{.caption = "Wheels at rest on the level lane", .header = {"wheel", "load [kN]", "sinkage [mm]"}};
   for (std::size_t k = 0; k < 4; ++k) {
@@ -110,6 +150,17 @@ inline io::Plot wheel_plot(const Campaign& c, double WheelSample::*value, double
 inline io::Plot speed_plot(const Campaign& c) {
   io::Plot plot{.title = "Speed", .x_label = "time [s]", .y_label = "speed [m/s]"};
   plot.series = {line_of(c, "car", 0, [](const Sample& x) { return x.car.speed; })};
+  return plot;
+}
+inline io::Plot pull_plot(const Campaign& c) {
+  io::Plot plot{.title = "Pull on the load cell", .x_label = "slip", .y_label = "pull, of the weight"};
+  io::Series all{.name = "every 10 ms", .style = io::SeriesStyle::Points, .color = 1},
+      means{.name = "means", .style = io::SeriesStyle::LinePoints, .color = 0};
+  for (const Sample& x : c.samples) {
+    if (x.car.time > held_start) all.x.push_back(x.mean(&WheelSample::slip)), all.y.push_back(x.hitch / c.weight);
+  }
+  for (const PullPoint& p : c.pulls) means.x.push_back(p.slip), means.y.push_back(p.pull / c.weight);
+  plot.series = {std::move(all), std::move(means)};
   return plot;
 }
 inline io::Plot engine_plot(const Campaign& c) {

@@ -1,0 +1,59 @@
+#!/usr/bin/env bash
+# A mobility map on grains: the car on slopes of soils of several relative densities, side by side, one run on each
+# thread. Prints a table: how each run ended, its speed and its energy for a metre. Runs that are there already are not
+# made again, so a map that was stopped goes on with the same command.
+#
+#   map.sh <humvee_soil> <folder> [more options of humvee_soil]
+#
+# SLOPES (percent), DENSITIES (0 to 1; 0: as rained) and JOBS are taken from the environment.
+set -euo pipefail
+
+[ $# -ge 2 ] || { sed -n 's/^#   //p' "$0" >&2 && exit 2; }
+car=$(realpath "$1")
+mkdir -p "$2"
+cd "$2"
+shift 2
+slopes=${SLOPES:-0 10 20}
+densities=${DENSITIES:-0 0.5}
+jobs=${JOBS:-$(nproc)}
+
+# drive <name> <options>...: a run, unless it is there.
+drive() {
+  local name=$1
+  shift
+  [ -s "$name/results.csv" ] || "$car" "$@" --threads 1 --no-vtk --no-replay --output "$name" > "$name.log" 2>&1 ||
+    echo "$name did not end well: see $PWD/$name.log" >&2
+}
+export -f drive
+export car
+
+first=${slopes%% *}
+options_of() {
+  local scene=(--scene slope --slope "$2")
+  [ "$2" != 0 ] || scene=(--scene level)
+  [ "$1" = 0 ] || scene+=(--relative-density "$1")
+  echo "${scene[@]}"
+}
+# The first slope of each soil makes its bed, and all others start from it.
+for density in $densities; do
+  echo "density_${density}_slope_$first $(options_of "$density" "$first") $*"
+done | xargs -P "$jobs" -L 1 bash -c 'drive "$@"' drive
+for density in $densities; do
+  for slope in $slopes; do
+    bed=density_${density}_slope_$first/bed.txt
+    [ "$slope" = "$first" ] || [ ! -s "$bed" ] ||
+      echo "density_${density}_slope_$slope $(options_of 0 "$slope") --bed-file $bed $*"
+  done
+done | xargs -r -P "$jobs" -L 1 bash -c 'drive "$@"' drive
+
+echo "density  slope [%]  ended       way [m]  speed [m/s]  slip   of the weight  energy [kJ/m]"
+for density in $densities; do
+  for slope in $slopes; do
+    csv=density_${density}_slope_$slope/results.csv
+    [ -s "$csv" ] || continue
+    awk -F, -v d="$density" -v s="$slope" '
+      NR == 1 { for (k = 1; k <= NF; ++k) at[$k] = k }
+      NR == 2 { printf "%-7s  %-9s  %-10s  %7.2f  %11.2f  %5.2f  %13.3f  %13.1f\n", d, s, $at["ended"], $at["way_m"],
+                       $at["speed_m_per_s"], $at["slip"], $at["resistance_N"] / $at["weight_N"], 1e-3 * $at["energy_per_metre_J_per_m"] }' "$csv"
+  done
+done
