@@ -8,6 +8,7 @@
 
 #include <dem/dem.hpp>
 #include <dem/rig/frames.hpp>
+#include <dem/rig/part_of.hpp>
 #include <dem/rig/program.hpp>
 #include <dem/rig/samples_file.hpp>
 #include <dem/soil/packing.hpp>
@@ -52,9 +53,10 @@ void pour_bed(World<Soil>& world) {
 }
 
 /// The machine: ground - rail - carriage - guide - blade, which stands just above a bed of this height (m). It goes
-/// down by a prescribed motion until the time `down`, and then along by an actuator that follows a position.
+/// down by a prescribed motion from the time `start` until `down`, and then along by an actuator that follows a
+/// position.
 struct Pusher {
-  Pusher(World<Soil>& world, double level, double depth, double speed, double down) {
+  Pusher(World<Soil>& world, double level, double depth, double speed, double start, double down) {
     using namespace mbd;
     auto& machine = world.machine();
     const double clear = 3 * grain_radius;
@@ -64,7 +66,7 @@ struct Pusher {
     world.add_surface(blade, surface::Box(blade_edges), {.name = "blade"});
     rail = machine.add_joint(prismatic("rail", machine.ground(), carriage, {blade_start, 0, 0.1}, Vec3::UnitX()));
     const JointId guide = machine.add_joint(prismatic("guide", carriage, blade, at, Vec3::UnitZ()));
-    machine.add_motion(prescribed_joint("depth", guide, Signal::smooth_step(0, -clear - depth, world.time(), down)));
+    machine.add_motion(prescribed_joint("depth", guide, Signal::smooth_step(0, -clear - depth, start, down)));
     const ActuatorId push = machine.add_actuator(joint_actuator("push", rail, 2e4, 200, Signal::ramp(0, speed, down)));
     soil = machine.add_sensor(contact_sensor("soil", blade, 0.02));
     drive = machine.add_sensor(actuator_sensor("drive", push, 0.02));
@@ -75,6 +77,10 @@ struct Pusher {
 
 struct Sample {
   double time, travel, push, soil_x, soil_z;  // s, m, N
+  template <class V>
+  void fields(V& v) {
+    v("time", time), v("travel", travel), v("push", push), v("soil_x", soil_x), v("soil_z", soil_z);
+  }
 };
 constexpr rig::Column<Sample> columns[] = {{"time_s", &Sample::time},
                                            {"travel_m", &Sample::travel},
@@ -87,7 +93,16 @@ class Blade : public rig::Rig {
   double depth = 0.012, speed = 0.1, travel = 0.0, frame_time = 0.02;
   bool vtk = true;
   std::size_t grains = 0;
-  std::vector<Sample> samples;
+
+  // What a run that goes on after it was stopped takes over, besides the world.
+  struct Found {
+    double level = 0.0, start = 0.0;  // m, s: of the settled bed
+    std::vector<Sample> samples;
+    template <class V>
+    void fields(V& v) {
+      v("level", level), v("start", start), v("samples", samples);
+    }
+  } found;
 
  public:
   // ---- settings
@@ -117,6 +132,8 @@ class Blade : public rig::Rig {
     return {.files = {"blade.csv", "blade.pvd"}, .plots = {"push"}, .frames = {"grains", "surfaces"}};
   }
 
+  bool can_resume() const override { return true; }
+
   // ---- world, stages and samples
 
   void run(rig::Session& session) override {
@@ -124,33 +141,49 @@ class Blade : public rig::Rig {
     pour_bed(world);
     grains = world.particle_count();
     session.begin_run(3);
-
-    session.begin("settle");
-    rig::run(world, 0.4);
-    const double level = soil::height_percentile(soil::placements(world), 0.95) + grain_radius;
-
-    const double start = world.time(), down = start + 0.3, end = down + travel / speed;
-    const Pusher pusher(world, level, depth, speed, down);
+    rig::PartOf<Soil> part(session, session, "blade");
     rig::Frames frames(session, vtk ? "blade" : "", frame_time);
+    const auto keep_found = session.keep("found", found), keep_frames = session.keep("frames", frames);
+    rig::NoNumbers none;
+
+    const double settled = 0.4;
+    session.begin("settle", settled);
+    if (const auto stage = session.enter(world, none)) {
+      while (world.time() < settled) rig::run(world, 0.01), session.update(world.time());
+      found.start = world.time();
+      found.level = soil::height_percentile(soil::placements(world), 0.95) + grain_radius;
+    }
+
+    const double down = found.start + 0.3, end = down + travel / speed;
+    const Pusher pusher(world, found.level, depth, speed, found.start, down);
     const auto go_on = [&] {  // for a millisecond
       rig::run(world, 1e-3);
       const auto& machine = world.machine();
       const auto &push = machine.sensor(pusher.drive).mean().force, &soil = machine.sensor(pusher.soil).mean().force;
-      samples.push_back({world.time(), machine.coordinate(pusher.rail), push.x, soil.x, soil.z});
+      found.samples.push_back({world.time(), machine.coordinate(pusher.rail), push.x, soil.x, soil.z});
       frames.show(world.time(), [&](io::VtkSeries& series) { io::add_vtk_frame(series, world); });
     };
-    session.begin("lower", down - start);
-    while (world.time() < down) go_on(), session.update(world.time() - start);
+    session.begin("lower", down - found.start);
+    if (const auto stage = session.enter(world, none)) {
+      while (world.time() < down) go_on(), session.update(world.time() - found.start);
+    }
     session.begin("push", travel);
-    while (world.time() < end) go_on(), session.update(samples.back().travel, text("{:.2f} N", samples.back().push));
+    if (const auto stage = session.enter(world, none)) {
+      while (world.time() < end) {
+        go_on();
+        session.update(found.samples.back().travel, text("{:.2f} N", found.samples.back().push));
+      }
+    }
+    session.complete();
   }
 
   // ---- report
 
   bool report(rig::Report& report) const override {
-    report.part("blade.csv", [&] { rig::save_samples<Sample>(report.folder() / "blade.csv", samples, columns, 0); });
+    report.part("blade.csv",
+                [&] { rig::save_samples<Sample>(report.folder() / "blade.csv", found.samples, columns, 0); });
     double push = 0.0, soil = 0.0, count = 0.0;
-    for (const Sample& s : samples) {
+    for (const Sample& s : found.samples) {
       if (s.travel < 0.3 * travel) continue;  // until there the forces rise
       push += s.push;
       soil -= s.soil_x;
@@ -166,7 +199,7 @@ class Blade : public rig::Rig {
     report.page({{"depth", text("{:g} mm", 1e3 * depth)}, {"speed", text("{:g} mm/s", 1e3 * speed)}},
                 [&](io::HtmlReport& page) {
                   io::Series line{.name = "push"};
-                  for (const Sample& s : samples) line.x.push_back(1e3 * s.travel), line.y.push_back(s.push);
+                  for (const Sample& s : found.samples) line.x.push_back(1e3 * s.travel), line.y.push_back(s.push);
                   page.table(table);
                   report.plot(page, {.x_label = "travel [mm]", .y_label = "force [N]", .series = {line}}, "push",
                               "Force on the blade over its way.");

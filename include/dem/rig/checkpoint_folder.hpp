@@ -45,6 +45,7 @@ class CheckpointFolder final : public PartStore {
         options_(std::move(options)) {}
 
   [[nodiscard]] bool is_on() const override { return options_.every > 0.0 || options_.resume; }
+  [[nodiscard]] bool writes() const override { return options_.every > 0.0; }
   [[nodiscard]] bool resumes() const { return options_.resume; }
 
   /// Throws Error unless the run in the folder can be gone on with: it has the same settings, and its files are whole.
@@ -93,7 +94,7 @@ class CheckpointFolder final : public PartStore {
 
   bool is_due(double& last) override {
     const double now = io::steady_seconds();
-    if (options_.every == 0.0 || now - std::max(last, start_) < options_.every) return false;
+    if (!writes() || now - std::max(last, start_) < options_.every) return false;
     last = now;
     return true;
   }
@@ -122,8 +123,8 @@ class CheckpointFolder final : public PartStore {
   }
 
   std::string write(const std::string& part, io::StateColumns& columns) override {
-    if (options_.every == 0.0) return "";  // nothing is to be kept of a run that just goes on
-    const std::lock_guard lock(mutex_);    // HDF5 as Debian has it is not for several threads
+    if (!writes()) return "";            // nothing is to be kept of a run that just goes on
+    const std::lock_guard lock(mutex_);  // HDF5 as Debian has it is not for several threads
     io::StateColumns own;
     io::Fields v(io::Fields::Task::collect, own);
     std::string version = DEM_VERSION_STRING;

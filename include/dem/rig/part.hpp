@@ -44,6 +44,8 @@ class PartStore {
   virtual ~PartStore() = default;
   /// Whether parts are kept at all.
   [[nodiscard]] virtual bool is_on() const = 0;
+  /// Whether they are written as the run goes.
+  [[nodiscard]] virtual bool writes() const = 0;
   /// Whether so much time has gone by since `last` (s, of a clock of its own) that a part is to be saved. `last` is
   /// then set to now.
   virtual bool is_due(double& last) = 0;
@@ -111,6 +113,10 @@ class Part {
   }
   void drop() { kept_.pop_back(); }
 
+  /// Whether it is in a stage that is saved.
+  [[nodiscard]] bool is_kept() const { return numbers_ && store_.writes(); }
+  /// Saves the part, which is kept. Returns why that did not work.
+  std::string save_now() { return save(world_, type_); }
   /// Saves the part, if it is in a stage and it is time to. Returns why that did not work.
   std::string save_if_due() { return numbers_ && store_.is_on() && store_.is_due(last_) ? save(world_, type_) : ""; }
   /// The part is done. Its world, if another part starts from it, is saved; or restored, if the part was done before.

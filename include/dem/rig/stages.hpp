@@ -24,13 +24,25 @@ struct Stopped : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+namespace detail {
+
+/// Stages that this thread is in and that are saved when Ctrl-C comes: they end at their next update(), where they can
+/// be gone on with, and not after the step that is under way.
+inline thread_local int kept_stages = 0;
+
+}  // namespace detail
+
 /// A stage that was entered, until this goes: whether it is to be run.
 class EnteredStage {
  public:
-  EnteredStage(Part* part, Part::Entry entry) : part_(part), entry_(entry) {}
+  EnteredStage(Part* part, Part::Entry entry)
+      : part_(part), entry_(entry), is_kept_(part != nullptr && *this && part->is_kept()) {
+    if (is_kept_) ++detail::kept_stages;
+  }
   EnteredStage(const EnteredStage&) = delete;
   EnteredStage& operator=(const EnteredStage&) = delete;
   ~EnteredStage() {
+    if (is_kept_) --detail::kept_stages;
     if (part_ != nullptr && entry_ != Part::Entry::skip) part_->leave();
   }
   /// False: it was done before the run was stopped that is gone on with.
@@ -41,6 +53,7 @@ class EnteredStage {
  private:
   Part* part_;
   Part::Entry entry_;
+  bool is_kept_;
 };
 
 /// Something that is kept with a part, until this goes.
@@ -137,9 +150,12 @@ class Stages {
   [[nodiscard]] Part* part() const { return part_; }
 
  protected:
-  /// To be called by update().
+  /// To be called by update(). After Ctrl-C the part is saved whether it is due or not, and Interrupted is thrown.
   void save_if_due() {
-    if (part_ != nullptr) warn(part_->save_if_due());
+    if (part_ == nullptr) return;
+    const bool ends = io::interrupted() && part_->is_kept();
+    warn(ends ? part_->save_now() : part_->save_if_due());
+    if (ends) throw Interrupted{};
   }
 
  private:
@@ -164,20 +180,21 @@ void work_and_save(Work&& work, Save&& save) {
 
 /// Runs a world for a time (s), rounded to whole steps, at least one, calling `before_step()` before each. Throws
 /// Stopped with the report of a step that shows a problem, and Interrupted after the step in which Ctrl-C or SIGTERM
-/// came, if a guard watches for it.
+/// came, if a guard watches for it and the stage is not one that is saved at its next update().
 template <class World, class BeforeStep>
 void run(World& world, double duration, BeforeStep&& before_step) {
   world.prepare();
   const double steps = std::max(1.0, std::round(duration / world.time_step()));
   require_within(steps, 1.0, 0x1.0p53, "number of steps of a stage");
+  const auto ends_at_once = [] { return io::interrupted() && detail::kept_stages == 0; };
   before_step();
   const auto report = world.run(static_cast<std::uint64_t>(steps), [&, left = steps]() mutable {
-    if (io::interrupted()) return false;
+    if (ends_at_once()) return false;
     if (--left > 0.0) before_step();
     return true;
   });
   if (!report) throw Stopped(report.text);
-  if (io::interrupted()) throw Interrupted{};
+  if (ends_at_once()) throw Interrupted{};
 }
 /// The same without anything between the steps.
 template <class World>
