@@ -182,7 +182,7 @@ class Blade : public rig::Rig {
   bool report(rig::Report& report) const override {
     report.part("blade.csv",
                 [&] { rig::save_samples<Sample>(report.folder() / "blade.csv", found.samples, columns, 0); });
-    double push = 0.0, soil = 0.0, count = 0.0;
+    double push = 0.0, soil = 0.0, count = 1e-300;  // of a run that was stopped before
     for (const Sample& s : found.samples) {
       if (s.travel < 0.3 * travel) continue;  // until there the forces rise
       push += s.push;

@@ -21,8 +21,12 @@ jobs=${JOBS:-$(nproc)}
 drive() {
   local name=$1
   shift
-  [ -s "$name/results.csv" ] || "$car" "$@" --threads 1 --no-vtk --no-replay --output "$name" > "$name.log" 2>&1 ||
+  [ ! -e "$name/done" ] || return 0
+  if "$car" "$@" --threads 1 --no-vtk --no-replay --output "$name" > "$name.log" 2>&1; then
+    touch "$name/done"
+  else
     echo "$name did not end well: see $PWD/$name.log" >&2
+  fi
 }
 export -f drive
 export car
@@ -36,13 +40,13 @@ options_of() {
 }
 # The first slope of each soil makes its bed, and all others start from it.
 for density in $densities; do
-  echo "density_${density}_slope_$first $(options_of "$density" "$first") $*"
+  echo "density_${density}_slope_$first" $(options_of "$density" "$first") "$@"
 done | xargs -P "$jobs" -L 1 bash -c 'drive "$@"' drive
 for density in $densities; do
   for slope in $slopes; do
     bed=density_${density}_slope_$first/bed.txt
     [ "$slope" = "$first" ] || [ ! -s "$bed" ] ||
-      echo "density_${density}_slope_$slope $(options_of 0 "$slope") --bed-file $bed $*"
+      echo "density_${density}_slope_$slope" $(options_of 0 "$slope") --bed-file "$bed" "$@"
   done
 done | xargs -r -P "$jobs" -L 1 bash -c 'drive "$@"' drive
 
@@ -50,10 +54,12 @@ echo "density  slope [%]  ended       way [m]  speed [m/s]  slip   of the weight
 for density in $densities; do
   for slope in $slopes; do
     csv=density_${density}_slope_$slope/results.csv
-    [ -s "$csv" ] || continue
+    [ -e "${csv%results.csv}done" ] || continue
     awk -F, -v d="$density" -v s="$slope" '
+      function cell(name, scale, digits) { return $at[name] == "" ? "-" : sprintf("%.*f", digits, scale * $at[name]) }
       NR == 1 { for (k = 1; k <= NF; ++k) at[$k] = k }
-      NR == 2 { printf "%-7s  %-9s  %-10s  %7.2f  %11.2f  %5.2f  %13.3f  %13.1f\n", d, s, $at["ended"], $at["way_m"],
-                       $at["speed_m_per_s"], $at["slip"], $at["resistance_N"] / $at["weight_N"], 1e-3 * $at["energy_per_metre_J_per_m"] }' "$csv"
+      NR == 2 { printf "%-7s  %-9s  %-10s  %7s  %11s  %5s  %13s  %13s\n", d, s, $at["ended"], cell("way_m", 1, 2),
+                       cell("speed_m_per_s", 1, 2), cell("slip", 1, 2), cell("resistance_N", 1 / $at["weight_N"], 3),
+                       cell("energy_per_metre_J_per_m", 1e-3, 1) }' "$csv"
   done
 done

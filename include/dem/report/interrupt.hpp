@@ -37,7 +37,8 @@ inline void on_interrupt(int signal) {
   ignore.sa_handler = SIG_IGN;
   ::sigemptyset(&ignore.sa_mask);
   ::sigaction(SIGPIPE, &ignore, &before);  // nobody may be left to read this
-  static constexpr std::string_view kText = "\ninterrupted: stopping after this step (again: quit at once)\n";
+  static constexpr std::string_view kText =
+      "\ninterrupted: stopping after this step, or where the run can be saved (again: quit at once)\n";
   [[maybe_unused]] const auto written = ::write(STDERR_FILENO, kText.data(), kText.size());
   ::sigaction(SIGPIPE, &before, nullptr);
   errno = saved_errno;

@@ -39,8 +39,8 @@ inline void add_checkpoint_options(Options& options, CheckpointOptions& o) {
   options.group("Stop and go on");
   options
       .add("--checkpoint-every", o.every,
-           "keep what the run can go on from, in the output folder, each time that so much wall time has gone by [s]; "
-           "0: never")
+           "keep what the run can go on from, in the output folder, each time that so much wall time has gone by [s], "
+           "and at Ctrl-C; 0: never")
       .of_this_run();
   options
       .flag("--resume", o.resume,

@@ -70,8 +70,9 @@ class Session final : public Stages {
 
   /// The check of the start is over: `stages` will follow. Results of an earlier run in the folder go, and it is said
   /// which; `also` is what else will be replaced later. A run that goes on leaves them. The settings file is written.
-  /// From here on Ctrl-C and SIGTERM end the run after the present step. Throws Error, and leaves earlier results as
-  /// they are, if the folder cannot be written to, another process runs in it, or the run in it cannot go on.
+  /// From here on Ctrl-C and SIGTERM end the run after the present step, or at the next update() of a stage that is
+  /// kept. Throws Error, and leaves earlier results as they are, if the folder cannot be written to, another process
+  /// runs in it, or the run in it cannot go on.
   void begin_run(int stages, const std::string& also = {}) {
     lock();
     if (parts_.resumes()) {

@@ -19,9 +19,10 @@ class SharedStages {
   /// `of` runs share `stages`, whose stage has begun with the total `of`: each is done when it has told 1.
   SharedStages(Stages& stages, std::size_t of) : stages_(stages), done_(of, 0.0) {}
 
-  /// So much, from 0 to 1, of a run is done. Throws Interrupted when another run has failed.
+  /// So much, from 0 to 1, of a run is done. Throws Interrupted when another run has failed; not when all are asked to
+  /// stop, as each is then to save itself first.
   void update(std::size_t run, double done, std::string_view status) {
-    if (has_failed) throw Interrupted{};
+    if (has_failed && !io::interrupted()) throw Interrupted{};
     const std::lock_guard lock(mutex_);
     done_[run] = done;
     double sum = 0.0;

@@ -53,6 +53,10 @@ class SoftLane {
   [[nodiscard]] static double time_step(const Bed<Model>& bed) {
     return soft_lane::interval / std::ceil(soft_lane::interval / bed.world.time_step() * (1.0 - 1e-9));
   }
+  /// m, of a lane of these grains of a bed: that of the hard ground, if there is any.
+  [[nodiscard]] double level(const Bed<Model>& bed, std::span<const soil::Placement> grains) const {
+    return settings_.scene == "step" ? soft_lane::level_of(settings_, grains) : bed.level;
+  }
   /// Makes the lane of a bed, sets the car down on it until the crane carries less than 5 % of it for 30 ms, takes the
   /// crane off, and lets the car stand on its brakes for 0.2 s. Throws Stopped if that takes longer than twice the
   /// stage limit.
@@ -63,11 +67,12 @@ class SoftLane {
   /// The same with look(stand) every ten milliseconds.
   template <class Look>
   [[nodiscard]] Stand set_down(const Bed<Model>& bed, Stages& stages, Look&& look) const {
-    return set_down(soft_lane::lane_grains(settings_, soil::placements(bed.world)), bed.level, {}, time_step(bed),
-                    stages, look);
+    const auto grains = soft_lane::lane_grains(settings_, soil::placements(bed.world));
+    return set_down(grains, level(bed, grains), {}, time_step(bed), stages, look);
   }
   /// The same on grains as they lie in the lane, e.g. with the ruts of an earlier pass; `level` (m) is that of the
-  /// untouched lane, whose grains are `before`: if they are none, these ones are, once they have settled.
+  /// bed, and of hard ground. `before` are the grains before the first pass: if they are none, these ones are, once
+  /// they have settled, and their level is that of the lane.
   template <class Look>
   [[nodiscard]] Stand set_down(std::span<const soil::Placement> grains, double level,
                                std::vector<soil::Placement> before, double dt, Stages& stages, Look&& look) const {
@@ -75,10 +80,7 @@ class SoftLane {
     Stand stand{.world = soft_lane::make_lane<Model>(s, shape_, grains, level, dt),
                 .level = level,
                 .before = std::move(before)};
-    if (s.scene == "step") {
-      const double hard = stand.before.empty() ? soft_lane::level_of(s, grains) : level;
-      stand.hard = soft_lane::add_hard_ground(stand.world, s, hard);
-    }
+    if (s.scene == "step") stand.hard = soft_lane::add_hard_ground(stand.world, s, level);
     stages.begin("settle lane");
     const auto kept = stages.keep("lane", stand);
     settle(stand.world, s.grains.edge(), s.bed.stage_limit, "--stage-limit", stages, [] { return 0.0; });

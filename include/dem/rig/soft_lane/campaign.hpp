@@ -60,6 +60,7 @@ void run_campaign(const Settings& settings, ShapeOf&& shape_of, Campaign& c, Ses
 
   report::Replay* replay = c.replay ? &*c.replay : nullptr;
   c.lane = lane_grains(s, soil::placements(bed.world));
+  const double level = test.level(bed, c.lane);
   for (int k = 1; k <= s.passes; ++k) {
     PartOf<Model> part(session, session, k == 1 ? "drive" : text("drive {}", k));
     const auto found = session.keep("found", c), series = session.keep("frames", frames),
@@ -69,12 +70,14 @@ void run_campaign(const Settings& settings, ShapeOf&& shape_of, Campaign& c, Ses
       continue;
     }
     const std::vector<soil::Placement> lane = c.lane;
-    const double level = k == 1 ? bed.level : c.level;
     auto stand = test.set_down(lane, level, c.untouched, test.time_step(bed), session, [](const auto&) {});
+    if (k > 1) stand.level = c.level;
     const auto drive = [&] {
       if (k == 1) test.drive(stand, c, session, look);
       else test.drive(stand, c, session, [](const auto&) {});
-      if (k == s.passes) session.complete(stand.world);
+      if (k < s.passes) return;
+      const auto lane_too = session.keep("lane", stand);
+      session.complete(stand.world);
     };
     work_and_save(drive, [&] {
       look_back(stand, s, c);
@@ -83,10 +86,14 @@ void run_campaign(const Settings& settings, ShapeOf&& shape_of, Campaign& c, Ses
     });
     c.passes.push_back({c.means, c.rut_depth, c.samples.back().way, c.ended});
     session.finish(text("{} after {:.2f} m", c.ended, c.samples.back().way));
-    if (k == s.passes || c.ended != ending::arrived) break;
+    if (k == s.passes) break;
+    if (c.ended != ending::arrived) {
+      session.message(text("pass {} of {} did not arrive: there are no more", k, s.passes));
+      break;
+    }
     // The next one starts where this one did, on the grains as they lie now.
     c.lane = soil::placements(stand.world), c.untouched = stand.before;
-    c.samples.clear(), c.ended.clear(), c.has_stood = false;
+    c.forget_drive();
     session.complete();
   }
 }

@@ -53,7 +53,9 @@ std::array<SpeciesId, 2> add_soils(World<Model>& world, const Settings& s, const
     ContactParameters<Model> c = grain_contact<Model>(s.grains, friction);
     const double weight = 9.81 * s.grains.density * shape.volume();
     if constexpr (requires { c.cohesion.force; }) {
-      c.cohesion = {.force = cohesion * weight, .depth = 1e-3 * s.grains.edge()};
+      // It comes on over a depth in which it does not make the contact much stiffer.
+      const double force = cohesion * weight, most = 0.1 * s.grains.scale() * s.grains.stiffness;
+      c.cohesion = {.force = force, .depth = std::max(1e-3 * s.grains.edge(), force / most)};
     } else if (cohesion > 0.0) {
       fail("--second-cohesion is {:g}, but the grains of this model have no cohesion; it must be 0", cohesion);
     }

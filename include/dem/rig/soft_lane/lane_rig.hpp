@@ -123,7 +123,6 @@ class LaneRig : public Rig {
                              "grains",
                              "grains_lost",
                              "computing_s_per_s"});
-    const auto cell = [](double value) { return std::isfinite(value) ? text("{}", value) : std::string(); };
     const bool any = !c.samples.empty();
     csv.row(s.scene, s.slope_angle() != 0.0 ? s.slope : 0.0, c.ended, cell(any ? c.samples.back().way : not_known),
             cell(any ? c.samples.back().car.time : not_known), cell(m.speed), cell(m.slip), cell(m.sinkage),
@@ -134,9 +133,11 @@ class LaneRig : public Rig {
     csv.flush();
   }
 
+  static std::string cell(double value) { return std::isfinite(value) ? text("{}", value) : std::string(); }
+
   void write_pulls(const std::filesystem::path& path) const {
     io::CsvWriter csv(path, {"slip", "pull_N", "torque_Nm", "sinkage_m", "efficiency"});
-    for (const PullPoint& p : campaign.pulls) csv.row(p.slip, p.pull, p.torque, p.sinkage, p.efficiency);
+    for (const PullPoint& p : campaign.pulls) csv.row(p.slip, p.pull, p.torque, p.sinkage, cell(p.efficiency));
     csv.flush();
   }
 

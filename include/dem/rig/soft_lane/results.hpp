@@ -146,6 +146,18 @@ struct Campaign {
   double radius = not_known, ackermann = not_known;          ///< m, of a turn: as driven, as the wheels point
   double deepest = not_known;                                ///< overlap, as a share of a grain's edge
 
+  /// Before the next pass.
+  void forget_drive() {
+    samples.clear(), ended.clear(), has_stood = false, section.clear();
+    before = after = {};
+    forget_evaluation();
+  }
+  void forget_evaluation() {
+    means = {}, stretches = {}, rut_depth = {not_known, not_known}, rut_width = not_known, drift = not_known;
+    brake_way = deceleration = radius = ackermann = deepest = not_known;
+    pulls.clear();
+  }
+
   /// What a run that goes on takes over.
   template <class V>
   void fields(V& v) {
@@ -219,10 +231,10 @@ inline void evaluate_pulls(Campaign& c, const Settings& s) {
       const double slip = held_slip(s, x.car.time);
       if (x.car.time < held_start || slip < low || slip >= low + 0.1) continue;
       n += 1.0;
-      const double torque = 4.0 * x.mean(&WheelSample::torque);
       way += x.car.speed, rims += s.car.tyre.radius * x.mean(&WheelSample::spin);
-      p.pull += x.hitch, p.torque += torque, p.sinkage += x.mean(&WheelSample::sinkage);
-      work += x.hitch * x.car.speed, spent += torque * x.mean(&WheelSample::spin);
+      p.pull += x.hitch, p.torque += 4.0 * x.mean(&WheelSample::torque), p.sinkage += x.mean(&WheelSample::sinkage);
+      work += x.hitch * x.car.speed;
+      for (const WheelSample& w : x.wheels) spent += w.torque * w.spin;
     }
     if (n < 5.0) continue;
     for (double* mean : {&p.pull, &p.torque, &p.sinkage}) *mean /= n;
@@ -235,6 +247,7 @@ inline void evaluate_pulls(Campaign& c, const Settings& s) {
 /// Fills in what follows from the samples.
 inline void evaluate(Campaign& c, const Settings& s) {
   const double radius = s.car.tyre.radius;
+  c.forget_evaluation();
   double width = 0.0;
   for (std::size_t k = 0; k < 2; ++k) {
     const double middle = (k == 0 ? 0.5 : -0.5) * s.car.track();

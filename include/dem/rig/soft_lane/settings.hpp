@@ -103,7 +103,8 @@ inline void declare(Options& options, Settings& s) {
   add("--spin-limit", s.spin_limit,
       "the driver eases off the throttle where rims are faster than the car by this [m/s]");
   add("--path", s.path, "that the car drives [m]; 0: as far as the lane goes");
-  add("--passes", s.passes, "drives, each from the start in the ruts of those before");
+  add("--passes", s.passes,
+      "drives, each from the start in the ruts of those before; telemetry is of the last, pictures of the first");
   add("--steer", s.steer_deg, "of the front wheels in a turn, to the left [deg]");
   add("--steer-rate", s.steer_deg_per_s, "at which they turn there [deg/s]");
   add("--set-down-speed", s.set_down_speed, "of the crane that sets the car down [m/s]");
@@ -206,6 +207,10 @@ inline void resolve(Settings& s) {
   }
   require_within(s.slope, -100.0, 100.0, "--slope (percent)");
   require_within(s.tyre_pressure, 0.0, 1e6, "--tyre-pressure (Pa)");
+  if (s.tyre == "ring" && !(s.machine_step <= s.ring().stable_time_step())) {
+    fail("--machine-step is {:g} s, but the belts of ring tyres bear {:.2g} s at most", s.machine_step,
+         s.ring().stable_time_step());
+  }
   require_positive(s.tread_stiffness, "--tread-stiffness", "N/m");
   require_non_negative(s.second_friction, "--second-friction", "(no unit)");
   require_within(s.second_cohesion, 0.0, 100.0, "--second-cohesion (weights of a grain)");
@@ -245,12 +250,14 @@ inline void resolve(Settings& s) {
 inline NamesAndValues list_settings(const Settings& s) {
   const bool sloped = s.slope_angle() != 0.0;
   NamesAndValues list{{"size", s.size}, {"scene", s.scene + (sloped ? text(" of {:g} %", s.slope) : "")}};
-  list.insert(list.end(), {{"speed", text("{:g} m/s, reached at {:g} m/s²", s.speed, s.acceleration)},
-                           {"path", text("{:.2f} m", s.path)},
-                           {"engine", s.engine},
-                           {"tyre", s.tyre + text(", {:g} m x {:g} m, friction on grains {:g}", 2.0 * s.car.tyre.radius,
-                                                  s.car.tyre.width, s.tyre_friction)},
-                           {"lane", s.is_bed() ? "one bed under the car" : "two troughs, one under each track"}});
+  list.insert(list.end(),
+              {{"speed", s.scene == "drawbar" ? text("{:g} m/s, of the rims", s.speed)
+                                              : text("{:g} m/s, reached at {:g} m/s²", s.speed, s.acceleration)},
+               {"path", text("{:.2f} m", s.path)},
+               {"engine", s.engine},
+               {"tyre", s.tyre + text(", {:g} m x {:g} m, friction on grains {:g}", 2.0 * s.car.tyre.radius,
+                                      s.car.tyre.width, s.tyre_friction)},
+               {"lane", s.is_bed() ? "one bed under the car" : "two troughs, one under each track"}});
   if (s.tyre == "ring") list.push_back({"tyre pressure", text("{:g} bar", 1e-5 * s.tyre_pressure)});
   if (s.scene == "step") list.push_back({"hard ground", text("to {:g} m before the front wheels", s.border)});
   if (s.scene == "soils") {

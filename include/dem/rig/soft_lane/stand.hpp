@@ -141,7 +141,9 @@ void add_car(Stand<Model>& stand, const Settings& s) {
   stand.world.set_contact("grain", "tyre", on_tyre);
   if (s.scene == "soils") stand.world.set_contact(second_grain, "tyre", on_tyre);
   if (stand.hard) {
-    const double k = car.tyre.stiffness, c = car.tyre.damping;  // of a rigid tyre the points are one whole contact
+    // Points of one body are one whole contact. Segments of a ring bear less damping, and a ring has its own.
+    const double k = car.tyre.stiffness, segment = s.ring().mass / s.ring().segments;
+    const double c = s.tyre == "ring" ? 0.04 * std::sqrt(k * segment) : car.tyre.damping;
     stand.world.set_contact("tyre", hard_ground, {.normal = {k, c, 1.0}, .friction = {s.tyre_friction, k, c, 1.0}});
   }
   for (std::size_t corner = 0; corner < 4; ++corner) add_tyre(stand, s, in, corner);

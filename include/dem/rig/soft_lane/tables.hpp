@@ -101,7 +101,9 @@ inline io::Table cost_table(const Settings& s, const Campaign& c) {
   }
   double widest = 0.0, asleep = 0.0;
   for (const Sample& x : c.samples) widest = std::max(widest, x.widest_joint), asleep += x.asleep;
-  t.row("overlap of grains under the tyres at rest, mean", number(100.0 * c.overlap.mean), "% of the edge");
+  const bool is_on_grains = std::isfinite(c.deep_share);
+  t.row("overlap of grains under the tyres at rest, mean", number(is_on_grains ? 100.0 * c.overlap.mean : not_known),
+        "% of the edge");
   t.row("of these contacts, deeper than 2 % of the edge", number(100.0 * c.deep_share, "{:.0f}"), "%");
   t.row("deepest overlap of any grain while driving", number(100.0 * c.deepest), "% of the edge");
   t.row("overlap under a tyre, as estimated for these grains", number(100.0 * s.overlap(c.weight)), "% of the edge");
