@@ -141,9 +141,10 @@ void add_car(Stand<Model>& stand, const Settings& s) {
   stand.world.set_contact("grain", "tyre", on_tyre);
   if (s.scene == "soils") stand.world.set_contact(second_grain, "tyre", on_tyre);
   if (stand.hard) {
-    // Points of one body are one whole contact. Segments of a ring bear less damping, and a ring has its own.
-    const double k = car.tyre.stiffness, segment = s.ring().mass / s.ring().segments;
-    const double c = s.tyre == "ring" ? 0.04 * std::sqrt(k * segment) : car.tyre.damping;
+    // Points of one body are one whole contact. A ring has its own stiffness; its light segments bear half as much.
+    const bool is_ring = s.tyre == "ring";
+    const double k = (is_ring ? 0.5 : 1.0) * car.tyre.stiffness, segment = s.ring().mass / s.ring().segments;
+    const double c = is_ring ? 0.04 * std::sqrt(k * segment) : car.tyre.damping;
     stand.world.set_contact("tyre", hard_ground, {.normal = {k, c, 1.0}, .friction = {s.tyre_friction, k, c, 1.0}});
   }
   for (std::size_t corner = 0; corner < 4; ++corner) add_tyre(stand, s, in, corner);
