@@ -133,6 +133,19 @@ TEST_CASE("a car that rolls over, digs in, slides back or leaves the lane ends i
   };
   CHECK(stuck(1.0, 3.0) == "");
   CHECK(stuck(1.0, 5.0) == soft_lane::ending::dug_in);
+  // A car that brakes and rocks on its tyres, with wheels that seem to slip, has stopped.
+  s.scene = "brake";
+  soft_lane::Judge judge(s);
+  std::string found;
+  for (double t = 0.01; found.empty() && t < 8.0; t += 0.01) {
+    auto x = driving(t);
+    x.way = 0.5 * s.path + std::min(0.1 * t, 0.2);
+    x.car.speed = 0.1 * std::cos(8.0 * t);
+    for (auto& w : x.wheels) w.slip = 0.9;
+    found = judge(x, wheels);
+  }
+  CHECK(found == soft_lane::ending::stopped);
+  s.scene = "level";
   auto beside = wheels;
   beside[1] -= Vec3(0, 0.5, 0);
   CHECK(soft_lane::Judge(s)(driving(0.1), beside) == soft_lane::ending::left_lane);
