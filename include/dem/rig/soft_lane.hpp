@@ -118,7 +118,7 @@ class SoftLane {
     const auto stage = stages.enter(world, n);
     const double began = io::steady_seconds() - n.computed;
     while (stage && result.ended.empty()) {
-      const auto now = n.driver(world.machine(), stand.car, world.time() - n.start, n.way, soft_lane::interval);
+      const auto now = n.driver(world.machine(), stand.car, world.time() - n.start, n.way);
       soft_lane::pull(stand, s, world.time() - n.start);
       soft_lane::advance(stand, now, s.scene == "turn" ? steer_rate : 0.5);
       n.way = soft_lane::place_of(stand) - n.from;

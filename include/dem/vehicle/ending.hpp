@@ -10,6 +10,7 @@ inline constexpr const char* rolled_over = "rolled over";  ///< roll or pitch be
 inline constexpr const char* left_lane = "left the lane";  ///< a wheel's middle is beyond the side of its ground
 inline constexpr const char* slid_back = "slid back";      ///< 0.3 m behind the start
 inline constexpr const char* too_slow = "too slow";        ///< not there in four times the path's time and 3 s
-inline constexpr const char* held = "held";                ///< by a load cell, over all slips that were asked for
+inline constexpr const char* inputs_ended = "inputs ended";  ///< the last row of a table of inputs was driven
+inline constexpr const char* held = "held";                  ///< by a load cell, over all slips that were asked for
 
 }  // namespace dem::vehicle::ending

@@ -2,6 +2,7 @@
 #include "files.hpp"
 
 #include <dem/io/csv.hpp>
+#include <dem/io/csv_table.hpp>
 
 #include <cmath>
 #include <csignal>
@@ -79,6 +80,35 @@ TEST_CASE("csv rows are on disk while the writer still lives") {
   CHECK(read_file(folder / "a.csv") == "a\n1\n");
   const CsvWriter header_only(folder / "b.csv", {"b"});
   CHECK(read_file(folder / "b.csv") == "b\n");
+}
+
+TEST_CASE("a table of numbers is read back as it was written, and one that is none is refused with the line") {
+  const TempFolder folder;
+  {
+    CsvWriter csv(folder / "t.csv", {"time_s", "force_N"});
+    csv.row(0.1, -1.0 / 3.0);
+    csv.row(1e-300, std::numeric_limits<double>::infinity());
+  }
+  const auto table = dem::io::read_csv(folder / "t.csv");
+  REQUIRE(table.rows.size() == 2);
+  CHECK(table.column("force_N") == 1);
+  CHECK(table.rows[0][1] == -1.0 / 3.0);
+  CHECK(table.rows[1] == std::vector{1e-300, std::numeric_limits<double>::infinity()});
+  const auto read = [&](const char* text) {
+    dem::io::write_file(folder / "bad.csv", text);
+    return dem::io::read_csv(folder / "bad.csv");
+  };
+  // Spaces, a plus, line ends of Windows and empty lines, as tables of other programs have them.
+  const auto other = read(" a , b\r\n\r\n +1 ,\t2\r\n");
+  CHECK(other.columns == std::vector<std::string>{"a", "b"});
+  CHECK(other.rows == std::vector<std::vector<double>>{{1.0, 2.0}});
+  CHECK(read("").rows.empty());
+  using Catch::Matchers::ContainsSubstring;
+  CHECK_THROWS_WITH(other.column("c"), ContainsSubstring("has no column 'c', but has a, b"));
+  CHECK_THROWS_WITH(read("a,b\n\n1,x\n"), ContainsSubstring("line 3, column b: 'x' is no number"));
+  CHECK_THROWS_WITH(read("a,b\n1,\n"), ContainsSubstring("'' is no number"));
+  CHECK_THROWS_WITH(read("a,b\n1\n"), ContainsSubstring("line 2: 1 numbers, but there are 2 columns"));
+  CHECK_THROWS_WITH(read("a\n1,2\n"), ContainsSubstring("line 2: 2 numbers, but there are 1 columns"));
 }
 
 TEST_CASE("csv mistakes are told") {

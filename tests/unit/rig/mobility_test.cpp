@@ -1,4 +1,5 @@
 #include <dem/rig/mobility/cases.hpp>
+#include <dem/rig/mobility/drive.hpp>
 #include <dem/rig/mobility/tables.hpp>
 
 #include <cmath>
@@ -50,6 +51,18 @@ TEST_CASE("a lane of stretches is as long as they are, and one that cannot be re
   longer.lane = "hard:3";
   longer.path = 4.0;
   CHECK_THROWS_WITH(mobility::resolve(longer, nullptr), ContainsSubstring("longer than the --lane of 3 m"));
+}
+
+TEST_CASE("a drive by inputs ends with its last row, and one by a driver knows no such end") {
+  mobility::Settings s = resolved_study("drive", "hard:3");
+  const dem::vehicle::ColumnCar car(mobility::car_of(s, mobility::cases_of(s)[0]));
+  mobility::Sample x;
+  x.car.time = 2.0, x.way = 1.0;
+  CHECK(mobility::Judge(s)(x, car).empty());
+  s.open_loop = dem::vehicle::OpenLoop({{0.0, 0.2, 0, 0}, {2.0, 0.2, 0, 0}});
+  CHECK(mobility::Judge(s)(x, car) == ending::inputs_ended);
+  x.car.time = 1.99;
+  CHECK(mobility::Judge(s)(x, car).empty());
 }
 
 TEST_CASE("means of a drive are those of its second half, and resistance is the thrust that does not pull") {

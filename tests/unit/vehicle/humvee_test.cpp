@@ -5,6 +5,7 @@
 
 #include <dem/mbd/mbd.hpp>
 #include <dem/vehicle/humvee.hpp>
+#include <dem/vehicle/open_loop.hpp>
 
 #include <cmath>
 #include <limits>
@@ -246,4 +247,25 @@ TEST_CASE("a motor's governor takes the throttle back between two speeds of the 
   CHECK_NOTHROW(c.check());
   c.ease_from = Controls::no_limit;
   CHECK_THAT(message_of([&] { c.check(); }), Contains("give both ease_from and ease_to"));
+}
+
+TEST_CASE("inputs of a driver are straight lines between their rows, held outside, and may step") {
+  const OpenLoop inputs({{1.0, 0.0, 1.0, 0.0}, {2.0, 1.0, 0.0, 0.2}, {2.0, 0.5, 0.0, -0.2}, {4.0, 0.5, 0.5, 0.0}});
+  CHECK(inputs.end() == 4.0);
+  CHECK(inputs(0.0).brake == 1.0);
+  CHECK(inputs(1.25).throttle == Approx(0.25));
+  CHECK(inputs(1.25).steer == Approx(0.05));
+  CHECK(inputs(2.0 - 1e-12).throttle == Approx(1.0));
+  CHECK(inputs(2.0).throttle == 0.5);
+  CHECK(inputs(2.0).steer == -0.2);
+  CHECK(inputs(3.0).brake == Approx(0.25));
+  CHECK(inputs(9.0).brake == 0.5);
+  CHECK(OpenLoop({{0.0, 0.3, 0.0, 0.0}})(7.0).throttle == 0.3);
+  const auto refused = [](std::vector<OpenLoop::Row> rows) { return message_of([&] { OpenLoop(std::move(rows)); }); };
+  CHECK_THAT(refused({}), Contains("have no rows"));
+  CHECK_THAT(refused({{1.0, 0, 0, 0}, {0.5, 0, 0, 0}}), Contains("the time 0.5 s after 1 s"));
+  CHECK_THAT(refused({{0.0, 1.5, 0, 0}}), Contains("row 1 of a driver's inputs: its throttle must be from 0 to 1"));
+  CHECK_THAT(refused({{0.0, 0, -0.1, 0}}), Contains("its brake"));
+  CHECK_THAT(refused({{0.0, 0, 0, 12.0}}), Contains("0.8 rad"));
+  CHECK_THAT(refused({{std::nan(""), 0, 0, 0}}), Contains("its time is not finite"));
 }

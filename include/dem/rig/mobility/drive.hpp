@@ -3,6 +3,7 @@
 #include <dem/rig/mobility/settings.hpp>
 #include <dem/rig/stages.hpp>
 #include <dem/vehicle/ending.hpp>
+#include <dem/vehicle/lane_driver.hpp>
 
 #include <algorithm>
 #include <array>
@@ -118,48 +119,16 @@ inline vehicle::ColumnCarSpec car_of(const Settings& s, const Case& c) {
           .time_step = s.time_step};
 }
 
-/// Holds a speed by throttle and brakes, and the middle of the lane by steering. The throttle begins with what it takes
-/// to stand on the slope. The engine's governor takes it back where rims are faster than the car by more than the spin
-/// limit, to none at twice that.
-class Driver {
- public:
-  Driver(const Settings& s, const vehicle::ColumnCar& car) : settings_(s) {
-    const auto& d = car.spec().car.driveline;
-    const double largest = d.engine.torque.held_outside()(0.0) * d.engine.gears.front() * d.engine.transfer *
-                           d.front.ratio / car.spec().car.tyre.radius;
-    const double grade = car.spec().grade, force = car.weight * grade / std::sqrt(1.0 + grade * grade);
-    hold_ = {.gain = 0.5, .integral = 0.3};
-    hold_.sum = std::clamp(force / largest, -1.0, 1.0) / hold_.integral;
-    follow_.wheelbase = car.spec().car.wheelbase();
-    follow_.path = {Vec3(-100.0, 0, 0), Vec3(1000.0, 0, 0)};
-    follow_.preview = 4.0;
-    follow_.trim = 1.0;
-  }
-
-  /// `time` (s) since the start.
-  vehicle::Controls operator()(const vehicle::ColumnCar& car, double time) {
-    const double speed = car.speed();
-    vehicle::Controls c =
-        hold_(speed, std::min(settings_.speed, settings_.acceleration * time), vehicle::ColumnCar::interval);
-    c.ease_from = speed + settings_.spin_limit, c.ease_to = speed + 2.0 * settings_.spin_limit;
-    c.steer = steer(car);
-    return c;
-  }
-  /// Turns the rims with a speed (m/s), whatever the car does.
-  vehicle::Controls rims(const vehicle::ColumnCar& car, double wanted) {
-    return vehicle::turn_rims(steer(car), wanted);
-  }
-
- private:
-  double steer(const vehicle::ColumnCar& car) {
-    const Vec3 rear = vehicle::point_of(car.machine, car.car, Vec3(car.spec().car.rear.points.wheel.x(), 0, 0));
-    return follow_(rear, vehicle::forward_of(car.machine, car.car), car.speed());
-  }
-
-  const Settings& settings_;
-  vehicle::SpeedHold hold_;
-  vehicle::PathFollower follow_;
-};
+/// Who drives a car along the lane, to begin with as on its slope.
+inline vehicle::LaneDriver driver_of(const Settings& s, const vehicle::ColumnCar& car) {
+  const double grade = car.spec().grade;
+  return {car.spec().car,
+          {.speed = s.speed,
+           .acceleration = s.acceleration,
+           .spin_limit = s.spin_limit,
+           .interval = vehicle::ColumnCar::interval},
+          car.weight * grade / std::sqrt(1.0 + grade * grade)};
+}
 
 /// Sees how a drive ends. Asked after every sample.
 class Judge {
@@ -182,6 +151,7 @@ class Judge {
     slips_since_ = !slips ? -1.0 : slips_since_ < 0.0 ? x.car.time : slips_since_;
     if (slips && x.car.time - slips_since_ >= 2.0) return vehicle::ending::dug_in;
     if (x.way >= s.path) return vehicle::ending::arrived;
+    if (!s.open_loop.empty()) return x.car.time >= s.open_loop.end() ? vehicle::ending::inputs_ended : "";
     if (x.car.time > 4.0 * s.path / s.speed + 3.0) return vehicle::ending::too_slow;
     return {};
   }
@@ -264,7 +234,7 @@ Driven drive(const Settings& s, Case c, std::vector<double>& memory, Stages& sta
   const double clock = thread_seconds();
   car.set_down();
   r.weight = car.weight;
-  Driver driver(s, car);
+  vehicle::LaneDriver driver = driver_of(s, car);
   Judge judge(s);
   const double start = car.machine.time(), from = car.way(), radius = car.spec().car.tyre.radius;
   if (c.is_held) car.hitch() = {.on = true, .speed = s.speed};
@@ -272,8 +242,14 @@ Driven drive(const Settings& s, Case c, std::vector<double>& memory, Stages& sta
     const double time = car.machine.time() - start;
     // The sled takes the car along within the first seconds.
     if (c.is_held) car.hitch().speed = s.speed * std::min(1.0, 0.5 * time);
-    const auto now = c.is_held ? driver.rims(car, car.hitch().speed / (1.0 - slip_of_hold(time))) : driver(car, time);
-    car.advance(now);
+    const auto drive = [&] {
+      if (c.is_held) {
+        return vehicle::turn_rims(driver.steer(car.machine, car.car), car.hitch().speed / (1.0 - slip_of_hold(time)));
+      }
+      if (!s.open_loop.empty()) return driver.eased(s.open_loop(time), car.speed());
+      return driver(car.machine, car.car, time);
+    };
+    car.advance(drive());
     Sample x{.car = car.sample(), .way = car.way() - from, .hitch = car.hitch().force, .wheels = {}};
     x.car.time = time;
     for (std::size_t k = 0; k < 4; ++k) x.wheels[k] = car.wheel(k);

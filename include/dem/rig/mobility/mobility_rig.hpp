@@ -81,7 +81,8 @@ class MobilityRig : public Rig {
             {"study", s.study},
             {"ground", campaign.cases.empty() || s.study == "loads" ? s.study : ground_of(campaign.cases[0])},
             {"engine", s.engine},
-            {"speed", text("{:g} m/s, reached at {:g} m/s²", s.speed, s.acceleration)},
+            {"speed", s.open_loop.empty() ? text("{:g} m/s, reached at {:g} m/s²", s.speed, s.acceleration)
+                                          : "by the inputs " + s.inputs},
             {"path", text("{:g} m", s.path)},
             {"tyres", s.tyre + (s.tyre == "ring" ? text(", {:g} kPa", 1e-3 * s.tyre_pressure) : "")},
             {"columns", text("{:g} mm, damping {:g} Pa s/m", 1e3 * s.spacing, s.damping)},

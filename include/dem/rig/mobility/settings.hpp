@@ -5,6 +5,7 @@
 #include <dem/terramechanics/named_soils.hpp>
 #include <dem/vehicle/column_car.hpp>
 #include <dem/vehicle/humvee.hpp>
+#include <dem/vehicle/open_loop.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -36,6 +37,8 @@ struct Settings {
   double speed = 0.0;            ///< m/s, that the driver holds; 0: by study
   double acceleration = 2.0;     ///< m/s^2, at which the driver reaches it
   double spin_limit = 2.0;       ///< m/s, by which rims are faster where the driver eases off the throttle
+  std::string inputs;            ///< CSV file that drives in place of the driver (vehicle/open_loop.hpp)
+  vehicle::OpenLoop open_loop;   ///< the same as a table; resolve() reads it from the file
   double path = 0.0;             ///< m; 0: by size
 
   double spacing = 0.05;    ///< m, of the columns
@@ -86,6 +89,8 @@ inline void declare(Options& options, Settings& s) {
   add("--acceleration", s.acceleration, "at which the driver reaches it [m/s^2]");
   add("--spin-limit", s.spin_limit,
       "the driver eases off the throttle where rims are faster than the car by this [m/s]");
+  add("--inputs", s.inputs,
+      "CSV file that drives in place of the driver: time_s, throttle, brake (0 to 1), steer_rad (to the left)");
   add("--path", s.path, "that the car drives [m]; 0: by size");
   add("--machine-step", s.time_step, "time step of the car [s]");
   options.group("Output");
@@ -104,7 +109,9 @@ inline void find_idle(IdleOptions& idle, const Settings& s) {
   idle.unless(s.soil_file.empty() || loads || !s.lane.empty(), "without --soil-file", {"--soil"});
   idle.unless(s.study == "drive", "with --study drive", {"--replay"});
   idle.unless(s.tyre == "ring", "with --tyre ring", {"--tyre-pressure"});
-  idle.unless(s.study != "drawbar", "with another study than drawbar", {"--path", "--spin-limit", "--acceleration"});
+  idle.unless(s.study != "drawbar", "with another study than drawbar",
+              {"--path", "--spin-limit", "--acceleration", "--inputs"});
+  idle.unless(s.inputs.empty(), "without --inputs", {"--speed", "--acceleration"});
 }
 
 namespace detail {
@@ -177,6 +184,7 @@ inline void resolve(Settings& s, ReadSoil* read_soil) {
   fill(s.path, room > 0.0 ? room : BySize<double>{.smoke = 4.0, .quick = 25.0, .full = 50.0}[size]);
   if (!s.lane.empty() && !(s.path <= room * (1.0 + 1e-9)))
     fail("a --path of {:g} m is longer than the --lane of {:g} m; give a longer last stretch", s.path, room);
+  if (!s.inputs.empty() && s.study != "drawbar") s.open_loop = vehicle::read_inputs(s.inputs);
   require_within(s.passes, 1, 20, "--passes");
   require_within(s.sprung_mass, 500.0, 2e4, "--sprung-mass (kg)");
   require_non_negative(s.tyre_friction, "--tyre-friction", "(no unit)");

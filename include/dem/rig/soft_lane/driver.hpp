@@ -1,6 +1,7 @@
 #pragma once
 
 #include <dem/rig/soft_lane/results.hpp>
+#include <dem/vehicle/lane_driver.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -8,58 +9,44 @@
 
 namespace dem::rig::soft_lane {
 
-/// Drives a scene: holds a speed by throttle and brakes and keeps to the middle of the lane, or brakes, coasts or turns
-/// after half of the path. The engine's governor takes back the throttle where the wheels spin: from the spin limit
-/// (mean of the rims less the car's speed) on, down to none at twice that. Asked every hundredth of a second.
+/// Drives a scene: along the lane, or by a table of inputs, or brakes, coasts or turns after half of the path. Asked
+/// every hundredth of a second.
 class Driver {
  public:
-  /// `force` (N) is what it takes to stand on the slope; the throttle begins with it, so that the car does not roll
-  /// back.
-  Driver(const Settings& s, double force) : settings_(s) {
-    hold_.gain = 0.5;
-    hold_.integral = 0.3;
-    const auto& d = s.car.driveline;
-    const double largest = d.engine.torque.held_outside()(0.0) * d.engine.gears.front() * d.engine.transfer *
-                           d.front.ratio / s.car.tyre.radius;
-    hold_.sum = std::clamp(force / largest, -1.0, 1.0) / hold_.integral;
-    follow_.wheelbase = s.car.wheelbase();
-    follow_.path = {Vec3(-s.bed.length, 0, 0), Vec3(s.bed.length + 20.0, 0, 0)};
-    follow_.preview = 4.0;
-    follow_.trim = 1.0;
-  }
+  /// `force` (N) is what it takes to stand on the slope.
+  Driver(const Settings& s, double force)
+      : settings_(s),
+        lane_(s.car,
+              {.speed = s.speed,
+               .acceleration = s.acceleration,
+               .spin_limit = s.spin_limit,
+               .interval = interval,
+               .from = Vec3(-s.bed.length, 0, 0),
+               .to = Vec3(s.bed.length + 20.0, 0, 0)},
+              force) {}
 
-  vehicle::Controls operator()(const mbd::Mechanism& m, const vehicle::Vehicle& v, double time, double way, double dt) {
+  /// `time` (s) and `way` (m) since the start.
+  vehicle::Controls operator()(const mbd::Mechanism& m, const vehicle::Vehicle& v, double time, double way) {
     const Settings& s = settings_;
-    const double speed = vehicle::speed_of(m, v);
     const bool is_beyond = way >= 0.5 * s.path;
+    if (!s.open_loop.empty()) return lane_.eased(s.open_loop(time), vehicle::speed_of(m, v));
     if (is_beyond && s.scene == "brake") has_braked_ = true;
     if (has_braked_) return {.brake = 1.0};
     if (is_beyond && s.scene == "coast") return {};
-    if (s.scene == "drawbar") return vehicle::turn_rims(steer(m, v, speed), held_rims(s, time));
-    vehicle::Controls c = hold_(speed, std::min(s.speed, s.acceleration * time), dt);
-    c.ease_from = speed + s.spin_limit, c.ease_to = speed + 2.0 * s.spin_limit;
-    if (s.scene == "turn") {
-      const double degrees = is_beyond || way > 0.15 * s.path ? s.steer_deg : 0.0;
-      c.steer = degrees * std::numbers::pi / 180.0;
-    } else {
-      c.steer = steer(m, v, speed);
-    }
+    if (s.scene == "drawbar") return vehicle::turn_rims(lane_.steer(m, v), held_rims(s, time));
+    if (s.scene != "turn") return lane_(m, v, time);
+    vehicle::Controls c = lane_.pedals(m, v, time);
+    c.steer = way > 0.15 * s.path ? s.steer_deg * std::numbers::pi / 180.0 : 0.0;
     return c;
   }
   template <class V>
   void fields(V& v) {
-    v("hold", hold_), v("follow", follow_), v("has_braked", has_braked_);
+    v("lane", lane_), v("has_braked", has_braked_);
   }
 
  private:
-  double steer(const mbd::Mechanism& m, const vehicle::Vehicle& v, double speed) {
-    const Vec3 rear = vehicle::point_of(m, v, Vec3(settings_.car.rear.points.wheel.x(), 0, 0));
-    return follow_(rear, vehicle::forward_of(m, v), speed);
-  }
-
   const Settings& settings_;
-  vehicle::SpeedHold hold_;
-  vehicle::PathFollower follow_;
+  vehicle::LaneDriver lane_;
   bool has_braked_ = false;
 };
 
@@ -93,6 +80,7 @@ class Judge {
     stands_since_ = !(slows && std::abs(x.car.speed) < 0.02) ? -1.0 : stands_since_ < 0.0 ? x.car.time : stands_since_;
     if (stands_since_ >= 0.0 && x.car.time - stands_since_ >= 0.2) return ending::stopped;
     if (x.way >= s.path) return ending::arrived;
+    if (!s.open_loop.empty()) return x.car.time >= s.open_loop.end() ? ending::inputs_ended : "";
     if (x.car.time > 4.0 * s.path / s.speed + 3.0) return ending::too_slow;
     return {};
   }

@@ -20,6 +20,8 @@ inline constexpr double not_known = std::numeric_limits<double>::quiet_NaN();
 
 using vehicle::WheelSample;
 
+inline constexpr double interval = 0.01;  ///< s, of samples and of the driver
+
 /// A row of telemetry. The time is that since the driver was told to go.
 struct Sample {
   vehicle::CarSample car;

@@ -2,6 +2,7 @@
 
 #include <dem/rig/bed/bed_settings.hpp>
 #include <dem/vehicle/humvee.hpp>
+#include <dem/vehicle/open_loop.hpp>
 #include <dem/vehicle/ring_tyre.hpp>
 
 #include <algorithm>
@@ -34,6 +35,8 @@ struct Settings {
   double speed = 0.0;            ///< m/s, that the driver holds; 0: by size
   double acceleration = 1.0;     ///< m/s^2, at which the driver reaches it
   double spin_limit = 1.0;       ///< m/s, by which rims are faster than the car where the driver eases off the throttle
+  std::string inputs;            ///< CSV file that drives in place of the driver (vehicle/open_loop.hpp)
+  vehicle::OpenLoop open_loop;   ///< the same as a table; resolve() reads it from the file
   double path = 0.0;             ///< m, that the car drives; 0: as far as the lane goes
   int passes = 1;                ///< drives, one after the other, each from the start in the ruts of those before
   double steer_deg = 12.0;       ///< of the front wheels in a turn
@@ -102,6 +105,8 @@ inline void declare(Options& options, Settings& s) {
   add("--acceleration", s.acceleration, "at which the driver reaches it [m/s^2]");
   add("--spin-limit", s.spin_limit,
       "the driver eases off the throttle where rims are faster than the car by this [m/s]");
+  add("--inputs", s.inputs,
+      "CSV file that drives in place of the driver: time_s, throttle, brake (0 to 1), steer_rad (to the left)");
   add("--path", s.path, "that the car drives [m]; 0: as far as the lane goes");
   add("--passes", s.passes,
       "drives, each from the start in the ruts of those before; telemetry is of the last, pictures of the first");
@@ -136,6 +141,7 @@ inline void find_idle(IdleOptions& idle, const Settings& s) {
               "with --scene level, slope, side-slope or step", {"--passes"});
   idle.unless(s.scene == "soils", "with --scene soils", {"--second-friction", "--second-cohesion", "--second-share"});
   idle.unless(s.scene != "drawbar", "without --scene drawbar", {"--acceleration", "--spin-limit"});
+  idle.unless(s.inputs.empty(), "without --inputs", {"--speed", "--acceleration"});
   idle.unless(s.scene == "slope" || s.scene == "side-slope", "with --scene slope or side-slope", {"--slope"});
   idle.unless(s.scene == "turn", "with --scene turn", {"--steer", "--steer-rate"});
 }
@@ -205,6 +211,12 @@ inline void resolve(Settings& s) {
   if (s.engine != "motor") {
     s.car = vehicle::humvee({.rubber_rear = false, .has_gears = true, .low_range = s.engine == "low-range"});
   }
+  if (!s.inputs.empty()) {
+    if (s.scene == "brake" || s.scene == "coast" || s.scene == "turn" || is_held) {
+      fail("--inputs drive in place of the driver, but --scene {} is what a driver does; give another scene", s.scene);
+    }
+    s.open_loop = vehicle::read_inputs(s.inputs);
+  }
   require_within(s.slope, -100.0, 100.0, "--slope (percent)");
   require_within(s.tyre_pressure, 0.0, 1e6, "--tyre-pressure (Pa)");
   if (s.tyre == "ring" && !(s.machine_step <= s.ring().stable_time_step())) {
@@ -251,8 +263,9 @@ inline NamesAndValues list_settings(const Settings& s) {
   const bool sloped = s.slope_angle() != 0.0;
   NamesAndValues list{{"size", s.size}, {"scene", s.scene + (sloped ? text(" of {:g} %", s.slope) : "")}};
   list.insert(list.end(),
-              {{"speed", s.scene == "drawbar" ? text("{:g} m/s, of the rims", s.speed)
-                                              : text("{:g} m/s, reached at {:g} m/s²", s.speed, s.acceleration)},
+              {{"speed", !s.open_loop.empty()   ? "by the inputs " + s.inputs
+                         : s.scene == "drawbar" ? text("{:g} m/s, of the rims", s.speed)
+                                                : text("{:g} m/s, reached at {:g} m/s²", s.speed, s.acceleration)},
                {"path", text("{:.2f} m", s.path)},
                {"engine", s.engine},
                {"tyre", s.tyre + text(", {:g} m x {:g} m, friction on grains {:g}", 2.0 * s.car.tyre.radius,

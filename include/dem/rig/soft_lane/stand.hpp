@@ -21,8 +21,6 @@
 
 namespace dem::rig::soft_lane {
 
-inline constexpr double interval = 0.01;  ///< s, of samples and of the driver
-
 /// A body of a tyre, and the sensor of what the ground does to it: the wheel itself, or a segment of a ring.
 struct TyrePart {
   BodyId body;

@@ -1,0 +1,90 @@
+#pragma once
+
+#include <dem/io/file.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <cstddef>
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace dem::io {
+
+/// A CSV file of numbers under a line of names, as CsvWriter makes it.
+struct CsvTable {
+  std::filesystem::path path;
+  std::vector<std::string> columns;
+  std::vector<std::vector<double>> rows;  ///< as many cells as there are columns
+  std::vector<std::size_t> lines;         ///< of the file, from 1, that the rows stand in
+
+  /// Index of the column of this name. Throws Error, with the names that there are.
+  [[nodiscard]] std::size_t column(std::string_view name) const {
+    const auto found = std::find(columns.begin(), columns.end(), name);
+    if (found == columns.end()) {
+      fail("'{}' has no column '{}', but has {}", path.string(), name, fmt::format("{}", fmt::join(columns, ", ")));
+    }
+    return static_cast<std::size_t>(found - columns.begin());
+  }
+};
+
+namespace detail {
+
+inline std::string_view without_spaces(std::string_view cell) {
+  constexpr std::string_view spaces = " \t\r";
+  const std::size_t first = cell.find_first_not_of(spaces);
+  return first == cell.npos ? std::string_view() : cell.substr(first, cell.find_last_not_of(spaces) - first + 1);
+}
+
+/// f(cell, index) for the cells of a line, without outer spaces.
+template <class F>
+void each_cell(std::string_view line, F&& f) {
+  for (std::size_t from = 0, index = 0; from <= line.size(); ++index) {
+    const std::size_t to = std::min(line.find(',', from), line.size());
+    f(without_spaces(line.substr(from, to - from)), index);
+    from = to + 1;
+  }
+}
+
+}  // namespace detail
+
+/// Reads a table of numbers. Cells are divided by commas; there are no quotes. Empty lines are passed over; "nan" and
+/// "inf" are numbers. Throws Error, with the line, for a cell that is no number and a row of another length.
+[[nodiscard]] inline CsvTable read_csv(const std::filesystem::path& path) {
+  const std::string all = read_file(path);
+  std::string_view rest = all;
+  CsvTable table{.path = path, .columns = {}, .rows = {}, .lines = {}};
+  for (std::size_t number = 1; !rest.empty(); ++number) {
+    const std::string_view line = rest.substr(0, rest.find('\n'));
+    rest.remove_prefix(std::min(rest.size(), line.size() + 1));
+    if (detail::without_spaces(line).empty()) continue;
+    if (table.columns.empty()) {
+      detail::each_cell(line, [&](std::string_view cell, std::size_t) { table.columns.emplace_back(cell); });
+      continue;
+    }
+    std::vector<double> row;
+    detail::each_cell(line, [&](std::string_view cell, std::size_t index) {
+      double value = 0.0;
+      const std::string_view digits = cell.substr(cell.starts_with('+') ? 1 : 0);
+      const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
+      if (digits.empty() || error != std::errc() || end != digits.data() + digits.size()) {
+        fail("'{}', line {}, column {}: '{}' is no number", path.string(), number,
+             index < table.columns.size() ? table.columns[index] : fmt::format("{}", index + 1), cell);
+      }
+      row.push_back(value);
+    });
+    if (row.size() != table.columns.size()) {
+      fail("'{}', line {}: {} numbers, but there are {} columns", path.string(), number, row.size(),
+           table.columns.size());
+    }
+    table.rows.push_back(std::move(row));
+    table.lines.push_back(number);
+  }
+  return table;
+}
+
+}  // namespace dem::io

@@ -1,0 +1,70 @@
+#pragma once
+
+#include <dem/vehicle/driver.hpp>
+#include <dem/vehicle/vehicle.hpp>
+
+#include <algorithm>
+
+namespace dem::vehicle {
+
+/// Drives along a lane: holds a speed by throttle and brakes and keeps to the middle by steering. The engine's governor
+/// takes back the throttle where the wheels spin: from the spin limit (mean of the rims less the car's speed) on, down
+/// to none at twice that. Asked at even times, a hundred a second.
+class LaneDriver {
+ public:
+  struct Spec {
+    double speed = 5.0;                                   ///< m/s, that is held
+    double acceleration = 1.0;                            ///< m/s^2, at which it is reached
+    double spin_limit = 1.0;                              ///< m/s
+    double interval = 0.01;                               ///< s, between calls
+    Vec3 from = Vec3(-100, 0, 0), to = Vec3(1000, 0, 0);  ///< m, of the path
+  };
+
+  /// `force` (N) is what it takes to stand on the slope; the throttle begins with it, so that the car does not roll
+  /// back.
+  LaneDriver(const VehicleSpec& car, const Spec& spec, double force)
+      : spec_(spec), rear_(car.rear.points.wheel.x(), 0, 0) {
+    const auto& d = car.driveline;
+    const double largest = d.engine.torque.held_outside()(0.0) * d.engine.gears.front() * d.engine.transfer *
+                           d.front.ratio / car.tyre.radius;
+    hold_ = {.gain = 0.5, .integral = 0.3};
+    hold_.sum = std::clamp(force / largest, -1.0, 1.0) / hold_.integral;
+    follow_.wheelbase = car.wheelbase();
+    follow_.path = {spec.from, spec.to};
+    follow_.preview = 4.0;
+    follow_.trim = 1.0;
+  }
+
+  /// `time` (s) since the start.
+  Controls operator()(const mbd::Mechanism& m, const Vehicle& v, double time) {
+    Controls c = pedals(m, v, time);
+    c.steer = steer(m, v);
+    return c;
+  }
+  /// Without steering.
+  Controls pedals(const mbd::Mechanism& m, const Vehicle& v, double time) {
+    const double speed = speed_of(m, v);
+    return eased(hold_(speed, std::min(spec_.speed, spec_.acceleration * time), spec_.interval), speed);
+  }
+  /// rad.
+  double steer(const mbd::Mechanism& m, const Vehicle& v) {
+    return follow_(point_of(m, v, rear_), forward_of(m, v), speed_of(m, v));
+  }
+  /// The same controls with the governor of this driver at a speed (m/s) of the car.
+  [[nodiscard]] Controls eased(Controls c, double speed) const {
+    c.ease_from = speed + spec_.spin_limit, c.ease_to = speed + 2.0 * spec_.spin_limit;
+    return c;
+  }
+  template <class V>
+  void fields(V& v) {
+    v("hold", hold_), v("follow", follow_);
+  }
+
+ private:
+  Spec spec_;
+  Vec3 rear_;  ///< m, of the rear axle, from the vehicle's origin
+  SpeedHold hold_;
+  PathFollower follow_;
+};
+
+}  // namespace dem::vehicle
