@@ -41,8 +41,21 @@ constexpr auto machine_on_cubes = []<class Model>() {
   return world;
 };
 
+/// Cubes fall into a box, fast enough for grains to go from one rank to another.
+constexpr auto rain_of_cubes = []<class Model>() {
+  dem::World<Model> world;
+  world.set_contact({.normal = {2000, 0.05, 0.05}, .friction = {0.4, 2000, 0.015, 0.975}});
+  add_box(world, 0.02, 0.02, 0.1);
+  pour(world, world.add_species(dem::shape::cube8(0.7e-3)), 900, 8, 8, 2.5e-3, 1.0);
+  run(world, 900);
+  return world;
+};
+
 }  // namespace
 
-bool cubes() { return same_bits<CubesShared, CubesAlone>("cubes", machine_on_cubes); }
+bool cubes() {
+  const bool same = same_bits<CubesShared, CubesAlone>("cubes", machine_on_cubes);
+  return same_bits<CubesShared, CubesAlone>("rain", rain_of_cubes) && same;
+}
 
 }  // namespace scenes

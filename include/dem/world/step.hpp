@@ -102,6 +102,8 @@ void advance(WorldState<Model>& w) {
   for (int stage = 0; stage < Integrator::stages; ++stage) {
     const bool last = stage + 1 == Integrator::stages;
     if constexpr (Integrator::predicts_before_forces) {
+      if constexpr (Model::Domain::has_ranks)
+        w.domain.is_whole = !w.domain.is_shared();  // a list made now gathers rows
       w.executor.for_each(w.sleepers.working.size(), [&](std::size_t k) {
         const std::size_t c = w.sleepers.working[k];
         if (!w.chunks[c].asleep)
