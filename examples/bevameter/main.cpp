@@ -10,6 +10,7 @@
 // settings make no sense; 130 after Ctrl-C or SIGTERM.
 
 #include <dem/rig/bevameter/bevameter_rig.hpp>
+#include <dem/rig/processes.hpp>
 #include <dem/rig/program.hpp>
 
 // The worlds of the examples plate_sinkage, direct_shear and rigid_wheel.
@@ -18,6 +19,7 @@ dem::rig::bevameter::BevameterRig::ShearRun cube8_verlet;
 dem::rig::bevameter::BevameterRig::WheelRun roll_wheel;
 
 int main(int argc, char** argv) {
+  const dem::rig::MpiSession mpi(argc, argv);
   dem::rig::bevameter::BevameterRig rig(press_plates, cube8_verlet, roll_wheel);
   return dem::rig::run_program({.name = "bevameter",
                                 .title = "Bevameter",

@@ -9,9 +9,11 @@
 #include "worlds.hpp"
 
 #include <dem/rig/direct_shear/shear_rig.hpp>
+#include <dem/rig/processes.hpp>
 #include <dem/rig/program.hpp>
 
 int main(int argc, char** argv) {
+  const dem::rig::MpiSession mpi(argc, argv);
   const dem::rig::ProgramText text = {
       .name = "direct_shear",
       .title = "Direct shear test",

@@ -10,6 +10,7 @@
 // Ends with 0 when all was done, also when the car digs in or rolls over, which is what was found; 1 when the run ended
 // early or a part of the report could not be made; 2 when the settings make no sense; 130 after Ctrl-C or SIGTERM.
 
+#include <dem/rig/processes.hpp>
 #include <dem/rig/program.hpp>
 #include <dem/rig/soft_lane/lane_rig.hpp>
 
@@ -18,6 +19,7 @@ namespace lanes = dem::rig::soft_lane;
 lanes::LaneRig::Run drive_lane;  // world.cpp
 
 int main(int argc, char** argv) {
+  const dem::rig::MpiSession mpi(argc, argv);
   lanes::LaneRig rig(drive_lane);
   return dem::rig::run_program({.name = "humvee_soil",
                                 .title = "Humvee on soft soil",

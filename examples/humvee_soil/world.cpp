@@ -3,6 +3,7 @@
 #include <dem/geometry/cluster/sphere_cluster.hpp>
 #include <dem/integrator/velocity_verlet.hpp>
 #include <dem/law/cohesion/constant.hpp>
+#include <dem/rig/processes.hpp>
 #include <dem/rig/soft_lane/campaign.hpp>
 
 namespace lanes = dem::rig::soft_lane;
@@ -13,6 +14,7 @@ struct Sand : dem::Model {
   using Surfaces = dem::surface::Set<dem::surface::Box, dem::surface::Cylinder, dem::surface::TriangleMesh>;
   using Cohesion = dem::cohesion::Constant;  // of a second soil
   using Integrator = dem::integrator::VelocityVerlet;
+  using Domain = dem::rig::Domain;
 };
 
 void drive_lane(const lanes::Settings& settings, lanes::Campaign& campaign, dem::rig::Session& session) {

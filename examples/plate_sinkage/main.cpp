@@ -9,6 +9,7 @@
 // settings make no sense; 130 after Ctrl-C or SIGTERM.
 
 #include <dem/rig/plate_sinkage/plate_rig.hpp>
+#include <dem/rig/processes.hpp>
 #include <dem/rig/program.hpp>
 
 namespace plates = dem::rig::plate_sinkage;
@@ -16,6 +17,7 @@ namespace plates = dem::rig::plate_sinkage;
 plates::PlateRig::Run press_plates;  // world.cpp
 
 int main(int argc, char** argv) {
+  const dem::rig::MpiSession mpi(argc, argv);
   plates::PlateRig rig(press_plates);
   return dem::rig::run_program({.name = "plate_sinkage",
                                 .title = "Plate pressure-sinkage test",

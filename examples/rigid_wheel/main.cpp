@@ -9,6 +9,7 @@
 // Ends with 0 when all was done; 1 when the run ended early or a part of the report could not be made; 2 when the
 // settings make no sense; 130 after Ctrl-C or SIGTERM.
 
+#include <dem/rig/processes.hpp>
 #include <dem/rig/program.hpp>
 #include <dem/rig/rigid_wheel/wheel_rig.hpp>
 
@@ -17,6 +18,7 @@ namespace wheels = dem::rig::rigid_wheel;
 wheels::WheelRig::Run roll_wheel;  // world.cpp
 
 int main(int argc, char** argv) {
+  const dem::rig::MpiSession mpi(argc, argv);
   wheels::WheelRig rig(roll_wheel);
   return dem::rig::run_program({.name = "rigid_wheel",
                                 .title = "Rigid wheel on soil",

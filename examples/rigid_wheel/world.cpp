@@ -2,6 +2,7 @@
 
 #include <dem/geometry/cluster/sphere_cluster.hpp>
 #include <dem/integrator/velocity_verlet.hpp>
+#include <dem/rig/processes.hpp>
 #include <dem/rig/rigid_wheel/campaign.hpp>
 
 namespace wheels = dem::rig::rigid_wheel;
@@ -11,6 +12,7 @@ struct Sand : dem::Model {
   using Shape = dem::shape::SphereCluster<8>;
   using Surfaces = dem::surface::Set<dem::surface::Box, dem::surface::Cylinder, dem::surface::TriangleMesh>;
   using Integrator = dem::integrator::VelocityVerlet;
+  using Domain = dem::rig::Domain;
 };
 
 void roll_wheel(const wheels::Settings& settings, wheels::Campaign& campaign, dem::rig::Session& session) {

@@ -7,10 +7,12 @@
 
 #include "worlds.hpp"
 
+#include <dem/rig/processes.hpp>
 #include <dem/rig/program.hpp>
 #include <dem/rig/sand_pile/pile_rig.hpp>
 
 int main(int argc, char** argv) {
+  const dem::rig::MpiSession mpi(argc, argv);
   static constexpr pile::PileWorld worlds[] = {{"cube8", cube8},
                                                {"polyhedron", polyhedron},
                                                {"superquadric", superquadric},

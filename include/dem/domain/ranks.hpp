@@ -42,12 +42,7 @@ class Ranks : public Messages {
 
   /// As many threads as the ranks of one machine leave to each.
   static int threads_of_a_rank() {
-    MPI_Comm machine;
-    MPI_Comm_split_type(MPI_COMM_WORLD, MPI_COMM_TYPE_SHARED, 0, MPI_INFO_NULL, &machine);
-    int here = 1;
-    MPI_Comm_size(machine, &here);
-    MPI_Comm_free(&machine);
-    return std::max(1, static_cast<int>(std::thread::hardware_concurrency()) / here);
+    return std::max(1, static_cast<int>(std::thread::hardware_concurrency()) / processes.here);
   }
 
   // ---- which chunks are whose ----

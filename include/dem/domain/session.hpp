@@ -5,9 +5,11 @@
 #include <dem/core/error.hpp>
 #include <dem/core/output.hpp>
 
+#include <chrono>
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
+#include <thread>
 
 #include <fcntl.h>
 #include <unistd.h>
@@ -30,6 +32,36 @@ inline int count_of_ranks() {
   int count = 1;
   MPI_Comm_size(MPI_COMM_WORLD, &count);
   return count;
+}
+/// Of them on this machine.
+inline int count_of_ranks_here() {
+  MPI_Comm machine;
+  MPI_Comm_split_type(MPI_COMM_WORLD, MPI_COMM_TYPE_SHARED, 0, MPI_INFO_NULL, &machine);
+  int here = 1;
+  MPI_Comm_size(machine, &here);
+  MPI_Comm_free(&machine);
+  return here;
+}
+inline bool any_rank(bool yes) {
+  int mine = yes ? 1 : 0, any = mine;
+  MPI_Allreduce(&mine, &any, 1, MPI_INT, MPI_MAX, MPI_COMM_WORLD);
+  return any != 0;
+}
+inline int of_first_rank(int value) {
+  MPI_Bcast(&value, 1, MPI_INT, 0, MPI_COMM_WORLD);
+  return value;
+}
+/// Apart from all other messages, which may be under way.
+inline MPI_Comm meeting = MPI_COMM_NULL;
+inline bool all_ranks_come() {
+  MPI_Request all;
+  MPI_Ibarrier(meeting, &all);
+  int came = 0;
+  for (const double start = MPI_Wtime(); came == 0 && MPI_Wtime() - start < 5.0;) {
+    MPI_Test(&all, &came, MPI_STATUS_IGNORE);
+    if (came == 0) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+  return came != 0;
 }
 /// The exception that is under way, in words.
 inline void print_exception(const char* where) {
@@ -87,13 +119,23 @@ class Session {
       const int nowhere = ::open("/dev/null", O_WRONLY);
       if (nowhere >= 0) ::dup2(nowhere, STDOUT_FILENO), ::close(nowhere);
     }
-    if (ranks_ > 1) std::set_terminate(detail::end_all_ranks);
+    if (ranks_ == 1) return;
+    std::set_terminate(detail::end_all_ranks);
+    MPI_Comm_dup(MPI_COMM_WORLD, &detail::meeting);
+    processes = {.rank = rank_,
+                 .count = ranks_,
+                 .here = detail::count_of_ranks_here(),
+                 .any = detail::any_rank,
+                 .of_first = detail::of_first_rank,
+                 .all_come = detail::all_ranks_come,
+                 .end = [](int code) { MPI_Abort(MPI_COMM_WORLD, code); }};
   }
   Session(const Session&) = delete;
   Session& operator=(const Session&) = delete;
   ~Session() {
     // An exception passes. Who catches it has something to say; mpirun ends the others when this process ends.
     if (std::uncaught_exceptions() > unwinding_) return;
+    processes = {};
     MPI_Finalize();
   }
 

@@ -14,7 +14,7 @@ namespace dem::rig {
 
 /// All threads that there are (OMP_NUM_THREADS counts), but not more than one for each 1000 grains.
 inline int threads_for(std::uint64_t grains) {
-  const auto all = static_cast<std::uint64_t>(std::max(1, omp_get_max_threads()));
+  const auto all = static_cast<std::uint64_t>(std::max(1, omp_get_max_threads() / processes.here));
   return static_cast<int>(std::clamp<std::uint64_t>(grains / 1000, 1, all));
 }
 

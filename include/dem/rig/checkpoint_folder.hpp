@@ -1,6 +1,7 @@
 #pragma once
 // The folder in which a run keeps what it can go on from: a file for each of its parts.
 
+#include <dem/core/output.hpp>
 #include <dem/core/version.hpp>
 #include <dem/io/duration.hpp>
 #include <dem/io/file.hpp>
@@ -74,6 +75,7 @@ class CheckpointFolder final : public PartStore {
 
   /// Removes what an earlier run has left, or this one when it has ended. Other files in the folder stay.
   void clear() const {
+    if (!process_writes_files) return;
     std::error_code ignored;
     for (const auto& file : parts(".h5.tmp")) std::filesystem::remove(file, ignored);
     for (const auto& file : parts()) {
@@ -93,8 +95,9 @@ class CheckpointFolder final : public PartStore {
   }
 
   bool is_due(double& last) override {
+    if (!writes()) return false;
     const double now = io::steady_seconds();
-    if (!writes() || now - std::max(last, start_) < options_.every) return false;
+    if (processes.of_first(now - std::max(last, start_) < options_.every)) return false;
     last = now;
     return true;
   }
@@ -123,8 +126,8 @@ class CheckpointFolder final : public PartStore {
   }
 
   std::string write(const std::string& part, io::StateColumns& columns) override {
-    if (!writes()) return "";            // nothing is to be kept of a run that just goes on
-    const std::lock_guard lock(mutex_);  // HDF5 as Debian has it is not for several threads
+    if (!writes() || !process_writes_files) return "";  // nothing is to be kept of a run that just goes on
+    const std::lock_guard lock(mutex_);                 // HDF5 as Debian has it is not for several threads
     io::StateColumns own;
     io::Fields v(io::Fields::Task::collect, own);
     std::string version = DEM_VERSION_STRING;

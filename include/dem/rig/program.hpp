@@ -10,6 +10,7 @@
 #include <csignal>
 #include <exception>
 #include <new>
+#include <string>
 
 #include <fcntl.h>
 
@@ -84,7 +85,38 @@ inline void run_to_end(Rig& rig, Session& session) {
     problem = error.what();
   }
   if (!session.has_begun()) throw Error(session.in_own_words(problem));
+  if (!problem.empty() && !processes.all_come()) {  // of this one only: the others wait for it in a step
+    tell(stderr, "rank {} of {}: {}\n", processes.rank, processes.count, session.in_own_words(problem));
+    processes.end(1);
+  }
   session.end(problem);
+}
+
+/// Makes the report of a run that has ended, and returns what main() returns.
+inline int report_run(const ProgramText& program, const Rig& rig, Session& session) {
+  Report report(session, program.title);
+  bool has_frames = false;
+  report.part("the report", [&] { has_frames = rig.report(report); });
+  const bool is_complete = report.finish(has_frames);
+  const Outcome& outcome = session.outcome;
+  if (!outcome.problem.empty()) tell(stderr, "{}: {}\n", program.name, outcome.problem);
+  if (outcome.interrupted) {
+    if (!session.parts().parts().empty()) tell(stderr, "{}: --resume goes on with the run\n", program.name);
+    return 130;
+  }
+  if (!is_complete || !outcome.problem.empty()) return 1;
+  session.parts().clear();
+  return 0;
+}
+
+/// Says what went wrong, and returns the code that main() returns. Of several processes one says it for all, if all
+/// come here; else others wait for this one, and it ends them.
+inline int fail_with(int code, const std::string& words) {
+  const bool all = processes.all_come();
+  if (!all) tell(stderr, "rank {} of {}: {}\n", processes.rank, processes.count, words);
+  else if (processes.rank == 0) tell(stderr, "{}\n", words);
+  if (!all) processes.end(code);
+  return code;
 }
 
 }  // namespace detail
@@ -109,28 +141,14 @@ inline int run_program(const ProgramText& program, Rig& rig, int argc, const cha
     Session session({program.name, rig.output(), config, rig.results(), rig.words(), std::move(checkpoints)});
     detail::run_to_end(rig, session);
 
-    Report report(session, program.title);
-    bool has_frames = false;
-    report.part("the report", [&] { has_frames = rig.report(report); });
-    const bool is_complete = report.finish(has_frames);
-    const Outcome& outcome = session.outcome;
-    if (!outcome.problem.empty()) tell(stderr, "{}: {}\n", program.name, outcome.problem);
-    if (outcome.interrupted) {
-      if (!session.parts().parts().empty()) tell(stderr, "{}: --resume goes on with the run\n", program.name);
-      return 130;
-    }
-    if (!is_complete || !outcome.problem.empty()) return 1;
-    session.parts().clear();
-    return 0;
+    // One process writes. The others have nothing to add.
+    return processes.of_first(process_writes_files ? detail::report_run(program, rig, session) : 0);
   } catch (const InAnotherProgram& error) {
-    tell(stderr, "{}: {}\n", program.name, error.what());
-    return 3;
+    return detail::fail_with(3, text("{}: {}", program.name, error.what()));
   } catch (const std::bad_alloc&) {
-    tell(stderr, "{}: {}\n", program.name, detail::no_memory);
-    return 2;
+    return detail::fail_with(2, text("{}: {}", program.name, detail::no_memory));
   } catch (const std::exception& error) {
-    tell(stderr, "{}: {}\n", program.name, error.what());
-    return 2;
+    return detail::fail_with(2, text("{}: {}", program.name, error.what()));
   }
 }
 

@@ -81,12 +81,14 @@ class Session final : public Stages {
     } else {
       make_room(also);
     }
+    processes.of_first(0);  // whoever writes has made room
     parts_.start();
     stages_ = stages;
     if (set_.within == nullptr) {
       guard_ = std::make_unique<io::InterruptGuard>();
       io::ProgressOptions options;
       options.stages = stages;
+      if (!process_writes_files) options.out = nullptr;
       progress_.emplace(options);
     }
     if (!parts_.resumes()) return;
@@ -138,13 +140,14 @@ class Session final : public Stages {
 
  private:
   void lock() {
-    if (lock_) return;
+    if (lock_ || !process_writes_files) return;
     io::make_folder_of(folder() / "settings.toml");
     lock_.emplace(set_.output, set_.program);
   }
 
   /// Removes what an earlier run has left, and writes the settings of this one.
   void make_room(const std::string& also) {
+    if (!process_writes_files) return;
     const auto settings = folder() / "settings.toml";
     io::AtomicFile{settings};  // is gone again: the folder can be written to
     auto old = find_old_results(folder(), set_.results);

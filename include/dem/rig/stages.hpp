@@ -2,6 +2,7 @@
 // Stages of a run: what they tell while they run, and how a world is run within them.
 
 #include <dem/core/error.hpp>
+#include <dem/core/output.hpp>
 #include <dem/report/interrupt.hpp>
 #include <dem/rig/part.hpp>
 
@@ -153,7 +154,7 @@ class Stages {
   /// To be called by update(). After Ctrl-C the part is saved whether it is due or not, and Interrupted is thrown.
   void save_if_due() {
     if (part_ == nullptr) return;
-    const bool ends = io::interrupted() && part_->is_kept();
+    const bool ends = processes.any(io::interrupted()) && part_->is_kept();
     warn(ends ? part_->save_now() : part_->save_if_due());
     if (ends) throw Interrupted{};
   }
@@ -194,7 +195,7 @@ void run(World& world, double duration, BeforeStep&& before_step) {
     return true;
   });
   if (!report) throw Stopped(report.text);
-  if (ends_at_once()) throw Interrupted{};
+  if (processes.any(ends_at_once())) throw Interrupted{};
 }
 /// The same without anything between the steps.
 template <class World>

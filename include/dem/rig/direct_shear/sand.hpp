@@ -2,6 +2,7 @@
 
 #include <dem/geometry/cluster/sphere_cluster.hpp>
 #include <dem/integrator/velocity_verlet.hpp>
+#include <dem/rig/processes.hpp>
 #include <dem/world/model.hpp>
 
 namespace dem::rig::direct_shear {
@@ -13,6 +14,7 @@ struct Sand : Model {
   using Shape = S;
   using Surfaces = surface::Set<surface::Box>;
   using Integrator = I;
+  using Domain = rig::Domain;
 };
 
 }  // namespace dem::rig::direct_shear

@@ -4,6 +4,7 @@
 #include <dem/integrator/velocity_verlet.hpp>
 #include <dem/law/rolling/constant_torque.hpp>
 #include <dem/law/rolling/elastic_plastic.hpp>
+#include <dem/rig/processes.hpp>
 #include <dem/rig/sand_pile/settings.hpp>
 #include <dem/world/model.hpp>
 
@@ -20,6 +21,7 @@ struct Sand : Model {
   using Surfaces = surface::Set<surface::Box, surface::Cylinder>;
   using Rolling = R;
   using Integrator = integrator::VelocityVerlet;
+  using Domain = rig::Domain;
 };
 
 /// What is piled up: the shape that all grains have, and the constants of their contacts. The shape's frame has its

@@ -1,0 +1,28 @@
+#pragma once
+// What makes the program of a rig one that several processes share: the same sources, compiled with DEM_ON_RANKS.
+
+#if defined(DEM_ON_RANKS)
+#include <dem/domain/ranks.hpp>
+#else
+#include <dem/domain/open.hpp>
+#endif
+
+namespace dem::rig {
+
+/// Models of a rig's worlds have `using Domain = dem::rig::Domain`, and its main() begins with a Session:
+///
+///     const dem::rig::MpiSession mpi(argc, argv);
+///
+/// Compiled with DEM_ON_RANKS (link dem::mpi) the program is run by mpirun, and all processes share each of its worlds.
+/// Results are those of one process, to the last digit.
+#if defined(DEM_ON_RANKS)
+using Domain = domain::Ranks;
+using MpiSession = domain::Session;
+#else
+using Domain = domain::Open;
+struct MpiSession {
+  MpiSession(int&, char**&) {}
+};
+#endif
+
+}  // namespace dem::rig
