@@ -31,6 +31,7 @@ std::string refusal_of(soft_lane::Settings s) {
 /// A car that drives at 1.5 m/s with slip, on wheels where they should be.
 soft_lane::Sample driving(double time) {
   soft_lane::Sample x;
+  x.car.controls.throttle = 0.5;
   x.car.time = time;
   x.car.speed = 1.5;
   x.way = 1.5 * time;
@@ -145,7 +146,21 @@ TEST_CASE("a car that rolls over, digs in, slides back or leaves the lane ends i
     found = judge(x, wheels);
   }
   CHECK(found == soft_lane::ending::stopped);
+  // So has one that inputs let stand on its brakes: they go on.
   s.scene = "level";
+  s.open_loop = dem::vehicle::OpenLoop({{0.0, 0.0, 1.0, 0.0}, {9.0, 0.0, 1.0, 0.0}});
+  soft_lane::Judge by_inputs(s);
+  found.clear();
+  for (double t = 0.01; found.empty() && t < 20.0; t += 0.01) {
+    auto x = driving(t);
+    x.car.controls = {.brake = 1.0};
+    x.way = x.car.speed = 0.05 * std::cos(8.0 * t);
+    for (auto& w : x.wheels) w.slip = 0.9;
+    found = by_inputs(x, wheels);
+    if (!found.empty()) CHECK(t == Approx(9.0).margin(0.011));
+  }
+  CHECK(found == soft_lane::ending::inputs_ended);
+  s.open_loop = {};
   auto beside = wheels;
   beside[1] -= Vec3(0, 0.5, 0);
   CHECK(soft_lane::Judge(s)(driving(0.1), beside) == soft_lane::ending::left_lane);

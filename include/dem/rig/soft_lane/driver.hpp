@@ -71,10 +71,12 @@ class Judge {
     // From half of the path on, where it brakes or coasts, a car that stands has stopped, and one may rock as it
     // stands.
     const bool slows = (s.scene == "brake" || s.scene == "coast") && x.way >= 0.5 * s.path;
-    const bool slips = !slows && x.mean(&WheelSample::slip) > 0.8 && x.car.speed < 0.1 * s.speed;
+    const bool drives = !slows && x.car.controls.throttle > 0.0;
+    const bool slips = drives && x.mean(&WheelSample::slip) > 0.8 && x.car.speed < 0.1 * s.speed;
     slips_since_ = !slips ? -1.0 : slips_since_ < 0.0 ? x.car.time : slips_since_;
     if (slips && x.car.time - slips_since_ >= 1.0) return ending::dug_in;
     if (x.way > furthest_ + 0.1) furthest_ = x.way, moved_at_ = x.car.time;
+    if (!slows && !drives) moved_at_ = x.car.time;  // it stands because it is let stand
     if (slows && x.car.time - moved_at_ >= 2.0) return ending::stopped;
     if (x.mean(&WheelSample::slip) > 0.2 && x.car.time - moved_at_ >= 3.0) return ending::dug_in;
     stands_since_ = !(slows && std::abs(x.car.speed) < 0.02) ? -1.0 : stands_since_ < 0.0 ? x.car.time : stands_since_;
