@@ -182,7 +182,7 @@ class Blade : public rig::Rig {
   bool report(rig::Report& report) const override {
     report.part("blade.csv",
                 [&] { rig::save_samples<Sample>(report.folder() / "blade.csv", found.samples, columns, 0); });
-    double push = 0.0, soil = 0.0, count = 1e-300;  // of a run that was stopped before
+    double push = 0.0, soil = 0.0, count = 0.0;
     for (const Sample& s : found.samples) {
       if (s.travel < 0.3 * travel) continue;  // until there the forces rise
       push += s.push;
@@ -190,11 +190,13 @@ class Blade : public rig::Rig {
       count += 1.0;
     }
     io::Table table{.caption = "Mean forces", .header = {"push [N]", "soil on the blade [N]", "ratio"}};
-    table.row(text("{:.3f}", push / count), text("{:.3f}", soil / count), text("{:.3f}", push / soil));
+    const auto over = [](double sum, double of) { return of != 0.0 ? text("{:.3f}", sum / of) : std::string("-"); };
+    table.row(over(push, count), over(soil, count), over(push, soil));
     report.part("the printed report", [&] {
       fmt::print("{} grains, blade {:.0f} mm deep and {:.0f} mm wide, {:.0f} mm/s\n", grains, 1e3 * depth,
                  1e3 * blade_edges.y(), 1e3 * speed);
-      fmt::print("push {:.3f} N, soil on the blade {:.3f} N, ratio {:.3f}\n", push / count, soil / count, push / soil);
+      fmt::print("push {} N, soil on the blade {} N, ratio {}\n", over(push, count), over(soil, count),
+                 over(push, soil));
     });
     report.page({{"depth", text("{:g} mm", 1e3 * depth)}, {"speed", text("{:g} mm/s", 1e3 * speed)}},
                 [&](io::HtmlReport& page) {

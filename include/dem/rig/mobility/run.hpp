@@ -6,6 +6,7 @@
 #include <dem/rig/mobility/cases.hpp>
 #include <dem/rig/session.hpp>
 #include <dem/rig/side_by_side.hpp>
+#include <dem/vehicle/drawn_hull.hpp>
 
 #include <optional>
 #include <thread>
@@ -86,10 +87,7 @@ class DriveReplay {
       const IndexedMesh tyre = mesh::tyre(2.0 * spec.tyre.radius, spec.tyre.width, 600).moved(Vec3::Zero(), about_y);
       replay_.add_part(std::string(corner) + " tyre", io::drawn(tyre));
     }
-    IndexedMesh hull = mesh::box(Vec3(4.6, 1.5, 0.35)).moved(Vec3(0, 0, 0.40));
-    hull += mesh::box(Vec3(2.5, 1.9, 0.60)).moved(Vec3(-0.35, 0, 0.85));
-    hull += mesh::box(Vec3(0.9, 1.2, 0.18)).moved(Vec3(1.6, 0, 0.66));
-    replay_.add_part("chassis", io::drawn(hull.moved(-spec.chassis_centre)));
+    replay_.add_part("chassis", vehicle::drawn_hull(spec));
   }
 
   report::Replay& replay_;

@@ -9,16 +9,9 @@
 #include <dem/rig/part_of.hpp>
 #include <dem/rig/session.hpp>
 #include <dem/rig/soft_lane.hpp>
+#include <dem/vehicle/drawn_hull.hpp>
 
 namespace dem::rig::soft_lane {
-
-/// The car's body as it is drawn, in the axes of the chassis about its centre of mass: hull, cab and bonnet.
-inline io::SurfaceMesh drawn_hull(const vehicle::VehicleSpec& car) {
-  IndexedMesh mesh = mesh::box(Vec3(4.6, 1.5, 0.35)).moved(Vec3(0, 0, 0.40));
-  mesh += mesh::box(Vec3(2.5, 1.9, 0.60)).moved(Vec3(-0.35, 0, 0.85));
-  mesh += mesh::box(Vec3(0.9, 1.2, 0.18)).moved(Vec3(1.6, 0, 0.66));
-  return io::drawn(mesh.moved(-car.chassis_centre));
-}
 
 inline void save_telemetry(const std::filesystem::path& path, const std::vector<Sample>& samples) {
   io::CsvWriter csv(path, Sample{}.columns(), {.digits = 7});
@@ -38,7 +31,7 @@ void run_campaign(const Settings& settings, ShapeOf&& shape_of, Campaign& c, Ses
   if (made) session.require_writable(s.bed.save, "--save-bed");
   session.begin_run(bed_stages(s.bed) + s.passes * (s.slope_angle() != 0.0 ? 4 : 3));
 
-  const io::SurfaceMesh hull = drawn_hull(s.car);
+  const io::SurfaceMesh hull = vehicle::drawn_hull(s.car);
   if (s.replay)
     c.replay.emplace(
         report::ReplayOptions{.frames = 90, .interval = 0.05, .grains = 12'000, .force_lines = s.replay_forces});
