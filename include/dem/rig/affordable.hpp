@@ -2,6 +2,7 @@
 // What a machine can do: threads, memory and steps (POSIX).
 
 #include <dem/core/error.hpp>
+#include <dem/core/output.hpp>
 
 #include <omp.h>
 
