@@ -57,7 +57,7 @@ inline bool all_ranks_come() {
   MPI_Request all;
   MPI_Ibarrier(meeting, &all);
   int came = 0;
-  for (const double start = MPI_Wtime(); came == 0 && MPI_Wtime() - start < 5.0;) {
+  for (const double start = MPI_Wtime(); came == 0 && MPI_Wtime() - start < 15.0;) {
     MPI_Test(&all, &came, MPI_STATUS_IGNORE);
     if (came == 0) std::this_thread::sleep_for(std::chrono::milliseconds(1));
   }

@@ -20,7 +20,6 @@ struct CsvTable {
   std::filesystem::path path;
   std::vector<std::string> columns;
   std::vector<std::vector<double>> rows;  ///< as many cells as there are columns
-  std::vector<std::size_t> lines;         ///< of the file, from 1, that the rows stand in
 
   /// Index of the column of this name. Throws Error, with the names that there are.
   [[nodiscard]] std::size_t column(std::string_view name) const {
@@ -57,13 +56,19 @@ void each_cell(std::string_view line, F&& f) {
 [[nodiscard]] inline CsvTable read_csv(const std::filesystem::path& path) {
   const std::string all = read_file(path);
   std::string_view rest = all;
-  CsvTable table{.path = path, .columns = {}, .rows = {}, .lines = {}};
+  if (rest.starts_with("\xEF\xBB\xBF")) rest.remove_prefix(3);  // a byte order mark, as spreadsheets write it
+  CsvTable table{.path = path, .columns = {}, .rows = {}};
   for (std::size_t number = 1; !rest.empty(); ++number) {
     const std::string_view line = rest.substr(0, rest.find('\n'));
     rest.remove_prefix(std::min(rest.size(), line.size() + 1));
     if (detail::without_spaces(line).empty()) continue;
     if (table.columns.empty()) {
-      detail::each_cell(line, [&](std::string_view cell, std::size_t) { table.columns.emplace_back(cell); });
+      detail::each_cell(line, [&](std::string_view cell, std::size_t) {
+        if (std::find(table.columns.begin(), table.columns.end(), cell) != table.columns.end()) {
+          fail("'{}' has two columns '{}'", path.string(), cell);
+        }
+        table.columns.emplace_back(cell);
+      });
       continue;
     }
     std::vector<double> row;
@@ -82,7 +87,6 @@ void each_cell(std::string_view line, F&& f) {
            table.columns.size());
     }
     table.rows.push_back(std::move(row));
-    table.lines.push_back(number);
   }
   return table;
 }

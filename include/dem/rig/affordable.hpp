@@ -15,13 +15,17 @@ namespace dem::rig {
 
 /// All threads that there are (OMP_NUM_THREADS counts), but not more than one for each 1000 grains.
 inline int threads_for(std::uint64_t grains) {
-  const auto all = static_cast<std::uint64_t>(std::max(1, omp_get_max_threads() / processes.here));
+  const int most = std::max(1, omp_get_max_threads());
+  const int share = static_cast<int>(::sysconf(_SC_NPROCESSORS_ONLN)) / processes.here;  // of a machine's processors
+  const auto all = static_cast<std::uint64_t>(processes.here > 1 ? std::clamp(share, 1, most) : most);
   return static_cast<int>(std::clamp<std::uint64_t>(grains / 1000, 1, all));
 }
 
-/// Throws Error, with `what_to_change`, if more memory (bytes) is needed than the machine has. `what` is what takes it.
+/// Throws Error, with `what_to_change`, if more memory (bytes, of each process) is needed than the machine has. `what`
+/// is what takes it.
 inline void require_memory(double bytes, const char* what, const char* what_to_change) {
   const double there = static_cast<double>(::sysconf(_SC_PHYS_PAGES)) * static_cast<double>(::sysconf(_SC_PAGE_SIZE));
+  bytes *= processes.here;
   if (bytes <= there) return;
   fail("{} need some {:.3g} GB of memory, but this machine has {:.3g} GB; {}", what, 1e-9 * bytes, 1e-9 * there,
        what_to_change);

@@ -108,4 +108,12 @@ inline bool is_own_file(const std::filesystem::path& path, const std::filesystem
          detail::is_frame_folder(file.parent_path().filename().string(), names);
 }
 
+/// Throws Error if a file that a run starts from is one that it would remove. `option` is what names it.
+inline void require_not_own(const std::filesystem::path& file, const char* option, const std::filesystem::path& folder,
+                            const ResultNames& names) {
+  if (file.empty() || !is_own_file(file, folder, names)) return;
+  fail("{} is '{}', which the run replaces by a result of its own; copy it, or give another --output", option,
+       file.string());
+}
+
 }  // namespace dem::rig

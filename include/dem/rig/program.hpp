@@ -68,8 +68,9 @@ inline void resolve(CheckpointOptions& o, const Options& options) {
   }
 }
 
-/// Runs the rig until its end or to where it is stopped. Throws what it throws before the run has begun.
-inline void run_to_end(Rig& rig, Session& session) {
+/// Runs the rig until its end or to where it is stopped. Returns false where a problem is of this process alone, for
+/// which others wait in a step. Throws what it throws before the run has begun.
+inline bool run_to_end(Rig& rig, Session& session) {
   std::string problem;
   try {
     rig.run(session);
@@ -85,11 +86,9 @@ inline void run_to_end(Rig& rig, Session& session) {
     problem = error.what();
   }
   if (!session.has_begun()) throw Error(session.in_own_words(problem));
-  if (!problem.empty() && !processes.all_come()) {  // of this one only: the others wait for it in a step
-    tell(stderr, "rank {} of {}: {}\n", processes.rank, processes.count, session.in_own_words(problem));
-    processes.end(1);
-  }
+  const bool all_ended = problem.empty() || processes.all_come();
   session.end(problem);
+  return all_ended;
 }
 
 /// Makes the report of a run that has ended, and returns what main() returns.
@@ -139,8 +138,11 @@ inline int run_program(const ProgramText& program, Rig& rig, int argc, const cha
     rig.resolve();
     detail::resolve(checkpoints, options);
     Session session({program.name, rig.output(), config, rig.results(), rig.words(), std::move(checkpoints)});
-    detail::run_to_end(rig, session);
-
+    if (!detail::run_to_end(rig, session)) {
+      tell(stderr, "rank {} of {}: {}\n", processes.rank, processes.count, session.outcome.problem);
+      if (process_writes_files) detail::report_run(program, rig, session);
+      processes.end(1);
+    }
     // One process writes. The others have nothing to add.
     return processes.of_first(process_writes_files ? detail::report_run(program, rig, session) : 0);
   } catch (const InAnotherProgram& error) {

@@ -111,7 +111,7 @@ class RigidWheel {
   void roll(Stand stand, rigid_wheel::SlipResult& result, Stages& stages, Look&& look) const {
     const Settings& s = settings_;
     auto& world = stand.bed.world;
-    world.set_threads(1);
+    if (processes.count == 1) world.set_threads(1);  // slips go side by side
     auto& m = world.machine();
     const double interval = s.sample_interval(), speed = (1.0 - result.slip) * s.rim_speed(), duration = s.duration();
     rigid_wheel::Rolling n{world.time(), m.coordinate(stand.rail), m.coordinate(stand.axle)};

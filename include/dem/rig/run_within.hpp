@@ -61,11 +61,15 @@ inline void run_within(Session& session, Rig& rig, const char* program, const ch
     problem = error.what();
   }
   if (!own.has_begun()) std::rethrow_exception(thrown);
+  const bool all_ended = problem.empty() || processes.all_come();
   own.end(problem);
-  Report report(own, title);
-  bool has_frames = false;
-  report.part("the report", [&] { has_frames = rig.report(report); });
-  report.finish(has_frames);
+  if (process_writes_files) {
+    Report report(own, title);
+    bool has_frames = false;
+    report.part("the report", [&] { has_frames = rig.report(report); });
+    report.finish(has_frames);
+  }
+  if (all_ended) processes.of_first(0);  // the others wait for the report
   if (thrown) std::rethrow_exception(thrown);
 }
 

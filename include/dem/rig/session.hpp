@@ -75,6 +75,7 @@ class Session final : public Stages {
   /// runs in it, or the run in it cannot go on.
   void begin_run(int stages, const std::string& also = {}) {
     lock();
+    processes.any(false);  // all have read what they start from
     if (parts_.resumes()) {
       parts_.check();
       io::write_file(folder() / "settings.toml", set_.config);

@@ -62,8 +62,8 @@ class StagesOfOne final : public Stages {
   std::size_t run_;
 };
 
-/// Calls job(k, shared) for each k below `jobs`, up to `workers` at a time; one after the other where several processes
-/// share each of them. What a job throws ends the others at their
+/// Calls job(k, shared) for each k below `jobs`, up to `workers` at a time. Where several processes share each of them
+/// it is one after the other. What a job throws ends the others at their
 /// next update, and is thrown here once all have ended; a problem goes before an interruption.
 template <class Job>
 void side_by_side(std::size_t jobs, int workers, Stages& stages, Job&& job) {

@@ -18,10 +18,6 @@ class OpenLoop {
   struct Row {
     double time = 0.0;                              ///< s
     double throttle = 0.0, brake = 0.0, steer = 0;  ///< 0 to 1, 0 to 1, rad to the left
-    template <class V>
-    void fields(V& v) {
-      v("time", time, "s"), v("throttle", throttle), v("brake", brake), v("steer", steer, "rad");
-    }
   };
 
   OpenLoop() = default;  ///< no table
@@ -55,11 +51,14 @@ class OpenLoop {
             .steer = between(p.steer, q.steer)};
   }
 
+  /// A run that goes on must have the same table: throws Error for another one.
   template <class V>
   void fields(V& v) {
-    std::vector<double> all;
-    for (const Row& r : rows_) all.insert(all.end(), {r.time, r.throttle, r.brake, r.steer});
-    v.given("inputs", all);
+    std::vector<double> mine;
+    for (const Row& r : rows_) mine.insert(mine.end(), {r.time, r.throttle, r.brake, r.steer});
+    std::vector<double> saved = mine;
+    v("rows", saved);
+    if (saved != mine) fail("the inputs of the driver are others than those that the run began with; give these again");
   }
 
  private:
@@ -75,7 +74,8 @@ class OpenLoop {
 };
 
 /// Inputs from a CSV file with the columns time_s, throttle, brake and steer_rad, in any order and among others: the
-/// telemetry of a drive drives another car the same way. Throws Error, with the file and what to mend.
+/// telemetry of a drive drives another car the same way. A drive begins at the time 0 and ends with the last row.
+/// Throws Error, with the file and what to mend.
 [[nodiscard]] inline OpenLoop read_inputs(const std::filesystem::path& path) {
   const io::CsvTable table = io::read_csv(path);
   const std::size_t time = table.column("time_s"), throttle = table.column("throttle"), brake = table.column("brake"),
@@ -83,7 +83,9 @@ class OpenLoop {
   std::vector<OpenLoop::Row> rows;
   for (const auto& r : table.rows) rows.push_back({r[time], r[throttle], r[brake], r[steer]});
   try {
-    return OpenLoop(std::move(rows));
+    OpenLoop inputs(std::move(rows));
+    if (!(inputs.end() > 0.0)) fail("inputs of a driver end at {:g} s, but a drive begins at 0 s", inputs.end());
+    return inputs;
   } catch (const Error& e) {
     fail("'{}': {}", path.string(), e.what());
   }

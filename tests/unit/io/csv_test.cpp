@@ -103,8 +103,10 @@ TEST_CASE("a table of numbers is read back as it was written, and one that is no
   CHECK(other.columns == std::vector<std::string>{"a", "b"});
   CHECK(other.rows == std::vector<std::vector<double>>{{1.0, 2.0}});
   CHECK(read("").rows.empty());
+  CHECK(read("\xEF\xBB\xBFtime_s\n1\n").column("time_s") == 0);  // as spreadsheets write it
   using Catch::Matchers::ContainsSubstring;
   CHECK_THROWS_WITH(other.column("c"), ContainsSubstring("has no column 'c', but has a, b"));
+  CHECK_THROWS_WITH(read("a,b,a\n"), ContainsSubstring("has two columns 'a'"));
   CHECK_THROWS_WITH(read("a,b\n\n1,x\n"), ContainsSubstring("line 3, column b: 'x' is no number"));
   CHECK_THROWS_WITH(read("a,b\n1,\n"), ContainsSubstring("'' is no number"));
   CHECK_THROWS_WITH(read("a,b\n1\n"), ContainsSubstring("line 2: 1 numbers, but there are 2 columns"));

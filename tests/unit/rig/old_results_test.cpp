@@ -12,6 +12,15 @@
 
 using namespace dem::rig;
 
+TEST_CASE("a file that a run starts from is none that it removes") {
+  const dem::rig::ResultNames names{.files = {"telemetry.csv"}, .plots = {}, .frames = {}};
+  CHECK_NOTHROW(dem::rig::require_not_own("", "--inputs", "out", names));
+  CHECK_NOTHROW(dem::rig::require_not_own("other/telemetry.csv", "--inputs", "out", names));
+  CHECK_NOTHROW(dem::rig::require_not_own("out/inputs.csv", "--inputs", "out", names));
+  CHECK_THROWS_WITH(dem::rig::require_not_own("./out/telemetry.csv", "--inputs", "out", names),
+                    Catch::Matchers::ContainsSubstring("--inputs is './out/telemetry.csv', which the run replaces"));
+}
+
 TEST_CASE("patterns of names") {
   CHECK(matches("report.html", "report.html"));
   CHECK_FALSE(matches("report.html.bak", "report.html"));

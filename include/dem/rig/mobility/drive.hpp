@@ -147,8 +147,8 @@ class Judge {
     }
     if (x.way < -0.3) return vehicle::ending::slid_back;
     // A car that just gets under way on a steep slope spins its wheels too.
-    const bool slips =
-        x.car.controls.throttle > 0.0 && x.mean(&vehicle::WheelSample::slip) > 0.8 && x.car.speed < 0.05 * s.speed;
+    const bool slips = x.car.controls.throttle > 0.0 && x.mean(&vehicle::WheelSample::slip) > 0.8 &&
+                       x.car.speed < (s.open_loop.empty() ? 0.05 * s.speed : 0.1);
     slips_since_ = !slips ? -1.0 : slips_since_ < 0.0 ? x.car.time : slips_since_;
     if (slips && x.car.time - slips_since_ >= 2.0) return vehicle::ending::dug_in;
     if (x.way >= s.path) return vehicle::ending::arrived;

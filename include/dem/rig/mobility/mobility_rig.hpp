@@ -4,6 +4,7 @@
 #include <dem/report/replay_page.hpp>
 #include <dem/rig/mobility/run.hpp>
 #include <dem/rig/mobility/tables.hpp>
+#include <dem/rig/old_results.hpp>
 #include <dem/rig/rig.hpp>
 #include <dem/terramechanics/rut_files.hpp>
 #include <dem/terramechanics/rut_vtk.hpp>
@@ -21,7 +22,10 @@ class MobilityRig : public Rig {
 
   void declare(Options& options) override { mobility::declare(options, settings); }
   void find_idle(IdleOptions& idle) const override { mobility::find_idle(idle, settings); }
-  void resolve() override { mobility::resolve(settings, read_soil_); }
+  void resolve() override {
+    require_not_own(settings.inputs, "--inputs", output(), results());
+    mobility::resolve(settings, read_soil_);
+  }
   [[nodiscard]] std::string output() const override { return settings.output; }
   [[nodiscard]] ResultNames results() const override {
     return {.files = {"results.csv", "telemetry.csv", "pull.csv", "rut.csv", "rut.pgm", "rut.vtp"},

@@ -125,7 +125,8 @@ inline void run_campaign(const Settings& s, Campaign& c, std::optional<report::R
                  [&](std::size_t k, SharedStages& shared) {
                    StagesOfOne own(shared, k);
                    DrivePart part(session, own, c.cases[k].name);
-                   const auto kept = own.keep("result", c.results[k]);
+                   vehicle::OpenLoop inputs = s.open_loop;
+                   const auto kept = own.keep("result", c.results[k]), kept_inputs = own.keep("inputs", inputs);
                    std::vector<double> ruts;
                    if (!part.is_done()) one(k, own, 0.0, 1.0, ruts);
                    own.complete();

@@ -90,7 +90,8 @@ inline void declare(Options& options, Settings& s) {
   add("--spin-limit", s.spin_limit,
       "the driver eases off the throttle where rims are faster than the car by this [m/s]");
   add("--inputs", s.inputs,
-      "CSV file that drives in place of the driver: time_s, throttle, brake (0 to 1), steer_rad (to the left)");
+      "CSV file that drives in place of the driver: time_s, throttle, brake (0 to 1), steer_rad (to the left); the "
+      "drive ends with its last row");
   add("--path", s.path, "that the car drives [m]; 0: by size");
   add("--machine-step", s.time_step, "time step of the car [s]");
   options.group("Output");

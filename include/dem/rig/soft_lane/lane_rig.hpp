@@ -3,6 +3,7 @@
 #include <dem/io/csv.hpp>
 #include <dem/io/duration.hpp>
 #include <dem/report/replay_page.hpp>
+#include <dem/rig/old_results.hpp>
 #include <dem/rig/rig.hpp>
 #include <dem/rig/soft_lane/tables.hpp>
 
@@ -16,7 +17,10 @@ class LaneRig : public Rig {
 
   void declare(Options& options) override { soft_lane::declare(options, settings); }
   void find_idle(IdleOptions& idle) const override { soft_lane::find_idle(idle, settings); }
-  void resolve() override { soft_lane::resolve(settings); }
+  void resolve() override {
+    require_not_own(settings.inputs, "--inputs", output(), results());
+    soft_lane::resolve(settings);
+  }
   [[nodiscard]] std::string output() const override { return settings.output; }
   [[nodiscard]] ResultNames results() const override {
     return {.files = {"results.csv", "telemetry.csv", "rut.csv", "pull.csv", "soft_lane.pvd"},
