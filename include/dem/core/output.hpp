@@ -7,7 +7,8 @@ namespace dem {
 inline bool process_writes_files = true;
 
 /// The processes that run one program together, and what they agree on. domain::Session sets it; without one a process
-/// agrees with itself. All of them make each of these calls, in the same order, on their main threads.
+/// agrees with itself. `any` and `of_first` are called by all of them, in the same order, on their main threads;
+/// `all_come` and `end` by one that cannot go on.
 struct Processes {
   int rank = 0, count = 1;
   int here = 1;                                                  ///< of them on this machine

@@ -158,7 +158,7 @@ TEST_CASE("the table of what was tried is read back the same, and refused where 
   CHECK_THROWS_WITH(load_tried(path, s), Catch::Contains("has the columns"));
   s.find = "friction,relative-density";
   dem::io::write_file(path, tried_header(s) + "\n1,1,0.2,x,3,4\n");
-  CHECK_THROWS_WITH(load_tried(path, s), Catch::Contains("line 2: 'x' is no number"));
+  CHECK_THROWS_WITH(load_tried(path, s), Catch::Contains("line 2, column relative-density: 'x' is no number"));
   dem::io::write_file(path, tried_header(s) + "\n1,1,0.2\n");
   CHECK_THROWS_WITH(load_tried(path, s), Catch::Contains("3 numbers, but there are 6 columns"));
   std::filesystem::remove(path);
