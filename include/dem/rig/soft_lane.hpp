@@ -13,9 +13,10 @@ namespace dem::rig {
 /// thesis's laws and surface::Box, Cylinder and TriangleMesh among its Surfaces. The car is the machine of the world;
 /// its rigid tyres are surfaces of the wheels. Slopes are tilted gravity: x runs up the slope, y to the left.
 ///
-/// A trough of grains is rained, levelled and put under each track (soft_lane/lane.hpp). The car hangs on a crane, a
-/// damper on its chassis under which its weight sinks at the set-down speed, ever slower as the grains take it up. Then
-/// it stands on its brakes while gravity is tilted, and drives.
+/// A trough of grains is rained, levelled and put under each track (soft_lane/lane.hpp). Or it is a tile that repeats
+/// itself, and several of them go along with the car as far as it drives (soft_lane/tile.hpp). The car hangs on a
+/// crane, a damper on its chassis under which its weight sinks at the set-down speed, ever slower as the grains take it
+/// up. Then it stands on its brakes while gravity is tilted, and drives.
 ///
 ///     dem::rig::soft_lane::Settings settings;
 ///     settings.size = "smoke";
@@ -88,9 +89,17 @@ class SoftLane {
       stand.before = soil::placements(stand.world);
       stand.level = soft_lane::level_of(s, stand.before);
     }
-    soft_lane::add_car(stand, s);
-    const auto kept_car = stages.keep("car", stand.car);
-    vehicle::take_controls(stand.world.machine(), stand.car);
+    lower(stand, stages, look);
+    return stand;
+  }
+  /// The same on tiles that go along with the car; `level` (m) is that of the tile's bed.
+  template <class Look>
+  [[nodiscard]] Stand set_down(const soil::Tile& tile, double level, double dt, Stages& stages, Look&& look) const {
+    const Settings& s = settings_;
+    const std::size_t grains = tile.grains.size() * static_cast<std::size_t>(s.tiles);
+    Stand stand{.world = soft_lane::make_lane<Model>(s, shape_, {}, level, dt, grains)};
+    soft_lane::lay_patch(stand, s, tile);
+    const auto kept = stages.keep("lane", stand);
     lower(stand, stages, look);
     return stand;
   }
@@ -166,11 +175,15 @@ class SoftLane {
         static_cast<double>(overlaps.size());
   }
 
-  /// Lowers the car until the crane carries next to nothing of it, and lets it stand on its brakes for 0.2 s.
+  /// Hangs the car over the lane, lowers it until the crane carries next to nothing of it, and lets it stand on its
+  /// brakes for 0.2 s.
   template <class Look>
   void lower(Stand& stand, Stages& stages, Look&& look) const {
     const Settings& s = settings_;
+    soft_lane::add_car(stand, s);
+    const auto kept_car = stages.keep("car", stand.car);
     auto& m = stand.world.machine();
+    vehicle::take_controls(m, stand.car);
     const double weight = vehicle::weight_of(m), limit = 2.0 * s.bed.stage_limit;
     const vehicle::Controls brakes{.brake = 1.0};
     stages.begin("set down", 1.0);

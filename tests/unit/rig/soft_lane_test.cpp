@@ -68,6 +68,32 @@ TEST_CASE("a lane that is too short or too narrow for the car and its path is re
   CHECK_THAT(refusal_of(s), ContainsSubstring("--layout is 'ditch', but must be troughs, bed"));
 }
 
+TEST_CASE("a lane of tiles that go along is as long as it is told, and no shorter than the car needs") {
+  using Catch::Matchers::ContainsSubstring;
+  auto s = quick_lane();
+  s.tiles = 6;
+  s.path = 200.0;
+  CHECK(refusal_of(s).empty());
+  soft_lane::resolve(s);
+  CHECK(s.length() == Approx(6 * s.bed.length));
+  CHECK(s.ground_end() > 200.0);
+  // The rear tyres stand behind the rim, whose grains are held.
+  const double rear = s.start() + s.car.rear.points.wheel.x();
+  CHECK(rear - s.car.tyre.radius > -0.5 * s.length() + s.rim());
+  s = quick_lane();
+  s.tiles = 3;
+  CHECK_THAT(refusal_of(s), ContainsSubstring("3 tiles of 1.875 m are 5.62 m long, but must be at least") &&
+                                ContainsSubstring("give --tiles 4"));
+  s.tiles = 40;
+  s.bed.length = 0.2;
+  CHECK_THAT(refusal_of(s), ContainsSubstring("a tile is 0.2 m long, but must be at least"));
+  s = quick_lane();
+  s.tiles = 6, s.passes = 2;
+  CHECK_THAT(refusal_of(s), ContainsSubstring("--passes 2 needs a lane that stays; give --tiles 0"));
+  s.passes = 1, s.scene = "step";
+  CHECK_THAT(refusal_of(s), ContainsSubstring("--scene step needs a lane that stays"));
+}
+
 TEST_CASE("the lane of the thesis has 331,890 grains, and grains overlap below two hundredths whatever their size") {
   auto s = quick_lane();
   s.size = "full";

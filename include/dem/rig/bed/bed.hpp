@@ -18,13 +18,15 @@ namespace dem::rig {
 /// Grains of one shape in an open box: the floor's upper side is z = 0, its middle is x = y = 0. Walls are solid boxes,
 /// as high as the grains need while they are rained. The box is one fixed body, or two halves on slides along x, as
 /// those of the direct shear test, that actuators hold. A copy of a bed is the same bed, to the last bit, with its
-/// contact histories: several tests may start from one.
+/// contact histories: several tests may start from one. Where the Model's Domain is periodic, the bed repeats itself
+/// along x, without walls there.
 template <class M>
 class Bed {
  public:
   using Model = M;
   using World = dem::World<Model>;
   using Shape = typename Model::Shape;
+  static constexpr bool is_endless = Model::Domain::has_images;
 
   /// How the box is built.
   struct Box {
@@ -36,10 +38,11 @@ class Bed {
       std::span<const soil::Placement> places)
       : world({.time_step_safety = bed.stable_share,
                .overlap_limit = 1.0,
-               .domain = surface::Bounds{Vec3(-0.5 * bed.length - bed.wall_thickness,
+               .domain = surface::Bounds{Vec3(-0.5 * bed.length - (is_endless ? 0.0 : bed.wall_thickness),
                                               -0.5 * bed.width - bed.wall_thickness, -bed.wall_thickness),
-                                         Vec3(0.5 * bed.length + bed.wall_thickness,
+                                         Vec3(0.5 * bed.length + (is_endless ? 0.0 : bed.wall_thickness),
                                               0.5 * bed.width + bed.wall_thickness, box.wall_top + 0.1)},
+               .periodic = {.x = is_endless},
                .threads = bed.threads > 0 ? bed.threads : threads_for(places.size()),
                .sleep = bed.sleep ? std::optional<SleepOptions>(SleepOptions{}) : std::nullopt}),
         bed_(bed),
@@ -85,7 +88,8 @@ class Bed {
   void add_lid() {
     auto& m = world.machine();
     const double gap = 0.125 * grains_.half_edge, thickness = 0.01;
-    const Vec3 edges(bed_.length - 2.0 * gap, bed_.width - 2.0 * gap, thickness);
+    const double length = is_endless ? bed_.length + 2.0 * beyond() : bed_.length - 2.0 * gap;
+    const Vec3 edges(length, bed_.width - 2.0 * gap, thickness);
     double highest = 0.0;
     for (const auto p : world.particles()) highest = std::max(highest, world.position(p).z());
     const double z = highest + world.species(species_).shape.bounding_radius() + 0.5 * thickness;
@@ -121,13 +125,18 @@ class Bed {
   SurfaceId lid_surface;
 
  private:
+  /// m, by which the floor reaches beyond the bed: under the walls, or as far as images of grains do.
+  [[nodiscard]] double beyond() const { return is_endless ? 4.0 * grains_.edge() : bed_.wall_thickness; }
+
   void add_walls(BodyId body, const std::string& name, double low, double high, double z) {
     const double lx = bed_.length, ly = bed_.width, t = bed_.wall_thickness, middle = 0.5 * (low + high) - z;
     for (const double side : {-1.0, 1.0}) {
       const char* sign = side < 0.0 ? "-" : "+";
-      world.add_surface(body, surface::Box(Vec3(t, ly + 2.0 * t, high - low)),
-                        {.name = name + sign + "x", .position = {side * 0.5 * (lx + t), 0.0, middle}});
-      world.add_surface(body, surface::Box(Vec3(lx, t, high - low)),
+      if (!is_endless) {
+        world.add_surface(body, surface::Box(Vec3(t, ly + 2.0 * t, high - low)),
+                          {.name = name + sign + "x", .position = {side * 0.5 * (lx + t), 0.0, middle}});
+      }
+      world.add_surface(body, surface::Box(Vec3(is_endless ? lx + 2.0 * beyond() : lx, t, high - low)),
                         {.name = name + sign + "y", .position = {0.0, side * 0.5 * (ly + t), middle}});
     }
   }
@@ -135,7 +144,7 @@ class Bed {
   void build_box(const Box& box) {
     auto& m = world.machine();
     const double t = bed_.wall_thickness, seam = box.halves ? 0.5 * bed_.depth : box.wall_top;
-    const Vec3 outer(bed_.length + 2.0 * t, bed_.width + 2.0 * t, t);
+    const Vec3 outer(bed_.length + 2.0 * beyond(), bed_.width + 2.0 * t, t);
     constexpr double mass = 2.0;  // kg, of a half; it does not move
     const auto half = [&](const char* name, double height) {
       return m.add_body(mbd::box_body(name, outer, mass / outer.prod()).at(Vec3(0.0, 0.0, height)));

@@ -9,7 +9,12 @@
 #include <dem/rig/part_of.hpp>
 #include <dem/rig/session.hpp>
 #include <dem/rig/soft_lane.hpp>
+#include <dem/rig/soft_lane/tile.hpp>
 #include <dem/vehicle/drawn_hull.hpp>
+
+#include <optional>
+#include <utility>
+#include <vector>
 
 namespace dem::rig::soft_lane {
 
@@ -25,8 +30,12 @@ inline void save_telemetry(const std::filesystem::path& path, const std::vector<
 template <class Model, class ShapeOf>
 void run_campaign(const Settings& settings, ShapeOf&& shape_of, Campaign& c, Session& session) {
   const SoftLane<Model> test(settings, shape_of);
+  const SoftLane<Repeating<Model>> of_tile(settings, shape_of);
   const Settings& s = test.settings();
   const bool made = s.bed.file.empty();
+  if (Model::Domain::has_ranks && s.goes_along() && processes.count > 1) {
+    fail("--tiles is {}, but processes do not share a lane that goes along; run this on one process", s.tiles);
+  }
   const soil::Packing start = start_of_bed(s.bed, s.grains, test.shape().volume(), test.shape().bounding_radius());
   if (made) session.require_writable(s.bed.save, "--save-bed");
   session.begin_run(bed_stages(s.bed) + s.passes * (s.slope_angle() != 0.0 ? 4 : 3));
@@ -46,14 +55,27 @@ void run_campaign(const Settings& settings, ShapeOf&& shape_of, Campaign& c, Ses
       c.replay->record(world, std::vector{io::DrawnBody{stand.car.chassis, &hull}});
   };
 
-  const Bed<Model> bed = make_kept_bed(test, start, session);
-  if (made) soil::save_packing(packing_of(bed), s.bed.save);
-  c.solid_fraction = bed.solid_fraction(bed.level);
-  session.finish(text("{:.1f} mm deep, solid fraction {:.3f}", 1e3 * bed.level, c.solid_fraction));
+  const auto look_at = [&](const auto& bed) {
+    if (made) soil::save_packing(packing_of(bed), s.bed.save);
+    c.solid_fraction = bed.solid_fraction(bed.level);
+    session.finish(text("{:.1f} mm deep, solid fraction {:.3f}", 1e3 * bed.level, c.solid_fraction));
+  };
+  std::optional<soil::Tile> tile;
+  double level = not_known, time_step = not_known;
+  if (s.goes_along()) {
+    const auto bed = make_kept_bed(of_tile, start, session);
+    look_at(bed);
+    level = bed.level, time_step = of_tile.time_step(bed);
+    tile = make_kept_tile<Model>(s, test.shape(), bed, time_step, session);
+    session.finish(tile->in_words());
+  } else {
+    const auto bed = make_kept_bed(test, start, session);
+    look_at(bed);
+    c.lane = lane_grains(s, soil::placements(bed.world));
+    level = test.level(bed, c.lane), time_step = test.time_step(bed);
+  }
 
   report::Replay* replay = c.replay ? &*c.replay : nullptr;
-  c.lane = lane_grains(s, soil::placements(bed.world));
-  const double level = test.level(bed, c.lane);
   for (int k = 1; k <= s.passes; ++k) {
     PartOf<Model> part(session, session, k == 1 ? "drive" : text("drive {}", k));
     const auto found = session.keep("found", c), series = session.keep("frames", frames),
@@ -63,11 +85,13 @@ void run_campaign(const Settings& settings, ShapeOf&& shape_of, Campaign& c, Ses
       continue;
     }
     const std::vector<soil::Placement> lane = c.lane;
-    auto stand = test.set_down(lane, level, c.untouched, test.time_step(bed), session, [](const auto&) {});
+    const auto no_look = [](const auto&) {};
+    auto stand = tile ? test.set_down(*tile, level, time_step, session, no_look)
+                      : test.set_down(lane, level, c.untouched, time_step, session, no_look);
     if (k > 1) stand.level = c.level;
     const auto drive = [&] {
       if (k == 1) test.drive(stand, c, session, look);
-      else test.drive(stand, c, session, [](const auto&) {});
+      else test.drive(stand, c, session, no_look);
       if (k < s.passes) return;
       const auto lane_too = session.keep("lane", stand);
       session.complete(stand.world);

@@ -21,8 +21,8 @@ class Driver {
                .acceleration = s.acceleration,
                .spin_limit = s.spin_limit,
                .interval = interval,
-               .from = Vec3(-s.bed.length, 0, 0),
-               .to = Vec3(s.bed.length + 20.0, 0, 0)},
+               .from = Vec3(-s.length(), 0, 0),
+               .to = Vec3(s.ground_end() + 20.0, 0, 0)},
               force) {}
 
   /// `time` (s) and `way` (m) since the start.

@@ -75,18 +75,24 @@ std::array<SpeciesId, 2> add_soils(World<Model>& world, const Settings& s, const
 }
 
 /// A world with the lane's walls and grains, without a car. Grains that leave it over the walls are taken out and
-/// counted. `time_step` in s.
+/// counted. `time_step` in s. Where the Model's Domain is periodic, it is one tile of a lane that goes along. Such a
+/// lane itself has floor and side walls as far as the car drives; `to_come` grains are laid there later.
 template <class Model>
 World<Model> make_lane(const Settings& s, const typename Model::Shape& shape, std::span<const soil::Placement> grains,
-                       double level, double time_step) {
-  const double length = s.bed.length, width = s.bed.width, t = s.bed.wall_thickness;
+                       double level, double time_step, std::size_t to_come = 0) {
+  constexpr bool is_tile = Model::Domain::has_images;
+  const double width = s.bed.width, t = s.bed.wall_thickness;
+  const double low_x = -0.5 * (is_tile ? s.bed.length : s.length()), high_x = is_tile ? -low_x : s.ground_end();
+  const double length = high_x - low_x, middle_x = 0.5 * (low_x + high_x);
+  const double beyond = is_tile ? 4.0 * s.grains.edge() : t;  // m, of the floor: as far as images of grains reach
   const double track = s.is_bed() ? 0.0 : s.car.track(), top = level + 0.5;
-  const double far_x = 0.5 * length + t, far_y = 0.5 * (track + width) + t;
+  const double over_x = is_tile ? 0.0 : t, far_y = 0.5 * (track + width) + t;
   World<Model> world({.time_step = time_step,
                       .overlap_limit = 1.8,  // a grain that is jammed for a moment does not end a run; the report tells
-                      .domain = surface::Bounds{Vec3(-far_x, -far_y, -t), Vec3(far_x, far_y, top)},
+                      .domain = surface::Bounds{Vec3(low_x - over_x, -far_y, -t), Vec3(high_x + over_x, far_y, top)},
                       .beyond_domain = BeyondDomain::remove,
-                      .threads = s.bed.threads > 0 ? s.bed.threads : threads_for(grains.size()),
+                      .periodic = {.x = is_tile},
+                      .threads = s.bed.threads > 0 ? s.bed.threads : threads_for(grains.size() + to_come),
                       .sleep = s.bed.sleep ? std::optional<SleepOptions>(SleepOptions{}) : std::nullopt});
   const std::array<SpeciesId, 2> soils = add_soils(world, s, shape);
   const BodyId ground = world.machine().add_body(mbd::fixed_body("lane"));
@@ -98,11 +104,14 @@ World<Model> make_lane(const Settings& s, const typename Model::Shape& shape, st
   for (int k = 0; k < s.troughs(); ++k) {
     const double y = k == 0 ? 0.5 * track : -0.5 * track;
     const std::string name = s.is_bed() ? "bed" : k == 0 ? "left trough" : "right trough";
-    wall(name + " floor", Vec3(length + 2.0 * t, width + 2.0 * t, t), Vec3(0, y, -0.5 * t));
+    wall(name + " floor", Vec3(length + 2.0 * beyond, width + 2.0 * t, t), Vec3(middle_x, y, -0.5 * t));
     for (const double side : {-1.0, 1.0}) {
       const std::string sign = side < 0.0 ? "-" : "+";
-      wall(name + " wall " + sign + "x", Vec3(t, width + 2.0 * t, high), Vec3(side * 0.5 * (length + t), y, middle));
-      wall(name + " wall " + sign + "y", Vec3(length, t, high), Vec3(0, y + side * 0.5 * (width + t), middle));
+      if (!s.goes_along()) {
+        wall(name + " wall " + sign + "x", Vec3(t, width + 2.0 * t, high), Vec3(side * 0.5 * (length + t), y, middle));
+      }
+      wall(name + " wall " + sign + "y", Vec3(is_tile ? length + 2.0 * beyond : length, t, high),
+           Vec3(middle_x, y + side * 0.5 * (width + t), middle));
     }
   }
   for (std::size_t k = 0; k < grains.size(); ++k) {
@@ -127,7 +136,7 @@ SurfaceId add_hard_ground(World<Model>& world, const Settings& s, double level) 
 
 /// Mean height (m) of the surface of the lane, away from its walls: what sinkage and ruts are measured from.
 inline double level_of(const Settings& s, std::span<const soil::Placement> grains) {
-  const double away = s.grains.edge(), x = 0.5 * s.bed.length - away, y = 0.5 * s.bed.width - away;
+  const double away = s.grains.edge(), x = 0.5 * s.length() - away, y = 0.5 * s.bed.width - away;
   const double from = s.scene == "step" ? s.border_at() + away : -x;
   double sum = 0.0, count = 0.0;
   for (int k = 0; k < s.troughs(); ++k) {

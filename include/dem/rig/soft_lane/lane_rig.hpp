@@ -23,9 +23,9 @@ class LaneRig : public Rig {
   }
   [[nodiscard]] std::string output() const override { return settings.output; }
   [[nodiscard]] ResultNames results() const override {
-    return {.files = {"results.csv", "telemetry.csv", "rut.csv", "pull.csv", "soft_lane.pvd"},
+    return {.files = {"results.csv", "telemetry.csv", "rut.csv", "along.csv", "pull.csv", "soft_lane.pvd"},
             .plots = {"speed", "slip", "sinkage", "load", "pull", "torque", "travel", "engine", "driver", "attitude",
-                      "rut", "section", "drawbar"},
+                      "rut", "along", "section", "drawbar"},
             .frames = {"grains", "surfaces"}};
   }
   [[nodiscard]] bool can_resume() const override { return true; }
@@ -38,6 +38,7 @@ class LaneRig : public Rig {
     report.part("results.csv", [&] { write_results(report.folder() / "results.csv"); });
     if (s.scene == "drawbar") report.part("pull.csv", [&] { write_pulls(report.folder() / "pull.csv"); });
     report.part("rut.csv", [&] { write_ruts(report.folder() / "rut.csv"); });
+    if (s.goes_along()) report.part("along.csv", [&] { write_along(report.folder() / "along.csv"); });
     std::vector<io::Table> tables{drive_table(s, c), wheel_table(c), cost_table(s, c)};
     if (s.has_border()) tables.push_back(stretch_table(c));
     if (s.scene == "drawbar") tables.push_back(pull_table(c));
@@ -92,6 +93,9 @@ class LaneRig : public Rig {
     report.plot(page, pose_plot(c), "attitude", "Attitude of the chassis.");
     if (auto rut = rut_plot(c); !rut.series.empty()) {
       report.plot(page, rut, "rut", "Height of the surface across both tracks, behind the rear wheels.");
+    }
+    if (!c.along.empty()) {
+      report.plot(page, along_plot(c), "along", "Height of the surface along both tracks, over half a tyre's width.");
     }
   }
 
@@ -153,6 +157,12 @@ class LaneRig : public Rig {
         csv.row(before.y[k], before.z[k], after.z[k]);
       }
     }
+    csv.flush();
+  }
+
+  void write_along(const std::filesystem::path& path) const {
+    io::CsvWriter csv(path, {"x_m", "left_m", "right_m"}, {.digits = 6});
+    for (const LanePlace& p : campaign.along) csv.row(p.x, cell(p.z[0]), cell(p.z[1]));
     csv.flush();
   }
 

@@ -109,6 +109,12 @@ struct Pass {
   }
 };
 
+/// Mean height (m) of the surface within half a tyre's width of the middle of each track; not known where no grain is.
+struct LanePlace {
+  double x = 0.0;                                    ///< m
+  std::array<double, 2> z = {not_known, not_known};  ///< m, left and right
+};
+
 /// Everything that a run finds. With several passes it is that of the last, but for `passes`.
 struct Campaign {
   double level = not_known;  ///< m, of the lane's surface
@@ -131,6 +137,8 @@ struct Campaign {
   double lost = 0.0;                            ///< grains that left the lane
   std::array<SurfaceProfile, 2> before, after;  ///< left and right track: before the car came, behind its wheels
   std::vector<Vec3> section;                    ///< m, grains within a grain's edge of the left wheels' plane
+  std::array<double, 2> ends = {0, 0};          ///< m, along x, of the lane at the end
+  std::vector<LanePlace> along;                 ///< the tracks of a lane that goes along, all that was driven over
   std::array<Vec3, 4> wheel_at = {};            ///< m, middles of the wheels at the end
   std::optional<report::Replay> replay = {};
 
@@ -150,7 +158,7 @@ struct Campaign {
 
   /// Before the next pass.
   void forget_drive() {
-    samples.clear(), ended.clear(), has_stood = false, section.clear();
+    samples.clear(), ended.clear(), has_stood = false, section.clear(), along.clear();
     before = after = {};
     forget_evaluation();
   }

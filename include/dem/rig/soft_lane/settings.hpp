@@ -55,6 +55,10 @@ struct Settings {
   /// while it comes down few grains carry all of it.
   BedSettings bed{.lid_pressure = 0.0, .stage_limit = 6.0, .sleep = true, .file = {}, .save = {}};
   std::string layout;  ///< troughs or bed; empty: troughs, but a bed for a turn
+  /// A lane of any length: the bed is a tile that repeats itself, and so many of them go along with the car
+  /// (soil/moving_patch.hpp). 0: the bed is the lane.
+  int tiles = 0;
+  double ahead = 1.0;  ///< m, that there is at least of tiles before the front tyres
 
   std::string output = "humvee_soil_output";
   bool replay = true;
@@ -70,10 +74,23 @@ struct Settings {
   [[nodiscard]] bool is_bed() const { return layout == "bed"; }
   [[nodiscard]] int troughs() const { return is_bed() ? 1 : 2; }
   /// m, between the middle of a wheel and the end of the lane.
-  [[nodiscard]] double margin() const { return car.tyre.radius + 0.1; }
-  [[nodiscard]] double longest_path() const { return bed.length - car.wheelbase() - 2.0 * margin(); }
+  [[nodiscard]] double margin() const { return car.tyre.radius + 0.1 + rim(); }
+  [[nodiscard]] bool goes_along() const { return tiles > 0; }
+  /// m, of the lane at the start: from -length/2 to length/2.
+  [[nodiscard]] double length() const { return goes_along() ? tiles * bed.length : bed.length; }
+  /// m, along x, as far as there may be grains.
+  [[nodiscard]] double ground_end() const { return 0.5 * length() + (goes_along() ? path + 2.0 * bed.length : 0.0); }
+  /// m, at both ends of a lane that goes along, whose grains are held: two grains from corner to corner.
+  [[nodiscard]] double rim() const { return goes_along() ? 2.0 * std::sqrt(3.0) * grains.edge() : 0.0; }
+  /// m, of a lane that goes along: from behind the rear tyres to a tile more than what is ahead of the front ones.
+  [[nodiscard]] double shortest_patch() const {
+    return margin() + car.wheelbase() + car.tyre.radius + ahead + bed.length;
+  }
+  [[nodiscard]] double longest_path() const {
+    return goes_along() ? 1e4 : bed.length - car.wheelbase() - 2.0 * margin();
+  }
   /// m, along x, of the vehicle's origin at the start: the rear wheels stand at the lane's end.
-  [[nodiscard]] double start() const { return -0.5 * bed.length + margin() - car.rear.points.wheel.x(); }
+  [[nodiscard]] double start() const { return -0.5 * length() + margin() - car.rear.points.wheel.x(); }
   /// rad, by which gravity is tilted.
   [[nodiscard]] double slope_angle() const {
     return scene == "slope" || scene == "side-slope" ? std::atan(0.01 * slope) : 0.0;
@@ -108,7 +125,7 @@ inline void declare(Options& options, Settings& s) {
   add("--inputs", s.inputs,
       "CSV file that drives in place of the driver: time_s, throttle, brake (0 to 1), steer_rad (to the left); the "
       "drive ends with its last row");
-  add("--path", s.path, "that the car drives [m]; 0: as far as the lane goes");
+  add("--path", s.path, "that the car drives [m]; 0: as far as the lane goes, or 10 m on tiles");
   add("--passes", s.passes,
       "drives, each from the start in the ruts of those before; telemetry is of the last, pictures of the first");
   add("--steer", s.steer_deg, "of the front wheels in a turn, to the left [deg]");
@@ -124,6 +141,10 @@ inline void declare(Options& options, Settings& s) {
   add_grain_options(options, s.grains);
   add_bed_options(options, s.bed);
   add("--layout", s.layout, "troughs (two, one a track) or bed (one under the car); empty: by scene");
+  add("--tiles", s.tiles,
+      "a lane without end: the bed is a tile that repeats itself, and so many go along with the car; 0: the bed is the "
+      "lane");
+  add("--ahead", s.ahead, "that there is at least of tiles before the front tyres [m]");
   options.group("Output");
   add("--output", s.output, "folder; results of an earlier run in it are replaced");
   options.flag("--replay", s.replay, "replay in the report (--replay=true) or none (--no-replay)").off("--no-replay");
@@ -138,6 +159,7 @@ inline void find_idle(IdleOptions& idle, const Settings& s) {
   idle.unless(s.tyre == "mesh", "with --tyre mesh", {"--tyre-triangles"});
   idle.unless(s.tyre == "ring", "with --tyre ring", {"--tyre-pressure", "--tread-stiffness"});
   idle.unless(s.has_border(), "with --scene step or soils", {"--border"});
+  idle.unless(s.goes_along(), "with --tiles above 0", {"--ahead"});
   idle.unless(s.scene == "level" || s.scene == "slope" || s.scene == "side-slope" || s.scene == "step",
               "with --scene level, slope, side-slope or step", {"--passes"});
   idle.unless(s.scene == "soils", "with --scene soils", {"--second-friction", "--second-cohesion", "--second-share"});
@@ -157,7 +179,20 @@ inline double depth_of(double grains, double strike_off, double half_edge, doubl
 /// Throws Error unless the lane holds the car and its path.
 inline void require_room(const Settings& s) {
   const double shortest = s.car.wheelbase() + 2.0 * s.margin() + 0.1;
-  if (!(s.bed.length > shortest)) {
+  if (s.goes_along() && !(s.length() >= s.shortest_patch())) {
+    fail(
+        "{} tiles of {:g} m are {:.3g} m long, but must be at least {:.3g} m, so that there is ground under all "
+        "wheels, "
+        "{:g} m ahead of them and a tile more: give --tiles {:.0f}, or a smaller --ahead",
+        s.tiles, s.bed.length, s.length(), s.shortest_patch(), s.ahead, std::ceil(s.shortest_patch() / s.bed.length));
+  }
+  if (s.goes_along() && !(s.rim() <= 0.5 * s.bed.length)) {
+    fail(
+        "a tile is {:g} m long, but must be at least {:.3g} m, so that its grains are held at the ends of the lane; "
+        "give --bed-length {:.3g} or a smaller --half-edge",
+        s.bed.length, 2.0 * s.rim(), 2.0 * s.rim());
+  }
+  if (!s.goes_along() && !(s.bed.length > shortest)) {
     fail(
         "the lane is {:g} m long, but the car's wheels stand {:.3g} m apart and need {:.3g} m before and behind them; "
         "give --bed-length at least {:.3g}",
@@ -200,13 +235,23 @@ inline void resolve(Settings& s) {
   require_within(s.bed.strike_off, 0.0, 0.9, "--strike-off");
   // Longer where the rear wheels are to come to other ground as well, and where pulls are measured.
   const bool is_held = s.scene == "drawbar";
+  require_within(s.tiles, 0, 1000, "--tiles (0: the bed is the lane)");
+  require_positive(s.ahead, "--ahead", "m");
+  if (s.goes_along()) {
+    if (s.has_border() || s.scene == "turn" || s.passes > 1) {
+      fail("--tiles is {}, for a lane that goes along, but {} needs a lane that stays; give --tiles 0", s.tiles,
+           s.passes > 1 ? text("--passes {}", s.passes) : "--scene " + s.scene);
+    }
+    fill(s.bed.length, 0.25 * by_size.length);
+    fill(s.path, 10.0);
+  }
   fill(s.bed.length, by_size.length + (s.has_border() ? s.car.wheelbase() + 0.5 : is_held ? 1.0 : 0.0));
   fill(s.bed.width, s.is_bed() ? by_size.bed_width : by_size.trough_width);
   fill(s.bed.lid_pressure, s.is_bed() ? 1000.0 : 5000.0);
   require_positive(s.bed.length, "--bed-length", "m (0: by size)");
   require_positive(s.bed.width, "--bed-width", "m (0: by size)");
   const double full_depth =
-      depth_of(331'890.0 / s.troughs(), s.bed.strike_off, s.grains.half_edge, s.bed.length, s.bed.width);
+      depth_of(331'890.0 / s.troughs(), s.bed.strike_off, s.grains.half_edge, s.length(), s.bed.width);
   rig::resolve(s.bed, {s.bed.length, s.bed.width, by_size.depth > 0.0 ? by_size.depth : full_depth}, s.output);
   fill(s.speed, is_held ? 0.5 * by_size.speed : by_size.speed);
   if (s.engine != "motor") {
@@ -281,6 +326,10 @@ inline NamesAndValues list_settings(const Settings& s) {
                              s.border, s.second_friction, s.second_cohesion, 100.0 * s.second_share)});
   }
   if (s.passes > 1) list.push_back({"passes", text("{}", s.passes)});
+  if (s.goes_along()) {
+    list.push_back(
+        {"goes along", text("{} tiles of {:g} m, at least {:g} m of them ahead", s.tiles, s.bed.length, s.ahead)});
+  }
   rig::list_settings(list, s.grains);
   rig::list_settings(list, s.bed);
   return list;

@@ -7,6 +7,7 @@
 #include <dem/rig/soft_lane/driver.hpp>
 #include <dem/rig/soft_lane/lane.hpp>
 #include <dem/rig/stages.hpp>
+#include <dem/soil/moving_patch.hpp>
 #include <dem/soil/rest.hpp>
 #include <dem/vehicle/hitch.hpp>
 #include <dem/vehicle/ring_wheels.hpp>
@@ -31,18 +32,20 @@ struct TyrePart {
 template <class Model>
 struct Stand {
   World<Model> world;
-  double level = 0.0;                   ///< m
-  std::vector<soil::Placement> before;  ///< grains before the car came
+  double level = 0.0;                        ///< m
+  std::vector<soil::Placement> before = {};  ///< grains before the car came
   vehicle::Vehicle car = {};
   std::array<std::vector<TyrePart>, 4> tyres = {};
   LoadId crane = {};
-  std::optional<SurfaceId> hard = {};          ///< ground, of a step
-  std::shared_ptr<vehicle::Hitch> hitch = {};  ///< of a drawbar
+  std::optional<SurfaceId> hard = {};                  ///< ground, of a step
+  std::shared_ptr<vehicle::Hitch> hitch = {};          ///< of a drawbar
+  std::optional<soil::MovingPatch<Model>> patch = {};  ///< the grains of a lane that goes along
 
   /// What is kept of it besides world and car.
   template <class V>
   void fields(V& v) {
     v("level", level, "m"), v("before", before);
+    if (patch) patch->fields(v);
   }
 };
 
@@ -150,12 +153,38 @@ void add_car(Stand<Model>& stand, const Settings& s) {
   if (s.scene == "drawbar") stand.hitch = vehicle::add_hitch(m, stand.car, 0.6);
 }
 
+/// m, the middles of the wheels.
+template <class Model>
+std::array<Vec3, 4> wheels_of(const Stand<Model>& stand) {
+  std::array<Vec3, 4> at;
+  for (std::size_t k = 0; k < 4; ++k) at[k] = stand.world.machine().body(stand.car.wheels[k].body).position();
+  return at;
+}
+
+/// Lays the tiles of a lane that goes along.
+template <class Model>
+void lay_patch(Stand<Model>& stand, const Settings& s, const soil::Tile& tile) {
+  stand.patch.emplace(stand.world, tile,
+                      soil::PatchOptions{.tiles = s.tiles,
+                                         .corner = Vec3(-0.5 * s.length(), 0, 0),
+                                         .rim = s.rim(),
+                                         .ahead = s.ahead + s.car.tyre.radius,
+                                         .rut_cell = s.grains.half_edge});
+  stand.world.prepare();
+  stand.before = soil::placements(stand.world);
+  stand.level = level_of(s, stand.before);
+}
+
 /// Ten milliseconds with the driver's controls. Steering turns at `steer_rate` (rad/s) at most. Throws Stopped for a
 /// step that shows a problem, Interrupted after Ctrl-C.
 template <class Model>
 void advance(Stand<Model>& stand, const vehicle::Controls& controls, double steer_rate = 0.5) {
   const double dt = stand.world.time_step();
   run(stand.world, interval, [&] { vehicle::drive(stand.world.machine(), stand.car, controls, dt, steer_rate); });
+  if (!stand.patch) return;
+  double front = -HUGE_VAL;
+  for (const Vec3& wheel : wheels_of(stand)) front = std::max(front, wheel.x());
+  stand.patch->follow(stand.world, front);
 }
 
 /// On a drawbar: the sled goes as fast as it is to, `time` (s) after the start.
@@ -164,13 +193,6 @@ void pull(Stand<Model>& stand, const Settings& s, double time) {
   if (stand.hitch) stand.hitch->on = true, stand.hitch->speed = held_rims(s, time) * (1.0 - held_slip(s, time));
 }
 
-/// m, the middles of the wheels.
-template <class Model>
-std::array<Vec3, 4> wheels_of(const Stand<Model>& stand) {
-  std::array<Vec3, 4> at;
-  for (std::size_t k = 0; k < 4; ++k) at[k] = stand.world.machine().body(stand.car.wheels[k].body).position();
-  return at;
-}
 /// Where the car is along the lane, m: the mean of its wheels.
 template <class Model>
 double place_of(const Stand<Model>& stand) {
@@ -197,11 +219,25 @@ Sample sample_of(const Stand<Model>& stand, const vehicle::Controls& controls, d
   return x;
 }
 
-/// The surface of the left (0) or right (1) track between where the rear wheels stood and a place (m) that they left,
-/// 0.2 m from both.
+/// Of the grains of a lane that goes along, where it is now, before the car came.
+template <class Model>
+std::vector<soil::Placement> untouched_patch(const soil::MovingPatch<Model>& patch) {
+  std::vector<soil::Placement> all;
+  const soil::Tile& tile = patch.tile();
+  for (int k = 0; k < patch.tiles(); ++k) {
+    const Vec3 corner(patch.back() + k * tile.period[0], 0, 0);
+    for (const soil::TileGrain& g : tile.grains) {
+      all.push_back({to_eigen(g.position) + corner, to_eigen(g.rotation)});
+    }
+  }
+  return all;
+}
+
+/// The surface of the left (0) or right (1) track between where the rear wheels stood, or where the lane begins (m),
+/// and a place (m) that they left, 0.2 m from both.
 inline SurfaceProfile track_profile(const Settings& s, std::span<const soil::Placement> grains, std::size_t side,
-                                    double rear) {
-  double from = s.start() + s.car.rear.points.wheel.x() + 0.2;
+                                    double begin, double rear) {
+  double from = std::max(begin, s.start() + s.car.rear.points.wheel.x()) + 0.2;
   if (s.scene == "step") from = std::max(from, s.border_at() + 0.2);
   const double to = std::max(from, rear - 0.2);
   const double half = s.is_bed() ? 0.25 * s.bed.width : 0.5 * s.bed.width;
@@ -241,14 +277,40 @@ std::vector<double> overlaps_under_tyres(const Stand<Model>& stand, const Settin
   return overlaps;
 }
 
+/// The tracks of a lane that goes along, from where it began to where it ends now.
+template <class Model>
+std::vector<LanePlace> along_tracks(const Stand<Model>& stand, const Settings& s) {
+  const soil::HeightField field = stand.patch->surface(stand.world);
+  std::vector<LanePlace> places(field.along());
+  for (std::size_t i = 0; i < field.along(); ++i) {
+    places[i].x = field.x0 + (static_cast<double>(i) + 0.5) * field.cell;
+    for (std::size_t side = 0; side < 2; ++side) {
+      const double middle = (side == 0 ? 0.5 : -0.5) * s.car.track();
+      double sum = 0.0, count = 0.0;
+      for (std::size_t j = 0; j < field.across; ++j) {
+        const double y = field.y0 + (static_cast<double>(j) + 0.5) * field.cell, z = field.z[i * field.across + j];
+        if (std::abs(y - middle) < 0.25 * s.car.tyre.width && std::isfinite(z)) sum += z, count += 1.0;
+      }
+      if (count > 0.0) places[i].z[side] = sum / count;
+    }
+  }
+  return places;
+}
+
 /// What is seen of the lane at the end: ruts behind the rear wheels, and a section through the left wheels.
 template <class Model>
 void look_back(const Stand<Model>& stand, const Settings& s, Campaign& c) {
   const auto after = soil::placements(stand.world);
   c.wheel_at = wheels_of(stand);
+  c.ends = {-0.5 * s.length(), 0.5 * s.length()};
+  if (stand.patch) {
+    c.ends = {stand.patch->back(), stand.patch->front()};
+    c.along = along_tracks(stand, s);
+  }
+  const auto before = stand.patch ? untouched_patch(*stand.patch) : stand.before;
   for (std::size_t k = 0; k < 2; ++k) {
-    c.before[k] = track_profile(s, stand.before, k, c.wheel_at[2].x());
-    c.after[k] = track_profile(s, after, k, c.wheel_at[2].x());
+    c.before[k] = track_profile(s, before, k, c.ends[0], c.wheel_at[2].x());
+    c.after[k] = track_profile(s, after, k, c.ends[0], c.wheel_at[2].x());
   }
   const double y = 0.5 * (c.wheel_at[0].y() + c.wheel_at[2].y());
   c.section.clear();

@@ -203,6 +203,21 @@ inline io::Plot rut_plot(const Campaign& c) {
   return plot;
 }
 
+/// The surface of the tracks along a lane that goes along: of all that was driven over.
+inline io::Plot along_plot(const Campaign& c) {
+  io::Plot plot{
+      .title = "Surface along the tracks", .x_label = "along the lane [m]", .y_label = "above the level [mm]"};
+  for (std::size_t side = 0; side < 2; ++side) {
+    io::Series line{.name = side == 0 ? "left" : "right", .color = static_cast<int>(side)};
+    for (const LanePlace& p : c.along) {
+      if (std::isfinite(p.z[side])) line.x.push_back(p.x), line.y.push_back(1e3 * (p.z[side] - c.level));
+    }
+    plot.series.push_back(std::move(line));
+  }
+  plot.width = 1200;
+  return plot;
+}
+
 /// A section of the lane at the end: grains in the plane of the left wheels, the wheels, and the level.
 inline io::Plot section_plot(const Settings& s, const Campaign& c) {
   io::Plot plot{
@@ -220,15 +235,15 @@ inline io::Plot section_plot(const Settings& s, const Campaign& c) {
     plot.series.push_back(std::move(wheel));
   }
   plot.series.push_back({.name = "level",
-                         .x = {-0.5 * s.bed.length, 0.5 * s.bed.length},
+                         .x = {c.ends[0], c.ends[1]},
                          .y = {c.level, c.level},
                          .style = io::SeriesStyle::Dashed,
                          .color = 2});
   // One scale for both axes, as far as the frame allows.
   plot.width = 1200;
   plot.height = 420;
-  const double shown = 0.28 * s.bed.length;
-  plot.x_range = {-0.5 * s.bed.length, 0.5 * s.bed.length};
+  const double shown = 0.28 * s.length();
+  plot.x_range = {c.ends[0], c.ends[1]};
   plot.y_range = {0.0, std::max(shown, c.level + 1.1)};
   return plot;
 }
