@@ -19,6 +19,7 @@ struct SurfaceMesh {
   std::vector<std::array<std::int32_t, 3>> triangles = {};  ///< indices into vertices, counter-clockwise from outside
   std::vector<std::array<std::int32_t, 4>> quads = {};      ///< likewise
   std::vector<std::vector<std::int32_t>> polygons = {};     ///< likewise, with any number of corners
+  bool operator==(const SurfaceMesh&) const = default;
 
   /// For those who keep it in a file.
   template <class V>

@@ -33,6 +33,7 @@ struct ReplayOptions {
 struct ReplayBall {
   Vec3 centre = Vec3::Zero();  ///< m, in the grain's frame
   double radius = 0.0;         ///< m, > 0
+  bool operator==(const ReplayBall&) const = default;
   template <class V>
   void fields(V& v) {
     v("centre", centre, "m"), v("radius", radius, "m");
@@ -44,6 +45,7 @@ struct ReplayShape {
   std::vector<ReplayBall> balls = {};  ///< drawn with more or fewer triangles as there are fewer or more of them
   io::SurfaceMesh mesh = {};           ///< where there are no balls
   double smooth_angle = 0.0;           ///< rad; edges of the mesh that bend less are shaded round
+  bool operator==(const ReplayShape&) const = default;
   template <class V>
   void fields(V& v) {
     v("balls", balls), v("mesh", mesh), v("smooth_angle", smooth_angle, "rad");

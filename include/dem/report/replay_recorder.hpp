@@ -47,11 +47,14 @@ class Replay {
     check_three_js(options_.three_js);
   }
 
-  /// Adds a look of grains and returns its number. Throws dem::Error for a radius that is not positive, and a mesh
-  /// that has no faces or names a vertex that it has not.
+  /// Adds a look of grains and returns its number; that of an earlier one which is the same. Throws dem::Error for a
+  /// radius that is not positive, and a mesh that has no faces or names a vertex that it has not.
   std::size_t add_shape(ReplayShape shape) {
     for (const ReplayBall& ball : shape.balls) require_positive(ball.radius, "radius of a ball in a replay", "m");
     if (shape.balls.empty()) detail::check_replay_mesh(shape.mesh, fmt::format("shape {}", shapes_.size()));
+    if (const auto same = std::find(shapes_.begin(), shapes_.end(), shape); same != shapes_.end()) {
+      return static_cast<std::size_t>(same - shapes_.begin());
+    }
     shapes_.push_back(std::move(shape));
     return shapes_.size() - 1;
   }

@@ -11,7 +11,10 @@ namespace detail {
 template <class Domain>
 std::vector<Vec3> shifts_of(const Domain& domain) {
   std::vector<Vec3> shifts = {Vec3(0, 0, 0)};
-  if constexpr (Domain::has_images) {
+  if constexpr (domain::IsSheared<Domain>) {
+    shifts.clear();
+    domain.for_each_image(Vec3(0, 0, 0), [&](const Vec3& shift) { shifts.push_back(shift); });
+  } else if constexpr (Domain::has_images) {
     for (int axis = 0; axis < 3; ++axis) {
       const double period = domain.period()[static_cast<std::size_t>(axis)];
       if (period == 0.0) continue;
@@ -49,7 +52,11 @@ void add_world(AverageSums& sums, const World<Model>& world) {
   for (const ParticleId p : world.particles()) {
     const auto& kind = world.species(world.species_of(p));
     for (const Vec3& shift : shifts) {
-      sums.add_grain(kind.mass, kind.shape.volume(), world.position(p) + shift, world.velocity(p), touching[p.index()]);
+      Vec3 velocity = world.velocity(p);
+      if constexpr (domain::IsSheared<typename Model::Domain>) {
+        velocity.x() += world.state().domain.shear_rate() * shift.z();
+      }
+      sums.add_grain(kind.mass, kind.shape.volume(), world.position(p) + shift, velocity, touching[p.index()]);
     }
   }
 }

@@ -184,7 +184,8 @@ void measure_tile(Tile& t, const WorldState<Model>& w) {
 ///     const soil::Tile tile = soil::take_tile(cell);
 template <class Model>
 Tile take_tile(const World<Model>& world, const TileOptions& o = {}) {
-  static_assert(Model::Domain::has_images, "a tile is taken out of a world that repeats itself: domain::Periodic");
+  static_assert(Model::Domain::has_images && !domain::IsSheared<typename Model::Domain>,
+                "a tile is taken out of a world that repeats itself: domain::Periodic");
   World<Model> copy = world;
   copy.prepare();
   WorldState<Model>& w = copy.state();

@@ -223,6 +223,9 @@ void count_energy(World<Model>& world) {
       fail("count_energy adds up every contact of a step, which no rank has alone: run it on one rank");
     }
   }
+  if constexpr (domain::IsSheared<typename Model::Domain>) {
+    fail("count_energy does not know the work that shears a cell; count it by the stress times the shear rate");
+  }
   world.prepare();
   WorldState<Model>& w = world.state();
   w.ledger = {};

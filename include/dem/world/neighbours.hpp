@@ -10,6 +10,7 @@ namespace dem {
 template <class Model>
 bool neighbours_outdated(const WorldState<Model>& w) {
   if (!w.list_valid) return w.particles.count > 0;
+  if constexpr (domain::IsSheared<typename Model::Domain>) return 2.0 * w.moved() > w.list_skin;
   return 4.0 * w.moved2() > w.list_skin * w.list_skin;
 }
 
@@ -22,6 +23,9 @@ void wrap_grains(WorldState<Model>& w) {
     w.images = {};
     for (std::size_t i = 0; i < p.count; ++i) {
       const Vector3<double> inside = w.domain.wrapped(p.position[i]);
+      if constexpr (domain::IsSheared<typename Model::Domain>) {
+        p.velocity.x[i] -= w.domain.level_of(p.position[i]) * w.domain.slip();
+      }
       const auto& kind = w.species[p.species[i]];
       if (w.ledger.on && !kind.is_held()) {
         w.ledger.came -= kind.mass * dot(from_eigen(w.options.gravity), inside - p.position[i]);
@@ -45,7 +49,7 @@ void place_images(WorldState<Model>& w) {
     const std::size_t count = w.images.grain.size();
     w.executor.for_each((count + chunk_size - 1) / chunk_size, [&](std::size_t block) {
       const std::size_t end = std::min((block + 1) * chunk_size, count);
-      for (std::size_t k = block * chunk_size; k < end; ++k) grain::follow_grain(w.particles, w.images, k);
+      for (std::size_t k = block * chunk_size; k < end; ++k) grain::follow_grain(w.particles, w.images, w.domain, k);
     });
   }
 }

@@ -23,6 +23,13 @@ void set_period(WorldState<Model>& w) {
       if (repeats[k]) require_positive(d.high.data()[k] - d.low.data()[k], "period of the domain", "m");
     }
     w.domain = {d, repeats};
+    if constexpr (domain::IsSheared<typename Model::Domain>) {
+      require_within(w.options.shear_rate, -1e9, 1e9, "shear rate (1/s)");
+      if (!repeats[0] || !repeats[2]) {
+        fail("a sheared cell repeats itself along x and z at least: set WorldOptions::periodic to .x and .z");
+      }
+      w.domain.set_shear_rate(w.options.shear_rate, 0.0);
+    }
     for (std::size_t k = 0; k < 3; ++k) {
       if (repeats[k]) d.low.data()[k] = -HUGE_VAL, d.high.data()[k] = HUGE_VAL;
     }
@@ -34,6 +41,12 @@ void set_period(WorldState<Model>& w) {
     fail(
         "WorldOptions::periodic is set, but the world's model has an open Domain: say `using Domain = "
         "dem::domain::Periodic;` in the model");
+  }
+  if (!domain::IsSheared<typename Model::Domain> && w.options.shear_rate != 0.0) {
+    fail(
+        "WorldOptions::shear_rate is {:g} 1/s, but the world's model is not sheared: say `using Domain = "
+        "dem::domain::Sheared;` in the model",
+        w.options.shear_rate);
   }
 }
 
@@ -67,6 +80,13 @@ void check_period(const WorldState<Model>& w) {
             "the domain's period in {} is {:g} m, but must be above {:g} m, twice the reach of the neighbour list: "
             "enlarge the cell or take smaller grains",
             axes[k], period, 2.0 * list_reach);
+      }
+    }
+    if constexpr (domain::IsSheared<typename Model::Domain>) {
+      if (!w.surfaces.empty() || w.options.sleep) {
+        fail("the world's cell is sheared, but has {}, which such a cell cannot have; {}",
+             w.surfaces.empty() ? "grains that may sleep" : surface_in_words(w, 0),
+             w.surfaces.empty() ? "leave WorldOptions::sleep empty" : "take domain::Periodic");
       }
     }
     for (std::size_t s = 0; s < w.surfaces.size(); ++s) {

@@ -129,8 +129,12 @@ struct WorldState {
     if constexpr (Model::Domain::has_ranks) return domain.largest(moved2);
     return moved2;
   }
-  /// m, the same.
-  double moved() const { return std::sqrt(moved2()); }
+  /// m, the same; and half of how far the cells of a sheared domain went by each other.
+  double moved() const {
+    double moved = std::sqrt(moved2());
+    if constexpr (domain::IsSheared<typename Model::Domain>) moved += 0.5 * std::abs(domain.offset() - images.offset);
+    return moved;
+  }
 };
 
 /// A new neighbour list is due, whether grains have left this one or not.

@@ -101,6 +101,9 @@ void advance(WorldState<Model>& w) {
   w.sleepers.measuring = w.options.sleep && (w.step + 1) % static_cast<std::uint64_t>(w.options.sleep->window) == 0;
   for (int stage = 0; stage < Integrator::stages; ++stage) {
     const bool last = stage + 1 == Integrator::stages;
+    if constexpr (domain::IsSheared<typename Model::Domain>) {
+      w.domain.move_to(w.time + (Integrator::predicts_before_forces || stage > 0 ? w.time_step : 0.0));
+    }
     if constexpr (Integrator::predicts_before_forces) {
       if constexpr (Model::Domain::has_ranks)
         w.domain.is_whole = !w.domain.is_shared();  // a list made now gathers rows
@@ -128,6 +131,7 @@ void advance(WorldState<Model>& w) {
   if (w.carry_held) w.carry_held(w);
   if (w.count_energy) [[unlikely]]
     w.count_energy(w);
+  if constexpr (domain::IsSheared<typename Model::Domain>) w.domain.move_to(w.time + w.time_step);
   place_images(w);
   wake_and_put_to_sleep(w);
   w.time += w.time_step;

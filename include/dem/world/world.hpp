@@ -115,6 +115,13 @@ class World : public WorldSetup<M> {
     initialised_ = false;
   }
 
+  /// 1/s, dv_x/dz of a sheared cell from now on (domain::Sheared). Grains keep their velocities.
+  void set_shear_rate(double rate) requires domain::IsSheared<typename Model::Domain> {
+    require_within(rate, -1e9, 1e9, "shear rate (1/s)");
+    state_.domain.set_shear_rate(rate, time());
+    initialised_ = false;
+  }
+
   /// Lets grains at rest sleep from now on, or wakes all for good. Throws Error if a setting makes no sense.
   void set_sleep(const std::optional<SleepOptions>& sleep) {
     if (sleep) check_sleep(*sleep);

@@ -85,6 +85,8 @@ TEST_CASE("all that a page holds of a run can be read back, within the stated er
   Replay replay({.frames = 20});
   replay.add_shape(ball(0.1));
   replay.add_shape(cube(0.2));
+  CHECK(replay.add_shape(ball(0.1)) == 0);  // held twins of grains look as these do
+  CHECK(replay.add_shape(cube(0.2)) == 1);
   replay.add_part("lid", dem::io::box_mesh({1, 2, 3}));
   replay.add_part("\"wheel\" </script>", dem::io::cylinder_mesh(0.5, 0.2));
   const auto lid = [](int f) {

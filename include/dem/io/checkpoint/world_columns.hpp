@@ -136,6 +136,10 @@ void chunk_fields(Fields& v, WorldState<Model>& w) {
     for (const Vector3<double>& s : w.images.shift) shifts.insert(shifts.end(), {s.x, s.y, s.z});
     v("image_of", w.images.grain), v("image_shifts", shifts, "m");
     v("rows_of_grains", w.images.grains), v("first_image", w.images.first);  // grains may have come since
+    if constexpr (domain::IsSheared<typename Model::Domain>) {
+      v("image_levels", w.images.level), v("offset_listed", w.images.offset, "m");
+      if (is_restoring && w.images.level.size() != w.images.grain.size()) fail("the saved images have no levels");
+    }
     if (is_restoring) {
       w.images.shift.resize(w.images.grain.size());
       for (std::size_t k = 0; k < w.images.shift.size(); ++k) {
