@@ -109,7 +109,7 @@ struct Pass {
   }
 };
 
-/// Mean height (m) of the surface within half a tyre's width of the middle of each track; not known where no grain is.
+/// Mean height (m) of the surface over half a metre of each track and half a tyre's width; not known where no grain is.
 struct LanePlace {
   double x = 0.0;                                    ///< m
   std::array<double, 2> z = {not_known, not_known};  ///< m, left and right

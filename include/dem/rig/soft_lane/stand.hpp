@@ -281,17 +281,19 @@ std::vector<double> overlaps_under_tyres(const Stand<Model>& stand, const Settin
 template <class Model>
 std::vector<LanePlace> along_tracks(const Stand<Model>& stand, const Settings& s) {
   const soil::HeightField field = stand.patch->surface(stand.world);
-  std::vector<LanePlace> places(field.along());
-  for (std::size_t i = 0; i < field.along(); ++i) {
-    places[i].x = field.x0 + (static_cast<double>(i) + 0.5) * field.cell;
+  const auto rows = static_cast<std::size_t>(std::max(1.0, std::round(0.5 / field.cell)));  // of a place
+  std::vector<LanePlace> places(field.along() / rows);
+  for (std::size_t p = 0; p < places.size(); ++p) {
+    places[p].x = field.x0 + (static_cast<double>(p) + 0.5) * static_cast<double>(rows) * field.cell;
     for (std::size_t side = 0; side < 2; ++side) {
       const double middle = (side == 0 ? 0.5 : -0.5) * s.car.track();
       double sum = 0.0, count = 0.0;
-      for (std::size_t j = 0; j < field.across; ++j) {
-        const double y = field.y0 + (static_cast<double>(j) + 0.5) * field.cell, z = field.z[i * field.across + j];
-        if (std::abs(y - middle) < 0.25 * s.car.tyre.width && std::isfinite(z)) sum += z, count += 1.0;
+      for (std::size_t k = p * rows * field.across; k < (p + 1) * rows * field.across; ++k) {
+        const double y = field.y0 + (static_cast<double>(k % field.across) + 0.5) * field.cell;
+        if (std::abs(y - middle) < 0.25 * s.car.tyre.width && std::isfinite(field.z[k]))
+          sum += field.z[k], count += 1.0;
       }
-      if (count > 0.0) places[i].z[side] = sum / count;
+      if (count > 0.0) places[p].z[side] = sum / count;
     }
   }
   return places;
