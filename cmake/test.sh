@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# Builds the library, examples and tests, and runs all tests but the validation; installs the packages they need first.
+# Builds the library, examples and tests, and runs all tests but the validation and the checks; installs the packages they
+# need first.
 # An argument names another workflow of CMakePresets.json, e.g. asan or validation.
 set -euo pipefail
 

@@ -1,4 +1,4 @@
-#include "scenes.hpp"
+#include "world/scenes.hpp"
 
 #include <dem/law/friction/none.hpp>
 #include <dem/parallel/openmp.hpp>

@@ -1,4 +1,4 @@
-#include "scenes.hpp"
+#include "world/scenes.hpp"
 
 #include <dem/geometry/cylinder/cylinder.hpp>
 #include <dem/geometry/mesh/mesh_shapes.hpp>

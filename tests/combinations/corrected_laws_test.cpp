@@ -1,4 +1,4 @@
-#include "world/combinations.hpp"
+#include "combinations/combinations.hpp"
 
 #include <dem/geometry/mesh/mesh_shapes.hpp>
 

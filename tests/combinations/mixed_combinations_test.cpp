@@ -1,4 +1,4 @@
-#include "world/combinations.hpp"
+#include "combinations/combinations.hpp"
 
 TEMPLATE_PRODUCT_TEST_CASE("mixed grains come to rest under every law and weigh what they weigh", "",
                            (combinations::ElasticGrains, combinations::StickyGrains, combinations::PlasticGrains),

@@ -1,4 +1,4 @@
-#include "world/combinations.hpp"
+#include "combinations/combinations.hpp"
 
 // Every kind of grain meets every law in a mixture, where grains of one kind touch each other as they do alone; alone
 // each kind meets one.

@@ -1,5 +1,5 @@
 #include "geometry/fillet.hpp"
-#include "scenes.hpp"
+#include "world/scenes.hpp"
 
 #include <dem/geometry/mesh/mesh_shapes.hpp>
 #include <dem/geometry/superquadric/superquadric.hpp>
