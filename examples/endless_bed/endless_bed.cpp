@@ -34,9 +34,8 @@ struct Beads : Model {
 
 namespace {
 
-constexpr double d = 4e-3, length = 8 * d, width = 6 * d;                   // m: of a bead, and of a tile
-constexpr double stiffness = 3e3, radius = 8 * d, load = 1.0, speed = 0.8;  // N/m, m, N, m/s
-constexpr int patch_tiles = 6;
+constexpr double d = 4e-3, length = 8 * d, width = 6 * d;                            // m: of a bead, and of a tile
+constexpr double stiffness = 3e3, radius = 8 * d, speed = 0.8;                       // N/m, m, m/s
 constexpr double ahead = 2.5 * length, first_place = 2.5 * length, interval = 1e-3;  // m, m, s
 
 double now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
@@ -83,9 +82,10 @@ struct Run {
   SurfaceId wheel;
 };
 
-/// Rolls the wheel over the way (m) at a slip, on a patch or on a bed that is long enough. `doubles_at`: m, the way
-/// after which the patch doubles its length; negative: never.
-Run roll(const soil::Tile& tile, double slip, double way, bool on_patch, double doubles_at) {
+/// Rolls the wheel with its load (N) over the way (m) at a slip, on a patch or on a bed that is long enough.
+/// `doubles_at`: m, the way after which the patch doubles its length; negative: never.
+Run roll(const soil::Tile& tile, double slip, double load, double way, int patch_tiles, bool on_patch,
+         double doubles_at) {
   Run run;
   World<Beads>& world = run.world.emplace(ground(false));
   const double start = now(), rim = 2.5 * d;
@@ -210,8 +210,10 @@ void draw(const Run& run, const std::string& folder) {
 int main(int argc, char** argv) {
   Arguments arguments(argc, argv);
   const double tiles = arguments.number("--tiles", 10.0), slip = arguments.number("--slip", 0.3);
-  const double doubles_at = length * arguments.number("--double-at", -1.0);  // tiles of the way
-  const auto beds = static_cast<int>(arguments.number("--beds", 1.0));       // seeds of the tile
+  const double load = arguments.number("--load", 1.0);                          // N
+  const auto patch_tiles = static_cast<int>(arguments.number("--patch", 6.0));  // long
+  const double doubles_at = length * arguments.number("--double-at", -1.0);     // tiles of the way
+  const auto beds = static_cast<int>(arguments.number("--beds", 1.0));          // seeds of the tile
   const bool compares = arguments.number("--compare", 0.0) != 0.0;
   const std::string folder = arguments.take("--output", "endless_bed");
   arguments.check();
@@ -222,7 +224,7 @@ int main(int argc, char** argv) {
     fmt::print("tile {}: {}\n", seed, tile.in_words());
     for (const bool on_patch : {true, false}) {
       if (!on_patch && !compares) continue;
-      const Run run = roll(tile, slip, (tiles + 1.0) * length, on_patch, doubles_at);
+      const Run run = roll(tile, slip, load, (tiles + 1.0) * length, patch_tiles, on_patch, doubles_at);
       const Mean pull = mean_of(run.samples, &Sample::pull), sinkage = mean_of(run.samples, &Sample::sinkage);
       if (run.patch && run.patch->strays() > 0) fmt::print("{} beads lay where tiles came\n", run.patch->strays());
       fmt::print("{:9} pull {:.4f} +- {:.4f} N, sinkage {:.4f} +- {:.4f} mm; {} grains, {} ids, {:.2f} MB, {:.0f} s\n",
