@@ -48,7 +48,7 @@ int main(int argc, char** argv) {
                        .rotation = rotation_between(Vec3::UnitZ(), Vec3(0, -side, 0))});
   }
 
-  // The drum turns about y, and carries its lining: beads that are glued to the inside of its mantle.
+  // The drum turns about y, and carries its lining: beads that are glued to the inside of its lateral surface.
   auto& machine = world.machine();
   const BodyId drum = machine.add_body(mbd::cylinder_body("drum", radius, length, 1000));
   const JointId axle = machine.add_joint(mbd::revolute("axle", machine.ground(), drum, {0, 0, 0}, Vec3::UnitY()));

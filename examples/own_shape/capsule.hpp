@@ -11,7 +11,7 @@ struct Capsule {  // all that is within `radius` of a line of length 2 `half`, a
   static constexpr bool has_orientation = true;
   static constexpr std::size_t most_contacts = 1;
   template <class T>
-  using PairTouch = dem::contact::PointTouch<T>;
+  using PairContactPoint = dem::contact::ContactPoint<T>;
   using V = dem::Vector3<double>;
 
   double half, radius;  // m
@@ -30,9 +30,9 @@ struct Capsule {  // all that is within `radius` of a line of length 2 `half`, a
     const V along = half * (rotation * V{0, 0, 1});
     pose[0] = along.x, pose[1] = along.y, pose[2] = along.z;
   }
-  template <class Sink>
+  template <class Callback>
   static void collide(const Capsule& a, const double* pose_a, const Capsule& b, const double* pose_b,
-                      const V& separation, Sink&& sink) {
+                      const V& separation, Callback&& callback) {
     // Nearest points s u and separation + t v of the lines, s and t from -1 to 1, by turns: each comes nearer by the
     // square of the cosine between the lines, and where they are nearly parallel any points will do.
     const V u = line(pose_a), v = line(pose_b);
@@ -45,13 +45,13 @@ struct Capsule {  // all that is within `radius` of a line of length 2 `half`, a
     const double distance = norm(link), overlap = a.radius + b.radius - distance;
     if (!(overlap > 0.0 && distance > 0.0)) return;
     const V normal = 1.0 / distance * link;
-    sink(0u, PairTouch<double>{normal, overlap, s * u + (a.radius - 0.5 * overlap) * normal,
-                               a.radius * b.radius / (a.radius + b.radius), 1.0});
+    callback(0u, PairContactPoint<double>{normal, overlap, s * u + (a.radius - 0.5 * overlap) * normal,
+                                          a.radius * b.radius / (a.radius + b.radius), 1.0});
   }
   static std::uint32_t mirrored(std::uint32_t feature) { return feature; }
-  template <class Sink>
-  void probe(const double* pose, Sink&& sink) const {  // on surfaces: the balls at its ends
-    sink(0u, dem::contact::Probe{-line(pose), radius, radius});
-    sink(1u, dem::contact::Probe{line(pose), radius, radius});
+  template <class Callback>
+  void sample_points(const double* pose, Callback&& callback) const {  // on surfaces: the balls at its ends
+    callback(0u, dem::contact::SamplePoint{-line(pose), radius, radius});
+    callback(1u, dem::contact::SamplePoint{line(pose), radius, radius});
   }
 };

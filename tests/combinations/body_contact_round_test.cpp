@@ -68,7 +68,8 @@ TEST_CASE("crossed rods touch where their axes come nearest, as deep as 2 R minu
 }
 
 TEST_CASE("crossed rods of triangles touch as cylinders do, however finely they are cut") {
-  // No vertex of either is near the other: what touches are the long edges of the mantles, which share the contact.
+  // No vertex of either is near the other: what touches are the long edges of the lateral surfaces, which share the
+  // contact.
   const double R = 0.1, depth = 1e-3;
   for (const int facets : {48, 400, 2000}) {
     for (const bool other_is_cut : {true, false}) {
@@ -180,8 +181,8 @@ TEST_CASE("a pin in a tube touches the wall, whichever of them is the longer one
   CHECK(p.torque.y() < -0.5 * depth * 0.5);
 }
 
-TEST_CASE("an egg in a drum is pushed by the mantle alike, whether or not an end is near") {
-  // Tilted, so that the point farthest along the way to the mantle is not the deepest one.
+TEST_CASE("an egg in a drum is pushed by the lateral surface alike, whether or not an end is near") {
+  // Tilted, so that the point farthest along the way to the lateral surface is not the deepest one.
   const double R = 0.05, length = 0.1, depth = 1e-5;
   const surface::Superquadric egg({4e-3, 2e-3, 1e-3}, {2, 2, 2});
   const double to_side = std::sqrt(0.5 * (4e-3 * 4e-3 + 2e-3 * 2e-3));

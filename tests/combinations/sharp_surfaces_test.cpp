@@ -68,7 +68,7 @@ TEMPLATE_TEST_CASE("a face is pushed by parts that are smaller than it, where ne
     CHECK(push<TestType>(dem::surface::Sphere(100 * h), Vec3(0, 0, 101 * h - depth)).z() ==
           Approx(depth).epsilon(tolerance));
   }
-  SECTION("the mantle of a cylinder") {
+  SECTION("the lateral surface of a cylinder") {
     for (const double across : {0.0, 0.5 * h}) {
       const Mat3 lying = Eigen::AngleAxisd(std::numbers::pi / 2, Vec3::UnitX()).toRotationMatrix();
       dem::World<OnParts<TestType>> w(options(Vec3::Zero(), 1e-8));
@@ -82,7 +82,8 @@ TEMPLATE_TEST_CASE("a face is pushed by parts that are smaller than it, where ne
       w.add_particle(n);
       w.prepare();
       CHECK(-w.surface_force(part).z() / K == Approx(depth).epsilon(tolerance));
-      // Three points carry it along the mantle, so it does not rock: no torque about the grain's centre on axis y.
+      // Three points carry it along the lateral surface, so it does not rock: no torque about the grain's centre on
+      // axis y.
       CHECK(std::abs(w.torque(dem::ParticleId(0)).x()) < 0.01 * K * depth * h);
     }
   }

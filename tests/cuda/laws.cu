@@ -31,9 +31,9 @@
 using dem::Vector3;
 
 struct Contact {
-  dem::contact::ClusterTouch<double> pair;
-  dem::contact::SphereTouch<double> spheres;
-  dem::contact::SurfaceTouch<double> surface;
+  dem::contact::ClusterContactPoint<double> pair;
+  dem::contact::SphereContactPoint<double> spheres;
+  dem::contact::SurfaceContactPoint<double> surface;
   Vector3<double> velocity;
   Vector3<double> slip;
 };

@@ -49,7 +49,7 @@ struct BodyContacts {
 
   std::vector<BodyPoint> points;
   std::vector<grain::Hit> hits;
-  std::vector<contact::SurfaceTouch<double>> touches;
+  std::vector<contact::SurfaceContactPoint<double>> touches;
   grain::ContactForces forces;
 
   /// What contacts remember of this step becomes what the next one starts from.
@@ -93,8 +93,8 @@ struct PairContact {
 /// Contacts of the points of one surface of a pair with the other surface, up to a gap where cohesion acts at a
 /// distance (else NoGap).
 template <class Model, class Surface, class Gap>
-void probe_body(const PairContact& at, bool back, const Surface& from, const Surface& onto, const Body& carrier,
-                Gap gap, typename BodyContacts<Model>::Memories& memories, BodyContacts<Model>& c) {
+void sample_body(const PairContact& at, bool back, const Surface& from, const Surface& onto, const Body& carrier,
+                 Gap gap, typename BodyContacts<Model>::Memories& memories, BodyContacts<Model>& c) {
   list_points(from, onto, c.points);
   const Vector3<double> offset = from.origin - carrier.motion.position, start = from.origin - onto.origin;
   const std::size_t first = c.hits.size();
@@ -128,15 +128,15 @@ void fit_pair(std::size_t first, BodyContacts<Model>& c) {
   };
   turn_round();
   contact::fit_weights(c.touches.size() - first, contact::Fit::always,
-                       [&](std::size_t k) -> contact::SurfaceTouch<double>& { return c.touches[first + k]; });
+                       [&](std::size_t k) -> contact::SurfaceContactPoint<double>& { return c.touches[first + k]; });
   turn_round();
 }
 
 /// Finds the contacts of a pair, with the histories of its block.
 template <class Model, class Surface>
-void probe_pair(std::size_t k, std::span<const Surface> surfaces, const Materials<Model>& materials,
-                std::span<const Body> bodies, typename BodyContacts<Model>::Memories& memories,
-                BodyContacts<Model>& c) {
+void sample_pair(std::size_t k, std::span<const Surface> surfaces, const Materials<Model>& materials,
+                 std::span<const Body> bodies, typename BodyContacts<Model>::Memories& memories,
+                 BodyContacts<Model>& c) {
   const Surface &a = surfaces[c.pairs[k].a.index()], &b = surfaces[c.pairs[k].b.index()];
   const Body &body_a = bodies[a.body.index()], &body_b = bodies[b.body.index()];
   if (!a.active || !b.active || (body_a.fixed && body_b.fixed)) return;
@@ -145,8 +145,8 @@ void probe_pair(std::size_t k, std::span<const Surface> surfaces, const Material
   const double wide = shape::widened(0.0, gap);
   if (!boxes_overlap(a.low, a.high, b.low - filled(wide), b.high + filled(wide))) return;
   const std::size_t first = c.touches.size();
-  if (!is_ball(b)) probe_body(at, false, a, b, body_a, gap, memories, c);
-  if (is_ball(b) || !is_ball(a)) probe_body(at, true, b, a, body_b, gap, memories, c);
+  if (!is_ball(b)) sample_body(at, false, a, b, body_a, gap, memories, c);
+  if (is_ball(b) || !is_ball(a)) sample_body(at, true, b, a, body_b, gap, memories, c);
   if (!is_ball(a) && !is_ball(b)) fit_pair(first, c);  // each touch of a ball is a contact
 }
 
@@ -161,7 +161,7 @@ void load_pairs(std::span<const Surface> surfaces, const Materials<Model>& mater
   const auto body_of = [&](std::size_t hit, bool partner) -> Body& {
     return bodies[surface_of(hit, partner).body.index()];
   };
-  grain::ContactEvaluator<Model, contact::SurfaceTouch> evaluator(materials.table(), dt);
+  grain::ContactEvaluator<Model, contact::SurfaceContactPoint> evaluator(materials.table(), dt);
   const grain::Deepest deepest = evaluator.run(
       c.hits, memories, c.forces, [&](std::size_t k) { return c.touches[k]; },
       [&](std::size_t k) -> const PartnerView& { return surface_of(k, false).view; },
@@ -207,7 +207,7 @@ void find_body_contacts(BodyContacts<Model>& c, std::span<const Surface> surface
     c.hits.clear();
     c.touches.clear();
     for (; at < c.near.size() && c.near[at] / BodyKey::pairs_of_a_block == block; ++at) {
-      probe_pair(c.near[at], surfaces, materials, std::span<const Body>(bodies), c.memories[block], c);
+      sample_pair(c.near[at], surfaces, materials, std::span<const Body>(bodies), c.memories[block], c);
     }
     load_pairs(surfaces, materials, bodies, dt, c.memories[block], c);
     look(c.memories[block]);

@@ -48,7 +48,7 @@ class PointsTowards {
     const std::size_t spread = points_.size();
     if constexpr (HasRims<From>) list_rims(spread);
     if constexpr (IsSuperquadric<From>) list_deepest(spread);
-    if constexpr (HasMantle<From> && ClipsLines<Onto>) list_mantle();
+    if constexpr (HasLateralSurface<From> && ClipsLines<Onto>) list_lateral();
     if constexpr (HasEdges<From> && (ClipsLines<Onto> || PartsLines<Onto>)) list_edges(box);
   }
 
@@ -56,7 +56,7 @@ class PointsTowards {
   /// Numbers of points that are found, beyond those of a surface's own points, ascending. Each rim has as many as there
   /// are walls of the other surface that can be told apart.
   static constexpr std::uint32_t first_near = 1u << 20, of_a_rim = 1u << 18,
-                                 first_of_mantle = first_near + 4 * of_a_rim;
+                                 first_of_lateral = first_near + 4 * of_a_rim;
   static constexpr std::uint32_t most_ways = 16;
 
   struct Way {
@@ -82,11 +82,11 @@ class PointsTowards {
   Vector3<double> seen(const Vector3<double>& p) const {
     return transpose_times(b_.axes, a_.origin + a_.axes * p - b_.origin);
   }
-  /// sink(wall, normal, gap) for all contacts of a ball at p, in the own frame.
-  template <class Sink>
-  void touch(const Vector3<double>& p, double radius, Sink&& sink) const {
+  /// callback(wall, normal, gap) for all contacts of a ball at p, in the own frame.
+  template <class Callback>
+  void touch(const Vector3<double>& p, double radius, Callback&& callback) const {
     onto_.touch(seen(p), radius, [&](std::uint32_t feature, const Vector3<double>& normal, double gap) {
-      sink(surface::family_of<Onto>(feature), transpose_times(a_.axes, b_.axes * normal), gap);
+      callback(surface::family_of<Onto>(feature), transpose_times(a_.axes, b_.axes * normal), gap);
     });
   }
   /// The directions in which a ball at p meets the other surface; the nearest ones if they are too many.
@@ -147,11 +147,11 @@ class PointsTowards {
     });
   }
 
-  /// Points of the lateral surface (mantle) of a cylinder: they lie on the line that faces the other surface where the
+  /// Points of the lateral surface of a cylinder: they lie on the line that faces the other surface where the
   /// axis comes nearest to it. Part of this line lies inside the other surface. The middle of the part is the deepest
   /// point of cylinders that cross. Points near its two ends count where the line is as deep there, as between
   /// cylinders that lie side by side.
-  void list_mantle() {
+  void list_lateral() {
     if (!from_.has_points()) return;
     const double half = 0.5 * from_.length();
     const auto on_axis = [&](double share) { return nearest({0, 0, share * half}, 1e100); };
@@ -161,16 +161,16 @@ class PointsTowards {
       on_axis(one).gap < on_axis(other).gap ? last = other : first = one;
     }
     Vector3<double> low, high;
-    if (!from_.mantle_line(on_axis(0.5 * (first + last)).normal, low, high)) return;
+    if (!from_.lateral_line(on_axis(0.5 * (first + last)).normal, low, high)) return;
     first = 0.0, last = 1.0;
     if (!onto_.clip(seen(low), seen(high), first, last)) return;
     const auto place = [&](double t) {
       return low + (0.5 * (first + last) + 0.45 * t * (last - first)) * (high - low);
     };
     const auto depth = [&](double t) { return -nearest(place(t), 0.0).gap; };
-    add(first_of_mantle, place(0.0));
+    add(first_of_lateral, place(0.0));
     const double middle = max(1e-300, depth(0.0));
-    std::uint32_t number = first_of_mantle;
+    std::uint32_t number = first_of_lateral;
     for (const double t : {-1.0, 1.0}) {
       const double share = max(0.0, min(1.0, depth(t) / middle)), square = share * share, fourth = square * square;
       add(++number, place(t), fourth * fourth);

@@ -15,8 +15,9 @@ concept HasPoints = requires(const S& s, const surface::Bounds& box) {
   s.points(box, [](std::uint32_t, const Vector3<double>&, double) {});
   { s.has_points() } -> std::same_as<bool>;
 };
-/// A surface with straight sharp edges: edges(box, sink) calls sink(number, one end, other end) for those that may lie
-/// in a box of its frame. Numbers are other than those of its points, each with most_parts - 1 free ones behind it.
+/// A surface with straight sharp edges: edges(box, callback) calls callback(number, one end, other end) for those that
+/// may lie in a box of its frame. Numbers are other than those of its points, each with most_parts - 1 free ones behind
+/// it.
 template <class S>
 concept HasEdges = requires(const S& s, const surface::Bounds& box) {
   s.edges(box, [](std::uint32_t, const Vector3<double>&, const Vector3<double>&) {});
@@ -27,22 +28,22 @@ template <class S>
 concept ClipsLines = requires(const S& s, const Vector3<double>& p, double& share) {
   { s.clip(p, p, share, share) } -> std::same_as<bool>;
 };
-/// A solid of any form that does: parts_inside(tail, head, sink) calls sink(from, to) for each part of the line that
-/// lies in it, ascending.
+/// A solid of any form that does: parts_inside(tail, head, callback) calls callback(from, to) for each part of the line
+/// that lies in it, ascending.
 template <class S>
 concept PartsLines = requires(const S& s, const Vector3<double>& p) {
   s.parts_inside(p, p, [](double, double) {});
 };
-/// A surface with round edges about its z axis: rims(sink) calls sink(number, middle, radius).
+/// A surface with round edges about its z axis: rims(callback) calls callback(number, middle, radius).
 template <class S>
 concept HasRims = requires(const S& s) {
   s.rims([](std::uint32_t, const Vector3<double>&, double) {});
 };
-/// A round surface along its z axis: mantle_line(way, low, high) gives the line of it on the side of a direction, and
+/// A round surface along its z axis: lateral_line(way, low, high) gives the line of it on the side of a direction, and
 /// is false if there is none.
 template <class S>
-concept HasMantle = requires(const S& s, Vector3<double>& p) {
-  { s.mantle_line(p, p, p) } -> std::same_as<bool>;
+concept HasLateralSurface = requires(const S& s, Vector3<double>& p) {
+  { s.lateral_line(p, p, p) } -> std::same_as<bool>;
   { s.length() } -> std::same_as<double>;
 };
 /// A surface that is a superquadric: grain() is the grain of that shape, or null.
@@ -50,7 +51,7 @@ template <class S>
 concept IsSuperquadric = requires(const S& s) {
   { s.grain()->even_support(static_cast<const double*>(nullptr), Vector3<double>{}) } -> std::same_as<Vector3<double>>;
 };
-/// A surface that may be one ball: its probe finds every contact, so the partner's points are not needed.
+/// A surface that may be one ball: its sample point finds every contact, so the partner's points are not needed.
 template <class S>
 concept MayBeBall = requires(const S& s) {
   { s.is_ball() } -> std::same_as<bool>;

@@ -13,8 +13,8 @@
 
 namespace dem::coupling {
 
-/// The probe indices under which support points, and corners of surfaces in a grain, are remembered.
-inline constexpr std::uint32_t support_probe = 0xff0, corner_probe = 0xfff;
+/// The sample point indices under which support points, and corners of surfaces in a grain, are remembered.
+inline constexpr std::uint32_t support_sample = 0xff0, corner_sample = 0xfff;
 inline constexpr std::uint32_t first_ball = 1u << 24;  ///< among its features
 
 /// A sharp grain may be entered by corners and edges of surfaces that none of its own points meets. Such a shape tells
@@ -25,8 +25,8 @@ concept HasPenetration = requires(const Shape& shape, const double* pose, const 
                                   Vector3<double>& outward_normal) {
   { shape.penetration(pose, point, depth, outward_normal) } -> std::same_as<bool>;
 };
-/// A surface with corners: corners(point, radius, sink) calls sink(number, corner) for those within the radius, or
-/// sink(number, corner, weight) with a weight below 1 where they come and go.
+/// A surface with corners: corners(point, radius, callback) calls callback(number, corner) for those within the radius,
+/// or callback(number, corner, weight) with a weight below 1 where they come and go.
 template <class S>
 concept HasCorners = requires(const S& s, const Vector3<double>& point) {
   s.corners(point, 1.0, [](std::uint32_t, const Vector3<double>&, double = 1.0) {});
@@ -37,8 +37,8 @@ template <class S>
 concept IsBall = requires(const S& s) {
   { s.is_ball() } -> std::same_as<bool>;
 };
-/// A round surface, as balls that fill it: balls(point, radius, sink) calls sink(number, centre, ball's radius) for
-/// those that a grain may touch, and is_on_ball(point) is true where their skin is the surface's.
+/// A round surface, as balls that fill it: balls(point, radius, callback) calls callback(number, centre, ball's radius)
+/// for those that a grain may touch, and is_on_ball(point) is true where their skin is the surface's.
 template <class S>
 concept HasBalls = requires(const S& s, const Vector3<double>& point) {
   s.balls(point, 1.0, [](std::uint32_t, const Vector3<double>&, double) {});
@@ -47,7 +47,7 @@ concept HasBalls = requires(const S& s, const Vector3<double>& point) {
 /// A sharp grain that tells where a ball touches it.
 template <class Shape>
 concept TouchesBalls = requires(const Shape& s, const double* pose, const Vector3<double>& centre,
-                                contact::BallTouch& touch) {
+                                contact::BallContactPoint& touch) {
   { s.touch_ball(pose, centre, 1.0, touch) } -> std::same_as<bool>;
 };
 
@@ -61,8 +61,8 @@ concept HasSupport = requires(const Shape& s, const double* pose, const Vector3<
 struct SurfaceScratch {
   std::vector<std::uint32_t> law_of;
   std::vector<grain::Hit> hits;
-  std::vector<contact::SurfaceTouch<double>> touches;
-  std::vector<double> total_share;  ///< of the touches of patches (contact::PatchTouch); 1 from where it ends
+  std::vector<contact::SurfaceContactPoint<double>> touches;
+  std::vector<double> total_share;  ///< of the touches of patches (contact::PatchContactPoint); 1 from where it ends
   Columns3 images;                  ///< m, of the grains of a chunk, for one surface of a periodic world
   std::vector<PartnerView> views;   ///< of the touches' grains as those images, in a periodic world
   SupportTouches supports;          ///< of one grain on one surface
@@ -75,30 +75,30 @@ struct GrainAtSurface {
   const double* pose;
   Vector3<double> centre;  ///< m, of the grain in the surface's frame
 
-  void add(SurfaceScratch& s, std::uint32_t probe, std::uint32_t feature,
-           const contact::SurfaceTouch<double>& touch) const {
-    s.hits.push_back({grain::SurfaceKey::make(surface, local, probe, feature), grain, surface, law});
+  void add(SurfaceScratch& s, std::uint32_t sample, std::uint32_t feature,
+           const contact::SurfaceContactPoint<double>& touch) const {
+    s.hits.push_back({grain::SurfaceKey::make(surface, local, sample, feature), grain, surface, law});
     s.touches.push_back(touch);
   }
 };
 
-/// A probe of the grain on a surface, up to a gap where cohesion acts at a distance (else NoGap).
+/// A sample point of the grain on a surface, up to a gap where cohesion acts at a distance (else NoGap).
 template <class Surface, class Geometry, class Gap>
-void touch_with_probe(const GrainAtSurface& at, std::uint32_t index, const contact::Probe& probe,
-                      const Surface& surface, const Geometry& geometry, Gap gap, SurfaceScratch& s) {
-  const Vector3<double> seen = at.centre + transpose_times(surface.axes, probe.centre);
+void touch_with_sample(const GrainAtSurface& at, std::uint32_t index, const contact::SamplePoint& sample,
+                       const Surface& surface, const Geometry& geometry, Gap gap, SurfaceScratch& s) {
+  const Vector3<double> seen = at.centre + transpose_times(surface.axes, sample.centre);
   const auto add = [&](std::uint32_t feature, const Vector3<double>& normal, double distance) {
     at.add(s, index, feature,
-           {probe.centre, surface.axes * normal, probe.radius, distance,
-            surface::radius_on(geometry, probe.effective_radius), probe.area});
+           {sample.centre, surface.axes * normal, sample.radius, distance,
+            surface::radius_on(geometry, sample.effective_radius), sample.area});
   };
   if constexpr (!std::is_same_v<Gap, shape::NoGap>) {
-    if (probe.radius == 0.0) {
+    if (sample.radius == 0.0) {
       surface::touch_point(geometry, seen, gap, add);
       return;
     }
   }
-  geometry.touch(seen, shape::widened(probe.radius, gap), add);
+  geometry.touch(seen, shape::widened(sample.radius, gap), add);
 }
 
 /// Where a surface is flat, a grain meets it first with its support point, which lies between its sample points. The
@@ -123,7 +123,7 @@ void touch_with_supports(const GrainAtSurface& at, const Shape& grain, const Sur
     surface::touch_point(geometry, at.centre + transpose_times(surface.axes, point), shape::widened(0.0, gap), add);
   }
   const std::size_t end = s.touches.size();
-  for (const auto& t : s.supports.sorted()) at.add(s, support_probe, t.feature, t.touch);
+  for (const auto& t : s.supports.sorted()) at.add(s, support_sample, t.feature, t.touch);
   for (std::size_t way = 0; way < s.supports.way_count(); ++way) {
     if (!s.supports.is_used(way)) continue;
     for (std::size_t k = first; k < end; ++k) {
@@ -138,20 +138,20 @@ void touch_with_supports(const GrainAtSurface& at, const Shape& grain, const Sur
 template <class Shape, class Surface, class Geometry, class Gap>
 void touch_with_corners(const GrainAtSurface& at, const Shape& grain, const Surface& surface, const Geometry& geometry,
                         Gap gap, SurfaceScratch& s) {
-  double probes = 0.0, area = 0.0, radius = 0.0;
-  const auto look_at_probes = [&] {
-    if (probes > 0.0) return;
-    grain.probe(at.pose, [&](std::uint32_t, const contact::Probe& probe) {
-      probes += 1.0;
-      area += probe.area;
-      radius += probe.effective_radius;
+  double samples = 0.0, area = 0.0, radius = 0.0;
+  const auto look_at_samples = [&] {
+    if (samples > 0.0) return;
+    grain.sample_points(at.pose, [&](std::uint32_t, const contact::SamplePoint& sample) {
+      samples += 1.0;
+      area += sample.area;
+      radius += sample.effective_radius;
     });
   };
   // Seen from the grain, its skin at `point` lies `depth` behind the surface.
   const auto add = [&](std::uint32_t number, const Vector3<double>& point, const Vector3<double>& normal, double depth,
                        double weight) {
-    at.add(s, corner_probe, number,
-           {point, normal, 0.0, -depth, surface::radius_on(geometry, radius / probes), weight});
+    at.add(s, corner_sample, number,
+           {point, normal, 0.0, -depth, surface::radius_on(geometry, radius / samples), weight});
   };
   const double reach = shape::widened(grain.bounding_radius(), gap);
   if constexpr (HasCorners<Geometry>) {
@@ -160,21 +160,21 @@ void touch_with_corners(const GrainAtSurface& at, const Shape& grain, const Surf
       Vector3<double> outward{};
       const Vector3<double> point = surface.axes * (place - at.centre);
       if (!grain.penetration(at.pose, point, depth, outward)) return;
-      look_at_probes();
-      add(corner, point + depth * outward, outward, depth, weight * area / probes);
+      look_at_samples();
+      add(corner, point + depth * outward, outward, depth, weight * area / samples);
     });
   }
   if constexpr (HasBalls<Geometry> && TouchesBalls<Shape>) {
     if (!shape::has_shares(grain)) return;
     geometry.balls(at.centre, reach, [&](std::uint32_t ball, const Vector3<double>& centre, double of_ball) {
-      contact::BallTouch t;
+      contact::BallContactPoint t;
       const Vector3<double> seen = surface.axes * (centre - at.centre);
       bool touches = false;
       if constexpr (std::is_same_v<Gap, shape::NoGap>) touches = grain.touch_ball(at.pose, seen, of_ball, t);
       else touches = grain.touch_ball(at.pose, seen, of_ball, t, gap);
       if (!touches) return;
       if (!geometry.is_on_ball(at.centre + transpose_times(surface.axes, t.point))) return;
-      look_at_probes();
+      look_at_samples();
       add(first_ball + ball, t.point + (0.5 * t.overlap) * t.normal, t.normal, t.overlap, 1.0);
     });
   }
@@ -204,12 +204,12 @@ void touch_surface(const GrainAtSurface& at, const Shape& grain, const Surface& 
   if constexpr (requires { grain.mean_radius(); }) {
     if (touches_as_ball(grain)) {
       const double radius = grain.mean_radius();
-      touch_with_probe(at, 0, {{0, 0, 0}, radius, radius, 1.0}, surface, geometry, gap, s);
+      touch_with_sample(at, 0, {{0, 0, 0}, radius, radius, 1.0}, surface, geometry, gap, s);
       return;
     }
   }
-  grain.probe(at.pose, [&](std::uint32_t index, const contact::Probe& probe) {
-    touch_with_probe(at, index, probe, surface, geometry, gap, s);
+  grain.sample_points(at.pose, [&](std::uint32_t index, const contact::SamplePoint& sample) {
+    touch_with_sample(at, index, sample, surface, geometry, gap, s);
   });
   if constexpr (HasSupport<Shape>) {
     if (shape::has_shares(grain)) touch_with_supports(at, grain, surface, geometry, first, gap, s);
@@ -217,7 +217,7 @@ void touch_surface(const GrainAtSurface& at, const Shape& grain, const Surface& 
   if constexpr (HasPenetration<Shape>) touch_with_corners(at, grain, surface, geometry, gap, s);
   if constexpr (requires { Shape::shares_fit; }) {
     if (!shape::has_shares(grain)) return;
-    const auto point = [&](std::size_t k) -> contact::SurfaceTouch<double>& { return s.touches[first + k]; };
+    const auto point = [&](std::size_t k) -> contact::SurfaceContactPoint<double>& { return s.touches[first + k]; };
     const std::size_t count = s.touches.size() - first;
     contact::fit_weights(count, Shape::shares_fit, point);
     if constexpr (shape::PatchShape<Shape>) {

@@ -20,10 +20,10 @@ class SupportTouches {
     Vector3<double> along;  ///< unit vector into the surface, global axes
     Vector3<double> point;  ///< m, from the grain's centre, global axes
   };
-  struct Touch {
+  struct ContactPoint {
     std::uint32_t feature, family;
     std::size_t way, owner;  ///< whose point it is, and whose wall
-    contact::SurfaceTouch<double> touch;
+    contact::SurfaceContactPoint<double> touch;
     bool is_spare = false;
   };
 
@@ -38,26 +38,26 @@ class SupportTouches {
   /// Adds a touch of the support point of a way. Its wall belongs to the way whose direction is nearest to the normal
   /// there; ways that found a wall of the same family go first.
   void add_touch(std::size_t way, std::uint32_t family, std::uint32_t feature,
-                 const contact::SurfaceTouch<double>& touch) {
+                 const contact::SurfaceContactPoint<double>& touch) {
     const auto rank = [&](const Way& w) { return dot(w.along, touch.normal) + (w.family == family ? 4.0 : 0.0); };
     std::size_t owner = way;
     for (std::size_t k = 0; k < ways_.size(); ++k) owner = rank(ways_[k]) > rank(ways_[owner]) ? k : owner;
     touches_.push_back({feature, family, way, owner, touch});
   }
 
-  std::size_t bytes() const { return ways_.capacity() * sizeof(Way) + touches_.capacity() * sizeof(Touch); }
+  std::size_t bytes() const { return ways_.capacity() * sizeof(Way) + touches_.capacity() * sizeof(ContactPoint); }
 
   /// The touches in the order of their features, each with another number. Left out is a touch of a wall that the
   /// support point of its own way touches too.
-  const std::vector<Touch>& sorted() {
+  const std::vector<ContactPoint>& sorted() {
     if (ways_.size() < 2) return touches_;
-    for (Touch& t : touches_) {
-      t.is_spare = t.way != t.owner && std::any_of(touches_.begin(), touches_.end(), [&](const Touch& own) {
+    for (ContactPoint& t : touches_) {
+      t.is_spare = t.way != t.owner && std::any_of(touches_.begin(), touches_.end(), [&](const ContactPoint& own) {
                      return own.way == t.owner && own.owner == t.owner && own.family == t.family;
                    });
     }
-    std::erase_if(touches_, [](const Touch& t) { return t.is_spare; });
-    std::sort(touches_.begin(), touches_.end(), [](const Touch& a, const Touch& b) {
+    std::erase_if(touches_, [](const ContactPoint& t) { return t.is_spare; });
+    std::sort(touches_.begin(), touches_.end(), [](const ContactPoint& a, const ContactPoint& b) {
       return a.feature != b.feature ? a.feature < b.feature : a.way < b.way;
     });
     for (std::size_t k = 1; k < touches_.size(); ++k) {
@@ -67,12 +67,12 @@ class SupportTouches {
   }
   /// Whether a way has kept a touch.
   bool is_used(std::size_t way) const {
-    return std::any_of(touches_.begin(), touches_.end(), [&](const Touch& t) { return t.way == way; });
+    return std::any_of(touches_.begin(), touches_.end(), [&](const ContactPoint& t) { return t.way == way; });
   }
 
  private:
   std::vector<Way> ways_;
-  std::vector<Touch> touches_;
+  std::vector<ContactPoint> touches_;
 };
 
 }  // namespace dem::coupling

@@ -17,8 +17,8 @@ inline constexpr bool shows_points = HasPenetration<Shape> || requires(const Sha
   s.kind();
 };
 
-/// A surface that is much smaller than its bounding box: close(point, radius, points) is false if no probe in that
-/// sphere can touch; `points`: whether there are probes without a radius among them.
+/// A surface that is much smaller than its bounding box: close(point, radius, points) is false if no sample point in
+/// that sphere can touch; `points`: whether there are sample points without a radius among them.
 template <class S>
 concept KnowsClose = requires(const S& s, const Vector3<double>& point) {
   { s.close(point, 1.0, true) } -> std::same_as<bool>;
@@ -117,7 +117,7 @@ void find_hits_on(const ChunkAtSurfaces<Model>& at, std::size_t number) {
       const Vector3<double> centre = transpose_times(surface.axes, positions[i] - surface.origin);
       const double radius = shape::widened(grain.bounding_radius(), gap);
       if (!geometry.near(centre, radius)) continue;
-      // A shape of one probe asks the same question by touching.
+      // A shape of one sample point asks the same question by touching.
       if constexpr (Shape::has_orientation && KnowsClose<G>) {
         if (!geometry.close(centre, radius, shows_points<Shape>)) continue;
       }
@@ -138,7 +138,7 @@ void find_hits_on(const ChunkAtSurfaces<Model>& at, std::size_t number) {
   }
   if constexpr (history_size < Model >> 0 && surface::NamesDirections<G>) {
     follow_turns(std::span<const grain::Hit>(s.hits).subspan(first), at.chunk.surface_contacts.last,
-                 [](std::uint64_t key) { return grain::SurfaceKey::probe(key) != corner_probe; });
+                 [](std::uint64_t key) { return grain::SurfaceKey::sample(key) != corner_sample; });
   }
 }
 
@@ -150,7 +150,8 @@ using FindHits = void (*)(const ChunkAtSurfaces<Model>&, std::size_t);
 template <class Shape>
 struct OnSurface {
   template <class T>
-  using Touch = std::conditional_t<shape::PatchShape<Shape>, contact::PatchTouch<T>, contact::SurfaceTouch<T>>;
+  using ContactPoint =
+      std::conditional_t<shape::PatchShape<Shape>, contact::PatchContactPoint<T>, contact::SurfaceContactPoint<T>>;
 };
 
 /// The grain of a touch, where the surface sees it.
@@ -185,12 +186,12 @@ void find_surface_contacts(const ChunkAtSurfaces<Model>& at, std::span<const Fin
   if constexpr (shape::PatchShape<Shape>) scratch.total_share.resize(scratch.touches.size(), 1.0);
   const auto touch_of = [&scratch = scratch](std::size_t c) {
     if constexpr (shape::PatchShape<Shape>) {
-      return contact::PatchTouch<double>{scratch.touches[c], scratch.total_share[c]};
+      return contact::PatchContactPoint<double>{scratch.touches[c], scratch.total_share[c]};
     } else {
       return scratch.touches[c];
     }
   };
-  grain::ContactEvaluator<Model, OnSurface<Shape>::template Touch> evaluator(materials.table(), dt);
+  grain::ContactEvaluator<Model, OnSurface<Shape>::template ContactPoint> evaluator(materials.table(), dt);
   const grain::Deepest deepest = evaluator.run(
       hits, chunk.surface_contacts, scratch.forces, touch_of,
       [&](std::size_t c) -> const PartnerView& { return view_of<Model>(at.scratch, c, at.particles); },

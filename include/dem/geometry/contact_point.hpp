@@ -4,9 +4,9 @@
 
 namespace dem::contact {
 
-// A touch is what a narrow phase hands to its sink: the raw numbers of one contact, from which `geometry()` computes
-// normal, overlap and lever arm for a whole pack of contacts at once. A touch is a struct of Ts only. All vectors are
-// in global axes, seen from the centre of particle i.
+// A touch is what a narrow phase hands to its callback: the raw numbers of one contact, from which `geometry()`
+// computes normal, overlap and lever arm for a whole pack of contacts at once. A touch is a struct of Ts only. All
+// vectors are in global axes, seen from the centre of particle i.
 
 /// The contact as the laws need it.
 template <class T>
@@ -23,7 +23,7 @@ struct Geometry {
 
 /// Two free spheres whose centres are the particles' centres.
 template <class T>
-struct SphereTouch {
+struct SphereContactPoint {
   Vector3<T> link;  ///< from sphere i to sphere j
   T radius_i, radius_j;
 
@@ -37,13 +37,13 @@ struct SphereTouch {
 
 /// Two spheres that belong to clusters.
 template <class T>
-struct ClusterTouch {
+struct ClusterContactPoint {
   Vector3<T> centre;  ///< of the sphere of i
   Vector3<T> link;    ///< from the sphere of i to the sphere of j
   T radius_i, radius_j;
 
   DEM_HOT Geometry<T> geometry() const {
-    Geometry<T> g = SphereTouch<T>{link, radius_i, radius_j}.geometry();
+    Geometry<T> g = SphereContactPoint<T>{link, radius_i, radius_j}.geometry();
     g.arm += centre;
     return g;
   }
@@ -51,7 +51,7 @@ struct ClusterTouch {
 
 /// A contact that the narrow phase knows already as the laws need it: what shapes of any kind can hand over.
 template <class T>
-struct PointTouch {
+struct ContactPoint {
   Vector3<T> normal;     ///< unit vector from i towards j
   T overlap;             ///< m
   Vector3<T> arm;        ///< m, from the centre of i to the contact point
@@ -70,27 +70,27 @@ struct Patch {
 };
 
 /// The one contact of a grain with a ball, where they share a normal.
-struct BallTouch {
+struct BallContactPoint {
   Vector3<double> normal;  ///< out of the grain, into the ball
   double overlap;          ///< m
   Vector3<double> point;   ///< m, midway in the overlap, from the grain's centre
 };
 
 /// What a grain shows to surfaces: a sphere, or a point of its skin (radius 0).
-struct Probe {
+struct SamplePoint {
   Vector3<double> centre;   ///< m, from the grain's centre, global axes
   double radius;            ///< m
   double effective_radius;  ///< m, of the grain's skin there
   double area = 1.0;        ///< m^2 of skin that belongs to a point; 1 for spheres
 };
 
-/// A probe of a grain and a surface of a machine part.
+/// A sample point of a grain and a surface of a machine part.
 template <class T>
-struct SurfaceTouch {
-  Vector3<T> centre;  ///< of the probe
+struct SurfaceContactPoint {
+  Vector3<T> centre;  ///< of the sample point
   Vector3<T> normal;  ///< unit vector into the surface
-  T radius;           ///< of the probe
-  T gap;              ///< distance from the probe's centre to the surface along the normal; negative behind it
+  T radius;           ///< of the sample point
+  T gap;              ///< distance from the sample point's centre to the surface along the normal; negative behind it
   T effective_radius;
   T area;
 
@@ -102,8 +102,8 @@ struct SurfaceTouch {
 
 /// A point of a patch on a surface.
 template <class T>
-struct PatchTouch {
-  SurfaceTouch<T> point;
+struct PatchContactPoint {
+  SurfaceContactPoint<T> point;
   T total_share;  ///< as Geometry's
 
   DEM_HOT Geometry<T> geometry() const {

@@ -9,11 +9,11 @@
 namespace dem::surface {
 
 /// Points that stand for a straight edge where a sharp grain is near it: the one nearest to p and those half a radius
-/// to either side, if they lie within the radius of p, sink(place, point, weight). Where the edge ends they lose
+/// to either side, if they lie within the radius of p, callback(place, point, weight). Where the edge ends they lose
 /// weight, as its corners take over.
-template <class Sink>
+template <class Callback>
 void points_of_edge(const Vector3<double>& tail, const Vector3<double>& head, const Vector3<double>& p, double radius,
-                    Sink&& sink) {
+                    Callback&& callback) {
   const double length = norm(head - tail);
   const Vector3<double> along = (1.0 / length) * (head - tail);
   const double foot = dot(p - tail, along);
@@ -21,7 +21,7 @@ void points_of_edge(const Vector3<double>& tail, const Vector3<double>& head, co
     const double at = foot + (0.5 * place - 0.5) * radius, to_end = min(at, length - at);
     if (!(to_end > 0.0)) continue;
     const Vector3<double> point = tail + at * along, d = point - p;
-    if (dot(d, d) <= radius * radius) sink(place, point, min(1.0, 4.0 * to_end / radius));
+    if (dot(d, d) <= radius * radius) callback(place, point, min(1.0, 4.0 * to_end / radius));
   }
 }
 
@@ -33,7 +33,7 @@ class EdgeSet {
   DEM_LAZY explicit EdgeSet(const std::vector<std::array<Vec3, 2>>& edges) {
     std::vector<Bounds> boxes;
     for (const auto& [a, b] : edges) boxes.push_back({lower(a, b), upper(a, b)});
-    tree_ = BoxTree(boxes);
+    tree_ = BoundingVolumeTree(boxes);
     for (const std::uint32_t k : tree_.order()) {
       ends_.push_back({from_eigen(edges[k][0]), from_eigen(edges[k][1])});
       longest_ = std::max(longest_, (edges[k][1] - edges[k][0]).norm());
@@ -64,7 +64,7 @@ class EdgeSet {
   }
 
  private:
-  BoxTree tree_;
+  BoundingVolumeTree tree_;
   std::vector<std::array<Vector3<double>, 2>> ends_;
   double longest_ = 0.0;
 };

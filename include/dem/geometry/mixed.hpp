@@ -50,7 +50,7 @@ class Mixed : public detail::MixedBase<detail::MixedMemories<Kinds...>::any, Kin
   static constexpr bool has_orientation = (Kinds::has_orientation || ...);
   static constexpr std::size_t most_contacts = std::max({std::size_t{Kinds::most_contacts}...});
   template <class T>
-  using PairTouch = contact::PointTouch<T>;
+  using PairContactPoint = contact::ContactPoint<T>;
 
   template <class Kind>
   requires(std::same_as<Kind, Kinds> || ...) Mixed(const Kind& kind)
@@ -76,35 +76,35 @@ class Mixed : public detail::MixedBase<detail::MixedMemories<Kinds...>::any, Kin
   DEM_HOT void orient(const Matrix3<double>& r, double* pose) const {
     visit([&](const auto& s) { s.orient(r, pose); });
   }
-  template <class Sink>
-  DEM_HOT void probe(const double* pose, Sink&& sink) const {
-    visit([&](const auto& s) { s.probe(pose, sink); });
+  template <class Callback>
+  DEM_HOT void sample_points(const double* pose, Callback&& callback) const {
+    visit([&](const auto& s) { s.sample_points(pose, callback); });
   }
   /// With a memory, for models whose kinds keep their searches; with a gap (m), for cohesion at a distance, where all
   /// kinds find contacts across it.
-  template <class Sink>
+  template <class Callback>
   static DEM_HOT void collide(const Mixed& a, const double* pose_a, const Mixed& b, const double* pose_b,
-                              const Vector3<double>& separation, Memory& memory, Sink&& sink) {
-    collide_kinds(a, pose_a, b, pose_b, separation, memory, sink, NoGap{});
+                              const Vector3<double>& separation, Memory& memory, Callback&& callback) {
+    collide_kinds(a, pose_a, b, pose_b, separation, memory, callback, NoGap{});
   }
-  template <class Sink>
+  template <class Callback>
   static DEM_HOT void collide(const Mixed& a, const double* pose_a, const Mixed& b, const double* pose_b,
-                              const Vector3<double>& separation, Sink&& sink) {
+                              const Vector3<double>& separation, Callback&& callback) {
     Memory nothing;
-    collide_kinds(a, pose_a, b, pose_b, separation, nothing, sink, NoGap{});
+    collide_kinds(a, pose_a, b, pose_b, separation, nothing, callback, NoGap{});
   }
-  template <class Sink>
+  template <class Callback>
   static DEM_HOT void collide(const Mixed& a, const double* pose_a, const Mixed& b, const double* pose_b,
-                              const Vector3<double>& separation, Sink&& sink,
+                              const Vector3<double>& separation, Callback&& callback,
                               double gap) requires(reaches_each<Kinds>&&...) {
     Memory nothing;
-    collide_kinds(a, pose_a, b, pose_b, separation, nothing, sink, gap);
+    collide_kinds(a, pose_a, b, pose_b, separation, nothing, callback, gap);
   }
-  template <class Sink>
+  template <class Callback>
   static DEM_HOT void collide(const Mixed& a, const double* pose_a, const Mixed& b, const double* pose_b,
-                              const Vector3<double>& separation, Memory& memory, Sink&& sink,
+                              const Vector3<double>& separation, Memory& memory, Callback&& callback,
                               double gap) requires(reaches_each<Kinds>&&...) {
-    collide_kinds(a, pose_a, b, pose_b, separation, memory, sink, gap);
+    collide_kinds(a, pose_a, b, pose_b, separation, memory, callback, gap);
   }
 
   /// Patches are found between grains of one kind only.
@@ -131,16 +131,16 @@ class Mixed : public detail::MixedBase<detail::MixedMemories<Kinds...>::any, Kin
   /// A feature as the pair's own kind numbers it.
   static constexpr std::uint32_t own(std::uint32_t feature) { return feature & ((1u << feature_bits) - 1u); }
 
-  template <class Sink, class Gap>
+  template <class Callback, class Gap>
   static DEM_HOT void collide_kinds(const Mixed& a, const double* pose_a, const Mixed& b, const double* pose_b,
-                                    const Vector3<double>& separation, Memory& memory, Sink&& sink, Gap gap) {
+                                    const Vector3<double>& separation, Memory& memory, Callback&& callback, Gap gap) {
     a.visit_indexed([&]<std::size_t I>(const auto& x, std::integral_constant<std::size_t, I>) {
       b.visit_indexed([&]<std::size_t J>(const auto& y, std::integral_constant<std::size_t, J>) {
         using A = std::remove_cvref_t<decltype(x)>;
         using B = std::remove_cvref_t<decltype(y)>;
         // Features of a pair of one kind carry its number, so that mirrored() knows whom to ask.
         constexpr std::uint32_t kind = I == J ? std::uint32_t{I + 1} << feature_bits : 0u;
-        const auto marked = [&](std::uint32_t feature, const auto& touch) { sink(kind | feature, touch); };
+        const auto marked = [&](std::uint32_t feature, const auto& touch) { callback(kind | feature, touch); };
         if constexpr (std::same_as<typename PairMemoryOf<A, B>::type, NoMemory>) {
           NoMemory none;
           collide_pair(x, pose_a, y, pose_b, separation, none, marked, gap);

@@ -8,13 +8,13 @@ namespace dem::shape {
 /// (see Mixed). Specialise it for one order of the two; the other follows by itself:
 ///   template <>
 ///   struct PairContact<Egg, Brick> {
-///     template <class Sink>
+///     template <class Callback>
 ///     static void collide(const Egg& a, const double* pose_a, const Brick& b, const double* pose_b,
-///                         const Vector3<double>& separation, Sink&& sink);
+///                         const Vector3<double>& separation, Callback&& callback);
 ///   };
-/// collide calls sink(feature, touch) as a Shape's own does: touches seen from a's centre, features ascending and below
-/// 2^24; any touch with geometry() will do. What a search wants to keep for a pair of neighbours goes into a type
-/// Memory (copyable, empty when made), and collide then takes a Memory& before the sink. To meet cohesion at a
+/// collide calls callback(feature, touch) as a Shape's own does: touches seen from a's centre, features ascending and
+/// below 2^24; any touch with geometry() will do. What a search wants to keep for a pair of neighbours goes into a type
+/// Memory (copyable, empty when made), and collide then takes a Memory& before the callback. To meet cohesion at a
 /// distance, collide also takes a gap (m) as a last argument, as that of a ReachingShape does.
 template <class A, class B>
 struct PairContact;
@@ -22,21 +22,21 @@ struct PairContact;
 /// Two grains of one kind: as the shape itself says.
 template <Shape S>
 struct PairContact<S, S> {
-  template <class Sink, class... Gap>
+  template <class Callback, class... Gap>
   requires(sizeof...(Gap) == 0 || ReachingShape<S>) static DEM_HOT
       void collide(const S& a, const double* pose_a, const S& b, const double* pose_b,
-                   const Vector3<double>& separation, Sink&& sink, Gap... gap) {
-    S::collide(a, pose_a, b, pose_b, separation, sink, gap...);
+                   const Vector3<double>& separation, Callback&& callback, Gap... gap) {
+    S::collide(a, pose_a, b, pose_b, separation, callback, gap...);
   }
 };
 template <RememberingShape S>
 struct PairContact<S, S> {
   using Memory = typename S::PairMemory;
-  template <class Sink, class... Gap>
+  template <class Callback, class... Gap>
   requires(sizeof...(Gap) == 0 || ReachingShape<S>) static DEM_HOT
       void collide(const S& a, const double* pose_a, const S& b, const double* pose_b,
-                   const Vector3<double>& separation, Memory& memory, Sink&& sink, Gap... gap) {
-    S::collide(a, pose_a, b, pose_b, separation, memory, sink, gap...);
+                   const Vector3<double>& separation, Memory& memory, Callback&& callback, Gap... gap) {
+    S::collide(a, pose_a, b, pose_b, separation, memory, callback, gap...);
   }
 };
 
@@ -76,16 +76,16 @@ struct PairMemoryOf<A, B> {
 };
 
 /// A contact that was found from b's side, seen from a's.
-DEM_HOT contact::PointTouch<double> turned_round(const contact::Geometry<double>& g,
-                                                 const Vector3<double>& separation) {
+DEM_HOT contact::ContactPoint<double> turned_round(const contact::Geometry<double>& g,
+                                                   const Vector3<double>& separation) {
   return {-g.normal, g.overlap, g.arm + separation, g.effective_radius, g.area, g.total_share};
 }
 
 /// Contacts of any two kinds as point touches, through PairContact<A, B> or PairContact<B, A>; up to a gap (m) where
 /// cohesion acts at a distance (else NoGap).
-template <class A, class B, class Memory, class Sink, class Gap = NoGap>
+template <class A, class B, class Memory, class Callback, class Gap = NoGap>
 DEM_HOT void collide_pair(const A& a, const double* pose_a, const B& b, const double* pose_b,
-                          const Vector3<double>& separation, Memory& memory, Sink&& sink, Gap gap = {}) {
+                          const Vector3<double>& separation, Memory& memory, Callback&& callback, Gap gap = {}) {
   const auto call = [&](auto pair, const auto&... arguments) {
     using Pair = decltype(pair);
     const auto with = [&](const auto&... reach) {
@@ -105,15 +105,17 @@ DEM_HOT void collide_pair(const A& a, const double* pose_a, const B& b, const do
   if constexpr (HasPairContact<A, B>) {
     call(PairContact<A, B>{}, a, pose_a, b, pose_b, separation, [&](std::uint32_t feature, const auto& touch) {
       const contact::Geometry<double> g = touch.geometry();
-      sink(feature, contact::PointTouch<double>{g.normal, g.overlap, g.arm, g.effective_radius, g.area, g.total_share});
+      callback(feature,
+               contact::ContactPoint<double>{g.normal, g.overlap, g.arm, g.effective_radius, g.area, g.total_share});
     });
   } else {
     static_assert(
         HasPairContact<B, A>,
         "Mixed: nothing says how these two shapes touch; specialise dem::shape::PairContact<A, B> for them, or include "
         "polyhedron_sphere.hpp / superquadric_polyhedron.hpp");
-    call(PairContact<B, A>{}, b, pose_b, a, pose_a, -separation,
-         [&](std::uint32_t feature, const auto& touch) { sink(feature, turned_round(touch.geometry(), separation)); });
+    call(PairContact<B, A>{}, b, pose_b, a, pose_a, -separation, [&](std::uint32_t feature, const auto& touch) {
+      callback(feature, turned_round(touch.geometry(), separation));
+    });
   }
 }
 

@@ -13,7 +13,7 @@ class PointSet {
   DEM_LAZY explicit PointSet(const std::vector<Vec3>& points) {
     std::vector<Bounds> boxes;
     for (const Vec3& p : points) boxes.push_back({p, p});
-    tree_ = BoxTree(boxes);
+    tree_ = BoundingVolumeTree(boxes);
     for (const std::uint32_t k : tree_.order()) points_.push_back(from_eigen(points[k]));
   }
 
@@ -40,7 +40,7 @@ class PointSet {
   }
 
  private:
-  BoxTree tree_;
+  BoundingVolumeTree tree_;
   std::vector<Vector3<double>> points_;
 };
 

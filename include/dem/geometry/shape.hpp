@@ -10,13 +10,13 @@
 
 namespace dem::shape {
 
-/// A sink for the concept check below; a real one evaluates the contact.
+/// A callback for the concept check below; a real one evaluates the contact.
 struct AnySink {
-  template <class Touch>
-  void operator()(std::uint32_t, const Touch&) const {}
+  template <class ContactPoint>
+  void operator()(std::uint32_t, const ContactPoint&) const {}
 };
-struct AnyProbe {
-  void operator()(std::uint32_t, const contact::Probe&) const {}
+struct AnySamplePoint {
+  void operator()(std::uint32_t, const contact::SamplePoint&) const {}
 };
 
 /// A shape is what a grain is. Its frame sits in the centre of mass along the principal axes. It has
@@ -25,11 +25,11 @@ struct AnyProbe {
 ///   most_contacts        upper bound of the contacts of one pair;
 ///   orient(R, pose)      fills that cache;
 ///   volume(), unit_inertia(), bounding_radius();
-///   collide(a, pose_a, b, pose_b, separation, sink)   calls sink(feature, PairTouch) once per contact, features
-///                        ascending, where separation leads from a's centre to b's;
+///   collide(a, pose_a, b, pose_b, separation, callback)   calls callback(feature, PairContactPoint) once per contact,
+///                        features ascending, where separation leads from a's centre to b's;
 ///   mirrored(feature)    the feature number of the same contact when a and b change places;
-///   probe(pose, sink)    calls sink(index, contact::Probe) for each sphere or point that the shape shows to surfaces,
-///                        indices ascending, below 4095.
+///   sample_points(pose, callback)   calls callback(index, contact::SamplePoint) for each sphere or point that the
+///                        shape shows to surfaces, indices ascending, below 4095.
 /// It may also have
 ///   patch(), surface_patch()   where it touches with many points at once (see patch_of);
 ///   has_shares(), shares_fit   true if the points that it shows to a surface are shares of one contact, and a
@@ -37,38 +37,39 @@ struct AnyProbe {
 ///   is_patch(feature)          if contacts of a pair are the points of one patch (see PatchShape);
 ///   penetration(pose, point, depth, outward_normal)   whether a point (m, from the grain's centre, global axes) lies
 ///                        inside, how deep, and which way is out: then corners and edges of surfaces are felt;
-///   touch_ball(pose, centre, radius, touch)   whether a ball touches, and where (contact::BallTouch): then surfaces
-///                        that are balls are felt exactly, and mantles of cylinders through balls.
+///   touch_ball(pose, centre, radius, touch)   whether a ball touches, and where (contact::BallContactPoint): then
+///   surfaces
+///                        that are balls are felt exactly, and lateral surfaces of cylinders through balls.
 template <class S>
 concept Shape = requires(const S& shape, const Matrix3<double>& rotation, double* pose,
                          const Vector3<double>& separation) {
   { S::pose_size } -> std::convertible_to<int>;
   { S::has_orientation } -> std::convertible_to<bool>;
   { S::most_contacts } -> std::convertible_to<std::size_t>;
-  typename S::template PairTouch<double>;
+  typename S::template PairContactPoint<double>;
   { shape.bounding_radius() } -> std::convertible_to<double>;
   { shape.volume() } -> std::convertible_to<double>;
   { shape.unit_inertia() } -> std::convertible_to<Vec3>;
   shape.orient(rotation, pose);
   S::collide(shape, pose, shape, pose, separation, AnySink{});
   { S::mirrored(std::uint32_t{}) } -> std::same_as<std::uint32_t>;
-  shape.probe(pose, AnyProbe{});
+  shape.sample_points(pose, AnySamplePoint{});
 };
 
 /// A shape whose pairs have at most 64 possible contacts may also say which of them touch as bits, without branches,
 /// and make the touch of each later; the contact loop then has no branch that depends on the answer:
 ///   touching(a, pose_a, b, pose_b, separation) -> uint64_t,  feature_of(bit), ascending with the bits,
-///   touch(a, pose_a, b, pose_b, separation, feature) -> PairTouch.
+///   touch(a, pose_a, b, pose_b, separation, feature) -> PairContactPoint.
 template <class S>
 concept BitShape = Shape<S> && requires(const S& shape, const double* pose, const Vector3<double>& separation) {
   { S::touching(shape, pose, shape, pose, separation) } -> std::same_as<std::uint64_t>;
   { S::feature_of(0) } -> std::same_as<std::uint32_t>;
-  { S::touch(shape, pose, shape, pose, separation, 0u) } -> std::same_as<typename S::template PairTouch<double>>;
+  { S::touch(shape, pose, shape, pose, separation, 0u) } -> std::same_as<typename S::template PairContactPoint<double>>;
 };
 
 /// A shape whose search for contacts starts from what the last step found. PairMemory is what it keeps for each pair of
-/// neighbours (empty when they are listed anew), and collide(a, pose_a, b, pose_b, separation, memory, sink) uses it.
-/// The memory belongs to the pair, not to a thread: results stay the same for any number of threads.
+/// neighbours (empty when they are listed anew), and collide(a, pose_a, b, pose_b, separation, memory, callback) uses
+/// it. The memory belongs to the pair, not to a thread: results stay the same for any number of threads.
 template <class S>
 concept RememberingShape = Shape<S> &&
     requires(const S& shape, const double* pose, const Vector3<double>& separation, typename S::PairMemory& memory) {
@@ -182,8 +183,8 @@ constexpr void check_shape() {
       requires { S::most_contacts; },
       "Shape: needs 'static constexpr std::size_t most_contacts', the most contacts a pair may have");
   static_assert(
-      requires { typename S::template PairTouch<double>; },
-      "Shape: needs 'template <class T> PairTouch', the raw numbers of a contact between two such shapes");
+      requires { typename S::template PairContactPoint<double>; },
+      "Shape: needs 'template <class T> PairContactPoint', the raw numbers of a contact between two such shapes");
   static_assert(
       requires(const S& shape) {
         { shape.bounding_radius() } -> std::convertible_to<double>;
@@ -192,8 +193,8 @@ constexpr void check_shape() {
       },
       "Shape: needs bounding_radius() in m, volume() in m^3 and unit_inertia(), the principal moments per density");
   static_assert(Shape<S>,
-                "Shape: needs orient(R, pose), static collide(a, pose_a, b, pose_b, separation, sink), static "
-                "mirrored(feature) and probe(pose, sink)");
+                "Shape: needs orient(R, pose), static collide(a, pose_a, b, pose_b, separation, callback), static "
+                "mirrored(feature) and sample_points(pose, callback)");
 }
 
 }  // namespace dem::shape

@@ -8,16 +8,16 @@
 
 namespace dem::shape {
 
-/// Finds the points of one contact with find(sink(feature, touch)) and hands them on to `sink`, weighted so that they
-/// are one whole contact (contact::fit_weights).
-template <class Find, class Sink>
-void share_points(Find&& find, Sink&& sink) {
-  static thread_local std::vector<std::pair<std::uint32_t, contact::PointTouch<double>>> found;
+/// Finds the points of one contact with find(callback(feature, touch)) and hands them on to `callback`, weighted so
+/// that they are one whole contact (contact::fit_weights).
+template <class Find, class Callback>
+void share_points(Find&& find, Callback&& callback) {
+  static thread_local std::vector<std::pair<std::uint32_t, contact::ContactPoint<double>>> found;
   found.clear();
-  find([&](std::uint32_t feature, const contact::PointTouch<double>& touch) { found.push_back({feature, touch}); });
+  find([&](std::uint32_t feature, const contact::ContactPoint<double>& touch) { found.push_back({feature, touch}); });
   contact::fit_weights(found.size(), contact::Fit::always,
-                       [&](std::size_t k) -> contact::PointTouch<double>& { return found[k].second; });
-  for (const auto& [feature, touch] : found) sink(feature, touch);
+                       [&](std::size_t k) -> contact::ContactPoint<double>& { return found[k].second; });
+  for (const auto& [feature, touch] : found) callback(feature, touch);
 }
 
 }  // namespace dem::shape

@@ -24,7 +24,8 @@ struct AnySink {
 ///   near(point, radius)          false only if a sphere there cannot touch (cheap, may say true too often); for T =
 ///   double
 ///                                and for packs, where it gives a mask;
-///   touch(point, radius, sink)   calls sink(feature, normal, gap) once per contact of the sphere, features ascending:
+///   touch(point, radius, callback)   calls callback(feature, normal, gap) once per contact of the sphere, features
+///   ascending:
 ///                                unit normal from the sphere into the surface, distance along it from the sphere's
 ///                                centre to the surface (negative inside);
 ///   bounds()                     in its own frame; infinite where it has no end.
@@ -47,14 +48,14 @@ double radius_on(const S& s, double radius) {
   }
 }
 
-/// Contacts of a point (a probe of radius 0) up to a gap (m) before a surface, as of a sphere of that radius; a surface
-/// that finds points behind it in another way than spheres has touch_point(point, gap, sink).
-template <class S, class Sink>
-DEM_HOT void touch_point(const S& s, const Vector3<double>& point, double gap, Sink&& sink) {
-  if constexpr (requires { s.touch_point(point, gap, sink); }) {
-    s.touch_point(point, gap, sink);
+/// Contacts of a point (a sample point of radius 0) up to a gap (m) before a surface, as of a sphere of that radius; a
+/// surface that finds points behind it in another way than spheres has touch_point(point, gap, callback).
+template <class S, class Callback>
+DEM_HOT void touch_point(const S& s, const Vector3<double>& point, double gap, Callback&& callback) {
+  if constexpr (requires { s.touch_point(point, gap, callback); }) {
+    s.touch_point(point, gap, callback);
   } else {
-    s.touch(point, gap, sink);
+    s.touch(point, gap, callback);
   }
 }
 
@@ -78,9 +79,9 @@ constexpr void check_surface() {
         { s.bounds() } -> std::same_as<Bounds>;
       },
       "Surface: needs bounds() that returns surface::Bounds in the surface's own frame");
-  static_assert(
-      Surface<S>,
-      "Surface: needs near(point, radius), for doubles (bool) and packs (PackMask), and touch(point, radius, sink)");
+  static_assert(Surface<S>,
+                "Surface: needs near(point, radius), for doubles (bool) and packs (PackMask), and touch(point, radius, "
+                "callback)");
 }
 
 /// The kinds of surface that a model's machine parts may have.

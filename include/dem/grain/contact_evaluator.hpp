@@ -1,7 +1,7 @@
 #pragma once
 
 #include <dem/geometry/shape.hpp>
-#include <dem/grain/encounters.hpp>
+#include <dem/grain/relative_motion.hpp>
 
 #include <span>
 #include <vector>
@@ -41,7 +41,7 @@ struct ContactForces {
 /// Evaluates the laws for a list of contacts, a pack at a time, and finds each contact's memory by walking along last
 /// step's in step: both lists ascend in their keys. What a contact gives does not depend on its neighbours in the pack.
 /// `Shape`: whose pairs these are, if they may be patches.
-template <class Model, template <class> class Touch, class Shape = void>
+template <class Model, template <class> class ContactPoint, class Shape = void>
 class ContactEvaluator {
  public:
   using Memories = ContactMemories<history_size<Model>>;
@@ -82,7 +82,7 @@ class ContactEvaluator {
         copy_lane(0, lane);
         partners.set(lane, *partners.i[0], *partners.j[0]);
       }
-      const Pack overlap = evaluate(encounters(partners), memories, forces, static_cast<std::size_t>(at));
+      const Pack overlap = evaluate(relative_motions(partners), memories, forces, static_cast<std::size_t>(at));
       if (any_of(overlap > Pack(deepest.overlap))) [[unlikely]]
         deepest = deepest_of(overlap, lanes, static_cast<std::size_t>(at));
     }
@@ -90,7 +90,7 @@ class ContactEvaluator {
   }
 
  private:
-  static constexpr int touch_size = contact::field_count<Touch<double>>;
+  static constexpr int touch_size = contact::field_count<ContactPoint<double>>;
 
   using PackParameters = ContactParameters<Model, Pack>;
 
@@ -205,7 +205,8 @@ class ContactEvaluator {
     uniform_law_ = law;
   }
 
-  DEM_HOT Pack evaluate(const Encounter<Pack>& encounter, Memories& memories, ContactForces& forces, std::size_t at) {
+  DEM_HOT Pack evaluate(const RelativeMotion<Pack>& relative, Memories& memories, ContactForces& forces,
+                        std::size_t at) {
     bool same = true;
     for (int lane = 0; lane < pack_width; ++lane) same &= law_[lane] == law_[0];
     if (same && law_[0] != uniform_law_) [[unlikely]]
@@ -216,8 +217,8 @@ class ContactEvaluator {
         history, [&](auto& h, int row) { h = packed<std::decay_t<decltype(h)>>(&history_[0][0] + row * pack_width); });
     const PackParameters parameters = same ? uniform_ : gather_parameters();
     Pack overlap_ratio;
-    const PairWrench<Pack> w = contact_wrench<Model, Pack>(packed<Touch<Pack>>(&touch_[0][0]), encounter, parameters,
-                                                           Pack(dt_), history, overlap_ratio);
+    const PairWrench<Pack> w = contact_wrench<Model, Pack>(packed<ContactPoint<Pack>>(&touch_[0][0]), relative,
+                                                           parameters, Pack(dt_), history, overlap_ratio);
     store3(w.force, forces.force, at);
     store3(w.torque_i, forces.torque_i, at);
     store3(w.torque_j, forces.torque_j, at);

@@ -14,7 +14,7 @@ namespace dem::grain {
 
 /// Motion of the two partners of a contact relative to each other, global axes.
 template <class T>
-struct Encounter {
+struct RelativeMotion {
   Vector3<T> separation;      ///< m, from the centre of i to the centre of j
   Vector3<T> velocity;        ///< m/s, of the centre of i minus that of j
   Vector3<T> spin_i, spin_j;  ///< rad/s
@@ -66,8 +66,8 @@ DEM_HOT NormalForce<T> normal_force(const contact::NormalState<T>& state, const 
 
 /// The laws applied to one contact (T = double) or to a pack of contacts: eqs. 20-30. Updates the history and returns
 /// the wrench and, in `overlap_ratio`, the overlap in effective diameters.
-template <class Model, class T, class Touch>
-DEM_HOT PairWrench<T> contact_wrench(const Touch& touch, const Encounter<T>& e,
+template <class Model, class T, class ContactPoint>
+DEM_HOT PairWrench<T> contact_wrench(const ContactPoint& touch, const RelativeMotion<T>& e,
                                      const ContactParameters<Model, T>& parameters, T dt,
                                      ContactHistory<Model, T>& history, T& overlap_ratio) {
   const contact::Geometry<T> g = touch.geometry();

@@ -16,7 +16,7 @@ struct PairScratch {
   std::vector<std::uint32_t> close;     ///< candidates whose bounding spheres overlap
   std::vector<std::uint64_t> touching;  ///< BitShape: answers that are not zero
   std::vector<Hit> hits;
-  std::vector<typename Model::Shape::template PairTouch<double>> touches;  ///< other shapes: one for each hit
+  std::vector<typename Model::Shape::template PairContactPoint<double>> touches;  ///< other shapes: one for each hit
   ContactForces forces;
 };
 
@@ -131,7 +131,7 @@ void find_hits_one_by_one(const Pairs& pairs, std::size_t close_count,
     const std::uint32_t k = s.close[c];
     const std::size_t i = pairs.i(k), j = pairs.j(k);
     const Shape &a = pairs.kind(i).shape, &b = pairs.kind(j).shape;
-    const auto sink = [&](std::uint32_t feature, const auto& touch) {
+    const auto callback = [&](std::uint32_t feature, const auto& touch) {
       s.hits.push_back(pairs.hit(k, feature));
       s.touches.push_back(touch);
     };
@@ -140,11 +140,11 @@ void find_hits_one_by_one(const Pairs& pairs, std::size_t close_count,
     };
     constexpr bool reaches = cohesion::reaches<typename Model::Cohesion>;
     if constexpr (shape::RememberingShape<Shape>) {
-      if constexpr (reaches) collide(searches.memory[k], sink, pairs.gap());
-      else collide(searches.memory[k], sink);
+      if constexpr (reaches) collide(searches.memory[k], callback, pairs.gap());
+      else collide(searches.memory[k], callback);
     } else {
-      if constexpr (reaches) collide(sink, pairs.gap());
-      else collide(sink);
+      if constexpr (reaches) collide(callback, pairs.gap());
+      else collide(callback);
     }
   }
 }
@@ -173,8 +173,9 @@ void share_forces(std::size_t begin, Chunk<Model>& chunk, const PairScratch<Mode
 
 /// The touch of hit c of a chunk.
 template <class Model, class Pairs>
-DEM_HOT typename Model::Shape::template PairTouch<double> touch_of_hit(const Pairs& pairs, const PairScratch<Model>& s,
-                                                                       std::size_t c) {
+DEM_HOT typename Model::Shape::template PairContactPoint<double> touch_of_hit(const Pairs& pairs,
+                                                                              const PairScratch<Model>& s,
+                                                                              std::size_t c) {
   using Shape = typename Model::Shape;
   if constexpr (shape::BitShape<Shape>) {
     const std::size_t i = s.hits[c].i, j = s.hits[c].partner;
@@ -203,7 +204,7 @@ void find_pair_contacts(std::size_t chunk_index, Chunk<Model>& chunk, const Part
   }
 
   const auto touch_of = [&](std::size_t c) { return touch_of_hit<Model>(pairs, s, c); };
-  ContactEvaluator<Model, Shape::template PairTouch, Shape> evaluator(materials.table(), dt);
+  ContactEvaluator<Model, Shape::template PairContactPoint, Shape> evaluator(materials.table(), dt);
   const Deepest deepest = evaluator.run(
       s.hits, chunk.pair_contacts, s.forces, touch_of,
       [&](std::size_t c) -> const PartnerView& { return p.view[s.hits[c].i]; },

@@ -5,7 +5,7 @@
 namespace dem {
 
 /// What contacts read of a partner, a grain or a machine part, side by side in memory: a partner may be anywhere, and
-/// nine columns would be nine cache lines. Three rows of four doubles, for grain::encounters().
+/// nine columns would be nine cache lines. Three rows of four doubles, for grain::relative_motions().
 struct alignas(32) PartnerView {
   Vector3<double> position;          ///< m, of the centre of mass
   double radius;                     ///< m, of a grain's bounding sphere

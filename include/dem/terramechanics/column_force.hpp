@@ -20,7 +20,7 @@ struct ColumnForce {
 /// `slope` is the tangent of the soil's angle of friction. `friction` (mu of the part on the soil) limits the shear
 /// stress to mu p: a smooth part slides on the soil.
 inline ColumnForce column_force(const ColumnField& field, const ColumnLaw& law, const JanosiHanamoto& shear,
-                                double slope, double friction, double damping, const ColumnTouch& touch,
+                                double slope, double friction, double damping, const ColumnContactPoint& touch,
                                 const Vector3<double>& velocity, double dt, bool in_contact, ColumnChange& change) {
   const std::size_t row = change.row;
   const double sinkage = field.reference(row) - touch.point.z;

@@ -32,12 +32,12 @@ class ColumnMesh final : public ColumnShape {
     const double ex = reach(r.row0), ey = reach(r.row1);
     return {p.x - ex, p.x + ex, p.y - ey, p.y + ey};
   }
-  bool touch(const ShapePose& pose, const ColumnPlace& place, double top, ColumnTouch& touch) const override {
+  bool touch(const ShapePose& pose, const ColumnPlace& place, double top, ColumnContactPoint& touch) const override {
     const double bottom =
         pose.position.z + dot(pose.rotation.row2, middle_) - reach(pose.rotation.row2) - 1e-3 * place.spacing;
     if (!(bottom < top)) return false;
     const double high = top + 2.0 * place.spacing, pitch = place.spacing / rays_;
-    const auto cast = [&](int kx, int ky, ColumnTouch& hit) {
+    const auto cast = [&](int kx, int ky, ColumnContactPoint& hit) {
       hit.point = {place.x + pitch * (kx + 0.5) - 0.5 * place.spacing,
                    place.y + pitch * (ky + 0.5) - 0.5 * place.spacing, 0.0};
       return lowest(pose, bottom, high, hit);
@@ -51,7 +51,7 @@ class ColumnMesh final : public ColumnShape {
     if (hits == 1 && !(touch.point.z < top)) return false;
     double nearest = hits == 1 ? 0.0 : 1e300;
     for (int k = 0; k < rays_ * rays_; ++k) {
-      ColumnTouch hit;
+      ColumnContactPoint hit;
       if ((k % rays_ == own_x && k / rays_ == own_y) || !cast(k % rays_, k / rays_, hit)) continue;
       ++hits;
       const double dx = hit.point.x - place.at_x, dy = hit.point.y - place.at_y, distance = dx * dx + dy * dy;
@@ -69,7 +69,7 @@ class ColumnMesh final : public ColumnShape {
     return std::abs(row.x) * half_.x + std::abs(row.y) * half_.y + std::abs(row.z) * half_.z;
   }
   /// The first face above a point's x and y between two heights (m): sets its height and normal, turned downwards.
-  bool lowest(const ShapePose& pose, double bottom, double top, ColumnTouch& touch) const {
+  bool lowest(const ShapePose& pose, double bottom, double top, ColumnContactPoint& touch) const {
     constexpr double slack = 1e-9;  // of a triangle's heights, so that a ray through an edge meets it
     const surface::MeshData& m = mesh_.data();
     const Vector3<double> tail =

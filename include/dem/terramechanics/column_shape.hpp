@@ -31,7 +31,7 @@ struct ColumnPlace {
 };
 
 /// Where a column meets the underside of a shape.
-struct ColumnTouch {
+struct ColumnContactPoint {
   Vector3<double> point;   ///< m, on the shape
   Vector3<double> normal;  ///< unit, out of the shape, so downwards: z < 0
   double share = 1.0;      ///< of the column's area that lies under the shape
@@ -46,7 +46,7 @@ class ColumnShape {
   /// up to one spacing beyond it are asked too, as they may lie partly under an edge.
   virtual PlanBox shadow(const ShapePose& pose, double top) const = 0;
   /// The underside over a column, or false if it has none below `top` (m).
-  virtual bool touch(const ShapePose& pose, const ColumnPlace& place, double top, ColumnTouch& touch) const = 0;
+  virtual bool touch(const ShapePose& pose, const ColumnPlace& place, double top, ColumnContactPoint& touch) const = 0;
   /// b of the pressure law, m: the smaller side of what presses on the soil; 0 if the shape does not tell.
   virtual double width() const = 0;
 };

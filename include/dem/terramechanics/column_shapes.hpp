@@ -21,7 +21,7 @@ class ColumnBall final : public ColumnShape {
     const Vector3<double>& p = pose.position;
     return {p.x - reach, p.x + reach, p.y - reach, p.y + reach};
   }
-  bool touch(const ShapePose& pose, const ColumnPlace& place, double top, ColumnTouch& touch) const override {
+  bool touch(const ShapePose& pose, const ColumnPlace& place, double top, ColumnContactPoint& touch) const override {
     const double dx = place.at_x - pose.position.x, dy = place.at_y - pose.position.y;
     const double rest = radius_ * radius_ - dx * dx - dy * dy;
     if (!(rest > 0.0)) return false;
@@ -58,18 +58,18 @@ class ColumnCylinder final : public ColumnShape {
     const Vector3<double>& p = pose.position;
     return {p.x - ex, p.x + ex, p.y - ey, p.y + ey};
   }
-  bool touch(const ShapePose& pose, const ColumnPlace& place, double top, ColumnTouch& touch) const override {
+  bool touch(const ShapePose& pose, const ColumnPlace& place, double top, ColumnContactPoint& touch) const override {
     const Vector3<double> a = axis(pose);
     const double level2 = 1.0 - a.z * a.z;
     Vector3<double> q = {place.at_x - pose.position.x, place.at_y - pose.position.y, 0.0};
     // Most columns that are asked lie before or behind what presses. Along the axis the height changes by its slope.
     const bool low =
-        level2 > 1e-12 && mantle(a, level2, q, top - pose.position.z + 2.0 * place.spacing * std::abs(a.z) / level2);
+        level2 > 1e-12 && lateral(a, level2, q, top - pose.position.z + 2.0 * place.spacing * std::abs(a.z) / level2);
     if (low) {
       // The share along the axis is the whole column's, the height that of its point.
       Vector3<double> centre = {place.x - pose.position.x, place.y - pose.position.y, 0.0};
       const double extent = place.spacing * (std::abs(a.x) + std::abs(a.y));
-      if (mantle(a, level2, centre)) {
+      if (lateral(a, level2, centre)) {
         double middle = 0.0;
         const double share = detail::covered(dot(a, centre), extent, half_, middle);
         bool found = share > 0.0;
@@ -77,7 +77,7 @@ class ColumnCylinder final : public ColumnShape {
           const double along = dot(a, q);
           q.x += (middle - along) * a.x / level2;
           q.y += (middle - along) * a.y / level2;
-          found = mantle(a, level2, q);
+          found = lateral(a, level2, q);
         }
         if (found) {
           touch.point = pose.position + q;
@@ -97,7 +97,7 @@ class ColumnCylinder final : public ColumnShape {
   }
   /// The lower of the heights at which the vertical through q, from the centre, leaves the endless cylinder; false
   /// where it does not, or not below `top` (m, from the centre), which is found without the root.
-  bool mantle(const Vector3<double>& a, double level2, Vector3<double>& q, double top = 1e300) const {
+  bool lateral(const Vector3<double>& a, double level2, Vector3<double>& q, double top = 1e300) const {
     const double along = a.x * q.x + a.y * q.y;
     const double rest =
         (radius_ * radius_ - q.x * q.x - q.y * q.y + along * along) * level2 + a.z * a.z * along * along;
@@ -108,7 +108,7 @@ class ColumnCylinder final : public ColumnShape {
   }
   /// The flat side that looks down, where the wheel leans by more than 6 degrees.
   bool on_side(const ShapePose& pose, const Vector3<double>& a, Vector3<double> q, double top,
-               ColumnTouch& touch) const {
+               ColumnContactPoint& touch) const {
     if (std::abs(a.z) < 0.1) return false;
     const Vector3<double> down = a.z < 0.0 ? a : -a;
     q.z = (half_ - down.x * q.x - down.y * q.y) / down.z;
@@ -141,7 +141,7 @@ class ColumnBox final : public ColumnShape {
     const double ex = reach(r.row0), ey = reach(r.row1);
     return {p.x - ex, p.x + ex, p.y - ey, p.y + ey};
   }
-  bool touch(const ShapePose& pose, const ColumnPlace& place, double top, ColumnTouch& touch) const override {
+  bool touch(const ShapePose& pose, const ColumnPlace& place, double top, ColumnContactPoint& touch) const override {
     const Vector3<double>& up = pose.rotation.row2;
     const double reach = std::abs(up.x) * half_.x + std::abs(up.y) * half_.y + std::abs(up.z) * half_.z;
     if (pose.position.z - reach >= top) return false;
@@ -168,7 +168,7 @@ class ColumnBox final : public ColumnShape {
   /// sides, `point` being the column's.
   static bool on_face(const ShapePose& pose, const Axes& axis, const std::array<double, 3>& half, std::size_t k,
                       const Vector3<double>& centre, const Vector3<double>* point, double spacing, double top,
-                      ColumnTouch& touch) {
+                      ColumnContactPoint& touch) {
     const Vector3<double> normal = axis[k].z < 0.0 ? axis[k] : -axis[k];
     const auto drop = [&](Vector3<double> at) {
       at.z = (half[k] - normal.x * at.x - normal.y * at.y) / normal.z;
@@ -199,7 +199,7 @@ class ColumnBox final : public ColumnShape {
   }
   /// Whichever face the vertical enters by, for blocks that lean.
   static bool on_any(const ShapePose& pose, const Axes& axis, const std::array<double, 3>& half,
-                     const Vector3<double>& q, double top, ColumnTouch& touch) {
+                     const Vector3<double>& q, double top, ColumnContactPoint& touch) {
     double low = -std::numeric_limits<double>::infinity(), high = -low;
     std::size_t face = 3;
     for (std::size_t k = 0; k < 3; ++k) {

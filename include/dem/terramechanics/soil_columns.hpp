@@ -125,7 +125,7 @@ class SoilColumns {
 
   struct Hit {
     std::size_t row;
-    ColumnTouch touch;
+    ColumnContactPoint touch;
   };
   /// A row of columns under a part: the unit of work for threads and of sums.
   struct Strip {

@@ -31,7 +31,8 @@ bool meets_with_points(const Shape& shape) {
     if (coupling::touches_as_ball(grain)) return;
     std::array<double, std::max(1, Kind::pose_size)> pose = {};
     if constexpr (Kind::pose_size > 0) grain.orient(Matrix3<double>::identity(), pose.data());
-    grain.probe(pose.data(), [&](std::uint32_t, const contact::Probe& probe) { any |= probe.radius <= 0.0; });
+    grain.sample_points(pose.data(),
+                        [&](std::uint32_t, const contact::SamplePoint& sample) { any |= sample.radius <= 0.0; });
   });
   return any;
 }

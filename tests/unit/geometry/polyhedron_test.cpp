@@ -304,11 +304,11 @@ TEST_CASE("what a polyhedron shows to surfaces are its corners, with shares that
     double pose[Polyhedron::pose_size];
     body.orient(dem::from_eigen(turn), pose);
     std::vector<double> share;
-    body.probe(pose, [&](std::uint32_t index, const dem::contact::Probe& probe) {
+    body.sample_points(pose, [&](std::uint32_t index, const dem::contact::SamplePoint& sample) {
       CHECK(index == share.size());
-      CHECK(probe.radius == 0.0);
-      CHECK((to_eigen(probe.centre) - turn * body.mesh().corners[index]).norm() < 1e-14);
-      share.push_back(probe.area);
+      CHECK(sample.radius == 0.0);
+      CHECK((to_eigen(sample.centre) - turn * body.mesh().corners[index]).norm() < 1e-14);
+      share.push_back(sample.area);
     });
     REQUIRE(share.size() == body.mesh().corners.size());
     for (const auto& face : body.mesh().faces) {

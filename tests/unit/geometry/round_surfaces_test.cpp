@@ -60,7 +60,7 @@ TEST_CASE("a ball and a round cavity are touched where the closed form says") {
   check_near(cavity, {2.1, 2.1, 2.1});
 }
 
-TEST_CASE("a solid cylinder is touched on mantle, ends and rims") {
+TEST_CASE("a solid cylinder is touched on lateral surface, ends and rims") {
   const Cylinder c(1.0, 3.0);
   const Vec3 u(0.6, 0.8, 0);
   check_one(touches(c, 1.2 * u + Vec3(0, 0, 0.7), 0.3), -u, 0.2);
@@ -74,14 +74,14 @@ TEST_CASE("a solid cylinder is touched on mantle, ends and rims") {
   check_near(c, {1.8, 1.8, 2.2});
 }
 
-TEST_CASE("a drum is touched from inside on its mantle and its ends") {
+TEST_CASE("a drum is touched from inside on its lateral surface and its ends") {
   const Cylinder drum(1.0, 3.0, Side::inside);
   const Vec3 u(0.6, 0.8, 0);
   check_one(touches(drum, 0.8 * u, 0.3), u, 0.2);
   check_one(touches(drum, 1.1 * u, 0.3), u, -0.1);
   const auto corner = touches(drum, 0.8 * u + Vec3(0, 0, -1.4), 0.3);
   REQUIRE(corner.size() == 2);
-  CHECK(corner[0].feature == Cylinder::mantle);
+  CHECK(corner[0].feature == Cylinder::lateral);
   CHECK(corner[1].feature == Cylinder::low_end);
   CHECK((corner[1].normal - Vec3(0, 0, -1)).norm() == 0.0);
   CHECK(corner[1].gap == Approx(0.1));

@@ -204,11 +204,11 @@ TEST_CASE("a cluster shows each of its balls to surfaces, and no more") {
   const Mat3 turn = Random(11).rotation();
   c.orient(dem::from_eigen(turn), pose);
   std::uint32_t next = 0;
-  c.probe(pose, [&](std::uint32_t k, const dem::contact::Probe& probe) {
+  c.sample_points(pose, [&](std::uint32_t k, const dem::contact::SamplePoint& sample) {
     CHECK(k == next++);
-    CHECK((to_eigen(probe.centre) - turn * c.ball(static_cast<int>(k)).centre).norm() < 1e-15);
-    CHECK(probe.radius == c.ball(static_cast<int>(k)).radius);
-    CHECK(probe.effective_radius == probe.radius);
+    CHECK((to_eigen(sample.centre) - turn * c.ball(static_cast<int>(k)).centre).norm() < 1e-15);
+    CHECK(sample.radius == c.ball(static_cast<int>(k)).radius);
+    CHECK(sample.effective_radius == sample.radius);
   });
   CHECK(next == 3);
 }

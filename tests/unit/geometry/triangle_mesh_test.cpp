@@ -199,20 +199,20 @@ TEST_CASE("inside a finely cut bowl a sphere has one contact with one name and a
 }
 
 TEST_CASE("a ball that nearly fills a drum still feels its end, however many facets are near") {
-  // Some 30 facets of the mantle are local minima of the distance, all nearer than the end.
+  // Some 30 facets of the lateral surface are local minima of the distance, all nearer than the end.
   const TriangleMesh drum(mesh::cylinder(1.0, 4.0, 768), {.facing = dem::MeshFacing::inward});
-  const double r = 0.97, into_mantle = 1e-3;
+  const double r = 0.97, into_lateral = 1e-3;
   for (const double into_end : {1e-6, 1e-4, 5e-4, 2e-3}) {
     CAPTURE(into_end);
-    const auto found = touches(drum, {1.0 - r + into_mantle, 0, 2.0 - r + into_end}, r);
+    const auto found = touches(drum, {1.0 - r + into_lateral, 0, 2.0 - r + into_end}, r);
     REQUIRE(found.size() == 2);
     const auto& end = found[0].normal.z() > 0.5 ? found[0] : found[1];
-    const auto& mantle = found[0].normal.z() > 0.5 ? found[1] : found[0];
+    const auto& lateral = found[0].normal.z() > 0.5 ? found[1] : found[0];
     CHECK((end.normal - Vec3(0, 0, 1)).norm() < 1e-12);
     CHECK(std::abs(r - end.gap - into_end) < 1e-14);
-    CHECK(mantle.normal.x() > 0.99);
+    CHECK(lateral.normal.x() > 0.99);
     // A facet's middle is nearer to the axis by R (1 - cos(pi / 768)) = 8e-6.
-    CHECK(std::abs(r - mantle.gap - into_mantle) < 1e-5);
+    CHECK(std::abs(r - lateral.gap - into_lateral) < 1e-5);
   }
 }
 

@@ -5,8 +5,8 @@
 #include "catch.hpp"
 
 using dem::Vector3;
+using dem::contact::ContactPoint;
 using dem::contact::Fit;
-using dem::contact::PointTouch;
 
 namespace {
 
@@ -16,10 +16,10 @@ struct Point {
 };
 
 /// Touches with these weights, fitted.
-std::vector<PointTouch<double>> fitted(const std::vector<Point>& points, Fit fit) {
-  std::vector<PointTouch<double>> touches;
+std::vector<ContactPoint<double>> fitted(const std::vector<Point>& points, Fit fit) {
+  std::vector<ContactPoint<double>> touches;
   for (const Point& p : points) touches.push_back({p.normal, p.overlap, {0, 0, 0}, 1.0, p.weight});
-  dem::contact::fit_weights(touches.size(), fit, [&](std::size_t k) -> PointTouch<double>& { return touches[k]; });
+  dem::contact::fit_weights(touches.size(), fit, [&](std::size_t k) -> ContactPoint<double>& { return touches[k]; });
   return touches;
 }
 double weight(const std::vector<Point>& points, Fit fit) {

@@ -28,10 +28,10 @@ std::array<double, 3> slips() {
   const std::vector<Hit> hits = {
       {7, 0, 1, 0}, {std::uint64_t{1} << 32 | 2, 0, 2, 0}, {std::uint64_t{2} << 32 | 1, 0, 3, 0}};
   // Pressed by 1 mm: 1 N, so that 0.5 N limits springs of at most 8e-3 N.
-  const contact::PointTouch<double> touch = {{0, 0, 1}, 1e-3, {0, 0, 1e-3}, 1e-3, 1.0};
+  const contact::ContactPoint<double> touch = {{0, 0, 1}, 1e-3, {0, 0, 1e-3}, 1e-3, 1.0};
   const PartnerView still = {{0, 0, 0}, 1e-3, {0, 0, 0}, 1.0, {0, 0, 0}};
   ContactForces forces;
-  ContactEvaluator<Model, contact::PointTouch, Shape> evaluator(table, 1e-6);
+  ContactEvaluator<Model, contact::ContactPoint, Shape> evaluator(table, 1e-6);
   const auto view = [&](std::size_t) -> const PartnerView& { return still; };
   evaluator.run(
       hits, memories, forces, [&](std::size_t) { return touch; }, view, view);

@@ -120,14 +120,14 @@ TEST_CASE("a ball in a drum of triangles swings as a pendulum does") {
 namespace {
 
 /// A ball that also says how deep a point is inside of it: a small shape for the corners of surfaces. It shows no
-/// probes but its highest point, so that nothing else finds a contact.
+/// sample points but its highest point, so that nothing else finds a contact.
 class BluntBall : public Sphere {
  public:
   static constexpr bool has_orientation = false;
   explicit BluntBall(double radius) : Sphere(radius) {}
-  template <class Sink>
-  void probe(const double*, Sink&& sink) const {
-    sink(0u, dem::contact::Probe{{0, 0, radius()}, 0.0, radius()});
+  template <class Callback>
+  void sample_points(const double*, Callback&& callback) const {
+    callback(0u, dem::contact::SamplePoint{{0, 0, radius()}, 0.0, radius()});
   }
   bool penetration(const double*, const dem::Vector3<double>& point, double& depth,
                    dem::Vector3<double>& outward) const {

@@ -27,8 +27,8 @@ class Box {
     return x * x + y * y + z * z <= radius * radius;  // also for points (radius 0) inside
   }
 
-  template <class Sink>
-  DEM_HOT void touch(const Vector3<double>& p, double radius, Sink&& sink) const {
+  template <class Callback>
+  DEM_HOT void touch(const Vector3<double>& p, double radius, Callback&& callback) const {
     // From the point to the nearest point of the solid box.
     const Vector3<double> to_box = {clamped(p.x, half_.x) - p.x, clamped(p.y, half_.y) - p.y,
                                     clamped(p.z, half_.z) - p.z};
@@ -38,7 +38,7 @@ class Box {
     }
     if (distance2 > 0.0) {
       const double distance = std::sqrt(distance2);
-      sink(0u, (1.0 / distance) * to_box, distance);
+      callback(0u, (1.0 / distance) * to_box, distance);
       return;
     }
     // The centre is inside: out through the nearest face.
@@ -46,40 +46,40 @@ class Box {
     Vector3<double> normal = {0, 0, 0};
     if (dx >= dy && dx >= dz) {
       normal.x = p.x < 0.0 ? 1.0 : -1.0;
-      sink(0u, normal, dx);
+      callback(0u, normal, dx);
     } else if (dy >= dz) {
       normal.y = p.y < 0.0 ? 1.0 : -1.0;
-      sink(0u, normal, dy);
+      callback(0u, normal, dy);
     } else {
       normal.z = p.z < 0.0 ? 1.0 : -1.0;
-      sink(0u, normal, dz);
+      callback(0u, normal, dz);
     }
   }
 
-  /// Points for contact with other surfaces: sink(number, point, radius), numbers ascending.
-  template <class Sink>
-  void points(const Bounds&, Sink&& sink) const {
-    for_each_point([&](std::uint32_t k, const Vector3<double>& p) { sink(k, p, 0.0); });
+  /// Points for contact with other surfaces: callback(number, point, radius), numbers ascending.
+  template <class Callback>
+  void points(const Bounds&, Callback&& callback) const {
+    for_each_point([&](std::uint32_t k, const Vector3<double>& p) { callback(k, p, 0.0); });
   }
   /// For grains that offer penetration(), within a radius of p: corners 0 to 7, and from 8 on points of the edges near
-  /// p (points_of_edge): sink(number, point, weight).
-  template <class Sink>
-  void corners(const Vector3<double>& p, double radius, Sink&& sink) const {
+  /// p (points_of_edge): callback(number, point, weight).
+  template <class Callback>
+  void corners(const Vector3<double>& p, double radius, Callback&& callback) const {
     if (!near(p, radius)) return;
     for (std::uint32_t k = 0; k < 8; ++k) {
       const Vector3<double> c = {k & 1u ? half_.x : -half_.x, k & 2u ? half_.y : -half_.y, k & 4u ? half_.z : -half_.z};
-      if (dot(c - p, c - p) <= radius * radius) sink(k, c, 1.0);
+      if (dot(c - p, c - p) <= radius * radius) callback(k, c, 1.0);
     }
     edges({}, [&](std::uint32_t edge, const Vector3<double>& tail, const Vector3<double>& head) {
       points_of_edge(tail, head, p, radius, [&](std::uint32_t place, const Vector3<double>& c, double weight) {
-        sink(8 + 3 * ((edge - first_edge) / most_parts) + place, c, weight);
+        callback(8 + 3 * ((edge - first_edge) / most_parts) + place, c, weight);
       });
     });
   }
   bool has_points() const { return true; }
-  /// The edges, for contact with other bodies: sink(number, one end, other end), most_parts numbers an edge.
-  template <class Sink>
-  void edges(const Bounds&, Sink&& sink) const {
+  /// The edges, for contact with other bodies: callback(number, one end, other end), most_parts numbers an edge.
+  template <class Callback>
+  void edges(const Bounds&, Callback&& callback) const {
     const double half[3] = {half_.x, half_.y, half_.z};
     for (std::uint32_t k = 0; k < 12; ++k) {
       const std::uint32_t axis = k / 4;
@@ -90,8 +90,8 @@ class Box {
         const std::uint32_t across = (axis + i) % 3;
         tail[across] = head[across] = (k >> (i - 1) & 1u) != 0 ? half[across] : -half[across];
       }
-      sink(first_edge + most_parts * k, Vector3<double>{tail[0], tail[1], tail[2]},
-           Vector3<double>{head[0], head[1], head[2]});
+      callback(first_edge + most_parts * k, Vector3<double>{tail[0], tail[1], tail[2]},
+               Vector3<double>{head[0], head[1], head[2]});
     }
   }
   /// Cuts the range of shares of the way from tail to head to what lies in the box; false if nothing is left.

@@ -44,9 +44,9 @@ inline constexpr bool balls_before = A::most_contacts < B::most_contacts ||
 template <BallShape A, BallShape B>
 requires balls_before<A, B>
 struct PairContact<A, B> {
-  template <class Sink, class Gap = NoGap>
+  template <class Callback, class Gap = NoGap>
   static DEM_HOT void collide(const A& a, const double* pose_a, const B& b, const double* pose_b,
-                              const Vector3<double>& separation, Sink&& sink, Gap gap = {}) {
+                              const Vector3<double>& separation, Callback&& callback, Gap gap = {}) {
     for (int k = 0; k < ball_count(a); ++k) {
       const PosedBall p = posed_ball(a, pose_a, k);
       const Vector3<double> from = separation - p.centre;
@@ -55,8 +55,8 @@ struct PairContact<A, B> {
         const Vector3<double> link = from + q.centre;
         const double reach = widened(p.radius + q.radius, gap);
         if (dot(link, link) >= reach * reach) continue;
-        sink(static_cast<std::uint32_t>(k * 256 + m),
-             contact::ClusterTouch<double>{p.centre, link, p.radius, q.radius});
+        callback(static_cast<std::uint32_t>(k * 256 + m),
+                 contact::ClusterContactPoint<double>{p.centre, link, p.radius, q.radius});
       }
     }
   }

@@ -24,7 +24,7 @@ class SphereCluster {
   static constexpr bool has_orientation = true;
   static constexpr std::size_t most_contacts = std::size_t{N} * N;
   template <class T>
-  using PairTouch = contact::ClusterTouch<T>;
+  using PairContactPoint = contact::ClusterContactPoint<T>;
 
   /// A rigid layout of 1 to N balls in any frame (m). The mass properties are those of the union of the balls (exact if
   /// none overlap, else volumes are good to 2e-4 and moments to 5e-4), unless they are given (density 1, in the same
@@ -91,18 +91,19 @@ class SphereCluster {
     return static_cast<std::uint32_t>(bit / stride * N + bit % stride);
   }
   /// The contact of sphere feature / N of a with sphere feature % N of b.
-  static DEM_HOT PairTouch<double> touch(const SphereCluster& a, const double* pose_a, const SphereCluster& b,
-                                         const double* pose_b, const Vector3<double>& separation,
-                                         std::uint32_t feature) {
+  static DEM_HOT PairContactPoint<double> touch(const SphereCluster& a, const double* pose_a, const SphereCluster& b,
+                                                const double* pose_b, const Vector3<double>& separation,
+                                                std::uint32_t feature) {
     const std::uint32_t k = feature / N, m = feature % N;
     const Vector3<double> centre = {pose_a[k], pose_a[stride + k], pose_a[2 * stride + k]};
     const Vector3<double> other = {pose_b[m], pose_b[stride + m], pose_b[2 * stride + m]};
     return {centre, (separation - centre) + other, a.radius_[k], b.radius_[m]};
   }
 
-  template <class Sink, class Gap = NoGap>
+  template <class Callback, class Gap = NoGap>
   static DEM_HOT void collide(const SphereCluster& a, const double* pose_a, const SphereCluster& b,
-                              const double* pose_b, const Vector3<double>& separation, Sink&& sink, Gap gap = {}) {
+                              const double* pose_b, const Vector3<double>& separation, Callback&& callback,
+                              Gap gap = {}) {
     for (int row = 0; row < N; row += rows_per_word) {
       for (int lane = 0; lane < stride; lane += lanes_per_word) {
         for (std::uint64_t found = touching_bits(a, pose_a, row, b, pose_b, lane, separation, gap); found != 0;
@@ -110,18 +111,18 @@ class SphereCluster {
           const int bit = std::countr_zero(found);
           const auto feature =
               static_cast<std::uint32_t>((row + bit / lanes_per_word) * N + lane + bit % lanes_per_word);
-          sink(feature, touch(a, pose_a, b, pose_b, separation, feature));
+          callback(feature, touch(a, pose_a, b, pose_b, separation, feature));
         }
       }
     }
   }
   static std::uint32_t mirrored(std::uint32_t feature) { return (feature % N) * N + feature / N; }
 
-  template <class Sink>
-  DEM_HOT void probe(const double* pose, Sink&& sink) const {
+  template <class Callback>
+  DEM_HOT void sample_points(const double* pose, Callback&& callback) const {
     for (int k = 0; k < count_; ++k) {
-      sink(static_cast<std::uint32_t>(k),
-           contact::Probe{{pose[k], pose[stride + k], pose[2 * stride + k]}, radius_[k], radius_[k]});
+      callback(static_cast<std::uint32_t>(k),
+               contact::SamplePoint{{pose[k], pose[stride + k], pose[2 * stride + k]}, radius_[k], radius_[k]});
     }
   }
 

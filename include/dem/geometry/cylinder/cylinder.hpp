@@ -9,12 +9,13 @@ namespace dem::surface {
 
 /// A cylinder about the z axis of its own frame, centred there: a solid with flat ends, a drum (a closed cavity), or a
 /// tube (a wall of some thickness, open at both ends, with grains inside and outside). Seen in the half plane of radius
-/// and z, the solid is a rectangle, and the nearest place on it is the contact: a face, a rim, or the mantle. A drum is
-/// touched on mantle and ends, each of them once. Behind the walls of a drum grains are found up to one radius deep.
+/// and z, the solid is a rectangle, and the nearest place on it is the contact: a face, a rim, or the lateral surface.
+/// A drum is touched on lateral surface and ends, each of them once. Behind the walls of a drum grains are found up to
+/// one radius deep.
 class Cylinder {
  public:
   /// Feature numbers of a drum; a solid and a tube have 0 only.
-  static constexpr std::uint32_t mantle = 0, low_end = 1, high_end = 2;
+  static constexpr std::uint32_t lateral = 0, low_end = 1, high_end = 2;
 
   /// Radius and length in m; `side` inside makes a drum. Throws Error unless both are positive.
   Cylinder(double radius, double length, Side side = Side::outside)
@@ -50,22 +51,22 @@ class Cylinder {
   DEM_HOT auto near(const Vector3<T>& p, const T& radius) const {
     const T rho2 = p.x * p.x + p.y * p.y, z = max(p.z, -p.z);
     if (is_drum_) {
-      const T free = max(T(outer_) - radius, T(0));  // rho beyond which the mantle may be touched
+      const T free = max(T(outer_) - radius, T(0));  // rho beyond which the lateral surface may be touched
       return rho2 >= free * free || z >= T(half_) - radius;
     }
     const T reach = T(outer_) + radius, hole = max(T(inner_) - radius, T(0));
     return rho2 <= reach * reach && z <= T(half_) + radius && rho2 >= hole * hole;
   }
 
-  template <class Sink>
-  DEM_HOT void touch(const Vector3<double>& p, double radius, Sink&& sink) const {
+  template <class Callback>
+  DEM_HOT void touch(const Vector3<double>& p, double radius, Callback&& callback) const {
     const double rho = std::sqrt(p.x * p.x + p.y * p.y);
     // Away from the axis; on the axis every direction is as good.
     const Vector3<double> out = rho > 0.0 ? Vector3<double>{p.x / rho, p.y / rho, 0.0} : Vector3<double>{1, 0, 0};
     if (is_drum_) {
-      if (outer_ - rho < radius) sink(mantle, out, outer_ - rho);
-      if (half_ + p.z < radius) sink(low_end, Vector3<double>{0, 0, -1}, half_ + p.z);
-      if (half_ - p.z < radius) sink(high_end, Vector3<double>{0, 0, 1}, half_ - p.z);
+      if (outer_ - rho < radius) callback(lateral, out, outer_ - rho);
+      if (half_ + p.z < radius) callback(low_end, Vector3<double>{0, 0, -1}, half_ + p.z);
+      if (half_ - p.z < radius) callback(high_end, Vector3<double>{0, 0, 1}, half_ - p.z);
       return;
     }
     const double dr = max(inner_, min(outer_, rho)) - rho, dz = max(-half_, min(half_, p.z)) - p.z;
@@ -73,34 +74,35 @@ class Cylinder {
     if (distance2 > 0.0) {
       if (distance2 >= radius * radius) return;
       const double distance = std::sqrt(distance2);
-      sink(0u, (dr / distance) * out + Vector3<double>{0, 0, dz / distance}, distance);
+      callback(0u, (dr / distance) * out + Vector3<double>{0, 0, dz / distance}, distance);
       return;
     }
     // The centre is inside: out through the nearest face.
-    const double through_mantle = rho - outer_, through_end = std::abs(p.z) - half_;
+    const double through_lateral = rho - outer_, through_end = std::abs(p.z) - half_;
     const double through_hole = inner_ > 0.0 ? inner_ - rho : -1e300;
-    if (through_mantle >= through_end && through_mantle >= through_hole) {
-      sink(0u, -out, through_mantle);
+    if (through_lateral >= through_end && through_lateral >= through_hole) {
+      callback(0u, -out, through_lateral);
     } else if (through_end >= through_hole) {
-      sink(0u, Vector3<double>{0, 0, p.z < 0.0 ? 1.0 : -1.0}, through_end);
+      callback(0u, Vector3<double>{0, 0, p.z < 0.0 ? 1.0 : -1.0}, through_end);
     } else {
-      sink(0u, out, through_hole);
+      callback(0u, out, through_hole);
     }
   }
 
-  /// Fixed points of the rims, for contact with other bodies: sink(number, point, radius), numbers ascending.
-  template <class Sink>
-  void points(const Bounds&, Sink&& sink) const {
+  /// Fixed points of the rims, for contact with other bodies: callback(number, point, radius), numbers ascending.
+  template <class Callback>
+  void points(const Bounds&, Callback&& callback) const {
     rims([&](std::uint32_t rim, const Vector3<double>& middle, double r) {
-      for_each_point_of_rim(rim, middle, r, [&](std::uint32_t k, const Vector3<double>& p) { sink(k, p, 0.0); });
+      for_each_point_of_rim(rim, middle, r, [&](std::uint32_t k, const Vector3<double>& p) { callback(k, p, 0.0); });
     });
   }
-  /// Points of the rims within a radius of p, for grains that offer penetration(): sink(number, point). Fixed ones, and
-  /// where they are too few for a grain of that radius also the nearest point and those half a radius to either side.
-  template <class Sink>
-  void corners(const Vector3<double>& p, double radius, Sink&& sink) const {
+  /// Points of the rims within a radius of p, for grains that offer penetration(): callback(number, point). Fixed ones,
+  /// and where they are too few for a grain of that radius also the nearest point and those half a radius to either
+  /// side.
+  template <class Callback>
+  void corners(const Vector3<double>& p, double radius, Callback&& callback) const {
     const auto show = [&](std::uint32_t number, const Vector3<double>& c) {
-      if (dot(c - p, c - p) <= radius * radius) sink(number, c);
+      if (dot(c - p, c - p) <= radius * radius) callback(number, c);
     };
     rims([&](std::uint32_t rim, const Vector3<double>& middle, double r) {
       for_each_point_of_rim(rim, middle, r, show);
@@ -113,36 +115,36 @@ class Cylinder {
       }
     });
   }
-  /// The outer mantle for grains that offer touch_ball(), within a radius of p: balls that fill the cylinder where it
-  /// is nearest to p and half a radius on either side: sink(number, centre, radius of the ball). None for grains over a
-  /// flat end or in the hole of a tube.
-  template <class Sink>
-  void balls(const Vector3<double>& p, double radius, Sink&& sink) const {
+  /// The outer lateral surface for grains that offer touch_ball(), within a radius of p: balls that fill the cylinder
+  /// where it is nearest to p and half a radius on either side: callback(number, centre, radius of the ball). None for
+  /// grains over a flat end or in the hole of a tube.
+  template <class Callback>
+  void balls(const Vector3<double>& p, double radius, Callback&& callback) const {
     if (is_drum_ || !near(p, radius)) return;
     const double middle = 0.5 * (inner_ + outer_), rho2 = p.x * p.x + p.y * p.y;
     if (rho2 < (std::abs(p.z) > half_ ? outer_ * outer_ : inner_ > 0.0 ? middle * middle : 0.0)) return;
     for (std::uint32_t k = 0; k < 3; ++k) {
       const double z = p.z + (0.5 * k - 0.5) * radius;
-      if (std::abs(z) < half_) sink(k, Vector3<double>{0, 0, z}, outer_);
+      if (std::abs(z) < half_) callback(k, Vector3<double>{0, 0, z}, outer_);
     }
   }
   bool is_on_ball(const Vector3<double>& p) const { return std::abs(p.z) < half_; }
   bool has_points() const { return !is_drum_; }
-  /// The rims, circles about the axis: sink(number, middle, radius); those of the hole of a tube come last. A drum
+  /// The rims, circles about the axis: callback(number, middle, radius); those of the hole of a tube come last. A drum
   /// shows none.
-  template <class Sink>
-  void rims(Sink&& sink) const {
+  template <class Callback>
+  void rims(Callback&& callback) const {
     if (is_drum_) return;
     const Vector3<double> low = {0, 0, -half_}, high = {0, 0, half_};
-    sink(0u, low, outer_);
-    sink(1u, high, outer_);
+    callback(0u, low, outer_);
+    callback(1u, high, outer_);
     if (inner_ == 0.0) return;
-    sink(2u, low, inner_);
-    sink(3u, high, inner_);
+    callback(2u, low, inner_);
+    callback(3u, high, inner_);
   }
-  /// The line of the mantle on the side of a direction, for contact with other bodies: false for a direction along the
-  /// axis, and for a drum.
-  bool mantle_line(const Vector3<double>& way, Vector3<double>& low, Vector3<double>& high) const {
+  /// The line of the lateral surface on the side of a direction, for contact with other bodies: false for a direction
+  /// along the axis, and for a drum.
+  bool lateral_line(const Vector3<double>& way, Vector3<double>& low, Vector3<double>& high) const {
     const double across = std::sqrt(way.x * way.x + way.y * way.y);
     if (is_drum_ || across < 1e-9) return false;
     low = {outer_ * way.x / across, outer_ * way.y / across, -half_};

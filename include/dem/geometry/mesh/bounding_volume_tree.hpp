@@ -13,12 +13,12 @@ namespace dem::surface {
 /// Recursive bounding boxes (thesis section 2.2.4): the boxes of the items are halved at the median of their longest
 /// extent until a box holds a few, O(n log n). Nodes lie in one array in the order of a descent; each knows where to go
 /// on when it is missed, so a query is one loop without a stack.
-class BoxTree {
+class BoundingVolumeTree {
  public:
   static constexpr std::uint32_t items_in_a_leaf = 2;
 
-  BoxTree() = default;
-  DEM_LAZY explicit BoxTree(std::span<const Bounds> boxes) : order_(boxes.size()) {
+  BoundingVolumeTree() = default;
+  DEM_LAZY explicit BoundingVolumeTree(std::span<const Bounds> boxes) : order_(boxes.size()) {
     std::iota(order_.begin(), order_.end(), 0u);
     std::vector<Vec3> middle;
     for (const Bounds& b : boxes) middle.push_back(0.5 * (b.low + b.high));

@@ -52,7 +52,7 @@ struct MeshData {
   MeshReport report;
   MeshTopology topology;
   MeshGroups groups;
-  BoxTree tree;
+  BoundingVolumeTree tree;
   std::vector<Face> faces;
   std::vector<Vector3<double>> vertices, vertex_normal;  ///< the latter weighted by angle (Baerentzen & Aanaes 2005)
   std::vector<std::uint32_t> vertex_group;               ///< smallest of its triangles
@@ -226,7 +226,7 @@ DEM_LAZY inline MeshData build_mesh(const IndexedMesh& given, MeshFacing facing,
     boxes.push_back({lower(lower(a, b), c), upper(upper(a, b), c)});
     m.bounds = {lower(m.bounds.low, boxes.back().low), upper(m.bounds.high, boxes.back().high)};
   }
-  m.tree = BoxTree(boxes);
+  m.tree = BoundingVolumeTree(boxes);
   m.mesh.vertices = std::move(whole.mesh.vertices);
   for (const std::uint32_t t : m.tree.order()) m.mesh.triangles.push_back(whole.mesh.triangles[t]);
   m.topology = topology_of(m.mesh);

@@ -42,9 +42,9 @@ DEM_LAZY inline void find_crossings(const MeshData& m, const Vector3<double>& ta
 }
 
 /// The parts of the way from tail to head (m) that lie in a closed mesh and cross its surface at one end at least:
-/// sink(from, to), shares of the way, ascending.
-template <class Sink>
-void parts_inside(const MeshData& m, const Vector3<double>& tail, const Vector3<double>& head, Sink&& sink) {
+/// callback(from, to), shares of the way, ascending.
+template <class Callback>
+void parts_inside(const MeshData& m, const Vector3<double>& tail, const Vector3<double>& head, Callback&& callback) {
   static thread_local std::vector<MeshCrossing> crossings;
   find_crossings(m, tail, head, crossings);
   if (crossings.empty()) return;
@@ -52,11 +52,11 @@ void parts_inside(const MeshData& m, const Vector3<double>& tail, const Vector3<
   double from = 0.0;
   for (const MeshCrossing& c : crossings) {
     if (c.entering == inside) continue;  // once more through an edge
-    if (inside && c.at > from) sink(from, c.at);
+    if (inside && c.at > from) callback(from, c.at);
     inside = c.entering;
     from = c.at;
   }
-  if (inside && from < 1.0) sink(from, 1.0);
+  if (inside && from < 1.0) callback(from, 1.0);
 }
 
 }  // namespace dem::surface

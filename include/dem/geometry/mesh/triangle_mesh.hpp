@@ -26,9 +26,9 @@ struct MeshOptions {
   /// choose less: both sides then push in a corner, up to twice as stiff, and the force is steady for overlaps up to
   /// r (1 - cos(angle)).
   double smooth_angle = 25.0;
-  double depth = 0.0;          ///< m, how far behind the surface a probe is still found and pushed out; 0: spheres to
-                               ///< their radius, points (radius 0) as deep as their grains or
-                               ///< bodies may go, up to half the solid
+  double depth = 0.0;  ///< m, how far behind the surface a sample point is still found and pushed out; 0: spheres to
+                       ///< their radius, points (radius 0) as deep as their grains or
+                       ///< bodies may go, up to half the solid
   double point_spacing = 0.0;  ///< m, of fixed points on sharp edges, where sheets may pass between the vertices; 0:
                                ///< none. Sharp grains and solids find edges without
   double tolerance = 0.0;      ///< m, within which vertices are one; 0: 1e-9 of the mesh's diagonal
@@ -89,59 +89,60 @@ class TriangleMesh {
     return x * x + y * y + z * z <= radius * radius;
   }
 
-  /// False only if no probe in a sphere of that radius can touch: cheap for grains that are near the mesh's bounding
-  /// box but not near its triangles. `points`: whether any probe has no radius.
+  /// False only if no sample point in a sphere of that radius can touch: cheap for grains that are near the mesh's
+  /// bounding box but not near its triangles. `points`: whether any sample point has no radius.
   bool close(const Vector3<double>& p, double radius, bool points) const {
     const double reach = radius + (points ? point_depth_ : options_.depth);
     return data_->tree.reaches(p, reach * reach);
   }
 
-  /// sink(feature, normal, gap) for each contact of a sphere; it must not ask a mesh in turn.
-  template <class Sink>
-  void touch(const Vector3<double>& p, double radius, Sink&& sink) const {
-    touch_to(p, radius, radius > 0.0 ? options_.depth : point_depth_, sink);
+  /// callback(feature, normal, gap) for each contact of a sphere; it must not ask a mesh in turn.
+  template <class Callback>
+  void touch(const Vector3<double>& p, double radius, Callback&& callback) const {
+    touch_to(p, radius, radius > 0.0 ? options_.depth : point_depth_, callback);
   }
   /// Of a point that is also held at a gap (m) before the surface: the gap is no radius, and may be less than how deep
   /// the point lies behind it.
-  template <class Sink>
-  void touch_point(const Vector3<double>& p, double gap, Sink&& sink) const {
-    touch_to(p, gap, point_depth_, sink);
+  template <class Callback>
+  void touch_point(const Vector3<double>& p, double gap, Callback&& callback) const {
+    touch_to(p, gap, point_depth_, callback);
   }
 
-  /// Points for contact with other surfaces: sink(number, point, radius), numbers ascending.
-  template <class Sink>
-  void points(const Bounds& box, Sink&& sink) const {
-    data_->points.for_each_in(box, [&](std::uint32_t k, const Vector3<double>& p) { sink(k, p, 0.0); });
+  /// Points for contact with other surfaces: callback(number, point, radius), numbers ascending.
+  template <class Callback>
+  void points(const Bounds& box, Callback&& callback) const {
+    data_->points.for_each_in(box, [&](std::uint32_t k, const Vector3<double>& p) { callback(k, p, 0.0); });
   }
   /// What sticks out within a radius of p, for grains that offer penetration(): vertices, and points of the edges near
-  /// p (points_of_edge): sink(number, point, weight).
-  template <class Sink>
-  void corners(const Vector3<double>& p, double radius, Sink&& sink) const {
-    data_->corners.for_each_near(p, radius, [&](std::uint32_t k, const Vector3<double>& c) { sink(k, c, 1.0); });
-    data_->edges.for_each_point_near(
-        p, radius, [&](std::uint32_t k, const Vector3<double>& c, double weight) { sink(first_edge + k, c, weight); });
+  /// p (points_of_edge): callback(number, point, weight).
+  template <class Callback>
+  void corners(const Vector3<double>& p, double radius, Callback&& callback) const {
+    data_->corners.for_each_near(p, radius, [&](std::uint32_t k, const Vector3<double>& c) { callback(k, c, 1.0); });
+    data_->edges.for_each_point_near(p, radius, [&](std::uint32_t k, const Vector3<double>& c, double weight) {
+      callback(first_edge + k, c, weight);
+    });
   }
   bool has_points() const { return true; }
   bool lets_points_through() const { return options_.side == MeshSide::two_sided; }
-  /// Edges that stick out and may lie in a box, for contact with other bodies: sink(number, one end, other end),
+  /// Edges that stick out and may lie in a box, for contact with other bodies: callback(number, one end, other end),
   /// most_parts numbers an edge.
-  template <class Sink>
-  void edges(const Bounds& box, Sink&& sink) const {
+  template <class Callback>
+  void edges(const Bounds& box, Callback&& callback) const {
     const auto numbered_from = [&](std::size_t first) {
-      return [first, &sink](std::uint32_t k, const Vector3<double>& tail, const Vector3<double>& head) {
+      return [first, &callback](std::uint32_t k, const Vector3<double>& tail, const Vector3<double>& head) {
         // As many as the keys of contacts can tell apart.
         const std::size_t number = first_edge + most_parts * (first + k);
-        if (number < 2 * first_edge) sink(static_cast<std::uint32_t>(number), tail, head);
+        if (number < 2 * first_edge) callback(static_cast<std::uint32_t>(number), tail, head);
       };
     };
     data_->edges.for_each_in(box, numbered_from(0));
     data_->bends.for_each_in(box, numbered_from(data_->edges.size()));
   }
-  /// The parts of the way from tail to head that lie in the solid: sink(from, to), shares of the way, ascending. A
+  /// The parts of the way from tail to head that lie in the solid: callback(from, to), shares of the way, ascending. A
   /// sheet has none.
-  template <class Sink>
-  void parts_inside(const Vector3<double>& tail, const Vector3<double>& head, Sink&& sink) const {
-    if (options_.side == MeshSide::solid) surface::parts_inside(*data_, tail, head, sink);
+  template <class Callback>
+  void parts_inside(const Vector3<double>& tail, const Vector3<double>& head, Callback&& callback) const {
+    if (options_.side == MeshSide::solid) surface::parts_inside(*data_, tail, head, callback);
   }
 
   Bounds bounds() const { return {to_eigen(low_), to_eigen(high_)}; }
@@ -160,7 +161,7 @@ class TriangleMesh {
 
   struct Minimum {
     double distance;         ///< m, not negative
-    Vector3<double> normal;  ///< into the surface as seen from the probe
+    Vector3<double> normal;  ///< into the surface as seen from the sample point
     std::uint32_t group;
     bool behind;
 
@@ -262,20 +263,21 @@ class TriangleMesh {
   }
 
   /// Contacts up to a reach before the surface, and if there are none, of a centre up to a depth behind it.
-  template <class Sink>
-  void touch_to(const Vector3<double>& p, double radius, double depth, Sink&& sink) const {
+  template <class Callback>
+  void touch_to(const Vector3<double>& p, double radius, double depth, Callback&& callback) const {
     static thread_local Found found;  // sinks only gather, so no query runs within another
     found.clear();
     if (radius > 0.0) find_minima(p, radius, found);
     if (found.empty() && depth > radius) {
       Minimum nearest;
-      if (find_nearest(p, depth, nearest) && nearest.behind) sink(nearest.name(), nearest.normal, -nearest.distance);
+      if (find_nearest(p, depth, nearest) && nearest.behind)
+        callback(nearest.name(), nearest.normal, -nearest.distance);
       return;
     }
     if (found.empty()) return;
     sort(found, [](const Minimum& a, const Minimum& b) { return a.distance < b.distance; });
     if (found[0].behind) {  // the centre is inside: out the shortest way
-      sink(found[0].name(), found[0].normal, -found[0].distance);
+      callback(found[0].name(), found[0].normal, -found[0].distance);
       return;
     }
     reduce(found);
@@ -283,7 +285,7 @@ class TriangleMesh {
     std::uint32_t next = 0;
     for (const Minimum& m : found) {
       const std::uint32_t name = std::max(next, m.name());
-      sink(name, m.normal, m.distance);
+      callback(name, m.normal, m.distance);
       next = name + 1;
     }
   }

@@ -12,9 +12,9 @@ class Plane {
     return p.z < radius;
   }
 
-  template <class Sink>
-  DEM_HOT void touch(const Vector3<double>& p, double radius, Sink&& sink) const {
-    if (p.z < radius) sink(0u, Vector3<double>{0, 0, -1}, p.z);
+  template <class Callback>
+  DEM_HOT void touch(const Vector3<double>& p, double radius, Callback&& callback) const {
+    if (p.z < radius) callback(0u, Vector3<double>{0, 0, -1}, p.z);
   }
 
   Bounds bounds() const {

@@ -17,7 +17,7 @@ namespace dem::shape {
 /// them. A grain adds its rotation. The contact code uses it to put one body into the frame of the other, where faces
 /// do not move.
 ///
-/// Contacts are patches of points with shares (FacePatch): contact::PointTouch::area is the share of a point, without
+/// Contacts are patches of points with shares (FacePatch): contact::ContactPoint::area is the share of a point, without
 /// unit. A face on a face has the normal stiffness K of the law, however many points there are, an edge K/2 and a
 /// corner K/3. The effective radius is r_i r_j/(r_i + r_j) of the spheres of the same volumes.
 class Polyhedron {
@@ -26,7 +26,7 @@ class Polyhedron {
   static constexpr bool has_orientation = true;
   static constexpr std::size_t most_contacts = PolyhedronContact::most_points;
   template <class T>
-  using PairTouch = contact::PointTouch<T>;
+  using PairContactPoint = contact::ContactPoint<T>;
 
   /// The convex hull of a cloud of points in any frame (m). The grain's own frame is then moved to the centre of mass
   /// and turned to the principal axes; `frame_centre` and `frame_rotation` tell where it went. Throws Error if there
@@ -80,9 +80,9 @@ class Polyhedron {
     return {{pose[0], pose[1], pose[2]}, {pose[3], pose[4], pose[5]}, {pose[6], pose[7], pose[8]}};
   }
 
-  template <class Sink>
+  template <class Callback>
   static void collide(const Polyhedron& a, const double* pose_a, const Polyhedron& b, const double* pose_b,
-                      const Vector3<double>& separation, Sink&& sink) {
+                      const Vector3<double>& separation, Callback&& callback) {
     const Matrix3<double> turn_a = rotation(pose_a), turn_b = rotation(pose_b);
     const PolyhedronContact found(*a.tables_, turn_a, *b.tables_, turn_b, separation);
     const double ra = a.radius(), rb = b.radius();
@@ -90,8 +90,8 @@ class Polyhedron {
     for (int k = 0; k < found.count(); ++k) total_share += found[k].share;
     for (int k = 0; k < found.count(); ++k) {
       const PatchPoint& p = found[k];
-      sink(p.of_first << element_bits | p.of_second,
-           PairTouch<double>{found.normal(), p.depth, p.point, ra * rb / (ra + rb), p.share, total_share});
+      callback(p.of_first << element_bits | p.of_second,
+               PairContactPoint<double>{found.normal(), p.depth, p.point, ra * rb / (ra + rb), p.share, total_share});
     }
   }
   /// All contacts of a pair are one patch.
@@ -104,12 +104,12 @@ class Polyhedron {
   /// The corners, as points with shares: 1/n for each corner of a face with n corners, such that a body that lies flat
   /// on a surface has the normal stiffness K. A corner whose faces have different numbers of corners takes the mean of
   /// their shares, as it cannot know on which of them the body lies.
-  template <class Sink>
-  DEM_HOT void probe(const double* pose, Sink&& sink) const {
+  template <class Callback>
+  DEM_HOT void sample_points(const double* pose, Callback&& callback) const {
     const Matrix3<double> turn = rotation(pose);
     for (int k = 0; k < tables_->corners; ++k) {
-      sink(static_cast<std::uint32_t>(k), contact::Probe{turn * tables_->corner(k), 0.0, tables_->radius,
-                                                         tables_->corner_share[static_cast<std::size_t>(k)]});
+      callback(static_cast<std::uint32_t>(k), contact::SamplePoint{turn * tables_->corner(k), 0.0, tables_->radius,
+                                                                   tables_->corner_share[static_cast<std::size_t>(k)]});
     }
   }
 
@@ -119,7 +119,8 @@ class Polyhedron {
 
   /// The contact of a ball (centre in m from the grain's, global axes) with a face, an edge or a corner. False if they
   /// are apart.
-  bool touch_ball(const double* pose, const Vector3<double>& centre, double radius, contact::BallTouch& touch) const {
+  bool touch_ball(const double* pose, const Vector3<double>& centre, double radius,
+                  contact::BallContactPoint& touch) const {
     const Matrix3<double> turn = rotation(pose);
     NearestPoint nearest;
     if (!nearest_point(*tables_, transpose_times(turn, centre), radius, nearest)) return false;

@@ -33,7 +33,7 @@ struct PolyhedronTables {
   std::vector<int> first_side;  ///< of each face, and one entry more
   std::vector<int> fan;         ///< the faces around each corner
   std::vector<int> first_fan;
-  std::vector<double> corner_share;  ///< what a corner shows to surfaces, see Polyhedron::probe
+  std::vector<double> corner_share;  ///< what a corner shows to surfaces, see Polyhedron::sample_points
   double radius = 0.0;               ///< m, of the sphere of the same volume
 
   PolyhedronTables() = default;

@@ -12,7 +12,7 @@ class Sphere {
   static constexpr bool has_orientation = false;
   static constexpr std::size_t most_contacts = 1;
   template <class T>
-  using PairTouch = contact::SphereTouch<T>;
+  using PairContactPoint = contact::SphereContactPoint<T>;
 
   /// Throws Error unless radius > 0 (m).
   explicit Sphere(double radius) : radius_(require_positive(radius, "radius of a sphere", "m")) {}
@@ -31,20 +31,20 @@ class Sphere {
     return dot(separation, separation) < reach * reach ? 1u : 0u;
   }
   static constexpr std::uint32_t feature_of(int bit) { return static_cast<std::uint32_t>(bit); }
-  static DEM_HOT PairTouch<double> touch(const Sphere& a, const double*, const Sphere& b, const double*,
-                                         const Vector3<double>& separation, std::uint32_t) {
+  static DEM_HOT PairContactPoint<double> touch(const Sphere& a, const double*, const Sphere& b, const double*,
+                                                const Vector3<double>& separation, std::uint32_t) {
     return {separation, a.radius_, b.radius_};
   }
-  template <class Sink, class Gap = NoGap>
+  template <class Callback, class Gap = NoGap>
   static DEM_HOT void collide(const Sphere& a, const double* pose_a, const Sphere& b, const double* pose_b,
-                              const Vector3<double>& separation, Sink&& sink, Gap gap = {}) {
-    if (touching(a, pose_a, b, pose_b, separation, gap) != 0) sink(0u, touch(a, pose_a, b, pose_b, separation, 0u));
+                              const Vector3<double>& separation, Callback&& callback, Gap gap = {}) {
+    if (touching(a, pose_a, b, pose_b, separation, gap) != 0) callback(0u, touch(a, pose_a, b, pose_b, separation, 0u));
   }
   static std::uint32_t mirrored(std::uint32_t feature) { return feature; }
 
-  template <class Sink>
-  DEM_HOT void probe(const double*, Sink&& sink) const {
-    sink(0u, contact::Probe{{0, 0, 0}, radius_, radius_});
+  template <class Callback>
+  DEM_HOT void sample_points(const double*, Callback&& callback) const {
+    callback(0u, contact::SamplePoint{{0, 0, 0}, radius_, radius_});
   }
 
  private:

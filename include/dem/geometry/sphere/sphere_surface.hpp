@@ -33,20 +33,20 @@ class Sphere {
     return distance2 <= (T(radius_) + radius) * (T(radius_) + radius);
   }
 
-  template <class Sink>
-  DEM_HOT void touch(const Vector3<double>& p, double radius, Sink&& sink) const {
+  template <class Callback>
+  DEM_HOT void touch(const Vector3<double>& p, double radius, Callback&& callback) const {
     const double distance = norm(p);
     const double gap = side_ == Side::inside ? radius_ - distance : distance - radius_;
     if (!(gap < radius)) return;
     // At the centre every way out is as good; up is taken.
     const Vector3<double> outward = distance > 0.0 ? (1.0 / distance) * p : Vector3<double>{0, 0, 1};
-    sink(0u, side_ == Side::inside ? outward : -outward, gap);
+    callback(0u, side_ == Side::inside ? outward : -outward, gap);
   }
 
-  /// A ball shows itself to other bodies: sink(number, point, radius).
-  template <class Sink>
-  void points(const Bounds&, Sink&& sink) const {
-    if (side_ == Side::outside) sink(0u, Vector3<double>{0, 0, 0}, radius_);
+  /// A ball shows itself to other bodies: callback(number, point, radius).
+  template <class Callback>
+  void points(const Bounds&, Callback&& callback) const {
+    if (side_ == Side::outside) callback(0u, Vector3<double>{0, 0, 0}, radius_);
   }
   bool has_points() const { return side_ == Side::outside; }
 
@@ -54,10 +54,10 @@ class Sphere {
   double radius_on(double radius) const {
     return side_ == Side::inside ? radius : 1.0 / (1.0 / radius + 1.0 / radius_);
   }
-  /// For grains that offer touch_ball(): sink(number, centre, radius of the ball).
-  template <class Sink>
-  void balls(const Vector3<double>&, double, Sink&& sink) const {
-    if (is_ball()) sink(0u, Vector3<double>{0, 0, 0}, radius_);
+  /// For grains that offer touch_ball(): callback(number, centre, radius of the ball).
+  template <class Callback>
+  void balls(const Vector3<double>&, double, Callback&& callback) const {
+    if (is_ball()) callback(0u, Vector3<double>{0, 0, 0}, radius_);
   }
   bool is_on_ball(const Vector3<double>&) const { return true; }
 

@@ -25,19 +25,21 @@ class Superquadric : public SuperquadricGrain {
   /// `memory` holds what the last search found for this pair: it makes the search short, and leaves the answer the same
   /// up to the search's tolerance. With a gap (m) pairs up to that far apart are handed over too, with a negative
   /// overlap.
-  template <class Sink>
+  template <class Callback>
   static DEM_HOT void collide(const Superquadric& a, const double* pose_a, const Superquadric& b, const double* pose_b,
-                              const Vector3<double>& separation, PairMemory& memory, Sink&& sink, double gap = 0.0) {
+                              const Vector3<double>& separation, PairMemory& memory, Callback&& callback,
+                              double gap = 0.0) {
     const Matrix3<double> ra = rotation(pose_a), rb = rotation(pose_b);
     const SolidPair pair = {a.solid(), b.solid(), transposed(ra) * rb, transpose_times(ra, separation), gap};
     if (!find_common_normal(pair, memory)) return;
-    sink(0u, PairTouch<double>{ra * memory.normal, memory.overlap, ra * memory.point, a.effective_radius(b), 1.0});
+    callback(0u, PairContactPoint<double>{ra * memory.normal, memory.overlap, ra * memory.point, a.effective_radius(b),
+                                          1.0});
   }
-  template <class Sink>
+  template <class Callback>
   static DEM_HOT void collide(const Superquadric& a, const double* pose_a, const Superquadric& b, const double* pose_b,
-                              const Vector3<double>& separation, Sink&& sink, double gap = 0.0) {
+                              const Vector3<double>& separation, Callback&& callback, double gap = 0.0) {
     PairMemory nothing;
-    collide(a, pose_a, b, pose_b, separation, nothing, sink, gap);
+    collide(a, pose_a, b, pose_b, separation, nothing, callback, gap);
   }
   /// Where the surfaces of this and of another grain share a normal, in the frame of this one; `turn` leads from the
   /// other's frame into this, `centre` (m) is the other's. False if they are apart.

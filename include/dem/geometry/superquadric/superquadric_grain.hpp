@@ -38,7 +38,7 @@ class SuperquadricGrain {
   static constexpr int pose_size = 9;  ///< the rotation, by rows
   static constexpr bool has_orientation = true;
   template <class T>
-  using PairTouch = contact::PointTouch<T>;
+  using PairContactPoint = contact::ContactPoint<T>;
 
   const SuperquadricSolid& solid() const { return solid_; }
   const PointTable& points() const { return points_; }
@@ -75,12 +75,12 @@ class SuperquadricGrain {
   }
 
   /// The points of the surface.
-  template <class Sink>
-  DEM_HOT void probe(const double* pose, Sink&& sink) const {
+  template <class Callback>
+  DEM_HOT void sample_points(const double* pose, Callback&& callback) const {
     const Matrix3<double> r = rotation(pose);
     for (int k = 0; k < points_.count; ++k) {
-      sink(static_cast<std::uint32_t>(k),
-           contact::Probe{r * points_[k], 0.0, mean_radius_, points_.area[static_cast<std::size_t>(k)]});
+      callback(static_cast<std::uint32_t>(k),
+               contact::SamplePoint{r * points_[k], 0.0, mean_radius_, points_.area[static_cast<std::size_t>(k)]});
     }
   }
   /// The point of the surface that lies farthest along a direction (global axes): where a plane touches first.
@@ -118,7 +118,7 @@ class SuperquadricGrain {
   }
   /// The contact of a ball (centre in m from the grain's, global axes) along the common normal. False if they are
   /// farther apart than the gap (m).
-  bool touch_ball(const double* pose, const Vector3<double>& centre, double radius, contact::BallTouch& touch,
+  bool touch_ball(const double* pose, const Vector3<double>& centre, double radius, contact::BallContactPoint& touch,
                   double gap = 0.0) const {
     const Matrix3<double> r = rotation(pose);
     CommonNormal found;

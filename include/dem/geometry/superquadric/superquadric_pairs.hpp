@@ -12,9 +12,10 @@ template <BallShape Balls>
 struct PairContact<Superquadric, Balls> {
   using Memory = CommonNormal;
 
-  template <class Sink>
+  template <class Callback>
   static DEM_HOT void collide(const Superquadric& a, const double* pose_a, const Balls& b, const double* pose_b,
-                              const Vector3<double>& separation, Memory& memory, Sink&& sink, double gap = 0.0) {
+                              const Vector3<double>& separation, Memory& memory, Callback&& callback,
+                              double gap = 0.0) {
     const Matrix3<double> r = Superquadric::rotation(pose_a);
     for (int k = 0; k < ball_count(b); ++k) {
       const PosedBall ball = posed_ball(b, pose_b, k);
@@ -22,8 +23,8 @@ struct PairContact<Superquadric, Balls> {
       const Vector3<double> centre = transpose_times(r, separation + ball.centre);
       if (!find_ball_contact(a.solid(), centre, ball.radius, memory, gap)) continue;
       const double radius = a.mean_radius() * ball.radius / (a.mean_radius() + ball.radius);
-      sink(static_cast<std::uint32_t>(k),
-           contact::PointTouch<double>{r * memory.normal, memory.overlap, r * memory.point, radius, 1.0});
+      callback(static_cast<std::uint32_t>(k),
+               contact::ContactPoint<double>{r * memory.normal, memory.overlap, r * memory.point, radius, 1.0});
     }
     if (ball_count(b) > 1) memory = {};
   }
@@ -32,9 +33,9 @@ struct PairContact<Superquadric, Balls> {
 /// The points of a superquadric in each ball (eq. 33). Feature: ball * 4096 + point.
 template <BallShape Balls>
 struct PairContact<SuperquadricPoints, Balls> {
-  template <class Sink>
+  template <class Callback>
   static DEM_HOT void collide(const SuperquadricPoints& a, const double* pose_a, const Balls& b, const double* pose_b,
-                              const Vector3<double>& separation, Sink&& sink) {
+                              const Vector3<double>& separation, Callback&& callback) {
     const Matrix3<double> r = SuperquadricPoints::rotation(pose_a);
     const PointTable& points = a.points();
     for (int m = 0; m < ball_count(b); ++m) {
@@ -55,15 +56,15 @@ struct PairContact<SuperquadricPoints, Balls> {
             const double distance = max(norm(link), 1e-300), depth = ball.radius - distance;
             const Vector3<double> normal = (1.0 / distance) * link;
             found(static_cast<std::uint32_t>(m * 4096 + point),
-                  contact::PointTouch<double>{normal, depth, arm - (0.5 * depth) * normal, radius,
-                                              points.area[static_cast<std::size_t>(point)]});
+                  contact::ContactPoint<double>{normal, depth, arm - (0.5 * depth) * normal, radius,
+                                                points.area[static_cast<std::size_t>(point)]});
           }
         }
       };
       if (a.has_shares()) {
-        share_points(find, sink);
+        share_points(find, callback);
       } else {
-        find(sink);
+        find(callback);
       }
     }
   }
@@ -73,13 +74,13 @@ struct PairContact<SuperquadricPoints, Balls> {
 /// Superquadric, whose points have shares, shows none of its own.
 template <>
 struct PairContact<SuperquadricPoints, Superquadric> {
-  template <class Sink>
+  template <class Callback>
   static DEM_HOT void collide(const SuperquadricPoints& a, const double* pose_a, const Superquadric& b,
-                              const double* pose_b, const Vector3<double>& separation, Sink&& sink) {
+                              const double* pose_b, const Vector3<double>& separation, Callback&& callback) {
     SuperquadricPoints::collide_skins(a, pose_a, b, pose_b, separation,
-                                      [&](std::uint32_t feature, const contact::PointTouch<double>& touch) {
+                                      [&](std::uint32_t feature, const contact::ContactPoint<double>& touch) {
                                         if (a.has_shares() || (feature & SuperquadricPoints::other_way) == 0)
-                                          sink(feature, touch);
+                                          callback(feature, touch);
                                       });
   }
 };

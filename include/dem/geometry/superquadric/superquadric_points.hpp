@@ -31,47 +31,47 @@ class SuperquadricPoints : public SuperquadricGrain {
   /// Feature k: point k of a in b. Feature other_way + k: point k of b in a.
   static constexpr std::uint32_t other_way = 1u << 12;
 
-  template <class Sink>
+  template <class Callback>
   static DEM_HOT void collide(const SuperquadricPoints& a, const double* pose_a, const SuperquadricPoints& b,
-                              const double* pose_b, const Vector3<double>& separation, Sink&& sink) {
-    collide_skins(a, pose_a, b, pose_b, separation, sink);
+                              const double* pose_b, const Vector3<double>& separation, Callback&& callback) {
+    collide_skins(a, pose_a, b, pose_b, separation, callback);
   }
   static std::uint32_t mirrored(std::uint32_t feature) { return feature ^ other_way; }
 
   /// The same for any two superquadrics by the points of their skins.
-  template <class Sink>
+  template <class Callback>
   static DEM_HOT void collide_skins(const SuperquadricGrain& a, const double* pose_a, const SuperquadricGrain& b,
-                                    const double* pose_b, const Vector3<double>& separation, Sink&& sink) {
+                                    const double* pose_b, const Vector3<double>& separation, Callback&& callback) {
     const Matrix3<double> ra = rotation(pose_a), rb = rotation(pose_b);
     const Matrix3<double> turn = transposed(ra) * rb;
     const Vector3<double> centre = transpose_times(ra, separation);
     if (separate_boxes(a.solid().radius(), b.solid().radius(), turn, centre).overlap < 0.0) return;
     const auto find = [&](auto&& found) { find_points(a, ra, b, rb, turn, centre, separation, found); };
     if (a.has_shares() && b.has_shares()) {
-      share_points(find, sink);
+      share_points(find, callback);
     } else {
-      find(sink);
+      find(callback);
     }
   }
 
  private:
-  template <class Sink>
+  template <class Callback>
   static DEM_HOT void find_points(const SuperquadricGrain& a, const Matrix3<double>& ra, const SuperquadricGrain& b,
                                   const Matrix3<double>& rb, const Matrix3<double>& turn, const Vector3<double>& centre,
-                                  const Vector3<double>& separation, Sink&& sink) {
+                                  const Vector3<double>& separation, Callback&& callback) {
     const double radius = a.effective_radius(b);
     points_inside(a.points(), transposed(turn), -transpose_times(rb, separation), b.solid(),
                   [&](int k, double depth, const Vector3<double>& out) {
                     const Vector3<double> normal = rb * out;
-                    sink(static_cast<std::uint32_t>(k),
-                         PairTouch<double>{-normal, depth, ra * a.points()[k] + (0.5 * depth) * normal, radius,
-                                           a.points().area[static_cast<std::size_t>(k)]});
+                    callback(static_cast<std::uint32_t>(k),
+                             PairContactPoint<double>{-normal, depth, ra * a.points()[k] + (0.5 * depth) * normal,
+                                                      radius, a.points().area[static_cast<std::size_t>(k)]});
                   });
     points_inside(b.points(), turn, centre, a.solid(), [&](int k, double depth, const Vector3<double>& out) {
       const Vector3<double> normal = ra * out;
-      sink(other_way + static_cast<std::uint32_t>(k),
-           PairTouch<double>{normal, depth, separation + rb * b.points()[k] + (0.5 * depth) * normal, radius,
-                             b.points().area[static_cast<std::size_t>(k)]});
+      callback(other_way + static_cast<std::uint32_t>(k),
+               PairContactPoint<double>{normal, depth, separation + rb * b.points()[k] + (0.5 * depth) * normal, radius,
+                                        b.points().area[static_cast<std::size_t>(k)]});
     });
   }
 

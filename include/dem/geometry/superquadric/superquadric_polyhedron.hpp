@@ -19,23 +19,23 @@ namespace dem::shape {
 /// They share one contact, or weigh as the superquadric's points do. What meets between these points is felt late.
 template <std::derived_from<SuperquadricGrain> Rounded>
 struct PairContact<Rounded, Polyhedron> {
-  template <class Sink>
+  template <class Callback>
   static void collide(const Rounded& a, const double* pose_a, const Polyhedron& b, const double* pose_b,
-                      const Vector3<double>& separation, Sink&& sink) {
+                      const Vector3<double>& separation, Callback&& callback) {
     const auto find = [&](auto&& found) { find_points(a, pose_a, b, pose_b, separation, found); };
     if (a.has_shares()) {
-      share_points(find, sink);
+      share_points(find, callback);
     } else {
-      find(sink);
+      find(callback);
     }
   }
 
  private:
   static constexpr std::uint32_t support_feature = 1u << 12, corners = 1u << 13, edges = 1u << 14;
 
-  template <class Sink>
+  template <class Callback>
   static void find_points(const Rounded& a, const double* pose_a, const Polyhedron& b, const double* pose_b,
-                          const Vector3<double>& separation, Sink&& sink) {
+                          const Vector3<double>& separation, Callback&& callback) {
     const Matrix3<double> ra = Rounded::rotation(pose_a), rb = Polyhedron::rotation(pose_b);
     const double radius = a.mean_radius() * b.radius() / (a.mean_radius() + b.radius());
     double depth, areas = 0.0;
@@ -58,18 +58,20 @@ struct PairContact<Rounded, Polyhedron> {
       const Vector3<double> point = ra * a.points()[k];
       if (!b.penetration(pose_b, point - separation, depth, out)) continue;
       const double weight = supported ? a.beside_support(point, support, way) : 1.0;
-      sink(static_cast<std::uint32_t>(k),
-           contact::PointTouch<double>{-out, depth, point + (0.5 * depth) * out, radius, weight * area});
+      callback(static_cast<std::uint32_t>(k),
+               contact::ContactPoint<double>{-out, depth, point + (0.5 * depth) * out, radius, weight * area});
     }
     if (supported) {
-      sink(support_feature, contact::PointTouch<double>{-support_out, support_depth,
-                                                        support + (0.5 * support_depth) * support_out, radius, 1.0});
+      callback(support_feature,
+               contact::ContactPoint<double>{-support_out, support_depth, support + (0.5 * support_depth) * support_out,
+                                             radius, 1.0});
     }
     const double mean_area = areas / a.points().count;
     const auto try_point = [&](std::uint32_t feature, const Vector3<double>& in_b, double weight) {
       const Vector3<double> point = separation + rb * in_b;
       if (!a.penetration(pose_a, point, depth, out)) return;
-      sink(feature, contact::PointTouch<double>{out, depth, point + (0.5 * depth) * out, radius, weight * mean_area});
+      callback(feature,
+               contact::ContactPoint<double>{out, depth, point + (0.5 * depth) * out, radius, weight * mean_area});
     };
     const PolyhedronTables& t = b.tables();
     for (int k = 0; k < t.corners; ++k) try_point(corners + static_cast<std::uint32_t>(k), t.corner(k), 1.0);

@@ -45,31 +45,31 @@ class Superquadric {
     return max(x, max(y, z)) <= radius;
   }
 
-  template <class Sink>
-  void touch(const Vector3<double>& p, double radius, Sink&& sink) const {
+  template <class Callback>
+  void touch(const Vector3<double>& p, double radius, Callback&& callback) const {
     const double at[3] = {p.x, p.y, p.z};
     const bool within = function_.value(at) < 0.0;
     if (!within && radius == 0.0 && side_ == Side::outside) return;
     const SurfacePlace place = within ? nearest_from_inside(function_, p) : nearest_from_outside(function_, p);
     const double outside = dot(p - place.point, place.normal);  // negative within
     const double gap = side_ == Side::inside ? -outside : outside;
-    if (gap < radius) sink(0u, side_ == Side::inside ? place.normal : -place.normal, gap);
+    if (gap < radius) callback(0u, side_ == Side::inside ? place.normal : -place.normal, gap);
   }
 
-  /// Points spread over the skin, for contact with other bodies: sink(number, point, radius), numbers ascending.
-  template <class Sink>
-  void points(const Bounds& box, Sink&& sink) const {
+  /// Points spread over the skin, for contact with other bodies: callback(number, point, radius), numbers ascending.
+  template <class Callback>
+  void points(const Bounds& box, Callback&& callback) const {
     const Vector3<double> low = from_eigen(box.low), high = from_eigen(box.high);
     for_each_point([&](std::uint32_t k, const Vector3<double>& p) {
       if (p.x >= low.x && p.y >= low.y && p.z >= low.z && p.x <= high.x && p.y <= high.y && p.z <= high.z)
-        sink(k, p, 0.0);
+        callback(k, p, 0.0);
     });
   }
-  /// Those within a radius of p, for grains that offer penetration(): sink(number, point).
-  template <class Sink>
-  void corners(const Vector3<double>& p, double radius, Sink&& sink) const {
+  /// Those within a radius of p, for grains that offer penetration(): callback(number, point).
+  template <class Callback>
+  void corners(const Vector3<double>& p, double radius, Callback&& callback) const {
     for_each_point([&](std::uint32_t k, const Vector3<double>& c) {
-      if (dot(c - p, c - p) <= radius * radius) sink(k, c);
+      if (dot(c - p, c - p) <= radius * radius) callback(k, c);
     });
   }
   /// The same shape as a grain; nothing for a cavity.

@@ -22,7 +22,7 @@ DEM_HOT std::array<Pack, 4> separations(const PartnerLanes& p) {
                                   load_quads([&](int lane) { return p.i[lane]->row(0); })));
 }
 
-DEM_HOT Encounter<Pack> encounters(const PartnerLanes& p) {
+DEM_HOT RelativeMotion<Pack> relative_motions(const PartnerLanes& p) {
   const auto x = separations(p);
   const auto v = packs(difference_and_sum(load_quads([&](int lane) { return p.j[lane]->row(1); }),
                                           load_quads([&](int lane) { return p.i[lane]->row(1); })));

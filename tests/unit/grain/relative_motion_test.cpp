@@ -1,4 +1,4 @@
-#include <dem/grain/encounters.hpp>
+#include <dem/grain/relative_motion.hpp>
 
 #include "catch.hpp"
 
@@ -15,7 +15,7 @@ TEST_CASE("partners of a pack come out lane by lane, whatever the width of a pac
     partners.set(k, a[k], b[k]);
   }
   const auto [x, y, z, reach] = separations(partners);
-  const Encounter<Pack> e = encounters(partners);
+  const RelativeMotion<Pack> e = relative_motions(partners);
   for (int k = 0; k < pack_width; ++k) {
     CHECK(lane(x, k) == 4.0 - k);
     CHECK(lane(y, k) == 4.0 + k);

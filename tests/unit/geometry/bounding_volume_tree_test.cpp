@@ -6,8 +6,8 @@
 #include <random>
 
 using dem::Vec3;
+using dem::surface::BoundingVolumeTree;
 using dem::surface::Bounds;
-using dem::surface::BoxTree;
 
 TEST_CASE("a tree of boxes finds what a loop over all boxes finds, in the order of its places") {
   std::mt19937 engine(1);
@@ -18,12 +18,12 @@ TEST_CASE("a tree of boxes finds what a loop over all boxes finds, in the order 
       const Vec3 low(place(engine), place(engine), place(engine));
       boxes.push_back({low, low + Vec3(size(engine), size(engine), size(engine))});
     }
-    const BoxTree tree(boxes);
+    const BoundingVolumeTree tree(boxes);
     REQUIRE(tree.order().size() == n);
     // The boxes of the leaves, which are halves of halves of the places.
     std::vector<Bounds> leaf(n);
     const std::function<void(std::size_t, std::size_t)> halve = [&](std::size_t from, std::size_t to) {
-      if (to - from > BoxTree::items_in_a_leaf) {
+      if (to - from > BoundingVolumeTree::items_in_a_leaf) {
         halve(from, from + (to - from) / 2);
         halve(from + (to - from) / 2, to);
         return;
@@ -77,7 +77,7 @@ TEST_CASE("a tree of boxes finds what a loop over all boxes finds, in the order 
 
 TEST_CASE("boxes that lie on each other do not spoil a tree") {
   const std::vector<Bounds> boxes(1000, {Vec3(0, 0, 0), Vec3(1, 1, 1)});
-  const BoxTree tree(boxes);
+  const BoundingVolumeTree tree(boxes);
   CHECK(tree.nodes() < 2000);
   std::size_t found = 0;
   const double reach2 = 0.01;
