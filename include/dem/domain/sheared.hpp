@@ -34,8 +34,9 @@ class Sheared : public Periodic {
   double slip() const { return rate_ * period()[2]; }  ///< m/s, of the cell above
   double offset() const { return offset_; }            ///< m, by which the cell above has gone, without end
 
-  /// How many cells above this one a point is, or comes to be by rounding.
+  /// How many cells above this one a point is; as wrapped() rounds.
   double level_of(const Vector3<double>& x) const {
+    if (x.z >= low(2) && x.z < low(2) + period()[2]) return 0.0;
     const double level = std::floor((x.z - low(2)) / period()[2]);
     return x.z - level * period()[2] < low(2) + period()[2] ? level : level + 1.0;
   }

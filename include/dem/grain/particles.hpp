@@ -135,6 +135,11 @@ struct Particles {
     }
   }
 
+  Memory<double> memory_at(std::size_t i) const requires(memory_size > 0) {
+    std::array<double, static_cast<std::size_t>(memory_size)> fields;
+    for (std::size_t k = 0; k < memory.size(); ++k) fields[k] = memory[k][i];
+    return std::bit_cast<Memory<double>>(fields);
+  }
   void set_memory(std::size_t i, const Memory<double>& m) {
     if constexpr (memory_size > 0) {
       const auto fields = std::bit_cast<std::array<double, static_cast<std::size_t>(memory_size)>>(m);

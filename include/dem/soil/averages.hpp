@@ -12,8 +12,17 @@ template <class Domain>
 std::vector<Vec3> shifts_of(const Domain& domain) {
   std::vector<Vec3> shifts = {Vec3(0, 0, 0)};
   if constexpr (domain::IsSheared<Domain>) {
+    // Cells above and below stand anywhere along x: two on either side reach as far as one does here.
+    const auto& period = domain.period();
+    const double offset = std::remainder(domain.offset(), period[0]);
     shifts.clear();
-    domain.for_each_image(Vec3(0, 0, 0), [&](const Vec3& shift) { shifts.push_back(shift); });
+    for (int k = -1; k <= 1; ++k) {
+      for (int j = period[1] > 0.0 ? -1 : 0; j <= (period[1] > 0.0 ? 1 : 0); ++j) {
+        const int most = k == 0 ? 1 : 2;
+        for (int i = -most; i <= most; ++i)
+          shifts.push_back(Vec3(i * period[0] + k * offset, j * period[1], k * period[2]));
+      }
+    }
   } else if constexpr (Domain::has_images) {
     for (int axis = 0; axis < 3; ++axis) {
       const double period = domain.period()[static_cast<std::size_t>(axis)];

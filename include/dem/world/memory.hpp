@@ -34,7 +34,7 @@ std::size_t memory_bytes(const WorldState<Model>& w) {
            of_forces(s.pairs.forces) + bytes(s.surfaces.law_of) + bytes(s.surfaces.hits) + bytes(s.surfaces.touches) +
            bytes(s.surfaces.total_share) + s.surfaces.supports.bytes() + of_forces(s.surfaces.forces);
   }
-  if constexpr (Model::Domain::has_images) sum += bytes(w.images.grain) + bytes(w.images.shift);
+  if constexpr (Model::Domain::has_images) sum += bytes(w.images.grain) + bytes(w.images.shift) + bytes(w.images.level);
   sum += bytes(w.sleepers.grains) + bytes(w.sleepers.borne) + bytes(w.sleepers.working);
   for (const Chunk<Model>& c : w.chunks) sum += bytes(c.around);
   const grain::EnergyLedger& l = w.ledger;

@@ -23,8 +23,21 @@ void wrap_grains(WorldState<Model>& w) {
     w.images = {};
     for (std::size_t i = 0; i < p.count; ++i) {
       const Vector3<double> inside = w.domain.wrapped(p.position[i]);
+      double slip = 0.0;  // m/s, of a sheared cell
       if constexpr (domain::IsSheared<typename Model::Domain>) {
-        p.velocity.x[i] -= w.domain.level_of(p.position[i]) * w.domain.slip();
+        slip = w.domain.level_of(p.position[i]) * w.domain.slip();
+        p.velocity.x[i] -= slip;
+      }
+      // An integrator that goes back to the start of the step goes back to where that is now. A sheared cell's
+      // neighbours were one step's way back then.
+      using Memory = typename Model::Integrator::template Memory<double>;
+      if constexpr (requires(Memory memory) { memory.start.position; }) {
+        if (const Vector3<double> by = inside - p.position[i]; dot(by, by) > 0.0) {
+          Memory memory = p.memory_at(i);
+          memory.start.position += by + Vector3<double>{slip * w.time_step, 0, 0};
+          memory.start.velocity.x -= slip;
+          p.set_memory(i, memory);
+        }
       }
       const auto& kind = w.species[p.species[i]];
       if (w.ledger.on && !kind.is_held()) {

@@ -125,6 +125,7 @@ class World : public WorldSetup<M> {
   /// Lets grains at rest sleep from now on, or wakes all for good. Throws Error if a setting makes no sense.
   void set_sleep(const std::optional<SleepOptions>& sleep) {
     if (sleep) check_sleep(*sleep);
+    if (domain::IsSheared<typename Model::Domain> && sleep) fail("grains of a sheared cell cannot sleep");
     wake_all(state_);
     state_.options.sleep = sleep;
     state_.list_valid = false;

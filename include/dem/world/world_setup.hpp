@@ -122,6 +122,7 @@ class WorldSetup {
            p.value);
     }
     known(state_.machine.bodies(), body, "body");
+    if (domain::IsSheared<typename Model::Domain>) fail("grains of a sheared cell cannot be attached to a body");
     attach_grain(state_, row(p), body);
     initialised_ = false;
   }
