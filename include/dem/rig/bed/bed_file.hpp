@@ -6,8 +6,9 @@
 
 namespace dem::rig {
 
-/// Reads the bed of --bed-file. Throws Error if it is none, or not one of these grains in this box.
-inline soil::Packing read_bed(const BedSettings& s, const GrainSettings& grains) {
+/// Reads the bed of --bed-file. Throws Error if it is none, not one of these grains in this box, or one that repeats
+/// itself where a box has walls or the other way round.
+inline soil::Packing read_bed(const BedSettings& s, const GrainSettings& grains, bool repeats) {
   soil::Packing p = soil::load_packing(s.file);
   const auto differs = [](double a, double b) { return std::abs(a - b) > 1e-9; };
   if (p.grains.empty() || p.shape != "cube8") {
@@ -21,13 +22,17 @@ inline soil::Packing read_bed(const BedSettings& s, const GrainSettings& grains)
         s.file, p.half_edge, p.length_x, p.length_y, grains.half_edge, s.length, s.width, p.half_edge, p.length_x,
         p.length_y);
   }
+  if ((p.note.find(repeating_note) != std::string::npos) != repeats) {
+    fail("the bed '{}' {} along x, but the one that is asked for {}; give another --bed-file", s.file,
+         repeats ? "has walls" : "repeats itself", repeats ? "repeats itself" : "has walls");
+  }
   return p;
 }
 
-/// What a bed starts from: its file, or grains to be rained. Throws Error.
+/// What a bed starts from: its file, or grains to be rained. `repeats`: it repeats itself along x. Throws Error.
 inline soil::Packing start_of_bed(const BedSettings& s, const GrainSettings& grains, double volume,
-                                  double bounding_radius) {
-  return s.file.empty() ? bed_grains(s, grains, volume, bounding_radius) : read_bed(s, grains);
+                                  double bounding_radius, bool repeats = false) {
+  return s.file.empty() ? bed_grains(s, grains, volume, bounding_radius) : read_bed(s, grains, repeats);
 }
 
 }  // namespace dem::rig

@@ -40,9 +40,9 @@ struct Lowering {
   }
 };
 
-/// Makes a bed denser: friction sinks to zero while the bed is shaken along x, until the density that was asked for is
-/// reached or, without friction, changes no more. Shaking is done by gravity, which turns to and fro: in the frame of
-/// the box that is the same as a box that shakes.
+/// Makes a bed denser: friction sinks to zero while the bed is shaken between two of its walls, until the density that
+/// was asked for is reached or, without friction, changes no more. Shaking is done by gravity, which turns to and fro:
+/// in the frame of the box that is the same as a box that shakes.
 template <class Model>
 void densify(Bed<Model>& bed, Stages& stages) {
   const BedSettings& s = bed.settings();
@@ -68,7 +68,8 @@ void densify(Bed<Model>& bed, Stages& stages) {
     bed.set_friction(n.share);
     for (int k = 0; k < 5; ++k) {
       const double at = bed.world.time() - n.start, grown = std::min(1.0, at * s.shake_frequency / 2.0);
-      bed.world.set_gravity(Vec3(grown * s.shake_amplitude * w * w * std::sin(w * at), 0.0, -9.81));
+      const double shake = grown * s.shake_amplitude * w * w * std::sin(w * at);
+      bed.world.set_gravity(Bed<Model>::is_endless ? Vec3(0.0, shake, -9.81) : Vec3(shake, 0.0, -9.81));
       run(bed.world, 1e-3);
     }
     n.fraction = bed.solid_fraction();
@@ -148,6 +149,9 @@ Bed<Model> make_bed(const BedSettings& s, const GrainSettings& grains, const typ
   return bed;
 }
 
+/// By which the file of a bed says that it repeats itself.
+inline constexpr const char* repeating_note = "repeats itself along x";
+
 /// The grains of a bed as they are, for a file.
 template <class Model>
 soil::Packing packing_of(const Bed<Model>& bed) {
@@ -155,7 +159,8 @@ soil::Packing packing_of(const Bed<Model>& bed) {
   return {bed.grains().half_edge,
           s.length,
           s.width,
-          text("rained, seed {}, relative density {:g} asked for, levelled", s.seed, s.relative_density),
+          text("rained, seed {}, relative density {:g} asked for, levelled{}", s.seed, s.relative_density,
+               Bed<Model>::is_endless ? text(", {}", repeating_note) : ""),
           soil::placements(bed.world),
           "cube8"};
 }

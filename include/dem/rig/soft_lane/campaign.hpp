@@ -36,14 +36,19 @@ void run_campaign(const Settings& settings, ShapeOf&& shape_of, Campaign& c, Ses
   if (Model::Domain::has_ranks && s.goes_along() && processes.count > 1) {
     fail("--tiles is {}, but processes do not share a lane that goes along; run this on one process", s.tiles);
   }
-  const soil::Packing start = start_of_bed(s.bed, s.grains, test.shape().volume(), test.shape().bounding_radius());
+  const soil::Packing start =
+      start_of_bed(s.bed, s.grains, test.shape().volume(), test.shape().bounding_radius(), s.goes_along());
   if (made) session.require_writable(s.bed.save, "--save-bed");
   session.begin_run(bed_stages(s.bed) + s.passes * (s.slope_angle() != 0.0 ? 4 : 3));
 
   const io::SurfaceMesh hull = vehicle::drawn_hull(s.car);
+  // A lane that goes along meets ever new grains: the limit is one of all that a replay meets.
+  const double lengths = s.goes_along() ? 1.0 + s.path / s.length() : 1.0;
   if (s.replay)
-    c.replay.emplace(
-        report::ReplayOptions{.frames = 90, .interval = 0.05, .grains = 12'000, .force_lines = s.replay_forces});
+    c.replay.emplace(report::ReplayOptions{.frames = 90,
+                                           .interval = 0.05,
+                                           .grains = static_cast<std::size_t>(12'000 * lengths),
+                                           .force_lines = s.replay_forces});
   Frames frames(session, s.vtk ? "soft_lane" : "", 0.05);
   const auto look = [&](const auto& stand) {
     const auto& world = stand.world;

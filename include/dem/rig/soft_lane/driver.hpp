@@ -57,8 +57,8 @@ class Judge {
   explicit Judge(const Settings& s) : settings_(s) {}
 
   /// One of `ending`, or an empty text while the run goes on. `deepest` (m) is the sinkage at which a wheel's middle is
-  /// at the level of the lane.
-  std::string operator()(const Sample& x, const std::array<Vec3, 4>& wheels) {
+  /// at the level of the lane. `back` (m, along x) is where a lane that goes along begins.
+  std::string operator()(const Sample& x, const std::array<Vec3, 4>& wheels, double back = -HUGE_VAL) {
     const Settings& s = settings_;
     const double far = std::numbers::pi / 3.0;
     if (std::abs(x.car.roll) > far || std::abs(x.car.pitch) > far) return ending::rolled_over;
@@ -68,7 +68,7 @@ class Judge {
       if (x.wheels[k].sinkage > s.car.tyre.radius) return ending::dug_in;
     }
     if (s.scene == "drawbar") return x.car.time >= held_time(s) ? ending::held : "";
-    if (x.way < -0.3) return ending::slid_back;
+    if (x.way < -0.3 || std::min(wheels[2].x(), wheels[3].x()) - s.car.tyre.radius < back) return ending::slid_back;
     // From half of the path on, where it brakes or coasts, a car that stands has stopped, and one may rock as it
     // stands.
     const bool slows = (s.scene == "brake" || s.scene == "coast") && x.way >= 0.5 * s.path;

@@ -95,7 +95,9 @@ class LaneRig : public Rig {
       report.plot(page, rut, "rut", "Height of the surface across both tracks, behind the rear wheels.");
     }
     if (!c.along.empty()) {
-      report.plot(page, along_plot(c), "along", "Height of the surface along both tracks, over half a tyre's width.");
+      report.plot(
+          page, along_plot(c), "along",
+          "Height of the surface along both tracks, over half a tyre's width, above the mean of untouched tiles.");
     }
   }
 
@@ -161,8 +163,10 @@ class LaneRig : public Rig {
   }
 
   void write_along(const std::filesystem::path& path) const {
-    io::CsvWriter csv(path, {"x_m", "left_m", "right_m"}, {.digits = 6});
-    for (const LanePlace& p : campaign.along) csv.row(p.x, cell(p.z[0]), cell(p.z[1]));
+    io::CsvWriter csv(path, {"x_m", "left_m", "right_m", "left_untouched_m", "right_untouched_m"}, {.digits = 6});
+    for (const LanePlace& p : campaign.along) {
+      csv.row(p.x, cell(p.z[0]), cell(p.z[1]), cell(campaign.untouched_along[0]), cell(campaign.untouched_along[1]));
+    }
     csv.flush();
   }
 

@@ -109,7 +109,8 @@ struct Pass {
   }
 };
 
-/// Mean height (m) of the surface over half a metre of each track and half a tyre's width; not known where no grain is.
+/// Mean height (m) of the surface over some half a metre of each track and half a tyre's width: of balls of the grains'
+/// volume, seen from above. Not known where no grain is.
 struct LanePlace {
   double x = 0.0;                                    ///< m
   std::array<double, 2> z = {not_known, not_known};  ///< m, left and right
@@ -139,7 +140,10 @@ struct Campaign {
   std::vector<Vec3> section;                    ///< m, grains within a grain's edge of the left wheels' plane
   std::array<double, 2> ends = {0, 0};          ///< m, along x, of the lane at the end
   std::vector<LanePlace> along;                 ///< the tracks of a lane that goes along, all that was driven over
-  std::array<Vec3, 4> wheel_at = {};            ///< m, middles of the wheels at the end
+  std::array<double, 2> untouched_along = {not_known, not_known};  ///< m, left and right: the same of untouched tiles
+  std::uint64_t tiles_laid = 0;                                    ///< ahead, while the car drove
+  double strays = 0.0;                ///< grains that had rolled to where a tile came, and were taken out
+  std::array<Vec3, 4> wheel_at = {};  ///< m, middles of the wheels at the end
   std::optional<report::Replay> replay = {};
 
   // Of the samples, by evaluate()

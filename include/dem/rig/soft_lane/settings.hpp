@@ -181,9 +181,9 @@ inline void require_room(const Settings& s) {
   const double shortest = s.car.wheelbase() + 2.0 * s.margin() + 0.1;
   if (s.goes_along() && !(s.length() >= s.shortest_patch())) {
     fail(
-        "{} tiles of {:g} m are {:.3g} m long, but must be at least {:.3g} m, so that there is ground under all "
-        "wheels, "
-        "{:g} m ahead of them and a tile more: give --tiles {:.0f}, or a smaller --ahead",
+        "{} tiles of {:g} m are {:.3g} m long, but must be at least {:.3g} m: under all wheels, {:g} m ahead of them, "
+        "and "
+        "a tile more; give --tiles {:.0f}, or a smaller --ahead",
         s.tiles, s.bed.length, s.length(), s.shortest_patch(), s.ahead, std::ceil(s.shortest_patch() / s.bed.length));
   }
   if (s.goes_along() && !(s.rim() <= 0.5 * s.bed.length)) {
@@ -250,8 +250,8 @@ inline void resolve(Settings& s) {
   fill(s.bed.lid_pressure, s.is_bed() ? 1000.0 : 5000.0);
   require_positive(s.bed.length, "--bed-length", "m (0: by size)");
   require_positive(s.bed.width, "--bed-width", "m (0: by size)");
-  const double full_depth =
-      depth_of(331'890.0 / s.troughs(), s.bed.strike_off, s.grains.half_edge, s.length(), s.bed.width);
+  const double full_depth = depth_of(331'890.0 / s.troughs(), s.bed.strike_off, s.grains.half_edge,
+                                     s.goes_along() ? by_size.length : s.bed.length, s.bed.width);
   rig::resolve(s.bed, {s.bed.length, s.bed.width, by_size.depth > 0.0 ? by_size.depth : full_depth}, s.output);
   fill(s.speed, is_held ? 0.5 * by_size.speed : by_size.speed);
   if (s.engine != "motor") {

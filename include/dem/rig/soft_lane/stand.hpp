@@ -277,26 +277,40 @@ std::vector<double> overlaps_under_tyres(const Stand<Model>& stand, const Settin
   return overlaps;
 }
 
-/// The tracks of a lane that goes along, from where it began to where it ends now.
+/// Mean height (m) of a field over half a tyre's width of the left (0) or right (1) track, from row `from` to `to`
+/// along x; not known where no grain is.
+inline double track_height(const soil::HeightField& field, const Settings& s, std::size_t side, std::size_t from,
+                           std::size_t to) {
+  const double middle = (side == 0 ? 0.5 : -0.5) * s.car.track();
+  double sum = 0.0, count = 0.0;
+  for (std::size_t k = from * field.across; k < to * field.across; ++k) {
+    const double y = field.y0 + (static_cast<double>(k % field.across) + 0.5) * field.cell;
+    if (std::abs(y - middle) < 0.25 * s.car.tyre.width && std::isfinite(field.z[k])) sum += field.z[k], count += 1.0;
+  }
+  return count > 0.0 ? sum / count : not_known;
+}
+
+/// The tracks of a lane that goes along, from where it began to where it ends now, and those of untouched tiles.
 template <class Model>
-std::vector<LanePlace> along_tracks(const Stand<Model>& stand, const Settings& s) {
+void look_along(const Stand<Model>& stand, const Settings& s, Campaign& c) {
   const soil::HeightField field = stand.patch->surface(stand.world);
   const auto rows = static_cast<std::size_t>(std::max(1.0, std::round(0.5 / field.cell)));  // of a place
-  std::vector<LanePlace> places(field.along() / rows);
-  for (std::size_t p = 0; p < places.size(); ++p) {
-    places[p].x = field.x0 + (static_cast<double>(p) + 0.5) * static_cast<double>(rows) * field.cell;
+  c.along.assign(field.along() / rows, {});
+  for (std::size_t p = 0; p < c.along.size(); ++p) {
+    c.along[p].x = field.x0 + (static_cast<double>(p) + 0.5) * static_cast<double>(rows) * field.cell;
     for (std::size_t side = 0; side < 2; ++side) {
-      const double middle = (side == 0 ? 0.5 : -0.5) * s.car.track();
-      double sum = 0.0, count = 0.0;
-      for (std::size_t k = p * rows * field.across; k < (p + 1) * rows * field.across; ++k) {
-        const double y = field.y0 + (static_cast<double>(k % field.across) + 0.5) * field.cell;
-        if (std::abs(y - middle) < 0.25 * s.car.tyre.width && std::isfinite(field.z[k]))
-          sum += field.z[k], count += 1.0;
-      }
-      if (count > 0.0) places[p].z[side] = sum / count;
+      c.along[p].z[side] = track_height(field, s, side, p * rows, (p + 1) * rows);
     }
   }
-  return places;
+  soil::HeightField before = field;
+  before.z.clear();
+  const double volume = stand.world.state().species[0].shape.volume();
+  for (const auto& g : stand.before) before.add(g.position, std::cbrt(0.75 * volume / std::numbers::pi));
+  for (std::size_t side = 0; side < 2; ++side) {
+    c.untouched_along[side] = track_height(before, s, side, 0, before.along());
+  }
+  c.tiles_laid = stand.patch->shifts();
+  c.strays = static_cast<double>(stand.patch->strays());
 }
 
 /// What is seen of the lane at the end: ruts behind the rear wheels, and a section through the left wheels.
@@ -307,7 +321,7 @@ void look_back(const Stand<Model>& stand, const Settings& s, Campaign& c) {
   c.ends = {-0.5 * s.length(), 0.5 * s.length()};
   if (stand.patch) {
     c.ends = {stand.patch->back(), stand.patch->front()};
-    c.along = along_tracks(stand, s);
+    look_along(stand, s, c);
   }
   const auto before = stand.patch ? untouched_patch(*stand.patch) : stand.before;
   for (std::size_t k = 0; k < 2; ++k) {

@@ -110,6 +110,10 @@ inline io::Table cost_table(const Settings& s, const Campaign& c) {
   t.row("widest joint", number(1e3 * widest), "mm");
   t.row("grains asleep while driving", number(100.0 * asleep / static_cast<double>(c.samples.size()), "{:.0f}"), "%");
   t.row("grains that left the lane", number(c.lost, "{:.0f}"), "");
+  if (s.goes_along()) {
+    t.row("tiles laid ahead", text("{}", c.tiles_laid), "");
+    t.row("grains that lay where tiles came", number(c.strays, "{:.0f}"), "");
+  }
   t.row("wall time for a second of driving", number(c.computing, "{:.1f}"), "s");
   return t;
 }
@@ -206,11 +210,12 @@ inline io::Plot rut_plot(const Campaign& c) {
 /// The surface of the tracks along a lane that goes along: of all that was driven over.
 inline io::Plot along_plot(const Campaign& c) {
   io::Plot plot{
-      .title = "Surface along the tracks", .x_label = "along the lane [m]", .y_label = "above the level [mm]"};
+      .title = "Surface along the tracks", .x_label = "along the lane [m]", .y_label = "above untouched tiles [mm]"};
   for (std::size_t side = 0; side < 2; ++side) {
     io::Series line{.name = side == 0 ? "left" : "right", .color = static_cast<int>(side)};
     for (const LanePlace& p : c.along) {
-      if (std::isfinite(p.z[side])) line.x.push_back(p.x), line.y.push_back(1e3 * (p.z[side] - c.level));
+      if (std::isfinite(p.z[side]))
+        line.x.push_back(p.x), line.y.push_back(1e3 * (p.z[side] - c.untouched_along[side]));
     }
     plot.series.push_back(std::move(line));
   }
