@@ -389,7 +389,7 @@ function(dem_add_example_test example)
     NAME example.${arg_NAME}
     COMMAND ${CMAKE_COMMAND} "-DOUTPUT=${CMAKE_CURRENT_BINARY_DIR}/${arg_NAME}" "-DFILES=${arg_FILES}"
             "-DEXPECT=${arg_EXPECT}" -P "${DEM_SCRIPTS}/RunExample.cmake" -- $<TARGET_FILE:${example}> ${arg_ARGS})
-  set_tests_properties(example.${arg_NAME} PROPERTIES LABELS ${arg_LABEL})
+  set_tests_properties(example.${arg_NAME} PROPERTIES LABELS ${arg_LABEL} TIMEOUT 900)  # of minutes on a busy machine
   if(NOT arg_LABEL STREQUAL "checks")
     add_dependencies(fast_tests ${example})
   endif()

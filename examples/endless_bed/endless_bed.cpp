@@ -3,6 +3,7 @@
 // bed of copies that is as long as its way, too, which tells whether the patch is long enough.
 //
 //   endless_bed --tiles 10 --output out/endless_bed
+//   endless_bed --load 0.1 --patch 6       load of the wheel (N), tiles of the patch
 //   endless_bed --compare 1 --beds 4       ends with 1 if means differ by more than 2 % and what chance explains
 //
 // The wheel is as wide as the cell, which repeats itself across the way: a plane problem. Writes rut.dat and
