@@ -25,7 +25,9 @@ struct BedOptions {
   double densify_time = 0.5;       ///< s, in which friction goes to zero
   double shaking = 0.5;            ///< to and fro along x, while friction sinks, in weights
   double frequency = 25.0;         ///< Hz, of the shaking
-  double time_limit = 5.0;         ///< s, in which the grains must come to rest
+  double lid_pressure = 0.0;       ///< Pa, by which a lid presses the grains flat before they are struck off; 0: none
+  double lid_speed = 0.05;         ///< m/s, at which it comes down
+  double time_limit = 5.0;         ///< s, in which the grains must come to rest, and the lid on them
   std::uint64_t seed = 1;
   std::string wall_material = "wall";
 };
@@ -38,8 +40,9 @@ struct BedOptions {
 ///     for (const soil::SolidLayer& layer : bed.layers(0.005)) ...   // solid fraction by depth
 ///     save(world, "bed.h5");                                        // of <dem/io/checkpoint.hpp>
 ///
-/// A program that starts from such a file makes the world and the Bed, which adds the walls, and calls load(world,
-/// "bed.h5") in place of make().
+/// A program that starts from such a file makes the world and the Bed, which adds the walls and the lid, and calls
+/// load(world, "bed.h5") in place of make(). The lid is a body of the machine; when the bed is made it stands still
+/// where it was, and touches nothing.
 template <class Model>
 class Bed {
  public:
@@ -53,6 +56,8 @@ class Bed {
     require_positive(o.densify_time, "time in which a bed is made denser", "s");
     require_non_negative(o.shaking, "strength of shaking", "weights");
     require_positive(o.frequency, "frequency of shaking", "Hz");
+    require_non_negative(o.lid_pressure, "pressure of the lid of a bed", "Pa");
+    require_positive(o.lid_speed, "speed of the lid of a bed", "m/s");
     require_positive(o.time_limit, "time in which a bed must come to rest", "s");
     if (o.relative_density > 0.0 && !(o.limits.densest > o.limits.loosest && o.limits.loosest > 0.0)) {
       fail(
@@ -74,16 +79,18 @@ class Bed {
     const double placed = volumes / numbers / (cell_ * cell_ * cell_);
     top_ = 1.5 * wanted() * (1.1 * o.height + 2.0 * cell_) / placed + 10.0 * cell_;
     walls_ = container.add_walls(world, top_, o.wall_material);
+    if (o.lid_pressure > 0.0) add_lid();
   }
 
   const Container& container() const { return container_; }
   const std::vector<SurfaceId>& walls() const { return walls_; }  ///< floor first
   double height() const { return options_.height; }               ///< m, of the levelled surface
+  SurfaceId lid() const { return lid_; }                          ///< of no surface where there is none
 
-  /// Fills the container, lets the grains come to rest, makes them as dense as asked for, and levels them.
-  /// `set_friction(share)` is called while a bed is made denser, with shares from 1 to 0 and at last 1 again: it sets
-  /// this share of the grains' friction, by World::set_contact. Throws Error if the grains do not come to rest in time,
-  /// if they blow up, and for a density that shaking without friction does not reach.
+  /// Fills the container, lets the grains come to rest, makes them as dense as asked for, presses them, and levels
+  /// them. `set_friction(share)` is called while a bed is made denser, with shares from 1 to 0 and at last 1 again: it
+  /// sets this share of the grains' friction, by World::set_contact. Throws Error if the grains do not come to rest in
+  /// time, if they blow up, and for a density that shaking without friction does not reach.
   template <std::invocable<double> SetFriction>
   void make(SetFriction&& set_friction) {
     constexpr int most_fillings = 5;
@@ -96,6 +103,7 @@ class Bed {
       fill(std::max(solid - solid_volume(world_), 0.1 * solid));
       settle();
       if (options_.relative_density > 0.0) densify(set_friction);
+      if (options_.lid_pressure > 0.0) press();
     }
     strike_off();
     settle();
@@ -154,6 +162,37 @@ class Bed {
     }
   }
 
+  /// Lowers the lid until the grains carry it within 2 % and it rests, both for 10 ms, takes it off, and lets the
+  /// grains come to rest. Throws Error if that takes longer than the time limit, and for a bed without a lid.
+  void press() {
+    if (!lid_.valid()) fail("a bed is to be pressed, but has no lid; set BedOptions::lid_pressure");
+    auto& m = world_.machine();
+    double highest = 0.0;
+    for (const ParticleId p : world_.particles()) highest = std::max(highest, world_.position(p).z());
+    m.set_target(lid_hold_, highest + 1.1 * radius_ - top_);
+    run(0.1);  // the lid comes over the grains
+    const double weight = lid_weight(), start = world_.time();
+    world_.set_active(lid_, true);
+    m.switch_on(lid_hold_, false), m.switch_on(lid_drive_, true);
+    StaysBelow slow(0.01 * options_.lid_speed, 0.01), loaded(0.02, 0.01);
+    for (bool done = false; !done;) {
+      run(1e-3);
+      const double force = world_.surface_force(lid_).z();
+      const bool is_slow = slow(world_.time(), std::abs(m.speed(lid_slide_)));
+      done = loaded(world_.time(), std::abs(force / weight - 1.0)) && is_slow;
+      if (!done && world_.time() - start > options_.time_limit) {
+        fail(
+            "the lid of a bed is not at rest after {:g} s: the grains carry {:.4g} N of {:.4g} N; raise "
+            "BedOptions::time_limit or the damping",
+            options_.time_limit, force, weight);
+      }
+    }
+    m.set_target(lid_hold_, m.coordinate(lid_slide_));
+    m.switch_on(lid_hold_, true), m.switch_on(lid_drive_, false);
+    world_.set_active(lid_, false);
+    settle();
+  }
+
   /// Takes off what stands above the height.
   void strike_off() {
     for (const ParticleId p : world_.particles()) {
@@ -179,6 +218,29 @@ class Bed {
   }
 
  private:
+  double lid_weight() const { return options_.lid_pressure * container_.area(height()); }  // N
+
+  /// A plane over the walls. It is held until it is lowered; then it sinks in a damper, ever slower as the grains take
+  /// it up.
+  void add_lid() {
+    if (!(gravity_.z() < 0.0)) fail("a lid presses a bed by its weight, but gravity does not point to the floor");
+    auto& m = world_.machine();
+    const double mass = lid_weight() / -gravity_.z(), thickness = radius_;
+    const Vec3 edges(container_.length(), container_.width(height()), thickness), at(0, 0, top_);
+    const BodyId body = m.add_body(mbd::box_body("lid", edges, mass / edges.prod()).at(at));
+    lid_slide_ = m.add_joint(mbd::prismatic("lid slide", m.ground(), body, at, Vec3::UnitZ()));
+    constexpr double sag = 1e-5;  // m, of the lid as it is held
+    const double k = lid_weight() / sag;
+    lid_hold_ = m.add_actuator(mbd::joint_actuator("lid hold", lid_slide_, k, 2.0 * std::sqrt(k * mass)));
+    lid_drive_ = m.add_actuator(mbd::joint_actuator("lid drive", lid_slide_, 0.0, lid_weight() / options_.lid_speed));
+    m.switch_on(lid_drive_, false);
+    lid_ = world_.add_surface(body, surface::Plane{},
+                              {.material = options_.wall_material,
+                               .name = "lid",
+                               .rotation = rotation_between(Vec3::UnitZ(), Vec3(0, 0, -1))});
+    world_.set_active(lid_, false);
+  }
+
   double wanted() const {
     return options_.relative_density > 0.0 ? solid_fraction_at(options_.relative_density, options_.limits)
                                            : options_.expected_fraction;
@@ -229,6 +291,9 @@ class Bed {
   Vec3 gravity_;
   MixtureDraw draw_;
   std::vector<SurfaceId> walls_;
+  SurfaceId lid_ = {};
+  JointId lid_slide_ = {};
+  ActuatorId lid_hold_ = {}, lid_drive_ = {};
   double radius_ = 0.0, cell_ = 0.0, top_ = 0.0;  // m: of the largest grain; of the lattice; of the walls
 };
 

@@ -3,7 +3,9 @@
 
 #include <dem/soil/bed.hpp>
 
+#include <algorithm>
 #include <numbers>
+#include <vector>
 
 using Catch::Approx;
 using dem::ParticleId;
@@ -110,11 +112,38 @@ TEST_CASE("a bed is as dense as it was asked for, with all of its friction in th
   CHECK(bed.relative_density() > 0.2);
 }
 
+TEST_CASE("a lid presses a bed flat by its weight, and leaves it") {
+  SoilOfBalls soil;
+  dem::soil::Bed<Balls> bed(soil.world, Container::cylinder(0.0085), soil.ball,
+                            {.height = 0.012, .lid_pressure = 100.0, .lid_speed = 0.2, .time_limit = 2.0});
+  CHECK(!soil.world.state().surfaces[bed.lid().index()].active);
+  bed.make();
+  check_bed(soil.world, bed);
+  CHECK(!soil.world.state().surfaces[bed.lid().index()].active);
+  // Pressed once more, so that it can be looked at: the topmost balls touch one plane, and it stands still afterwards.
+  bed.press();
+  std::vector<double> tops;
+  for (const ParticleId p : soil.world.particles()) tops.push_back(soil.world.position(p).z() + 1e-3);
+  std::sort(tops.rbegin(), tops.rend());
+  // 100 Pa are 23 mN on some five balls: each and those below it spring back by 5 mN/(2,000 N/m), 2 um, and settle a
+  // little.
+  CHECK(tops[0] - tops[2] < 1e-4);
+  const auto& lid = soil.world.machine().bodies()[soil.world.state().surfaces[bed.lid().index()].body.index()];
+  const double before = lid.position().z();
+  CHECK(before == Approx(tops[0]).margin(2e-4));
+  REQUIRE(soil.world.run_for(0.05));
+  CHECK(lid.position().z() == Approx(before).margin(1e-4));
+  SoilOfBalls other;
+  dem::soil::Bed<Balls> plain(other.world, Container::cylinder(0.0085), other.ball, {.height = 0.012});
+  check_refused([&] { plain.press(); }, "has no lid");
+}
+
 TEST_CASE("a bed that makes no sense is refused in words") {
   SoilOfBalls soil;
   const auto box = Container::box(0.02, 0.02);
   const auto bed_of = [&](const dem::soil::BedOptions& o) { dem::soil::Bed<Balls>(soil.world, box, soil.ball, o); };
   check_refused([&] { bed_of({.height = 0.0}); }, "height of a bed");
+  check_refused([&] { bed_of({.height = 0.01, .lid_pressure = -1.0}); }, "pressure of the lid");
   check_refused([&] { bed_of({.height = 0.01, .relative_density = 0.5}); }, "set BedOptions::limits");
   check_refused([&] { Container::cylinder(-1.0); }, "radius of a container");
   check_refused([&] { Container::trough(0.1, 0.1, 1.5); }, "lean of a trough's sides");
