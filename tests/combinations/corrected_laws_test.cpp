@@ -25,7 +25,7 @@ using PlasticDmt = Laws<contact::Hysteretic, friction::CoulombViscous, rolling::
 using LinearWet = Laws<Linear, friction::CundallStrack, Rolling, cohesion::LiquidBridge>;
 using Asperities = Laws<contact::Penalty, friction::AsperitySpring>;
 
-constexpr double r = 1e-3;
+constexpr double ball_radius = 1e-3;
 
 template <class M>
 ContactParameters<M> constants() {
@@ -52,13 +52,13 @@ template <class M>
 Eigen::Matrix<double, 12, 1> collide(double dt) {
   World<M> w(options({0, 0, 0}, dt));
   w.set_contact(constants<M>());
-  w.add_species(Sphere(r), {"grain", 2500.0});
+  w.add_species(Sphere(ball_radius), {"grain", 2500.0});
   const auto a = w.add_particle(grain_at({-1.0e-3, 0, 0}, {0.4, 0.05, 0}, {100, 50, -80}));
   const auto b = w.add_particle(grain_at({1.0e-3, 0.7e-3, 0.2e-3}, {-0.4, 0, 0.1}, {-30, 90, 120}));
   REQUIRE(w.run_for(2e-3));
-  REQUIRE((w.position(a) - w.position(b)).norm() > 2.4 * r);
+  REQUIRE((w.position(a) - w.position(b)).norm() > 2.4 * ball_radius);
   Eigen::Matrix<double, 12, 1> result;
-  result << w.velocity(a), w.velocity(b), r * w.angular_velocity(a), r * w.angular_velocity(b);
+  result << w.velocity(a), w.velocity(b), ball_radius * w.angular_velocity(a), ball_radius * w.angular_velocity(b);
   return result;
 }
 
