@@ -1,4 +1,4 @@
-// expect: Shape: needs orient\(R, pose\), static collide\(a, pose_a, b, pose_b, separation, sink\)
+// expect: Shape: needs orient\(R, pose\), static collide\(a, pose_a, b, pose_b, separation, callback\)
 #include <dem/world/model.hpp>
 
 struct Blob : dem::shape::Sphere {
