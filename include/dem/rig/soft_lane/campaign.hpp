@@ -72,7 +72,8 @@ void run_campaign(const Settings& settings, ShapeOf&& shape_of, Campaign& c, Ses
     look_at(bed);
     level = bed.level, time_step = of_tile.time_step(bed);
     tile = make_kept_tile<Model>(s, test.shape(), bed, time_step, session);
-    session.finish(tile->in_words());
+    // Not its solid fraction: that would count the ground between the troughs.
+    session.finish(text("{} grains, {:.2f} neighbours each", tile->grains.size(), tile->coordination));
   } else {
     const auto bed = make_kept_bed(test, start, session);
     look_at(bed);

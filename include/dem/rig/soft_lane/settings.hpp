@@ -181,9 +181,9 @@ inline void require_room(const Settings& s) {
   const double shortest = s.car.wheelbase() + 2.0 * s.margin() + 0.1;
   if (s.goes_along() && !(s.length() >= s.shortest_patch())) {
     fail(
-        "{} tiles of {:g} m are {:.3g} m long, but must be at least {:.3g} m: under all wheels, {:g} m ahead of them, "
-        "and "
-        "a tile more; give --tiles {:.0f}, or a smaller --ahead",
+        "{} tiles of {:g} m are {:.3g} m long, but must be at least {:.3g} m, for the car, {:g} m ahead and a tile "
+        "more; "
+        "give --tiles {:.0f}, or a smaller --ahead",
         s.tiles, s.bed.length, s.length(), s.shortest_patch(), s.ahead, std::ceil(s.shortest_patch() / s.bed.length));
   }
   if (s.goes_along() && !(s.rim() <= 0.5 * s.bed.length)) {
