@@ -2,6 +2,7 @@
 
 // Grains that several processes share (MPI: link dem::mpi).
 
+#include <dem/domain/cut.hpp>
 #include <dem/domain/messages.hpp>
 
 #include <algorithm>
@@ -57,20 +58,7 @@ class Ranks : public Messages {
     return static_cast<int>(std::upper_bound(first_.begin() + 1, first_.end() - 1, chunk) - first_.begin()) - 1;
   }
   /// Cuts the chunks, with the work that each of them is, into ranges of nearly the same work.
-  void cut(const std::vector<double>& of_chunks) {
-    double all = 0.0, before = 0.0;
-    for (const double w : of_chunks) all += w;
-    first_.assign(static_cast<std::size_t>(ranks_) + 1, static_cast<std::uint32_t>(of_chunks.size()));
-    first_[0] = 0;
-    std::size_t next = 1;
-    for (std::size_t c = 0; c < of_chunks.size(); ++c) {
-      // A chunk goes to the rank in whose part of the work its middle lies.
-      while (next < first_.size() - 1 && before + 0.5 * of_chunks[c] >= all * double(next) / ranks_) {
-        first_[next++] = static_cast<std::uint32_t>(c);
-      }
-      before += of_chunks[c];
-    }
-  }
+  void cut(const std::vector<double>& of_chunks) { first_ = cut_by_work(of_chunks, ranks_); }
 
   /// What goes over between this rank and another one in a step.
   struct Border {

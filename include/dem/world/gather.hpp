@@ -11,30 +11,34 @@
 
 namespace dem {
 
-/// Counts the work that each grain of this rank's chunks is, and tells all ranks: in candidates that are looked at.
-/// Counted, not measured: so every rank cuts alike.
+/// Appends the work that each grain of a chunk is, in candidates that are looked at. Counted, not measured: so every
+/// rank cuts alike.
+template <class Model>
+void append_work(const WorldState<Model>& w, std::size_t c, std::vector<float>& to) {
+  constexpr float motion = 10, contact = shape::BitShape<typename Model::Shape> ? 8 : 40, asleep = 1;
+  const Chunk<Model>& chunk = w.chunks[c];
+  const std::size_t rows = std::min((c + 1) * chunk_size, w.particles.count) - c * chunk_size, first = to.size();
+  for (std::size_t k = 0; k < rows; ++k) {
+    const auto candidates = static_cast<float>(chunk.candidate_first[k + 1] - chunk.candidate_first[k]);
+    to.push_back(chunk.asleep ? asleep : motion + candidates);
+  }
+  if (chunk.asleep) return;
+  const auto& contacts = chunk.pair_contacts.last;
+  for (int k = 0; k < contacts.count; ++k) {
+    to[first + chunk.owner[contacts.key[static_cast<std::size_t>(k)] >> 32]] += contact;
+  }
+}
+
+/// Counts the work that each grain of this rank's chunks is, and tells all ranks.
 template <class Model>
 void count_work(WorldState<Model>& w) {
-  constexpr float motion = 10, contact = shape::BitShape<typename Model::Shape> ? 8 : 40, asleep = 1;
   auto& d = w.domain;
   const auto& p = w.particles;
   d.work.resize(p.row_of.size(), 0.0f);
   if (!d.is_shared() || w.chunks.empty()) return;
   std::vector<float> mine;
   const auto [begin, end] = d.own();
-  for (std::size_t c = begin; c < end; ++c) {
-    const Chunk<Model>& chunk = w.chunks[c];
-    const std::size_t rows = std::min((c + 1) * chunk_size, p.count) - c * chunk_size, first = mine.size();
-    for (std::size_t k = 0; k < rows; ++k) {
-      const auto candidates = static_cast<float>(chunk.candidate_first[k + 1] - chunk.candidate_first[k]);
-      mine.push_back(chunk.asleep ? asleep : motion + candidates);
-    }
-    if (chunk.asleep) continue;
-    const auto& contacts = chunk.pair_contacts.last;
-    for (int k = 0; k < contacts.count; ++k) {
-      mine[first + chunk.owner[contacts.key[static_cast<std::size_t>(k)] >> 32]] += contact;
-    }
-  }
+  for (std::size_t c = begin; c < end; ++c) append_work(w, c, mine);
   const std::vector<float> all = d.gathered(mine, false);
   for (std::size_t row = 0; row < all.size(); ++row) d.work[p.id[row]] = all[row];
 }
