@@ -76,10 +76,10 @@ void run(const char* name, const Settings& settings) {
   run_or_fail(one, settings.settle);
   const double bytes_a_grain = double(dem::memory_bytes(one.state())) / grains_a_box;
 
-  dem::io::Table table{
-      .header = {"grains", "threads", "million grain-steps/s", "lowest", "highest", "ratio", "per CPU second",
-                 "of the first size", "lists made", "s a list", "contacts a grain", "bytes a grain"},
-      .digits = 3};
+  dem::io::Table table{.header = {"grains", "threads", "million grain-steps/s", "lowest", "highest", "ratio",
+                                  "per CPU second", "of the first size", "contacts, ns a grain", "motion, ns a grain",
+                                  "lists made", "s a list", "contacts a grain", "bytes a grain"},
+                       .digits = 3};
   std::vector<double> of_first;  // by threads
   for (const std::size_t grains : settings.sizes) {
     check_memory(grains, bytes_a_grain);
@@ -109,9 +109,11 @@ void run(const char* name, const Settings& settings) {
       if (of_first.size() < static_cast<std::size_t>(threads)) of_first.push_back(rate);
       const std::uint64_t made = world.state().rebuilds - lists;
       const double list = world.state().stopwatch.seconds(dem::Phase::neighbours) / double(std::max(made, 1ul));
+      const double step =
+          1e9 * world.state().stopwatch.seconds(dem::Phase::grains) / (double(grains) * steps * settings.repeats);
       table.row(grains, threads, rate, *std::min_element(rates.begin(), rates.end()),
                 *std::max_element(rates.begin(), rates.end()), rate / one_thread, cpu_rate,
-                rate / of_first[static_cast<std::size_t>(threads - 1)], made, list, contacts_a_grain(world),
+                rate / of_first[static_cast<std::size_t>(threads - 1)], step, made, list, contacts_a_grain(world),
                 std::to_string(dem::memory_bytes(world.state()) / grains));
       world.state().stopwatch.switch_on(false);
     }

@@ -46,15 +46,16 @@ struct Chunk {
   Vec3 low = Vec3::Zero(), high = Vec3::Zero();  ///< of the grains' centres
   double moved2 = 0.0;  ///< m^2, largest squared displacement since the neighbour list was made
   DeepestContact deepest;
-  double surface_seconds = 0.0;       ///< s, spent on contacts with surfaces while the stopwatch was on
-  bool finite = true;                 ///< no position or velocity is NaN or infinite
-  bool asleep = false;                ///< its grains rest and are not moved
-  std::vector<std::uint32_t> around;  ///< chunks with which it has candidates; listed where grains may sleep
+  double surface_seconds = 0.0;        ///< s, spent on contacts with surfaces while the stopwatch was on
+  bool finite = true;                  ///< no position or velocity is NaN or infinite
+  bool asleep = false;                 ///< its grains rest and are not moved
+  std::vector<std::uint32_t> reached;  ///< other chunks of whose grains it has candidates
+  std::vector<std::uint32_t> around;   ///< chunks with which it has candidates; listed where grains may sleep
 
   /// The contact histories of this step become the ones that the next step starts from.
   void commit() {
-    pair_contacts.commit();
-    surface_contacts.commit();
+    pair_contacts.commit_copy();
+    surface_contacts.commit_copy();
   }
 };
 

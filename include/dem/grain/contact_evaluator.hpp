@@ -56,7 +56,7 @@ class ContactEvaluator {
               ViewJ&& view_j) {
     const int count = static_cast<int>(hits.size());
     memories.now.count = count;
-    memories.make_room(count);
+    memories.now.make_room(count);
     forces.make_room(hits.size());
     Deepest deepest;
     int cursor = 0;

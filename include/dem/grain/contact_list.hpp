@@ -3,6 +3,7 @@
 #include <dem/core/aligned.hpp>
 #include <dem/law/state.hpp>
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <utility>
@@ -43,6 +44,16 @@ struct ContactMemory {
     key.resize(n);
     for (auto& column : history) column.resize(n);
   }
+  /// Room for n contacts and the padding of a last pack.
+  void make_room(int n) {
+    const auto need = static_cast<std::size_t>(n + pack_width);
+    if (key.size() < need) reserve((need + need / 4 + 15) / 16 * 16);
+  }
+  void copy(const ContactMemory& from) {
+    make_room(count = from.count);
+    std::copy_n(from.key.begin(), count, key.begin());
+    for (std::size_t k = 0; k < history.size(); ++k) std::copy_n(from.history[k].begin(), count, history[k].begin());
+  }
 };
 
 /// The histories of all contacts of one chunk with one kind of partner (grains or surfaces): those of this step and the
@@ -51,13 +62,10 @@ template <int HistorySize>
 struct ContactMemories {
   ContactMemory<HistorySize> now, last;
 
-  /// Room for n contacts of this step and the padding of a last pack.
-  void make_room(int n) {
-    const auto need = static_cast<std::size_t>(n + pack_width);
-    if (now.key.size() < need) now.reserve((need + need / 4 + 15) / 16 * 16);
-  }
   /// The histories of this step become the committed ones.
   void commit() { std::swap(now, last); }
+  /// The same with `now` in memory that is used again for others: of the chunk itself only `last` is touched.
+  void commit_copy() { last.copy(now); }
   /// How many contacts the last committed step had: those of `last`.
   int committed() const { return last.count; }
 };

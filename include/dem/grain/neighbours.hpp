@@ -5,6 +5,7 @@
 #include <dem/grain/images.hpp>
 #include <dem/grain/move.hpp>
 #include <dem/grain/species.hpp>
+#include <dem/grain/turns.hpp>
 
 #include <algorithm>
 #include <span>
@@ -54,11 +55,11 @@ void list_candidates(std::size_t chunk_index, Chunk<Model>& chunk, const Particl
   list_owners(chunk);
 }
 
-/// The reverse of the candidate lists: for each grain, where it is a partner in another chunk; owners ascending.
+/// The reverse of the candidate lists: for each grain, where it is a partner in another chunk; owners ascending. Lists
+/// which chunks each chunk reaches, too.
 template <class Model>
-void list_incoming(std::span<const Chunk<Model>> chunks, std::size_t grains,
-                   const Images<typename Model::Domain>& images, std::vector<std::uint32_t>& first,
-                   std::vector<Incoming>& incoming) {
+void list_incoming(std::span<Chunk<Model>> chunks, std::size_t grains, const Images<typename Model::Domain>& images,
+                   std::vector<std::uint32_t>& first, std::vector<Incoming>& incoming) {
   const auto for_each_foreign = [&](auto&& f) {
     for (std::size_t c = 0; c < chunks.size(); ++c) {
       for (std::size_t k = 0; k < chunks[c].candidate.size(); ++k) {
@@ -68,6 +69,7 @@ void list_incoming(std::span<const Chunk<Model>> chunks, std::size_t grains,
       }
     }
   };
+  for (std::size_t c = 0; c < chunks.size(); ++c) list_reached(c, chunks[c], images);
   first.assign(grains + 1, 0);
   for_each_foreign([&](std::uint32_t j, const Incoming&) { ++first[j + 1]; });
   for (std::size_t i = 0; i < grains; ++i) first[i + 1] += first[i];

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <dem/core/prefetch.hpp>
 #include <dem/geometry/shape.hpp>
 #include <dem/grain/chunk.hpp>
 #include <dem/grain/contact_evaluator.hpp>
@@ -54,10 +55,14 @@ struct ChunkPairs {
 /// Candidates whose bounding spheres overlap, a pack at a time and without branches, as the answer is a coin toss.
 template <class Pairs>
 std::size_t list_close(const Pairs& pairs, std::uint32_t candidates, std::vector<std::uint32_t>& close) {
+  constexpr std::uint32_t ahead = 4 * pack_width;
   close.resize(candidates + std::size_t{pack_width});
   std::size_t count = 0;
   PartnerLanes partners;
   for (std::uint32_t at = 0; at < candidates; at += pack_width) {
+    for (std::uint32_t lane = 0; lane < pack_width; ++lane) {
+      prefetch(&pairs.p.view[pairs.j(std::min(at + lane + ahead, candidates - 1))], sizeof(PartnerView));
+    }
     for (std::uint32_t lane = 0; lane < pack_width; ++lane) {
       const std::uint32_t k = std::min(at + lane, candidates - 1);
       partners.set(static_cast<int>(lane), pairs.p.view[pairs.i(k)], pairs.p.view[pairs.j(k)]);
@@ -101,6 +106,8 @@ void find_hits_by_bits(const Pairs& pairs, std::size_t close_count, PairScratch<
   for (std::size_t c = 0; c < close_count; ++c) {
     const std::uint32_t k = s.close[c];
     const std::size_t i = pairs.i(k), j = pairs.j(k);
+    const std::size_t later = pairs.j(s.close[std::min(c + 8, close_count - 1)]);
+    prefetch(pairs.p.pose_of(later), Shape::pose_size * sizeof(double));
     const std::uint64_t bits = touching<Model>(pairs, i, j);
     total += static_cast<std::size_t>(std::popcount(bits));
     s.close[touching_pairs] = k;

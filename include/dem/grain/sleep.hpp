@@ -1,9 +1,9 @@
 #pragma once
 
 #include <dem/grain/contact_evaluator.hpp>
-#include <dem/grain/images.hpp>
 #include <dem/grain/move.hpp>
 #include <dem/grain/sleep_options.hpp>
+#include <dem/grain/turns.hpp>
 
 #include <algorithm>
 #include <cstdint>
@@ -119,14 +119,8 @@ template <class Model>
 void list_chunks_around(std::span<Chunk<Model>> chunks, const Images<typename Model::Domain>& images) {
   for (auto& chunk : chunks) chunk.around.clear();
   for (std::size_t c = 0; c < chunks.size(); ++c) {
-    std::vector<std::uint32_t> others;
-    for (const std::uint32_t j : chunks[c].candidate) {
-      const auto other = static_cast<std::uint32_t>(images.grain_of(j) / chunk_size);
-      if (other != c && (others.empty() || others.back() != other)) others.push_back(other);
-    }
-    std::sort(others.begin(), others.end());
-    others.erase(std::unique(others.begin(), others.end()), others.end());
-    for (const std::uint32_t other : others) {
+    list_reached(c, chunks[c], images);
+    for (const std::uint32_t other : chunks[c].reached) {
       chunks[c].around.push_back(other);
       chunks[other].around.push_back(static_cast<std::uint32_t>(c));
     }

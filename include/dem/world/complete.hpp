@@ -88,8 +88,7 @@ void complete_chunks(WorldState<Model>& w) {
     grain::list_chunks_around<Model>(w.chunks, w.images);
   }
   if (!w.chunks.empty()) {
-    grain::list_incoming<Model>(std::span<const Chunk<Model>>(w.chunks), w.particles.count, w.images, w.incoming_first,
-                                w.incoming);
+    grain::list_incoming<Model>(std::span(w.chunks), w.particles.count, w.images, w.incoming_first, w.incoming);
   }
   d.is_complete = true;
 }

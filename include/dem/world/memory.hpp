@@ -15,13 +15,12 @@ std::size_t memory_bytes(const WorldState<Model>& w) {
   sum += bytes(p.view) + bytes(p.pose) + bytes(p.species) + bytes(p.id) + bytes(p.row_of) + bytes(p.number) +
          bytes(p.freed) + bytes(p.free_again);
   sum += bytes(w.incoming_first) + bytes(w.incoming) + w.broad_phase.memory_bytes();
-  const auto of_memories = [&](const auto& memories) {
-    std::size_t b = bytes(memories.now.key) + bytes(memories.last.key);
-    for (const auto* memory : {&memories.now, &memories.last}) {
-      for (const auto& column : memory->history) b += bytes(column);
-    }
+  const auto of_memory = [&](const auto& memory) {
+    std::size_t b = bytes(memory.key);
+    for (const auto& column : memory.history) b += bytes(column);
     return b;
   };
+  const auto of_memories = [&](const auto& memories) { return of_memory(memories.now) + of_memory(memories.last); };
   const auto of_forces = [&](const grain::ContactForces& f) {
     std::size_t b = 0;
     for (const auto* columns : {&f.force, &f.torque_i, &f.torque_j}) {
@@ -32,11 +31,12 @@ std::size_t memory_bytes(const WorldState<Model>& w) {
   for (const ContactScratch<Model>& s : w.scratch) {
     sum += sizeof(s) + bytes(s.pairs.close) + bytes(s.pairs.touching) + bytes(s.pairs.hits) + bytes(s.pairs.touches) +
            of_forces(s.pairs.forces) + bytes(s.surfaces.law_of) + bytes(s.surfaces.hits) + bytes(s.surfaces.touches) +
-           bytes(s.surfaces.total_share) + s.surfaces.supports.bytes() + of_forces(s.surfaces.forces);
+           bytes(s.surfaces.total_share) + s.surfaces.supports.bytes() + of_forces(s.surfaces.forces) +
+           of_memory(s.pairs_now) + of_memory(s.surfaces_now);
   }
   if constexpr (Model::Domain::has_images) sum += bytes(w.images.grain) + bytes(w.images.shift) + bytes(w.images.level);
   sum += bytes(w.sleepers.grains) + bytes(w.sleepers.borne) + bytes(w.sleepers.working);
-  for (const Chunk<Model>& c : w.chunks) sum += bytes(c.around);
+  for (const Chunk<Model>& c : w.chunks) sum += bytes(c.around) + bytes(c.reached);
   const grain::EnergyLedger& l = w.ledger;
   sum += bytes(l.last) + bytes(l.velocity) + bytes(l.spin) + bytes(l.energy);
   for (const Chunk<Model>& c : w.chunks) {

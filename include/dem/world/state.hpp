@@ -11,6 +11,7 @@
 #include <dem/grain/pair_contacts.hpp>
 #include <dem/grain/skin.hpp>
 #include <dem/grain/sleep.hpp>
+#include <dem/grain/turns.hpp>
 #include <dem/mbd/solver/solver.hpp>
 #include <dem/world/model.hpp>
 #include <dem/world/options.hpp>
@@ -37,6 +38,21 @@ template <class Model>
 struct ContactScratch {
   grain::PairScratch<Model> pairs;
   coupling::SurfaceScratch surfaces;
+  ContactMemory<history_size<Model>> pairs_now, surfaces_now;  ///< lent to the chunk that is worked on
+
+  /// A chunk gets memory for the histories of this step, which the thread has in its cache, or gives it back.
+  void lend(Chunk<Model>& chunk) {
+    std::swap(pairs_now, chunk.pair_contacts.now);
+    std::swap(surfaces_now, chunk.surface_contacts.now);
+  }
+};
+
+/// How grains are moved when their forces are known.
+struct MoveStage {
+  int stage = 0;                  ///< of the integrator
+  bool last = false;              ///< of its stages
+  bool cleans_rotations = false;  ///< rotation matrices are made orthonormal
+  bool at_once = false;           ///< within the sweep that finds contacts
 };
 
 /// Everything a world consists of. Only World and the functions of the step see it.
@@ -80,6 +96,8 @@ struct WorldState {
   void (*carry_held)(WorldState&) = nullptr;    ///< set with the first attached grain, as put_in is
   void (*load_by_held)(WorldState&) = nullptr;  ///< the same
   grain::Sleepers sleepers;
+  grain::Turns turns;
+  MoveStage move;
 
   mbd::Mechanism machine;
   mbd::Solver<Integrator, typename Model::Joints> machine_solver;

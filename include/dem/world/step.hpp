@@ -10,11 +10,12 @@
 namespace dem {
 
 /// Contacts of one chunk's grains with each other and with surfaces. Their forces stay with the chunk, for
-/// gather_forces.
+/// gather_forces. In the last stage their histories are committed: the next step starts from them.
 template <class Model>
 void find_chunk_contacts(WorldState<Model>& w, std::size_t c, ContactScratch<Model>& scratch) {
   const std::size_t begin = c * chunk_size, end = std::min(begin + chunk_size, w.particles.count);
   Chunk<Model>& chunk = w.chunks[c];
+  scratch.lend(chunk);
   grain::ForceSums sums;
   grain::find_pair_contacts<Model>(c, chunk, w.particles, w.species, w.materials, w.time_step, sums, scratch.pairs);
   const double start = w.stopwatch.clock();
@@ -31,9 +32,22 @@ void find_chunk_contacts(WorldState<Model>& w, std::size_t c, ContactScratch<Mod
   }
   if (w.record_contacts) [[unlikely]]
     w.record_contacts(w, c, scratch);
+  if (w.move.last) chunk.commit();
+  scratch.lend(chunk);
 }
 
-/// All contacts at the present state, and the loads that they put on bodies, whose sums of forces are clear.
+/// Sums the forces of the grains of a chunk and moves them.
+template <class Model>
+void move_chunk(WorldState<Model>& w, std::size_t c) {
+  grain::gather_forces<Model>(c, w.chunks, w.particles, w.incoming_first, w.incoming);
+  if (!w.chunks[c].asleep) {
+    grain::move_chunk<Model>(c, w.chunks[c], w.particles, w.species, w.inertia, w.options.gravity, w.move.stage,
+                             w.time_step, w.move.cleans_rotations);
+  }
+}
+
+/// All contacts at the present state, and the loads that they put on bodies, whose sums of forces are clear. Chunks are
+/// moved on the way if they may be (grain::Turns).
 template <class Model>
 void evaluate_contacts(WorldState<Model>& w) {
   w.stopwatch.start();
@@ -49,9 +63,11 @@ void evaluate_contacts(WorldState<Model>& w) {
   place_surfaces(w);
   w.scratch.resize(static_cast<std::size_t>(w.executor.threads()));
   choose_working_chunks(w);
+  if (w.move.at_once) w.turns.begin(w.sleepers.working, w.chunks);
   const auto find_contacts = [&](const std::vector<std::uint32_t>& working) {
     w.executor.for_each(working.size(), [&](std::size_t k, int thread) {
       find_chunk_contacts(w, working[k], w.scratch[static_cast<std::size_t>(thread)]);
+      if (w.move.at_once) w.turns.found(working[k], w.chunks, [&](std::size_t c) { move_chunk(w, c); });
     });
   };
   if constexpr (Model::Domain::has_ranks) {
@@ -67,30 +83,13 @@ void evaluate_contacts(WorldState<Model>& w) {
   } else {
     find_contacts(w.sleepers.working);
   }
-  w.stopwatch.stop(Phase::contacts);
+  w.stopwatch.stop(Phase::grains);
 
   w.stopwatch.start();
   load_bodies(w);
   if (w.load_by_held) w.load_by_held(w);
   if (w.find_body_contacts) w.find_body_contacts(w);
   w.stopwatch.stop(Phase::machine);
-}
-
-/// Sums the forces of each grain and moves it. In the last stage contact histories are committed: the next step starts
-/// from them.
-template <class Model>
-void move_grains(WorldState<Model>& w, int stage, bool last) {
-  const bool clean_rotations = last && w.step % grain::steps_between_orthonormalisations == 0;
-  w.executor.for_each(w.sleepers.working.size(), [&](std::size_t k) {
-    const std::size_t c = w.sleepers.working[k];
-    grain::gather_forces<Model>(c, w.chunks, w.particles, w.incoming_first, w.incoming);
-    if (!w.chunks[c].asleep) {
-      grain::move_chunk<Model>(c, w.chunks[c], w.particles, w.species, w.inertia, w.options.gravity, stage, w.time_step,
-                               clean_rotations);
-    }
-    if (last) w.chunks[c].commit();
-  });
-  if (last) w.body_contacts.commit();
 }
 
 /// One time step (thesis section 2.5): as many force evaluations as the integrator has stages (the thesis: a predictor
@@ -101,6 +100,11 @@ void advance(WorldState<Model>& w) {
   w.sleepers.measuring = w.options.sleep && (w.step + 1) % static_cast<std::uint64_t>(w.options.sleep->window) == 0;
   for (int stage = 0; stage < Integrator::stages; ++stage) {
     const bool last = stage + 1 == Integrator::stages;
+    // What grains bear goes to the parts that hold some before they are moved.
+    w.move = {.stage = stage,
+              .last = last,
+              .cleans_rotations = last && w.step % grain::steps_between_orthonormalisations == 0,
+              .at_once = !Model::Domain::has_ranks && !w.load_by_held};
     if constexpr (domain::IsSheared<typename Model::Domain>) {
       w.domain.move_to(w.time + (Integrator::predicts_before_forces || stage > 0 ? w.time_step : 0.0));
     }
@@ -124,9 +128,12 @@ void advance(WorldState<Model>& w) {
     w.stopwatch.stop(Phase::machine);
 
     w.stopwatch.start();
-    move_grains(w, stage, last);
-    if (last) sample_surface_sensors(w);
-    w.stopwatch.stop(Phase::motion);
+    if (!w.move.at_once) {
+      w.executor.for_each(w.sleepers.working.size(), [&](std::size_t k) { move_chunk(w, w.sleepers.working[k]); });
+    }
+    w.move = {};
+    if (last) w.body_contacts.commit(), sample_surface_sensors(w);
+    w.stopwatch.stop(Phase::grains);
   }
   if (w.carry_held) w.carry_held(w);
   if (w.count_energy) [[unlikely]]
@@ -144,6 +151,7 @@ void advance(WorldState<Model>& w) {
 template <class Model>
 void initialise(WorldState<Model>& w) {
   w.sleepers.all_work = true;
+  w.move = {};
   const auto for_each_own_chunk = [&](auto&& f) {
     const auto [begin, end] = w.own_chunks();
     w.executor.for_each(end - begin, [&, first = begin](std::size_t k) { f(first + k); });

@@ -6,8 +6,8 @@
 namespace dem {
 
 /// The phases of a step, for timing.
-enum class Phase { neighbours, contacts, machine, motion };
-inline constexpr std::array<const char*, 4> phase_names = {"neighbour lists", "contacts", "machine", "sums and motion"};
+enum class Phase { neighbours, grains, machine };
+inline constexpr std::array<const char*, 3> phase_names = {"neighbour lists", "contacts and motion", "machine"};
 
 /// Adds up the wall time of each phase while it is switched on; costs one branch a phase while it is off.
 class Stopwatch {

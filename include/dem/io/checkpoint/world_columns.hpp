@@ -239,8 +239,7 @@ void settle_restored(WorldState<Model>& w, bool is_checked) {
     grain::make_rows(w.particles, w.images);
     place_images(w);
   }
-  grain::list_incoming<Model>(std::span<const Chunk<Model>>(w.chunks), w.particles.count, w.images, w.incoming_first,
-                              w.incoming);
+  grain::list_incoming<Model>(std::span(w.chunks), w.particles.count, w.images, w.incoming_first, w.incoming);
 }
 
 }  // namespace detail

@@ -1,0 +1,54 @@
+#pragma once
+
+#include <dem/grain/chunk.hpp>
+#include <dem/grain/images.hpp>
+
+#include <algorithm>
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace dem::grain {
+
+/// Lists which chunks a chunk reaches: those of the grains that are its candidates.
+template <class Model>
+void list_reached(std::size_t c, Chunk<Model>& chunk, const Images<typename Model::Domain>& images) {
+  auto& reached = chunk.reached;
+  reached.clear();
+  for (const std::uint32_t j : chunk.candidate) {
+    const auto other = static_cast<std::uint32_t>(images.grain_of(j) / chunk_size);
+    if (other != c && (reached.empty() || reached.back() != other)) reached.push_back(other);
+  }
+  std::sort(reached.begin(), reached.end());
+  reached.erase(std::unique(reached.begin(), reached.end()), reached.end());
+}
+
+/// When the grains of a chunk may be moved within the sweep that finds contacts: when those of the chunk are found, and
+/// those of all chunks that reach it. Nobody reads where its grains were after that, and all forces on them are there.
+/// What is moved then is still in the cache. Which thread moves a chunk, and when, changes nothing.
+class Turns {
+ public:
+  /// Before contacts are found: chunks that do not work hold nobody up, and are not moved.
+  template <class Model>
+  void begin(const std::vector<std::uint32_t>& working, const std::vector<Chunk<Model>>& chunks) {
+    waits_.assign(chunks.size(), 1);
+    for (const std::uint32_t c : working) {
+      for (const std::uint32_t other : chunks[c].reached) ++waits_[other];
+    }
+  }
+  /// The contacts of chunk c are found. Calls move(k) for each chunk whose turn that makes it.
+  template <class Model, class Move>
+  void found(std::size_t c, const std::vector<Chunk<Model>>& chunks, Move&& move) {
+    const auto count = [&](std::size_t k) {
+      if (std::atomic_ref(waits_[k]).fetch_sub(1, std::memory_order_acq_rel) == 1) move(k);
+    };
+    count(c);
+    for (const std::uint32_t other : chunks[c].reached) count(other);
+  }
+
+ private:
+  std::vector<std::uint32_t> waits_;  // by chunk: how many chunks are to be found yet, itself included
+};
+
+}  // namespace dem::grain
