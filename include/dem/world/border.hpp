@@ -218,4 +218,26 @@ void swap_loads(WorldState<Model>& w, bool all = false) {
   d.wait_for_sent();
 }
 
+/// Contacts of the working chunks where ranks share the grains. What touches no grain of other ranks is worked on while
+/// these come. Chunks that are moved in turn wait for the loads of others (`move`, as for grain::Turns).
+template <class Model, class Find, class Move>
+void find_shared_contacts(WorldState<Model>& w, Find& find_contacts, Move& move) {
+  w.domain.is_whole = !w.domain.is_shared();
+  std::vector<std::uint32_t> inner, outer;
+  for (const std::uint32_t c : w.sleepers.working) (w.domain.is_at_border[c] ? outer : inner).push_back(c);
+  if (w.move.at_once) {
+    for (const auto& border : w.domain.borders) w.turns.expect(border.chunks_in, w.chunks);
+  }
+  send_motion(w);
+  find_contacts(inner);
+  take_motion(w);
+  find_contacts(outer);
+  swap_loads(w);
+  if (!w.move.at_once) return;
+  for (const auto& border : w.domain.borders) {
+    w.executor.for_each(border.chunks_in.size(),
+                        [&](std::size_t k) { w.turns.found_elsewhere(border.chunks_in[k], w.chunks, move); });
+  }
+}
+
 }  // namespace dem

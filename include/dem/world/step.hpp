@@ -63,23 +63,16 @@ void evaluate_contacts(WorldState<Model>& w) {
   place_surfaces(w);
   w.scratch.resize(static_cast<std::size_t>(w.executor.threads()));
   choose_working_chunks(w);
+  const auto move = [&](std::size_t c) { move_chunk(w, c); };
   if (w.move.at_once) w.turns.begin(w.sleepers.working, w.chunks);
   const auto find_contacts = [&](const std::vector<std::uint32_t>& working) {
     w.executor.for_each(working.size(), [&](std::size_t k, int thread) {
       find_chunk_contacts(w, working[k], w.scratch[static_cast<std::size_t>(thread)]);
-      if (w.move.at_once) w.turns.found(working[k], w.chunks, [&](std::size_t c) { move_chunk(w, c); });
+      if (w.move.at_once) w.turns.found(working[k], w.chunks, move);
     });
   };
   if constexpr (Model::Domain::has_ranks) {
-    w.domain.is_whole = !w.domain.is_shared();
-    // What touches no grain of other ranks is worked on while these come.
-    std::vector<std::uint32_t> inner, outer;
-    for (const std::uint32_t c : w.sleepers.working) (w.domain.is_at_border[c] ? outer : inner).push_back(c);
-    send_motion(w);
-    find_contacts(inner);
-    take_motion(w);
-    find_contacts(outer);
-    swap_loads(w);
+    find_shared_contacts(w, find_contacts, move);
   } else {
     find_contacts(w.sleepers.working);
   }
@@ -104,7 +97,7 @@ void advance(WorldState<Model>& w) {
     w.move = {.stage = stage,
               .last = last,
               .cleans_rotations = last && w.step % grain::steps_between_orthonormalisations == 0,
-              .at_once = !Model::Domain::has_ranks && !w.load_by_held};
+              .at_once = !w.load_by_held};
     if constexpr (domain::IsSheared<typename Model::Domain>) {
       w.domain.move_to(w.time + (Integrator::predicts_before_forces || stage > 0 ? w.time_step : 0.0));
     }
