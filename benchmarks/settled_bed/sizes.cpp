@@ -77,7 +77,7 @@ void run(const char* name, const Settings& settings) {
   const double bytes_a_grain = double(dem::memory_bytes(one.state())) / grains_a_box;
 
   dem::io::Table table{.header = {"grains", "threads", "million grain-steps/s", "lowest", "highest", "ratio",
-                                  "per CPU second", "of the first size", "contacts, ns a grain", "motion, ns a grain",
+                                  "per CPU second", "of the first size", "contacts and motion, ns a grain",
                                   "lists made", "s a list", "contacts a grain", "bytes a grain"},
                        .digits = 3};
   std::vector<double> of_first;  // by threads

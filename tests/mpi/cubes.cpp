@@ -15,7 +15,9 @@ struct CubesShared : CubesAlone {
   using Domain = dem::domain::Ranks;
 };
 
-/// Cubes float and fall asleep. A block of triangles with grains glued to it flies into them, and a flap is pushed.
+/// Cubes float and fall asleep. A block of triangles, which may have grains glued to it, flies into them, and a flap is
+/// pushed. Without glued grains chunks are moved in turn.
+template <bool is_glued>
 constexpr auto machine_on_cubes = []<class Model>() {
   dem::World<Model> world(
       {.gravity = {0, 0, 0}, .sleep = dem::SleepOptions{.share = 0.2, .motion = 0.01, .window = 20}});
@@ -34,7 +36,8 @@ constexpr auto machine_on_cubes = []<class Model>() {
   const auto block = m.add_body(
       dem::mbd::box_body("block", {8e-3, 8e-3, 8e-3}, 2650).at({0.03, depth / 2, 0.0235}).moving({0, 0, -1}));
   world.add_surface(block, dem::surface::TriangleMesh(dem::mesh::box({8e-3, 8e-3, 8e-3})));
-  for (const double x : {0.027, 0.033}) world.attach(world.add_particle({held, {x, depth / 2, 0.0195}}), block);
+  for (const double x : is_glued ? std::vector{0.027, 0.033} : std::vector<double>{})
+    world.attach(world.add_particle({held, {x, depth / 2, 0.0195}}), block);
   run(world, 900);
   require(world.asleep_count() > 0, "no grain sleeps");
   require(world.asleep_count() < world.particle_count(), "all grains sleep");
@@ -54,8 +57,9 @@ constexpr auto rain_of_cubes = []<class Model>() {
 }  // namespace
 
 bool cubes() {
-  const bool same = same_bits<CubesShared, CubesAlone>("cubes", machine_on_cubes);
-  return same_bits<CubesShared, CubesAlone>("rain", rain_of_cubes) && same;
+  const bool glued = same_bits<CubesShared, CubesAlone>("glued", machine_on_cubes<true>);
+  const bool free = same_bits<CubesShared, CubesAlone>("free", machine_on_cubes<false>);
+  return same_bits<CubesShared, CubesAlone>("rain", rain_of_cubes) && glued && free;
 }
 
 }  // namespace scenes

@@ -52,7 +52,8 @@ struct Chunk {
   std::vector<std::uint32_t> reached;  ///< other chunks of whose grains it has candidates
   std::vector<std::uint32_t> around;   ///< chunks with which it has candidates; listed where grains may sleep
 
-  /// The contact histories of this step become the ones that the next step starts from.
+  /// The contact histories of this step become the ones that the next step starts from. To be called while the chunk
+  /// has the memory that they were written to (ContactScratch::lend).
   void commit() {
     pair_contacts.commit_copy();
     surface_contacts.commit_copy();

@@ -234,10 +234,11 @@ void find_shared_contacts(WorldState<Model>& w, Find& find_contacts, Move& move)
   find_contacts(outer);
   swap_loads(w);
   if (!w.move.at_once) return;
+  std::vector<std::uint32_t> elsewhere;
   for (const auto& border : w.domain.borders) {
-    w.executor.for_each(border.chunks_in.size(),
-                        [&](std::size_t k) { w.turns.found_elsewhere(border.chunks_in[k], w.chunks, move); });
+    elsewhere.insert(elsewhere.end(), border.chunks_in.begin(), border.chunks_in.end());
   }
+  w.executor.for_each(elsewhere.size(), [&](std::size_t k) { w.turns.found_elsewhere(elsewhere[k], w.chunks, move); });
 }
 
 }  // namespace dem

@@ -11,7 +11,8 @@
 namespace dem::mbd {
 
 /// A function of time with its rate: the set point of an actuator, a prescribed motion, the size of a load. A number
-/// converts to a constant signal.
+/// converts to a constant signal. It may be called after grains were moved: who wants to know of grains asks between
+/// steps.
 ///
 ///     Signal::ramp(0.0, 0.01, 1.0)              // 0 until t = 1 s, then grows by 0.01 a second
 ///     Signal::function([](double t) { return std::sin(t); })

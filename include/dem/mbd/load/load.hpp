@@ -15,7 +15,8 @@
 namespace dem::mbd {
 
 /// A force law of the user's own: force (N) and torque (N m, about the body's centre of mass) in global axes, at a time
-/// (s) and a state of the body.
+/// (s) and a state of the body. It may be called after grains were moved: who wants to know of grains asks between
+/// steps.
 using LoadLaw = Function<Wrench(double time, const Body& body)>;
 
 /// A force law between two bodies: force (N) and torque (N m, about b's centre of mass) that b feels, in global axes.
