@@ -3,6 +3,8 @@
 #include <dem/geometry/cluster/sphere_cluster.hpp>
 #include <dem/integrator/velocity_verlet.hpp>
 
+#include <vector>
+
 namespace scenes {
 
 namespace {

@@ -9,4 +9,5 @@ namespace dem {
 inline void prefetch(const void* from, std::size_t bytes) {
   for (std::size_t at = 0; at < bytes; at += 64) __builtin_prefetch(static_cast<const char*>(from) + at);
 }
+
 }  // namespace dem

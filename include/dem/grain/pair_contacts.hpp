@@ -55,7 +55,7 @@ struct ChunkPairs {
 /// Candidates whose bounding spheres overlap, a pack at a time and without branches, as the answer is a coin toss.
 template <class Pairs>
 std::size_t list_close(const Pairs& pairs, std::uint32_t candidates, std::vector<std::uint32_t>& close) {
-  constexpr std::uint32_t ahead = 4 * pack_width;
+  constexpr std::uint32_t ahead = 4 * pack_width;  // how many candidates ahead views are asked for
   close.resize(candidates + std::size_t{pack_width});
   std::size_t count = 0;
   PartnerLanes partners;
@@ -106,7 +106,8 @@ void find_hits_by_bits(const Pairs& pairs, std::size_t close_count, PairScratch<
   for (std::size_t c = 0; c < close_count; ++c) {
     const std::uint32_t k = s.close[c];
     const std::size_t i = pairs.i(k), j = pairs.j(k);
-    const std::size_t later = pairs.j(s.close[std::min(c + 8, close_count - 1)]);
+    constexpr std::size_t ahead = 8;  // how many pairs ahead poses are asked for
+    const std::size_t later = pairs.j(s.close[std::min(c + ahead, close_count - 1)]);
     prefetch(pairs.p.pose_of(later), Shape::pose_size * sizeof(double));
     const std::uint64_t bits = touching<Model>(pairs, i, j);
     total += static_cast<std::size_t>(std::popcount(bits));
