@@ -23,14 +23,14 @@ struct Sizes {
 };
 
 /// A broad phase finds candidates for contact. It has
-///   build(positions, reach)   takes note of all grains; two grains farther apart than `reach` need not be found;
-///   build(positions, sizes)   optional, then called instead: two farther apart than their radii and the gap need not
-///   be; finder()                  an object of which each thread has its own, with for_each_candidate(i, f): calls
-///   f(j)
-///                             once for each j > i within reach of i (and for others), in any order;
-///   order()                   a permutation that puts grains near in space near in memory (or an empty span);
-///   memory_bytes()            what it holds;
-///   reordered()               optional: the grains were put in order(). Without it they are built anew.
+///   - build(positions, reach): takes note of all grains; two grains farther apart than `reach` need not be found;
+///   - build(positions, sizes): optional, then called instead: two farther apart than their radii and the gap need not
+///     be found;
+///   - finder(): an object of which each thread has its own, with for_each_candidate(i, f). That calls f(j) once for
+///     each j > i within reach of i, and for others, in any order;
+///   - order(): a permutation that puts grains near in space near in memory, or an empty span;
+///   - memory_bytes(): what it holds;
+///   - reordered(): optional: the grains were put in order(). Without it they are built anew.
 template <class B>
 concept BroadPhase = requires(B& b, const B& built, const Positions& positions, double reach) {
   b.build(positions, reach);

@@ -3,6 +3,7 @@
 #include <dem/grain/broadphase/broad_phase.hpp>
 #include <dem/grain/broadphase/cell_table.hpp>
 #include <dem/grain/broadphase/morton.hpp>
+#include <dem/grain/broadphase/nearly_sorted.hpp>
 
 #include <algorithm>
 #include <array>
@@ -202,8 +203,8 @@ class HierarchicalGrid {
                                  morton::cell(at_.z[i] * inverse_cell_)),
                     static_cast<std::uint32_t>(i)};
     }
-    std::sort(sorted_.begin(), sorted_.end(),
-              [](const Entry& a, const Entry& b) { return a.code != b.code ? a.code < b.code : a.grain < b.grain; });
+    sort_nearly_sorted(
+        sorted_, [](const Entry& a, const Entry& b) { return a.code != b.code ? a.code < b.code : a.grain < b.grain; });
   }
   /// Members of each level, cell after cell.
   void find_cells() {

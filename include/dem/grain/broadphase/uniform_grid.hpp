@@ -1,10 +1,12 @@
 #pragma once
 
+#include <dem/grain/broadphase/block_table.hpp>
 #include <dem/grain/broadphase/broad_phase.hpp>
-#include <dem/grain/broadphase/cell_table.hpp>
 #include <dem/grain/broadphase/morton.hpp>
+#include <dem/grain/broadphase/nearly_sorted.hpp>
 
 #include <algorithm>
+#include <bit>
 
 namespace dem::broadphase {
 
@@ -15,6 +17,7 @@ class UniformGrid {
  public:
   void build(const Positions& p, double reach) {
     inverse_cell_ = 1.0 / reach;
+    is_in_order_ = false;
     cell_of_.resize(p.n);
     sorted_.resize(p.n);
     for (std::size_t i = 0; i < p.n; ++i) {
@@ -22,8 +25,8 @@ class UniformGrid {
                                  morton::cell(p.z[i] * inverse_cell_)),
                     static_cast<std::uint32_t>(i)};
     }
-    std::sort(sorted_.begin(), sorted_.end(),
-              [](const Entry& a, const Entry& b) { return a.code != b.code ? a.code < b.code : a.grain < b.grain; });
+    sort_nearly_sorted(
+        sorted_, [](const Entry& a, const Entry& b) { return a.code != b.code ? a.code < b.code : a.grain < b.grain; });
     order_.resize(p.n);
     cells_.clear();
     for (std::size_t k = 0; k < p.n; ++k) {
@@ -44,6 +47,7 @@ class UniformGrid {
     for (std::uint32_t c = 0; c < cells_.size(); ++c) {
       std::fill(cell_of_.begin() + cells_[c].first, cell_of_.begin() + cells_[c].last, c);
     }
+    is_in_order_ = true;
   }
 
   /// Looks candidates up; each thread has its own. Remembers the surroundings of the last cell, as grains that follow
@@ -55,6 +59,12 @@ class UniformGrid {
     template <class F>
     void for_each_candidate(std::size_t i, F&& f) {
       if (grid_.cell_of_[i] != cell_) look_around(grid_.cell_of_[i]);
+      if (grid_.is_in_order_) {
+        for (int k = 0; k < count_; ++k) {
+          for (auto j = std::max(first_[k], static_cast<std::uint32_t>(i) + 1); j < last_[k]; ++j) f(j);
+        }
+        return;
+      }
       for (int k = 0; k < count_; ++k) {
         for (std::uint32_t m = first_[k]; m < last_[k]; ++m) {
           if (grid_.order_[m] > i) f(grid_.order_[m]);
@@ -63,20 +73,42 @@ class UniformGrid {
     }
 
    private:
-    /// The occupied cells among the 27.
+    /// The occupied cells among the 27. Where grains are in the order of the cells, those before this one are left out,
+    /// as no later grain is there.
     void look_around(std::uint32_t cell) {
-      const std::uint64_t mx = morton::axis(0), my = mx << 1, mz = mx << 2;
-      const std::uint64_t c = grid_.cells_[cell].key;
+      const std::uint64_t here = grid_.cells_[cell].key;
       cell_ = cell;
       count_ = 0;
-      for (const std::uint64_t z : {morton::down(c, mz), c, morton::up(c, mz)}) {
-        for (const std::uint64_t y : {morton::down(z, my), z, morton::up(z, my)}) {
-          for (const std::uint64_t x : {morton::down(y, mx), y, morton::up(y, mx)}) {
-            const std::uint32_t other = grid_.table_.find(grid_.cells_, x);
-            if (other == CellTable::none) continue;
-            first_[count_] = grid_.cells_[other].first;
-            last_[count_++] = grid_.cells_[other].last;
-          }
+      // Along each axis the three cells are two in the block of this one, and one in the block before or after it.
+      constexpr unsigned first_half[] = {0x55, 0x33, 0x0f};  // places of the first cell along x, y and z
+      std::uint64_t bits[3];                                 // bits of the cell in the other block, along each axis
+      unsigned there[3];                                     // its places
+      for (unsigned k = 0; k < 3; ++k) {
+        const std::uint64_t axis = morton::axis(0) << k;
+        const bool is_second = here >> k & 1;
+        bits[k] = (is_second ? morton::up(here, axis) : morton::down(here, axis)) & axis;
+        there[k] = is_second ? first_half[k] : ~first_half[k] & 0xffu;
+      }
+      for (unsigned other = 0; other < 8; ++other) {
+        std::uint64_t number = here;
+        unsigned places = 0xff;
+        for (unsigned k = 0; k < 3; ++k) {
+          if (!(other >> k & 1)) continue;
+          const std::uint64_t axis = morton::axis(0) << k;
+          number = (number & ~axis) | bits[k];
+          places &= there[k];
+        }
+        const std::uint64_t key = number >> 3;
+        if (grid_.is_in_order_) {
+          if (key < here >> 3) continue;
+          if (other == 0) places &= 0xffu << (here & 7);
+        }
+        const Block* block = grid_.table_.find(key);
+        if (block == nullptr) continue;
+        for (places &= block->places; places != 0; places &= places - 1) {
+          const Cell& found = grid_.cells_[block->cell_at(static_cast<unsigned>(std::countr_zero(places)))];
+          first_[count_] = found.first;
+          last_[count_++] = found.last;
         }
       }
     }
@@ -100,10 +132,11 @@ class UniformGrid {
     std::uint32_t grain;
   };
   double inverse_cell_ = 1.0;
+  bool is_in_order_ = false;  // row k is order_[k] = k
   std::vector<Entry> sorted_;
   std::vector<std::uint32_t> order_, cell_of_;  // grains in curve order; grain -> cell
   std::vector<Cell> cells_;                     // occupied cells, and their grains in order_
-  CellTable table_;
+  BlockTable table_;
 };
 
 }  // namespace dem::broadphase
