@@ -243,7 +243,8 @@ struct Particles {
     }
   }
 
-  /// Row k becomes what was row order[k]. Threads share the columns.
+  /// Row k becomes what was row order[k]. Threads share the columns. Views and poses follow from the columns when the
+  /// rows are next refreshed.
   template <class Executor>
   void permute(std::span<const std::uint32_t> order, Executor& executor) {
     DEM_ASSERT(order.size() <= count, "rows are moved or dropped, and none is made");
@@ -254,10 +255,6 @@ struct Particles {
       const AlignedVector<double> old = column;
       for (std::size_t k = 0; k < order.size(); ++k) column[k] = old[order[k]];
     });
-    const AlignedVector<double> old = pose;
-    for (std::size_t k = 0; k < order.size(); ++k) {
-      std::copy_n(old.data() + order[k] * Shape::pose_size, Shape::pose_size, pose_of(k));
-    }
     const auto old_species = species, old_id = id;
     for (std::size_t k = 0; k < order.size(); ++k) {
       species[k] = old_species[order[k]];

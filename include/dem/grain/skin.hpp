@@ -17,7 +17,8 @@ namespace dem::grain {
 /// is least. A list that lasts is looked at again when its needless candidates have cost as much as a new list: if a
 /// narrower skin suits the motion that was seen, a new list is made.
 struct SkinChoice {
-  /// What a new list costs, a grain, in units of a candidate that is looked at once; measured with spheres.
+  /// What a new list costs, a grain, in units of a candidate that is looked at once; measured with spheres when
+  /// lists cost twice what they do now. The bits of all results depend on it.
   static constexpr double new_list = 100.0, per_candidate = 10.0;
   /// In mean bounding radii: skins that suit a few large grains would fill the lists of all small ones.
   static constexpr std::array<double, 9> ladder = {0.1, 0.14, 0.2, 0.28, 0.4, 0.55, 0.75, 1.0, 1.3};

@@ -3,7 +3,6 @@
 #include <dem/grain/contact_evaluator.hpp>
 #include <dem/grain/move.hpp>
 #include <dem/grain/sleep_options.hpp>
-#include <dem/grain/turns.hpp>
 
 #include <algorithm>
 #include <cstdint>
@@ -114,12 +113,11 @@ bool end_window(std::size_t begin, std::size_t end, std::span<const Chunk<Model>
   return true;
 }
 
-/// The chunks that hold candidates of each other, for each chunk.
+/// The chunks that hold candidates of each other, for each chunk; from those that each of them reaches.
 template <class Model>
-void list_chunks_around(std::span<Chunk<Model>> chunks, const Images<typename Model::Domain>& images) {
+void list_chunks_around(std::span<Chunk<Model>> chunks) {
   for (auto& chunk : chunks) chunk.around.clear();
   for (std::size_t c = 0; c < chunks.size(); ++c) {
-    list_reached(c, chunks[c], images);
     for (const std::uint32_t other : chunks[c].reached) {
       chunks[c].around.push_back(other);
       chunks[other].around.push_back(static_cast<std::uint32_t>(c));

@@ -1,28 +1,13 @@
 #pragma once
 
 #include <dem/grain/chunk.hpp>
-#include <dem/grain/images.hpp>
 
-#include <algorithm>
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
 
 namespace dem::grain {
-
-/// Lists which chunks a chunk reaches: those of the grains that are its candidates.
-template <class Model>
-void list_reached(std::size_t c, Chunk<Model>& chunk, const Images<typename Model::Domain>& images) {
-  auto& reached = chunk.reached;
-  reached.clear();
-  for (const std::uint32_t j : chunk.candidate) {
-    const auto other = static_cast<std::uint32_t>(images.grain_of(j) / chunk_size);
-    if (other != c && (reached.empty() || reached.back() != other)) reached.push_back(other);
-  }
-  std::sort(reached.begin(), reached.end());
-  reached.erase(std::unique(reached.begin(), reached.end()), reached.end());
-}
 
 /// When the grains of a chunk may be moved within the sweep that finds contacts: when those of the chunk are found, and
 /// those of all chunks that reach it. Nobody reads where its grains were after that, and all forces on them are there.

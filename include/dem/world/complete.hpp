@@ -2,6 +2,7 @@
 
 // The contacts of all chunks on every rank (domain::Ranks), for who looks at contacts or saves a state.
 
+#include <dem/grain/incoming.hpp>
 #include <dem/world/border.hpp>
 #include <dem/world/gather.hpp>
 #include <dem/world/sleep.hpp>
@@ -85,10 +86,11 @@ void complete_chunks(WorldState<Model>& w) {
   w.sleepers.working = d.gathered(w.sleepers.working, false);
   if (w.options.sleep) {
     d.gather_chunks(w.sleepers.borne.data(), w.sleepers.borne.empty() ? 0 : chunk_size);
-    grain::list_chunks_around<Model>(w.chunks, w.images);
   }
   if (!w.chunks.empty()) {
-    grain::list_incoming<Model>(std::span(w.chunks), w.particles.count, w.images, w.incoming_first, w.incoming);
+    grain::list_incoming<Model>(w.executor, std::span(w.chunks), w.particles.count, w.images, w.incoming_first,
+                                w.incoming);
+    if (w.options.sleep) grain::list_chunks_around<Model>(w.chunks);
   }
   d.is_complete = true;
 }

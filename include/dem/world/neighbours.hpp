@@ -1,6 +1,7 @@
 #pragma once
 
 #include <dem/grain/carry_histories.hpp>
+#include <dem/grain/incoming.hpp>
 #include <dem/grain/neighbours.hpp>
 #include <dem/world/gather.hpp>
 
@@ -160,7 +161,7 @@ void rebuild_neighbours(WorldState<Model>& w, Change&& change) {
     grain::refresh_chunk<Model>(c, w.chunks[c], p, w.species);
   });
   if constexpr (Model::Domain::has_ranks) make_borders(w);
-  grain::list_incoming<Model>(std::span(w.chunks), p.count, w.images, w.incoming_first, w.incoming);
+  grain::list_incoming<Model>(w.executor, std::span(w.chunks), p.count, w.images, w.incoming_first, w.incoming);
   histories.hand_out(w.executor, std::span<Chunk<Model>>(w.chunks), p, w.images, [&](auto& entries) {
     if constexpr (Model::Domain::has_ranks) send_home(w, entries);
   });

@@ -99,7 +99,7 @@ void fill_from(WorldState<Model>& w, Inlet& inlet, std::size_t listed) {
 /// are to be made anyway, or after some steps. Serial, so that the number of threads changes nothing.
 template <class Model>
 void put_in(WorldState<Model>& w) {
-  constexpr std::uint64_t most_steps = 64;  // a list costs as much as ten steps
+  constexpr std::uint64_t most_steps = 64;  // a list costs as much as a few steps
   const auto mass_of = [&](SpeciesId s) { return w.species[s.index()].mass; };
   bool is_wanted = false;
   for (Inlet& inlet : w.inlets) is_wanted |= inlet.want(w.time, mass_of);

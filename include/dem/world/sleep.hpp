@@ -48,7 +48,7 @@ void find_sleeping_chunks(WorldState<Model>& w) {
   if (!w.options.sleep) return;
   s.grains.resize(p.row_of.size());
   s.borne.assign(w.chunks.size() * chunk_size, 0.0);
-  grain::list_chunks_around<Model>(w.chunks, w.images);
+  grain::list_chunks_around<Model>(w.chunks);
   for (std::size_t c = 0; c < w.chunks.size(); ++c) {
     const std::size_t begin = c * chunk_size, end = std::min(begin + chunk_size, p.count);
     bool asleep = true;

@@ -11,7 +11,7 @@ namespace dem {
 /// neighbour list is made.
 template <class Model>
 void take_out_row(WorldState<Model>& w, std::size_t row) {
-  // A new list costs as much as some ten steps, so grains that leave one after the other wait for each other.
+  // A new list costs as much as a few steps, so grains that leave one after the other wait for each other.
   constexpr std::uint64_t most_steps = 16;
   if (w.to_remove.empty()) w.remove_by = w.step + most_steps;
   wake_around(w, row);

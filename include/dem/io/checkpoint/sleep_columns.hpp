@@ -1,5 +1,6 @@
 #pragma once
 
+#include <dem/grain/incoming.hpp>
 #include <dem/io/checkpoint/fields.hpp>
 #include <dem/world/sleep.hpp>
 
@@ -85,7 +86,11 @@ void sleep_fields(Fields& v, WorldState<Model>& w) {
       ++of_surface;
     }
   }
-  grain::list_chunks_around<Model>(w.chunks, w.images);
+  // Here, as a list that is due is not turned round again, but grains around a place may still be woken.
+  for (std::size_t c = 0; c < w.chunks.size(); ++c) {
+    grain::list_reached(c, w.chunks[c], grain::find_outgoing<Model>(c, w.chunks[c], w.images));
+  }
+  grain::list_chunks_around<Model>(w.chunks);
 }
 
 }  // namespace dem::io::detail

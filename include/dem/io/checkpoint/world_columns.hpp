@@ -239,7 +239,8 @@ void settle_restored(WorldState<Model>& w, bool is_checked) {
     grain::make_rows(w.particles, w.images);
     place_images(w);
   }
-  grain::list_incoming<Model>(std::span(w.chunks), w.particles.count, w.images, w.incoming_first, w.incoming);
+  grain::list_incoming<Model>(w.executor, std::span(w.chunks), w.particles.count, w.images, w.incoming_first,
+                              w.incoming);
 }
 
 }  // namespace detail
