@@ -37,10 +37,14 @@ void check_memory(std::size_t grains, double bytes_a_grain) {
   }
 }
 
+/// Gravity that makes a bed slide to a corner of its box.
+dem::Vec3 tilted() { return 9.81 * dem::Vec3(0.5, 0.5, -std::sqrt(0.5)); }
+
 /// Boxes that share their walls, filled one after the other until there are so many grains.
 template <class Model>
 dem::World<Model> boxes(const dem::World<Model>& one, std::size_t grains, double width, const Settings& settings) {
   dem::World<Model> world = empty_world<Model>(settings);
+  if (settings.flow) world.set_gravity(tilted());
   const std::vector<dem::ParticleId> ids = one.particles();
   const auto count = static_cast<double>((grains + ids.size() - 1) / ids.size());
   const double nx = std::ceil(std::sqrt(count)), ny = std::ceil(count / nx);
@@ -74,12 +78,17 @@ void run(const char* name, const Settings& settings) {
   one.set_threads(most_threads);
   fmt::print("{}: settling a box of {} grains for {} steps\n", name, grains_a_box, settings.settle);
   run_or_fail(one, settings.settle);
+  if (settings.flow) {
+    one.set_gravity(tilted());
+    run_or_fail(one, 3000);
+  }
   const double bytes_a_grain = double(dem::memory_bytes(one.state())) / grains_a_box;
 
-  dem::io::Table table{.header = {"grains", "threads", "million grain-steps/s", "lowest", "highest", "ratio",
-                                  "per CPU second", "of the first size", "contacts and motion, ns a grain",
-                                  "lists made", "s a list", "contacts a grain", "bytes a grain"},
-                       .digits = 3};
+  dem::io::Table table{
+      .header = {"grains", "threads", "million grain-steps/s", "lowest", "highest", "ratio", "per CPU second",
+                 "of the first size", "contacts and motion, ns a grain", "lists made", "s a list",
+                 "lists, % of the time", "contacts a grain", "bytes a grain"},
+      .digits = 3};
   std::vector<double> of_first;  // by threads
   for (const std::size_t grains : settings.sizes) {
     check_memory(grains, bytes_a_grain);
@@ -94,6 +103,7 @@ void run(const char* name, const Settings& settings) {
       world.set_threads(threads);
       run_or_fail(world, 20);
       std::vector<double> rates, per_cpu_second;
+      double took = 0.0;  // s
       const std::uint64_t lists = world.state().rebuilds;
       world.state().stopwatch.switch_on(true);
       for (int k = 0; k < settings.repeats; ++k) {
@@ -101,20 +111,23 @@ void run(const char* name, const Settings& settings) {
         const std::clock_t cpu = std::clock();
         run_or_fail(world, steps);
         const double done = 1e-6 * double(grains) * steps;
-        rates.push_back(done / Seconds(std::chrono::steady_clock::now() - start).count());
+        const double seconds = Seconds(std::chrono::steady_clock::now() - start).count();
+        took += seconds;
+        rates.push_back(done / seconds);
         per_cpu_second.push_back(done * CLOCKS_PER_SEC / double(std::clock() - cpu));
       }
       const double rate = median(rates), cpu_rate = median(per_cpu_second);
       if (threads == 1) one_thread = rate;
       if (of_first.size() < static_cast<std::size_t>(threads)) of_first.push_back(rate);
       const std::uint64_t made = world.state().rebuilds - lists;
-      const double list = world.state().stopwatch.seconds(dem::Phase::neighbours) / double(std::max(made, 1ul));
+      const double lists_took = world.state().stopwatch.seconds(dem::Phase::neighbours);
+      const double list = lists_took / double(std::max(made, 1ul));
       const double step =
           1e9 * world.state().stopwatch.seconds(dem::Phase::grains) / (double(grains) * steps * settings.repeats);
       table.row(grains, threads, rate, *std::min_element(rates.begin(), rates.end()),
                 *std::max_element(rates.begin(), rates.end()), rate / one_thread, cpu_rate,
-                rate / of_first[static_cast<std::size_t>(threads - 1)], step, made, list, contacts_a_grain(world),
-                std::to_string(dem::memory_bytes(world.state()) / grains));
+                rate / of_first[static_cast<std::size_t>(threads - 1)], step, made, list, 100.0 * lists_took / took,
+                contacts_a_grain(world), std::to_string(dem::memory_bytes(world.state()) / grains));
       world.state().stopwatch.switch_on(false);
     }
     print(table);  // as far as it is: the next size may take long

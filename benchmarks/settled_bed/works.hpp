@@ -33,6 +33,7 @@ struct Settings {
   std::string work = "both", shape = "cube8";
   int steps = 5000, settle = 60000, repeats = 3, threads = 0;
   double skin = 0.0;
+  bool flow = false;               ///< beds of `sizes` flow
   std::vector<std::size_t> sizes;  ///< grains of beds that are made of boxes beside each other (sizes.cpp)
 };
 
