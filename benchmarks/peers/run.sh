@@ -29,7 +29,7 @@ mpi() {
 settle() { [ -s "$1" ] || mpi 1 "$2" "$3" -var settle "$4"; }
 [ -s spheres.data ] || python3 "$decks/lattices.py" .
 cp "$decks/cube.multisphere" .
-settle spheres.settled lmp spheres.lammps 50000 &
+settle spheres0.settled lmp spheres.lammps 50000 &
 first=$!
 settle spheres_l.restart liggghts spheres.liggghts 50000
 wait $first
