@@ -41,6 +41,7 @@ void list_candidates(std::size_t chunk_index, Chunk<Model>& chunk, const Particl
     chunk.candidate_first[i - begin] = static_cast<std::uint32_t>(first);
     const auto& kind = species[p.species[i]];
     const double radius_i = kind.shape.bounding_radius();
+    const bool held = kind.is_held();
     const Vector3<double> x = p.position[i];
     finder.for_each_candidate(i, [&](std::uint32_t j) {
       if (!images.may_pair(i, j)) return;  // nor is it read: another thread may be putting padding rows in their place
@@ -49,9 +50,10 @@ void list_candidates(std::size_t chunk_index, Chunk<Model>& chunk, const Particl
       const Vector3<double> d = p.position[j] - x;
       const auto& other = one_species ? kind : species[p.species[j]];
       const double reach = radius_i + other.shape.bounding_radius() + skin;
-      const bool listed = bool(dot(d, d) < reach * reach) & !(kind.is_held() & other.is_held());
+      const bool near = dot(d, d) < reach * reach;
+      const bool may_move = !(held && other.is_held());
       found[count] = j;  // whether it counts is a toss-up: without a branch
-      count += listed ? 1 : 0;
+      count += std::size_t{near} & std::size_t{may_move};
     });
     std::sort(found.begin() + static_cast<std::ptrdiff_t>(first), found.begin() + static_cast<std::ptrdiff_t>(count));
   }
