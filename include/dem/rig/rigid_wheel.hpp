@@ -71,13 +71,12 @@ class RigidWheel {
     const auto& m = world.machine();
     stages.begin("set down", 1.0);
     const auto kept = stages.keep("bed", stand.bed);
-    Lowering n{world.time(), {0.01 * s.set_down_speed, 0.01}, {0.02, 0.01}};
+    soil::Pressing n{world.time(), s.set_down_speed};
     const auto stage = stages.enter(world, n);
     while (stage && !n.done) {
       run(world, 1e-3);
-      const double force = m.sensor(stand.grains).mean().force.z, speed = m.body(stand.shaft).velocity().z();
-      const bool is_slow = n.slow(world.time(), std::abs(speed));
-      n.done = n.loaded(world.time(), std::abs(force / s.load - 1.0)) && is_slow;
+      const double force = m.sensor(stand.grains).mean().force.z;
+      n.look(world.time(), force / s.load, m.body(stand.shaft).velocity().z());
       stages.update(std::clamp(force / s.load, 0.0, 1.0),
                     text("{:.1f} N, {:.2f} mm deep", force, 1e3 * sinkage(stand)));
       if (!n.done && world.time() - n.start > s.bed.stage_limit) {

@@ -1,7 +1,7 @@
 #pragma once
 
+#include <dem/soil/making.hpp>
 #include <dem/soil/relative_density.hpp>
-#include <dem/soil/rest.hpp>
 #include <dem/soil/solid_layers.hpp>
 #include <dem/world/mixture.hpp>
 #include <dem/world/world.hpp>
@@ -146,19 +146,17 @@ class Bed {
     }
   }
 
-  /// Runs until the grains' r.m.s. speed has stayed below that of rest for 20 ms.
+  /// Runs until the grains rest (Settling).
   void settle() {
-    StaysBelow at_rest(rest_speed(2.0 * radius_, gravity_.norm()), 0.02);
-    const double start = world_.time();
-    for (double speed = 1e300; !at_rest(world_.time(), speed);) {
-      if (world_.time() - start > options_.time_limit) {
+    Settling n{world_.time(), rest_speed(2.0 * radius_, gravity_.norm())};
+    while (!n.is_done(world_.time())) {
+      if (world_.time() - n.start > options_.time_limit) {
         fail(
             "the grains of a bed are not at rest after {:g} s: their r.m.s. speed is {:g} m/s, rest is below {:g}; "
             "raise BedOptions::time_limit or the damping",
-            options_.time_limit, speed, rest_speed(2.0 * radius_, gravity_.norm()));
+            options_.time_limit, n.speed, n.rest);
       }
-      run(2e-3);
-      speed = rms_speed(world_);
+      n.go_on(world_, [this](double seconds) { run(seconds); });
     }
   }
 
@@ -171,16 +169,14 @@ class Bed {
     for (const ParticleId p : world_.particles()) highest = std::max(highest, world_.position(p).z());
     m.set_target(lid_hold_, highest + 1.1 * radius_ - top_);
     run(0.1);  // the lid comes over the grains
-    const double weight = lid_weight(), start = world_.time();
+    const double weight = lid_weight();
     world_.set_active(lid_, true);
     m.switch_on(lid_hold_, false), m.switch_on(lid_drive_, true);
-    StaysBelow slow(0.01 * options_.lid_speed, 0.01), loaded(0.02, 0.01);
-    for (bool done = false; !done;) {
+    for (Pressing n{world_.time(), options_.lid_speed}; !n.done;) {
       run(1e-3);
       const double force = world_.surface_force(lid_).z();
-      const bool is_slow = slow(world_.time(), std::abs(m.speed(lid_slide_)));
-      done = loaded(world_.time(), std::abs(force / weight - 1.0)) && is_slow;
-      if (!done && world_.time() - start > options_.time_limit) {
+      n.look(world_.time(), force / weight, m.speed(lid_slide_));
+      if (!n.done && world_.time() - n.start > options_.time_limit) {
         fail(
             "the lid of a bed is not at rest after {:g} s: the grains carry {:.4g} N of {:.4g} N; raise "
             "BedOptions::time_limit or the damping",
@@ -254,30 +250,22 @@ class Bed {
   void run(double seconds) {
     if (const StepReport report = world_.run_for(seconds); !report) fail("{}", report.text);
   }
-  /// Friction sinks to zero while the bed is shaken, until it is dense enough. Shaking is done by gravity: in the frame
-  /// of the container that is the same as a container that shakes.
+  /// Friction sinks to zero while the bed is shaken, until it is dense enough.
   template <class SetFriction>
   void densify(SetFriction&& set_friction) {
-    const double start = world_.time(), w = 2.0 * std::numbers::pi * options_.frequency;
-    double looked = start + options_.densify_time, before = solid_fraction();
-    while (solid_fraction() < wanted()) {
-      const double share = std::max(0.0, 1.0 - (world_.time() - start) / options_.densify_time);
-      set_friction(share);
-      for (int k = 0; k < 5; ++k) {
-        const double at = world_.time() - start, grown = std::min(1.0, 0.5 * at * options_.frequency);
-        const double sideways = grown * options_.shaking * gravity_.norm() * std::sin(w * at);
-        world_.set_gravity(gravity_ + sideways * Vec3::UnitX());
-        run(1e-3);
-      }
-      if (world_.time() - looked < 0.2) continue;
-      const double now = solid_fraction();
-      if (now < before + 1e-3 && now < wanted()) {
+    const double w = 2.0 * std::numbers::pi * options_.frequency;
+    const Shaking shaking{gravity_, Vec3::UnitX(), options_.shaking * gravity_.norm() / (w * w), options_.frequency};
+    Densifying n(world_.time(), solid_fraction(), options_.densify_time);
+    while (n.fraction < wanted()) {
+      const bool gains = n.go_on(
+          world_.time(), options_.densify_time, set_friction, [this] { return solid_fraction(); },
+          [&] { shaking.run(world_, n.start, [this](double seconds) { run(seconds); }); });
+      if (!gains && n.fraction < wanted()) {
         fail(
             "a bed is to have the solid fraction {:g}, but shaken without friction it comes to {:g}; lower "
             "BedOptions::relative_density, or measure the limits of this soil",
-            wanted(), now);
+            wanted(), n.fraction);
       }
-      before = now, looked = world_.time();
     }
     world_.set_gravity(gravity_);
     set_friction(1.0);

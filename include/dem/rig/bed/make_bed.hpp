@@ -4,8 +4,8 @@
 #include <dem/rig/bed/bed.hpp>
 #include <dem/rig/bed/settle.hpp>
 #include <dem/soil/lattice.hpp>
+#include <dem/soil/making.hpp>
 
-#include <numbers>
 #include <vector>
 
 namespace dem::rig {
@@ -17,71 +17,38 @@ inline double walls_for(const soil::Packing& p, const GrainSettings& grains) {
   return highest + 3.0 * grains.half_edge;
 }
 
-/// What making a bed denser has come to.
-struct Densifying {
-  double start = 0.0, looked = 0.0;                           ///< s
-  double first = std::nan(""), fraction = 0.0, before = 0.0;  ///< solid fractions
-  double share = 1.0;                                         ///< of friction
-  template <class V>
-  void fields(V& v) {
-    v("start", start, "s"), v("looked", looked, "s"), v("first", first), v("fraction", fraction);
-    v("before", before), v("share", share);
-  }
-};
-
-/// What lowering the lid has come to.
-struct Lowering {
-  double start = 0.0;  ///< s
-  soil::StaysBelow slow, loaded;
-  bool done = false;
-  template <class V>
-  void fields(V& v) {
-    v("start", start, "s"), v("slow", slow), v("loaded", loaded), v("done", done);
-  }
-};
-
 /// Makes a bed denser: friction sinks to zero while the bed is shaken between two of its walls, until the density that
 /// was asked for is reached or, without friction, changes no more. Shaking is done by gravity, which turns to and fro:
 /// in the frame of the box that is the same as a box that shakes.
 template <class Model>
 void densify(Bed<Model>& bed, Stages& stages) {
   const BedSettings& s = bed.settings();
+  auto& world = bed.world;
   const double wanted = soil::solid_fraction_at(s.relative_density, soil::cube8_limits);
   stages.begin("densify", 1.0);
-  Densifying n;
-  const auto stage = stages.enter(bed.world, n, [&] { bed.set_friction(n.share); });
+  soil::Densifying n;
+  const auto stage = stages.enter(world, n, [&] { bed.set_friction(n.share); });
   if (!stage) return;
-  if (stage.begins()) {
-    const double first = bed.solid_fraction(), start = bed.world.time();
-    n = {.start = start, .looked = start + s.densify_time, .first = first, .fraction = first, .before = first};
-  }
+  if (stage.begins()) n = {world.time(), bed.solid_fraction(), s.densify_time};
   if (!std::isfinite(n.first)) {
     throw Stopped(
         text("the bed is too flat to measure its density {:g} mm away from floor and top; take a deeper "
              "--bed-depth, a smaller --half-edge, or let it be as it settles (--relative-density 0)",
              1e3 * bed.margin()));
   }
-  const double w = 2.0 * std::numbers::pi * s.shake_frequency;
+  const Vec3 gravity(0.0, 0.0, -9.81);
+  const soil::Shaking shaking{gravity, Bed<Model>::is_endless ? Vec3::UnitY() : Vec3::UnitX(), s.shake_amplitude,
+                              s.shake_frequency};
   while (n.fraction < wanted) {
-    const double now = bed.world.time();
-    n.share = std::max(0.0, 1.0 - (now - n.start) / s.densify_time);
-    bed.set_friction(n.share);
-    for (int k = 0; k < 5; ++k) {
-      const double at = bed.world.time() - n.start, grown = std::min(1.0, at * s.shake_frequency / 2.0);
-      const double shake = grown * s.shake_amplitude * w * w * std::sin(w * at);
-      bed.world.set_gravity(Bed<Model>::is_endless ? Vec3(0.0, shake, -9.81) : Vec3(shake, 0.0, -9.81));
-      run(bed.world, 1e-3);
-    }
-    n.fraction = bed.solid_fraction();
-    if (now - n.looked >= 0.2) {
-      if (n.fraction < n.before + 1e-3) break;
-      n.before = n.fraction;
-      n.looked = now;
-    }
+    const bool gains = n.go_on(
+        world.time(), s.densify_time, [&](double share) { bed.set_friction(share); },
+        [&] { return bed.solid_fraction(); },
+        [&] { shaking.run(world, n.start, [&](double seconds) { run(world, seconds); }); });
+    if (!gains) break;
     stages.update(std::clamp(std::max(1.0 - n.share, (n.fraction - n.first) / (wanted - n.first)), 0.0, 1.0),
                   text("solid {:.3f} of {:.3f}", n.fraction, wanted));
   }
-  bed.world.set_gravity(Vec3(0.0, 0.0, -9.81));
+  world.set_gravity(gravity);
   bed.set_friction(1.0);
 }
 
@@ -102,14 +69,12 @@ void level(Bed<Model>& bed, double strike_off, Stages& stages) {
     if (!by_height.empty()) run(world, 1e-6);  // they go with the next step
   }
   const double weight = bed.lid_weight();
-  Lowering n{world.time(), {0.01 * s.lid_speed, 0.01}, {0.02, 0.01}};
+  soil::Pressing n{world.time(), s.lid_speed};
   if (const auto stage = stages.enter(world, n, [&] { bed.add_lid(); })) {
     while (!n.done) {
       run(world, 1e-3);
       const double force = world.machine().sensor(bed.lid_sensor).mean().force.z;
-      const double speed = world.machine().body(bed.lid).velocity().z();
-      const bool is_slow = n.slow(world.time(), std::abs(speed));
-      n.done = n.loaded(world.time(), std::abs(force / weight - 1.0)) && is_slow;
+      n.look(world.time(), force / weight, world.machine().body(bed.lid).velocity().z());
       stages.update(std::clamp(force / weight, 0.0, 1.0), text("{:.0f} Pa on the lid", force / bed.area()));
       if (!n.done && world.time() - n.start > s.stage_limit) {
         throw Stopped(

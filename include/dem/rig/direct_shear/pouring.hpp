@@ -4,7 +4,7 @@
 #include <dem/rig/direct_shear/density.hpp>
 #include <dem/rig/stages.hpp>
 #include <dem/soil/coordination.hpp>
-#include <dem/soil/rest.hpp>
+#include <dem/soil/making.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -26,15 +26,11 @@ void settle(Apparatus<Model>& rig, const Settings& s, Stages& stages, Done&& don
 /// loose specimen; the last tenth is for coming to rest.
 template <class Model>
 void pour(Apparatus<Model>& rig, const Settings& s, double solid_height, Stages& stages) {
-  const auto mean_height = [&] {
-    double sum = 0.0;
-    for (const auto p : rig.world.particles()) sum += rig.world.position(p).z();
-    return sum / static_cast<double>(rig.world.particle_count());
-  };
-  const double high = mean_height(), low = 0.5 * solid_height / soil::solid_fraction_at(0.0, density_limits(s));
+  const double high = mean_height(rig.world),
+               low = 0.5 * solid_height / soil::solid_fraction_at(0.0, density_limits(s));
   stages.begin("pour", 1.0);
   settle(rig, s, stages,
-         [&] { return 0.9 * std::clamp((high - mean_height()) / std::max(high - low, 1e-9), 0.0, 1.0); });
+         [&] { return 0.9 * std::clamp((high - mean_height(rig.world)) / std::max(high - low, 1e-9), 0.0, 1.0); });
 }
 
 /// Shakes both halves alike along x; `strength` blends in over two periods from t0 (s), or out over one.
@@ -71,27 +67,20 @@ void densify(Apparatus<Model>& rig, const Settings& s, Stages& stages) {
              1e3 * measuring_margin(s)));
   };
   stages.begin("densify", 1.0);
-  StageOfTest n{.start = rig.world.time()};
-  const auto stage = stages.enter(rig.world, n, [&] {
+  auto& world = rig.world;
+  soil::Densifying n;
+  n.start = world.time();
+  const auto stage = stages.enter(world, n, [&] {
     shake(rig, shaking(s, n.start));
     rig.set_friction(n.share);
   });
   if (!stage) return shake(rig, 0.0);
-  if (stage.begins()) {
-    n.first = n.fraction = n.before = measure();
-    n.looked = n.start + s.densify_time;
-  }
+  if (stage.begins()) n = {world.time(), measure(), s.densify_time};
   while (n.fraction < wanted || s.relative_density >= 1.0) {
-    const double now = rig.world.time();
-    n.share = std::max(0.0, 1.0 - (now - n.start) / s.densify_time);
-    rig.set_friction(n.share);
-    run(rig.world, 5e-3);
-    n.fraction = measure();
-    if (now - n.looked >= 0.2) {  // five periods of 25 Hz
-      if (n.fraction < n.before + 1e-3) break;
-      n.before = n.fraction;
-      n.looked = now;
-    }
+    const bool gains = n.go_on(
+        world.time(), s.densify_time, [&](double share) { rig.set_friction(share); }, measure,
+        [&] { run(world, 5e-3); });
+    if (!gains) break;
     // Of the two ways for it to end, the one that is nearer.
     stages.update(std::clamp(std::max(1.0 - n.share, (n.fraction - n.first) / (wanted - n.first)), 0.0, 1.0),
                   text("solid {:.3f} of {:.3f}, mu {:.2f}", n.fraction, wanted, rig.friction()));

@@ -35,20 +35,16 @@ inline constexpr Column<Sample> sample_columns[] = {{"time_s", &Sample::time},
                                                     {"lid_stress_Pa", &Sample::lid_stress},
                                                     {"plane_normal_stress_Pa", &Sample::plane_stress}};
 
-/// What a stage of a packing or a test has come to.
+/// What a stage of a test has come to.
 struct StageOfTest {
   double start = 0.0;  ///< s
   soil::StaysBelow slow = {0.0, 0.0}, loaded = {0.0, 0.0};
   bool done = false;
   double lid = 0.0, below = 0.0;  ///< m, of the lid at the start; N, weight of the grains below the plane of shear
-  double first = not_known, fraction = not_known, before = not_known;  ///< solid fractions
-  double looked = 0.0;                                                 ///< s
-  double share = 1.0;                                                  ///< of friction
   template <class V>
   void fields(V& v) {
     v("start", start, "s"), v("slow", slow), v("loaded", loaded), v("done", done), v("lid", lid, "m");
-    v("below", below, "N"), v("first", first), v("fraction", fraction), v("before", before);
-    v("looked", looked, "s"), v("share", share);
+    v("below", below, "N");
   }
 };
 
