@@ -140,9 +140,10 @@ class SoftLane {
       n.computed = io::steady_seconds() - began;
       result.computing = n.computed / (world.time() - n.start);
       look(std::as_const(stand));
-      stages.update(std::clamp(n.way, 0.0, s.path),
-                    text("{:.2f} m/s, slip {:.2f}, {:.0f} mm deep", x.car.speed, x.mean(&soft_lane::WheelSample::slip),
-                         1e3 * x.mean(&soft_lane::WheelSample::sinkage)));
+      stages.update(
+          std::clamp(n.way, 0.0, s.path),
+          text("{:.2f} m in {:.2f} s, {:.2f} m/s, slip {:.2f}, {:.0f} mm deep", n.way, x.car.time, x.car.speed,
+               x.mean(&soft_lane::WheelSample::slip), 1e3 * x.mean(&soft_lane::WheelSample::sinkage)));
     }
   }
 
