@@ -24,7 +24,8 @@ struct Spheres : Model {
 };
 
 struct Settings {
-  double length = 0.12, width = 0.06, height = 0.06, settle = 0.7, travel = 0.01, speed = 0.05, share = 0.01;
+  double length = 0.12, width = 0.06, height = 0.06, settle = 0.7, travel = 0.01, speed = 0.05;
+  SleepOptions sleep;
   double blade = 0.03, rest = 0.05, start = -0.3, fill = 1.9;
   std::string shape = "cubes";
   int seeds = 3, threads = 1;
@@ -87,7 +88,7 @@ struct Drawn {
 /// The second half of the travel counts for the forces, all of it for the time.
 template <class Soil>
 Drawn draw(World<Soil> world, SurfaceId blade, const Settings& s, bool sleep) {
-  if (sleep) world.set_sleep(SleepOptions{.share = s.share});
+  if (sleep) world.set_sleep(s.sleep);
   if (const StepReport report = world.run_for(0.02); !report) fail("{}", report.text);  // time to fall asleep
   Drawn d;
   const auto seconds = [] { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; };
@@ -143,7 +144,9 @@ int main(int argc, char** argv) {
   app.add_option("--start", s.start, "where the blade starts, in lengths of the bed from its middle");
   app.add_option("--fill", s.fill, "height to which loose grains are put, in --height");
   app.add_option("--rest", s.rest, "time before the blade moves that is measured as well [s]");
-  app.add_option("--share", s.share, "of what a grain bears that leaves it asleep")->capture_default_str();
+  app.add_option("--balance", s.sleep.balance, "of what a grain bears, out of balance when it falls asleep")
+      ->capture_default_str();
+  app.add_option("--change", s.sleep.change, "of what a grain bears that leaves it asleep")->capture_default_str();
   app.add_option("--seeds", s.seeds, "beds")->capture_default_str()->check(CLI::Range(1, 100));
   app.add_option("--threads", s.threads, "of the worlds")->capture_default_str()->check(CLI::Range(1, 64));
   CLI11_PARSE(app, argc, argv);

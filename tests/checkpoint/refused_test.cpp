@@ -109,10 +109,10 @@ TEST_CASE("a file that is cut short, damaged, of another schema or none at all i
   }
 
   std::string older = good;
-  const auto schema = older.find("schema 2");
+  const auto schema = older.find("schema 3");
   REQUIRE(schema != std::string::npos);
   older[schema + 7] = '1';
-  CHECK(holds(refusal(older), "it is of schema 1, but this version of dem reads schema 2"));
+  CHECK(holds(refusal(older), "it is of schema 1, but this version of dem reads schema 3"));
 }
 
 TEST_CASE("a file that cannot be written leaves the last one as it is") {

@@ -41,7 +41,7 @@ void add_borne(std::size_t begin, const Hits& hits, const Forces& forces, bool o
   }
 }
 
-/// Whether the forces on a grain of a sleeping chunk have changed by more than the share since it fell asleep.
+/// Whether the forces on a grain of a sleeping chunk have changed by too much since it fell asleep.
 template <class Model, class Particles>
 bool is_disturbed(std::size_t begin, std::size_t end, const Particles& p,
                   std::span<const Species<typename Model::Shape>> species, const Vec3& gravity, const Sleepers& s,
@@ -50,7 +50,7 @@ bool is_disturbed(std::size_t begin, std::size_t end, const Particles& p,
   for (std::size_t i = begin; i < end; ++i) {
     const Rest& rest = s.grains[p.id[i]];
     const auto& kind = species[p.species[i]];
-    const double most = o.share * std::max(kind.mass * g, rest.borne);
+    const double most = o.change * std::max(kind.mass * g, rest.borne);
     // Written such that a NaN disturbs as well.
     if (!(norm(p.force[i] - rest.force) <= most) ||
         !(norm(p.torque[i] - rest.torque) <= most * kind.shape.bounding_radius())) {
@@ -94,12 +94,13 @@ bool end_window(std::size_t begin, std::size_t end, std::span<const Chunk<Model>
       }
     }
     const auto& kind = species[p.species[i]];
-    const double radius = kind.shape.bounding_radius(), most = o.share * std::max(kind.mass * g, borne);
+    const double radius = kind.shape.bounding_radius(), bears = std::max(kind.mass * g, borne);
     Rest& rest = s.grains[p.id[i]];
     const Vector3<double> left = p.force[i] + kind.mass * from_eigen(gravity);
+    const double most = o.balance * bears;
     const bool is_balanced = kind.is_held() || (norm(left) <= most && norm(p.torque[i]) <= most * radius);
-    const bool is_quiet =
-        is_balanced && std::abs(borne - rest.borne) <= most && norm(p.position[i] - rest.position) <= o.motion * radius;
+    const bool is_steady = std::abs(borne - rest.borne) <= o.change * bears;
+    const bool is_quiet = is_balanced && is_steady && norm(p.position[i] - rest.position) <= o.motion * radius;
     rest.quiet_windows =
         is_quiet ? std::min<std::uint8_t>(rest.quiet_windows + 1, Sleepers::windows_to_sleep) : std::uint8_t{0};
     rest.position = p.position[i];

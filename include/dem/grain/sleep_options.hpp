@@ -7,20 +7,26 @@ namespace dem {
 /// When grains fall asleep, and what wakes them (WorldOptions::sleep).
 ///
 /// A grain bears its weight or the sum of the magnitudes of its contact forces, whichever is larger. It is at rest when
-/// in a window of steps it moves by less than `motion` of its radius, what it bears changes by less than `share` of
-/// itself, and what is left of all forces on it and of all torques is less than that share. A chunk of grains that are
-/// at rest for two windows sleeps: it is not moved, and its contacts are not looked at, but what they bear counts on.
-/// Contacts with grains that are awake and with surfaces that move are looked at on; when they change the sum of the
-/// forces or torques on a grain by more than the share since it fell asleep, its chunk wakes.
+/// in a window of steps it moves by less than `motion` of its radius, what it bears changes by less than `change` of
+/// itself, and what is left of all forces on it and of all torques is less than `balance` of it. A chunk of grains that
+/// are at rest for two windows sleeps: it is not moved, and its contacts are not looked at, but what they bear counts
+/// on. Contacts with grains that are awake and with surfaces that move are looked at on; when they change the sum of
+/// the forces or torques on a grain by more than `change` of what it bore when it fell asleep, its chunk wakes.
+///
+/// So `balance` says how exact forces are when grains fall asleep, and `change` how late a bed passes on a load that
+/// grows; a sleeping grain is out of balance by their sum at the most. A machine shakes the soil: with a `change` of
+/// 0.01 a bed hardly sleeps around it.
 struct SleepOptions {
-  double share = 0.01;   ///< of what a grain bears; a bed passes on changes of load up to about this share late
-  double motion = 1e-4;  ///< of a grain's bounding radius
-  int window = 100;      ///< steps
+  double balance = 0.01;  ///< of what a grain bears
+  double change = 0.05;   ///< of what a grain bears
+  double motion = 1e-4;   ///< of a grain's bounding radius
+  int window = 100;       ///< steps
 };
 
 /// Throws Error for options that make no sense.
 inline void check_sleep(const SleepOptions& s) {
-  require_within(s.share, 1e-9, 1.0, "share of what a grain bears that leaves it asleep");
+  require_within(s.balance, 1e-9, 1.0, "share of what a grain bears that may be out of balance when it falls asleep");
+  require_within(s.change, 1e-9, 1.0, "share of what a grain bears that may change without waking it");
   require_positive(s.motion, "motion in a window that leaves a grain asleep", "radii");
   if (s.window < 1) fail("the window after which grains may sleep is {} steps, but must be at least 1", s.window);
 }

@@ -32,6 +32,12 @@ void check_contact_options(const Settings& s, const char* stiffness_unit = "N/m"
   require_positive(s.constants_for, "--constants-for", "m");
 }
 
+/// Names the option by which grains may sleep.
+inline void add_sleep_option(Options& options, bool& sleep) {
+  options.flag("--sleep", sleep, "grains at rest are not worked on until something wakes them: faster, nearly the same")
+      .off("--no-sleep");
+}
+
 /// Names the option that all replays have.
 template <class Settings>
 void add_replay_forces(Options& options, Settings& s) {

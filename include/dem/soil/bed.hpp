@@ -149,7 +149,7 @@ class Bed {
   /// Runs until the grains rest (Settling).
   void settle() {
     Settling n{world_.time(), rest_speed(2.0 * radius_, gravity_.norm())};
-    while (!n.is_done(world_.time())) {
+    while (!n.look(world_.time())) {
       if (world_.time() - n.start > options_.time_limit) {
         fail(
             "the grains of a bed are not at rest after {:g} s: their r.m.s. speed is {:g} m/s, rest is below {:g}; "

@@ -1,7 +1,7 @@
 #pragma once
 // What a bed is made by: grains come to rest, get denser, and are pressed by a lid. Each is a struct that is gone on
-// with a little at a time, so that the caller may report, stop, save and go on in between. `run(seconds)` runs the
-// world.
+// with a little at a time, so that the caller may report, stop, save and go on in between: one that is made again with
+// the same arguments and gets its fields() back goes on. `run(seconds)` runs the world.
 
 #include <dem/math/vector.hpp>
 #include <dem/soil/rest.hpp>
@@ -18,10 +18,13 @@ namespace dem::soil {
 struct Settling {
   double start;  ///< s
   double rest;   ///< m/s, the speed of rest
-  StaysBelow slow = {rest, 0.02};
+  StaysBelow slow;
   double speed = 1e300;  ///< m/s, r.m.s.
 
-  [[nodiscard]] bool is_done(double time) { return slow(time, speed); }
+  Settling(double now, double rest_speed) : start(now), rest(rest_speed), slow(rest_speed, 0.02) {}
+
+  /// Looks at the speed, before the first go_on() and after each: true when they rest.
+  [[nodiscard]] bool look(double time) { return slow(time, speed); }
   template <class World, std::invocable<double> Run>
   void go_on(const World& world, Run&& run) {
     run(2e-3);
@@ -90,13 +93,15 @@ struct Densifying {
 /// A lid or a wheel sinks onto grains until they carry its load within 2 % and it rests, both for 10 ms.
 struct Pressing {
   double start;  ///< s
-  double speed;  ///< m/s, at which it comes down; it rests below a hundredth of that
-  StaysBelow slow = {0.01 * speed, 0.01}, loaded = {0.02, 0.01};
+  StaysBelow slow, loaded = {0.02, 0.01};
   bool done = false;
 
+  /// It comes down at `speed` (m/s), and rests below a hundredth of that.
+  Pressing(double now, double speed) : start(now), slow(0.01 * speed, 0.01) {}
+
   /// Looks at the share of the load that is carried, and at the speed (m/s): after each millisecond.
-  void look(double time, double carried, double now) {
-    const bool is_slow = slow(time, std::abs(now));
+  void look(double time, double carried, double speed) {
+    const bool is_slow = slow(time, std::abs(speed));
     done = loaded(time, std::abs(carried - 1.0)) && is_slow;
   }
   template <class V>

@@ -15,7 +15,8 @@ void sleep_fields(Fields& v, WorldState<Model>& w) {
   grain::Sleepers& s = w.sleepers;
   bool may_sleep = w.options.sleep.has_value();
   SleepOptions o = w.options.sleep.value_or(SleepOptions{});
-  v("may_sleep", may_sleep), v("share", o.share), v("motion", o.motion), v("window", o.window);
+  v("may_sleep", may_sleep), v("balance", o.balance), v("change", o.change), v("motion", o.motion),
+      v("window", o.window);
   v("working_chunks", s.working), v("all_work", s.all_work);
   const bool is_restoring = v.task() == Fields::Task::restore;
   if (is_restoring) w.options.sleep = may_sleep ? std::optional(o) : std::nullopt;

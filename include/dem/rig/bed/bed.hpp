@@ -83,8 +83,8 @@ class Bed {
     return std::isfinite(solid_fraction) ? soil::relative_density(solid_fraction, soil::cube8_limits) : solid_fraction;
   }
 
-  /// Puts a lid over the grains (bed/level.hpp lowers it), by a slide and a drive. The drive is a damper under which
-  /// the lid's weight sinks at the lid speed, ever slower as the grains take up the load.
+  /// Puts a lid over the grains (level() of make_bed.hpp lowers it), by a slide and a drive. The drive is a damper
+  /// under which the lid's weight sinks at the lid speed, ever slower as the grains take up the load.
   void add_lid() {
     auto& m = world.machine();
     const double gap = 0.125 * grains_.half_edge, thickness = 0.01;

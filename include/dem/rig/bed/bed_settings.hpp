@@ -54,9 +54,7 @@ inline void add_bed_options(Options& options, BedSettings& s) {
   add("--stable-share", s.stable_share, "time step, as a share of the largest stable one");
   add("--seed", s.seed, "of the rain");
   add("--threads", s.threads, "0: all, at least 1000 grains for each").changes_no_result();
-  options
-      .flag("--sleep", s.sleep, "grains at rest are not worked on until something wakes them: faster, nearly the same")
-      .off("--no-sleep");
+  add_sleep_option(options, s.sleep);
   add("--bed-file", s.file, "read the grains from this file instead of raining them");
   add("--save-bed", s.save, "file for the levelled bed; empty: bed.txt in the output folder");
 }

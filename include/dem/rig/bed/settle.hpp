@@ -13,7 +13,7 @@ void settle(World& world, double size, double limit, const char* option, Stages&
   soil::Settling n{world.time(), soil::rest_speed(size)};
   const auto stage = stages.enter(world, n, set_up);
   if (!stage) return;
-  while (!n.is_done(world.time())) {
+  while (!n.look(world.time())) {
     if (world.time() - n.start > limit) {
       throw Stopped(text(
           "the grains are not at rest after {:g} s: their r.m.s. speed is {:.3g} mm/s, rest is below {:.3g}; raise "

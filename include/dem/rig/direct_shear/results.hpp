@@ -35,7 +35,7 @@ inline constexpr Column<Sample> sample_columns[] = {{"time_s", &Sample::time},
                                                     {"lid_stress_Pa", &Sample::lid_stress},
                                                     {"plane_normal_stress_Pa", &Sample::plane_stress}};
 
-/// What a stage of a test has come to.
+/// What a stage of a packing or a test has come to.
 struct StageOfTest {
   double start = 0.0;  ///< s
   soil::StaysBelow slow = {0.0, 0.0}, loaded = {0.0, 0.0};

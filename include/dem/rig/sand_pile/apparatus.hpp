@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <optional>
 #include <span>
 #include <type_traits>
 #include <vector>
@@ -26,7 +27,11 @@ class Apparatus {
   using World = dem::World<Model>;
 
   Apparatus(const Settings& s, const Grains<Model>& kind, std::span<const soil::Placement> grains)
-      : world({.time_step_safety = s.stable_share, .overlap_limit = 1.0, .threads = s.threads}), settings_(s) {
+      : world({.time_step_safety = s.stable_share,
+               .overlap_limit = 1.0,
+               .threads = s.threads,
+               .sleep = s.sleep ? std::optional<SleepOptions>(SleepOptions{}) : std::nullopt}),
+        settings_(s) {
     const SpeciesId species = world.add_species(kind.shape, {.material = "grain", .density = s.density});
     world.set_contact("grain", "grain", kind.on_grain);
     world.set_contact("grain", "plate", kind.on_plate);

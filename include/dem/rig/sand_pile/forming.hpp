@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -95,7 +96,8 @@ class Forming {
   void measure() {
     stages_.begin(result_.kind.name + ": rest", s_.rest_limit);
     StageOfPile n{.start = rig_.world.time(), .slow = {0.1 * soil::rest_speed(size_), 0.05}};
-    if (const auto stage = stages_.enter(rig_.world, n)) {
+    const auto wake = [this] { rig_.world.set_sleep(std::nullopt); };  // grains that sleep would not creep
+    if (const auto stage = stages_.enter(rig_.world, n, wake)) {
       result_.at_rest = rest(n, s_.rest_limit);
       ids_ = rig_.world.particles();
       result_.pile = soil::placements(rig_.world);
@@ -103,7 +105,7 @@ class Forming {
     }
     stages_.begin(result_.kind.name + ": creep", s_.creep_time);
     n = {.start = rig_.world.time()};
-    const auto stage = stages_.enter(rig_.world, n);
+    const auto stage = stages_.enter(rig_.world, n, wake);
     if (!stage) return;
     while (rig_.world.time() < n.start + s_.creep_time) go_on(), stages_.update(rig_.world.time() - n.start, status());
     result_.creep_time = rig_.world.time() - n.start;

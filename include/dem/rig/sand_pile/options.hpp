@@ -59,6 +59,7 @@ inline void declare(Options& options, Settings& s) {
   options.group("Numerics");
   add("--stable-share", s.stable_share, "time step as a share of the largest stable one");
   add("--threads", s.threads, "0: all, at least 1000 grains for each").changes_no_result();
+  add_sleep_option(options, s.sleep);
   add_output_options(options, s, "the first pile");
   add("--frame-time", s.frame_time, "between two frames for ParaView [s]");
 }

@@ -66,6 +66,7 @@ struct Settings {
   // Numerics
   double stable_share = 0.8;  ///< of the largest stable time step
   int threads = 0;            ///< 0: all, but not more than one for each 1000 grains
+  bool sleep = false;         ///< grains at rest may sleep until the pile is measured
 
   // Output
   std::string output = "sand_pile_output";
