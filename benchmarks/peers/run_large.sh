@@ -26,7 +26,7 @@ echo "program cores rate contacts-a-grain"
 for _ in $(seq "$repeats"); do
   for cores in 1 2; do
     lammps $cores -var nx 5 -var ny 3 -var steps 500
-    # The rate is that of the last loop; contacts are printed before the first one's time (a second loop counts but some).
+    # The rate is that of the last loop; contacts are printed before that of the first.
     awk -v cores=$cores '/^Loop time/ { t = $4; if (!contacts) contacts = last } { last = $4 }
       END { printf "lammps %d %.3g %.2f\n", cores, 300000 * 500 / t / 1e6, contacts / 300000 }' "large.$cores.log"
   done
