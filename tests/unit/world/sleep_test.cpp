@@ -2,6 +2,7 @@
 
 #include "core/error_of.hpp"
 
+#include <algorithm>
 #include <set>
 
 using Catch::Approx;
@@ -200,6 +201,38 @@ TEST_CASE("a load that grows slowly reaches the floor through a bed that sleeps"
   // Each of the two or three layers of chunks may pass on changes of up to 0.05 of what it bears late, but they do not
   // all wait at once, or for changes of one sign.
   CHECK(worst < 0.03);
+}
+
+TEST_CASE("a change of load below SleepOptions::change leaves a bed asleep, one above it wakes the bed") {
+  // Towers of 6 cubes on a table that rises within 10 ms. The lowest cube bears 6 weights from below and 5 from above.
+  // While it sleeps it does not give way, so the table's force on it grows by 4 K times the way.
+  const auto least_asleep = [](double share_of_borne, double change) {
+    dem::WorldOptions o = Towers::with(true, 1);
+    o.sleep->change = change;
+    dem::World<models::VerletCubes> w(o);
+    w.set_contact({{500.0, 0.06, 1.0}, {0.4, 500.0, 0.05, 0.975}});
+    const auto cube = w.add_species(dem::shape::cube8(1e-3));
+    const double way = share_of_borne * 11.0 * w.species(cube).mass * g / (4.0 * 500.0);  // m
+    const auto table = w.machine().add_fixed_body("table", Vec3::Zero());
+    w.add_surface(table, dem::surface::Plane{});
+    w.machine().add_motion(dem::mbd::prescribed_position(
+        "rise", table, Vec3::UnitZ(),
+        dem::mbd::Signal::function([way](double t) { return way * std::clamp((t - 0.07) / 0.01, 0.0, 1.0); })));
+    for (int k = 0; k < 384; ++k) {
+      w.add_particle({cube, Vec3(2.2e-3 * (k % 8), 2.2e-3 * (k / 8 % 8), 1e-3 + 2e-3 * (k / 64))});
+    }
+    REQUIRE(w.run_for(0.065));
+    REQUIRE(w.asleep_count() == 384);
+    std::size_t least = 384;
+    for (int k = 0; k < 20; ++k) {
+      REQUIRE(w.run_for(1e-3));
+      least = std::min(least, w.asleep_count());
+    }
+    return least;
+  };
+  CHECK(least_asleep(0.03, 0.05) == 384);  // above the balance of 0.01
+  CHECK(least_asleep(0.03, 0.02) < 384);
+  CHECK(least_asleep(0.08, 0.05) < 384);
 }
 
 TEST_CASE("settings of sleep that make no sense are refused") {
