@@ -80,10 +80,10 @@ void integrator(benchmark::State& state) {
     for (std::size_t c = 0; c < w.chunks.size(); ++c) {
       for (int stage = 0; stage < I::stages; ++stage) {
         if constexpr (I::predicts_before_forces) {
-          dem::grain::predict_chunk<Model>(c, w.chunks[c], w.particles, w.species, stage, 0.0);
+          dem::grain::predict_chunk<Model>(c, w.chunks[c], w.particles, w.species, stage, 0.0, {});
         }
         dem::grain::move_chunk<Model>(c, w.chunks[c], w.particles, w.species, w.inertia, w.options.gravity, stage, 0.0,
-                                      false);
+                                      false, {});
       }
     }
   }

@@ -6,6 +6,8 @@
 #include <dem/grain/energy_ledger.hpp>
 #include <dem/grain/particles.hpp>
 
+#include <span>
+
 namespace dem {
 
 /// Force and torque (about the centre of mass of the surface's body) that one chunk's grains exert on one surface.
@@ -46,9 +48,12 @@ struct Chunk {
   Vec3 low = Vec3::Zero(), high = Vec3::Zero();  ///< of the grains' centres
   double moved2 = 0.0;  ///< m^2, largest squared displacement since the neighbour list was made
   DeepestContact deepest;
-  double surface_seconds = 0.0;        ///< s, spent on contacts with surfaces while the stopwatch was on
-  bool finite = true;                  ///< no position or velocity is NaN or infinite
-  bool asleep = false;                 ///< its grains rest and are not moved
+  double surface_seconds = 0.0;       ///< s, spent on contacts with surfaces while the stopwatch was on
+  bool finite = true;                 ///< no position or velocity is NaN or infinite
+  bool asleep = false;                ///< all of its grains sleep
+  bool watched = false;               ///< some of them are watched (grain::watched)
+  bool changed = false;               ///< some of them fell asleep or woke since contacts were evaluated
+  std::vector<std::uint8_t> is_held;  ///< where grains may sleep, by candidate: both grains slept when it was evaluated
   std::vector<std::uint32_t> reached;  ///< other chunks of whose grains it has candidates
   std::vector<std::uint32_t> around;   ///< chunks with which it has candidates; listed where grains may sleep
 
@@ -56,6 +61,11 @@ struct Chunk {
   /// has the memory that they were written to (ContactScratch::lend).
   void commit() {
     pair_contacts.commit_copy();
+    surface_contacts.commit_copy();
+  }
+  /// The same where only some candidates were evaluated. `spare` is used on the way.
+  void commit(std::span<const std::uint8_t> is_evaluated, ContactMemory<history_size<Model>>& spare) {
+    pair_contacts.commit_some(is_evaluated, spare);
     surface_contacts.commit_copy();
   }
 };

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -54,6 +55,13 @@ struct ContactMemory {
     std::copy_n(from.key.begin(), count, key.begin());
     for (std::size_t k = 0; k < history.size(); ++k) std::copy_n(from.history[k].begin(), count, history[k].begin());
   }
+  /// Contact `at` becomes contact `other` of another list.
+  void take(int at, const ContactMemory& from, int other) {
+    key[static_cast<std::size_t>(at)] = from.key[static_cast<std::size_t>(other)];
+    for (std::size_t k = 0; k < history.size(); ++k) {
+      history[k][static_cast<std::size_t>(at)] = from.history[k][static_cast<std::size_t>(other)];
+    }
+  }
 };
 
 /// The histories of all contacts of one chunk with one kind of partner (grains or surfaces): those of this step and the
@@ -66,8 +74,47 @@ struct ContactMemories {
   void commit() { std::swap(now, last); }
   /// The same with `now` in memory that is used again for others: of the chunk itself only `last` is touched.
   void commit_copy() { last.copy(now); }
+  /// The same where only some candidates were evaluated: the committed histories of others stay. `spare` is used on the
+  /// way.
+  void commit_some(std::span<const std::uint8_t> is_evaluated, ContactMemory<HistorySize>& spare) {
+    if (rewrite(is_evaluated)) return;
+    // Contacts came or went: both lists become one, in the order of their keys.
+    spare.make_room(now.count + last.count);
+    int count = 0, l = 0;
+    const auto keep_below = [&](std::uint64_t key) {
+      for (; l < last.count && last.key[static_cast<std::size_t>(l)] < key; ++l) {
+        if (is_evaluated[last.key[static_cast<std::size_t>(l)] >> 32] == 0) spare.take(count++, last, l);
+      }
+    };
+    for (int k = 0; k < now.count; ++k) {
+      keep_below(now.key[static_cast<std::size_t>(k)]);
+      spare.take(count++, now, k);
+    }
+    keep_below(~std::uint64_t{0});
+    spare.count = count;
+    last.copy(spare);
+  }
   /// How many contacts the last committed step had: those of `last`.
   int committed() const { return last.count; }
+
+ private:
+  /// Mostly the contacts that were evaluated are those of the last time: their histories are written over. False if
+  /// they are not; what was written until then is right all the same.
+  bool rewrite(std::span<const std::uint8_t> is_evaluated) {
+    int l = 0;
+    const auto skip_below = [&](std::uint64_t key) {
+      for (; l < last.count && last.key[static_cast<std::size_t>(l)] < key; ++l) {
+        if (is_evaluated[last.key[static_cast<std::size_t>(l)] >> 32] != 0) return false;
+      }
+      return true;
+    };
+    for (int k = 0; k < now.count; ++k) {
+      const std::uint64_t key = now.key[static_cast<std::size_t>(k)];
+      if (!skip_below(key) || l == last.count || last.key[static_cast<std::size_t>(l)] != key) return false;
+      last.take(l++, now, k);
+    }
+    return skip_below(~std::uint64_t{0});
+  }
 };
 
 }  // namespace dem

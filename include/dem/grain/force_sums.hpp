@@ -25,6 +25,9 @@ class ForceSums {
     }
   }
 
+  const Vector3<double>& force(std::size_t local) const { return rows_[local].force; }
+  const Vector3<double>& torque(std::size_t local) const { return rows_[local].torque; }
+
  private:
   struct Row {
     Vector3<double> force, torque;

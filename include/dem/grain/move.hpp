@@ -2,6 +2,7 @@
 
 #include <dem/grain/chunk.hpp>
 #include <dem/grain/species.hpp>
+#include <dem/grain/wakefulness.hpp>
 
 #include <cmath>
 #include <span>
@@ -78,15 +79,24 @@ void refresh_views(std::size_t begin, std::size_t end, Particles& p, std::span<c
 }
 
 /// Refreshes what depends on where the grains of a chunk are: views, poses, bounds, and how far they moved since the
-/// neighbour list was made.
+/// neighbour list was made. Where grains may sleep (`doing` is not empty), views and poses of those that are awake.
 template <class Model, class Particles>
 void refresh_chunk(std::size_t chunk_index, Chunk<Model>& chunk, Particles& p,
-                   std::span<const Species<typename Model::Shape>> species) {
+                   std::span<const Species<typename Model::Shape>> species, Wakefulness doing = {}) {
   const std::size_t begin = chunk_index * chunk_size;
   const std::size_t end = std::min(begin + chunk_size, p.count);
-  refresh_views(begin, end, p, species);
-  if constexpr (Model::Shape::pose_size > 0) {
-    for (std::size_t i = begin; i < end; ++i) species[p.species[i]].shape.orient(p.rotation(i), p.pose_of(i));
+  const auto refresh = [&](std::size_t first, std::size_t last) {
+    refresh_views(first, last, p, species);
+    if constexpr (Model::Shape::pose_size > 0) {
+      for (std::size_t i = first; i < last; ++i) species[p.species[i]].shape.orient(p.rotation(i), p.pose_of(i));
+    }
+  };
+  if (doing.empty()) {
+    refresh(begin, end);
+  } else {
+    for (std::size_t i = begin; i < end; ++i) {
+      if (doing[i] & awake) refresh(i, i + 1);
+    }
   }
   if (end < begin + chunk_size) p.pad();
   Vector3<Pack> low = p.position.pack(begin), high = low;
@@ -112,23 +122,55 @@ void refresh_chunk(std::size_t chunk_index, Chunk<Model>& chunk, Particles& p,
 /// non-rotation by about 1e-16 a step, so 1e-14 at the most.
 inline constexpr std::uint64_t steps_between_orthonormalisations = 64;
 
+/// Lane by lane `yes` where the condition holds, of structs of packs.
+template <class Value>
+Value chosen(const PackMask& condition, const Value& yes, const Value& no) {
+  if constexpr (std::is_empty_v<Value>) {
+    return no;
+  } else {
+    using Packs = std::array<Pack, sizeof(Value) / sizeof(Pack)>;
+    const auto a = std::bit_cast<Packs>(yes), b = std::bit_cast<Packs>(no);
+    Packs result;
+    for (std::size_t k = 0; k < result.size(); ++k) result[k] = select(condition, a[k], b[k]);
+    return std::bit_cast<Value>(result);
+  }
+}
+
+/// Calls advance(i, motion, memory) for each pack of a chunk's grains. Grains that sleep stay as they are.
+template <class Particles, class Advance>
+void advance_chunk(std::size_t begin, Particles& p, Wakefulness doing, const Advance& advance) {
+  for (std::size_t i = begin; i < begin + chunk_size; i += static_cast<std::size_t>(pack_width)) {
+    integrator::Motion<Pack> m = p.motion(i);
+    auto memory = p.memory_pack(i);
+    if (doing.empty()) {
+      advance(i, m, memory);
+    } else {
+      const PackMask sleeps =
+          generate([&](int lane) { return doing[i + static_cast<std::size_t>(lane)] & awake ? 0.0 : 1.0; }) > Pack(0.0);
+      if (bits(sleeps) == (1u << pack_width) - 1) continue;
+      const auto m_before = m;
+      const auto memory_before = memory;
+      advance(i, m, memory);
+      m = chosen(sleeps, m_before, m);
+      memory = chosen(sleeps, memory_before, memory);
+    }
+    p.set_motion(i, m);
+    p.set_memory_pack(i, memory);
+  }
+}
+
 /// Forces -> accelerations -> motion, for the grains of one chunk.
 template <class Model, class Particles>
 void move_chunk(std::size_t chunk_index, Chunk<Model>& chunk, Particles& p,
                 std::span<const Species<typename Model::Shape>> species, std::span<const SpeciesInertia> inertia,
-                const Vec3& gravity, int stage, double dt, bool clean_rotations) {
+                const Vec3& gravity, int stage, double dt, bool clean_rotations, Wakefulness doing) {
   using Integrator = typename Model::Integrator;
-  const std::size_t begin = chunk_index * chunk_size;
   const double lead = integrator::gyroscopic_lead<Integrator>(dt);
-  for (std::size_t i = begin; i < begin + chunk_size; i += static_cast<std::size_t>(pack_width)) {
-    integrator::Motion<Pack> m = p.motion(i);
-    auto memory = p.memory_pack(i);
+  advance_chunk(chunk_index * chunk_size, p, doing, [&](std::size_t i, integrator::Motion<Pack>& m, auto& memory) {
     Integrator::template after_forces<Pack>(stage, Pack(dt), m, memory, acceleration(i, p, inertia, gravity, m, lead));
     if (clean_rotations && Particles::has_orientation) m.rotation = orthonormalised(m.rotation);
-    p.set_motion(i, m);
-    p.set_memory_pack(i, memory);
-  }
-  refresh_chunk<Model>(chunk_index, chunk, p, species);
+  });
+  refresh_chunk<Model>(chunk_index, chunk, p, species, doing);
 }
 
 /// The integrator's memory from the forces at the initial state.
@@ -146,17 +188,12 @@ void initialise_chunk(std::size_t chunk_index, Particles& p, std::span<const Spe
 /// The part of an integration stage that comes before the forces (velocity Verlet's first kick and drift).
 template <class Model, class Particles>
 void predict_chunk(std::size_t chunk_index, Chunk<Model>& chunk, Particles& p,
-                   std::span<const Species<typename Model::Shape>> species, int stage, double dt) {
+                   std::span<const Species<typename Model::Shape>> species, int stage, double dt, Wakefulness doing) {
   using Integrator = typename Model::Integrator;
-  const std::size_t begin = chunk_index * chunk_size;
-  for (std::size_t i = begin; i < begin + chunk_size; i += static_cast<std::size_t>(pack_width)) {
-    integrator::Motion<Pack> m = p.motion(i);
-    auto memory = p.memory_pack(i);
+  advance_chunk(chunk_index * chunk_size, p, doing, [&](std::size_t, integrator::Motion<Pack>& m, auto& memory) {
     Integrator::template before_forces<Pack>(stage, Pack(dt), m, memory);
-    p.set_motion(i, m);
-    p.set_memory_pack(i, memory);
-  }
-  refresh_chunk<Model>(chunk_index, chunk, p, species);
+  });
+  refresh_chunk<Model>(chunk_index, chunk, p, species, doing);
 }
 
 }  // namespace dem::grain

@@ -6,6 +6,7 @@
 #include <dem/grain/contact_evaluator.hpp>
 #include <dem/grain/force_sums.hpp>
 #include <dem/grain/species.hpp>
+#include <dem/grain/wakefulness.hpp>
 
 #include <span>
 
@@ -19,6 +20,11 @@ struct PairScratch {
   std::vector<Hit> hits;
   std::vector<typename Model::Shape::template PairContactPoint<double>> touches;  ///< other shapes: one for each hit
   ContactForces forces;
+  // Where grains may sleep:
+  std::vector<std::uint32_t> listed;          ///< candidates that are evaluated
+  std::vector<std::uint8_t> is_evaluated;     ///< by candidate
+  ForceSums held;                             ///< of contacts between sleepers
+  ContactMemory<history_size<Model>> merged;  ///< for Chunk::commit
 };
 
 /// The candidates of a chunk as pairs of grains.
@@ -52,26 +58,28 @@ struct ChunkPairs {
   }
 };
 
-/// Candidates whose bounding spheres overlap, a pack at a time and without branches, as the answer is a coin toss.
-template <class Pairs>
-std::size_t list_close(const Pairs& pairs, std::uint32_t candidates, std::vector<std::uint32_t>& close) {
+/// Those of the candidates candidate(0), candidate(1), ... whose bounding spheres overlap, a pack at a time and without
+/// branches, as the answer is a coin toss.
+template <class Pairs, class Candidate>
+std::size_t list_close(const Pairs& pairs, std::uint32_t candidates, const Candidate& candidate,
+                       std::vector<std::uint32_t>& close) {
   constexpr std::uint32_t ahead = 4 * pack_width;  // how many candidates ahead views are asked for
   close.resize(candidates + std::size_t{pack_width});
   std::size_t count = 0;
   PartnerLanes partners;
   for (std::uint32_t at = 0; at < candidates; at += pack_width) {
     for (std::uint32_t lane = 0; lane < pack_width; ++lane) {
-      prefetch(&pairs.p.view[pairs.j(std::min(at + lane + ahead, candidates - 1))], sizeof(PartnerView));
+      prefetch(&pairs.p.view[pairs.j(candidate(std::min(at + lane + ahead, candidates - 1)))], sizeof(PartnerView));
     }
     for (std::uint32_t lane = 0; lane < pack_width; ++lane) {
-      const std::uint32_t k = std::min(at + lane, candidates - 1);
+      const std::uint32_t k = candidate(std::min(at + lane, candidates - 1));
       partners.set(static_cast<int>(lane), pairs.p.view[pairs.i(k)], pairs.p.view[pairs.j(k)]);
     }
     const auto [x, y, z, radii] = separations(partners);
     const Pack reach = shape::widened(radii, pairs.gap());
     const std::uint32_t near = bits(x * x + y * y + z * z < reach * reach);
     for (std::uint32_t lane = 0; lane < pack_width; ++lane) {
-      close[count] = at + lane;
+      close[count] = candidate(std::min(at + lane, candidates - 1));
       count += near >> lane & (at + lane < candidates ? 1u : 0u);
     }
   }
@@ -179,6 +187,31 @@ void share_forces(std::size_t begin, Chunk<Model>& chunk, const PairScratch<Mode
   for (std::uint32_t& first : chunk.partner_load_first) first = total += first;
 }
 
+/// The same where grains may sleep. What contacts between sleepers bear is summed apart, and does not reach `sums`.
+template <class Model>
+void share_forces(std::size_t begin, Chunk<Model>& chunk, Wakefulness doing, PairScratch<Model>& s, ForceSums& sums) {
+  chunk.partner_loads.clear();
+  std::fill(chunk.partner_load_first.begin(), chunk.partner_load_first.end(), 0u);
+  chunk.is_held.resize(chunk.candidate.size());
+  s.held = {};
+  for (std::size_t c = 0; c < s.hits.size(); ++c) {
+    const Hit& hit = s.hits[c];
+    const Vector3<double> force = ContactForces::at(s.forces.force, c);
+    const PartnerLoad load = {-force, ContactForces::at(s.forces.torque_j, c)};
+    const std::size_t candidate = hit.key >> 32;
+    const bool held = is_held(doing, hit.i, hit.partner);
+    ForceSums& to = held ? s.held : sums;
+    to.add(hit.i - begin, force, ContactForces::at(s.forces.torque_i, c));
+    to.add(hit.partner - begin, load.force, load.torque);
+    chunk.is_held[candidate] = held ? 1 : 0;
+    if (hit.partner - begin < chunk_size) continue;
+    chunk.partner_loads.push_back(load);
+    ++chunk.partner_load_first[candidate + 1];
+  }
+  std::uint32_t total = 0;
+  for (std::uint32_t& first : chunk.partner_load_first) first = total += first;
+}
+
 /// The touch of hit c of a chunk.
 template <class Model, class Pairs>
 DEM_HOT typename Model::Shape::template PairContactPoint<double> touch_of_hit(const Pairs& pairs,
@@ -195,15 +228,26 @@ DEM_HOT typename Model::Shape::template PairContactPoint<double> touch_of_hit(co
 }
 
 /// Contacts of the grains of one chunk with their candidates: narrow phase, laws, forces. Writes to the chunk and its
-/// own grains' sums only, so chunks may run at the same time.
+/// own grains' sums only, so chunks may run at the same time. Where grains may sleep (`doing` is not empty), contacts
+/// between sleepers are left as they are, but for those of grains that are watched.
 template <class Model, class Particles>
 void find_pair_contacts(std::size_t chunk_index, Chunk<Model>& chunk, const Particles& p,
                         std::span<const Species<typename Model::Shape>> species, const Materials<Model>& materials,
-                        double dt, ForceSums& sums, PairScratch<Model>& s) {
+                        double dt, Wakefulness doing, ForceSums& sums, PairScratch<Model>& s) {
   using Shape = typename Model::Shape;
   const std::size_t begin = chunk_index * chunk_size;
   const ChunkPairs<Model, Particles> pairs{chunk, p, species, materials, begin};
-  const std::size_t close_count = list_close(pairs, static_cast<std::uint32_t>(chunk.candidate.size()), s.close);
+  std::size_t close_count = 0;
+  if (doing.empty()) {
+    const auto all = static_cast<std::uint32_t>(chunk.candidate.size());
+    close_count = list_close(
+        pairs, all, [](std::uint32_t k) { return k; }, s.close);
+  } else {
+    list_evaluated(chunk, begin, doing, s.listed, s.is_evaluated);
+    const auto some = static_cast<std::uint32_t>(s.listed.size());
+    close_count = list_close(
+        pairs, some, [&](std::uint32_t k) { return s.listed[k]; }, s.close);
+  }
 
   if constexpr (shape::BitShape<Shape>) {
     find_hits_by_bits<Model>(pairs, close_count, s);
@@ -217,10 +261,19 @@ void find_pair_contacts(std::size_t chunk_index, Chunk<Model>& chunk, const Part
       s.hits, chunk.pair_contacts, s.forces, touch_of,
       [&](std::size_t c) -> const PartnerView& { return p.view[s.hits[c].i]; },
       [&](std::size_t c) -> const PartnerView& { return p.view[s.hits[c].partner]; });
+  const DeepestContact before = chunk.deepest;
   chunk.deepest = {deepest.overlap, 0, 0, false};
   if (deepest.overlap > 0.0)
     chunk.deepest = {deepest.overlap, s.hits[deepest.hit].i, s.hits[deepest.hit].partner, false};
-  share_forces(begin, chunk, s, sums);
+  if (doing.empty()) {
+    share_forces(begin, chunk, s, sums);
+  } else {
+    share_forces(begin, chunk, doing, s, sums);
+    // One that was the deepest and was left as it is still counts.
+    const bool stays = !before.with_surface && before.overlap > deepest.overlap && before.partner < doing.size() &&
+                       !is_evaluated(doing, before.i, before.partner);
+    if (stays) chunk.deepest = before;
+  }
 }
 
 }  // namespace dem::grain

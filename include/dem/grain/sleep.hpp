@@ -1,8 +1,10 @@
 #pragma once
 
 #include <dem/grain/contact_evaluator.hpp>
+#include <dem/grain/force_sums.hpp>
 #include <dem/grain/move.hpp>
 #include <dem/grain/sleep_options.hpp>
+#include <dem/grain/wakefulness.hpp>
 
 #include <algorithm>
 #include <cstdint>
@@ -26,9 +28,11 @@ struct Sleepers {
 
   std::vector<Rest> grains;            ///< by id
   std::vector<double> borne;           ///< N, by row: of the contacts that the grain's own chunk holds
-  std::vector<std::uint32_t> working;  ///< chunks whose contacts are evaluated
+  std::vector<std::uint8_t> doing;     ///< by row, images too: see Wakefulness
+  Columns3 held_force, held_torque;    ///< N, N m, by row of a sleeper: the sums over its contacts with sleepers
+  std::vector<std::uint32_t> working;  ///< chunks with contacts that are evaluated
   bool measuring = false;              ///< a window ends with this step
-  bool all_work = true;                ///< in the next evaluation: neighbour lists are new
+  bool all_work = true;                ///< all contacts are, in the next evaluation: neighbour lists are new
 };
 
 /// Adds up what the grains of one chunk bear by the contacts that were just evaluated.
@@ -41,77 +45,99 @@ void add_borne(std::size_t begin, const Hits& hits, const Forces& forces, bool o
   }
 }
 
-/// Whether the forces on a grain of a sleeping chunk have changed by too much since it fell asleep.
-template <class Model, class Particles>
-bool is_disturbed(std::size_t begin, std::size_t end, const Particles& p,
-                  std::span<const Species<typename Model::Shape>> species, const Vec3& gravity, const Sleepers& s,
+/// The magnitudes of a grain's contact forces, summed (N). To be called in a step that measures.
+template <class Model>
+double borne_by(std::size_t i, std::span<const Chunk<Model>> chunks, std::span<const std::uint32_t> incoming_first,
+                std::span<const Incoming> incoming, const Sleepers& s) {
+  double borne = s.borne[i];
+  for (std::uint32_t m = incoming_first[i]; m < incoming_first[i + 1]; ++m) {
+    const Chunk<Model>& other = chunks[incoming[m].chunk];
+    const std::uint32_t stop = other.partner_load_first[incoming[m].candidate + 1];
+    for (std::uint32_t c = other.partner_load_first[incoming[m].candidate]; c < stop; ++c) {
+      borne += norm(other.partner_loads[c].force);
+    }
+  }
+  return borne;
+}
+
+/// Whether the forces on a sleeping grain have changed by too much since it fell asleep.
+template <class Particles, class Shape>
+bool is_disturbed(std::size_t i, const Particles& p, const Species<Shape>& kind, double g, const Rest& rest,
                   const SleepOptions& o) {
-  const double g = gravity.norm();
-  for (std::size_t i = begin; i < end; ++i) {
-    const Rest& rest = s.grains[p.id[i]];
-    const auto& kind = species[p.species[i]];
-    const double most = o.change * std::max(kind.mass * g, rest.borne);
-    // Written such that a NaN disturbs as well.
-    if (!(norm(p.force[i] - rest.force) <= most) ||
-        !(norm(p.torque[i] - rest.torque) <= most * kind.shape.bounding_radius())) {
-      return true;
-    }
-  }
-  return false;
+  const double most = o.change * std::max(kind.mass * g, rest.borne);
+  // Written such that a NaN disturbs as well.
+  return !(norm(p.force[i] - rest.force) <= most) ||
+         !(norm(p.torque[i] - rest.torque) <= most * kind.shape.bounding_radius());
 }
 
-/// Stops the grains of a chunk that falls asleep.
-template <class Shape, class Particles>
-void put_to_sleep(std::size_t begin, std::size_t end, Particles& p, std::span<const Species<Shape>> species,
-                  Sleepers& s) {
-  bool stops = false;
-  for (std::size_t i = begin; i < end; ++i) {
-    Rest& rest = s.grains[p.id[i]];
-    if (rest.asleep) continue;
-    p.velocity.set(i, {0, 0, 0});
-    p.spin.set(i, {0, 0, 0});
-    rest.asleep = stops = true;
-  }
-  if (stops) refresh_views(begin, end, p, species);
+/// Ends a window for a grain that is awake, and returns whether it was quiet for long enough to sleep.
+template <class Particles, class Shape>
+bool end_window(std::size_t i, const Particles& p, const Species<Shape>& kind, const Vec3& gravity, double borne,
+                Rest& rest, const SleepOptions& o) {
+  const double radius = kind.shape.bounding_radius(), bears = std::max(kind.mass * gravity.norm(), borne);
+  const Vector3<double> left = p.force[i] + kind.mass * from_eigen(gravity);
+  const double most = o.balance * bears;
+  const bool is_balanced = kind.is_held() || (norm(left) <= most && norm(p.torque[i]) <= most * radius);
+  const bool is_steady = std::abs(borne - rest.borne) <= o.change * bears;
+  const bool is_quiet = is_balanced && is_steady && norm(p.position[i] - rest.position) <= o.motion * radius;
+  rest.quiet_windows =
+      is_quiet ? std::min<std::uint8_t>(rest.quiet_windows + 1, Sleepers::windows_to_sleep) : std::uint8_t{0};
+  rest.position = p.position[i];
+  rest.force = p.force[i];
+  rest.torque = p.torque[i];
+  rest.borne = borne;
+  return rest.quiet_windows == Sleepers::windows_to_sleep;
 }
 
-/// Ends a window for the grains of a chunk that is awake: counts those that were quiet. Puts all of them to sleep when
-/// each was quiet for long enough, and returns whether it did.
+/// Keeps what contacts between sleepers do to the grains of a chunk that are watched.
+inline void hold(std::size_t begin, std::size_t end, const ForceSums& held, Sleepers& s) {
+  for (std::size_t i = begin; i < end; ++i) {
+    if ((s.doing[i] & watched) == 0) continue;
+    s.held_force.set(i, held.force(i - begin));
+    s.held_torque.set(i, held.torque(i - begin));
+  }
+}
+
+/// All that acts on a grain where some sleep (N, N m), and what of it comes from contacts between sleepers.
+struct SleeperSums {
+  Vector3<double> force, torque, held_force, held_torque;
+};
+
+/// Completes the sums of a grain with the contacts that other chunks hold. Those of contacts between sleepers are kept,
+/// or made anew if the grain is watched.
 template <class Model, class Particles>
-bool end_window(std::size_t begin, std::size_t end, std::span<const Chunk<Model>> chunks, Particles& p,
-                std::span<const Species<typename Model::Shape>> species, const Vec3& gravity,
-                std::span<const std::uint32_t> incoming_first, std::span<const Incoming> incoming, Sleepers& s,
-                const SleepOptions& o) {
-  const double g = gravity.norm();
-  bool sleeps = true;
-  for (std::size_t i = begin; i < end; ++i) {
-    double borne = s.borne[i];
-    for (std::uint32_t m = incoming_first[i]; m < incoming_first[i + 1]; ++m) {
-      const Chunk<Model>& other = chunks[incoming[m].chunk];
-      const std::uint32_t stop = other.partner_load_first[incoming[m].candidate + 1];
-      for (std::uint32_t c = other.partner_load_first[incoming[m].candidate]; c < stop; ++c) {
-        borne += norm(other.partner_loads[c].force);
-      }
+SleeperSums complete_sums(std::size_t i, std::span<const Chunk<Model>> chunks, const Particles& p,
+                          std::span<const std::uint32_t> incoming_first, std::span<const Incoming> incoming,
+                          const Sleepers& s) {
+  const bool is_watched = (s.doing[i] & watched) != 0;
+  SleeperSums sums = {p.force[i], p.torque[i], s.held_force[i], s.held_torque[i]};
+  for (std::uint32_t m = incoming_first[i]; m < incoming_first[i + 1]; ++m) {
+    const Chunk<Model>& other = chunks[incoming[m].chunk];
+    const std::uint32_t first = other.partner_load_first[incoming[m].candidate];
+    const std::uint32_t stop = other.partner_load_first[incoming[m].candidate + 1];
+    if (first == stop) continue;
+    const bool is_held = other.is_held[incoming[m].candidate] != 0;
+    if (is_held && !is_watched) continue;
+    for (std::uint32_t c = first; c < stop; ++c) {
+      (is_held ? sums.held_force : sums.force) += other.partner_loads[c].force;
+      (is_held ? sums.held_torque : sums.torque) += other.partner_loads[c].torque;
     }
-    const auto& kind = species[p.species[i]];
-    const double radius = kind.shape.bounding_radius(), bears = std::max(kind.mass * g, borne);
-    Rest& rest = s.grains[p.id[i]];
-    const Vector3<double> left = p.force[i] + kind.mass * from_eigen(gravity);
-    const double most = o.balance * bears;
-    const bool is_balanced = kind.is_held() || (norm(left) <= most && norm(p.torque[i]) <= most * radius);
-    const bool is_steady = std::abs(borne - rest.borne) <= o.change * bears;
-    const bool is_quiet = is_balanced && is_steady && norm(p.position[i] - rest.position) <= o.motion * radius;
-    rest.quiet_windows =
-        is_quiet ? std::min<std::uint8_t>(rest.quiet_windows + 1, Sleepers::windows_to_sleep) : std::uint8_t{0};
-    rest.position = p.position[i];
-    rest.force = p.force[i];
-    rest.torque = p.torque[i];
-    rest.borne = borne;
-    sleeps &= rest.quiet_windows == Sleepers::windows_to_sleep;
   }
-  if (!sleeps) return false;
-  put_to_sleep<typename Model::Shape>(begin, end, p, species, s);
-  return true;
+  if ((s.doing[i] & awake) == 0) sums.force += sums.held_force, sums.torque += sums.held_torque;
+  return sums;
+}
+
+/// Completes the sums of forces on the grains of one chunk where some sleep. Like gather_forces.
+template <class Model, class Particles>
+void gather_forces(std::size_t chunk_index, std::span<const Chunk<Model>> chunks, Particles& p,
+                   std::span<const std::uint32_t> incoming_first, std::span<const Incoming> incoming, Sleepers& s) {
+  const std::size_t begin = chunk_index * chunk_size, end = std::min(begin + chunk_size, p.count);
+  for (std::size_t i = begin; i < end; ++i) {
+    const SleeperSums sums = complete_sums<Model>(i, chunks, p, incoming_first, incoming, s);
+    if (s.doing[i] & watched) s.held_force.set(i, sums.held_force), s.held_torque.set(i, sums.held_torque);
+    p.force.set(i, sums.force);
+    p.torque.set(i, sums.torque);
+  }
 }
 
 /// The chunks that hold candidates of each other, for each chunk; from those that each of them reaches.

@@ -8,17 +8,17 @@ namespace dem {
 ///
 /// A grain bears its weight or the sum of the magnitudes of its contact forces, whichever is larger. It is at rest when
 /// in a window of steps it moves by less than `motion` of its radius, what it bears changes by less than `change` of
-/// itself, and what is left of all forces on it and of all torques is less than `balance` of it. A chunk of grains that
-/// are at rest for two windows sleeps: it is not moved, and its contacts are not looked at, but what they bear counts
-/// on. Contacts with grains that are awake and with surfaces that move are looked at on; when they change the sum of
-/// the forces or torques on a grain by more than `change` of what it bore when it fell asleep, its chunk wakes.
+/// itself, and what is left of all forces on it and of all torques is less than `balance` of it. A grain that is at
+/// rest for two windows sleeps: it is not moved, and contacts between sleepers are not evaluated, but what they bear
+/// counts on. Contacts with grains that are awake and with surfaces that move are evaluated on; when they change the
+/// sum of the forces or torques on a grain by more than `change` of what it bore when it fell asleep, it wakes.
 ///
-/// So `balance` says how exact forces are when grains fall asleep, and `change` how late a bed passes on a load that
-/// grows; a sleeping grain is out of balance by their sum at the most. A machine shakes the soil: with a `change` of
-/// 0.01 a bed hardly sleeps around it.
+/// So `balance` says how exact forces are when grains fall asleep, and `change` how late a grain passes on a load that
+/// grows; a sleeping grain is out of balance by their sum at the most. Each layer of a bed adds to that: with a
+/// `change` of 0.05 the floor under nine layers has been seen to be 23 % behind.
 struct SleepOptions {
   double balance = 0.01;  ///< of what a grain bears
-  double change = 0.05;   ///< of what a grain bears
+  double change = 0.01;   ///< of what a grain bears
   double motion = 1e-4;   ///< of a grain's bounding radius
   int window = 100;       ///< steps
 };

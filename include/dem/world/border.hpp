@@ -22,10 +22,14 @@ void forget_contacts(Chunk<Model>& chunk) {
   chunk.candidate_first.fill(0);
   chunk.pair_contacts.last.count = chunk.surface_contacts.last.count = 0;
   chunk.partner_loads.clear();
+  chunk.is_held.clear();
   chunk.surface_loads.clear();
   chunk.around.clear();
   grain::list_owners(chunk);
 }
+
+/// Marks, beside their number, loads of contacts between sleepers.
+inline constexpr std::uint32_t held_load = 0x8000;
 
 /// Appends the bytes of n items to a message.
 template <class T>
@@ -103,9 +107,10 @@ void make_borders(WorldState<Model>& w) {
   }
 }
 
-/// How many numbers tell the motion of a grain: position, velocity, angular velocity, and what its pose is made from.
+/// How many numbers tell the motion of a grain: position, velocity, angular velocity, what its pose is made from, and
+/// what it does where grains may sleep.
 template <class Model>
-inline constexpr std::size_t motion_width = Model::Shape::pose_size > 0 ? 18 : 9;
+inline constexpr std::size_t motion_width = Model::Shape::pose_size > 0 ? 19 : 10;
 
 /// Tells the other ranks where the grains are that their contacts reach.
 template <class Model>
@@ -124,6 +129,7 @@ void send_motion(WorldState<Model>& w) {
       const PartnerView& view = p.view[row];
       put(view.position), put(view.velocity), put(view.angular_velocity);
       if constexpr (Model::Shape::pose_size > 0) put(p.row0[row]), put(p.row1[row]), put(p.row2[row]);
+      *to++ = w.options.sleep ? w.sleepers.doing[row] : 0.0;
     }
     d.send(static_cast<int>(r), Model::Domain::Tag::motion, border.motion_out.data(),
            border.motion_out.size() * sizeof(double));
@@ -160,15 +166,17 @@ void take_motion(WorldState<Model>& w) {
         rotation.row2 = next();
         kind.shape.orient(rotation, p.pose_of(row));
       }
+      const double does = *from++;
+      if (w.options.sleep) w.sleepers.doing[row] = static_cast<std::uint8_t>(does);
     }
   }
   d.wait_for_sent();
 }
 
 /// Hands the loads of this rank's contacts on grains of other ranks to these, and takes those of theirs. Chunks that
-/// did not work keep theirs. `all`: also of these.
+/// did not work keep theirs.
 template <class Model>
-void swap_loads(WorldState<Model>& w, bool all = false) {
+void swap_loads(WorldState<Model>& w) {
   auto& d = w.domain;
   if (!d.is_shared()) return;
   const auto watch = d.watch_step();
@@ -179,14 +187,16 @@ void swap_loads(WorldState<Model>& w, bool all = false) {
     border.loads_out.clear();
     for (std::size_t m = 0; m < border.chunks_out.size(); ++m) {
       const std::uint32_t c = border.chunks_out[m];
-      if (!all && !std::binary_search(working.begin(), working.end(), c)) continue;
+      if (!std::binary_search(working.begin(), working.end(), c)) continue;
       const Chunk<Model>& chunk = w.chunks[c];
       const std::span candidates =
           std::span(border.candidates_out).subspan(border.first_out[m], border.first_out[m + 1] - border.first_out[m]);
       detail::append(border.loads_out, &c, 1);
       for (const std::uint32_t k : candidates) {
         const auto n = static_cast<std::uint16_t>(chunk.partner_load_first[k + 1] - chunk.partner_load_first[k]);
-        detail::append(border.loads_out, &n, 1);
+        const bool is_held = n > 0 && k < chunk.is_held.size() && chunk.is_held[k] != 0;
+        const auto told = static_cast<std::uint16_t>(n | (is_held ? detail::held_load : 0));
+        detail::append(border.loads_out, &told, 1);
       }
       for (const std::uint32_t k : candidates) {
         const std::uint32_t first = chunk.partner_load_first[k];
@@ -207,8 +217,10 @@ void swap_loads(WorldState<Model>& w, bool all = false) {
       counts.resize(chunk.candidate.size());
       detail::read(message, at, counts.data(), counts.size());
       std::uint32_t loads = 0;
+      chunk.is_held.resize(counts.size());
       for (std::size_t k = 0; k < counts.size(); ++k) {
-        loads += counts[k];
+        chunk.is_held[k] = (counts[k] & detail::held_load) != 0 ? 1 : 0;
+        loads += counts[k] & ~detail::held_load;
         chunk.partner_load_first[k + 1] = loads;
       }
       chunk.partner_loads.resize(loads);

@@ -85,7 +85,14 @@ void complete_chunks(WorldState<Model>& w) {
   }
   w.sleepers.working = d.gathered(w.sleepers.working, false);
   if (w.options.sleep) {
-    d.gather_chunks(w.sleepers.borne.data(), w.sleepers.borne.empty() ? 0 : chunk_size);
+    auto& s = w.sleepers;
+    const std::size_t width = s.borne.empty() ? 0 : chunk_size;
+    const auto gather = [&](auto& column) { d.gather_chunks(column.data(), width); };
+    gather(s.borne);
+    s.held_force.for_each_column(gather), s.held_torque.for_each_column(gather);
+    const auto first = s.doing.begin() + static_cast<std::ptrdiff_t>(begin * width),
+               last = s.doing.begin() + static_cast<std::ptrdiff_t>(end * width);
+    s.doing = d.gathered(std::vector<std::uint8_t>(first, last), false);
   }
   if (!w.chunks.empty()) {
     grain::list_incoming<Model>(w.executor, std::span(w.chunks), w.particles.count, w.images, w.incoming_first,
@@ -104,7 +111,6 @@ void share_chunks(WorldState<Model>& w) {
   make_borders(w);
   if (!d.is_shared()) return;
   std::erase_if(w.sleepers.working, [&](std::uint32_t c) { return !d.owns(c); });
-  swap_loads(w, true);
 }
 
 }  // namespace dem

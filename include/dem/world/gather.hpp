@@ -20,7 +20,9 @@ void append_work(const WorldState<Model>& w, std::size_t c, std::vector<float>& 
   const std::size_t rows = std::min((c + 1) * chunk_size, w.particles.count) - c * chunk_size, first = to.size();
   for (std::size_t k = 0; k < rows; ++k) {
     const auto candidates = static_cast<float>(chunk.candidate_first[k + 1] - chunk.candidate_first[k]);
-    to.push_back(chunk.asleep ? asleep : motion + candidates);
+    const std::uint32_t id = w.particles.id[c * chunk_size + k];
+    const bool sleeps = id < w.sleepers.grains.size() && w.sleepers.grains[id].asleep;
+    to.push_back(sleeps ? asleep : motion + candidates);
   }
   if (chunk.asleep) return;
   const auto& contacts = chunk.pair_contacts.last;

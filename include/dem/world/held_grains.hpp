@@ -53,12 +53,15 @@ struct HeldLoad {
 };
 template <class Model>
 HeldLoad load_of_held(const WorldState<Model>& w, std::size_t row) {
+  const std::span<const Chunk<Model>> chunks = w.chunks;
   HeldLoad load = {w.particles.force[row], w.particles.torque[row]};
   // A chunk that does not work keeps the whole sum of the last time.
   const auto c = static_cast<std::uint32_t>(row / chunk_size);
-  if (!w.options.sleep || std::binary_search(w.sleepers.working.begin(), w.sleepers.working.end(), c)) {
-    grain::add_incoming<Model>(row, std::span<const Chunk<Model>>(w.chunks), w.incoming_first, w.incoming, load.force,
-                               load.torque);
+  if (!w.options.sleep) {
+    grain::add_incoming<Model>(row, chunks, w.incoming_first, w.incoming, load.force, load.torque);
+  } else if (std::binary_search(w.sleepers.working.begin(), w.sleepers.working.end(), c)) {
+    const auto sums = grain::complete_sums<Model>(row, chunks, w.particles, w.incoming_first, w.incoming, w.sleepers);
+    load = {sums.force, sums.torque};
   }
   return load;
 }

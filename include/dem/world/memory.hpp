@@ -30,13 +30,17 @@ std::size_t memory_bytes(const WorldState<Model>& w) {
   };
   for (const ContactScratch<Model>& s : w.scratch) {
     sum += sizeof(s) + bytes(s.pairs.close) + bytes(s.pairs.touching) + bytes(s.pairs.hits) + bytes(s.pairs.touches) +
-           of_forces(s.pairs.forces) + bytes(s.surfaces.law_of) + bytes(s.surfaces.hits) + bytes(s.surfaces.touches) +
+           bytes(s.pairs.listed) + bytes(s.pairs.is_evaluated) + of_memory(s.pairs.merged) + of_forces(s.pairs.forces) +
+           bytes(s.surfaces.law_of) + bytes(s.surfaces.hits) + bytes(s.surfaces.touches) +
            bytes(s.surfaces.total_share) + s.surfaces.supports.bytes() + of_forces(s.surfaces.forces) +
            of_memory(s.pairs_now) + of_memory(s.surfaces_now);
   }
   if constexpr (Model::Domain::has_images) sum += bytes(w.images.grain) + bytes(w.images.shift) + bytes(w.images.level);
-  sum += bytes(w.sleepers.grains) + bytes(w.sleepers.borne) + bytes(w.sleepers.working);
-  for (const Chunk<Model>& c : w.chunks) sum += bytes(c.around) + bytes(c.reached);
+  sum += bytes(w.sleepers.grains) + bytes(w.sleepers.borne) + bytes(w.sleepers.working) + bytes(w.sleepers.doing);
+  for (const Columns3* held : {&w.sleepers.held_force, &w.sleepers.held_torque}) {
+    sum += bytes(held->x) + bytes(held->y) + bytes(held->z);
+  }
+  for (const Chunk<Model>& c : w.chunks) sum += bytes(c.around) + bytes(c.reached) + bytes(c.is_held);
   const grain::EnergyLedger& l = w.ledger;
   sum += bytes(l.last) + bytes(l.velocity) + bytes(l.spin) + bytes(l.energy);
   for (const Chunk<Model>& c : w.chunks) {

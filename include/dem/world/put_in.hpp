@@ -114,7 +114,7 @@ void put_in(WorldState<Model>& w) {
   // The lists are made here: an integrator that predicts moves grains by chunks before it asks for forces.
   w.stopwatch.start();
   rebuild_neighbours(w);
-  find_sleeping_chunks(w);
+  find_sleepers(w);
   choose_working_chunks(w);
   w.sleepers.all_work = true;
   w.stopwatch.stop(Phase::neighbours);

@@ -17,7 +17,7 @@ void relist(WorldState<Model>& w, Change&& change) {
   }
   w.stopwatch.start();
   rebuild_neighbours(w, change);
-  find_sleeping_chunks(w);
+  find_sleepers(w);
   choose_working_chunks(w);
   w.sleepers.all_work = true;
   w.stopwatch.stop(Phase::neighbours);

@@ -5,20 +5,32 @@
 
 namespace dem {
 
-/// Whether a grain is asleep decides for its chunk: a chunk sleeps if all of its grains do.
+/// What all grains do, for a step; empty where none may sleep.
+template <class Model>
+grain::Wakefulness doing(const WorldState<Model>& w) {
+  return w.options.sleep ? grain::Wakefulness(w.sleepers.doing) : grain::Wakefulness{};
+}
+
+/// Wakes the grain of a row. Those beside it are watched in the next evaluation.
+template <class Model>
+void wake_row(WorldState<Model>& w, std::size_t i) {
+  auto& s = w.sleepers;
+  if (const std::uint32_t id = w.particles.id[i]; id < s.grains.size()) s.grains[id] = {};
+  if (i >= s.doing.size() || (s.doing[i] & grain::awake)) return;
+  s.doing[i] |= grain::awake | grain::changed;
+  w.chunks[i / chunk_size].asleep = false;
+  w.chunks[i / chunk_size].changed = true;
+}
 template <class Model>
 void wake_chunk(WorldState<Model>& w, std::size_t c) {
-  w.chunks[c].asleep = false;
   const std::size_t end = std::min((c + 1) * chunk_size, w.particles.count);
-  for (std::size_t i = c * chunk_size; i < end; ++i) {
-    const std::uint32_t id = w.particles.id[i];
-    if (id < w.sleepers.grains.size()) w.sleepers.grains[id] = {};
-  }
+  for (std::size_t i = c * chunk_size; i < end; ++i) wake_row(w, i);
 }
 template <class Model>
 void wake_all(WorldState<Model>& w) {
   for (auto& rest : w.sleepers.grains) rest = {};
-  for (auto& chunk : w.chunks) chunk.asleep = false;
+  for (auto& state : w.sleepers.doing) state = grain::awake;
+  for (auto& chunk : w.chunks) chunk.asleep = chunk.changed = false;
 }
 /// Wakes what may feel that a grain is moved or taken away: its chunk and those around it.
 template <class Model>
@@ -37,48 +49,103 @@ void wake_around(WorldState<Model>& w, std::size_t row) {
   wake_chunk(w, c);
 }
 
-/// New neighbour lists: chunks hold other grains than before. One sleeps if each of its grains slept, or was at rest
-/// for as long as grains are that fall asleep. Grains beside which there is one that does not rest go on being at rest:
-/// else one that moves would, list by list, wake the chunks after it along the curve.
+/// New neighbour lists: rows hold other grains than before. All contacts are evaluated once.
 template <class Model>
-void find_sleeping_chunks(WorldState<Model>& w) {
+void find_sleepers(WorldState<Model>& w) {
   auto& s = w.sleepers;
-  auto& p = w.particles;
+  const auto& p = w.particles;
   s.all_work = true;
   if (!w.options.sleep) return;
+  const std::size_t rows = w.chunks.size() * chunk_size;
   s.grains.resize(p.row_of.size());
-  s.borne.assign(w.chunks.size() * chunk_size, 0.0);
+  s.borne.assign(rows, 0.0);
+  s.doing.assign(p.view.size(), 0);
+  const auto clear = [&](AlignedVector<double>& column) { column.assign(rows, 0.0); };
+  s.held_force.for_each_column(clear), s.held_torque.for_each_column(clear);
   grain::list_chunks_around<Model>(w.chunks);
   for (std::size_t c = 0; c < w.chunks.size(); ++c) {
-    const std::size_t begin = c * chunk_size, end = std::min(begin + chunk_size, p.count);
-    bool asleep = true;
-    for (std::size_t i = begin; i < end; ++i) {
-      const grain::Rest& rest = s.grains[p.id[i]];
-      asleep &= rest.asleep || rest.quiet_windows == grain::Sleepers::windows_to_sleep;
+    const std::size_t end = std::min((c + 1) * chunk_size, p.count);
+    Chunk<Model>& chunk = w.chunks[c];
+    chunk.asleep = true;
+    chunk.changed = false;
+    for (std::size_t i = c * chunk_size; i < end; ++i) {
+      s.doing[i] = s.grains[p.id[i]].asleep ? 0 : grain::awake;
+      chunk.asleep &= s.doing[i] == 0;
     }
-    w.chunks[c].asleep = asleep;
-    if (asleep) grain::put_to_sleep<typename Model::Shape>(begin, end, p, w.species, s);
-    else
-      for (std::size_t i = begin; i < end; ++i) s.grains[p.id[i]].asleep = false;
   }
 }
 
-/// Tells all ranks which chunks sleep. Each knows it of its own.
-template <class Model>
-void share_sleep(WorldState<Model>& w) {
-  std::vector<std::uint8_t> asleep;
-  const auto [begin, end] = w.own_chunks();
-  for (std::size_t c = begin; c < end; ++c) asleep.push_back(w.chunks[c].asleep);
-  asleep = w.domain.gathered(asleep);
-  for (std::size_t c = 0; c < asleep.size(); ++c) w.chunks[c].asleep = asleep[c] != 0;
+/// Calls f(row) for the grains with which the grain of a row has candidates, as far as this process knows them.
+template <class Model, class F>
+void for_each_beside(const WorldState<Model>& w, std::size_t row, F&& f) {
+  const Chunk<Model>& chunk = w.chunks[row / chunk_size];
+  const std::size_t local = row % chunk_size;
+  for (std::uint32_t k = chunk.candidate_first[local]; k < chunk.candidate_first[local + 1]; ++k) {
+    f(static_cast<std::size_t>(w.images.grain_of(chunk.candidate[k])));
+  }
+  for (std::uint32_t m = w.incoming_first[row]; m < w.incoming_first[row + 1]; ++m) {
+    const auto [other, candidate] = w.incoming[m];
+    f(other * chunk_size + w.chunks[other].owner[candidate]);
+  }
+  for (std::uint32_t k = 0; k < chunk.candidate_first[local]; ++k) {  // of lower rows of its own chunk
+    if (w.images.grain_of(chunk.candidate[k]) == row) f(row - local + chunk.owner[k]);
+  }
 }
 
-/// Chooses the chunks whose contacts are evaluated: those that are awake, and those of the others that somebody awake
-/// or a surface that moves may touch. After neighbours were listed it is all of them, as forces are kept by chunk.
+/// Watches the grains that fell asleep or woke, and those beside them, for a step: the sums over contacts between
+/// sleepers are made anew.
+template <class Model>
+void watch_changed(WorldState<Model>& w) {
+  auto& s = w.sleepers;
+  const auto watch = [&](std::size_t i) {
+    if (s.doing[i] & grain::awake) return;
+    s.doing[i] |= grain::watched;
+    w.chunks[i / chunk_size].watched = true;
+  };
+  std::vector<std::uint32_t> rows;
+  const auto [begin, end] = w.own_chunks();
+  for (std::size_t c = begin; c < end; ++c) {
+    if (!std::exchange(w.chunks[c].changed, false)) continue;
+    for (std::size_t i = c * chunk_size; i < std::min((c + 1) * chunk_size, w.particles.count); ++i) {
+      if ((s.doing[i] & grain::changed) == 0) continue;
+      s.doing[i] &= static_cast<std::uint8_t>(~grain::changed);
+      rows.push_back(static_cast<std::uint32_t>(i));
+    }
+  }
+  if constexpr (Model::Domain::has_ranks) rows = w.domain.gathered(rows);
+  for (const std::uint32_t row : rows) {
+    watch(row);
+    for_each_beside(w, row, watch);
+  }
+}
+
+/// Whether chunks have grains that are awake or watched: each rank knows it of its own, and tells all others.
+template <class Model>
+std::vector<std::uint8_t> active_chunks(WorldState<Model>& w) {
+  std::vector<std::uint8_t> active;
+  const auto [begin, end] = w.own_chunks();
+  for (std::size_t c = begin; c < end; ++c) active.push_back(!w.chunks[c].asleep || w.chunks[c].watched);
+  if constexpr (Model::Domain::has_ranks) active = w.domain.gathered(active);
+  return active;
+}
+
+/// Chooses the chunks that have contacts to evaluate: those with grains that are awake or watched, those beside them,
+/// and those that a surface that moves may touch. After neighbours were listed it is all of them.
 template <class Model>
 void choose_working_chunks(WorldState<Model>& w) {
   auto& s = w.sleepers;
+  const auto [begin, end] = w.own_chunks();
   s.working.clear();
+  if (!w.options.sleep) {
+    for (std::size_t c = begin; c < end; ++c) s.working.push_back(static_cast<std::uint32_t>(c));
+    s.all_work = false;
+    return;
+  }
+  watch_changed(w);
+  if (s.all_work) {
+    for (auto& state : s.doing) state |= grain::watched;
+    for (auto& chunk : w.chunks) chunk.watched = true;
+  }
   const auto touched_by_moving_surface = [&](const Chunk<Model>& chunk) {
     const double reach = shape::widened(w.largest_radius, w.materials.range());
     const Vec3 low = chunk.low - filled(reach), high = chunk.high + filled(reach);
@@ -87,17 +154,19 @@ void choose_working_chunks(WorldState<Model>& w) {
     }
     return false;
   };
-  if constexpr (Model::Domain::has_ranks) {
-    if (w.options.sleep) share_sleep(w);
-  }
-  const auto [begin, end] = w.own_chunks();
+  const std::vector<std::uint8_t> active = active_chunks(w);
   for (std::size_t c = begin; c < end; ++c) {
     const Chunk<Model>& chunk = w.chunks[c];
-    const bool works = s.all_work || !chunk.asleep ||
-                       std::any_of(chunk.around.begin(), chunk.around.end(),
-                                   [&](std::uint32_t other) { return !w.chunks[other].asleep; }) ||
-                       touched_by_moving_surface(chunk);
-    if (works) s.working.push_back(static_cast<std::uint32_t>(c));
+    const bool works =
+        active[c] || touched_by_moving_surface(chunk) ||
+        std::any_of(chunk.around.begin(), chunk.around.end(), [&](std::uint32_t k) { return active[k]; });
+    if (!works) continue;
+    s.working.push_back(static_cast<std::uint32_t>(c));
+    if (!w.record_contacts) continue;  // else the work of all of its contacts is wanted
+    for (std::size_t i = c * chunk_size; i < (c + 1) * chunk_size; ++i) s.doing[i] |= grain::watched;
+  }
+  if constexpr (Model::Domain::has_images) {
+    for (std::size_t k = 0; k < w.images.grain.size(); ++k) s.doing[w.images.first + k] = s.doing[w.images.grain[k]];
   }
   s.all_work = false;
 }
@@ -107,17 +176,37 @@ template <class Model>
 void wake_and_put_to_sleep(WorldState<Model>& w) {
   if (!w.options.sleep) return;
   auto& s = w.sleepers;
-  const std::span<const Chunk<Model>> chunks = w.chunks;
+  auto& p = w.particles;
+  const SleepOptions& o = *w.options.sleep;
+  const double g = w.options.gravity.norm();
   w.executor.for_each(s.working.size(), [&](std::size_t k) {
-    const std::size_t c = s.working[k], begin = c * chunk_size, end = std::min(begin + chunk_size, w.particles.count);
+    const std::size_t c = s.working[k];
     Chunk<Model>& chunk = w.chunks[c];
-    if (chunk.asleep) {
-      if (grain::is_disturbed<Model>(begin, end, w.particles, w.species, w.options.gravity, s, *w.options.sleep)) {
-        wake_chunk(w, c);
+    chunk.watched = false;
+    chunk.asleep = true;
+    for (std::size_t i = c * chunk_size; i < std::min((c + 1) * chunk_size, p.count); ++i) {
+      const auto& kind = w.species[p.species[i]];
+      const std::uint8_t did = s.doing[i];
+      s.doing[i] &= grain::awake;
+      if ((did & grain::awake) == 0) {
+        const double force = norm(p.force[i] - s.held_force[i]), torque = norm(p.torque[i] - s.held_torque[i]);
+        if (!(force == 0.0 && torque == 0.0)) s.doing[i] |= grain::touched;
+        // Else nothing acts on it but what is held, and that is as it was.
+        const bool may_differ = ((did | s.doing[i]) & (grain::watched | grain::touched)) != 0;
+        if (may_differ && grain::is_disturbed(i, p, kind, g, s.grains[p.id[i]], o)) wake_row(w, i);
+      } else if (s.measuring) {
+        grain::Rest& rest = s.grains[p.id[i]];
+        const double borne = grain::borne_by<Model>(i, w.chunks, w.incoming_first, w.incoming, s);
+        if (grain::end_window(i, p, kind, w.options.gravity, borne, rest, o)) {
+          rest.asleep = true;
+          p.velocity.set(i, {0, 0, 0});
+          p.spin.set(i, {0, 0, 0});
+          grain::refresh_views(i, i + 1, p, std::span<const Species<typename Model::Shape>>(w.species));
+          s.doing[i] = grain::changed;
+          chunk.changed = true;
+        }
       }
-    } else if (s.measuring) {
-      chunk.asleep = grain::end_window<Model>(begin, end, chunks, w.particles, w.species, w.options.gravity,
-                                              w.incoming_first, w.incoming, s, *w.options.sleep);
+      chunk.asleep &= (s.doing[i] & grain::awake) == 0;
     }
   });
 }

@@ -17,13 +17,15 @@ void find_chunk_contacts(WorldState<Model>& w, std::size_t c, ContactScratch<Mod
   Chunk<Model>& chunk = w.chunks[c];
   scratch.lend(chunk);
   grain::ForceSums sums;
-  grain::find_pair_contacts<Model>(c, chunk, w.particles, w.species, w.materials, w.time_step, sums, scratch.pairs);
+  grain::find_pair_contacts<Model>(c, chunk, w.particles, w.species, w.materials, w.time_step, doing(w), sums,
+                                   scratch.pairs);
   const double start = w.stopwatch.clock();
   coupling::find_surface_contacts<Model>({begin, end, chunk, w.particles, w.species, w.materials, w.surfaces,
                                           w.largest_radius, w.domain, scratch.surfaces},
                                          w.find_hits, w.time_step, sums);
   chunk.surface_seconds += w.stopwatch.clock() - start;
   sums.write(c, w.particles);
+  if (w.options.sleep) grain::hold(begin, end, scratch.pairs.held, w.sleepers);
   if (w.sleepers.measuring) {
     const std::span<double> borne(&w.sleepers.borne[begin], chunk_size);
     std::fill(borne.begin(), borne.end(), 0.0);
@@ -32,17 +34,28 @@ void find_chunk_contacts(WorldState<Model>& w, std::size_t c, ContactScratch<Mod
   }
   if (w.record_contacts) [[unlikely]]
     w.record_contacts(w, c, scratch);
-  if (w.move.last) chunk.commit();
+  if (w.move.last && w.options.sleep) chunk.commit(scratch.pairs.is_evaluated, scratch.pairs.merged);
+  else if (w.move.last) chunk.commit();
   scratch.lend(chunk);
+}
+
+/// Completes the sums of forces on the grains of a chunk.
+template <class Model>
+void gather_forces(WorldState<Model>& w, std::size_t c) {
+  if (w.options.sleep) {
+    grain::gather_forces<Model>(c, w.chunks, w.particles, w.incoming_first, w.incoming, w.sleepers);
+  } else {
+    grain::gather_forces<Model>(c, w.chunks, w.particles, w.incoming_first, w.incoming);
+  }
 }
 
 /// Sums the forces of the grains of a chunk and moves them.
 template <class Model>
 void move_chunk(WorldState<Model>& w, std::size_t c) {
-  grain::gather_forces<Model>(c, w.chunks, w.particles, w.incoming_first, w.incoming);
+  gather_forces(w, c);
   if (!w.chunks[c].asleep) {
     grain::move_chunk<Model>(c, w.chunks[c], w.particles, w.species, w.inertia, w.options.gravity, w.move.stage,
-                             w.time_step, w.move.cleans_rotations);
+                             w.time_step, w.move.cleans_rotations, doing(w));
   }
 }
 
@@ -54,7 +67,7 @@ void evaluate_contacts(WorldState<Model>& w) {
   if (w.carry_held) w.carry_held(w);
   if (neighbours_outdated(w)) {
     rebuild_neighbours(w);
-    find_sleeping_chunks(w);
+    find_sleepers(w);
   }
   place_images(w);
   w.stopwatch.stop(Phase::neighbours);
@@ -107,7 +120,7 @@ void advance(WorldState<Model>& w) {
       w.executor.for_each(w.sleepers.working.size(), [&](std::size_t k) {
         const std::size_t c = w.sleepers.working[k];
         if (!w.chunks[c].asleep)
-          grain::predict_chunk<Model>(c, w.chunks[c], w.particles, w.species, stage, w.time_step);
+          grain::predict_chunk<Model>(c, w.chunks[c], w.particles, w.species, stage, w.time_step, doing(w));
       });
     }
     // The machine's stage clears the bodies' sums, calls for the contacts, adds joints and drives, and moves the
@@ -154,7 +167,7 @@ void initialise(WorldState<Model>& w) {
   }
   w.machine_solver.initialise(w.machine, w.time, w.options.gravity, [&] { evaluate_contacts(w); });
   for_each_own_chunk([&](std::size_t c) {
-    grain::gather_forces<Model>(c, w.chunks, w.particles, w.incoming_first, w.incoming);
+    gather_forces(w, c);
     grain::initialise_chunk<Model>(c, w.particles, w.inertia, w.options.gravity);
   });
   if constexpr (Model::Domain::has_ranks) gather_rows(w);

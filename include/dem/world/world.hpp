@@ -154,16 +154,15 @@ class World : public WorldSetup<M> {
   Vec3 torque(ParticleId p) const { return to_eigen(state_.particles.torque[row(p)]); }
   /// Whether a grain sleeps (WorldOptions::sleep).
   bool is_asleep(ParticleId p) const {
-    const std::size_t r = row(p), c = r / chunk_size;
-    return state_.options.sleep && c < state_.chunks.size() && state_.chunks[c].asleep;
+    const std::uint32_t id = state_.particles.id[row(p)];
+    return state_.options.sleep && id < state_.sleepers.grains.size() && state_.sleepers.grains[id].asleep;
   }
   /// How many grains sleep.
   std::size_t asleep_count() const {
-    std::size_t count = 0;
-    for (std::size_t c = 0; c < state_.chunks.size(); ++c) {
-      if (state_.chunks[c].asleep) count += std::min(chunk_size, state_.particles.count - c * chunk_size);
-    }
-    return count;
+    if (!state_.options.sleep) return 0;
+    const auto& rests = state_.sleepers.grains;
+    return static_cast<std::size_t>(
+        std::count_if(rests.begin(), rests.end(), [](const grain::Rest& rest) { return rest.asleep; }));
   }
   SpeciesId species_of(ParticleId p) const { return SpeciesId(state_.particles.species[row(p)]); }
   const Species<Shape>& species(SpeciesId s) const { return known(state_.species, s, "species"); }

@@ -8,8 +8,8 @@
 
 namespace dem::io::detail {
 
-/// Who sleeps, what wakes them, and the loads that sleeping chunks go on to exert. To be called when the chunks have
-/// their candidates.
+/// Who sleeps, what wakes them, and the loads that go on while they sleep. To be called when the chunks have their
+/// candidates.
 template <class Model>
 void sleep_fields(Fields& v, WorldState<Model>& w) {
   grain::Sleepers& s = w.sleepers;
@@ -23,9 +23,8 @@ void sleep_fields(Fields& v, WorldState<Model>& w) {
   if (!may_sleep || v.task() == Fields::Task::compare) return;
 
   constexpr std::size_t width = 12, load_width = 6;
-  std::vector<double> rests, partner_loads, surface_loads;
-  std::vector<std::uint8_t> asleep;
-  std::vector<std::uint32_t> load_first, surface_count, surfaces;
+  std::vector<double> rests, held, surface_loads;
+  std::vector<std::uint32_t> surface_count, surfaces;
   const auto append = [](std::vector<double>& list, const Vector3<double>& x) {
     list.insert(list.end(), {x.x, x.y, x.z});
   };
@@ -34,12 +33,9 @@ void sleep_fields(Fields& v, WorldState<Model>& w) {
       for (const auto* x : {&r.position, &r.force, &r.torque}) append(rests, *x);
       rests.insert(rests.end(), {r.borne, double(r.quiet_windows), double(r.asleep)});
     }
+    for (std::size_t i = 0; i < s.held_force.x.size(); ++i)
+      append(held, s.held_force[i]), append(held, s.held_torque[i]);
     for (const Chunk<Model>& c : w.chunks) {
-      asleep.push_back(c.asleep);
-      load_first.insert(load_first.end(), c.partner_load_first.begin(), c.partner_load_first.end());
-      for (std::size_t k = 0; k < c.partner_load_first.back(); ++k) {
-        append(partner_loads, c.partner_loads[k].force), append(partner_loads, c.partner_loads[k].torque);
-      }
       surface_count.push_back(static_cast<std::uint32_t>(c.surface_loads.size()));
       for (const SurfaceLoad& load : c.surface_loads) {
         surfaces.push_back(load.surface.value);
@@ -49,9 +45,8 @@ void sleep_fields(Fields& v, WorldState<Model>& w) {
   }
   v.copied("resting", ColumnKind::real, width, rests);
   v("borne", s.borne, "N");
-  v.copied("asleep", ColumnKind::byte, 1, asleep);
-  v.copied("partner_load_first", ColumnKind::natural32, 1, load_first);
-  v.copied("partner_loads", ColumnKind::real, load_width, partner_loads);
+  v.copied("doing", ColumnKind::byte, 1, s.doing);
+  v.copied("held_loads", ColumnKind::real, load_width, held);
   v.copied("surface_load_count", ColumnKind::natural32, 1, surface_count);
   v.copied("surface_load_of", ColumnKind::natural32, 1, surfaces);
   v.copied("surface_loads", ColumnKind::real, load_width, surface_loads);
@@ -70,16 +65,19 @@ void sleep_fields(Fields& v, WorldState<Model>& w) {
                    static_cast<std::uint8_t>(rests[at + 10]),
                    rests[at + 11] != 0.0};
   }
-  std::size_t first = 0, partner = 0, of_surface = 0;
+  const auto resize = [&](AlignedVector<double>& column) { column.resize(held.size() / load_width); };
+  s.held_force.for_each_column(resize), s.held_torque.for_each_column(resize);
+  for (std::size_t i = 0; i < held.size() / load_width; ++i) {
+    s.held_force.set(i, vector_at(held, i * load_width));
+    s.held_torque.set(i, vector_at(held, i * load_width + 3));
+  }
+  std::size_t of_surface = 0;
   for (std::size_t c = 0; c < w.chunks.size(); ++c) {
     Chunk<Model>& chunk = w.chunks[c];
-    chunk.asleep = asleep.at(c) != 0;
-    for (std::uint32_t& x : chunk.partner_load_first) x = load_first.at(first++);
-    chunk.partner_loads.resize(chunk.partner_load_first.back());
-    for (PartnerLoad& load : chunk.partner_loads) {
-      load = {vector_at(partner_loads, partner), vector_at(partner_loads, partner + 3)};
-      partner += load_width;
-    }
+    std::uint8_t some = 0;
+    for (std::size_t i = c * chunk_size; i < std::min((c + 1) * chunk_size, s.doing.size()); ++i) some |= s.doing[i];
+    chunk.asleep = (some & grain::awake) == 0;
+    chunk.changed = (some & grain::changed) != 0;
     chunk.surface_loads.resize(surface_count.at(c));
     for (SurfaceLoad& load : chunk.surface_loads) {
       load = {SurfaceId(surfaces.at(of_surface)), vector_at(surface_loads, of_surface * load_width),
