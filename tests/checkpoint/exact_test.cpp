@@ -119,6 +119,55 @@ TEST_CASE("a state may be saved between any two steps, and in the middle of what
   CHECK(error_of([&] { (void)pieces.world.position(ParticleId(5)); }).find("was removed") != std::string::npos);
 }
 
+TEST_CASE("a bed in which some grains sleep goes on where it was saved, and the same with its energy counted") {
+  // 64 towers of 9 cubes in three chunks, onto whose corner one more falls.
+  const Folder folder;
+  const dem::SleepOptions lax{.balance = 0.2, .change = 0.2, .motion = 0.01, .window = 40};
+  const auto set_up = [&](dem::World<VerletCubes>& w) {
+    w.set_contact({{500.0, 0.06, 1.0}, {0.4, 500.0, 0.05, 0.975}});
+    const SpeciesId cube = w.add_species(dem::shape::cube8(1e-3));
+    w.add_surface(w.ground(), dem::surface::Plane{});
+    return cube;
+  };
+  const auto with_sleep = [&](int threads) {
+    dem::WorldOptions o = options({0.3, 0.1, -9.81});
+    o.sleep = lax;
+    o.threads = threads;
+    return o;
+  };
+  dem::World<VerletCubes> whole(with_sleep(1)), pieces(with_sleep(2)), counted(with_sleep(1));
+  for (auto* w : {&whole, &pieces, &counted}) {
+    const SpeciesId cube = set_up(*w);
+    for (int k = 0; k < 576; ++k) {
+      w->add_particle({cube, Vec3(2.2e-3 * (k / 9 % 8), 2.2e-3 * (k / 72), 1e-3 + 2e-3 * (k % 9))});
+    }
+    REQUIRE(w->run(1500));
+    w->add_particle({cube, Vec3(1e-4, 0, 0.0192), {0.05, 0, -0.3}});
+  }
+  const auto go_through_file = [&] {
+    dem::save(pieces, folder / "state.h5");
+    dem::World<VerletCubes> next(with_sleep(1));
+    set_up(next);
+    dem::load(next, folder / "state.h5");
+    pieces = std::move(next);
+  };
+  int mixed = 0;
+  for (int k = 0; k < 60; ++k) {
+    if (k == 20) dem::count_energy(counted);
+    for (auto* w : {&whole, &pieces, &counted}) {
+      if (k == 30) w->set_velocity(ParticleId(8), {0.05, 0, 0.1}), w->prepare();
+      if (k == 40) w->remove_particle(ParticleId(300));
+    }
+    if (k % 2 == 0) go_through_file();
+    for (auto* w : {&whole, &pieces, &counted}) REQUIRE(w->run(13 + k % 5));
+    mixed += whole.asleep_count() > 0 && whole.asleep_count() + 1 < whole.particle_count() ? 1 : 0;
+    REQUIRE(pieces.asleep_count() == whole.asleep_count());
+    CHECK(difference(whole, pieces) == "");
+  }
+  CHECK(mixed > 20);
+  for (const ParticleId p : whole.particles()) CHECK(counted.position(p) == whole.position(p));
+}
+
 TEST_CASE("energy that is counted goes on where it was saved") {
   const Folder folder;
   auto whole = scene<HertzModel>({}), first = scene<HertzModel>({});

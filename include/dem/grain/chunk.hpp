@@ -63,9 +63,9 @@ struct Chunk {
     pair_contacts.commit_copy();
     surface_contacts.commit_copy();
   }
-  /// The same where only some candidates were evaluated. `spare` is used on the way.
-  void commit(std::span<const std::uint8_t> is_evaluated, ContactMemory<history_size<Model>>& spare) {
-    pair_contacts.commit_some(is_evaluated, spare);
+  /// The same where only some candidates were evaluated (`renews`). `spare` is used on the way.
+  void commit(std::span<const std::uint8_t> renews, ContactMemory<history_size<Model>>& spare) {
+    pair_contacts.commit_some(renews, spare);
     surface_contacts.commit_copy();
   }
 };

@@ -74,19 +74,20 @@ struct ContactMemories {
   void commit() { std::swap(now, last); }
   /// The same with `now` in memory that is used again for others: of the chunk itself only `last` is touched.
   void commit_copy() { last.copy(now); }
-  /// The same where only some candidates were evaluated: the committed histories of others stay. `spare` is used on the
-  /// way.
-  void commit_some(std::span<const std::uint8_t> is_evaluated, ContactMemory<HistorySize>& spare) {
-    if (rewrite(is_evaluated)) return;
+  /// The same where only some candidates were evaluated (`renews`, by candidate): the committed histories of others
+  /// stay. `spare` is used on the way.
+  void commit_some(std::span<const std::uint8_t> renews, ContactMemory<HistorySize>& spare) {
+    if (rewrite(renews)) return;
     // Contacts came or went: both lists become one, in the order of their keys.
     spare.make_room(now.count + last.count);
     int count = 0, l = 0;
     const auto keep_below = [&](std::uint64_t key) {
       for (; l < last.count && last.key[static_cast<std::size_t>(l)] < key; ++l) {
-        if (is_evaluated[last.key[static_cast<std::size_t>(l)] >> 32] == 0) spare.take(count++, last, l);
+        if (renews[last.key[static_cast<std::size_t>(l)] >> 32] == 0) spare.take(count++, last, l);
       }
     };
     for (int k = 0; k < now.count; ++k) {
+      if (renews[now.key[static_cast<std::size_t>(k)] >> 32] == 0) continue;
       keep_below(now.key[static_cast<std::size_t>(k)]);
       spare.take(count++, now, k);
     }
@@ -100,16 +101,17 @@ struct ContactMemories {
  private:
   /// Mostly the contacts that were evaluated are those of the last time: their histories are written over. False if
   /// they are not; what was written until then is right all the same.
-  bool rewrite(std::span<const std::uint8_t> is_evaluated) {
+  bool rewrite(std::span<const std::uint8_t> renews) {
     int l = 0;
     const auto skip_below = [&](std::uint64_t key) {
       for (; l < last.count && last.key[static_cast<std::size_t>(l)] < key; ++l) {
-        if (is_evaluated[last.key[static_cast<std::size_t>(l)] >> 32] != 0) return false;
+        if (renews[last.key[static_cast<std::size_t>(l)] >> 32] != 0) return false;
       }
       return true;
     };
     for (int k = 0; k < now.count; ++k) {
       const std::uint64_t key = now.key[static_cast<std::size_t>(k)];
+      if (renews[key >> 32] == 0) continue;
       if (!skip_below(key) || l == last.count || last.key[static_cast<std::size_t>(l)] != key) return false;
       last.take(l++, now, k);
     }

@@ -22,7 +22,7 @@ struct PairScratch {
   ContactForces forces;
   // Where grains may sleep:
   std::vector<std::uint32_t> listed;          ///< candidates that are evaluated
-  std::vector<std::uint8_t> is_evaluated;     ///< by candidate
+  std::vector<std::uint8_t> renews;           ///< by candidate: see list_evaluated
   ForceSums held;                             ///< of contacts between sleepers
   ContactMemory<history_size<Model>> merged;  ///< for Chunk::commit
 };
@@ -243,7 +243,7 @@ void find_pair_contacts(std::size_t chunk_index, Chunk<Model>& chunk, const Part
     close_count = list_close(
         pairs, all, [](std::uint32_t k) { return k; }, s.close);
   } else {
-    list_evaluated(chunk, begin, doing, s.listed, s.is_evaluated);
+    list_evaluated(chunk, begin, doing, s.listed, s.renews);
     const auto some = static_cast<std::uint32_t>(s.listed.size());
     close_count = list_close(
         pairs, some, [&](std::uint32_t k) { return s.listed[k]; }, s.close);

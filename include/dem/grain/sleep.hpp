@@ -30,7 +30,7 @@ struct Sleepers {
   std::vector<double> borne;           ///< N, by row: of the contacts that the grain's own chunk holds
   std::vector<std::uint8_t> doing;     ///< by row, images too: see Wakefulness
   Columns3 held_force, held_torque;    ///< N, N m, by row of a sleeper: the sums over its contacts with sleepers
-  std::vector<std::uint32_t> working;  ///< chunks with contacts that are evaluated
+  std::vector<std::uint32_t> working;  ///< chunks that may have contacts to evaluate
   bool measuring = false;              ///< a window ends with this step
   bool all_work = true;                ///< all contacts are, in the next evaluation: neighbour lists are new
 };

@@ -10,8 +10,9 @@ namespace dem {
 /// in a window of steps it moves by less than `motion` of its radius, what it bears changes by less than `change` of
 /// itself, and what is left of all forces on it and of all torques is less than `balance` of it. A grain that is at
 /// rest for two windows sleeps: it is not moved, and contacts between sleepers are not evaluated, but what they bear
-/// counts on. Contacts with grains that are awake and with surfaces that move are evaluated on; when they change the
-/// sum of the forces or torques on a grain by more than `change` of what it bore when it fell asleep, it wakes.
+/// counts on. Contacts with grains that are awake are evaluated on, and near anything that moves those with surfaces,
+/// too. When they change the sum of the forces or torques on a grain by more than `change` of what it bore when it fell
+/// asleep, it wakes.
 ///
 /// So `balance` says how exact forces are when grains fall asleep, and `change` how late a grain passes on a load that
 /// grows; a sleeping grain is out of balance by their sum at the most. Each layer of a bed adds to that: with a

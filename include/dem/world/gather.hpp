@@ -26,8 +26,12 @@ void append_work(const WorldState<Model>& w, std::size_t c, std::vector<float>& 
   }
   if (chunk.asleep) return;
   const auto& contacts = chunk.pair_contacts.last;
+  const auto& doing = w.sleepers.doing;
   for (int k = 0; k < contacts.count; ++k) {
-    to[first + chunk.owner[contacts.key[static_cast<std::size_t>(k)] >> 32]] += contact;
+    const std::size_t candidate = contacts.key[static_cast<std::size_t>(k)] >> 32;
+    const std::size_t i = c * chunk_size + chunk.owner[candidate], j = chunk.candidate[candidate];
+    if (w.options.sleep && std::max(i, j) < doing.size() && grain::is_held(doing, i, j)) continue;
+    to[first + chunk.owner[candidate]] += contact;
   }
 }
 

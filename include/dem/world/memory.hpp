@@ -30,7 +30,7 @@ std::size_t memory_bytes(const WorldState<Model>& w) {
   };
   for (const ContactScratch<Model>& s : w.scratch) {
     sum += sizeof(s) + bytes(s.pairs.close) + bytes(s.pairs.touching) + bytes(s.pairs.hits) + bytes(s.pairs.touches) +
-           bytes(s.pairs.listed) + bytes(s.pairs.is_evaluated) + of_memory(s.pairs.merged) + of_forces(s.pairs.forces) +
+           bytes(s.pairs.listed) + bytes(s.pairs.renews) + of_memory(s.pairs.merged) + of_forces(s.pairs.forces) +
            bytes(s.surfaces.law_of) + bytes(s.surfaces.hits) + bytes(s.surfaces.touches) +
            bytes(s.surfaces.total_share) + s.surfaces.supports.bytes() + of_forces(s.surfaces.forces) +
            of_memory(s.pairs_now) + of_memory(s.surfaces_now);

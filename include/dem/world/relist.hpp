@@ -54,6 +54,7 @@ void change_species(WorldState<Model>& w, std::size_t row, SpeciesId to) {
     w.ledger.came += (stands ? -1.0 : 1.0) * (0.5 * from.mass * dot(v, v) + 0.5 * dot(s, turn) - fall);
   }
   p.species[row] = to.value;
+  if (p.id[row] < w.sleepers.grains.size()) w.sleepers.grains[p.id[row]] = {};  // it wakes
   if (!stands) return;
   p.velocity.set(row, {0, 0, 0});
   p.spin.set(row, {0, 0, 0});

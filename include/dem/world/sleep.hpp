@@ -29,7 +29,9 @@ void wake_chunk(WorldState<Model>& w, std::size_t c) {
 template <class Model>
 void wake_all(WorldState<Model>& w) {
   for (auto& rest : w.sleepers.grains) rest = {};
-  for (auto& state : w.sleepers.doing) state = grain::awake;
+  for (std::size_t i = 0; i < std::min(w.particles.count, w.sleepers.doing.size()); ++i) {
+    w.sleepers.doing[i] = grain::awake;
+  }
   for (auto& chunk : w.chunks) chunk.asleep = chunk.changed = false;
 }
 /// Wakes what may feel that a grain is moved or taken away: its chunk and those around it.
@@ -129,8 +131,8 @@ std::vector<std::uint8_t> active_chunks(WorldState<Model>& w) {
   return active;
 }
 
-/// Chooses the chunks that have contacts to evaluate: those with grains that are awake or watched, those beside them,
-/// and those that a surface that moves may touch. After neighbours were listed it is all of them.
+/// Chooses the chunks that may have contacts to evaluate: those with grains that are awake or watched, those beside
+/// them, and those that a surface that moves may touch. After neighbours were listed it is all of them.
 template <class Model>
 void choose_working_chunks(WorldState<Model>& w) {
   auto& s = w.sleepers;
@@ -162,8 +164,8 @@ void choose_working_chunks(WorldState<Model>& w) {
         std::any_of(chunk.around.begin(), chunk.around.end(), [&](std::uint32_t k) { return active[k]; });
     if (!works) continue;
     s.working.push_back(static_cast<std::uint32_t>(c));
-    if (!w.record_contacts) continue;  // else the work of all of its contacts is wanted
-    for (std::size_t i = c * chunk_size; i < (c + 1) * chunk_size; ++i) s.doing[i] |= grain::watched;
+    if (!w.record_contacts) continue;
+    for (std::size_t i = c * chunk_size; i < (c + 1) * chunk_size; ++i) s.doing[i] |= grain::recorded;
   }
   if constexpr (Model::Domain::has_images) {
     for (std::size_t k = 0; k < w.images.grain.size(); ++k) s.doing[w.images.first + k] = s.doing[w.images.grain[k]];
@@ -187,7 +189,7 @@ void wake_and_put_to_sleep(WorldState<Model>& w) {
     for (std::size_t i = c * chunk_size; i < std::min((c + 1) * chunk_size, p.count); ++i) {
       const auto& kind = w.species[p.species[i]];
       const std::uint8_t did = s.doing[i];
-      s.doing[i] &= grain::awake;
+      s.doing[i] &= grain::awake | grain::changed;  // a part that holds grains may just have woken it
       if ((did & grain::awake) == 0) {
         const double force = norm(p.force[i] - s.held_force[i]), torque = norm(p.torque[i] - s.held_torque[i]);
         if (!(force == 0.0 && torque == 0.0)) s.doing[i] |= grain::touched;

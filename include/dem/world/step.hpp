@@ -34,7 +34,7 @@ void find_chunk_contacts(WorldState<Model>& w, std::size_t c, ContactScratch<Mod
   }
   if (w.record_contacts) [[unlikely]]
     w.record_contacts(w, c, scratch);
-  if (w.move.last && w.options.sleep) chunk.commit(scratch.pairs.is_evaluated, scratch.pairs.merged);
+  if (w.move.last && w.options.sleep) chunk.commit(scratch.pairs.renews, scratch.pairs.merged);
   else if (w.move.last) chunk.commit();
   scratch.lend(chunk);
 }
@@ -117,8 +117,9 @@ void advance(WorldState<Model>& w) {
     if constexpr (Integrator::predicts_before_forces) {
       if constexpr (Model::Domain::has_ranks)
         w.domain.is_whole = !w.domain.is_shared();  // a list made now gathers rows
-      w.executor.for_each(w.sleepers.working.size(), [&](std::size_t k) {
-        const std::size_t c = w.sleepers.working[k];
+      const auto [begin, end] = w.own_chunks();
+      w.executor.for_each(end - begin, [&, first = begin](std::size_t k) {
+        const std::size_t c = first + k;
         if (!w.chunks[c].asleep)
           grain::predict_chunk<Model>(c, w.chunks[c], w.particles, w.species, stage, w.time_step, doing(w));
       });

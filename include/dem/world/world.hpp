@@ -161,8 +161,12 @@ class World : public WorldSetup<M> {
   std::size_t asleep_count() const {
     if (!state_.options.sleep) return 0;
     const auto& rests = state_.sleepers.grains;
-    return static_cast<std::size_t>(
-        std::count_if(rests.begin(), rests.end(), [](const grain::Rest& rest) { return rest.asleep; }));
+    const auto& rows = state_.particles.row_of;
+    std::size_t count = 0;
+    for (std::size_t id = 0; id < rests.size(); ++id) {
+      count += rests[id].asleep && rows[id] != state_.particles.gone ? 1 : 0;
+    }
+    return count;
   }
   SpeciesId species_of(ParticleId p) const { return SpeciesId(state_.particles.species[row(p)]); }
   const Species<Shape>& species(SpeciesId s) const { return known(state_.species, s, "species"); }

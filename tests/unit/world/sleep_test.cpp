@@ -181,13 +181,13 @@ TEST_CASE("histories of contacts that were not evaluated stay, whatever comes an
       m.history[0][k] = entries[k].history;
     }
   };
-  const std::vector<std::uint8_t> is_evaluated = {0, 1, 0, 1, 0};
+  const std::vector<std::uint8_t> renews = {0, 1, 0, 1, 0};
   const auto check = [&](const std::vector<Entry>& now, const std::vector<Entry>& wanted) {
     dem::ContactMemories<1> m;
     Memory spare;
     list(m.last, {{0, 3, 1.0}, {1, 2, 2.0}, {1, 5, 3.0}, {2, 0, 4.0}, {2, 1, 5.0}, {3, 0, 6.0}, {4, 7, 7.0}});
     list(m.now, now);
-    m.commit_some(is_evaluated, spare);
+    m.commit_some(renews, spare);
     REQUIRE(m.committed() == static_cast<int>(wanted.size()));
     for (std::size_t k = 0; k < wanted.size(); ++k) {
       CHECK(m.last.key[k] == (wanted[k].candidate << 32 | wanted[k].point));
