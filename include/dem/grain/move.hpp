@@ -136,21 +136,29 @@ Value chosen(const PackMask& condition, const Value& yes, const Value& no) {
   }
 }
 
+/// Which grains of a pack sleep.
+inline PackMask sleeping(std::size_t i, Wakefulness doing) {
+  return generate([&](int lane) { return doing[i + static_cast<std::size_t>(lane)] & awake ? 0.0 : 1.0; }) > Pack(0.0);
+}
+/// Whether all grains of a pack do.
+inline bool all_sleep(std::size_t i, Wakefulness doing) {
+  std::uint8_t any = 0;
+  for (std::size_t lane = 0; lane < pack_width; ++lane) any |= doing[i + lane];
+  return (any & awake) == 0;
+}
+
 /// Calls advance(i, motion, memory) for each pack of a chunk's grains. Grains that sleep stay as they are.
 template <class Particles, class Advance>
 void advance_chunk(std::size_t begin, Particles& p, Wakefulness doing, const Advance& advance) {
   for (std::size_t i = begin; i < begin + chunk_size; i += static_cast<std::size_t>(pack_width)) {
+    if (!doing.empty() && all_sleep(i, doing)) continue;
     integrator::Motion<Pack> m = p.motion(i);
     auto memory = p.memory_pack(i);
-    if (doing.empty()) {
-      advance(i, m, memory);
-    } else {
-      const PackMask sleeps =
-          generate([&](int lane) { return doing[i + static_cast<std::size_t>(lane)] & awake ? 0.0 : 1.0; }) > Pack(0.0);
-      if (bits(sleeps) == (1u << pack_width) - 1) continue;
-      const auto m_before = m;
-      const auto memory_before = memory;
-      advance(i, m, memory);
+    const auto m_before = m;
+    const auto memory_before = memory;
+    advance(i, m, memory);
+    if (!doing.empty()) {
+      const PackMask sleeps = sleeping(i, doing);
       m = chosen(sleeps, m_before, m);
       memory = chosen(sleeps, memory_before, memory);
     }

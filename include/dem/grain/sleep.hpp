@@ -29,6 +29,7 @@ struct Sleepers {
   std::vector<Rest> grains;            ///< by id
   std::vector<double> borne;           ///< N, by row: of the contacts that the grain's own chunk holds
   std::vector<std::uint8_t> doing;     ///< by row, images too: see Wakefulness
+  std::vector<std::uint8_t> acted_on;  ///< by row: more than what is held acted on the grain in this evaluation
   Columns3 held_force, held_torque;    ///< N, N m, by row of a sleeper: the sums over its contacts with sleepers
   std::vector<std::uint32_t> working;  ///< chunks that may have contacts to evaluate
   bool measuring = false;              ///< a window ends with this step
@@ -135,6 +136,10 @@ void gather_forces(std::size_t chunk_index, std::span<const Chunk<Model>> chunks
   for (std::size_t i = begin; i < end; ++i) {
     const SleeperSums sums = complete_sums<Model>(i, chunks, p, incoming_first, incoming, s);
     if (s.doing[i] & watched) s.held_force.set(i, sums.held_force), s.held_torque.set(i, sums.held_torque);
+    // Written such that a NaN acts as well.
+    const Vector3<double> force = sums.force - sums.held_force, torque = sums.torque - sums.held_torque;
+    s.acted_on[i] = !(force.x == 0.0 && force.y == 0.0 && force.z == 0.0) ||
+                    !(torque.x == 0.0 && torque.y == 0.0 && torque.z == 0.0);
     p.force.set(i, sums.force);
     p.torque.set(i, sums.torque);
   }

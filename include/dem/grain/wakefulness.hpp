@@ -35,15 +35,18 @@ inline bool is_evaluated(Wakefulness doing, std::size_t i, std::size_t j) {
 template <class Model>
 void list_evaluated(const Chunk<Model>& chunk, std::size_t begin, Wakefulness doing, std::vector<std::uint32_t>& listed,
                     std::vector<std::uint8_t>& renews) {
-  const std::size_t candidates = chunk.candidate.size();
-  listed.resize(candidates);
-  renews.resize(candidates);
+  constexpr std::uint8_t counts = awake | watched;
+  listed.resize(chunk.candidate.size());
+  renews.resize(chunk.candidate.size());
   std::size_t count = 0;
-  for (std::uint32_t k = 0; k < candidates; ++k) {
-    const std::size_t i = begin + chunk.owner[k], j = chunk.candidate[k];
-    renews[k] = is_evaluated(doing, i, j) ? 1 : 0;
-    listed[count] = k;
-    count += (renews[k] | ((doing[i] | doing[j]) & recorded)) != 0 ? 1 : 0;
+  for (std::size_t row = 0; row < chunk_size; ++row) {
+    const std::uint32_t first = chunk.candidate_first[row], end = chunk.candidate_first[row + 1];
+    for (std::uint32_t k = first; k < end; ++k) {
+      const auto both = static_cast<std::uint8_t>(doing[begin + row] | doing[chunk.candidate[k]]);
+      renews[k] = both & counts;
+      listed[count] = k;
+      count += (both & (counts | recorded)) != 0 ? 1 : 0;
+    }
   }
   listed.resize(count);
 }

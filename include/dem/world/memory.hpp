@@ -36,7 +36,8 @@ std::size_t memory_bytes(const WorldState<Model>& w) {
            of_memory(s.pairs_now) + of_memory(s.surfaces_now);
   }
   if constexpr (Model::Domain::has_images) sum += bytes(w.images.grain) + bytes(w.images.shift) + bytes(w.images.level);
-  sum += bytes(w.sleepers.grains) + bytes(w.sleepers.borne) + bytes(w.sleepers.working) + bytes(w.sleepers.doing);
+  sum += bytes(w.sleepers.grains) + bytes(w.sleepers.borne) + bytes(w.sleepers.working) + bytes(w.sleepers.doing) +
+         bytes(w.sleepers.acted_on);
   for (const Columns3* held : {&w.sleepers.held_force, &w.sleepers.held_torque}) {
     sum += bytes(held->x) + bytes(held->y) + bytes(held->z);
   }

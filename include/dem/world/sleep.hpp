@@ -61,6 +61,7 @@ void find_sleepers(WorldState<Model>& w) {
   const std::size_t rows = w.chunks.size() * chunk_size;
   s.grains.resize(p.row_of.size());
   s.borne.assign(rows, 0.0);
+  s.acted_on.assign(rows, 0);
   s.doing.assign(p.view.size(), 0);
   const auto clear = [&](AlignedVector<double>& column) { column.assign(rows, 0.0); };
   s.held_force.for_each_column(clear), s.held_torque.for_each_column(clear);
@@ -187,16 +188,16 @@ void wake_and_put_to_sleep(WorldState<Model>& w) {
     chunk.watched = false;
     chunk.asleep = true;
     for (std::size_t i = c * chunk_size; i < std::min((c + 1) * chunk_size, p.count); ++i) {
-      const auto& kind = w.species[p.species[i]];
       const std::uint8_t did = s.doing[i];
       s.doing[i] &= grain::awake | grain::changed;  // a part that holds grains may just have woken it
       if ((did & grain::awake) == 0) {
-        const double force = norm(p.force[i] - s.held_force[i]), torque = norm(p.torque[i] - s.held_torque[i]);
-        if (!(force == 0.0 && torque == 0.0)) s.doing[i] |= grain::touched;
+        if (s.acted_on[i]) s.doing[i] |= grain::touched;
         // Else nothing acts on it but what is held, and that is as it was.
-        const bool may_differ = ((did | s.doing[i]) & (grain::watched | grain::touched)) != 0;
-        if (may_differ && grain::is_disturbed(i, p, kind, g, s.grains[p.id[i]], o)) wake_row(w, i);
+        if (((did | s.doing[i]) & (grain::watched | grain::touched)) == 0) continue;
+        const auto& kind = w.species[p.species[i]];
+        if (grain::is_disturbed(i, p, kind, g, s.grains[p.id[i]], o)) wake_row(w, i);
       } else if (s.measuring) {
+        const auto& kind = w.species[p.species[i]];
         grain::Rest& rest = s.grains[p.id[i]];
         const double borne = grain::borne_by<Model>(i, w.chunks, w.incoming_first, w.incoming, s);
         if (grain::end_window(i, p, kind, w.options.gravity, borne, rest, o)) {
@@ -208,7 +209,7 @@ void wake_and_put_to_sleep(WorldState<Model>& w) {
           chunk.changed = true;
         }
       }
-      chunk.asleep &= (s.doing[i] & grain::awake) == 0;
+      if (s.doing[i] & grain::awake) chunk.asleep = false;
     }
   });
 }

@@ -67,6 +67,7 @@ void sleep_fields(Fields& v, WorldState<Model>& w) {
   }
   const auto resize = [&](AlignedVector<double>& column) { column.resize(held.size() / load_width); };
   s.held_force.for_each_column(resize), s.held_torque.for_each_column(resize);
+  s.acted_on.assign(held.size() / load_width, 0);
   for (std::size_t i = 0; i < held.size() / load_width; ++i) {
     s.held_force.set(i, vector_at(held, i * load_width));
     s.held_torque.set(i, vector_at(held, i * load_width + 3));
