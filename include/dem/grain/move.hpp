@@ -85,17 +85,16 @@ void refresh_chunk(std::size_t chunk_index, Chunk<Model>& chunk, Particles& p,
                    std::span<const Species<typename Model::Shape>> species, Wakefulness doing = {}) {
   const std::size_t begin = chunk_index * chunk_size;
   const std::size_t end = std::min(begin + chunk_size, p.count);
-  const auto refresh = [&](std::size_t first, std::size_t last) {
-    refresh_views(first, last, p, species);
-    if constexpr (Model::Shape::pose_size > 0) {
-      for (std::size_t i = first; i < last; ++i) species[p.species[i]].shape.orient(p.rotation(i), p.pose_of(i));
-    }
-  };
   if (doing.empty()) {
-    refresh(begin, end);
+    refresh_views(begin, end, p, species);
   } else {
     for (std::size_t i = begin; i < end; ++i) {
-      if (doing[i] & awake) refresh(i, i + 1);
+      if (doing[i] & awake) refresh_views(i, i + 1, p, species);
+    }
+  }
+  if constexpr (Model::Shape::pose_size > 0) {
+    for (std::size_t i = begin; i < end; ++i) {
+      if (doing.empty() || doing[i] & awake) species[p.species[i]].shape.orient(p.rotation(i), p.pose_of(i));
     }
   }
   if (end < begin + chunk_size) p.pad();
@@ -154,10 +153,12 @@ void advance_chunk(std::size_t begin, Particles& p, Wakefulness doing, const Adv
     if (!doing.empty() && all_sleep(i, doing)) continue;
     integrator::Motion<Pack> m = p.motion(i);
     auto memory = p.memory_pack(i);
-    const auto m_before = m;
-    const auto memory_before = memory;
-    advance(i, m, memory);
-    if (!doing.empty()) {
+    if (doing.empty()) {
+      advance(i, m, memory);
+    } else {
+      const auto m_before = m;
+      const auto memory_before = memory;
+      advance(i, m, memory);
       const PackMask sleeps = sleeping(i, doing);
       m = chosen(sleeps, m_before, m);
       memory = chosen(sleeps, memory_before, memory);

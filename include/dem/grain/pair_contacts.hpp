@@ -67,19 +67,20 @@ std::size_t list_close(const Pairs& pairs, std::uint32_t candidates, const Candi
   close.resize(candidates + std::size_t{pack_width});
   std::size_t count = 0;
   PartnerLanes partners;
+  std::uint32_t of_lane[pack_width];
   for (std::uint32_t at = 0; at < candidates; at += pack_width) {
     for (std::uint32_t lane = 0; lane < pack_width; ++lane) {
       prefetch(&pairs.p.view[pairs.j(candidate(std::min(at + lane + ahead, candidates - 1)))], sizeof(PartnerView));
     }
     for (std::uint32_t lane = 0; lane < pack_width; ++lane) {
-      const std::uint32_t k = candidate(std::min(at + lane, candidates - 1));
+      const std::uint32_t k = of_lane[lane] = candidate(std::min(at + lane, candidates - 1));
       partners.set(static_cast<int>(lane), pairs.p.view[pairs.i(k)], pairs.p.view[pairs.j(k)]);
     }
     const auto [x, y, z, radii] = separations(partners);
     const Pack reach = shape::widened(radii, pairs.gap());
     const std::uint32_t near = bits(x * x + y * y + z * z < reach * reach);
     for (std::uint32_t lane = 0; lane < pack_width; ++lane) {
-      close[count] = candidate(std::min(at + lane, candidates - 1));
+      close[count] = of_lane[lane];
       count += near >> lane & (at + lane < candidates ? 1u : 0u);
     }
   }
