@@ -4,8 +4,11 @@
 #include <dem/grain/species.hpp>
 #include <dem/grain/wakefulness.hpp>
 
+#include <array>
+#include <bit>
 #include <cmath>
 #include <span>
+#include <type_traits>
 
 namespace dem::grain {
 

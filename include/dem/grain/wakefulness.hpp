@@ -11,9 +11,8 @@ namespace dem::grain {
 
 /// What a grain does, as bits.
 /// - `awake`: it is moved.
-/// - `watched`: all of its contacts are evaluated in this step, as it fell asleep or a grain beside it fell asleep or
-/// woke.
-///   After new neighbour lists all grains are watched.
+/// - `watched`: all of its contacts are evaluated in this step. It, or a grain beside it, fell asleep or woke, or
+///   neighbours were listed anew.
 /// - `changed`: it fell asleep or woke since contacts were evaluated.
 /// - `touched`: it sleeps, and grains that are awake, or surfaces, act on it.
 /// - `recorded`: its contacts are evaluated because energy is counted, and for nothing else.

@@ -3,6 +3,10 @@
 #include <dem/grain/sleep.hpp>
 #include <dem/world/state.hpp>
 
+#include <algorithm>
+#include <utility>
+#include <vector>
+
 namespace dem {
 
 /// What all grains do, for a step; empty where none may sleep.
