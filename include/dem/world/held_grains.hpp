@@ -32,6 +32,7 @@ void carry_held(WorldState<Model>& w) {
                           ? transpose_times(rotation, turning)
                           : turning);
       if constexpr (Model::Shape::has_orientation) p.set_rotation(row, rotation);
+      if (w.options.sleep) wake_row(w, row);
       const auto c = static_cast<std::uint32_t>(row / chunk_size);
       if (c < w.chunks.size() && (chunks.empty() || chunks.back() != c)) chunks.push_back(c);
     }
@@ -39,9 +40,6 @@ void carry_held(WorldState<Model>& w) {
   if (chunks.empty()) return;
   std::sort(chunks.begin(), chunks.end());
   chunks.erase(std::unique(chunks.begin(), chunks.end()), chunks.end());
-  if (w.options.sleep) {
-    for (const std::uint32_t c : chunks) wake_around(w, c * chunk_size);
-  }
   if (!w.list_valid) return;  // all is refreshed when neighbours are listed
   w.executor.for_each(
       chunks.size(), [&](std::size_t k) { grain::refresh_chunk<Model>(chunks[k], w.chunks[chunks[k]], p, w.species); });

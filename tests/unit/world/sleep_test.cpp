@@ -44,6 +44,33 @@ struct Towers {
   double on_floor() const { return -w.surface_force(floor).z(); }
 };
 
+/// The force and the torque on each sleeper are the sums over all of its contacts. Of a grain among sleepers they must
+/// agree to rounding. Beside one that is awake dampers differ, as contacts_of takes speeds after the forces and the
+/// step those before: by c a dt/2 = 0.025 N s/m times 3e-5 s times a few g, a few hundredths of a grain's weight; more
+/// where it is hit.
+void check_sums(const dem::World<models::VerletCubes>& w, const std::vector<ParticleId>& grains, double weight) {
+  const double one = w.species(SpeciesId(0)).mass * g;
+  std::vector<Vec3> sum(w.particle_count(), Vec3::Zero()), turn = sum;
+  std::set<std::uint32_t> beside_awake;
+  for (const auto& c : dem::contacts_of(w)) {
+    if (c.kind == dem::ContactKind::grains && !w.is_asleep(c.grain)) beside_awake.insert(c.other_grain.value);
+    if (c.kind == dem::ContactKind::grains && !w.is_asleep(c.other_grain)) beside_awake.insert(c.grain.value);
+    sum[c.grain.value] += c.force;
+    turn[c.grain.value] += c.torque;
+    if (c.kind != dem::ContactKind::grains) continue;
+    sum[c.other_grain.value] -= c.force;
+    turn[c.other_grain.value] += c.other_torque;
+  }
+  for (const ParticleId p : grains) {
+    if (!w.is_asleep(p)) continue;
+    INFO("grain " << p.value << " after " << w.steps() << " steps");
+    const bool is_kept = beside_awake.count(p.value) == 0;
+    const double most = is_kept ? 1e-9 * weight : 0.5 * one;
+    CHECK((w.force(p) - sum[p.value]).norm() < most);
+    CHECK((w.torque(p) - turn[p.value]).norm() < most * Towers::half);
+  }
+}
+
 }  // namespace
 
 TEST_CASE("a bed falls asleep, weighs what it weighs, and its grains stay where they are") {
@@ -109,6 +136,50 @@ TEST_CASE("a floor that sinks under a sleeping bed takes it along") {
   }
 }
 
+TEST_CASE("grains that a part holds wake as it moves, and so do those that stand on them") {
+  // Towers of 5 on cubes that are glued to a table, and a visitor on one of them, so that contacts are evaluated. The
+  // table begins to sink in the middle of a step: its grains wake at the step's end, after the contacts.
+  dem::World<models::VerletCubes> w(Towers::with(true, 1));
+  w.set_contact({{500.0, 0.06, 1.0}, {0.4, 500.0, 0.05, 0.975}});
+  const auto cube = w.add_species(dem::shape::cube8(1e-3)),
+             glued = w.add_species(dem::shape::cube8(1e-3), {.held = true});
+  const auto table = w.machine().add_fixed_body("table", Vec3::Zero());
+  const double begins = 0.0702, speed = 0.01, way = 1e-4;  // s, m/s, m
+  w.machine().add_motion(dem::mbd::prescribed_position(
+      "sink", table, Vec3::UnitZ(),
+      dem::mbd::Signal::function([=](double t) { return -std::clamp(speed * (t - begins), 0.0, way); })));
+  std::vector<ParticleId> on_table, grains;
+  for (int k = 0; k < 384; ++k) {
+    const ParticleId p =
+        w.add_particle({k < 64 ? glued : cube, Vec3(2.2e-3 * (k % 8), 2.2e-3 * (k / 8 % 8), 2e-3 * (k / 64))});
+    if (k < 64) w.attach(p, table);
+    (k < 64 ? on_table : grains).push_back(p);
+  }
+  const double weight = static_cast<double>(grains.size()) * w.species(cube).mass * g;
+  REQUIRE(w.run_for(begins - 0.01));
+  REQUIRE(w.asleep_count() == 384);
+  grains.push_back(w.add_particle({cube, Vec3(0, 0, 2e-3 * 6 + 5e-4), {0, 0, -0.1}}));
+  REQUIRE(w.run_for(0.01 - 1e-4));
+  REQUIRE(!w.state().sleepers.working.empty());
+  REQUIRE(std::any_of(on_table.begin(), on_table.end(), [&](ParticleId p) { return w.is_asleep(p); }));
+  bool has_moved = false;
+  while (w.time() < begins + 2 * way / speed) {
+    REQUIRE(w.run(1));
+    const bool moves = w.machine().body(table).velocity().norm() > 0.0;
+    if (moves && !has_moved) {
+      has_moved = true;
+      for (const ParticleId p : on_table) CHECK(!w.is_asleep(p));
+    }
+    check_sums(w, grains, weight);
+  }
+  CHECK(has_moved);
+  REQUIRE(w.run_for(0.05));
+  for (std::size_t k = 0; k < 320; ++k) {
+    CHECK(w.position(grains[k]).z() == Approx(2e-3 * static_cast<double>(k / 64 + 1) - way).margin(1e-5));
+  }
+  CHECK(w.asleep_count() == 385);
+}
+
 TEST_CASE("a grain that lands wakes its surroundings, and is held") {
   Towers bed(true);
   REQUIRE(bed.w.run_for(0.07));
@@ -127,43 +198,21 @@ TEST_CASE("a grain that lands wakes its surroundings, and is held") {
   CHECK(bed.on_floor() == Approx(bed.weight * (1.0 + 1.0 / static_cast<double>(bed.grains.size()))).epsilon(0.01));
 }
 
-TEST_CASE("the force on each grain is that of all of its contacts, evaluated in this step or held") {
+TEST_CASE("the force on each grain is that of all of its contacts, evaluated in this step or kept") {
   // Gravity leans, so that friction holds the towers. A visitor lands on one corner: some grains are awake, most sleep.
-  // Of a grain among sleepers the sums must agree to rounding. Beside one that is awake dampers differ, as contacts_of
-  // takes speeds after the forces and the step those before: by c a dt/2 = 0.025 N s/m times 3e-5 s times a few g, a
-  // few hundredths of a grain's weight; more where it is hit.
   Towers bed(true);
   const dem::SleepOptions lax{.balance = 0.2, .change = 0.2, .motion = 0.01, .window = 50};
   bed.w.set_gravity({0.03 * g, 0.01 * g, -g});
   bed.w.set_sleep(lax);
   REQUIRE(bed.w.run_for(0.1));
   bed.grains.push_back(bed.w.add_particle({SpeciesId(0), Vec3(0, 0, 2e-3 * Towers::high + 2e-3), {0, 0, -0.2}}));
-  const double one = bed.w.species(SpeciesId(0)).mass * g;
   int mixed = 0;
   for (int k = 0; k < 40; ++k) {
     const auto into = static_cast<int>(bed.w.steps() % static_cast<std::uint64_t>(lax.window));
     REQUIRE(bed.w.run(lax.window - into + 1 + k));  // from 1 to 40 steps into a window
     const std::size_t asleep = bed.w.asleep_count();
     mixed += asleep > 0 && asleep < bed.grains.size() ? 1 : 0;
-    std::vector<Vec3> sum(bed.w.particle_count(), Vec3::Zero()), turn = sum;
-    std::set<std::uint32_t> beside_awake;
-    for (const auto& c : dem::contacts_of(bed.w)) {
-      if (c.kind == dem::ContactKind::grains && !bed.w.is_asleep(c.grain)) beside_awake.insert(c.other_grain.value);
-      if (c.kind == dem::ContactKind::grains && !bed.w.is_asleep(c.other_grain)) beside_awake.insert(c.grain.value);
-      sum[c.grain.value] += c.force;
-      turn[c.grain.value] += c.torque;
-      if (c.kind != dem::ContactKind::grains) continue;
-      sum[c.other_grain.value] -= c.force;
-      turn[c.other_grain.value] += c.other_torque;
-    }
-    for (const ParticleId p : bed.grains) {
-      if (!bed.w.is_asleep(p)) continue;
-      INFO("grain " << p.value << " after " << bed.w.steps() << " steps");
-      const bool is_held = beside_awake.count(p.value) == 0;
-      const double most = is_held ? 1e-9 * bed.weight : 0.5 * one;
-      CHECK((bed.w.force(p) - sum[p.value]).norm() < most);
-      CHECK((bed.w.torque(p) - turn[p.value]).norm() < most * Towers::half);
-    }
+    check_sums(bed.w, bed.grains, bed.weight);
   }
   CHECK(mixed > 5);
 }
