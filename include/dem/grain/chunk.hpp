@@ -48,24 +48,21 @@ struct Chunk {
   Vec3 low = Vec3::Zero(), high = Vec3::Zero();  ///< of the grains' centres
   double moved2 = 0.0;  ///< m^2, largest squared displacement since the neighbour list was made
   DeepestContact deepest;
-  double surface_seconds = 0.0;       ///< s, spent on contacts with surfaces while the stopwatch was on
-  bool finite = true;                 ///< no position or velocity is NaN or infinite
-  bool asleep = false;                ///< all of its grains sleep
-  bool watched = false;               ///< some of them are watched (grain::watched)
-  bool changed = false;               ///< some of them fell asleep or woke since contacts were evaluated
-  std::vector<std::uint8_t> is_held;  ///< where grains may sleep, by candidate: both grains slept when it was evaluated
+  double surface_seconds = 0.0;      ///< s, spent on contacts with surfaces while the stopwatch was on
+  bool finite = true;                ///< no position or velocity is NaN or infinite
+  bool asleep = false;               ///< all of its grains sleep
+  bool watched = false;              ///< some of them are watched (grain::watched)
+  bool changed = false;              ///< some of them fell asleep or woke since contacts were evaluated
+  std::vector<std::uint8_t> sleeps;  ///< where grains may sleep, by candidate: both grains slept when it was evaluated
   std::vector<std::uint32_t> reached;  ///< other chunks of whose grains it has candidates
   std::vector<std::uint32_t> around;   ///< chunks with which it has candidates; listed where grains may sleep
 
   /// The contact histories of this step become the ones that the next step starts from. To be called while the chunk
   /// has the memory that they were written to (ContactScratch::lend).
-  void commit() {
-    pair_contacts.commit_copy();
-    surface_contacts.commit_copy();
-  }
-  /// The same where only some candidates were evaluated (`renews`). `spare` is used on the way.
+  /// If only some candidates were evaluated, `renews` says which, and `spare` is used on the way; else it is empty.
   void commit(std::span<const std::uint8_t> renews, ContactMemory<history_size<Model>>& spare) {
-    pair_contacts.commit_some(renews, spare);
+    if (renews.empty()) pair_contacts.commit_copy();
+    else pair_contacts.commit_some(renews, spare);
     surface_contacts.commit_copy();
   }
 };

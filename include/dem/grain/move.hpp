@@ -20,8 +20,9 @@ struct Incoming {
 
 /// Adds to a grain's force and torque those of the contacts that other chunks hold.
 template <class Model>
-void add_incoming(std::size_t i, std::span<const Chunk<Model>> chunks, std::span<const std::uint32_t> incoming_first,
-                  std::span<const Incoming> incoming, Vector3<double>& force, Vector3<double>& torque) {
+DEM_HOT void add_incoming(std::size_t i, std::span<const Chunk<Model>> chunks,
+                          std::span<const std::uint32_t> incoming_first, std::span<const Incoming> incoming,
+                          Vector3<double>& force, Vector3<double>& torque) {
   for (std::uint32_t m = incoming_first[i]; m < incoming_first[i + 1]; ++m) {
     const Chunk<Model>& other = chunks[incoming[m].chunk];
     const std::uint32_t stop = other.partner_load_first[incoming[m].candidate + 1];
@@ -88,18 +89,12 @@ void refresh_chunk(std::size_t chunk_index, Chunk<Model>& chunk, Particles& p,
                    std::span<const Species<typename Model::Shape>> species, Wakefulness doing = {}) {
   const std::size_t begin = chunk_index * chunk_size;
   const std::size_t end = std::min(begin + chunk_size, p.count);
-  if (doing.empty()) {
-    refresh_views(begin, end, p, species);
-  } else {
-    for (std::size_t i = begin; i < end; ++i) {
-      if (doing[i] & awake) refresh_views(i, i + 1, p, species);
+  for_each_awake_run(begin, end, doing, [&](std::size_t first, std::size_t stop) {
+    refresh_views(first, stop, p, species);
+    if constexpr (Model::Shape::pose_size > 0) {
+      for (std::size_t i = first; i < stop; ++i) species[p.species[i]].shape.orient(p.rotation(i), p.pose_of(i));
     }
-  }
-  if constexpr (Model::Shape::pose_size > 0) {
-    for (std::size_t i = begin; i < end; ++i) {
-      if (doing.empty() || doing[i] & awake) species[p.species[i]].shape.orient(p.rotation(i), p.pose_of(i));
-    }
-  }
+  });
   if (end < begin + chunk_size) p.pad();
   Vector3<Pack> low = p.position.pack(begin), high = low;
   Pack moved2(0.0), check(0.0);
@@ -142,21 +137,22 @@ Value chosen(const PackMask& condition, const Value& yes, const Value& no) {
 inline PackMask sleeping(std::size_t i, Wakefulness doing) {
   return generate([&](int lane) { return doing[i + static_cast<std::size_t>(lane)] & awake ? 0.0 : 1.0; }) > Pack(0.0);
 }
-/// Whether all grains of a pack do.
-inline bool all_sleep(std::size_t i, Wakefulness doing) {
-  std::uint8_t any = 0;
-  for (std::size_t lane = 0; lane < pack_width; ++lane) any |= doing[i + lane];
-  return (any & awake) == 0;
+/// How many of them are awake.
+inline std::size_t count_awake(std::size_t i, Wakefulness doing) {
+  std::size_t count = 0;
+  for (std::size_t lane = 0; lane < pack_width; ++lane) count += doing[i + lane] & awake;
+  return count;
 }
 
 /// Calls advance(i, motion, memory) for each pack of a chunk's grains. Grains that sleep stay as they are.
 template <class Particles, class Advance>
 void advance_chunk(std::size_t begin, Particles& p, Wakefulness doing, const Advance& advance) {
   for (std::size_t i = begin; i < begin + chunk_size; i += static_cast<std::size_t>(pack_width)) {
-    if (!doing.empty() && all_sleep(i, doing)) continue;
+    const std::size_t awake_here = doing.empty() ? pack_width : count_awake(i, doing);
+    if (awake_here == 0) continue;
     integrator::Motion<Pack> m = p.motion(i);
     auto memory = p.memory_pack(i);
-    if (doing.empty()) {
+    if (awake_here == pack_width) {
       advance(i, m, memory);
     } else {
       const auto m_before = m;

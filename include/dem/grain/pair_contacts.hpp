@@ -23,7 +23,7 @@ struct PairScratch {
   // Where grains may sleep:
   std::vector<std::uint32_t> listed;          ///< candidates that are evaluated
   std::vector<std::uint8_t> renews;           ///< by candidate: see list_evaluated
-  ForceSums held;                             ///< of contacts between sleepers
+  ForceSums asleep;                           ///< of contacts between sleepers
   ContactMemory<history_size<Model>> merged;  ///< for Chunk::commit
 };
 
@@ -168,8 +168,9 @@ void find_hits_one_by_one(const Pairs& pairs, std::size_t close_count,
 
 /// Adds the forces of the contacts to the chunk's own grains and keeps what partners in other chunks feel. To avoid a
 /// branch that is a coin toss, both are written for every contact; what does not apply is overwritten or never read.
-template <class Model>
-void share_forces(std::size_t begin, Chunk<Model>& chunk, const PairScratch<Model>& s, ForceSums& sums) {
+/// `sums_for(hit)` are the sums in which a contact counts.
+template <class Model, class SumsFor>
+void share_forces(std::size_t begin, Chunk<Model>& chunk, const PairScratch<Model>& s, SumsFor&& sums_for) {
   chunk.partner_loads.resize(s.hits.size() + 1);
   std::fill(chunk.partner_load_first.begin(), chunk.partner_load_first.end(), 0u);
   std::size_t foreign = 0;
@@ -177,37 +178,13 @@ void share_forces(std::size_t begin, Chunk<Model>& chunk, const PairScratch<Mode
     const Hit& hit = s.hits[c];
     const Vector3<double> force = ContactForces::at(s.forces.force, c);
     const PartnerLoad load = {-force, ContactForces::at(s.forces.torque_j, c)};
+    ForceSums& sums = sums_for(hit);
     sums.add(hit.i - begin, force, ContactForces::at(s.forces.torque_i, c));
     sums.add(hit.partner - begin, load.force, load.torque);
     chunk.partner_loads[foreign] = load;
     const std::uint32_t elsewhere = hit.partner - begin >= chunk_size ? 1 : 0;
     foreign += elsewhere;
     chunk.partner_load_first[(hit.key >> 32) + 1] += elsewhere;
-  }
-  std::uint32_t total = 0;
-  for (std::uint32_t& first : chunk.partner_load_first) first = total += first;
-}
-
-/// The same where grains may sleep. What contacts between sleepers bear is summed apart, and does not reach `sums`.
-template <class Model>
-void share_forces(std::size_t begin, Chunk<Model>& chunk, Wakefulness doing, PairScratch<Model>& s, ForceSums& sums) {
-  chunk.partner_loads.clear();
-  std::fill(chunk.partner_load_first.begin(), chunk.partner_load_first.end(), 0u);
-  chunk.is_held.resize(chunk.candidate.size());
-  s.held = {};
-  for (std::size_t c = 0; c < s.hits.size(); ++c) {
-    const Hit& hit = s.hits[c];
-    const Vector3<double> force = ContactForces::at(s.forces.force, c);
-    const PartnerLoad load = {-force, ContactForces::at(s.forces.torque_j, c)};
-    const std::size_t candidate = hit.key >> 32;
-    const bool held = is_held(doing, hit.i, hit.partner);
-    ForceSums& to = held ? s.held : sums;
-    to.add(hit.i - begin, force, ContactForces::at(s.forces.torque_i, c));
-    to.add(hit.partner - begin, load.force, load.torque);
-    chunk.is_held[candidate] = held ? 1 : 0;
-    if (hit.partner - begin < chunk_size) continue;
-    chunk.partner_loads.push_back(load);
-    ++chunk.partner_load_first[candidate + 1];
   }
   std::uint32_t total = 0;
   for (std::uint32_t& first : chunk.partner_load_first) first = total += first;
@@ -230,7 +207,7 @@ DEM_HOT typename Model::Shape::template PairContactPoint<double> touch_of_hit(co
 
 /// Contacts of the grains of one chunk with their candidates: narrow phase, laws, forces. Writes to the chunk and its
 /// own grains' sums only, so chunks may run at the same time. Where grains may sleep (`doing` is not empty), contacts
-/// between sleepers are left as they are, but for those of grains that are watched.
+/// between sleepers are left as they are, but for those of grains that are watched, and where most grains are awake.
 template <class Model, class Particles>
 void find_pair_contacts(std::size_t chunk_index, Chunk<Model>& chunk, const Particles& p,
                         std::span<const Species<typename Model::Shape>> species, const Materials<Model>& materials,
@@ -239,7 +216,8 @@ void find_pair_contacts(std::size_t chunk_index, Chunk<Model>& chunk, const Part
   const std::size_t begin = chunk_index * chunk_size;
   const ChunkPairs<Model, Particles> pairs{chunk, p, species, materials, begin};
   std::size_t close_count = 0;
-  if (doing.empty()) {
+  s.renews.clear();
+  if (doing.empty() || evaluates_all(begin, doing)) {
     const auto all = static_cast<std::uint32_t>(chunk.candidate.size());
     close_count = list_close(
         pairs, all, [](std::uint32_t k) { return k; }, s.close);
@@ -267,9 +245,16 @@ void find_pair_contacts(std::size_t chunk_index, Chunk<Model>& chunk, const Part
   if (deepest.overlap > 0.0)
     chunk.deepest = {deepest.overlap, s.hits[deepest.hit].i, s.hits[deepest.hit].partner, false};
   if (doing.empty()) {
-    share_forces(begin, chunk, s, sums);
+    share_forces(begin, chunk, s, [&](const Hit&) -> ForceSums& { return sums; });
   } else {
-    share_forces(begin, chunk, doing, s, sums);
+    // What contacts between sleepers bear is summed apart.
+    chunk.sleeps.resize(chunk.candidate.size());
+    s.asleep = {};
+    share_forces(begin, chunk, s, [&](const Hit& hit) -> ForceSums& {
+      const bool asleep = sleeps(doing, hit.i, hit.partner);
+      chunk.sleeps[hit.key >> 32] = asleep ? 1 : 0;
+      return asleep ? s.asleep : sums;
+    });
     // One that was the deepest and was left as it is still counts.
     const bool stays = !before.with_surface && before.overlap > deepest.overlap && before.partner < doing.size() &&
                        !is_evaluated(doing, before.i, before.partner);

@@ -29,8 +29,8 @@ struct Sleepers {
   std::vector<Rest> grains;            ///< by id
   std::vector<double> borne;           ///< N, by row: of the contacts that the grain's own chunk holds
   std::vector<std::uint8_t> doing;     ///< by row, images too: see Wakefulness
-  std::vector<std::uint8_t> acted_on;  ///< by row: more than what is held acted on the grain in this evaluation
-  Columns3 held_force, held_torque;    ///< N, N m, by row of a sleeper: the sums over its contacts with sleepers
+  std::vector<std::uint8_t> acted_on;  ///< by row: more than what is kept acted on the grain in this evaluation
+  Columns3 kept_force, kept_torque;    ///< N, N m, by row of a sleeper: the sums over its contacts with sleepers
   std::vector<std::uint32_t> working;  ///< chunks that may have contacts to evaluate
   bool measuring = false;              ///< a window ends with this step
   bool all_work = true;                ///< all contacts are, in the next evaluation: neighbour lists are new
@@ -91,17 +91,17 @@ bool end_window(std::size_t i, const Particles& p, const Species<Shape>& kind, c
 }
 
 /// Keeps what contacts between sleepers do to the grains of a chunk that are watched.
-inline void hold(std::size_t begin, std::size_t end, const ForceSums& held, Sleepers& s) {
+inline void keep(std::size_t begin, std::size_t end, const ForceSums& asleep, Sleepers& s) {
   for (std::size_t i = begin; i < end; ++i) {
     if ((s.doing[i] & watched) == 0) continue;
-    s.held_force.set(i, held.force(i - begin));
-    s.held_torque.set(i, held.torque(i - begin));
+    s.kept_force.set(i, asleep.force(i - begin));
+    s.kept_torque.set(i, asleep.torque(i - begin));
   }
 }
 
 /// All that acts on a grain where some sleep (N, N m), and what of it comes from contacts between sleepers.
 struct SleeperSums {
-  Vector3<double> force, torque, held_force, held_torque;
+  Vector3<double> force, torque, kept_force, kept_torque;
 };
 
 /// Completes the sums of a grain with the contacts that other chunks hold. Those of contacts between sleepers are kept,
@@ -110,21 +110,26 @@ template <class Model, class Particles>
 SleeperSums complete_sums(std::size_t i, std::span<const Chunk<Model>> chunks, const Particles& p,
                           std::span<const std::uint32_t> incoming_first, std::span<const Incoming> incoming,
                           const Sleepers& s) {
+  if (s.doing[i] & awake) {  // no contact of it sleeps
+    SleeperSums sums = {p.force[i], p.torque[i], {0, 0, 0}, {0, 0, 0}};
+    add_incoming<Model>(i, chunks, incoming_first, incoming, sums.force, sums.torque);
+    return sums;
+  }
   const bool is_watched = (s.doing[i] & watched) != 0;
-  SleeperSums sums = {p.force[i], p.torque[i], s.held_force[i], s.held_torque[i]};
+  SleeperSums sums = {p.force[i], p.torque[i], s.kept_force[i], s.kept_torque[i]};
   for (std::uint32_t m = incoming_first[i]; m < incoming_first[i + 1]; ++m) {
     const Chunk<Model>& other = chunks[incoming[m].chunk];
     const std::uint32_t first = other.partner_load_first[incoming[m].candidate];
     const std::uint32_t stop = other.partner_load_first[incoming[m].candidate + 1];
     if (first == stop) continue;
-    const bool is_held = other.is_held[incoming[m].candidate] != 0;
-    if (is_held && !is_watched) continue;
+    const bool sleeps = other.sleeps[incoming[m].candidate] != 0;
+    if (sleeps && !is_watched) continue;
     for (std::uint32_t c = first; c < stop; ++c) {
-      (is_held ? sums.held_force : sums.force) += other.partner_loads[c].force;
-      (is_held ? sums.held_torque : sums.torque) += other.partner_loads[c].torque;
+      (sleeps ? sums.kept_force : sums.force) += other.partner_loads[c].force;
+      (sleeps ? sums.kept_torque : sums.torque) += other.partner_loads[c].torque;
     }
   }
-  if ((s.doing[i] & awake) == 0) sums.force += sums.held_force, sums.torque += sums.held_torque;
+  sums.force += sums.kept_force, sums.torque += sums.kept_torque;
   return sums;
 }
 
@@ -134,10 +139,17 @@ void gather_forces(std::size_t chunk_index, std::span<const Chunk<Model>> chunks
                    std::span<const std::uint32_t> incoming_first, std::span<const Incoming> incoming, Sleepers& s) {
   const std::size_t begin = chunk_index * chunk_size, end = std::min(begin + chunk_size, p.count);
   for (std::size_t i = begin; i < end; ++i) {
+    if (s.doing[i] & awake) {
+      Vector3<double> force = p.force[i], torque = p.torque[i];
+      add_incoming<Model>(i, chunks, incoming_first, incoming, force, torque);
+      p.force.set(i, force);
+      p.torque.set(i, torque);
+      continue;
+    }
     const SleeperSums sums = complete_sums<Model>(i, chunks, p, incoming_first, incoming, s);
-    if (s.doing[i] & watched) s.held_force.set(i, sums.held_force), s.held_torque.set(i, sums.held_torque);
+    if (s.doing[i] & watched) s.kept_force.set(i, sums.kept_force), s.kept_torque.set(i, sums.kept_torque);
     // Written such that a NaN acts as well.
-    const Vector3<double> force = sums.force - sums.held_force, torque = sums.torque - sums.held_torque;
+    const Vector3<double> force = sums.force - sums.kept_force, torque = sums.torque - sums.kept_torque;
     s.acted_on[i] = !(force.x == 0.0 && force.y == 0.0 && force.z == 0.0) ||
                     !(torque.x == 0.0 && torque.y == 0.0 && torque.z == 0.0);
     p.force.set(i, sums.force);

@@ -21,12 +21,30 @@ inline constexpr std::uint8_t awake = 1, watched = 2, changed = 4, touched = 8, 
 /// What the grains of all rows do, images too; empty where no grain may sleep.
 using Wakefulness = std::span<const std::uint8_t>;
 
-/// Whether a contact is held: both grains sleep, so it bears what it bore.
-inline bool is_held(Wakefulness doing, std::size_t i, std::size_t j) { return ((doing[i] | doing[j]) & awake) == 0; }
+/// Whether a contact sleeps: both grains do, so it bears what it bore.
+inline bool sleeps(Wakefulness doing, std::size_t i, std::size_t j) { return ((doing[i] | doing[j]) & awake) == 0; }
 
 /// Whether what a contact bears and remembers is made anew: one of the two grains is awake or watched.
 inline bool is_evaluated(Wakefulness doing, std::size_t i, std::size_t j) {
   return ((doing[i] | doing[j]) & (awake | watched)) != 0;
+}
+
+/// Calls f(first, stop) for runs of grains that are awake.
+template <class F>
+void for_each_awake_run(std::size_t begin, std::size_t end, Wakefulness doing, F&& f) {
+  if (doing.empty()) return f(begin, end);
+  for (std::size_t i = begin; i < end; ++i) {
+    const std::size_t first = i;
+    while (i < end && (doing[i] & awake) != 0) ++i;
+    if (first < i) f(first, i);
+  }
+}
+
+/// Whether so many grains of a chunk are awake or watched that it costs less to evaluate all candidates than to choose.
+inline bool evaluates_all(std::size_t begin, Wakefulness doing) {
+  std::size_t count = 0;
+  for (std::size_t row = begin; row < begin + chunk_size; ++row) count += (doing[row] & (awake | watched)) != 0 ? 1 : 0;
+  return 4 * count >= 3 * chunk_size;
 }
 
 /// Lists the candidates whose contacts are evaluated. `renews`, by candidate: whether that counts. Contacts that are

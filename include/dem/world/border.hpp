@@ -22,14 +22,14 @@ void forget_contacts(Chunk<Model>& chunk) {
   chunk.candidate_first.fill(0);
   chunk.pair_contacts.last.count = chunk.surface_contacts.last.count = 0;
   chunk.partner_loads.clear();
-  chunk.is_held.clear();
+  chunk.sleeps.clear();
   chunk.surface_loads.clear();
   chunk.around.clear();
   grain::list_owners(chunk);
 }
 
 /// Marks, beside their number, loads of contacts between sleepers.
-inline constexpr std::uint32_t held_load = 0x8000;
+inline constexpr std::uint32_t sleeping_load = 0x8000;
 
 /// Appends the bytes of n items to a message.
 template <class T>
@@ -194,8 +194,8 @@ void swap_loads(WorldState<Model>& w) {
       detail::append(border.loads_out, &c, 1);
       for (const std::uint32_t k : candidates) {
         const auto n = static_cast<std::uint16_t>(chunk.partner_load_first[k + 1] - chunk.partner_load_first[k]);
-        const bool is_held = n > 0 && k < chunk.is_held.size() && chunk.is_held[k] != 0;
-        const auto told = static_cast<std::uint16_t>(n | (is_held ? detail::held_load : 0));
+        const bool sleeps = n > 0 && k < chunk.sleeps.size() && chunk.sleeps[k] != 0;
+        const auto told = static_cast<std::uint16_t>(n | (sleeps ? detail::sleeping_load : 0));
         detail::append(border.loads_out, &told, 1);
       }
       for (const std::uint32_t k : candidates) {
@@ -217,10 +217,10 @@ void swap_loads(WorldState<Model>& w) {
       counts.resize(chunk.candidate.size());
       detail::read(message, at, counts.data(), counts.size());
       std::uint32_t loads = 0;
-      chunk.is_held.resize(counts.size());
+      chunk.sleeps.resize(counts.size());
       for (std::size_t k = 0; k < counts.size(); ++k) {
-        chunk.is_held[k] = (counts[k] & detail::held_load) != 0 ? 1 : 0;
-        loads += counts[k] & ~detail::held_load;
+        chunk.sleeps[k] = (counts[k] & detail::sleeping_load) != 0 ? 1 : 0;
+        loads += counts[k] & ~detail::sleeping_load;
         chunk.partner_load_first[k + 1] = loads;
       }
       chunk.partner_loads.resize(loads);

@@ -89,7 +89,7 @@ void complete_chunks(WorldState<Model>& w) {
     const std::size_t width = s.borne.empty() ? 0 : chunk_size;
     const auto gather = [&](auto& column) { d.gather_chunks(column.data(), width); };
     gather(s.borne);
-    s.held_force.for_each_column(gather), s.held_torque.for_each_column(gather);
+    s.kept_force.for_each_column(gather), s.kept_torque.for_each_column(gather);
     const auto first = s.doing.begin() + static_cast<std::ptrdiff_t>(begin * width),
                last = s.doing.begin() + static_cast<std::ptrdiff_t>(end * width);
     s.doing = d.gathered(std::vector<std::uint8_t>(first, last), false);

@@ -38,10 +38,10 @@ std::size_t memory_bytes(const WorldState<Model>& w) {
   if constexpr (Model::Domain::has_images) sum += bytes(w.images.grain) + bytes(w.images.shift) + bytes(w.images.level);
   sum += bytes(w.sleepers.grains) + bytes(w.sleepers.borne) + bytes(w.sleepers.working) + bytes(w.sleepers.doing) +
          bytes(w.sleepers.acted_on);
-  for (const Columns3* held : {&w.sleepers.held_force, &w.sleepers.held_torque}) {
-    sum += bytes(held->x) + bytes(held->y) + bytes(held->z);
+  for (const Columns3* kept : {&w.sleepers.kept_force, &w.sleepers.kept_torque}) {
+    sum += bytes(kept->x) + bytes(kept->y) + bytes(kept->z);
   }
-  for (const Chunk<Model>& c : w.chunks) sum += bytes(c.around) + bytes(c.reached) + bytes(c.is_held);
+  for (const Chunk<Model>& c : w.chunks) sum += bytes(c.around) + bytes(c.reached) + bytes(c.sleeps);
   const grain::EnergyLedger& l = w.ledger;
   sum += bytes(l.last) + bytes(l.velocity) + bytes(l.spin) + bytes(l.energy);
   for (const Chunk<Model>& c : w.chunks) {

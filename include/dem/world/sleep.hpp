@@ -68,7 +68,7 @@ void find_sleepers(WorldState<Model>& w) {
   s.acted_on.assign(rows, 0);
   s.doing.assign(p.view.size(), 0);
   const auto clear = [&](AlignedVector<double>& column) { column.assign(rows, 0.0); };
-  s.held_force.for_each_column(clear), s.held_torque.for_each_column(clear);
+  s.kept_force.for_each_column(clear), s.kept_torque.for_each_column(clear);
   grain::list_chunks_around<Model>(w.chunks);
   for (std::size_t c = 0; c < w.chunks.size(); ++c) {
     const std::size_t end = std::min((c + 1) * chunk_size, p.count);
@@ -196,7 +196,7 @@ void wake_and_put_to_sleep(WorldState<Model>& w) {
       s.doing[i] &= grain::awake | grain::changed;  // a part that holds grains may just have woken it
       if ((did & grain::awake) == 0) {
         if (s.acted_on[i]) s.doing[i] |= grain::touched;
-        // Else nothing acts on it but what is held, and that is as it was.
+        // Else nothing acts on it but what is kept, and that is as it was.
         if (((did | s.doing[i]) & (grain::watched | grain::touched)) == 0) continue;
         const auto& kind = w.species[p.species[i]];
         if (grain::is_disturbed(i, p, kind, g, s.grains[p.id[i]], o)) wake_row(w, i);

@@ -25,7 +25,7 @@ void find_chunk_contacts(WorldState<Model>& w, std::size_t c, ContactScratch<Mod
                                          w.find_hits, w.time_step, sums);
   chunk.surface_seconds += w.stopwatch.clock() - start;
   sums.write(c, w.particles);
-  if (w.options.sleep) grain::hold(begin, end, scratch.pairs.held, w.sleepers);
+  if (w.options.sleep) grain::keep(begin, end, scratch.pairs.asleep, w.sleepers);
   if (w.sleepers.measuring) {
     const std::span<double> borne(&w.sleepers.borne[begin], chunk_size);
     std::fill(borne.begin(), borne.end(), 0.0);
@@ -34,8 +34,7 @@ void find_chunk_contacts(WorldState<Model>& w, std::size_t c, ContactScratch<Mod
   }
   if (w.record_contacts) [[unlikely]]
     w.record_contacts(w, c, scratch);
-  if (w.move.last && w.options.sleep) chunk.commit(scratch.pairs.renews, scratch.pairs.merged);
-  else if (w.move.last) chunk.commit();
+  if (w.move.last) chunk.commit(scratch.pairs.renews, scratch.pairs.merged);
   scratch.lend(chunk);
 }
 

@@ -23,7 +23,7 @@ void sleep_fields(Fields& v, WorldState<Model>& w) {
   if (!may_sleep || v.task() == Fields::Task::compare) return;
 
   constexpr std::size_t width = 12, load_width = 6;
-  std::vector<double> rests, held, surface_loads;
+  std::vector<double> rests, kept, surface_loads;
   std::vector<std::uint32_t> surface_count, surfaces;
   const auto append = [](std::vector<double>& list, const Vector3<double>& x) {
     list.insert(list.end(), {x.x, x.y, x.z});
@@ -33,8 +33,8 @@ void sleep_fields(Fields& v, WorldState<Model>& w) {
       for (const auto* x : {&r.position, &r.force, &r.torque}) append(rests, *x);
       rests.insert(rests.end(), {r.borne, double(r.quiet_windows), double(r.asleep)});
     }
-    for (std::size_t i = 0; i < s.held_force.x.size(); ++i)
-      append(held, s.held_force[i]), append(held, s.held_torque[i]);
+    for (std::size_t i = 0; i < s.kept_force.x.size(); ++i)
+      append(kept, s.kept_force[i]), append(kept, s.kept_torque[i]);
     for (const Chunk<Model>& c : w.chunks) {
       surface_count.push_back(static_cast<std::uint32_t>(c.surface_loads.size()));
       for (const SurfaceLoad& load : c.surface_loads) {
@@ -46,7 +46,7 @@ void sleep_fields(Fields& v, WorldState<Model>& w) {
   v.copied("resting", ColumnKind::real, width, rests);
   v("borne", s.borne, "N");
   v.copied("doing", ColumnKind::byte, 1, s.doing);
-  v.copied("held_loads", ColumnKind::real, load_width, held);
+  v.copied("kept_loads", ColumnKind::real, load_width, kept);
   v.copied("surface_load_count", ColumnKind::natural32, 1, surface_count);
   v.copied("surface_load_of", ColumnKind::natural32, 1, surfaces);
   v.copied("surface_loads", ColumnKind::real, load_width, surface_loads);
@@ -65,12 +65,12 @@ void sleep_fields(Fields& v, WorldState<Model>& w) {
                    static_cast<std::uint8_t>(rests[at + 10]),
                    rests[at + 11] != 0.0};
   }
-  const auto resize = [&](AlignedVector<double>& column) { column.resize(held.size() / load_width); };
-  s.held_force.for_each_column(resize), s.held_torque.for_each_column(resize);
-  s.acted_on.assign(held.size() / load_width, 0);
-  for (std::size_t i = 0; i < held.size() / load_width; ++i) {
-    s.held_force.set(i, vector_at(held, i * load_width));
-    s.held_torque.set(i, vector_at(held, i * load_width + 3));
+  const auto resize = [&](AlignedVector<double>& column) { column.resize(kept.size() / load_width); };
+  s.kept_force.for_each_column(resize), s.kept_torque.for_each_column(resize);
+  s.acted_on.assign(kept.size() / load_width, 0);
+  for (std::size_t i = 0; i < kept.size() / load_width; ++i) {
+    s.kept_force.set(i, vector_at(kept, i * load_width));
+    s.kept_torque.set(i, vector_at(kept, i * load_width + 3));
   }
   std::size_t of_surface = 0;
   for (std::size_t c = 0; c < w.chunks.size(); ++c) {
