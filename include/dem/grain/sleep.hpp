@@ -104,17 +104,12 @@ struct SleeperSums {
   Vector3<double> force, torque, kept_force, kept_torque;
 };
 
-/// Completes the sums of a grain with the contacts that other chunks hold. Those of contacts between sleepers are kept,
-/// or made anew if the grain is watched.
+/// Completes the sums of a sleeper with the contacts that other chunks hold. Those of contacts between sleepers are
+/// kept, or made anew if the grain is watched.
 template <class Model, class Particles>
 SleeperSums complete_sums(std::size_t i, std::span<const Chunk<Model>> chunks, const Particles& p,
                           std::span<const std::uint32_t> incoming_first, std::span<const Incoming> incoming,
                           const Sleepers& s) {
-  if (s.doing[i] & awake) {  // no contact of it sleeps
-    SleeperSums sums = {p.force[i], p.torque[i], {0, 0, 0}, {0, 0, 0}};
-    add_incoming<Model>(i, chunks, incoming_first, incoming, sums.force, sums.torque);
-    return sums;
-  }
   const bool is_watched = (s.doing[i] & watched) != 0;
   SleeperSums sums = {p.force[i], p.torque[i], s.kept_force[i], s.kept_torque[i]};
   for (std::uint32_t m = incoming_first[i]; m < incoming_first[i + 1]; ++m) {
@@ -139,7 +134,7 @@ void gather_forces(std::size_t chunk_index, std::span<const Chunk<Model>> chunks
                    std::span<const std::uint32_t> incoming_first, std::span<const Incoming> incoming, Sleepers& s) {
   const std::size_t begin = chunk_index * chunk_size, end = std::min(begin + chunk_size, p.count);
   for (std::size_t i = begin; i < end; ++i) {
-    if (s.doing[i] & awake) {
+    if (s.doing[i] & awake) {  // no contact of it sleeps
       Vector3<double> force = p.force[i], torque = p.torque[i];
       add_incoming<Model>(i, chunks, incoming_first, incoming, force, torque);
       p.force.set(i, force);
