@@ -8,6 +8,7 @@
 #include <dem/grain/species.hpp>
 #include <dem/grain/wakefulness.hpp>
 
+#include <algorithm>
 #include <span>
 
 namespace dem::grain {
@@ -22,7 +23,7 @@ struct PairScratch {
   ContactForces forces;
   // Where grains may sleep:
   std::vector<std::uint32_t> listed;          ///< candidates that are evaluated
-  std::vector<std::uint8_t> renews;           ///< by candidate: see list_evaluated
+  std::vector<std::uint8_t> renews;           ///< by candidate: see list_evaluated; empty where all are
   ForceSums asleep;                           ///< of contacts between sleepers
   ContactMemory<history_size<Model>> merged;  ///< for Chunk::commit
 };
@@ -217,7 +218,7 @@ void find_pair_contacts(std::size_t chunk_index, Chunk<Model>& chunk, const Part
   const ChunkPairs<Model, Particles> pairs{chunk, p, species, materials, begin};
   std::size_t close_count = 0;
   s.renews.clear();
-  if (doing.empty() || evaluates_all(begin, doing)) {
+  if (doing.empty() || evaluates_all(begin, std::min(begin + chunk_size, p.count), doing)) {
     const auto all = static_cast<std::uint32_t>(chunk.candidate.size());
     close_count = list_close(
         pairs, all, [](std::uint32_t k) { return k; }, s.close);

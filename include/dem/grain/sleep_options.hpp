@@ -9,8 +9,8 @@ namespace dem {
 /// A grain bears its weight or the sum of the magnitudes of its contact forces, whichever is larger. It is at rest when
 /// in a window of steps it moves by less than `motion` of its radius, what it bears changes by less than `change` of
 /// itself, and what is left of all forces on it and of all torques is less than `balance` of it. A grain that is at
-/// rest for two windows sleeps: it is not moved, and contacts between sleepers are not evaluated, but what they bear
-/// counts on. Contacts with grains that are awake are evaluated on, and near anything that moves those with surfaces,
+/// rest for two windows sleeps: it is not moved, and what contacts between sleepers bear counts on without being
+/// evaluated. Contacts with grains that are awake are evaluated on, and near anything that moves those with surfaces,
 /// too. When they change the sum of the forces or torques on a grain by more than `change` of what it bore when it fell
 /// asleep, it wakes.
 ///

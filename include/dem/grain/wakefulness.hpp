@@ -24,7 +24,7 @@ using Wakefulness = std::span<const std::uint8_t>;
 /// Whether a contact sleeps: both grains do, so it bears what it bore.
 inline bool sleeps(Wakefulness doing, std::size_t i, std::size_t j) { return ((doing[i] | doing[j]) & awake) == 0; }
 
-/// Whether what a contact bears and remembers is made anew: one of the two grains is awake or watched.
+/// Whether what a contact bears must be made anew: one of the two grains is awake or watched.
 inline bool is_evaluated(Wakefulness doing, std::size_t i, std::size_t j) {
   return ((doing[i] | doing[j]) & (awake | watched)) != 0;
 }
@@ -40,15 +40,16 @@ void for_each_awake_run(std::size_t begin, std::size_t end, Wakefulness doing, F
   }
 }
 
-/// Whether so many grains of a chunk are awake or watched that it costs less to evaluate all candidates than to choose.
-inline bool evaluates_all(std::size_t begin, Wakefulness doing) {
+/// Whether so many grains of a chunk are awake or watched, three in four, that it costs less to evaluate all of its
+/// candidates than to choose. Contacts between sleepers bear what they bore, as their grains do not move.
+inline bool evaluates_all(std::size_t begin, std::size_t end, Wakefulness doing) {
   std::size_t count = 0;
-  for (std::size_t row = begin; row < begin + chunk_size; ++row) count += (doing[row] & (awake | watched)) != 0 ? 1 : 0;
-  return 4 * count >= 3 * chunk_size;
+  for (std::size_t row = begin; row < end; ++row) count += (doing[row] & (awake | watched)) != 0 ? 1 : 0;
+  return 4 * count >= 3 * (end - begin);
 }
 
-/// Lists the candidates whose contacts are evaluated. `renews`, by candidate: whether that counts. Contacts that are
-/// only recorded keep their histories, and what they bear, as those do that are not evaluated.
+/// Lists the candidates whose contacts are evaluated where not all are. `renews`, by candidate: whether that counts.
+/// Contacts that are only recorded keep their histories, and what they bear, as those do that are not evaluated.
 template <class Model>
 void list_evaluated(const Chunk<Model>& chunk, std::size_t begin, Wakefulness doing, std::vector<std::uint32_t>& listed,
                     std::vector<std::uint8_t>& renews) {

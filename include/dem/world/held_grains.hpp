@@ -53,10 +53,10 @@ template <class Model>
 HeldLoad load_of_held(const WorldState<Model>& w, std::size_t row) {
   const std::span<const Chunk<Model>> chunks = w.chunks;
   HeldLoad load = {w.particles.force[row], w.particles.torque[row]};
-  // A chunk that does not work keeps the whole sum of the last time.
   const auto c = static_cast<std::uint32_t>(row / chunk_size);
   if (!w.options.sleep || (w.sleepers.doing[row] & grain::awake) != 0) {
     grain::add_incoming<Model>(row, chunks, w.incoming_first, w.incoming, load.force, load.torque);
+    // A chunk that does not work keeps the whole sum of the last time.
   } else if (std::binary_search(w.sleepers.working.begin(), w.sleepers.working.end(), c)) {
     const auto sums = grain::complete_sums<Model>(row, chunks, w.particles, w.incoming_first, w.incoming, w.sleepers);
     load = {sums.force, sums.torque};

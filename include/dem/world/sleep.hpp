@@ -20,7 +20,8 @@ template <class Model>
 void wake_row(WorldState<Model>& w, std::size_t i) {
   auto& s = w.sleepers;
   if (const std::uint32_t id = w.particles.id[i]; id < s.grains.size()) s.grains[id] = {};
-  if (i >= s.doing.size() || (s.doing[i] & grain::awake)) return;
+  // One that came since neighbours were listed is in no chunk, and awake.
+  if (i / chunk_size >= w.chunks.size() || i >= s.doing.size() || (s.doing[i] & grain::awake)) return;
   s.doing[i] |= grain::awake | grain::changed;
   w.chunks[i / chunk_size].asleep = false;
   w.chunks[i / chunk_size].changed = true;

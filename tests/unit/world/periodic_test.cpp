@@ -217,6 +217,28 @@ TEST_CASE("contacts across borders are listed with the rest, and inlets see grai
   }
 }
 
+TEST_CASE("a grain that comes to a part wakes nothing in a cell where all others sleep, at its borders or elsewhere") {
+  // 64 towers of 4 fill one chunk, so the new grain has a row that no list knows yet.
+  dem::WorldOptions o = cell({0, 0, -g}, {.x = true, .y = true});
+  o.sleep = dem::SleepOptions{.balance = 0.2, .change = 0.2, .motion = 0.01, .window = 50};
+  dem::World<PeriodicCubes> w(o);
+  set_up(w);
+  const auto glued = w.add_species(dem::shape::cube8(1e-3), {.held = true});
+  w.add_surface(w.ground(), dem::surface::Plane{});
+  for (int k = 0; k < 256; ++k) {
+    w.add_particle({SpeciesId(0), Vec3(length / 8 * (k % 8), width / 8 * (k / 8 % 8), 1e-3 + 2e-3 * (k / 64))});
+  }
+  REQUIRE(w.run_for(0.1));
+  REQUIRE(w.asleep_count() == 256);
+  const auto part = w.machine().add_fixed_body("part", Vec3(0, 0, 0.02));
+  const ParticleId grain = w.add_particle({glued, Vec3(0, 0, 0.02)});
+  w.attach(grain, part);
+  REQUIRE(w.run(1));
+  CHECK(w.asleep_count() == 256);
+  CHECK(!w.is_asleep(grain));
+  CHECK(w.position(grain) == Vec3(0, 0, 0.02));
+}
+
 TEST_CASE("a cell may run empty and be filled again") {
   dem::World<PeriodicCubes> w(cell({0, 0, -g}, {.x = true, .y = true}));
   set_up(w);
