@@ -56,8 +56,8 @@ HeldLoad load_of_held(const WorldState<Model>& w, std::size_t row) {
   const auto c = static_cast<std::uint32_t>(row / chunk_size);
   if (!w.options.sleep || (w.sleepers.doing[row] & grain::awake) != 0) {
     grain::add_incoming<Model>(row, chunks, w.incoming_first, w.incoming, load.force, load.torque);
-    // A chunk that does not work keeps the whole sum of the last time.
   } else if (std::binary_search(w.sleepers.working.begin(), w.sleepers.working.end(), c)) {
+    // One that does not work keeps the whole sum of the last time.
     const auto sums = grain::complete_sums<Model>(row, chunks, w.particles, w.incoming_first, w.incoming, w.sleepers);
     load = {sums.force, sums.torque};
   }
