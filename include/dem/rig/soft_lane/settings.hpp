@@ -145,11 +145,7 @@ inline void declare(Options& options, Settings& s) {
       "a lane without end: the bed is a tile that repeats itself, and so many go along with the car; 0: the bed is the "
       "lane");
   add("--ahead", s.ahead, "that there is at least of tiles before the front tyres [m]");
-  options.group("Output");
-  add("--output", s.output, "folder; results of an earlier run in it are replaced");
-  options.flag("--replay", s.replay, "replay in the report (--replay=true) or none (--no-replay)").off("--no-replay");
-  add_replay_forces(options, s);
-  options.flag("--vtk", s.vtk, "files for ParaView (--vtk=true) or none (--no-vtk)").off("--no-vtk");
+  add_output_options(options, s, "the drive");
 }
 
 inline void find_idle(IdleOptions& idle, const Settings& s) {
