@@ -86,6 +86,17 @@ TEST_CASE("settings of plates that make no sense are refused by the names of the
   refuses([](auto& s) { s.grains.half_edge = -1.0; }, "--half-edge");
 }
 
+TEST_CASE("walls leave room for a heap above a bed that starts level, as one from a file does") {
+  const GrainSettings grains{.half_edge = 5e-3};
+  const dem::soil::Packing level{.half_edge = 5e-3, .grains = {{{0, 0, 0.02}, {}}, {{0.01, 0, 0.03}, {}}}};
+  CHECK(walls_for(level, grains) >= 0.03 + 10 * 0.01);
+}
+
+TEST_CASE("a grain that is lost is told of with the option that helps") {
+  CHECK(in_own_words("close the walls, lower time_step (now 5e-05 s), or enlarge domain", bed_words()) ==
+        "lower --stable-share (the time step is now 5e-05 s)");
+}
+
 TEST_CASE("a study changes what it says, and nothing else") {
   auto s = small();
   s.study = "box";

@@ -73,6 +73,8 @@ inline void find_idle(IdleOptions& idle, const BedSettings& s) {
 /// What the library calls otherwise than the options of grains and beds.
 inline std::vector<OwnWord> bed_words() {
   return {{"time_step_safety", "--stable-share"},
+          {"lower time_step (now", "lower --stable-share (the time step is now"},
+          {"time_step", "--stable-share"},
           {"raise the normal stiffness", "raise --stiffness"},
           {"the stiffness, or raise the damping", "--stiffness, or raise --damping"},
           {"close the walls, ", ""},

@@ -10,11 +10,12 @@
 
 namespace dem::rig {
 
-/// How high the walls must be (m): above the highest grain.
+/// How high the walls must be (m): ten edges above the highest grain, as a bed rebounds when the lid goes, and machines
+/// push heaps.
 inline double walls_for(const soil::Packing& p, const GrainSettings& grains) {
   double highest = 0.0;
   for (const auto& g : p.grains) highest = std::max(highest, g.position.z());
-  return highest + 3.0 * grains.half_edge;
+  return highest + 10.0 * grains.edge();
 }
 
 /// Makes a bed denser: friction sinks to zero while the bed is shaken between two of its walls, until the density that
