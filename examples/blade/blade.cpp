@@ -112,7 +112,7 @@ class Blade : public rig::Rig {
     options.add("--depth", depth, "of the blade in the bed [m]");
     options.add("--speed", speed, "[m/s]");
     options.add("--travel", travel, "[m]; 0: by size");
-    options.add("--output", folder, "folder for the results");
+    options.add("--output", folder, "folder for the results").changes_no_result();
     options.flag("--vtk", vtk, "files for ParaView").off("--no-vtk");
     options.add("--frame-time", frame_time, "between two frames for ParaView [s]");
   }

@@ -17,6 +17,7 @@ refuse() {
 }
 milliseconds() { date +%s%3N; }
 
+[ -x "$rig" ] || refuse "there is no program '$rig'; build it first"
 if ! "$rig" --help | grep -q -- --resume || "$rig" --resume --output "$output/none" 2>&1 | grep -q 'needs HDF5'; then
   echo "the rig was built without HDF5: not tested"
   exit 77

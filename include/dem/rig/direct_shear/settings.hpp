@@ -42,8 +42,8 @@ struct Settings {
   // Contacts (thesis table 3.2 and figure 3.6) of a grain of half-edge `constants_for`. By shape: the thesis's 20,000
   // N/m and 0.015 N s/m for each sphere of cube8, of which four touch where a face lies on a face; four times that for
   // the other shapes, whose faces touch once.
-  double stiffness = 0.0;            ///< K, N/m: the screenshots' value; the tables' 2000 is too soft, see README.md;
-                                     ///< 0: by shape
+  double stiffness = 0.0;            ///< K, N/m: the screenshots' value; the tables' 2000 is too soft
+                                     ///< (examples/direct_shear/RESULTS.md); 0: by shape
   double damping = -1.0;             ///< C, N s/m; negative: by shape
   double separation_factor = 0.05;   ///< Sp
   double friction = 0.4;             ///< mu, grain on grain
