@@ -21,7 +21,7 @@ int main() {
     wall({0, s * 0.015, 0.05}, {0.04, 0.01, 0.1});
   }
 
-  const auto cube = world.add_species(dem::shape::cube8(1e-3), {.density = 2650});
+  const auto cube = world.add_species(dem::shape::cube8(1e-3), {.density = 2650});  // half an edge in m; kg/m^3
   for (int k = 0; k < 250; ++k) {
     const dem::Mat3 turn = dem::Quaternion(1, 0.3 * (k % 5), 0.2 * (k % 7), 0.1).normalized().toRotationMatrix();
     world.add_particle({cube, 4e-3 * dem::Vec3(k % 5 - 2, k / 5 % 5 - 2, k / 25 + 0.5), {0, 0, 0}, turn});
