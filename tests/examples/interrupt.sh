@@ -45,6 +45,7 @@ log=$output/pouring.txt
 interrupted 'pour: ' --output "$output/pouring"
 grep -q 'The packing was not finished' "$log" || refuse "The run does not say that the packing was not finished"
 [ ! -e "$output/pouring/packing.txt" ] || refuse "A packing was saved that was not finished"
+! grep -q 'no finite data' "$log" || refuse "A run that had nothing to draw yet blames its plots"
 
 log=$output/log.txt
 interrupted 'shear at 44.1 kPa: [1-9][0-9]* %' --packing-file "$packing" --travel 0.006 --output "$output"

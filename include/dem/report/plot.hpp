@@ -20,11 +20,11 @@ namespace dem::io {
 
 /// What render_plot() did.
 struct PlotResult {
-  bool rendered = false;
-  std::string reason = {};            ///< one line that says why nothing was drawn
-  std::filesystem::path script = {};  ///< written in any case
-  std::filesystem::path svg = {};     ///< empty when not rendered
-  std::filesystem::path png = {};     ///< empty when not rendered
+  bool rendered = false, is_empty = false;  ///< is_empty: there is nothing to draw
+  std::string reason = {};                  ///< one line that says why nothing was drawn
+  std::filesystem::path script = {};        ///< written in any case
+  std::filesystem::path svg = {};           ///< empty when not rendered
+  std::filesystem::path png = {};           ///< empty when not rendered
 
   explicit operator bool() const { return rendered; }
 };
@@ -78,6 +78,7 @@ inline PlotResult render_script(const std::string& script, bool any_data, const 
 
   if (!any_data) {
     result.reason = "the plot has no finite data";
+    result.is_empty = true;
     return result;
   }
   const auto program = find_program(gnuplot);

@@ -78,8 +78,12 @@ class Progress {
     start_ = shown_time_ = options_.clock();
     shown_percent_ = percent();
     eta_ = EtaEstimator(start_, done);
+    goes_on_ = false;
     show();
   }
+
+  /// The stage that was begun goes on where an earlier run left it: what the next update() tells as done was done then.
+  void go_on() { goes_on_ = true; }
 
   /// Tells how much of the stage's total is done, and what else to show (one line, e.g. the stress now).
   void update(double done, std::string_view status = {}) {
@@ -91,6 +95,7 @@ class Progress {
   void update(double done, MakeStatus&& make_status) {
     done_ = done;
     const double now = options_.clock();
+    if (std::exchange(goes_on_, false)) eta_ = EtaEstimator(now, done);
     if (!open_ || !due(now)) return;
     status_ = one_line(make_status());
     status_width_ = std::max(status_width_, display_width(status_));
@@ -197,7 +202,7 @@ class Progress {
 
   ProgressOptions options_;
   bool terminal_;
-  bool open_ = false;
+  bool open_ = false, goes_on_ = false;
   int stage_ = 0;
   std::string name_, status_;
   double total_ = 0, done_ = 0;

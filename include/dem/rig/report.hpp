@@ -81,10 +81,13 @@ class Report {
 
  private:
   void show(io::HtmlReport& html, const io::PlotResult& drawn, const char* caption) {
-    has_plots_ = true;
     if (drawn) {
+      has_plots_ = true;
       html.picture(drawn.svg, caption);
+    } else if (drawn.is_empty && (outcome().interrupted || !outcome().problem.empty())) {
+      html.paragraph(text("{}: nothing was measured by then.", caption));
     } else {
+      has_plots_ = true;
       not_drawn_ = drawn.reason;
       html.paragraph(text("{}: not drawn ({})", caption, drawn.reason));
     }

@@ -115,6 +115,9 @@ class Session final : public Stages {
     else tell_within(done, status);
     save_if_due();
   }
+  void go_on() override {
+    if (progress_) progress_->go_on();
+  }
   void finish(std::string_view result = {}) override {
     if (progress_) progress_->finish(result);
   }

@@ -53,6 +53,9 @@ class StagesOfOne final : public Stages {
     shared_.update(run_, done, status);
     save_if_due();
   }
+  void go_on() override {
+    shared_.alone([&] { shared_.all().go_on(); });
+  }
   void message(std::string_view text) override {
     shared_.alone([&] { shared_.all().message(text); });
   }

@@ -100,6 +100,8 @@ class Stages {
   virtual void begin([[maybe_unused]] std::string_view name, [[maybe_unused]] double total = unknown) {}
   /// So much of the total is done; `status` is one line on how things stand.
   virtual void update([[maybe_unused]] double done, [[maybe_unused]] std::string_view status = {}) {}
+  /// The stage goes on where it was saved; the next update() says how far that was.
+  virtual void go_on() {}
   /// The stage is done; `result` is one line on what came out.
   virtual void finish([[maybe_unused]] std::string_view result = {}) {}
   /// Something to know besides, as a warning.
@@ -117,7 +119,7 @@ class Stages {
       entry = part_->enter(std::make_unique<detail::KeptAs<Numbers>>(numbers), &world, &detail::mark_of<World>);
     }
     set_up();
-    if (entry == Part::Entry::go_on) part_->restore_world();
+    if (entry == Part::Entry::go_on) part_->restore_world(), go_on();
     return {part_, entry};
   }
   template <class World, class Numbers>

@@ -110,6 +110,18 @@ TEST_CASE("without a terminal a slow stage still gives a sign of life") {
   CHECK(bench.out.take() == "run: started\nrun: 0 %, 16 h 39 min left, sigma 100 kPa\n");
 }
 
+TEST_CASE("a stage that goes on counts what was done before as no headway") {
+  Bench bench;
+  Progress progress(bench.options(false));
+  progress.begin("press", 100.0);
+  progress.go_on();
+  bench.now += 5;
+  progress.update(40.0);  // where an earlier run had left it
+  bench.now += 60;
+  progress.update(46.0);  // 54 left at 6 a minute
+  CHECK(bench.out.take() == "press: started\npress: 40 %, time left ?\npress: 46 %, 9 min 00 s left\n");
+}
+
 TEST_CASE("on a terminal progress redraws one line") {
   Bench bench;
   Progress progress(bench.options(true));
