@@ -42,9 +42,9 @@ const mbd::AssemblyReport& assemble(World<Model>& world) {
   world.prepare();
   auto& parts = w.machine.parts();
   if (parts.apply_motions) parts.apply_motions(parts, w.time, 0.0, false);
-  w.machine_solver.assemble(w.machine);
+  w.machine_solver.whole().assemble(w.machine);
   world.set_gravity(w.options.gravity);  // what integrators remember of velocities is out of date
-  return w.machine_solver.assembly();
+  return w.machine_solver.whole().assembly();
 }
 
 }  // namespace dem

@@ -12,7 +12,7 @@
 #include <dem/grain/skin.hpp>
 #include <dem/grain/sleep.hpp>
 #include <dem/grain/turns.hpp>
-#include <dem/mbd/solver/solver.hpp>
+#include <dem/mbd/solver/lazy_solver.hpp>
 #include <dem/world/model.hpp>
 #include <dem/world/options.hpp>
 #include <dem/world/stopwatch.hpp>
@@ -100,7 +100,7 @@ struct WorldState {
   MoveStage move;
 
   mbd::Mechanism machine;
-  mbd::Solver<Integrator, typename Model::Joints> machine_solver;
+  mbd::LazySolver<Integrator, typename Model::Joints> machine_solver;
   std::vector<Surface> surfaces;
   std::vector<coupling::FindHits<Model>> find_hits;  ///< of the surfaces: the code for their kinds
   std::vector<SurfaceSensor> surface_sensors;

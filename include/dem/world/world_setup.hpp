@@ -157,14 +157,17 @@ class WorldSetup {
     return InletId(state_.inlets.size() - 1);
   }
 
-  /// Bodies, joints, actuators, sensors. The world moves them.
-  mbd::Mechanism& machine() { return state_.machine; }
+  /// Bodies, joints, actuators, sensors. The world moves them. Only programs that call this compile what does.
+  mbd::Mechanism& machine() {
+    state_.machine_solver.take_on();
+    return state_.machine;
+  }
   const mbd::Mechanism& machine() const { return state_.machine; }
   /// Columns of semi-empirical soil under the machine, of a terramechanics::ColumnsSpec; include
   /// <dem/terramechanics/machine_columns.hpp>, which says what is returned: a MachineColumns.
   template <class Spec>
   auto add_soil_columns(const Spec& spec) {
-    return make_soil_columns(state_.machine, spec);
+    return make_soil_columns(machine(), spec);
   }
   /// The fixed body of the world: carries walls that never move.
   BodyId ground() { return state_.machine.ground(); }

@@ -32,6 +32,38 @@ TEST_CASE("a world without grains moves its machine as the machine does alone") 
   CHECK(alone.body(rod).position().z() < -0.05);  // it did fall
 }
 
+TEMPLATE_TEST_CASE("a machine that is first asked for while a world runs goes on as one that was asked for before", "",
+                   CorrectedBalls, Balls, VerletBalls) {
+  // Until it is asked for, the world's ground is moved by the functions for a bare ground.
+  const auto make = [] {
+    dem::World<TestType> world({.time_step = 1e-5});
+    world.set_contact({.normal = {2000, 0.01, 1}, .friction = {0.4, 500, 0.01, 0.9}});
+    const auto species = world.add_species(dem::shape::Sphere(1e-3));
+    world.add_surface(world.ground(), dem::surface::Plane{});
+    world.add_particle({.species = species, .position = {0, 0, 1.01e-3}, .velocity = {0.1, 0, -0.1}});
+    return world;
+  };
+  dem::World<TestType> early = make(), late = make();
+  early.machine();
+  REQUIRE(early.run(300));
+  REQUIRE(late.run(300));
+  late.machine();
+  REQUIRE(early.run(300));
+  REQUIRE(late.run(300));
+  const dem::ParticleId ball(0);
+  CHECK(late.position(ball) == early.position(ball));
+  CHECK(late.angular_velocity(ball) == early.angular_velocity(ball));
+  CHECK(early.velocity(ball).x() < 0.09);  // it did touch
+
+  const dem::BodyId rod = add_pendulum(early.machine());
+  REQUIRE(add_pendulum(late.machine()) == rod);
+  REQUIRE(early.run(2000));
+  REQUIRE(late.run(2000));
+  CHECK(late.machine().body(rod).position() == early.machine().body(rod).position());
+  CHECK(late.position(ball) == early.position(ball));
+  CHECK(early.machine().body(rod).position().z() < -1e-4);  // it did fall
+}
+
 TEMPLATE_TEST_CASE("a ball that bounces off a sprung plate leaves the energy in the plate", "", CorrectedBalls, Balls,
                    VerletBalls) {
   const int substeps = GENERATE(1, 8);

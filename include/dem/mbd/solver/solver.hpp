@@ -131,9 +131,7 @@ class Solver {
     motion_.initialise(parts.bodies, from_eigen(gravity));
     joints_ = JointWatch(parts, m.joint_tolerance);
     note_stable_step(m);
-    substeps_ = m.substeps;
-    revision_ = parts.revision;
-    initialised_ = true;
+    start(m);
   }
 
   /// Bodies that hang together are made to move together; at the first start this is done anyway.
@@ -160,6 +158,32 @@ class Solver {
     for (int s = 0; s < m.substeps; ++s) {
       for (int k = 0; k < I::stages; ++k) single_stage(m, k, dt / m.substeps, gravity, [] {});
     }
+  }
+
+  // ---- of a mechanism that is a bare ground: the same without what moves bodies and closes joints (lazy_solver.hpp)
+
+  void design_bare(double dt) { design_dt_ = dt; }
+  template <class PutForces>
+  void initialise_bare(Mechanism& m, double time, PutForces&& put_forces) {
+    clear_forces(m.parts());
+    put_forces();
+    time_ = time;
+    motion_.read(m.parts().bodies);
+    m.parts().spin.assign(m.parts().bodies.size(), {0, 0, 0});
+    m.parts().outside.assign(m.parts().bodies.size(), {});
+    held_.start(m.parts().outside);
+    is_assembled_ = true;
+    start(m);
+  }
+  template <class PutForces>
+  void stage_bare(Mechanism& m, int stage, double dt, PutForces&& put_forces) {
+    DEM_ASSERT(m.parts().bodies.size() <= 1, "there is more than a ground: LazySolver::take_on() was not called");
+    clear_forces(m.parts());
+    put_forces();
+    if (stage < I::stages - 1) return;
+    step_dt_ = dt;
+    time_ += dt;
+    ++steps_;
   }
 
   /// All is well, or which body blew up, when, and what to change.
@@ -202,6 +226,13 @@ class Solver {
   }
 
  private:
+  /// Notes what it is initialised for.
+  void start(const Mechanism& m) {
+    substeps_ = m.substeps;
+    revision_ = m.parts().revision;
+    initialised_ = true;
+  }
+
   static int checked_substeps(const Mechanism& m) {
     if (m.substeps < 1) fail("the machine's substeps are {}, but must be at least 1", m.substeps);
     return m.substeps;

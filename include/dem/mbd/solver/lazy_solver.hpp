@@ -1,0 +1,112 @@
+#pragma once
+
+#include <dem/mbd/solver/solver.hpp>
+
+#include <string>
+
+namespace dem::mbd {
+
+/// Calls a function that lives elsewhere: what adds the forces from outside.
+class PutForces {
+ public:
+  template <class F>
+  explicit PutForces(F& f) : f_(&f), call_([](void* it) { (*static_cast<F*>(it))(); }) {}
+  void operator()() const { call_(f_); }
+
+ private:
+  void* f_;
+  void (*call_)(void*);
+};
+
+/// The Solver of a mechanism that stays a bare ground in many programs: those whose walls never move. Only programs
+/// that call take_on(), before they add anything to the mechanism, compile what moves bodies and closes joints. To all
+/// others the ground is still and limits nothing. Functions are those of Solver.
+template <integrator::Integrator I, JointPolicy Joints = Penalty>
+class LazySolver {
+ public:
+  using Whole = Solver<I, Joints>;
+
+  /// From here on there may be more than a ground.
+  void take_on() { calls_ = &calls; }
+  Whole& whole() { return take_on(), solver_; }
+
+  void design_for(Mechanism& m, double dt) { calls_ ? calls_->design_for(solver_, m, dt) : solver_.design_bare(dt); }
+  void carry_weight(Mechanism& m, const Vec3& gravity) {
+    if (calls_) calls_->carry_weight(solver_, m, gravity);
+  }
+  void close_joints(Mechanism& m) {
+    if (calls_) calls_->close_joints(solver_, m);
+  }
+  MachineReport report(const Mechanism& m) const { return calls_ ? calls_->report(solver_, m) : MachineReport{}; }
+  MachineReport newly_opened(const Mechanism& m) { return calls_ ? calls_->newly_opened(solver_, m) : MachineReport{}; }
+  std::string note(const Mechanism& m) const { return calls_ ? calls_->note(solver_, m) : std::string(); }
+
+  StableTimeStep stable_time_step(const Mechanism& m) const {
+    return calls_ ? calls_->stable_time_step(solver_, m) : StableTimeStep{};
+  }
+  StableTimeStep stable_time_step_of_given(const Mechanism& m) const {
+    return calls_ ? calls_->stable_time_step_of_given(solver_, m) : StableTimeStep{};
+  }
+  StableTimeStep accepted_time_step(const Mechanism& m, double dt) const {
+    return calls_ ? calls_->accepted_time_step(solver_, m, dt) : StableTimeStep{dt, {}};
+  }
+
+  bool is_initialised(const Mechanism& m) const { return solver_.is_initialised(m); }
+  bool is_designed_for(const Mechanism& m, double dt) const { return solver_.is_designed_for(m, dt); }
+  void check_motions(Mechanism& m) const {
+    if (calls_) calls_->check_motions(solver_, m);
+  }
+
+  template <class F>
+  void initialise(Mechanism& m, double time, const Vec3& gravity, F&& put_forces) {
+    if (calls_) calls_->initialise(solver_, m, time, gravity, PutForces(put_forces));
+    else solver_.initialise_bare(m, time, put_forces);
+  }
+  template <class F>
+  void stage(Mechanism& m, int stage, double dt, const Vec3& gravity, F&& put_forces) {
+    if (calls_) calls_->stage(solver_, m, stage, dt, gravity, PutForces(put_forces));
+    else solver_.stage_bare(m, stage, dt, put_forces);
+  }
+
+  template <class V>
+  void fields(V& v) {
+    solver_.fields(v);
+  }
+
+ private:
+  struct Calls {
+    void (*design_for)(Whole&, Mechanism&, double);
+    void (*carry_weight)(Whole&, Mechanism&, const Vec3&);
+    void (*close_joints)(Whole&, Mechanism&);
+    MachineReport (*report)(const Whole&, const Mechanism&);
+    MachineReport (*newly_opened)(Whole&, const Mechanism&);
+    std::string (*note)(const Whole&, const Mechanism&);
+    StableTimeStep (*stable_time_step)(const Whole&, const Mechanism&);
+    StableTimeStep (*stable_time_step_of_given)(const Whole&, const Mechanism&);
+    StableTimeStep (*accepted_time_step)(const Whole&, const Mechanism&, double);
+    void (*check_motions)(const Whole&, Mechanism&);
+    void (*initialise)(Whole&, Mechanism&, double, const Vec3&, PutForces);
+    void (*stage)(Whole&, Mechanism&, int, double, const Vec3&, PutForces);
+  };
+  static constexpr Calls calls = {
+      .design_for = [](Whole& s, Mechanism& m, double dt) { s.design_for(m, dt); },
+      .carry_weight = [](Whole& s, Mechanism& m, const Vec3& gravity) { s.carry_weight(m, gravity); },
+      .close_joints = [](Whole& s, Mechanism& m) { s.close_joints(m); },
+      .report = [](const Whole& s, const Mechanism& m) { return s.report(m); },
+      .newly_opened = [](Whole& s, const Mechanism& m) { return s.newly_opened(m); },
+      .note = [](const Whole& s, const Mechanism& m) { return s.note(m); },
+      .stable_time_step = [](const Whole& s, const Mechanism& m) { return s.stable_time_step(m); },
+      .stable_time_step_of_given = [](const Whole& s, const Mechanism& m) { return s.stable_time_step_of_given(m); },
+      .accepted_time_step = [](const Whole& s, const Mechanism& m, double dt) { return s.accepted_time_step(m, dt); },
+      .check_motions = [](const Whole& s, Mechanism& m) { s.check_motions(m); },
+      .initialise = [](Whole& s, Mechanism& m, double time, const Vec3& gravity,
+                       PutForces put_forces) { s.initialise(m, time, gravity, put_forces); },
+      .stage = [](Whole& s, Mechanism& m, int stage, double dt, const Vec3& gravity,
+                  PutForces put_forces) { s.stage(m, stage, dt, gravity, put_forces); },
+  };
+
+  Whole solver_;
+  const Calls* calls_ = nullptr;  // none: the mechanism is a bare ground
+};
+
+}  // namespace dem::mbd
