@@ -14,6 +14,7 @@ int main(int argc, char** argv) {
     const std::string scene = argv[k];
     if (scene == "spheres") same = scenes::spheres() && same;
     else if (scene == "cubes") same = scenes::cubes() && same;
+    else if (scene == "periodic") same = scenes::periodic() && same;
     else if (scene == "checkpoint") same = scenes::checkpoint() && same;
     else if (scene == "mistake") scenes::mistake();
     else if (scene == "disagree") scenes::disagree();

@@ -8,6 +8,7 @@
 #include <dem/domain/ranks.hpp>
 #include <dem/geometry/mesh/mesh_shapes.hpp>
 #include <dem/io/checkpoint/world_columns.hpp>
+#include <dem/world/contacts.hpp>
 
 #include <cstdint>
 #include <cstdio>
@@ -90,6 +91,44 @@ bool same_bits(const char* name, const Scene& scene) {
               double(d.traffic().step_bytes) / double(shared.steps()));
   for (const std::string& column : differences) std::printf("  %s\n", column.c_str());
   return differences.empty();
+}
+
+inline bool equal(const char* what, const dem::io::StateColumns& a, const dem::io::StateColumns& b) {
+  const auto differences = dem::io::differences(a, b);
+  for (const std::string& column : differences) std::printf("  %s: %s\n", what, column.c_str());
+  return differences.empty();
+}
+
+/// Goes on from the states of ranks as one process, and the other way round; all run on to the same state. `make` is a
+/// function template of the model, called with the number of grains.
+template <class Shared, class Alone, class Make>
+bool goes_on(const char* name, const Make& make) {
+  auto shared = make.template operator()<Shared>(1500);
+  run(shared, 150);
+  auto first = dem::io::columns_of(shared);
+  const auto& d = shared.state().domain;
+
+  auto alone = make.template operator()<Alone>(1500);
+  run(alone, 150);
+  bool same = equal("before", dem::io::columns_of(alone), first);
+  auto alone_again = make.template operator()<Alone>(10);
+  dem::io::restore(alone_again, first);
+  auto saved = dem::io::columns_of(alone);
+  auto shared_again = make.template operator()<Shared>(10);
+  dem::io::restore(shared_again, saved);
+  run(alone_again, 200), run(shared_again, 200), run(shared, 200);
+  const auto last = dem::io::columns_of(shared), a = dem::io::columns_of(alone_again),
+             b = dem::io::columns_of(shared_again);
+  same = equal("as one process", a, last) && same;
+  same = equal("as ranks again", b, last) && same;
+  // What contacts feel is known to every rank, in the same order.
+  const auto contacts = contacts_of(shared);
+  const auto as_alone = contacts_of(alone_again);
+  same = same && contacts.size() == as_alone.size() && contacts.size() > 30;
+  for (std::size_t k = 0; same && k < contacts.size(); ++k) same = contacts[k].force == as_alone[k].force;
+  std::printf("%-10s %d ranks: %s, %zu contacts\n", name, d.ranks(), same ? "same bits" : "OTHER BITS",
+              contacts.size());
+  return d.all(same);
 }
 
 }  // namespace scenes

@@ -20,6 +20,7 @@ namespace dem::domain {
 /// positions are not put back: a wheel may roll through any number of cells.
 class Periodic {
  public:
+  using Cell = Periodic;  ///< the kind of cell, whoever shares its grains
   static constexpr bool has_images = true, has_ranks = false;
 
   Periodic() = default;

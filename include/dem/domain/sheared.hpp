@@ -19,6 +19,8 @@ namespace dem::domain {
 /// which borders a cell has is for the observer to say.
 class Sheared : public Periodic {
  public:
+  using Cell = Sheared;
+
   Sheared() = default;
   Sheared(const surface::Bounds& cell, const std::array<bool, 3>& repeats) : Periodic(cell, repeats) {}
 

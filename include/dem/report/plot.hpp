@@ -20,7 +20,7 @@ namespace dem::io {
 
 /// What render_plot() did.
 struct PlotResult {
-  bool rendered = false, is_empty = false;  ///< is_empty: there is nothing to draw
+  bool rendered = false, is_empty = false;  ///< is_empty: there are no points, not even such as are not finite
   std::string reason = {};                  ///< one line that says why nothing was drawn
   std::filesystem::path script = {};        ///< written in any case
   std::filesystem::path svg = {};           ///< empty when not rendered
@@ -78,7 +78,6 @@ inline PlotResult render_script(const std::string& script, bool any_data, const 
 
   if (!any_data) {
     result.reason = "the plot has no finite data";
-    result.is_empty = true;
     return result;
   }
   const auto program = find_program(gnuplot);
@@ -118,7 +117,9 @@ inline PlotResult render_plot(const Plot& plot, const std::filesystem::path& bas
   const std::string name = detail::checked_name(plot.title, base);
   const bool any_data =
       std::any_of(plot.series.begin(), plot.series.end(), [&](const Series& s) { return detail::has_points(plot, s); });
-  return detail::render_script(gnuplot_script(plot, name), any_data, base, gnuplot);
+  PlotResult result = detail::render_script(gnuplot_script(plot, name), any_data, base, gnuplot);
+  result.is_empty = std::all_of(plot.series.begin(), plot.series.end(), [](const Series& s) { return s.x.empty(); });
+  return result;
 }
 
 }  // namespace dem::io

@@ -85,7 +85,7 @@ class Report {
       has_plots_ = true;
       html.picture(drawn.svg, caption);
     } else if (drawn.is_empty && (outcome().interrupted || !outcome().problem.empty())) {
-      html.paragraph(text("{}: nothing was measured by then.", caption));
+      html.paragraph(text("{} Nothing was measured by then.", caption));
     } else {
       has_plots_ = true;
       not_drawn_ = drawn.reason;

@@ -115,9 +115,7 @@ class Session final : public Stages {
     else tell_within(done, status);
     save_if_due();
   }
-  void go_on() override {
-    if (progress_) progress_->go_on();
-  }
+  void go_on() override { progress_ ? progress_->go_on() : set_.within->go_on(); }
   void finish(std::string_view result = {}) override {
     if (progress_) progress_->finish(result);
   }

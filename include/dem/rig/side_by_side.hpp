@@ -9,6 +9,7 @@
 #include <mutex>
 #include <string>
 #include <thread>
+#include <utility>
 #include <vector>
 
 namespace dem::rig {
@@ -20,10 +21,11 @@ class SharedStages {
   SharedStages(Stages& stages, std::size_t of) : stages_(stages), done_(of, 0.0) {}
 
   /// So much, from 0 to 1, of a run is done. Throws Interrupted when another run has failed; not when all are asked to
-  /// stop, as each is then to save itself first.
-  void update(std::size_t run, double done, std::string_view status) {
+  /// stop, as each is then to save itself first. `was_done`: an earlier run did it.
+  void update(std::size_t run, double done, std::string_view status, bool was_done = false) {
     if (has_failed && !io::interrupted()) throw Interrupted{};
     const std::lock_guard lock(mutex_);
+    if (was_done) stages_.go_on();
     done_[run] = done;
     double sum = 0.0;
     for (const double d : done_) sum += d;
@@ -50,12 +52,10 @@ class StagesOfOne final : public Stages {
  public:
   StagesOfOne(SharedStages& shared, std::size_t run) : shared_(shared), run_(run) {}
   void update(double done, std::string_view status = {}) override {
-    shared_.update(run_, done, status);
+    shared_.update(run_, done, status, std::exchange(goes_on_, false));
     save_if_due();
   }
-  void go_on() override {
-    shared_.alone([&] { shared_.all().go_on(); });
-  }
+  void go_on() override { goes_on_ = true; }
   void message(std::string_view text) override {
     shared_.alone([&] { shared_.all().message(text); });
   }
@@ -63,6 +63,7 @@ class StagesOfOne final : public Stages {
  private:
   SharedStages& shared_;
   std::size_t run_;
+  bool goes_on_ = false;
 };
 
 /// Calls job(k, shared) for each k below `jobs`, up to `workers` at a time. Where several processes share each of them

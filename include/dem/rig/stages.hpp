@@ -100,7 +100,7 @@ class Stages {
   virtual void begin([[maybe_unused]] std::string_view name, [[maybe_unused]] double total = unknown) {}
   /// So much of the total is done; `status` is one line on how things stand.
   virtual void update([[maybe_unused]] double done, [[maybe_unused]] std::string_view status = {}) {}
-  /// The stage goes on where it was saved; the next update() says how far that was.
+  /// What the next update() tells was done by an earlier run: the stage goes on where it was saved.
   virtual void go_on() {}
   /// The stage is done; `result` is one line on what came out.
   virtual void finish([[maybe_unused]] std::string_view result = {}) {}

@@ -186,6 +186,9 @@ template <class Model>
 Tile take_tile(const World<Model>& world, const TileOptions& o = {}) {
   static_assert(Model::Domain::has_images && !domain::IsSheared<typename Model::Domain>,
                 "a tile is taken out of a world that repeats itself: domain::Periodic");
+  if constexpr (Model::Domain::has_ranks) {
+    if (world.state().domain.is_shared()) fail("a tile is asked for from a cell that ranks share: take it on one rank");
+  }
   World<Model> copy = world;
   copy.prepare();
   WorldState<Model>& w = copy.state();

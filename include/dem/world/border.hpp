@@ -4,7 +4,7 @@
 // of partners goes from higher ranks to lower ones, and loads of contacts go the other way. In worlds that are not
 // shared all of this is nothing.
 
-#include <dem/world/state.hpp>
+#include <dem/world/images.hpp>
 
 #include <cstddef>
 #include <cstring>
@@ -66,8 +66,8 @@ void make_borders(WorldState<Model>& w) {
   for (std::size_t c = begin; c < end; ++c) {
     const Chunk<Model>& chunk = w.chunks[c];
     for (std::uint32_t k = 0; k < chunk.candidate.size(); ++k) {
-      const std::uint32_t j = chunk.candidate[k];
-      const int owner = d.owner(j / chunk_size);
+      const std::uint32_t j = chunk.candidate[k], grain = w.images.grain_of(j);
+      const int owner = d.owner(grain / chunk_size);
       if (owner == d.rank()) continue;
       const auto r = static_cast<std::size_t>(owner);
       auto& border = d.borders[r];
@@ -76,7 +76,7 @@ void make_borders(WorldState<Model>& w) {
         border.first_out.push_back(static_cast<std::uint32_t>(border.candidates_out.size()));
       }
       border.candidates_out.push_back(k);
-      wanted[r].push_back(j);
+      wanted[r].push_back(grain);
       lists[r].insert(lists[r].end(), {static_cast<std::uint32_t>(c), chunk.owner[k], j});
       d.is_at_border[c] = 1;
     }
@@ -243,6 +243,7 @@ void find_shared_contacts(WorldState<Model>& w, Find& find_contacts, Move& move)
   send_motion(w);
   find_contacts(inner);
   take_motion(w);
+  place_images(w), tell_images(w);
   find_contacts(outer);
   swap_loads(w);
   if (!w.move.at_once) return;

@@ -157,8 +157,8 @@ std::vector<Contact<Model>> contacts_of(const World<Model>& world) {
   World<Model> copy = world;
   copy.prepare();
   if (neighbours_outdated(copy.state())) rebuild_neighbours(copy.state());
-  place_images(copy.state());
   if constexpr (Model::Domain::has_ranks) complete_chunks(copy.state());
+  place_images(copy.state());
   return detail::ContactFinder<Model>(copy.state()).find();
 }
 

@@ -4,6 +4,7 @@
 #include <dem/grain/incoming.hpp>
 #include <dem/grain/neighbours.hpp>
 #include <dem/world/gather.hpp>
+#include <dem/world/images.hpp>
 
 namespace dem {
 
@@ -13,59 +14,6 @@ bool neighbours_outdated(const WorldState<Model>& w) {
   if (!w.list_valid) return w.particles.count > 0;
   if constexpr (domain::IsSheared<typename Model::Domain>) return 2.0 * w.moved() > w.list_skin;
   return 4.0 * w.moved2() > w.list_skin * w.list_skin;
-}
-
-/// Puts the grains of a periodic cell back into it, and takes the images away that were beyond its borders.
-template <class Model>
-void wrap_grains(WorldState<Model>& w) {
-  if constexpr (Model::Domain::has_images) {
-    auto& p = w.particles;
-    p.resize(p.count);
-    w.images = {};
-    for (std::size_t i = 0; i < p.count; ++i) {
-      const Vector3<double> inside = w.domain.wrapped(p.position[i]);
-      double slip = 0.0;  // m/s, of a sheared cell
-      if constexpr (domain::IsSheared<typename Model::Domain>) {
-        slip = w.domain.level_of(p.position[i]) * w.domain.slip();
-        p.velocity.x[i] -= slip;
-      }
-      // An integrator that goes back to the start of the step goes back to where that is now. A sheared cell's
-      // neighbours were one step's way back then.
-      using Memory = typename Model::Integrator::template Memory<double>;
-      if constexpr (requires(Memory memory) { memory.start.position; }) {
-        if (const Vector3<double> by = inside - p.position[i]; dot(by, by) > 0.0) {
-          Memory memory = p.memory_at(i);
-          memory.start.position += by + Vector3<double>{slip * w.time_step, 0, 0};
-          memory.start.velocity.x -= slip;
-          p.set_memory(i, memory);
-        }
-      }
-      const auto& kind = w.species[p.species[i]];
-      if (w.ledger.on && !kind.is_held()) {
-        w.ledger.came -= kind.mass * dot(from_eigen(w.options.gravity), inside - p.position[i]);
-      }
-      p.position.set(i, inside);
-    }
-  }
-}
-/// Makes the images of the grains near a periodic cell's borders, after the grains are sorted.
-template <class Model>
-void make_images(WorldState<Model>& w, double reach) {
-  if constexpr (Model::Domain::has_images) {
-    grain::find_images(w.images, w.particles, w.domain, reach);
-    grain::make_rows(w.particles, w.images);
-  }
-}
-/// Images go where their grains are.
-template <class Model>
-void place_images(WorldState<Model>& w) {
-  if constexpr (Model::Domain::has_images) {
-    const std::size_t count = w.images.grain.size();
-    w.executor.for_each((count + chunk_size - 1) / chunk_size, [&](std::size_t block) {
-      const std::size_t end = std::min((block + 1) * chunk_size, count);
-      for (std::size_t k = block * chunk_size; k < end; ++k) grain::follow_grain(w.particles, w.images, w.domain, k);
-    });
-  }
 }
 
 /// The mean bounding radius (m) of the grains that there are: that of all if they have one size.

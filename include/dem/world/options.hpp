@@ -28,9 +28,9 @@ struct WorldOptions {
   double overlap_limit = 0.5;  ///< overlap, in effective diameters 2 Ri Rj/(Ri + Rj), that is reported as a problem
   std::optional<surface::Bounds> domain = {};         ///< where grains are expected; none: anywhere
   BeyondDomain beyond_domain = BeyondDomain::report;  ///< what becomes of a grain whose centre leaves it
-  PeriodicAxes periodic = {};  ///< in which the domain repeats itself; for models whose Domain is domain::Periodic
-  double shear_rate = 0.0;     ///< 1/s, dv_x/dz; for models whose Domain is domain::Sheared
-  int threads = 0;             ///< 0: as many as the executor offers
+  PeriodicAxes periodic = {};              ///< in which the domain repeats itself; for models with a periodic Domain
+  double shear_rate = 0.0;                 ///< 1/s, dv_x/dz; for models whose Domain is domain::Sheared
+  int threads = 0;                         ///< 0: as many as the executor offers
   std::optional<SleepOptions> sleep = {};  ///< lets grains at rest sleep, so that they cost next to nothing
 };
 

@@ -35,8 +35,8 @@ void set_period(WorldState<Model>& w) {
     }
   } else if (Model::Domain::has_ranks && any) {
     fail(
-        "WorldOptions::periodic is set, but ranks do not share periodic cells: take domain::Periodic, on one rank, or "
-        "an open domain");
+        "WorldOptions::periodic is set, but the world's model has an open Domain that ranks share: say `using Domain = "
+        "dem::domain::PeriodicRanks;` in the model");
   } else if (any) {
     fail(
         "WorldOptions::periodic is set, but the world's model has an open Domain: say `using Domain = "

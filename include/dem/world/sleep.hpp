@@ -1,7 +1,7 @@
 #pragma once
 
 #include <dem/grain/sleep.hpp>
-#include <dem/world/state.hpp>
+#include <dem/world/images.hpp>
 
 #include <algorithm>
 #include <utility>
@@ -173,9 +173,7 @@ void choose_working_chunks(WorldState<Model>& w) {
     if (!w.record_contacts) continue;
     for (std::size_t i = c * chunk_size; i < (c + 1) * chunk_size; ++i) s.doing[i] |= grain::recorded;
   }
-  if constexpr (Model::Domain::has_images) {
-    for (std::size_t k = 0; k < w.images.grain.size(); ++k) s.doing[w.images.first + k] = s.doing[w.images.grain[k]];
-  }
+  tell_images(w);
   s.all_work = false;
 }
 

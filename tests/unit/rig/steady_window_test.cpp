@@ -66,6 +66,25 @@ TEST_CASE("runs side by side share the progress of their stage, and each is run 
   CHECK(told.last == Approx(7.0));
 }
 
+TEST_CASE("each of several runs that go on says what of it was done before") {
+  struct Told : Stages {
+    void update(double done, std::string_view) override {
+      if (!std::exchange(goes_on, false)) headway += done - last;
+      last = done;
+    }
+    void go_on() override { goes_on = true; }
+    double headway = 0.0, last = 0.0;
+    bool goes_on = false;
+  } told;
+  side_by_side(3, 1, told, [&](std::size_t k, SharedStages& stages) {
+    StagesOfOne own(stages, k);
+    if (k < 2) own.go_on(), own.update(0.4);  // the third begins
+    own.update(1.0);
+  });
+  CHECK(told.last == Approx(3.0));
+  CHECK(told.headway == Approx(0.6 + 0.6 + 1.0));
+}
+
 TEST_CASE("a run that fails ends those beside it, and its problem is thrown") {
   Stages quiet;
   int begun = 0;

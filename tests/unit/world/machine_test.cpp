@@ -62,6 +62,13 @@ TEMPLATE_TEST_CASE("a machine that is first asked for while a world runs goes on
   CHECK(late.machine().body(rod).position() == early.machine().body(rod).position());
   CHECK(late.position(ball) == early.position(ball));
   CHECK(early.machine().body(rod).position().z() < -1e-4);  // it did fall
+
+  // Who holds the machine of a world that becomes another one adds to that.
+  auto& machine = early.machine();
+  early = make();
+  const dem::BodyId another = add_pendulum(machine);
+  REQUIRE(early.run(2000));
+  CHECK(early.machine().body(another).position().z() < -1e-4);
 }
 
 TEMPLATE_TEST_CASE("a ball that bounces off a sprung plate leaves the energy in the plate", "", CorrectedBalls, Balls,

@@ -187,7 +187,7 @@ void model_fields(Fields& v) {
   policy("broad_phase", type_name<typename Model::BroadPhase>());
   policy("integrator", type_name<typename Model::Integrator>());
   if constexpr (Model::Joints::projects) policy("joints", type_name<typename Model::Joints>());
-  if constexpr (Model::Domain::has_images) policy("domain", type_name<typename Model::Domain>());
+  if constexpr (Model::Domain::has_images) policy("domain", type_name<typename Model::Domain::Cell>());
 }
 
 template <class Model, class... Others>

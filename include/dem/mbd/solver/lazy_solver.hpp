@@ -3,6 +3,7 @@
 #include <dem/mbd/solver/solver.hpp>
 
 #include <string>
+#include <utility>
 
 namespace dem::mbd {
 
@@ -25,6 +26,21 @@ template <integrator::Integrator I, JointPolicy Joints = Penalty>
 class LazySolver {
  public:
   using Whole = Solver<I, Joints>;
+
+  LazySolver() = default;
+  LazySolver(const LazySolver&) = default;
+  LazySolver(LazySolver&&) = default;
+  // Whoever asked for the mechanism may still hold it, and add to it.
+  LazySolver& operator=(const LazySolver& s) {
+    solver_ = s.solver_;
+    if (s.calls_) calls_ = s.calls_;
+    return *this;
+  }
+  LazySolver& operator=(LazySolver&& s) {
+    solver_ = std::move(s.solver_);
+    if (s.calls_) calls_ = s.calls_;
+    return *this;
+  }
 
   /// From here on there may be more than a ground.
   void take_on() { calls_ = &calls; }

@@ -165,6 +165,7 @@ class Solver {
   void design_bare(double dt) { design_dt_ = dt; }
   template <class PutForces>
   void initialise_bare(Mechanism& m, double time, PutForces&& put_forces) {
+    if (m.parts().bodies.size() > 1) fail("a machine was put together that World::machine() did not hand out");
     clear_forces(m.parts());
     put_forces();
     time_ = time;
@@ -177,7 +178,6 @@ class Solver {
   }
   template <class PutForces>
   void stage_bare(Mechanism& m, int stage, double dt, PutForces&& put_forces) {
-    DEM_ASSERT(m.parts().bodies.size() <= 1, "there is more than a ground: LazySolver::take_on() was not called");
     clear_forces(m.parts());
     put_forces();
     if (stage < I::stages - 1) return;

@@ -30,6 +30,7 @@ class ShareOf final : public Stages {
   void update(double done, std::string_view status = {}) override {
     all_.update((static_cast<double>(part_) + done) / static_cast<double>(of_), status);
   }
+  void go_on() override { all_.go_on(); }
   void message(std::string_view text) override { all_.message(text); }
 
  private:

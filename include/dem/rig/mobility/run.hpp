@@ -128,7 +128,8 @@ inline void run_campaign(const Settings& s, Campaign& c, std::optional<report::R
                    vehicle::OpenLoop inputs = s.open_loop;
                    const auto kept = own.keep("result", c.results[k]), kept_inputs = own.keep("inputs", inputs);
                    std::vector<double> ruts;
-                   if (!part.is_done()) one(k, own, 0.0, 1.0, ruts);
+                   if (part.is_done()) own.go_on();
+                   else one(k, own, 0.0, 1.0, ruts);
                    own.complete();
                    own.update(1.0);
                  });

@@ -61,7 +61,7 @@ void run_campaign(const Settings& settings, ShapeOf&& shape_of, Campaign& campai
       Frames frames(session, s.vtk && k == shown ? name : "", 0.05, "this slip");
       report::Replay* replay = campaign.replay && k == shown ? &*campaign.replay : nullptr;
       const auto kept = own.keep("slip", r), series = own.keep("frames", frames), pictures = own.keep("replay", replay);
-      if (part.is_done()) return own.update(1.0);
+      if (part.is_done()) return own.go_on(), own.update(1.0);
       test.roll(stand, r, own, [&](const auto& world, double share) {
         if (k != shown) return;
         stages.alone([&] {

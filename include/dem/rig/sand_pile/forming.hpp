@@ -126,6 +126,7 @@ class Forming {
     });
     const double time = rig_.lift_time(lift_way_);
     stages_.begin(result_.kind.name + ": lift", time);
+    if (stage && !stage.begins()) stages_.go_on();
     while (stage && rig_.world.time() < lift_start_ + time) {
       go_on();
       stages_.update(rig_.world.time() - lift_start_, status());

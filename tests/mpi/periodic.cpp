@@ -1,0 +1,75 @@
+#include "scenes.hpp"
+
+#include <dem/domain/periodic_ranks.hpp>
+#include <dem/geometry/cluster/sphere_cluster.hpp>
+
+namespace scenes {
+
+namespace {
+
+/// By the predictor-corrector, which goes back to where a step began: over a border too.
+struct PeriodicAlone : dem::Model {
+  using Shape = dem::shape::SphereCluster<8>;
+  using Domain = dem::domain::Periodic;
+};
+struct PeriodicShared : PeriodicAlone {
+  using Domain = dem::domain::PeriodicRanks;
+};
+
+constexpr double length = 0.05, width = 0.01;  // m, of the cell
+
+template <class Model>
+dem::World<Model> cell(int n, const dem::Vec3& gravity, std::optional<dem::SleepOptions> sleep, double speed) {
+  dem::World<Model> world({.gravity = gravity,
+                           .domain = {{{0, 0, -0.01}, {length, width, 0.2}}},
+                           .periodic = {.x = true, .y = true},
+                           .threads = 2,
+                           .sleep = sleep});
+  world.set_contact({.normal = {2000, 0.05, 0.05}, .friction = {0.4, 2000, 0.015, 0.975}});
+  world.add_surface(world.ground(), dem::surface::Plane{});
+  pour(world, world.add_species(dem::shape::cube8(0.7e-3)), n, 20, 4, 2.5e-3, speed);
+  return world;
+}
+
+/// Cubes fall and slide over the borders; some are taken away and added on the way.
+constexpr auto flow = []<class Model>() {
+  auto world = cell<Model>(1500, {6, 3, -9.81}, {}, 1.0);
+  run(world, 400);
+  for (std::uint32_t k = 3; k < 1500; k += 7) world.remove_particle(dem::ParticleId(k));
+  world.add_particle({.species = dem::SpeciesId(0), .position = {0.01, 0.001, 0.08}, .velocity = {2, -1, -1}});
+  run(world, 500);
+  const auto ids = world.particles();
+  const auto crossed = std::count_if(ids.begin(), ids.end(), [&](dem::ParticleId p) {
+    return world.velocity(p).x() > 0.5 && world.position(p).x() < 4e-3;
+  });
+  require(crossed > 10, "no grain went over the border");
+  return world;
+};
+
+/// Cubes float and fall asleep, and a paddle flies down into them and over the border.
+constexpr auto paddle = []<class Model>() {
+  auto world =
+      cell<Model>(1500, {0, 0, 0}, dem::SleepOptions{.balance = 0.2, .change = 0.2, .motion = 0.01, .window = 20}, 0.0);
+  const dem::Vec3 edges(2e-3, 4e-3, 8e-3);
+  const auto body = world.machine().add_body(
+      dem::mbd::box_body("paddle", edges, 2650).at({length - 6e-3, width / 2, 0.053}).moving({3, 0, -1.5}));
+  world.add_surface(body, dem::surface::Box(edges));
+  run(world, 900);
+  require(world.machine().body(body).position().x() > length, "the paddle did not go over the border");
+  require(world.asleep_count() > 0, "no grain sleeps");
+  require(world.asleep_count() < world.particle_count(), "all grains sleep");
+  return world;
+};
+
+}  // namespace
+
+bool periodic() {
+  const bool flows = same_bits<PeriodicShared, PeriodicAlone>("flow", flow);
+  const bool sleeps = same_bits<PeriodicShared, PeriodicAlone>("paddle", paddle);
+  const bool goes = goes_on<PeriodicShared, PeriodicAlone>("periodic", []<class Model>(int n) {
+    return cell<Model>(n, {6, 3, -9.81}, {}, 1.0);
+  });
+  return flows && sleeps && goes;
+}
+
+}  // namespace scenes
