@@ -1,7 +1,8 @@
-// Spheres settle in a long box, shared by as many processes as mpirun starts. Prints what sharing costs, and a hash of
-// the state, which is the same for any number of processes and threads.
+// Spheres, or cubes of eight spheres, settle in a long box, shared by as many processes as mpirun starts. Prints what
+// sharing costs, and a hash of the state, which is the same for any number of processes and threads.
 //
-//   mpirun -np 4 settle_ranks --grains 20000 --settle 3000 --steps 300 --threads 1 --output out/settle_ranks
+//   mpirun -np 4 settle_ranks --shape spheres --grains 20000 --settle 3000 --steps 300 --threads 1 --output
+//   out/settle_ranks
 //
 // Writes settled.csv: positions and speeds of the grains, once, whatever the number of processes.
 
@@ -25,9 +26,12 @@ struct Beads : Model {
   using Domain = domain::Ranks;
 };
 
-int main(int argc, char** argv) {
-  const domain::Session mpi(argc, argv);
-  Arguments arguments(argc, argv);
+struct Dice : Beads {
+  using Shape = shape::SphereCluster<8>;
+};
+
+template <class Model>
+void settle(const typename Model::Shape& grain, Arguments& arguments) {
   const int grains = static_cast<int>(arguments.number("--grains", 20000));
   const int settle = static_cast<int>(arguments.number("--settle", 3000));
   const int steps = static_cast<int>(arguments.number("--steps", 300));
@@ -35,8 +39,8 @@ int main(int argc, char** argv) {
   const std::filesystem::path folder = arguments.take("--output", "settle_ranks");
   arguments.check();
 
-  const double r = 1e-3, pitch = 2.2 * r;  // m
-  World<Beads> world({.threads = threads});
+  const double pitch = 2.2 * grain.bounding_radius();  // m
+  World<Model> world({.threads = threads});
   world.set_contact({.normal = contact::LinearSpringDashpot::with_restitution(1000, 0.5), .friction = {0.4, 700, 0.1}});
   // Ten times as long as wide, some 20 grains deep.
   const int across = std::max(3, static_cast<int>(std::sqrt(grains / 200.0))), along = 10 * across;
@@ -50,11 +54,13 @@ int main(int argc, char** argv) {
     wall({side * length + (side - 0.5) * t, width / 2, h / 2}, {t, width + 2 * t, h});
     wall({length / 2, side * width + (side - 0.5) * t, h / 2}, {length + 2 * t, t, h});
   }
-  const SpeciesId bead = world.add_species(shape::Sphere(r), {.density = 2500});
+  const SpeciesId species = world.add_species(grain, {.density = 2500});
   for (int k = 0; k < grains; ++k) {
     const int i = k % along, j = k / along % across, level = k / (along * across);
     const double shake = 0.04 * std::sin(12.9898 * k);
-    world.add_particle({bead, pitch * Vec3(i + 0.5 + shake, j + 0.5 - shake, level + 0.5)});
+    world.add_particle({.species = species,
+                        .position = pitch * Vec3(i + 0.5 + shake, j + 0.5 - shake, level + 0.5),
+                        .rotation = Quaternion(1, 20 * shake, 0.3, -10 * shake).normalized().toRotationMatrix()});
   }
 
   const auto run = [&](int n) {
@@ -81,4 +87,13 @@ int main(int argc, char** argv) {
     const Vec3 x = world.position(p);
     csv.row(x.x(), x.y(), x.z(), world.velocity(p).norm());
   }
+}
+
+int main(int argc, char** argv) {
+  const domain::Session mpi(argc, argv);
+  Arguments arguments(argc, argv);
+  const std::string kind = arguments.take("--shape", "spheres");
+  if (kind == "spheres") settle<Beads>(shape::Sphere(1e-3), arguments);
+  else if (kind == "cubes") settle<Dice>(shape::cube8(0.6e-3), arguments);
+  else fail("--shape is '{}', but must be spheres or cubes", kind);
 }
