@@ -7,6 +7,7 @@
 #include <dem/grain/species.hpp>
 
 #include <algorithm>
+#include <bit>
 #include <span>
 #include <vector>
 
@@ -24,40 +25,65 @@ void list_owners(Chunk<Model>& chunk) {
   chunk.searches.reset(chunk.candidate.size());
 }
 
+/// Calls f(j) for the rows first to last - 1, in order, whose centres lie within `reach` (m) of x: a pack at a time.
+template <class Particles, class F>
+DEM_HOT void for_each_within(const Particles& p, std::uint32_t first, std::uint32_t last, const Vector3<double>& x,
+                             double reach, F&& f) {
+  std::uint32_t j = first;
+  // Padding rows are not read: another thread may be putting them in their place.
+  for (; j < last && j + pack_width <= p.count; j += pack_width) {
+    const Pack dx = load_unaligned(&p.position.x[j]) - Pack(x.x), dy = load_unaligned(&p.position.y[j]) - Pack(x.y),
+               dz = load_unaligned(&p.position.z[j]) - Pack(x.z);
+    std::uint32_t near = bits(dx * dx + dy * dy + dz * dz < Pack(reach * reach));
+    if (last - j < pack_width) near &= (1u << (last - j)) - 1u;
+    for (; near != 0; near &= near - 1) f(j + static_cast<std::uint32_t>(std::countr_zero(near)));
+  }
+  for (; j < last; ++j) {
+    const Vector3<double> d = p.position[j] - x;
+    if (dot(d, d) < reach * reach) f(j);
+  }
+}
+
 /// Candidates of one chunk: all j > i whose bounding spheres come within the skin, ascending; grains first, then
-/// images. No two that are held.
+/// images. No two that are held. `largest_radius` (m): of a bounding sphere.
 template <class Model, class Particles, class BroadPhase>
 void list_candidates(std::size_t chunk_index, Chunk<Model>& chunk, const Particles& p, const BroadPhase& broad_phase,
                      const Images<typename Model::Domain>& images,
-                     std::span<const Species<typename Model::Shape>> species, double skin) {
+                     std::span<const Species<typename Model::Shape>> species, double largest_radius, double skin) {
   const std::size_t begin = chunk_index * chunk_size;
   const std::size_t end = std::min(begin + chunk_size, p.count);
   auto finder = broad_phase.finder();
-  const bool one_species = species.size() == 1;
-  std::vector<std::uint32_t> found(chunk.candidate.size() + 16 * chunk_size);
-  std::size_t count = 0;
+  std::vector<std::uint32_t> found;
+  found.reserve(chunk.candidate.size() + 16 * chunk_size);
   for (std::size_t i = begin; i < end; ++i) {
-    const std::size_t first = count;
+    const auto first = static_cast<std::ptrdiff_t>(found.size());
     chunk.candidate_first[i - begin] = static_cast<std::uint32_t>(first);
     const auto& kind = species[p.species[i]];
-    const double radius_i = kind.shape.bounding_radius();
-    const bool held = kind.is_held();
     const Vector3<double> x = p.position[i];
-    finder.for_each_candidate(i, [&](std::uint32_t j) {
-      if (!images.may_pair(i, j)) return;  // nor is it read: another thread may be putting padding rows in their place
-      if (count == found.size()) [[unlikely]]
-        found.resize(2 * count);
+    // Which of those within the largest reach come near enough, and may move.
+    const auto take = [&](std::uint32_t j) {
+      const auto& other = species[p.species[j]];
+      const double reach = kind.shape.bounding_radius() + other.shape.bounding_radius() + skin;
       const Vector3<double> d = p.position[j] - x;
-      const auto& other = one_species ? kind : species[p.species[j]];
-      const double reach = radius_i + other.shape.bounding_radius() + skin;
-      const bool near = dot(d, d) < reach * reach;
-      const bool may_move = !(held && other.is_held());
-      found[count] = j;  // whether it counts is a toss-up: without a branch
-      count += std::size_t{near} & std::size_t{may_move};
-    });
-    std::sort(found.begin() + static_cast<std::ptrdiff_t>(first), found.begin() + static_cast<std::ptrdiff_t>(count));
+      if (dot(d, d) < reach * reach && !(kind.is_held() && other.is_held())) found.push_back(j);
+    };
+    const auto take_run = [&](std::uint32_t from, std::uint32_t to) {
+      const double reach = kind.shape.bounding_radius() + largest_radius + skin;
+      if (species.size() > 1 || kind.is_held()) return for_each_within(p, from, to, x, reach, take);
+      for_each_within(p, from, to, x, reach, [&](std::uint32_t j) { found.push_back(j); });
+    };
+    const auto take_one = [&](std::uint32_t j) {
+      if (images.may_pair(i, j)) take(j);  // nor is it read: another thread may be putting padding rows in their place
+    };
+    if constexpr (broadphase::FindsRuns<decltype(finder)>) {
+      if (finder.has_runs()) finder.for_each_run(i, take_run);
+      else finder.for_each_candidate(i, take_one);
+    } else {
+      finder.for_each_candidate(i, take_one);
+    }
+    std::sort(found.begin() + first, found.end());
   }
-  chunk.candidate.assign(found.begin(), found.begin() + static_cast<std::ptrdiff_t>(count));
+  chunk.candidate.assign(found.begin(), found.end());
   for (std::size_t k = end - begin; k <= chunk_size; ++k) {
     chunk.candidate_first[k] = static_cast<std::uint32_t>(chunk.candidate.size());
   }

@@ -105,7 +105,8 @@ void rebuild_neighbours(WorldState<Model>& w, Change&& change) {
   const auto [begin, end] = w.own_chunks();
   w.executor.for_each(end - begin, [&, first = begin](std::size_t k) {
     const std::size_t c = first + k;
-    grain::list_candidates<Model>(c, w.chunks[c], p, w.broad_phase, w.images, w.species, w.materials.range() + skin);
+    grain::list_candidates<Model>(c, w.chunks[c], p, w.broad_phase, w.images, w.species, w.largest_radius,
+                                  w.materials.range() + skin);
     grain::refresh_chunk<Model>(c, w.chunks[c], p, w.species);
   });
   if constexpr (Model::Domain::has_ranks) make_borders(w);

@@ -27,7 +27,8 @@ struct Sizes {
 ///   - build(positions, sizes): optional, then called instead: two farther apart than their radii and the gap need not
 ///     be found;
 ///   - finder(): an object of which each thread has its own, with for_each_candidate(i, f). That calls f(j) once for
-///     each j > i within reach of i, and for others, in any order;
+///     each j > i within reach of i, and for others, in any order. Optional: has_runs() and for_each_run(i, f); where
+///     the former is true, the latter calls f(first, last) for runs of those j instead, which costs less;
 ///   - order(): a permutation that puts grains near in space near in memory, or an empty span;
 ///   - memory_bytes(): what it holds;
 ///   - reordered(): optional: the grains were put in order(). Without it they are built anew.
@@ -43,6 +44,13 @@ concept BroadPhase = requires(B& b, const B& built, const Positions& positions, 
 template <class B>
 concept KnowsSizes = requires(B& b, const Positions& positions, const Sizes& sizes) {
   b.build(positions, sizes);
+};
+
+/// A finder of a broad phase that may know runs of grains.
+template <class Finder>
+concept FindsRuns = requires(Finder& f) {
+  { f.has_runs() } -> std::convertible_to<bool>;
+  f.for_each_run(std::size_t{0}, [](std::uint32_t, std::uint32_t) {});
 };
 
 template <class B>

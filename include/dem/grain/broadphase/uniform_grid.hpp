@@ -58,17 +58,28 @@ class UniformGrid {
 
     template <class F>
     void for_each_candidate(std::size_t i, F&& f) {
-      if (grid_.cell_of_[i] != cell_) look_around(grid_.cell_of_[i]);
       if (grid_.is_in_order_) {
-        for (int k = 0; k < count_; ++k) {
-          for (auto j = std::max(first_[k], static_cast<std::uint32_t>(i) + 1); j < last_[k]; ++j) f(j);
-        }
+        for_each_run(i, [&](std::uint32_t first, std::uint32_t last) {
+          for (std::uint32_t j = first; j < last; ++j) f(j);
+        });
         return;
       }
+      if (grid_.cell_of_[i] != cell_) look_around(grid_.cell_of_[i]);
       for (int k = 0; k < count_; ++k) {
         for (std::uint32_t m = first_[k]; m < last_[k]; ++m) {
           if (grid_.order_[m] > i) f(grid_.order_[m]);
         }
+      }
+    }
+
+    bool has_runs() const { return grid_.is_in_order_; }
+    /// The same as runs of grains that follow each other: calls f(first, last).
+    template <class F>
+    void for_each_run(std::size_t i, F&& f) {
+      if (grid_.cell_of_[i] != cell_) look_around(grid_.cell_of_[i]);
+      for (int k = 0; k < count_; ++k) {
+        const std::uint32_t first = std::max(first_[k], static_cast<std::uint32_t>(i) + 1);
+        if (first < last_[k]) f(first, last_[k]);
       }
     }
 
@@ -79,43 +90,62 @@ class UniformGrid {
       const std::uint64_t here = grid_.cells_[cell].key;
       cell_ = cell;
       count_ = 0;
+      if (here >> 3 != block_) block_ = here >> 3, known_ = 0;
       // Along each axis the three cells are two in the block of this one, and one in the block before or after it.
       constexpr unsigned first_half[] = {0x55, 0x33, 0x0f};  // places of the first cell along x, y and z
-      std::uint64_t bits[3];                                 // bits of the cell in the other block, along each axis
-      unsigned there[3];                                     // its places
-      for (unsigned k = 0; k < 3; ++k) {
-        const std::uint64_t axis = morton::axis(0) << k;
-        const bool is_second = here >> k & 1;
-        bits[k] = (is_second ? morton::up(here, axis) : morton::down(here, axis)) & axis;
-        there[k] = is_second ? first_half[k] : ~first_half[k] & 0xffu;
-      }
       for (unsigned other = 0; other < 8; ++other) {
-        std::uint64_t number = here;
         unsigned places = 0xff;
+        int side[3] = {0, 0, 0};
         for (unsigned k = 0; k < 3; ++k) {
           if (!(other >> k & 1)) continue;
-          const std::uint64_t axis = morton::axis(0) << k;
-          number = (number & ~axis) | bits[k];
-          places &= there[k];
+          const bool is_second = here >> k & 1;
+          side[k] = is_second ? 1 : -1;
+          places &= is_second ? first_half[k] : ~first_half[k] & 0xffu;
         }
-        const std::uint64_t key = number >> 3;
-        if (grid_.is_in_order_) {
-          if (key < here >> 3) continue;
-          if (other == 0) places &= 0xffu << (here & 7);
-        }
-        const Block* block = grid_.table_.find(key);
+        const Block* block = block_beside(side);
         if (block == nullptr) continue;
-        for (places &= block->places; places != 0; places &= places - 1) {
-          const Cell& found = grid_.cells_[block->cell_at(static_cast<unsigned>(std::countr_zero(places)))];
-          first_[count_] = found.first;
-          last_[count_++] = found.last;
+        if (grid_.is_in_order_ && other == 0) places &= 0xffu << (here & 7);
+        places &= block->places;
+        if (places == 0) continue;
+        if (grid_.is_in_order_) {
+          // One run, from the first of these cells to the last: what lies between them is soon tried.
+          add(block->cell_at(static_cast<unsigned>(std::countr_zero(places))),
+              block->cell_at(static_cast<unsigned>(std::bit_width(places)) - 1));
+          continue;
+        }
+        for (; places != 0; places &= places - 1) {
+          const std::uint32_t found = block->cell_at(static_cast<unsigned>(std::countr_zero(places)));
+          add(found, found);
         }
       }
     }
+    void add(std::uint32_t first_cell, std::uint32_t last_cell) {
+      first_[count_] = grid_.cells_[first_cell].first;
+      last_[count_++] = grid_.cells_[last_cell].last;
+    }
+    /// The block so many blocks aside along each axis; null if no cell of it holds grains, or where it is left out. Is
+    /// searched for once for all cells of a block.
+    const Block* block_beside(const int (&side)[3]) {
+      const auto at = static_cast<unsigned>(13 + side[0] + 3 * side[1] + 9 * side[2]);
+      if (!(known_ >> at & 1)) {
+        known_ |= 1u << at;
+        std::uint64_t key = block_;
+        for (unsigned k = 0; k < 3; ++k) {
+          const std::uint64_t axis = morton::axis(1) << k;
+          if (side[k] > 0) key = morton::up(key, axis);
+          if (side[k] < 0) key = morton::down(key, axis);
+        }
+        beside_[at] = grid_.is_in_order_ && key < block_ ? nullptr : grid_.table_.find(key);
+      }
+      return beside_[at];
+    }
 
     const UniformGrid& grid_;
-    std::uint32_t cell_ = CellTable::none, first_[27], last_[27];
+    std::uint32_t cell_ = CellTable::none, first_[27], last_[27];  // runs of grains in order()
     int count_ = 0;
+    std::uint64_t block_ = ~std::uint64_t{0};  // of the cell
+    const Block* beside_[27];                  // the blocks around it
+    std::uint32_t known_ = 0;                  // which of them have been searched for
   };
   Finder finder() const { return Finder(*this); }
 
