@@ -1,8 +1,7 @@
 // Spheres, or cubes of eight spheres, settle in a long box, shared by as many processes as mpirun starts. Prints what
 // sharing costs, and a hash of the state, which is the same for any number of processes and threads.
 //
-//   mpirun -np 4 settle_ranks --shape spheres --grains 20000 --settle 3000 --steps 300 --threads 1 --output
-//   out/settle_ranks
+//   mpirun -np 4 settle_ranks --shape cubes --grains 20000 --settle 3000 --steps 300 --threads 1 --output out
 //
 // Writes settled.csv: positions and speeds of the grains, once, whatever the number of processes.
 

@@ -14,9 +14,9 @@ namespace dem::domain {
 /// What a rank has sent so far, and how long it took.
 struct Traffic {
   std::uint64_t step_bytes = 0;  ///< handed over within steps: motion and loads of borders, sums
-  std::uint64_t list_bytes = 0;  ///< handed over when neighbours were listed or a run ended: all rows
+  std::uint64_t list_bytes = 0;  ///< handed over when neighbours were listed or a run ended
   double step_seconds = 0.0;     ///< s, within steps: packing, sending, and waiting for others
-  double list_seconds = 0.0;     ///< s, for all rows
+  double list_seconds = 0.0;     ///< s, the same
 };
 
 /// What ranks tell each other. No sum depends on how many they are. The main thread alone calls these.

@@ -32,8 +32,9 @@ namespace dem::domain {
 /// by itself, but only between runs: at the end of run() and run_for() every rank is told of all grains, which costs as
 /// much as a step or more. So give run() many steps. contacts_of, energy_of and save are made on every rank.
 ///
-/// Within a step a rank works on its own chunks alone. All ranks hold the rows of all grains, some 400 bytes each, and
-/// sort them when neighbours are listed: that bounds how many grains they can share.
+/// Within a step a rank works on its own chunks alone. All ranks hold the rows of all grains, some 400 bytes each. When
+/// neighbours are listed, they tell each other all positions and sort all grains; the rest of a grain goes to its new
+/// owner alone. That bounds how many grains they can share.
 class Ranks : public Messages {
  public:
   static constexpr bool has_images = false, has_ranks = true;

@@ -62,7 +62,7 @@ void list_candidates(std::size_t chunk_index, Chunk<Model>& chunk, const Particl
     const Vector3<double> x = p.position[i];
     // Which of those within the largest reach come near enough, and may move.
     const auto take = [&](std::uint32_t j) {
-      const auto& other = species[p.species[j]];
+      const auto& other = species.size() == 1 ? kind : species[p.species[j]];
       const double reach = kind.shape.bounding_radius() + other.shape.bounding_radius() + skin;
       const Vector3<double> d = p.position[j] - x;
       if (dot(d, d) < reach * reach && !(kind.is_held() && other.is_held())) found.push_back(j);
@@ -75,7 +75,8 @@ void list_candidates(std::size_t chunk_index, Chunk<Model>& chunk, const Particl
     const auto take_one = [&](std::uint32_t j) {
       if (images.may_pair(i, j)) take(j);  // nor is it read: another thread may be putting padding rows in their place
     };
-    if constexpr (broadphase::FindsRuns<decltype(finder)>) {
+    // Rows of images are no runs of grains that may all be partners.
+    if constexpr (broadphase::FindsRuns<decltype(finder)> && !Model::Domain::has_images) {
       if (finder.has_runs()) finder.for_each_run(i, take_run);
       else finder.for_each_candidate(i, take_one);
     } else {

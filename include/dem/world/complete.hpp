@@ -94,7 +94,7 @@ void complete_chunks(WorldState<Model>& w) {
                last = s.doing.begin() + static_cast<std::ptrdiff_t>(end * width);
     s.doing = d.gathered(std::vector<std::uint8_t>(first, last), false);
   }
-  place_images(w), tell_images(w);
+  if (w.list_valid) place_images(w), tell_images(w);  // else the rows of images may be gone
   if (!w.chunks.empty()) {
     grain::list_incoming<Model>(w.executor, std::span(w.chunks), w.particles.count, w.images, w.incoming_first,
                                 w.incoming);

@@ -6,6 +6,7 @@
 #include <dem/world/state.hpp>
 
 #include <cstddef>
+#include <cstdint>
 #include <utility>
 #include <vector>
 
@@ -68,6 +69,23 @@ void cut_chunks(WorldState<Model>& w) {
   w.domain.cut(of_chunks);
 }
 
+/// What every rank knows of resting grains becomes what their owners know.
+template <class Model>
+void gather_resting(WorldState<Model>& w) {
+  if (!w.options.sleep) return;
+  const auto& p = w.particles;
+  const auto [begin, end] = w.domain.own();
+  auto& resting = w.sleepers.grains;
+  std::vector<grain::Rest> rests;
+  for (std::size_t i = begin * chunk_size; i < std::min(end * chunk_size, p.count); ++i) {
+    rests.push_back(p.id[i] < resting.size() ? resting[p.id[i]] : grain::Rest{});
+  }
+  rests = w.domain.gathered(rests, false);
+  for (std::size_t row = 0; row < rests.size(); ++row) {
+    if (p.id[row] < resting.size()) resting[p.id[row]] = rests[row];
+  }
+}
+
 /// Every rank's rows of all grains become those of their owners, and so do the bounds of chunks and what is known of
 /// resting grains. Nothing where they are already.
 template <class Model>
@@ -105,18 +123,54 @@ void gather_rows(WorldState<Model>& w) {
     chunk.asleep = s.asleep;
   }
 
-  if (w.options.sleep) {
-    auto& resting = w.sleepers.grains;
-    std::vector<grain::Rest> rests;
-    for (std::size_t i = begin * chunk_size; i < std::min(end * chunk_size, p.count); ++i) {
-      rests.push_back(p.id[i] < resting.size() ? resting[p.id[i]] : grain::Rest{});
-    }
-    rests = d.gathered(rests, false);
-    for (std::size_t row = 0; row < rests.size(); ++row) {
-      if (p.id[row] < resting.size()) resting[p.id[row]] = rests[row];
+  gather_resting(w);
+  d.is_whole = true;
+}
+
+/// Before grains are sorted: where they are, which is what every rank needs to know of all of them. Returns who has
+/// all else of each grain, by id; empty where every rank does.
+template <class Model>
+std::vector<std::uint16_t> gather_positions(WorldState<Model>& w) {
+  auto& d = w.domain;
+  const auto& p = w.particles;
+  if (d.is_whole) return {};
+  w.particles.position.for_each_column(
+      [&](AlignedVector<double>& column) { d.gather_chunks(column.data(), chunk_size); });
+  gather_resting(w);
+  std::vector<std::uint16_t> holders(p.row_of.size(), 0);
+  for (std::size_t i = 0; i < p.count; ++i) {
+    holders[p.id[i]] = static_cast<std::uint16_t>(d.owner(i / chunk_size));
+  }
+  return holders;
+}
+
+/// When grains are sorted and chunks have new owners: the rows of grains that other ranks had come to these.
+template <class Model>
+void move_rows(WorldState<Model>& w, const std::vector<std::uint16_t>& holders) {
+  if (holders.empty()) return;
+  auto& d = w.domain;
+  auto& p = w.particles;
+  std::vector<AlignedVector<double>*> columns;
+  p.for_each_column([&](AlignedVector<double>& column) { columns.push_back(&column); });
+  const auto rows_of = [&](int rank) {
+    const auto [first, last] = d.chunks_of(rank);
+    return std::pair(std::min(first * chunk_size, p.count), std::min(last * chunk_size, p.count));
+  };
+  std::vector<std::vector<double>> to(static_cast<std::size_t>(d.ranks()));
+  for (int r = 0; r < d.ranks(); ++r) {
+    const auto [first, last] = rows_of(r);
+    for (std::size_t i = first; r != d.rank() && i < last; ++i) {
+      if (holders[p.id[i]] != d.rank()) continue;
+      for (const auto* column : columns) to[static_cast<std::size_t>(r)].push_back((*column)[i]);
     }
   }
-  d.is_whole = true;
+  auto [came, next] = d.exchanged(to);  // of each rank, in the order of rows
+  const auto [first, last] = rows_of(d.rank());
+  for (std::size_t i = first; i < last; ++i) {
+    const std::uint16_t from = holders[p.id[i]];
+    if (from == d.rank()) continue;
+    for (auto* column : columns) (*column)[i] = came[static_cast<std::size_t>(next[from]++)];
+  }
 }
 
 /// Contact histories that were collected, and know their new rows, go to the ranks that own these.

@@ -52,9 +52,10 @@ double choose_skin(WorldState<Model>& w) {
 template <class Model, class Change>
 void rebuild_neighbours(WorldState<Model>& w, Change&& change) {
   auto& p = w.particles;
+  [[maybe_unused]] std::vector<std::uint16_t> holders;
   if constexpr (Model::Domain::has_ranks) {
     count_work(w);
-    gather_rows(w);
+    holders = gather_positions(w);
   }
   grain::HistoryCarrier<Model> histories;
   histories.collect(w.executor, std::span<const Chunk<Model>>(w.chunks), p, w.images);
@@ -101,7 +102,7 @@ void rebuild_neighbours(WorldState<Model>& w, Change&& change) {
   }
 
   w.chunks.resize(p.chunks());
-  if constexpr (Model::Domain::has_ranks) cut_chunks(w);
+  if constexpr (Model::Domain::has_ranks) cut_chunks(w), move_rows(w, holders);
   const auto [begin, end] = w.own_chunks();
   w.executor.for_each(end - begin, [&, first = begin](std::size_t k) {
     const std::size_t c = first + k;

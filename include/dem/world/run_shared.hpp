@@ -31,6 +31,11 @@ void check_agreement(const WorldState<Model>& w, std::uint64_t asked, bool has_c
   const Vec3& g = w.options.gravity;
   for (const double x : {w.options.time_step, w.options.skin, g.x(), g.y(), g.z()})
     mix(std::bit_cast<std::uint64_t>(x));
+  if constexpr (Model::Domain::has_images) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      for (const double x : {w.domain.low(k), w.domain.period()[k]}) mix(std::bit_cast<std::uint64_t>(x));
+    }
+  }
   if (has_changed) {
     for (std::size_t i = 0; i < p.count; ++i) {
       for (const auto* c : {&p.position, &p.velocity}) {

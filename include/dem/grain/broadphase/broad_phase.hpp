@@ -28,7 +28,8 @@ struct Sizes {
 ///     be found;
 ///   - finder(): an object of which each thread has its own, with for_each_candidate(i, f). That calls f(j) once for
 ///     each j > i within reach of i, and for others, in any order. Optional: has_runs() and for_each_run(i, f); where
-///     the former is true, the latter calls f(first, last) for runs of those j instead, which costs less;
+///     the former is true, the latter calls f(first, last) for runs of those j instead, no two of which overlap. That
+///     costs less. It is not asked for in worlds with images;
 ///   - order(): a permutation that puts grains near in space near in memory, or an empty span;
 ///   - memory_bytes(): what it holds;
 ///   - reordered(): optional: the grains were put in order(). Without it they are built anew.
