@@ -154,7 +154,7 @@ class Part {
     io::Fields v(io::Fields::Task::collect, own);
     std::uint64_t stage = next_stage_ - (next_stage_ > 0 ? 1 : 0);
     v.group("rig/part", [&] { v("stage", stage), v("done", is_done_); });
-    for (const auto& [name, it] : kept_) v.group("rig/kept/" + name, [&] { it->fields(v); });
+    for (const auto& [name, kept] : kept_) v.group("rig/kept/" + name, [&, &it = kept] { it->fields(v); });
     if (numbers_) v.group("rig/numbers", [&] { numbers_->fields(v); });
     if (world != nullptr) collect(world, type, columns);
     columns.merge(own);
