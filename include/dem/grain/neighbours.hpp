@@ -53,24 +53,32 @@ void list_candidates(std::size_t chunk_index, Chunk<Model>& chunk, const Particl
   const std::size_t begin = chunk_index * chunk_size;
   const std::size_t end = std::min(begin + chunk_size, p.count);
   auto finder = broad_phase.finder();
-  std::vector<std::uint32_t> found;
-  found.reserve(chunk.candidate.size() + 16 * chunk_size);
+  std::vector<std::uint32_t> found(chunk.candidate.size() + 16 * chunk_size);
+  std::size_t count = 0;
   for (std::size_t i = begin; i < end; ++i) {
-    const auto first = static_cast<std::ptrdiff_t>(found.size());
+    const std::size_t first = count;
     chunk.candidate_first[i - begin] = static_cast<std::uint32_t>(first);
     const auto& kind = species[p.species[i]];
+    const bool held = kind.is_held();
     const Vector3<double> x = p.position[i];
+    const auto add_if = [&](bool is_partner, std::uint32_t j) {  // no branch: either is likely
+      if (count == found.size()) [[unlikely]]
+        found.resize(2 * count);
+      found[count] = j;
+      count += is_partner ? 1 : 0;
+    };
     // Which of those within the largest reach come near enough, and may move.
     const auto take = [&](std::uint32_t j) {
       const auto& other = species.size() == 1 ? kind : species[p.species[j]];
       const double reach = kind.shape.bounding_radius() + other.shape.bounding_radius() + skin;
       const Vector3<double> d = p.position[j] - x;
-      if (dot(d, d) < reach * reach && !(kind.is_held() && other.is_held())) found.push_back(j);
+      const bool is_near = dot(d, d) < reach * reach, both_held = held & other.is_held();
+      add_if(is_near & !both_held, j);
     };
     const auto take_run = [&](std::uint32_t from, std::uint32_t to) {
       const double reach = kind.shape.bounding_radius() + largest_radius + skin;
-      if (species.size() > 1 || kind.is_held()) return for_each_within(p, from, to, x, reach, take);
-      for_each_within(p, from, to, x, reach, [&](std::uint32_t j) { found.push_back(j); });
+      if (species.size() > 1 || held) return for_each_within(p, from, to, x, reach, take);
+      for_each_within(p, from, to, x, reach, [&](std::uint32_t j) { add_if(true, j); });
     };
     const auto take_one = [&](std::uint32_t j) {
       if (images.may_pair(i, j)) take(j);  // nor is it read: another thread may be putting padding rows in their place
@@ -82,9 +90,9 @@ void list_candidates(std::size_t chunk_index, Chunk<Model>& chunk, const Particl
     } else {
       finder.for_each_candidate(i, take_one);
     }
-    std::sort(found.begin() + first, found.end());
+    std::sort(found.begin() + static_cast<std::ptrdiff_t>(first), found.begin() + static_cast<std::ptrdiff_t>(count));
   }
-  chunk.candidate.assign(found.begin(), found.end());
+  chunk.candidate.assign(found.begin(), found.begin() + static_cast<std::ptrdiff_t>(count));
   for (std::size_t k = end - begin; k <= chunk_size; ++k) {
     chunk.candidate_first[k] = static_cast<std::uint32_t>(chunk.candidate.size());
   }
