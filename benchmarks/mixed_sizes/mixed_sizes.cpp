@@ -63,7 +63,7 @@ Heap heap_of(std::size_t grains, double ratio) {
   return heap;
 }
 
-/// Builds the grid and looks all candidates up, as a world does for a list.
+/// Builds the grid and looks all candidates up one by one.
 template <class Grid>
 void time_grid(const char* name, Heap heap, double ratio, int repeats, dem::io::Table& table) {
   Grid grid;

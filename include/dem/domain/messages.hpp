@@ -27,7 +27,9 @@ class Messages {
     int is_running = 0;
     MPI_Initialized(&is_running);
     if (!is_running) {
-      fail("a world whose Domain is domain::Ranks needs a domain::Session: make one at the start of main()");
+      fail(
+          "a world whose Domain is domain::Ranks or PeriodicRanks needs a domain::Session: make one at the start of "
+          "main()");
     }
     rank_ = detail::rank_of_process();
     ranks_ = detail::count_of_ranks();

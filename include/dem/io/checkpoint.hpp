@@ -14,7 +14,8 @@ namespace dem {
 /// exception broke off.
 ///
 /// Where ranks share the grains, all ranks call it at once and rank 0 writes. The file does not tell how many ranks
-/// there were: any number of ranks goes on from it, and so does a world whose Domain is Open.
+/// there were: any number of ranks goes on from it, and so does a world whose Domain is Open (Periodic after
+/// PeriodicRanks).
 ///
 /// `others` are what else the program needs to go on: structs with a member function `fields` (see io::Fields).
 ///

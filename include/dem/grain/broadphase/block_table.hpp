@@ -24,7 +24,7 @@ struct Block {
 };
 
 /// Finds the occupied cells around a cell of one size. Cells are in the order of their Morton numbers, so a block is a
-/// stretch of them, and the 27 cells around one are in eight blocks: eight searches in a hash table of the blocks.
+/// stretch of them, and the 27 cells around one are in eight blocks, which are found in a hash table.
 class BlockTable {
  public:
   /// Takes note of cells, in the order of their Morton numbers.

@@ -18,8 +18,8 @@ namespace dem::broadphase {
 /// 27 cells around it on each level, and for smaller ones in the cells that its reach meets.
 ///
 /// All grains are sorted along one Z-order (Morton) curve through the smallest cells. A cell of a higher level is one
-/// stretch of it. Grains whose reaches differ by less than a factor of two have one level: then this is a UniformGrid,
-/// with the same order and the same work.
+/// stretch of it. Grains whose reaches differ by less than a factor of two have one level: then the cells and the order
+/// are those of a UniformGrid. That one is faster, as it also tells runs of grains.
 class HierarchicalGrid {
   static constexpr unsigned most_levels = 16;  // sizes to 1 : 32,768; still smaller grains are on the lowest level
 

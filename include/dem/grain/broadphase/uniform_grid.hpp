@@ -84,8 +84,8 @@ class UniformGrid {
     }
 
    private:
-    /// The occupied cells among the 27. Where grains are in the order of the cells, those before this one are left out,
-    /// as no later grain is there.
+    /// The occupied cells among the 27. Where grains are in the order of the cells, one run for each block holds them
+    /// and what lies between them; cells before this one are left out, as no later grain is there.
     void look_around(std::uint32_t cell) {
       const std::uint64_t here = grid_.cells_[cell].key;
       cell_ = cell;
