@@ -2,6 +2,7 @@
 
 #include <dem/domain/periodic_ranks.hpp>
 #include <dem/geometry/cluster/sphere_cluster.hpp>
+#include <dem/integrator/velocity_verlet.hpp>
 
 namespace scenes {
 
@@ -13,6 +14,14 @@ struct PeriodicAlone : dem::Model {
   using Domain = dem::domain::Periodic;
 };
 struct PeriodicShared : PeriodicAlone {
+  using Domain = dem::domain::PeriodicRanks;
+};
+
+struct VerletAlone : dem::Model {
+  using Integrator = dem::integrator::VelocityVerlet;
+  using Domain = dem::domain::Periodic;
+};
+struct VerletShared : VerletAlone {
   using Domain = dem::domain::PeriodicRanks;
 };
 
@@ -46,6 +55,31 @@ constexpr auto flow = []<class Model>() {
   return world;
 };
 
+/// Balls that velocity Verlet moves before it lists, so that ranks gather rows in mid-step; they fall asleep about the
+/// borders.
+template <class Model>
+dem::World<Model> rest(int n, std::uint64_t steps) {
+  dem::World<Model> world({.gravity = {0.5, 0.2, -9.81},
+                           .domain = {{{0, 0, -0.01}, {length, width, 0.2}}},
+                           .periodic = {.x = true, .y = true},
+                           .threads = 2,
+                           .sleep = dem::SleepOptions{.balance = 0.2, .change = 0.2, .motion = 0.1, .window = 20}});
+  world.set_contact({.normal = {500, 0.2, 1.0}, .friction = {0.6, 500, 0.1, 0.975}});
+  world.add_surface(world.ground(), dem::surface::Plane{});
+  pour(world, world.add_species(dem::shape::Sphere(1e-3)), n, 20, 4, 2.5e-3, 0.3);
+  run(world, steps);
+  require(steps == 0 || world.asleep_count() > 0, "no grain sleeps");
+  require(steps == 0 || world.asleep_count() < world.particle_count(), "all grains sleep");
+  return world;
+}
+/// As it is before the next list is made.
+constexpr auto changed = []<class Model>() {
+  auto world = rest<Model>(1500, 6000);
+  world.remove_particle(dem::ParticleId(700));
+  world.add_particle({.species = dem::SpeciesId(0), .position = {0.01, 0.001, 0.08}, .velocity = {2, -1, -1}});
+  return world;
+};
+
 /// Cubes float and fall asleep, and a paddle flies down into them and over the border.
 constexpr auto paddle = []<class Model>() {
   auto world =
@@ -58,6 +92,11 @@ constexpr auto paddle = []<class Model>() {
   require(world.machine().body(body).position().x() > length, "the paddle did not go over the border");
   require(world.asleep_count() > 0, "no grain sleeps");
   require(world.asleep_count() < world.particle_count(), "all grains sleep");
+  // To the end of a step that lists: what is told of sleepers then is of the grains alone, whoever has their images.
+  for (const std::uint64_t lists = world.state().rebuilds; world.state().rebuilds == lists;) {
+    require(world.steps() < 2000, "no list is made");
+    run(world, 1);
+  }
   return world;
 };
 
@@ -66,10 +105,13 @@ constexpr auto paddle = []<class Model>() {
 bool periodic() {
   const bool flows = same_bits<PeriodicShared, PeriodicAlone>("flow", flow);
   const bool sleeps = same_bits<PeriodicShared, PeriodicAlone>("paddle", paddle);
+  const bool changes = same_bits<VerletShared, VerletAlone>("changed", changed);
+  const bool rests = goes_on<VerletShared, VerletAlone>(
+      "rest", []<class Model>(int n) { return rest<Model>(n, n > 1000 ? 6000 : 0); });
   const bool goes = goes_on<PeriodicShared, PeriodicAlone>("periodic", []<class Model>(int n) {
     return cell<Model>(n, {6, 3, -9.81}, {}, 1.0);
   });
-  return flows && sleeps && goes;
+  return flows && sleeps && changes && rests && goes;
 }
 
 }  // namespace scenes

@@ -70,6 +70,19 @@ void run(World& world, std::uint64_t steps) {
   }
 }
 
+/// How many candidates are images of grains that other ranks own.
+template <class Model>
+double images_elsewhere(const dem::WorldState<Model>& w) {
+  double n = 0.0;
+  const auto [begin, end] = w.domain.own();
+  for (std::size_t c = begin; c < end; ++c) {
+    for (const std::uint32_t j : w.chunks[c].candidate) {
+      n += j >= w.images.first && !w.domain.owns(w.images.grain_of(j) / dem::chunk_size) ? 1.0 : 0.0;
+    }
+  }
+  return w.domain.total(n);
+}
+
 /// Runs a scene as ranks share it, on all of them, and as one process has it, on rank 0; says whether every bit is the
 /// same. The scene is a function template of the model, which calls world.run() itself.
 template <class Shared, class Alone, class Scene>
@@ -77,6 +90,10 @@ bool same_bits(const char* name, const Scene& scene) {
   const dem::World<Shared> shared = scene.template operator()<Shared>();
   const dem::io::StateColumns columns = dem::io::columns_of(shared);
   const auto& d = shared.state().domain;
+  if constexpr (Shared::Domain::has_images) {
+    require(!d.is_shared() || !shared.state().list_valid || images_elsewhere(shared.state()) > 0.0,
+            "no candidate is an image of another rank's grain");
+  }
   // Otherwise nothing was shared. A rank may be without work where most of the grains sleep.
   const double at_work = d.total(d.own().second > d.own().first ? 1.0 : 0.0);
   require(at_work > 1.0 || !d.is_shared(), "one rank has all chunks");
@@ -125,7 +142,11 @@ bool goes_on(const char* name, const Make& make) {
   const auto contacts = contacts_of(shared);
   const auto as_alone = contacts_of(alone_again);
   same = same && contacts.size() == as_alone.size() && contacts.size() > 30;
-  for (std::size_t k = 0; same && k < contacts.size(); ++k) same = contacts[k].force == as_alone[k].force;
+  for (std::size_t k = 0; same && k < contacts.size(); ++k) {
+    const auto &one = contacts[k], &other = as_alone[k];
+    same = one.kind == other.kind && one.grain == other.grain && one.other_grain == other.other_grain &&
+           one.surface == other.surface && one.force == other.force && one.point == other.point;
+  }
   std::printf("%-10s %d ranks: %s, %zu contacts\n", name, d.ranks(), same ? "same bits" : "OTHER BITS",
               contacts.size());
   return d.all(same);

@@ -235,6 +235,7 @@ void swap_loads(WorldState<Model>& w) {
 template <class Model, class Find, class Move>
 void find_shared_contacts(WorldState<Model>& w, Find& find_contacts, Move& move) {
   w.domain.is_whole = !w.domain.is_shared();
+  if (w.domain.is_whole) return find_contacts(w.sleepers.working);
   std::vector<std::uint32_t> inner, outer;
   for (const std::uint32_t c : w.sleepers.working) (w.domain.is_at_border[c] ? outer : inner).push_back(c);
   if (w.move.at_once) {

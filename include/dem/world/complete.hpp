@@ -111,6 +111,7 @@ void share_chunks(WorldState<Model>& w) {
   cut_chunks(w);
   make_borders(w);
   if (!d.is_shared()) return;
+  if (w.options.sleep) gather_around(w);
   std::erase_if(w.sleepers.working, [&](std::uint32_t c) { return !d.owns(c); });
 }
 

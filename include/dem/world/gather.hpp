@@ -86,6 +86,26 @@ void gather_resting(WorldState<Model>& w) {
   }
 }
 
+/// Every rank knows which chunks are around each: grains that are moved or taken out between runs wake the same ones on
+/// all ranks.
+template <class Model>
+void gather_around(WorldState<Model>& w) {
+  if (!w.domain.is_shared()) return;
+  std::vector<std::uint32_t> counts, chunks;
+  const auto [begin, end] = w.domain.own();
+  for (std::size_t c = begin; c < end; ++c) {
+    const auto& around = w.chunks[c].around;
+    counts.push_back(static_cast<std::uint32_t>(around.size()));
+    chunks.insert(chunks.end(), around.begin(), around.end());
+  }
+  counts = w.domain.gathered(counts, false), chunks = w.domain.gathered(chunks, false);
+  auto next = chunks.begin();
+  for (std::size_t c = 0; c < w.chunks.size(); ++c) {
+    w.chunks[c].around.assign(next, next + counts[c]);
+    next += counts[c];
+  }
+}
+
 /// Every rank's rows of all grains become those of their owners, and so do the bounds of chunks and what is known of
 /// resting grains. Nothing where they are already.
 template <class Model>

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <dem/grain/sleep.hpp>
+#include <dem/world/gather.hpp>
 #include <dem/world/images.hpp>
 
 #include <algorithm>
@@ -44,15 +45,7 @@ template <class Model>
 void wake_around(WorldState<Model>& w, std::size_t row) {
   const std::size_t c = row / chunk_size;
   if (!w.options.sleep || c >= w.chunks.size()) return;
-  if constexpr (Model::Domain::has_ranks) {  // only the owners of chunks know what is around them
-    const auto [begin, end] = w.own_chunks();
-    for (std::size_t own = begin; own < end; ++own) {
-      const auto& around = w.chunks[own].around;
-      if (std::find(around.begin(), around.end(), c) != around.end()) wake_chunk(w, own);
-    }
-  } else {
-    for (const std::uint32_t other : w.chunks[c].around) wake_chunk(w, other);
-  }
+  for (const std::uint32_t other : w.chunks[c].around) wake_chunk(w, other);
   wake_chunk(w, c);
 }
 
@@ -71,6 +64,7 @@ void find_sleepers(WorldState<Model>& w) {
   const auto clear = [&](AlignedVector<double>& column) { column.assign(rows, 0.0); };
   s.kept_force.for_each_column(clear), s.kept_torque.for_each_column(clear);
   grain::list_chunks_around<Model>(w.chunks);
+  if constexpr (Model::Domain::has_ranks) gather_around(w);
   for (std::size_t c = 0; c < w.chunks.size(); ++c) {
     const std::size_t end = std::min((c + 1) * chunk_size, p.count);
     Chunk<Model>& chunk = w.chunks[c];

@@ -25,6 +25,7 @@ void sleep_fields(Fields& v, WorldState<Model>& w) {
   constexpr std::size_t width = 12, load_width = 6;
   std::vector<double> rests, kept, surface_loads;
   std::vector<std::uint32_t> surface_count, surfaces;
+  std::vector<std::uint8_t> doing;  // of grains: their images do the same
   const auto append = [](std::vector<double>& list, const Vector3<double>& x) {
     list.insert(list.end(), {x.x, x.y, x.z});
   };
@@ -33,6 +34,8 @@ void sleep_fields(Fields& v, WorldState<Model>& w) {
       for (const auto* x : {&r.position, &r.force, &r.torque}) append(rests, *x);
       rests.insert(rests.end(), {r.borne, double(r.quiet_windows), double(r.asleep)});
     }
+    const std::size_t rows = std::min(s.doing.size(), w.chunks.size() * chunk_size);
+    doing.assign(s.doing.begin(), s.doing.begin() + static_cast<std::ptrdiff_t>(rows));
     for (std::size_t i = 0; i < s.kept_force.x.size(); ++i)
       append(kept, s.kept_force[i]), append(kept, s.kept_torque[i]);
     for (const Chunk<Model>& c : w.chunks) {
@@ -45,13 +48,14 @@ void sleep_fields(Fields& v, WorldState<Model>& w) {
   }
   v.copied("resting", ColumnKind::real, width, rests);
   v("borne", s.borne, "N");
-  v.copied("doing", ColumnKind::byte, 1, s.doing);
+  v.copied("doing", ColumnKind::byte, 1, doing);
   v.copied("kept_loads", ColumnKind::real, load_width, kept);
   v.copied("surface_load_count", ColumnKind::natural32, 1, surface_count);
   v.copied("surface_load_of", ColumnKind::natural32, 1, surfaces);
   v.copied("surface_loads", ColumnKind::real, load_width, surface_loads);
   if (!is_restoring) return;
 
+  s.doing = doing;
   const auto vector_at = [](const std::vector<double>& list, std::size_t k) {
     return Vector3<double>{list.at(k), list.at(k + 1), list.at(k + 2)};
   };

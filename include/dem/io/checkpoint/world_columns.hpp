@@ -237,7 +237,7 @@ void settle_restored(WorldState<Model>& w, bool is_checked) {
   if (!w.list_valid || w.chunks.empty()) return;
   if constexpr (Model::Domain::has_images) {
     grain::make_rows(w.particles, w.images);
-    place_images(w);
+    place_images(w), tell_images(w);
   }
   grain::list_incoming<Model>(w.executor, std::span(w.chunks), w.particles.count, w.images, w.incoming_first,
                               w.incoming);
