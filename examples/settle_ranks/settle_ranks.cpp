@@ -3,7 +3,8 @@
 //
 //   mpirun -np 4 settle_ranks --shape cubes --grains 20000 --settle 3000 --steps 300 --threads 1 --output out
 //
-// Writes settled.csv: positions and speeds of the grains, once, whatever the number of processes.
+// Writes settled.csv: positions and speeds of the grains, once, whatever the number of processes. With --bed bed.h5 the
+// settled bed is kept in that file (needs HDF5), and taken from there if it is there: with as many processes as you like.
 
 #include "arguments.hpp"
 
@@ -12,9 +13,14 @@
 #include <dem/io/checkpoint/world_columns.hpp>
 #include <dem/io/csv.hpp>
 
+#ifdef DEM_WITH_HDF5
+#include <dem/io/checkpoint.hpp>
+#endif
+
 #include <chrono>
 #include <cmath>
 #include <filesystem>
+#include <string>
 
 using namespace dem;
 
@@ -35,7 +41,7 @@ void settle(const typename Model::Shape& grain, Arguments& arguments) {
   const int settle = static_cast<int>(arguments.number("--settle", 3000));
   const int steps = static_cast<int>(arguments.number("--steps", 300));
   const int threads = static_cast<int>(arguments.number("--threads", 0));
-  const std::filesystem::path folder = arguments.take("--output", "settle_ranks");
+  const std::filesystem::path bed = arguments.take("--bed", ""), folder = arguments.take("--output", "settle_ranks");
   arguments.check();
 
   const double pitch = 2.2 * grain.bounding_radius();  // m
@@ -66,7 +72,17 @@ void settle(const typename Model::Shape& grain, Arguments& arguments) {
     const StepReport report = world.run(static_cast<std::uint64_t>(n));
     if (!report) fail("{}", report.text);
   };
+#ifdef DEM_WITH_HDF5
+  if (!bed.empty() && exists(bed)) {
+    load(world, bed);
+  } else {
+    run(settle);
+    if (!bed.empty()) save(world, bed);
+  }
+#else
+  if (!bed.empty()) fail("--bed: this program was built without HDF5, which it needs to keep a bed");
   run(settle);
+#endif
   const domain::Traffic before = world.state().domain.traffic();
   const auto start = std::chrono::steady_clock::now();
   run(steps);
