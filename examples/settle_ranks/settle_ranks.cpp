@@ -4,7 +4,8 @@
 //   mpirun -np 4 settle_ranks --shape cubes --grains 20000 --settle 3000 --steps 300 --threads 1 --output out
 //
 // Writes settled.csv: positions and speeds of the grains, once, whatever the number of processes. With --bed bed.h5 the
-// settled bed is kept in that file (needs HDF5), and taken from there if it is there: with as many processes as you like.
+// settled bed is kept in that file (needs HDF5). If it is there the bed is taken from it and does not settle, with as
+// many processes as you like. All must see the file.
 
 #include "arguments.hpp"
 
@@ -73,8 +74,12 @@ void settle(const typename Model::Shape& grain, Arguments& arguments) {
     if (!report) fail("{}", report.text);
   };
 #ifdef DEM_WITH_HDF5
-  if (!bed.empty() && exists(bed)) {
+  if (processes.of_first(!bed.empty() && exists(bed))) {
     load(world, bed);
+    if (world.particle_count() != static_cast<std::size_t>(grains)) {
+      fail("--bed {} has {} grains, but --grains is {}; give --grains {}", bed.string(), world.particle_count(), grains,
+           world.particle_count());
+    }
   } else {
     run(settle);
     if (!bed.empty()) save(world, bed);

@@ -61,7 +61,7 @@ void list_candidates(std::size_t chunk_index, Chunk<Model>& chunk, const Particl
     const auto& kind = species[p.species[i]];
     const bool held = kind.is_held();
     const Vector3<double> x = p.position[i];
-    const auto add_if = [&](bool is_partner, std::uint32_t j) {  // no branch: either is likely
+    const auto add_if = [&](bool is_partner, std::uint32_t j) {  // without a branch
       if (count == found.size()) [[unlikely]]
         found.resize(2 * count);
       found[count] = j;

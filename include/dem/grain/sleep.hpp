@@ -28,7 +28,7 @@ struct Sleepers {
 
   std::vector<Rest> grains;            ///< by id
   std::vector<double> borne;           ///< N, by row: of the contacts that the grain's own chunk holds
-  std::vector<std::uint8_t> doing;     ///< by row, images too: see Wakefulness
+  std::vector<std::uint8_t> doing;     ///< by row, in a step of images too: see Wakefulness
   std::vector<std::uint8_t> acted_on;  ///< by row: more than what is kept acted on the grain in this evaluation
   Columns3 kept_force, kept_torque;    ///< N, N m, by row of a sleeper: the sums over its contacts with sleepers
   std::vector<std::uint32_t> working;  ///< chunks that may have contacts to evaluate

@@ -127,6 +127,7 @@ class World : public WorldSetup<M> {
     if (sleep) check_sleep(*sleep);
     if (domain::IsSheared<typename Model::Domain> && sleep) fail("grains of a sheared cell cannot sleep");
     wake_all(state_);
+    state_.sleepers = {};  // what is known is of the rows that were listed last
     state_.options.sleep = sleep;
     state_.list_valid = false;
     initialised_ = false;

@@ -10,10 +10,10 @@ namespace {
 using models::Balls;
 using Pairs = std::vector<std::pair<std::size_t, std::uint32_t>>;
 
-/// Balls at random places of a cube, twelve to a cell; the species take turns.
-dem::World<Balls> balls(std::size_t n, const std::vector<dem::SpeciesOptions>& kinds,
-                        const std::vector<double>& radii) {
-  dem::World<Balls> world({.threads = 2});
+/// Balls at random places of a cube, twelve to one of 2 mm; the species take turns. `skin` in m; 0: chosen.
+dem::World<Balls> balls(std::size_t n, const std::vector<dem::SpeciesOptions>& kinds, const std::vector<double>& radii,
+                        double skin = 0.0) {
+  dem::World<Balls> world({.skin = skin, .threads = 2});
   world.set_contact({.normal = {2000, 0.05, 1.0}});
   for (std::size_t k = 0; k < kinds.size(); ++k) world.add_species(dem::shape::Sphere(radii[k]), kinds[k]);
   std::mt19937 engine(static_cast<unsigned>(n));
@@ -73,4 +73,8 @@ TEST_CASE("candidates are those within reach, in the order of rows") {
     if (n == 600) CHECK(listed(one).size() > 1000);
     if (n == 600) CHECK(listed(mixed).size() > 300);
   }
+  // More in a chunk than there was room for.
+  const auto far = balls(600, {{}}, {0.5e-3}, 3e-3);
+  CHECK(listed(far).size() > 20 * 4096);
+  CHECK(listed(far) == expected(far));
 }

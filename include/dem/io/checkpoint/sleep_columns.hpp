@@ -25,7 +25,7 @@ void sleep_fields(Fields& v, WorldState<Model>& w) {
   constexpr std::size_t width = 12, load_width = 6;
   std::vector<double> rests, kept, surface_loads;
   std::vector<std::uint32_t> surface_count, surfaces;
-  std::vector<std::uint8_t> doing;  // of grains: their images do the same
+  std::vector<std::uint8_t> doing;  // of grains: their images are told of it
   const auto append = [](std::vector<double>& list, const Vector3<double>& x) {
     list.insert(list.end(), {x.x, x.y, x.z});
   };

@@ -1,0 +1,32 @@
+#!/usr/bin/env bash
+# settle_ranks with a bed that is kept: one process settles it, two go on from the file to the state of a run that was not
+# broken off, and another number of grains is refused.
+#
+#   kept_bed.sh <mpiexec> <settle_ranks> <output folder>
+set -euo pipefail
+
+mpiexec=$1 program=$2 output=$3
+export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 OMPI_MCA_rmaps_base_oversubscribe=1
+
+rm -rf "$output"
+mkdir -p "$output"
+# on <ranks> <name> <options>...: the state at the end.
+on() {
+  local ranks=$1 name=$2
+  shift 2
+  "$mpiexec" -n "$ranks" "$program" --steps 50 --threads 1 --output "$output/$name" "$@" | tee "$output/$name.txt" | grep '^state'
+}
+whole=$(on 1 whole --grains 600 --settle 200)
+made=$(on 1 made --grains 600 --settle 200 --bed "$output/bed.h5")
+taken=$(on 2 taken --grains 600 --bed "$output/bed.h5")
+if [ "$whole" != "$made" ] || [ "$whole" != "$taken" ]; then
+  echo "unbroken: $whole; as the bed is kept: $made; on two processes from the file: $taken"
+  exit 1
+fi
+status=0
+"$mpiexec" -n 2 "$program" --grains 601 --bed "$output/bed.h5" --output "$output/refused" > "$output/refused.txt" 2>&1 || status=$?
+if [ $status = 0 ] || ! grep -q "has 600 grains, but --grains is 601" "$output/refused.txt"; then
+  echo "another number of grains was not refused in words:"
+  cat "$output/refused.txt"
+  exit 1
+fi
