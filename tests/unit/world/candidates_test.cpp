@@ -14,7 +14,7 @@ using Pairs = std::vector<std::pair<std::size_t, std::uint32_t>>;
 dem::World<Balls> balls(std::size_t n, const std::vector<dem::SpeciesOptions>& kinds, const std::vector<double>& radii,
                         double skin = 0.0) {
   dem::World<Balls> world({.skin = skin, .threads = 2});
-  world.set_contact({.normal = {2000, 0.05, 1.0}});
+  world.set_contact({.normal = {2000, 0.05, 1.0}, .friction = {0.4, 2000, 0.015, 0.975}});
   for (std::size_t k = 0; k < kinds.size(); ++k) world.add_species(dem::shape::Sphere(radii[k]), kinds[k]);
   std::mt19937 engine(static_cast<unsigned>(n));
   const double edge = 2e-3 * std::cbrt(static_cast<double>(n) / 12.0);
