@@ -21,7 +21,6 @@
 #include <chrono>
 #include <cmath>
 #include <filesystem>
-#include <string>
 
 using namespace dem;
 

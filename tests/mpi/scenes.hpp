@@ -133,7 +133,7 @@ bool goes_on(const char* name, const Make& make) {
   auto saved = dem::io::columns_of(alone);
   auto shared_again = make.template operator()<Shared>(10);
   dem::io::restore(shared_again, saved);
-  // One that lies at the bottom goes: who leaned on it wakes, on every rank.
+  // One that lies at the bottom goes: who sleeps beside it wakes, on every rank.
   alone_again.remove_particle(dem::ParticleId(5)), shared_again.remove_particle(dem::ParticleId(5));
   shared.remove_particle(dem::ParticleId(5));
   run(alone_again, 200), run(shared_again, 200), run(shared, 200);

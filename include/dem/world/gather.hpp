@@ -86,8 +86,7 @@ void gather_resting(WorldState<Model>& w) {
   }
 }
 
-/// Every rank knows which chunks are around each: grains that are moved or taken out between runs wake the same ones on
-/// all ranks.
+/// Every rank knows which chunks are around each: grains that are moved or taken out wake the same ones on all ranks.
 template <class Model>
 void gather_around(WorldState<Model>& w) {
   if (!w.domain.is_shared()) return;

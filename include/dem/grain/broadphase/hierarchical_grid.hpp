@@ -19,7 +19,7 @@ namespace dem::broadphase {
 ///
 /// All grains are sorted along one Z-order (Morton) curve through the smallest cells. A cell of a higher level is one
 /// stretch of it. Grains whose reaches differ by less than a factor of two have one level: then the cells and the order
-/// are those of a UniformGrid. That one is faster, as it also tells runs of grains (but not in periodic cells).
+/// are those of a UniformGrid. That one looks up faster; outside periodic cells it also tells runs of grains.
 class HierarchicalGrid {
   static constexpr unsigned most_levels = 16;  // sizes to 1 : 32,768; still smaller grains are on the lowest level
 
