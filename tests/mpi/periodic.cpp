@@ -82,6 +82,21 @@ constexpr auto changed = []<class Model>() {
   return world;
 };
 
+/// Sleep that is taken away and given again, with more chunks of grains than when they slept; as it is before the next
+/// run.
+constexpr auto allowed_again = []<class Model>() {
+  auto world = rest<Model>(1500, 3000);
+  const auto sleep = world.state().options.sleep;
+  world.set_sleep({});
+  for (int k = 0; k < 600; ++k) {
+    world.add_particle({.species = dem::SpeciesId(0),
+                        .position = {2.5e-3 * (k % 20 + 0.5), 2.5e-3 * (k / 20 % 4 + 0.5), 0.1 + 2.5e-3 * (k / 80)}});
+  }
+  run(world, 100);
+  world.set_sleep(sleep);
+  return world;
+};
+
 /// Cubes float and fall asleep, and a paddle flies down into them and over the border.
 constexpr auto paddle = []<class Model>() {
   auto world =
@@ -103,12 +118,13 @@ bool periodic() {
   const bool flows = same_bits<PeriodicShared, PeriodicAlone>("flow", flow);
   const bool sleeps = same_bits<PeriodicShared, PeriodicAlone>("paddle", paddle);
   const bool changes = same_bits<VerletShared, VerletAlone>("changed", changed);
+  const bool allows = same_bits<VerletShared, VerletAlone>("allowed", allowed_again);
   const bool rests = goes_on<VerletShared, VerletAlone>(
       "rest", []<class Model>(int n) { return rest<Model>(n, n > 1000 ? 6000 : 0); });
   const bool goes = goes_on<PeriodicShared, PeriodicAlone>("periodic", []<class Model>(int n) {
     return cell<Model>(n, {6, 3, -9.81}, {}, 1.0);
   });
-  return flows && sleeps && changes && rests && goes;
+  return flows && sleeps && changes && allows && rests && goes;
 }
 
 }  // namespace scenes
