@@ -1,11 +1,19 @@
 #pragma once
 
+#include <dem/core/error.hpp>
 #include <dem/core/ids.hpp>
 #include <dem/math/vector.hpp>
 
 #include <vector>
 
 namespace dem {
+
+/// The numbers of a species that the integration loop reads.
+struct SpeciesInertia {
+  double inverse_mass;
+  double mobility;  ///< 1, or 0 for grains that never move
+  double inertia[3], inverse_inertia[3];
+};
 
 /// Grains of one shape, size, density and material.
 template <class Shape>
@@ -19,6 +27,14 @@ struct Species {
 
   /// Grains of it do not move by themselves (SpeciesOptions::held).
   bool is_held() const { return inverse_mass == 0.0; }
+  SpeciesInertia numbers() const {
+    SpeciesInertia n = {inverse_mass, is_held() ? 0.0 : 1.0, {}, {}};
+    for (int k = 0; k < 3; ++k) {
+      n.inertia[k] = inertia[k];
+      n.inverse_inertia[k] = is_held() ? 0.0 : 1.0 / inertia[k];
+    }
+    return n;
+  }
   template <class V>
   void fields(V& v) {
     v.given("material", material), v.given("density", density, "kg/m^3"), v.given("mass", mass, "kg");
@@ -27,11 +43,28 @@ struct Species {
   }
 };
 
-/// The numbers of a species that the integration loop reads.
-struct SpeciesInertia {
-  double inverse_mass;
-  double mobility;  ///< 1, or 0 for grains that never move
-  double inertia[3], inverse_inertia[3];
-};
+/// Throws Error for moments of inertia that no body has.
+inline void check_moments(const Vec3& moments) {
+  const double largest = moments.maxCoeff();
+  if (!(moments.minCoeff() > 0.0) || !(largest <= 1.01 * (moments.sum() - largest))) {
+    fail(
+        "the moments of inertia of a species are {:g}, {:g}, {:g} kg m^2, but must be positive and the largest no more "
+        "than the sum of the others; check the mass properties that the shape was given",
+        moments.x(), moments.y(), moments.z());
+  }
+}
+
+/// A species of grains, of a density in kg/m^3, without its material yet. Throws Error unless the density is positive,
+/// and for a shape whose volume, radius or moments of inertia are none.
+template <class Shape>
+Species<Shape> make_species(const Shape& shape, double density, bool held) {
+  require_positive(density, "density of a species", "kg/m^3");
+  require_positive(shape.volume(), "volume of a species' shape", "m^3");
+  require_positive(shape.bounding_radius(), "bounding radius of a species' shape", "m");
+  const double mass = density * shape.volume();
+  const Species<Shape> s = {shape, {}, density, mass, held ? 0.0 : 1.0 / mass, density * shape.unit_inertia()};
+  check_moments(s.inertia);
+  return s;
+}
 
 }  // namespace dem

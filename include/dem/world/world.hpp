@@ -18,8 +18,8 @@ namespace dem {
 template <class M>
 class World : public WorldSetup<M> {
   using Setup = WorldSetup<M>;
-  using Setup::state_, Setup::checked_, Setup::initialised_, Setup::known, Setup::row, Setup::row_that_moves,
-      Setup::require_finite, Setup::touched;
+  using Setup::state_, Setup::checked_, Setup::initialised_, Setup::row, Setup::row_that_moves, Setup::require_finite,
+      Setup::touched;
 
  public:
   using Model = M;

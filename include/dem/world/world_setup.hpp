@@ -1,5 +1,7 @@
 #pragma once
 
+#include <dem/core/known.hpp>
+#include <dem/world/body_contacts.hpp>
 #include <dem/world/held_grains.hpp>
 #include <dem/world/period.hpp>
 #include <dem/world/put_in.hpp>
@@ -49,25 +51,11 @@ class WorldSetup {
   /// A kind of grain. Throws Error unless the density is positive, and for a shape whose volume, radius or moments of
   /// inertia are none.
   SpeciesId add_species(const Shape& shape, const SpeciesOptions& o = {}) {
-    require_positive(o.density, "density of a species", "kg/m^3");
-    require_positive(shape.volume(), "volume of a species' shape", "m^3");
-    require_positive(shape.bounding_radius(), "bounding radius of a species' shape", "m");
-    const MaterialId material = state_.materials.id(o.material);
-    state_.materials.mark_as_grain(material);
-    const Species<Shape> s = {shape,
-                              material,
-                              o.density,
-                              o.density * shape.volume(),
-                              o.held ? 0.0 : 1.0 / (o.density * shape.volume()),
-                              o.density * shape.unit_inertia()};
-    check_moments(s.inertia);
-    SpeciesInertia numbers = {s.inverse_mass, o.held ? 0.0 : 1.0, {}, {}};
-    for (int k = 0; k < 3; ++k) {
-      numbers.inertia[k] = s.inertia[k];
-      numbers.inverse_inertia[k] = o.held ? 0.0 : 1.0 / s.inertia[k];
-    }
+    Species<Shape> s = make_species(shape, o.density, o.held);
+    s.material = state_.materials.id(o.material);
+    state_.materials.mark_as_grain(s.material);
     state_.species.push_back(s);
-    state_.inertia.push_back(numbers);
+    state_.inertia.push_back(s.numbers());
     state_.largest_radius = std::max(state_.largest_radius, shape.bounding_radius());
     checked_ = false;
     return SpeciesId(state_.species.size() - 1);
@@ -191,59 +179,18 @@ class WorldSetup {
   /// its points (corners, vertices, rims) to the other; a plane has none. Throws Error for surfaces of one body, of two
   /// fixed bodies without mass (which cannot be set free), or that both have no points.
   BodyContactId add_body_contact(SurfaceId a, SurfaceId b) {
-    auto& w = state_;
-    const auto &sa = known(w.surfaces, a, "surface"), &sb = known(w.surfaces, b, "surface");
-    const Body &body_a = w.machine.body(sa.body), &body_b = w.machine.body(sb.body);
-    if (sa.body == sb.body) {
-      fail("surfaces {} and {} both belong to body '{}' and cannot touch each other", a.value, b.value, body_a.name);
-    }
-    if (body_a.fixed && body_b.fixed && !(body_a.mass + body_b.mass > 0.0)) {
-      fail("body '{}' and body '{}' are both fixed for good, so no force between them would move anything", body_a.name,
-           body_b.name);
-    }
-    if (!coupling::has_points(sa) && !coupling::has_points(sb)) {
-      fail("neither surface {} nor surface {} has points that could touch the other (planes have none)", a.value,
-           b.value);
-    }
-    if (w.body_contacts.pairs.size() >= coupling::BodyKey::most_pairs) {
-      fail("a world takes at most {} pairs of surfaces that may touch", coupling::BodyKey::most_pairs);
-    }
-    w.body_contacts.pairs.push_back({a, b});
-    w.find_body_contacts = [](WorldState<Model>& s) {
-      coupling::find_body_contacts<Model>(s.body_contacts, std::span(std::as_const(s.surfaces)), s.materials,
-                                          std::span(s.machine.bodies()), s.time_step);
-    };
+    const BodyContactId pair = dem::add_body_contact(state_, a, b);
     checked_ = initialised_ = false;
-    return BodyContactId(w.body_contacts.pairs.size() - 1);
+    return pair;
   }
   /// Lets all surfaces that were added so far touch each other. Left out are pairs of one body, of two fixed bodies
   /// without mass, and of bodies that a joint connects (but not by one of kind `free`, which only measures). Pairs that
   /// are known already are not added again. Any number of pairs costs little: only those whose bounding boxes meet are
   /// looked at. Returns how many pairs were added.
   std::size_t add_body_contacts() {
-    const auto& w = state_;
-    const auto both = [](std::size_t a, std::size_t b) { return std::uint64_t{std::min(a, b)} << 32 | std::max(a, b); };
-    std::vector<std::uint64_t> joined, known_pairs;
-    for (const auto& joint : w.machine.parts().joints) {
-      if (joint.kind != mbd::JointKind::free) joined.push_back(both(joint.a, joint.b));
-    }
-    for (const auto& pair : w.body_contacts.pairs) known_pairs.push_back(both(pair.a.index(), pair.b.index()));
-    for (auto* list : {&joined, &known_pairs}) std::sort(list->begin(), list->end());
-    const auto holds = [](const auto& list, std::uint64_t k) {
-      return std::binary_search(list.begin(), list.end(), k);
-    };
-    const std::size_t before = w.body_contacts.pairs.size();
-    for (std::size_t a = 0; a < w.surfaces.size(); ++a) {
-      for (std::size_t b = a + 1; b < w.surfaces.size(); ++b) {
-        const BodyId i = w.surfaces[a].body, j = w.surfaces[b].body;
-        const Body &body_i = w.machine.body(i), &body_j = w.machine.body(j);
-        const bool skip = i == j || (body_i.fixed && body_j.fixed && !(body_i.mass + body_j.mass > 0.0)) ||
-                          (!coupling::has_points(w.surfaces[a]) && !coupling::has_points(w.surfaces[b])) ||
-                          holds(joined, both(i.index(), j.index())) || holds(known_pairs, both(a, b));
-        if (!skip) add_body_contact(SurfaceId(a), SurfaceId(b));
-      }
-    }
-    return w.body_contacts.pairs.size() - before;
+    const std::size_t added = dem::add_body_contacts(state_);
+    if (added > 0) checked_ = initialised_ = false;
+    return added;
   }
   /// Force (N) on the body of the pair's first surface in the last force evaluation; the other body feels the opposite.
   Vec3 body_contact_force(BodyContactId c) const {
@@ -305,27 +252,6 @@ class WorldSetup {
       return row;
     if (p.value >= grains.given) fail_unknown(p, grains.given, "grain");
     fail("grain {} is asked for, but it was removed", p.value);
-  }
-  /// What an id names. Throws Error for an id that this world never gave.
-  template <class List, class Id>
-  static auto& known(List& list, Id id, const char* what) {
-    if (id.index() >= list.size()) fail_unknown(id, list.size(), what);
-    return list[id.index()];
-  }
-  template <class Id>
-  [[noreturn]] static void fail_unknown(Id id, std::size_t count, const char* what) {
-    if (!id.valid()) fail("a {} is asked for by an id that was never set; use the one that the world returned", what);
-    fail("{} {} is asked for, but this world has {}; use the id that it returned", what, id.value, count);
-  }
-  static void check_moments(const Vec3& moments) {
-    const double largest = moments.maxCoeff();
-    if (!(moments.minCoeff() > 0.0) || !(largest <= 1.01 * (moments.sum() - largest))) {
-      fail(
-          "the moments of inertia of a species are {:g}, {:g}, {:g} kg m^2, but must be positive and the largest no "
-          "more "
-          "than the sum of the others; check the mass properties that the shape was given",
-          moments.x(), moments.y(), moments.z());
-    }
   }
   static void require_finite(const Vec3& v, const char* what) {
     if (!is_finite(v)) fail("{} is ({:g}, {:g}, {:g}), but must be finite", what, v.x(), v.y(), v.z());

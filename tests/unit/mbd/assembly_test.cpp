@@ -286,9 +286,9 @@ TEST_CASE("parts without a name get one, and no two of a kind have the same") {
 TEST_CASE("an id of another machine is refused by every accessor") {
   Machine<PredictorCorrector> m;
   m.add_body(brick("a", {0, 0, 0}));
-  check_refused([&] { m.body(BodyId(7)); }, "body 7 was asked for", "has 1 of them");
+  check_refused([&] { m.body(BodyId(7)); }, "body 7 is asked for", "added so far: 1");
   check_refused([&] { m.coordinate(JointId(1)); }, "joint 1");
-  check_refused([&] { m.reaction(JointId()); }, "joint (never added)");
+  check_refused([&] { m.reaction(JointId()); }, "the joint that is asked for has an id that was never set");
   check_refused([&] { m.violation(JointId(2)); }, "joint 2");
   check_refused([&] { m.limits(JointId(2)); }, "joint 2");
   check_refused([&] { m.set_friction_preload(JointId(2), 1.0); }, "joint 2");

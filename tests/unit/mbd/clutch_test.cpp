@@ -184,7 +184,8 @@ TEST_CASE("brakes and clutches that cannot be are refused, and a capacity that i
   check_refused([&] { m.add_clutch(clutch("c", axle, axle, 1.0)); }, "'c' names the same coordinate twice");
   check_refused([&] { m.add_brake(brake("d", axle, 1.0).with_stiffness(0.0, 1.0)); }, "stiffness", "'d'");
   check_refused([&] { m.add_brake(brake("e", JointId(), 1.0)); }, "'e' names a joint");
-  check_refused([&] { m.set_capacity(BrakeId(), 1.0); }, "clutch or brake (never added)");
+  check_refused([&] { m.set_capacity(BrakeId(), 1.0); },
+                "the clutch or brake that is asked for has an id that was never set");
   const JointId a = m.add_joint(revolute("a", m.ground(), m.add_body(ball("x")), {0, 0, 0}, Z));
   const CouplingId g = m.add_coupling(gear("gear", axle, a, 2.0));
   check_refused([&] { m.add_clutch(limited_slip("f", g, 0.0, 2.0)); }, "'gear'", "no differential");

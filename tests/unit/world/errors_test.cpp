@@ -186,8 +186,9 @@ TEST_CASE("domains, gravity and velocities that make no sense are refused") {
 
 TEST_CASE("ids that are not there are refused") {
   dem::World<Balls> w(options({0, 0, 0}, 1e-3));
-  check_refused([&] { (void)w.position(ParticleId(0)); }, "grain 0 is asked for", "this world has 0");
-  check_refused([&] { (void)w.surface_force(SurfaceId()); }, "a surface is asked for by an id that was never set");
+  check_refused([&] { (void)w.position(ParticleId(0)); }, "grain 0 is asked for", "added so far: 0");
+  check_refused([&] { (void)w.surface_force(SurfaceId()); },
+                "the surface that is asked for has an id that was never set");
   check_refused([&] { w.set_active(SurfaceId(2), false); }, "surface 2");
   check_refused([&] { (void)w.species(SpeciesId(1)); }, "species 1");
 }

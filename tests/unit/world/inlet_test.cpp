@@ -210,7 +210,7 @@ TEST_CASE("an inlet that makes no sense is refused in words") {
   refused({.grains = balls, .mass_flow = 1, .total_mass = 0}, "is to give 0 kg");
   refused({.grains = balls, .mass_flow = 1, .velocity_spread = -1}, "spread of an inlet's velocities is -1");
   refused({.mass_flow = 1}, "a mixture has no grains in it");
-  refused({.grains = SpeciesId(4), .mass_flow = 1}, "species 4 is asked for, but this world has 1");
+  refused({.grains = SpeciesId(4), .mass_flow = 1}, "species 4 is asked for, but is not known (added so far: 1)");
   refused({.grains = {{{SpeciesId(0), -1.0}}}, .mass_flow = 1}, "share of a species in a mixture is -1");
   check_refused([] { InletRegion::box({0, 0, 1}, {1, 1, 0}); }, "which is no finite box");
   check_refused([] { InletRegion::disc({0, 0, 1}, {0, 0, 0}, 1); }, "give it a direction");

@@ -156,5 +156,5 @@ TEST_CASE("an outlet that is no box, or measures over no time, is refused") {
       "outlet 'slot'", "(0, 0, 0) m, which is not below");
   check_refused([&] { w.add_outlet({Vec3(0, 0, std::nan("")), Vec3(1, 1, 1)}); }, "lower corner");
   check_refused([&] { w.add_outlet(below_the_floor, {.window = -1.0}); }, "averaging window is -1 s");
-  check_refused([&] { w.outlet(dem::OutletId(0)); }, "outlet 0 is asked for, but this world has 0");
+  check_refused([&] { w.outlet(dem::OutletId(0)); }, "outlet 0 is asked for, but is not known (added so far: 0)");
 }

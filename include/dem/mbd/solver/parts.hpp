@@ -1,5 +1,6 @@
 #pragma once
 
+#include <dem/core/known.hpp>
 #include <dem/mbd/body/body_spec.hpp>
 #include <dem/mbd/drive/actuator.hpp>
 #include <dem/mbd/drive/clutch.hpp>
@@ -112,14 +113,6 @@ void settle_name(std::string& name, const Items& items, const char* one, const c
   for (const auto& item : items) {
     if (name_of(item) == name) fail("two {} are named '{}'; rename one, so that reports are clear", several, name);
   }
-}
-
-/// The item of an id, or an Error that names the kind of item.
-template <class Items, class Tag>
-auto& known(Items& items, Id<Tag> id, const char* what) {
-  if (id.index() < items.size()) return items[id.index()];
-  fail("{} {} was asked for, but the machine has {} of them; use the id that add_... returned", what,
-       id.valid() ? std::to_string(id.index()) : "(never added)", items.size());
 }
 
 /// The body of an id, or an Error that names who asked for it.
