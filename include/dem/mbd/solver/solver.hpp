@@ -3,19 +3,12 @@
 #include <dem/mbd/joint/locked_shafts.hpp>
 #include <dem/mbd/solver/accepted_time_step.hpp>
 #include <dem/mbd/solver/assembly.hpp>
-#include <dem/mbd/solver/blow_up.hpp>
-#include <dem/mbd/solver/body_watch.hpp>
-#include <dem/mbd/solver/close_joints.hpp>
-#include <dem/mbd/solver/forces.hpp>
-#include <dem/mbd/solver/held_contacts.hpp>
-#include <dem/mbd/solver/joint_policy.hpp>
-#include <dem/mbd/solver/machine_report.hpp>
-#include <dem/mbd/solver/mechanism.hpp>
 #include <dem/mbd/solver/raised_substeps.hpp>
-#include <dem/mbd/solver/softening.hpp>
+#include <dem/mbd/solver/stages.hpp>
 
 #include <algorithm>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace dem::mbd {
@@ -29,14 +22,13 @@ namespace dem::mbd {
 template <integrator::Integrator I, JointPolicy Joints = Penalty>
 class Solver {
  public:
-  double time() const { return time_; }              ///< s
+  double time() const { return stages_.time(); }     ///< s
   double design_step() const { return design_dt_; }  ///< s, for which was derived what was left open; 0: not yet
 
   /// Derives what was left open (stiffness, damping) for a step of dt (s), all sub-steps together, in the present pose.
   DEM_COLD void design_for(Mechanism& m, double dt) {
     derive_stiffness(m.parts(), dt / checked_substeps(m));
-    held_joints_.take_springs_off(m.parts());
-    softening_ = Softening(m.parts(), dt / m.substeps);
+    stages_.take_design(m.parts(), dt / m.substeps);
     ramp_ = {};
     design_dt_ = dt;
   }
@@ -57,10 +49,11 @@ class Solver {
   /// nothing may be moved to close them. Returns what stays open beyond joint_tolerance with most_substeps.
   JointOpening close_joints(Mechanism& m, bool bodies_may_touch = true) {
     ramp_.step(m.parts());
-    if (!joints_.has_recent()) return {};
-    const JointOpening recent = joints_.take_recent();
+    JointWatch& joints = stages_.watches.joints();
+    if (!joints.has_recent()) return {};
+    const JointOpening recent = joints.take_recent();
     const double share = recent.share / ramp_.left();
-    if (share <= 0.5 || body_watch_.seen()) return {};
+    if (share <= 0.5 || has_blown_up()) return {};
     if (m.substeps < m.most_substeps) {
       raise_substeps(m, substeps_for(m.substeps, share, 0.25, m.most_substeps), bodies_may_touch);
       return {};
@@ -104,7 +97,7 @@ class Solver {
   /// hold of its coordinate. To be called before a step begins, so that one that has begun is never refused.
   void check_motions(Mechanism& m) const {
     detail::check_changed_couplings(m.parts());
-    if (m.parts().check_holds) m.parts().check_holds(m.parts(), time_);
+    if (m.parts().check_holds) m.parts().check_holds(m.parts(), time());
   }
 
   /// Starts at `time` (s): the integrator's memory is filled from the forces at this state. `put_forces()` adds those
@@ -116,20 +109,14 @@ class Solver {
     if (design_dt_ <= 0.0) require_derived(parts);
     clear_forces(parts);
     put_forces();
-    time_ = time;
-    motion_.read(parts.bodies);
-    parts.spin.assign(parts.bodies.size(), {0, 0, 0});
-    parts.outside.assign(parts.bodies.size(), {});
+    stages_.begin(parts, time);
     check_motions(m);
     const double step = design_dt_ / checked_substeps(m);  // 0 if none is known
     if (parts.apply_motions) parts.apply_motions(parts, time, step, false);
-    held_joints_.start(parts);
+    stages_.hold_joints(parts);
     if (!is_assembled_) assemble(m);
-    for (PrescribedMotion& p : parts.motions) p.drive.impulse = 0.0;  // the speeds that it starts with
-    add_forces(parts, time, step, false);
-    held_.start(parts.outside);
-    motion_.initialise(parts.bodies, from_eigen(gravity));
-    joints_ = JointWatch(parts, m.joint_tolerance);
+    stages_.start(parts, step, gravity);
+    stages_.watches.watch_joints(m);
     note_stable_step(m);
     start(m);
   }
@@ -145,20 +132,11 @@ class Solver {
   /// drives add theirs; the bodies move, and prescribed motions are set. A machine with sub-steps takes them all.
   template <class PutForces>
   void stage(Mechanism& m, int stage, double dt, const Vec3& gravity, PutForces&& put_forces) {
-    if (m.substeps == 1) return single_stage(m, stage, dt, gravity, put_forces);
-    if constexpr (I::predicts_before_forces) take_substeps(m, stage, dt, gravity);
-    clear_forces(m.parts());
-    put_forces();
-    held_.hold(m.parts().bodies, stage);
-    if constexpr (!I::predicts_before_forces) take_substeps(m, stage, dt, gravity);
+    stages_.stage(m, checked_substeps(m), stage, dt, gravity, put_forces);
   }
 
   /// A step of dt (s), in sub-steps, without forces from outside.
-  void step(Mechanism& m, double dt, const Vec3& gravity) {
-    for (int s = 0; s < m.substeps; ++s) {
-      for (int k = 0; k < I::stages; ++k) single_stage(m, k, dt / m.substeps, gravity, [] {});
-    }
-  }
+  void step(Mechanism& m, double dt, const Vec3& gravity) { stages_.step(m, m.substeps, dt, gravity); }
 
   // ---- of a mechanism that is a bare ground: the same without what moves bodies and closes joints (lazy_solver.hpp)
 
@@ -168,11 +146,8 @@ class Solver {
     if (m.parts().bodies.size() > 1) fail("a machine was put together that World::machine() did not hand out");
     clear_forces(m.parts());
     put_forces();
-    time_ = time;
-    motion_.read(m.parts().bodies);
-    m.parts().spin.assign(m.parts().bodies.size(), {0, 0, 0});
-    m.parts().outside.assign(m.parts().bodies.size(), {});
-    held_.start(m.parts().outside);
+    stages_.begin(m.parts(), time);
+    stages_.hold_contacts(m.parts());
     is_assembled_ = true;
     start(m);
   }
@@ -180,49 +155,35 @@ class Solver {
   void stage_bare(Mechanism& m, int stage, double dt, PutForces&& put_forces) {
     clear_forces(m.parts());
     put_forces();
-    if (stage < I::stages - 1) return;
-    step_dt_ = dt;
-    time_ += dt;
-    ++steps_;
+    if (stage == I::stages - 1) stages_.pass(dt);
   }
 
   /// All is well, or which body blew up, when, and what to change.
-  MachineReport report(const Mechanism& m) const {
-    if (!body_watch_.seen()) return {true, time_, {}, {}, {}, {}};
-    const std::string text = dem::text(
-        "body '{}' blew up at t = {:g} s: its motion is not finite or its speed above largest_speed = {:g}. {}",
-        m.parts().bodies[body_watch_.body().index()].name, body_watch_.time(), m.largest_speed,
-        cause_of_blow_up<I>(m.parts(), limit_at_start_, watch_, joints_, step_dt_, m.substeps));
-    return {false, body_watch_.time(), body_watch_.body(), {}, text, {}};
-  }
+  MachineReport report(const Mechanism& m) const { return stages_.watches.report(m, time(), stages_.newest_step()); }
   /// All is well, or which joint stood open beyond joint_tolerance, and what keeps it closed.
   MachineReport report_of(const Mechanism& m, const JointOpening& worst) const {
-    if (!(worst.share > 1.0)) return {true, time_, {}, {}, {}, {}};
-    return report_of_opening(m.parts(), worst, m.joint_tolerance, step_dt_, m.substeps, time_);
+    if (!(worst.share > 1.0)) return {true, time(), {}, {}, {}, {}};
+    return report_of_opening(m.parts(), worst, m.joint_tolerance, stages_.newest_step(), m.substeps, time());
   }
   /// What was changed of what the user gave: sub-steps, velocities at the start. Empty if nothing.
   DEM_COLD std::string note(const Mechanism& m) const {
-    return note_of(m.parts(), assembly_, joints_, raised_.given(m.substeps), m.substeps);
+    return note_of(m.parts(), assembly_, joints(), raised_.given(m.substeps), m.substeps);
   }
   /// What became of the velocities that were given, at the start.
   const AssemblyReport& assembly() const { return assembly_; }
-  const JointWatch& joints() const { return joints_; }
-  bool has_blown_up() const { return body_watch_.seen(); }
+  const JointWatch& joints() const { return stages_.watches.joints(); }
+  bool has_blown_up() const { return stages_.watches.has_blown_up(); }
 
   /// Remembers the largest stable step of this pose, for the report of a blow-up.
   DEM_COLD void note_stable_step(const Mechanism& m) {
-    limit_at_start_ = stable_time_step(m);
-    watch_ = StepWatch<I>(m.parts());
+    stages_.watches.note_stable_step(m.parts(), stable_time_step(m));
   }
 
   template <class V>
   void fields(V& v) {
-    v("bodies", motion_), v("held_contacts", held_), v("softening", softening_), v("watch", watch_);
-    v("stable_step_at_start", limit_at_start_.dt, "s"), v("limited_at_start_by", limit_at_start_.limited_by);
-    v("time", time_, "s"), v("design_step", design_dt_, "s"), v("newest_step", step_dt_, "s"), v("steps", steps_);
-    v("substeps", substeps_), v("revision", revision_), v("initialised", initialised_);
-    v("ramp", ramp_), v("joints", joints_), v("assembled", is_assembled_);
-    body_watch_.fields(v), raised_.fields(v), held_joints_.fields(v);
+    stages_.fields(v), raised_.fields(v);
+    v("design_step", design_dt_, "s"), v("substeps", substeps_), v("revision", revision_);
+    v("initialised", initialised_), v("ramp", ramp_), v("assembled", is_assembled_);
   }
 
  private:
@@ -241,7 +202,7 @@ class Solver {
   /// While running, between two steps of the world or of a machine alone.
   DEM_COLD void raise_substeps(Mechanism& m, int n, bool in_ramp) {
     Parts& parts = m.parts();
-    if (m.substeps == 1) held_.start(parts.outside);  // the contacts' forces, which are held from here on
+    if (m.substeps == 1) stages_.hold_contacts(parts);  // the contacts' forces, which are held from here on
     raised_.raise(m.substeps, n);
     const std::vector<double> before = StiffnessRamp::stiffness_of(parts);
     const double part = static_cast<double>(m.substeps) / n;
@@ -252,130 +213,15 @@ class Solver {
     note_stable_step(m);
   }
 
-  /// The time of the state at which a stage's forces are evaluated, in a step of dt from `time`.
-  static double stage_time(double time, double dt, int stage) {
-    return I::predicts_before_forces || stage > 0 ? time + dt : time;
-  }
-
-  template <class PutForces>
-  void single_stage(Mechanism& m, int stage, double dt, const Vec3& gravity, PutForces&& put_forces) {
-    const double start = time_;
-    predict(m, stage, dt);
-    clear_forces(m.parts());
-    put_forces();
-    complete(m, stage, start, dt, gravity);
-  }
-
-  void predict(Mechanism& m, int stage, double dt) {
-    if (stage == 0) held_joints_.begin(m.parts());
-    if constexpr (I::predicts_before_forces) {
-      motion_.before_forces(m.parts().bodies, stage, dt);
-      // Forces see driven bodies where they are at the end of the step.
-      if constexpr (Joints::projects) held_joints_.move(m.parts(), time_ + dt, dt, true);
-      else if (m.parts().apply_motions) m.parts().apply_motions(m.parts(), time_ + dt, dt, false);
-    }
-  }
-
-  /// The machine's own forces, and what they do to the bodies.
-  void complete(Mechanism& m, int stage, double start, double dt, const Vec3& gravity) {
-    Parts& parts = m.parts();
-    const bool last = stage == I::stages - 1;
-    add_forces(parts, stage_time(start, dt, stage), dt, last, !sampling_);
-    const auto sample = [&] {
-      if (last && sampling_ && parts.sample_sensors) parts.sample_sensors(parts, dt);
-    };
-    if constexpr (!Joints::projects) sample();
-    else if constexpr (I::stages == 1) held_joints_.add_gyroscopic(parts, integrator::gyroscopic_lead<I>(dt));
-    motion_.after_forces(parts.bodies, stage, dt, from_eigen(gravity));
-    step_dt_ = dt * m.substeps;
-    if constexpr (Joints::projects) {
-      if constexpr (!I::predicts_before_forces) held_joints_.move(parts, start + dt, dt, last);
-    }
-    if (last) end_step(m, dt);
-    if constexpr (Joints::projects) {
-      if (last) held_joints_.finish(parts, start + dt, dt);
-      sample();
-    } else {
-      prescribe(m, start + dt, dt);
-    }
-  }
-
-  /// Takes the machine's steps within one of the world's, with the grains' forces as HeldContacts has them.
-  void take_substeps(Mechanism& m, int stage, double dt, const Vec3& gravity) {
-    Parts& parts = m.parts();
-    const int n = checked_substeps(m);
-    const double h = dt / n;
-    const bool trial = stage < I::stages - 1;  // done again in the next stage, from the same start
-    if constexpr (I::stages > 1) {
-      if (stage == 0) saved_.save(parts, motion_.memory(), time_);
-      else time_ = saved_.restore(parts, motion_.memory());
-      held_joints_.forget();
-    }
-    struct Sampling {  // goes on after the sub-steps, also if a function of the user throws in one
-      bool& flag;
-      ~Sampling() { flag = true; }
-    } sampling{sampling_};
-    sampling.flag = !trial;
-    if constexpr (I::stages == 1) held_.catch_up(parts.bodies, motion_, dt, h);
-    for (int s = 0; s < n; ++s) {
-      const double start = time_;
-      for (int k = 0; k < I::stages; ++k) {
-        predict(m, k, h);
-        held_.put_on(parts.bodies, stage, stage_time(s * h, h, k) / dt);
-        complete(m, k, start, h, gravity);
-      }
-    }
-  }
-
-  /// Sets prescribed motions (eq. 19) for the end of the step.
-  void prescribe(Mechanism& m, double time_at_end_of_step, double dt) {
-    Parts& parts = m.parts();
-    if (!parts.apply_motions) return;
-    parts.apply_motions(parts, time_at_end_of_step, dt, true);
-    for (const PrescribedMotion& p : parts.motions) {
-      if (p.spec.on) watch_body(m, p.spec.body);  // also a fixed one, which nothing else moves
-    }
-  }
-
-  /// Looks after what drifts or changes slowly: rotations and turns, the stiffness of joints, the stable time step.
-  void end_step(Mechanism& m, double dt) {
-    Parts& parts = m.parts();
-    const bool tidy = ++steps_ % 256 == 0;
-    for (std::size_t i = 0; i < parts.bodies.size(); ++i) {
-      Body& b = parts.bodies[i];
-      if (tidy && !b.fixed) b.motion.rotation = orthonormalised(b.motion.rotation);
-      watch_body(m, BodyId(i));
-    }
-    if (tidy) settle_turns(parts);
-    time_ += dt;
-    softening_.follow(parts);
-    if (sampling_ && !body_watch_.seen()) joints_.follow(parts, time_);
-    if (!body_watch_.seen()) watch_.follow(parts, dt, time_);
-  }
-
-  void watch_body(const Mechanism& m, BodyId id) {
-    body_watch_.look(id, m.parts().bodies[id.index()], m.largest_speed, time_);
-  }
-
-  BodiesInMotion<I> motion_;
-  typename Joints::State held_joints_;
-  HeldContacts<I> held_;
-  SavedState<I> saved_;
-  Softening softening_;
+  Stages<I, Joints> stages_;
   StiffnessRamp ramp_;
-  StepWatch<I> watch_;
-  JointWatch joints_;
-  BodyWatch body_watch_;
   RaisedSubsteps raised_;
   AssemblyReport assembly_;
   bool is_assembled_ = false;
-  StableTimeStep limit_at_start_;
-  double time_ = 0.0, design_dt_ = 0.0, step_dt_ = 0.0;  // s; the last two with all sub-steps
-  long steps_ = 0;
-  int substeps_ = 0;  // of the newest initialise, as is the revision
+  double design_dt_ = 0.0;  // s, with all sub-steps
+  int substeps_ = 0;        // of the newest initialise, as is the revision
   std::uint64_t revision_ = 0;
   bool initialised_ = false;
-  bool sampling_ = true;  // whether forces are felt by the sensors: not those of a trial
 };
 
 }  // namespace dem::mbd
