@@ -3,6 +3,7 @@
 #include <dem/grain/chunk.hpp>
 #include <dem/grain/contact_key.hpp>
 #include <dem/grain/images.hpp>
+#include <dem/parallel/blocks.hpp>
 
 #include <algorithm>
 #include <array>
@@ -128,12 +129,18 @@ class HistoryCarrier {
   void hand_out(Executor& executor, std::span<Chunk<Model>> chunks, const Particles& p,
                 const Images<typename Model::Domain>& images, SendHome&& send_home) {
     const auto by_chunk = [&](std::vector<Entry>& entries, auto&& rename) {
-      constexpr std::size_t block = 4096;
-      executor.for_each((entries.size() + block - 1) / block, [&](std::size_t b) {
-        for (std::size_t k = b * block; k < std::min((b + 1) * block, entries.size()); ++k) rename(entries[k]);
+      exec::for_each_block(executor, entries.size(), [&](std::size_t first, std::size_t last) {
+        for (std::size_t k = first; k < last; ++k) rename(entries[k]);
       });
       send_home(entries);
-      return group(entries, chunks.size(), p.gone);
+      std::vector<std::uint32_t> chunk_of(entries.size());
+      exec::for_each_block(executor, entries.size(), [&](std::size_t first, std::size_t last) {
+        for (std::size_t k = first; k < last; ++k) {
+          const auto none = static_cast<std::uint32_t>(chunks.size());
+          chunk_of[k] = entries[k].i == p.gone ? none : static_cast<std::uint32_t>(entries[k].i / chunk_size);
+        }
+      });
+      return group(chunk_of, chunks.size());
     };
     const Groups of_pairs = by_chunk(pairs_, [&](Entry& r) {
       r.i = p.row_of[r.i];
@@ -170,16 +177,17 @@ class HistoryCarrier {
   struct Groups {
     std::vector<std::uint32_t> first, entry;
   };
-  static Groups group(const std::vector<Entry>& entries, std::size_t chunks, std::uint32_t gone) {
+  /// From the chunk of each entry, which is `chunks` for those that are in none.
+  static Groups group(const std::vector<std::uint32_t>& chunk_of, std::size_t chunks) {
     Groups g;
     g.first.assign(chunks + 1, 0);
-    for (const Entry& r : entries) g.first[r.i == gone ? chunks : r.i / chunk_size] += 1;
+    for (const std::uint32_t c : chunk_of) ++g.first[c];
     std::uint32_t total = 0;
-    for (std::uint32_t& n : g.first) total += std::exchange(n, total);  // those that are gone come last, in no chunk
+    for (std::uint32_t& n : g.first) total += std::exchange(n, total);  // those in no chunk come last
     g.entry.resize(g.first[chunks]);
     std::vector<std::uint32_t> next(g.first.begin(), g.first.end() - 1);
-    for (std::size_t k = 0; k < entries.size(); ++k) {
-      if (entries[k].i != gone) g.entry[next[entries[k].i / chunk_size]++] = static_cast<std::uint32_t>(k);
+    for (std::size_t k = 0; k < chunk_of.size(); ++k) {
+      if (chunk_of[k] < chunks) g.entry[next[chunk_of[k]]++] = static_cast<std::uint32_t>(k);
     }
     return g;
   }

@@ -7,8 +7,8 @@
 #include <dem/grain/species.hpp>
 
 #include <algorithm>
-#include <bit>
 #include <span>
+#include <utility>
 #include <vector>
 
 namespace dem::grain {
@@ -25,10 +25,27 @@ void list_owners(Chunk<Model>& chunk) {
   chunk.searches.reset(chunk.candidate.size());
 }
 
-/// Calls f(j) for the rows first to last - 1, in order, whose centres lie within `reach` (m) of x: a pack at a time.
-template <class Particles, class F>
-DEM_HOT void for_each_within(const Particles& p, std::uint32_t first, std::uint32_t last, const Vector3<double>& x,
-                             double reach, F&& f) {
+/// Rows that are found one after the other, written without a branch.
+struct FoundRows {
+  std::vector<std::uint32_t> rows;  ///< more than there are
+  std::size_t count = 0;
+
+  void make_room(std::size_t n) {
+    if (count + n > rows.size()) [[unlikely]]
+      rows.resize(2 * (count + n));
+  }
+  /// There must be room, also for one that is not wanted.
+  void add_if(bool is_wanted, std::uint32_t j) {
+    rows[count] = j;
+    count += is_wanted ? 1 : 0;
+  }
+};
+
+/// Appends the rows first to last - 1, in order, whose centres lie within `reach` (m) of x: a pack at a time.
+template <class Particles>
+DEM_HOT void append_within(const Particles& p, std::uint32_t first, std::uint32_t last, const Vector3<double>& x,
+                           double reach, FoundRows& found) {
+  found.make_room(last - first + pack_width);
   std::uint32_t j = first;
   // Padding rows are not read: another thread may be putting them in their place.
   for (; j < last && j + pack_width <= p.count; j += pack_width) {
@@ -36,11 +53,11 @@ DEM_HOT void for_each_within(const Particles& p, std::uint32_t first, std::uint3
                dz = load_unaligned(&p.position.z[j]) - Pack(x.z);
     std::uint32_t near = bits(dx * dx + dy * dy + dz * dz < Pack(reach * reach));
     if (last - j < pack_width) near &= (1u << (last - j)) - 1u;
-    for (; near != 0; near &= near - 1) f(j + static_cast<std::uint32_t>(std::countr_zero(near)));
+    for (std::uint32_t k = 0; k < pack_width; ++k) found.add_if((near >> k & 1u) != 0, j + k);
   }
   for (; j < last; ++j) {
     const Vector3<double> d = p.position[j] - x;
-    if (dot(d, d) < reach * reach) f(j);
+    found.add_if(dot(d, d) < reach * reach, j);
   }
 }
 
@@ -53,46 +70,43 @@ void list_candidates(std::size_t chunk_index, Chunk<Model>& chunk, const Particl
   const std::size_t begin = chunk_index * chunk_size;
   const std::size_t end = std::min(begin + chunk_size, p.count);
   auto finder = broad_phase.finder();
-  std::vector<std::uint32_t> found(chunk.candidate.size() + 16 * chunk_size);
-  std::size_t count = 0;
+  FoundRows found;
+  found.make_room(chunk.candidate.size() / 2 + 8 * chunk_size);
   for (std::size_t i = begin; i < end; ++i) {
-    const std::size_t first = count;
+    const std::size_t first = found.count;
     chunk.candidate_first[i - begin] = static_cast<std::uint32_t>(first);
     const auto& kind = species[p.species[i]];
     const bool held = kind.is_held();
     const Vector3<double> x = p.position[i];
-    const auto add_if = [&](bool is_partner, std::uint32_t j) {  // without a branch
-      if (count == found.size()) [[unlikely]]
-        found.resize(2 * count);
-      found[count] = j;
-      count += is_partner ? 1 : 0;
-    };
-    // Which of those within the largest reach come near enough, and may move.
-    const auto take = [&](std::uint32_t j) {
+    const auto is_partner = [&](std::uint32_t j) {
       const auto& other = species.size() == 1 ? kind : species[p.species[j]];
       const double reach = kind.shape.bounding_radius() + other.shape.bounding_radius() + skin;
       const Vector3<double> d = p.position[j] - x;
       const bool is_near = dot(d, d) < reach * reach, both_held = held & other.is_held();
-      add_if(is_near & !both_held, j);
-    };
-    const auto take_run = [&](std::uint32_t from, std::uint32_t to) {
-      const double reach = kind.shape.bounding_radius() + largest_radius + skin;
-      if (species.size() > 1 || held) return for_each_within(p, from, to, x, reach, take);
-      for_each_within(p, from, to, x, reach, [&](std::uint32_t j) { add_if(true, j); });
-    };
-    const auto take_one = [&](std::uint32_t j) {
-      if (images.may_pair(i, j)) take(j);  // nor is it read: another thread may be putting padding rows in their place
+      return is_near & !both_held;
     };
     // Rows of images are no runs of grains that may all be partners.
     if constexpr (broadphase::FindsRuns<decltype(finder)> && !Model::Domain::has_images) {
-      if (finder.has_runs()) finder.for_each_run(i, take_run);
-      else finder.for_each_candidate(i, take_one);
-    } else {
-      finder.for_each_candidate(i, take_one);
+      if (finder.has_runs()) {
+        const double reach = kind.shape.bounding_radius() + largest_radius + skin;
+        finder.for_each_run(i,
+                            [&](std::uint32_t from, std::uint32_t to) { append_within(p, from, to, x, reach, found); });
+        if (species.size() == 1 && !held) continue;
+        // Which of those within the largest reach come near enough, and may move.
+        const std::size_t within = std::exchange(found.count, first);
+        for (std::size_t k = first; k < within; ++k) found.add_if(is_partner(found.rows[k]), found.rows[k]);
+        continue;
+      }
     }
-    std::sort(found.begin() + static_cast<std::ptrdiff_t>(first), found.begin() + static_cast<std::ptrdiff_t>(count));
+    finder.for_each_candidate(i, [&](std::uint32_t j) {
+      if (!images.may_pair(i, j)) return;  // nor is it read: another thread may be putting padding rows in their place
+      found.make_room(1);
+      found.add_if(is_partner(j), j);
+    });
+    const auto rows = found.rows.begin();
+    std::sort(rows + static_cast<std::ptrdiff_t>(first), rows + static_cast<std::ptrdiff_t>(found.count));
   }
-  chunk.candidate.assign(found.begin(), found.begin() + static_cast<std::ptrdiff_t>(count));
+  chunk.candidate.assign(found.rows.begin(), found.rows.begin() + static_cast<std::ptrdiff_t>(found.count));
   for (std::size_t k = end - begin; k <= chunk_size; ++k) {
     chunk.candidate_first[k] = static_cast<std::uint32_t>(chunk.candidate.size());
   }

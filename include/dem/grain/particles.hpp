@@ -5,6 +5,7 @@
 #include <dem/grain/partner_view.hpp>
 #include <dem/integrator/motion.hpp>
 #include <dem/law/state.hpp>
+#include <dem/parallel/blocks.hpp>
 
 #include <algorithm>
 #include <array>
@@ -147,12 +148,16 @@ struct Particles {
     }
   }
 
-  /// Calls f(column) for every column of doubles that has one entry a grain.
+  /// Calls f(column) for every column of doubles that has one entry a grain, those of position first.
   template <class F>
   void for_each_column(F&& f) {
-    for (Columns3* c : {&position, &velocity, &spin, &row0, &row1, &row2, &force, &torque, &listed_at}) {
-      c->for_each_column(f);
-    }
+    for_each_state_column(f);
+    listed_at.for_each_column(f);
+  }
+  /// The same without listed_at, which is what position was.
+  template <class F>
+  void for_each_state_column(F&& f) {
+    for (Columns3* c : {&position, &velocity, &spin, &row0, &row1, &row2, &force, &torque}) c->for_each_column(f);
     for (auto& column : memory) f(column);
   }
 
@@ -243,24 +248,48 @@ struct Particles {
     }
   }
 
-  /// Row k becomes what was row order[k]. Threads share the columns. Views and poses follow from the columns when the
-  /// rows are next refreshed.
+  /// Row k becomes what was row order[k]. Threads share the work. Views and poses follow from the columns when the rows
+  /// are next refreshed; listed_at is to be written anew. Where `known` is given, all but position, species and id
+  /// counts only of rows (new ones) that are in it.
   template <class Executor>
-  void permute(std::span<const std::uint32_t> order, Executor& executor) {
+  void permute(std::span<const std::uint32_t> order, Executor& executor,
+               const std::vector<std::uint32_t>* known = nullptr) {
     DEM_ASSERT(order.size() <= count, "rows are moved or dropped, and none is made");
     std::vector<AlignedVector<double>*> columns;
-    for_each_column([&](AlignedVector<double>& column) { columns.push_back(&column); });
+    for_each_state_column([&](AlignedVector<double>& column) { columns.push_back(&column); });
     executor.for_each(columns.size(), [&](std::size_t c) {
       AlignedVector<double>& column = *columns[c];
+      if (known != nullptr && c >= 3) {
+        std::vector<double> values;
+        values.reserve(known->size());
+        for (const std::uint32_t k : *known) values.push_back(column[order[k]]);
+        for (std::size_t m = 0; m < known->size(); ++m) column[(*known)[m]] = values[m];
+        return;
+      }
       const AlignedVector<double> old = column;
       for (std::size_t k = 0; k < order.size(); ++k) column[k] = old[order[k]];
     });
     const auto old_species = species, old_id = id;
-    for (std::size_t k = 0; k < order.size(); ++k) {
-      species[k] = old_species[order[k]];
-      id[k] = old_id[order[k]];
-      row_of[id[k]] = static_cast<std::uint32_t>(k);
-    }
+    exec::for_each_block(executor, order.size(), [&](std::size_t first, std::size_t last) {
+      for (std::size_t k = first; k < last; ++k) {
+        species[k] = old_species[order[k]];
+        id[k] = old_id[order[k]];
+        row_of[id[k]] = static_cast<std::uint32_t>(k);
+      }
+    });
+  }
+
+  /// The neighbour list is made of grains where they are now.
+  template <class Executor>
+  void note_listed(Executor& executor) {
+    listed_at.for_each_column([&](AlignedVector<double>& column) { column.resize(position.x.size()); });
+    exec::for_each_block(executor, position.x.size(), [&](std::size_t first, std::size_t last) {
+      const auto copy = [&](const AlignedVector<double>& from, AlignedVector<double>& to) {
+        std::copy(from.begin() + static_cast<std::ptrdiff_t>(first), from.begin() + static_cast<std::ptrdiff_t>(last),
+                  to.begin() + static_cast<std::ptrdiff_t>(first));
+      };
+      copy(position.x, listed_at.x), copy(position.y, listed_at.y), copy(position.z, listed_at.z);
+    });
   }
 };
 

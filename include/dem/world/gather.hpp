@@ -112,7 +112,7 @@ void gather_rows(WorldState<Model>& w) {
   auto& d = w.domain;
   if (d.is_whole) return;
   auto& p = w.particles;
-  p.for_each_column([&](AlignedVector<double>& column) { d.gather_chunks(column.data(), chunk_size); });
+  p.for_each_state_column([&](AlignedVector<double>& column) { d.gather_chunks(column.data(), chunk_size); });
 
   struct Summary {
     double low[3], high[3], moved2;
@@ -163,6 +163,19 @@ std::vector<std::uint16_t> gather_positions(WorldState<Model>& w) {
   return holders;
 }
 
+/// Sorts the rows, of which this rank has all but the position only where it holds them.
+template <class Model>
+void permute_rows(WorldState<Model>& w, const std::vector<std::uint32_t>& order,
+                  const std::vector<std::uint16_t>& holders) {
+  auto& p = w.particles;
+  if (holders.empty()) return p.permute(order, w.executor);
+  std::vector<std::uint32_t> known;
+  for (std::size_t k = 0; k < order.size(); ++k) {
+    if (holders[p.id[order[k]]] == w.domain.rank()) known.push_back(static_cast<std::uint32_t>(k));
+  }
+  p.permute(order, w.executor, &known);
+}
+
 /// When grains are sorted and chunks have new owners: the rows of grains that other ranks had come to these.
 template <class Model>
 void move_rows(WorldState<Model>& w, const std::vector<std::uint16_t>& holders) {
@@ -170,7 +183,7 @@ void move_rows(WorldState<Model>& w, const std::vector<std::uint16_t>& holders) 
   auto& d = w.domain;
   auto& p = w.particles;
   std::vector<AlignedVector<double>*> columns;
-  p.for_each_column([&](AlignedVector<double>& column) { columns.push_back(&column); });
+  p.for_each_state_column([&](AlignedVector<double>& column) { columns.push_back(&column); });
   const auto rows_of = [&](int rank) {
     const auto [first, last] = d.chunks_of(rank);
     return std::pair(std::min(first * chunk_size, p.count), std::min(last * chunk_size, p.count));

@@ -78,23 +78,32 @@ void rebuild_neighbours(WorldState<Model>& w, Change&& change) {
   const double reach = 2.0 * w.largest_radius + w.materials.range() + skin;
   const auto build = [&](std::size_t rows) {
     const broadphase::Positions at = {p.position.x.data(), p.position.y.data(), p.position.z.data(), rows};
+    const auto with = [&](const auto& how_far) {
+      if constexpr (requires { w.broad_phase.build(at, how_far, w.executor); }) {
+        w.broad_phase.build(at, how_far, w.executor);
+      } else {
+        w.broad_phase.build(at, how_far);
+      }
+    };
     if constexpr (broadphase::KnowsSizes<typename Model::BroadPhase>) {
       std::vector<double> radii;
       for (const auto& kind : w.species) radii.push_back(kind.shape.bounding_radius());
-      w.broad_phase.build(at, broadphase::Sizes{radii, p.species.data(), w.materials.range() + skin});
+      with(broadphase::Sizes{radii, p.species.data(), w.materials.range() + skin});
     } else {
-      w.broad_phase.build(at, reach);
+      with(reach);
     }
   };
   wrap_grains(w);
   build(p.count);
   if (const auto order = w.broad_phase.order(); !order.empty()) {
     const std::vector<std::uint32_t> sorted(order.begin(), order.end());
-    p.permute(sorted, w.executor);
-    if constexpr (requires { w.broad_phase.reordered(); }) w.broad_phase.reordered();
+    if constexpr (Model::Domain::has_ranks) permute_rows(w, sorted, holders);
+    else p.permute(sorted, w.executor);
+    if constexpr (requires { w.broad_phase.reordered(w.executor); }) w.broad_phase.reordered(w.executor);
+    else if constexpr (requires { w.broad_phase.reordered(); }) w.broad_phase.reordered();
     else build(p.count);
   }
-  p.listed_at = p.position;
+  p.note_listed(w.executor);
   p.pad();
   if constexpr (Model::Domain::has_images) {
     make_images(w, reach);

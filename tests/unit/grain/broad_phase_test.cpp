@@ -5,11 +5,13 @@
 #include <dem/grain/broadphase/nearly_sorted.hpp>
 #include <dem/grain/broadphase/uniform_grid.hpp>
 #include <dem/math/vector.hpp>
+#include <dem/parallel/threads.hpp>
 
 #include <algorithm>
 #include <functional>
 #include <random>
 #include <set>
+#include <span>
 
 using dem::Vec3;
 using dem::broadphase::AllPairs;
@@ -212,7 +214,7 @@ TEST_CASE("entries that are nearly in order are sorted as others are") {
     }
     std::vector<Entry> expected = entries;
     std::sort(expected.begin(), expected.end());
-    dem::broadphase::sort_nearly_sorted(entries, std::less<>());
+    dem::broadphase::sort_nearly_sorted(std::span(entries), std::less<>());
     REQUIRE(entries == expected);
   }
 }
@@ -223,11 +225,81 @@ TEST_CASE("what comes after entries that are in order costs little to sort in") 
   for (std::uint32_t k = 0; k < 10'000; ++k) entries.push_back(2 * k);
   for (std::uint32_t k = 0; k < 200; ++k) entries.push_back(2 * static_cast<std::uint32_t>(engine() % 10'000) + 1);
   std::size_t comparisons = 0;
-  dem::broadphase::sort_nearly_sorted(entries, [&](std::uint32_t a, std::uint32_t b) { return ++comparisons, a < b; });
+  dem::broadphase::sort_nearly_sorted(std::span(entries),
+                                      [&](std::uint32_t a, std::uint32_t b) { return ++comparisons, a < b; });
   CHECK(std::is_sorted(entries.begin(), entries.end()));
   // One a step of the pass, two where an entry strays; 200 log2(200) and as much again for their sort; one a step of
   // the merge. std::sort takes 13 for each entry.
   CHECK(comparisons < 10'000 + 2 * 200 + 2 * 200 * 8 + 10'200);
+}
+
+TEST_CASE("threads sort entries as one thread does") {
+  using Entry = std::pair<std::uint64_t, std::uint32_t>;
+  std::mt19937 engine(5);
+  constexpr std::uint32_t n = 40'000;  // more than is left to one thread
+  for (int run = 0; run < 5; ++run) {
+    CAPTURE(run);
+    std::vector<Entry> entries, scratch;
+    for (std::uint32_t i = 0; i < n; ++i) {
+      const auto anywhere = static_cast<std::uint64_t>(engine() % n);
+      const std::uint64_t keys[] = {i / 3, i % 50 == 0 ? anywhere : i, anywhere, n - i, 7};
+      entries.emplace_back(keys[run], i);
+    }
+    std::vector<Entry> expected = entries;
+    std::sort(expected.begin(), expected.end());
+    for (const int threads : {1, 2, 3}) {
+      CAPTURE(threads);
+      dem::exec::Threads executor;
+      executor.set_threads(threads);
+      std::vector<Entry> sorted = entries;
+      dem::broadphase::sort_nearly_sorted(sorted, scratch, std::less<>(), executor);
+      REQUIRE(sorted == expected);
+    }
+  }
+}
+
+TEST_CASE("threads build a grid as one thread does") {
+  Scene s = random_scene(
+      20'000, [](auto& e) { return in_cube(e, 1.0); }, 11);
+  const double reach = 0.05;
+  UniformGrid alone, shared;
+  dem::exec::Threads executor;
+  executor.set_threads(3);
+  const auto same_order = [&] {
+    return std::equal(alone.order().begin(), alone.order().end(), shared.order().begin());
+  };
+  alone.build(s.positions(), reach);
+  shared.build(s.positions(), reach, executor);
+  REQUIRE(same_order());
+  CHECK(pairs_of_built(s, shared, reach) == pairs_of_built(s, alone, reach));
+  Scene in_order;
+  for (const std::uint32_t k : alone.order()) in_order.add(s.at(k));
+  alone.reordered();
+  shared.reordered(executor);
+  CHECK(pairs_of_built(in_order, shared, reach) == pairs_of_built(in_order, alone, reach));
+}
+
+TEST_CASE("runs of candidates come in rising order") {
+  Scene s = random_scene(
+      2000, [](auto& e) { return in_cube(e, 1.0); }, 12);
+  UniformGrid grid;
+  grid.build(s.positions(), 0.1);
+  Scene in_order;
+  for (const std::uint32_t k : grid.order()) in_order.add(s.at(k));
+  grid.reordered();
+  auto finder = grid.finder();
+  REQUIRE(finder.has_runs());
+  std::size_t runs = 0;
+  for (std::uint32_t i = 0; i < s.x.size(); ++i) {
+    std::uint32_t after = i + 1;
+    finder.for_each_run(i, [&](std::uint32_t first, std::uint32_t last) {
+      REQUIRE(first >= after);
+      REQUIRE(last > first);
+      after = last;
+      ++runs;
+    });
+  }
+  CHECK(runs > 2 * s.x.size());
 }
 
 TEST_CASE("a grid forgets what it was built from before") {

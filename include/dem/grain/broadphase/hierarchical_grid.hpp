@@ -1,9 +1,8 @@
 #pragma once
 
-#include <dem/grain/broadphase/broad_phase.hpp>
 #include <dem/grain/broadphase/cell_table.hpp>
-#include <dem/grain/broadphase/morton.hpp>
-#include <dem/grain/broadphase/nearly_sorted.hpp>
+#include <dem/grain/broadphase/curve_order.hpp>
+#include <dem/parallel/serial.hpp>
 
 #include <algorithm>
 #include <array>
@@ -26,14 +25,19 @@ class HierarchicalGrid {
  public:
   /// Two grains are found if they are nearer than their radii and the gap. Positions and kinds are read again by the
   /// finder, where they are now.
-  void build(const Positions& positions, const Sizes& sizes) {
+  template <class Executor>
+  void build(const Positions& positions, const Sizes& sizes, Executor& executor) {
     at_ = positions;
     kind_ = sizes.kind;
     gap_ = sizes.gap;
     radius_.assign(sizes.radius_of_kind.begin(), sizes.radius_of_kind.end());
     choose_levels();
-    sort();
+    sorted_.sort(at_, inverse_cell_, executor);
     find_cells();
+  }
+  void build(const Positions& positions, const Sizes& sizes) {
+    exec::Serial alone;
+    build(positions, sizes, alone);
   }
   /// Grains of one size.
   void build(const Positions& positions, double reach) { build(positions, Sizes{{}, nullptr, reach}); }
@@ -158,15 +162,11 @@ class HierarchicalGrid {
   unsigned levels() const { return levels_; }  ///< of cells, that of the largest grains counted
 
   std::size_t memory_bytes() const {
-    return sorted_.capacity() * sizeof(Entry) + cells_.capacity() * sizeof(Cell) + table_.memory_bytes() +
+    return sorted_.memory_bytes() + cells_.capacity() * sizeof(Cell) + table_.memory_bytes() +
            (order_.capacity() + members_.capacity() + cell_of_.capacity()) * sizeof(std::uint32_t);
   }
 
  private:
-  struct Entry {
-    std::uint64_t code;
-    std::uint32_t grain;
-  };
   static unsigned level_of_key(std::uint64_t key) { return static_cast<unsigned>(std::countl_zero(key)) / 3; }
   double radius(std::size_t i) const { return kind_ == nullptr ? 0.0 : radius_[kind_[i]]; }
 
@@ -195,16 +195,6 @@ class HierarchicalGrid {
         ++level;
       largest_[level] = std::max(largest_[level], radius_[k]);
     }
-  }
-  void sort() {
-    sorted_.resize(at_.n);
-    for (std::size_t i = 0; i < at_.n; ++i) {
-      sorted_[i] = {morton::code(morton::cell(at_.x[i] * inverse_cell_), morton::cell(at_.y[i] * inverse_cell_),
-                                 morton::cell(at_.z[i] * inverse_cell_)),
-                    static_cast<std::uint32_t>(i)};
-    }
-    sort_nearly_sorted(
-        sorted_, [](const Entry& a, const Entry& b) { return a.code != b.code ? a.code < b.code : a.grain < b.grain; });
   }
   /// Members of each level, cell after cell.
   void find_cells() {
@@ -244,7 +234,7 @@ class HierarchicalGrid {
   std::vector<std::uint8_t> is_there_;                     // by kind: some grain is of it
   std::array<double, most_levels> largest_ = {};           // m, radius of the largest grain of each level
   std::array<std::uint32_t, most_levels + 1> first_ = {};  // of each level's members
-  std::vector<Entry> sorted_;
+  CurveOrder sorted_;
   std::vector<std::uint32_t> order_, members_, cell_of_;  // grains in curve order; level by level; grain -> cell
   std::vector<Cell> cells_;
   CellTable table_;

@@ -1,12 +1,13 @@
 #pragma once
 
 #include <dem/grain/broadphase/block_table.hpp>
-#include <dem/grain/broadphase/broad_phase.hpp>
-#include <dem/grain/broadphase/morton.hpp>
-#include <dem/grain/broadphase/nearly_sorted.hpp>
+#include <dem/grain/broadphase/curve_order.hpp>
+#include <dem/parallel/serial.hpp>
 
 #include <algorithm>
+#include <array>
 #include <bit>
+#include <numeric>
 
 namespace dem::broadphase {
 
@@ -16,37 +17,56 @@ namespace dem::broadphase {
 class UniformGrid {
  public:
   void build(const Positions& p, double reach) {
-    inverse_cell_ = 1.0 / reach;
+    exec::Serial alone;
+    build(p, reach, alone);
+  }
+  template <class Executor>
+  void build(const Positions& p, double reach, Executor& executor) {
     is_in_order_ = false;
-    cell_of_.resize(p.n);
-    sorted_.resize(p.n);
-    for (std::size_t i = 0; i < p.n; ++i) {
-      sorted_[i] = {morton::code(morton::cell(p.x[i] * inverse_cell_), morton::cell(p.y[i] * inverse_cell_),
-                                 morton::cell(p.z[i] * inverse_cell_)),
-                    static_cast<std::uint32_t>(i)};
-    }
-    sort_nearly_sorted(
-        sorted_, [](const Entry& a, const Entry& b) { return a.code != b.code ? a.code < b.code : a.grain < b.grain; });
+    sorted_.sort(p, 1.0 / reach, executor);
+    const auto begins_cell = [&](std::size_t k) { return k == 0 || sorted_[k].code != sorted_[k - 1].code; };
+    std::vector<std::uint32_t> cells_before(p.n / exec::block_size + 2, 0);  // of each block of grains
+    exec::for_each_block(executor, p.n, [&](std::size_t first, std::size_t last) {
+      std::uint32_t& count = cells_before[first / exec::block_size + 1];
+      for (std::size_t k = first; k < last; ++k) count += begins_cell(k) ? 1 : 0;
+    });
+    std::partial_sum(cells_before.begin(), cells_before.end(), cells_before.begin());
+    cells_.resize(cells_before.back());
     order_.resize(p.n);
-    cells_.clear();
-    for (std::size_t k = 0; k < p.n; ++k) {
-      if (k == 0 || sorted_[k].code != sorted_[k - 1].code) {
-        cells_.push_back({sorted_[k].code, static_cast<std::uint32_t>(k), 0});
+    cell_of_.resize(p.n);
+    exec::for_each_block(executor, p.n, [&](std::size_t first, std::size_t last) {
+      std::uint32_t next = cells_before[first / exec::block_size];
+      for (std::size_t k = first; k < last; ++k) {
+        if (begins_cell(k)) {
+          cells_[next].key = sorted_[k].code;
+          cells_[next].first = static_cast<std::uint32_t>(k);
+          if (next > 0) cells_[next - 1].last = static_cast<std::uint32_t>(k);
+          ++next;
+        }
+        order_[k] = sorted_[k].grain;
+        cell_of_[sorted_[k].grain] = next - 1;
       }
-      cells_.back().last = static_cast<std::uint32_t>(k + 1);
-      order_[k] = sorted_[k].grain;
-      cell_of_[sorted_[k].grain] = static_cast<std::uint32_t>(cells_.size() - 1);
-    }
+    });
+    if (!cells_.empty()) cells_.back().last = static_cast<std::uint32_t>(p.n);
     table_.fill(cells_);
   }
 
   /// To be called when the grains were put in order(), so that row k is what was row order()[k]: as good as build(),
   /// and cheaper.
   void reordered() {
-    for (std::size_t k = 0; k < order_.size(); ++k) order_[k] = static_cast<std::uint32_t>(k);
-    for (std::uint32_t c = 0; c < cells_.size(); ++c) {
-      std::fill(cell_of_.begin() + cells_[c].first, cell_of_.begin() + cells_[c].last, c);
-    }
+    exec::Serial alone;
+    reordered(alone);
+  }
+  template <class Executor>
+  void reordered(Executor& executor) {
+    exec::for_each_block(executor, cells_.size(), [&](std::size_t first, std::size_t last) {
+      for (std::size_t c = first; c < last; ++c) {
+        for (std::uint32_t k = cells_[c].first; k < cells_[c].last; ++k) {
+          order_[k] = k;
+          cell_of_[k] = static_cast<std::uint32_t>(c);
+        }
+      }
+    });
     is_in_order_ = true;
   }
 
@@ -73,7 +93,7 @@ class UniformGrid {
     }
 
     bool has_runs() const { return grid_.is_in_order_; }
-    /// The same as runs of grains that follow each other: calls f(first, last).
+    /// The same as runs of grains that follow each other: calls f(first, last) for one run after the other.
     template <class F>
     void for_each_run(std::size_t i, F&& f) {
       if (grid_.cell_of_[i] != cell_) look_around(grid_.cell_of_[i]);
@@ -91,21 +111,11 @@ class UniformGrid {
       cell_ = cell;
       count_ = 0;
       if (here >> 3 != block_) block_ = here >> 3, known_ = 0;
-      // Along each axis the three cells are two in the block of this one, and one in the block before or after it.
-      constexpr unsigned first_half[] = {0x55, 0x33, 0x0f};  // places of the first cell along x, y and z
-      for (unsigned other = 0; other < 8; ++other) {
-        unsigned places = 0xff;
-        int side[3] = {0, 0, 0};
-        for (unsigned k = 0; k < 3; ++k) {
-          if (!(other >> k & 1)) continue;
-          const bool is_second = here >> k & 1;
-          side[k] = is_second ? 1 : -1;
-          places &= is_second ? first_half[k] : ~first_half[k] & 0xffu;
-        }
-        const Block* block = block_beside(side);
+      for (const Beside& beside : around[here & 7]) {
+        const Block* block = block_beside(beside.block);
         if (block == nullptr) continue;
-        if (grid_.is_in_order_ && other == 0) places &= 0xffu << (here & 7);
-        places &= block->places;
+        unsigned places = beside.places & block->places;
+        if (grid_.is_in_order_ && beside.block == middle) places &= 0xffu << (here & 7);
         if (places == 0) continue;
         if (grid_.is_in_order_) {
           // One run, from the first of these cells to the last: what lies between them is soon tried.
@@ -119,26 +129,57 @@ class UniformGrid {
         }
       }
     }
+    /// One run more; where grains are in order, runs are kept in order, too.
     void add(std::uint32_t first_cell, std::uint32_t last_cell) {
-      first_[count_] = grid_.cells_[first_cell].first;
-      last_[count_++] = grid_.cells_[last_cell].last;
+      const std::uint32_t first = grid_.cells_[first_cell].first;
+      int k = count_++;
+      for (; grid_.is_in_order_ && k > 0 && first < first_[k - 1]; --k) {
+        first_[k] = first_[k - 1];
+        last_[k] = last_[k - 1];
+      }
+      first_[k] = first;
+      last_[k] = grid_.cells_[last_cell].last;
     }
-    /// The block so many blocks aside along each axis; null if no cell of it holds grains, or where it is left out. Is
+    /// One of the 27 blocks around that of the cell; null if no cell of it holds grains, or where it is left out. Is
     /// searched for once for all cells of a block.
-    const Block* block_beside(const int (&side)[3]) {
-      const auto at = static_cast<unsigned>(13 + side[0] + 3 * side[1] + 9 * side[2]);
+    const Block* block_beside(unsigned at) {
       if (!(known_ >> at & 1)) {
         known_ |= 1u << at;
+        const unsigned side[] = {at % 3, at / 3 % 3, at / 9};  // 0: before, 1: the same, 2: behind
         std::uint64_t key = block_;
         for (unsigned k = 0; k < 3; ++k) {
           const std::uint64_t axis = morton::axis(1) << k;
-          if (side[k] > 0) key = morton::up(key, axis);
-          if (side[k] < 0) key = morton::down(key, axis);
+          if (side[k] == 2) key = morton::up(key, axis);
+          if (side[k] == 0) key = morton::down(key, axis);
         }
         beside_[at] = grid_.is_in_order_ && key < block_ ? nullptr : grid_.table_.find(key);
       }
       return beside_[at];
     }
+
+    /// Which of the 27 blocks around that of a cell have cells among the 27 around it, and at which places.
+    struct Beside {
+      std::uint8_t block, places;
+    };
+    static constexpr unsigned middle = 13;
+    // Along each axis the three cells are two in the block of this one, and one in the block before or after it.
+    static constexpr std::array<std::array<Beside, 8>, 8> around = [] {  // of a cell, by its place in its block
+      constexpr unsigned first_half[] = {0x55, 0x33, 0x0f};              // places of the first cell along x, y and z
+      std::array<std::array<Beside, 8>, 8> all = {};
+      for (unsigned here = 0; here < 8; ++here) {
+        for (unsigned other = 0; other < 8; ++other) {
+          unsigned block = middle, places = 0xff;
+          for (unsigned k = 0, stride = 1; k < 3; ++k, stride *= 3) {
+            if (!(other >> k & 1)) continue;
+            const bool is_second = here >> k & 1;
+            block = is_second ? block + stride : block - stride;
+            places &= is_second ? first_half[k] : ~first_half[k] & 0xffu;
+          }
+          all[here][other] = {static_cast<std::uint8_t>(block), static_cast<std::uint8_t>(places)};
+        }
+      }
+      return all;
+    }();
 
     const UniformGrid& grid_;
     std::uint32_t cell_ = CellTable::none, first_[27], last_[27];  // runs of grains in order()
@@ -152,18 +193,13 @@ class UniformGrid {
   std::span<const std::uint32_t> order() const { return order_; }
 
   std::size_t memory_bytes() const {
-    return sorted_.capacity() * sizeof(Entry) + cells_.capacity() * sizeof(Cell) + table_.memory_bytes() +
+    return sorted_.memory_bytes() + cells_.capacity() * sizeof(Cell) + table_.memory_bytes() +
            (order_.capacity() + cell_of_.capacity()) * sizeof(std::uint32_t);
   }
 
  private:
-  struct Entry {
-    std::uint64_t code;
-    std::uint32_t grain;
-  };
-  double inverse_cell_ = 1.0;
   bool is_in_order_ = false;  // row k is order_[k] = k
-  std::vector<Entry> sorted_;
+  CurveOrder sorted_;
   std::vector<std::uint32_t> order_, cell_of_;  // grains in curve order; grain -> cell
   std::vector<Cell> cells_;                     // occupied cells, and their grains in order_
   BlockTable table_;

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <dem/grain/broadphase/broad_phase.hpp>
+#include <dem/grain/broadphase/morton.hpp>
+#include <dem/grain/broadphase/nearly_sorted.hpp>
+
+namespace dem::broadphase {
+
+/// Grains in the order of their cells along a Z-order (Morton) curve; those of one cell by their rows.
+class CurveOrder {
+ public:
+  struct Entry {
+    std::uint64_t code;  ///< of the cell
+    std::uint32_t grain;
+  };
+
+  /// Sorts anew; `inverse_cell` in 1/m. What was sorted before is of use.
+  template <class Executor>
+  void sort(const Positions& p, double inverse_cell, Executor& executor) {
+    entries_.resize(p.n);
+    exec::for_each_block(executor, p.n, [&](std::size_t first, std::size_t last) {
+      for (std::size_t i = first; i < last; ++i) {
+        const auto cell = [&](const double* x) { return morton::cell(x[i] * inverse_cell); };
+        entries_[i] = {morton::code(cell(p.x), cell(p.y), cell(p.z)), static_cast<std::uint32_t>(i)};
+      }
+    });
+    const auto less = [](const Entry& a, const Entry& b) {
+      return a.code != b.code ? a.code < b.code : a.grain < b.grain;
+    };
+    sort_nearly_sorted(entries_, scratch_, less, executor);
+  }
+
+  std::size_t size() const { return entries_.size(); }
+  const Entry& operator[](std::size_t k) const { return entries_[k]; }
+  std::size_t memory_bytes() const { return (entries_.capacity() + scratch_.capacity()) * sizeof(Entry); }
+
+ private:
+  std::vector<Entry> entries_, scratch_;
+};
+
+}  // namespace dem::broadphase
