@@ -112,7 +112,7 @@ TEST_CASE("a copied world has columns of its own, and its handle is that of the 
   REQUIRE(first.world.run(1500));
   CHECK(first.soil.soil().field().sunk == soil.soil().field().sunk);
   mbd::Mechanism bare;
-  CHECK_THROWS_WITH(first.soil.of(bare), ContainsSubstring("terrain 0 was asked for"));
+  CHECK_THROWS_WITH(first.soil.of(bare), ContainsSubstring("terrain 0 is asked for"));
 }
 
 TEST_CASE("a state of other soil columns is refused in words, and a part that leaves them is told of") {

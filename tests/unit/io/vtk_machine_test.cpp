@@ -51,7 +51,7 @@ TEST_CASE("bodies of a machine are drawn in their reference frames, with their m
   CHECK(file.values<double>("velocity_m_s") == std::vector<double>{v.x(), v.y(), v.z()});
   CHECK(file.values<double>("contact_force_N") == std::vector<double>{0, 0, 0});
   check_refused([&] { dem::io::write_vtk_machine(folder / "no.vtp", m, {{.body = BodyId(7), .mesh = &mesh}}); },
-                "body 7 was asked for");
+                "body 7 is asked for");
   check_refused([&] { dem::io::write_vtk_machine(folder / "no.vtp", m, {{.body = part}}); }, "has no mesh");
 }
 
