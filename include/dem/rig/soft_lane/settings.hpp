@@ -106,7 +106,7 @@ struct Settings {
 /// Names every option and the place of its value.
 inline void declare(Options& options, Settings& s) {
   const auto add = [&](const char* name, auto& value, const char* text) { return options.add(name, value, text); };
-  add("--size", s.size, "smoke (seconds), quick (minutes) or full (the thesis's 331,890 grains: days)");
+  add("--size", s.size, "smoke (seconds), quick (minutes) or full (the thesis's 331,890 grains: hours)");
   add("--scene", s.scene, "what is driven")
       .one_of({"level", "slope", "side-slope", "brake", "turn", "coast", "step", "soils", "drawbar"});
   add("--slope", s.slope, "percent: of slope (below 0: downhill) and of side-slope (above 0: its left side is high)");
