@@ -5,7 +5,7 @@
 //   humvee_soil                                   some 10,000 coarse grains in two troughs, minutes
 //   humvee_soil --scene slope --slope 20          up a slope of 20 %
 //   humvee_soil --bed-file humvee_soil_output/bed.txt --output again      from the levelled bed of an earlier run
-//   humvee_soil --size full --checkpoint-every 1800       days; with --resume it goes on where it was stopped
+//   humvee_soil --size full --checkpoint-every 1800       hours; with --resume it goes on where it was stopped
 //
 // Ends with 0 when all was done, also when the car digs in or rolls over, which is what was found; 1 when the run ended
 // early or a part of the report could not be made; 2 when the settings make no sense; 130 after Ctrl-C or SIGTERM.
