@@ -27,7 +27,7 @@ void list_owners(Chunk<Model>& chunk) {
 
 /// Rows that are found one after the other, written without a branch.
 struct FoundRows {
-  std::vector<std::uint32_t> rows;  ///< more than there are
+  std::vector<std::uint32_t> rows;  ///< the first `count` are those that are found
   std::size_t count = 0;
 
   void make_room(std::size_t n) {

@@ -148,13 +148,13 @@ struct Particles {
     }
   }
 
-  /// Calls f(column) for every column of doubles that has one entry a grain, those of position first.
+  /// Calls f(column) for every column of doubles that has one entry a grain.
   template <class F>
   void for_each_column(F&& f) {
     for_each_state_column(f);
     listed_at.for_each_column(f);
   }
-  /// The same without listed_at, which is what position was.
+  /// All but listed_at, which is made of the positions; those of position come first.
   template <class F>
   void for_each_state_column(F&& f) {
     for (Columns3* c : {&position, &velocity, &spin, &row0, &row1, &row2, &force, &torque}) c->for_each_column(f);
@@ -219,7 +219,7 @@ struct Particles {
     row_of[id[row]] = static_cast<std::uint32_t>(row);
   }
 
-  /// Takes grains (ids) out; the others keep their order.
+  /// Takes grains (ids) out; the others keep their order. listed_at is to be written anew.
   template <class Executor>
   void remove(std::span<const std::uint32_t> ids, Executor& executor) {
     for (const std::uint32_t k : ids) row_of[k] = gone;
@@ -249,21 +249,21 @@ struct Particles {
   }
 
   /// Row k becomes what was row order[k]. Threads share the work. Views and poses follow from the columns when the rows
-  /// are next refreshed; listed_at is to be written anew. Where `known` is given, all but position, species and id
-  /// counts only of rows (new ones) that are in it.
+  /// are next refreshed; listed_at is to be written anew. Where `held_rows` is given, all but
+  /// position, species and id is right afterwards only in these new rows.
   template <class Executor>
   void permute(std::span<const std::uint32_t> order, Executor& executor,
-               const std::vector<std::uint32_t>* known = nullptr) {
+               const std::vector<std::uint32_t>* held_rows = nullptr) {
     DEM_ASSERT(order.size() <= count, "rows are moved or dropped, and none is made");
     std::vector<AlignedVector<double>*> columns;
     for_each_state_column([&](AlignedVector<double>& column) { columns.push_back(&column); });
     executor.for_each(columns.size(), [&](std::size_t c) {
       AlignedVector<double>& column = *columns[c];
-      if (known != nullptr && c >= 3) {
+      if (held_rows != nullptr && c >= 3) {
         std::vector<double> values;
-        values.reserve(known->size());
-        for (const std::uint32_t k : *known) values.push_back(column[order[k]]);
-        for (std::size_t m = 0; m < known->size(); ++m) column[(*known)[m]] = values[m];
+        values.reserve(held_rows->size());
+        for (const std::uint32_t k : *held_rows) values.push_back(column[order[k]]);
+        for (std::size_t m = 0; m < held_rows->size(); ++m) column[(*held_rows)[m]] = values[m];
         return;
       }
       const AlignedVector<double> old = column;

@@ -27,7 +27,7 @@ struct Species {
 
   /// Grains of it do not move by themselves (SpeciesOptions::held).
   bool is_held() const { return inverse_mass == 0.0; }
-  SpeciesInertia numbers() const {
+  SpeciesInertia for_motion() const {
     SpeciesInertia n = {inverse_mass, is_held() ? 0.0 : 1.0, {}, {}};
     for (int k = 0; k < 3; ++k) {
       n.inertia[k] = inertia[k];
@@ -54,8 +54,8 @@ inline void check_moments(const Vec3& moments) {
   }
 }
 
-/// A species of grains, of a density in kg/m^3, without its material yet. Throws Error unless the density is positive,
-/// and for a shape whose volume, radius or moments of inertia are none.
+/// A species of grains, of a density in kg/m^3, without its material yet. Throws Error unless the density, the volume
+/// and the radius are positive, and for moments of inertia that no body has.
 template <class Shape>
 Species<Shape> make_species(const Shape& shape, double density, bool held) {
   require_positive(density, "density of a species", "kg/m^3");

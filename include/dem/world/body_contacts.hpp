@@ -11,15 +11,13 @@
 #include <utility>
 #include <vector>
 
-namespace dem {
+namespace dem::detail {
 
-namespace detail {
-/// Nothing that they push on would ever move.
+/// No force between them can move either.
 inline bool are_fixed_for_good(const Body& a, const Body& b) { return a.fixed && b.fixed && !(a.mass + b.mass > 0.0); }
-}  // namespace detail
 
-/// Lets two surfaces touch each other from now on. Throws Error for surfaces of one body, of two fixed bodies without
-/// mass, or that both have no points.
+/// Lets two surfaces touch each other when the world is next prepared. Throws Error for surfaces of one body, of two
+/// fixed bodies without mass, or that both have no points.
 template <class Model>
 BodyContactId add_body_contact(WorldState<Model>& w, SurfaceId a, SurfaceId b) {
   const auto &sa = known(w.surfaces, a, "surface"), &sb = known(w.surfaces, b, "surface");
@@ -27,7 +25,7 @@ BodyContactId add_body_contact(WorldState<Model>& w, SurfaceId a, SurfaceId b) {
   if (sa.body == sb.body) {
     fail("surfaces {} and {} both belong to body '{}' and cannot touch each other", a.value, b.value, body_a.name);
   }
-  if (detail::are_fixed_for_good(body_a, body_b)) {
+  if (are_fixed_for_good(body_a, body_b)) {
     fail("body '{}' and body '{}' are both fixed for good, so no force between them would move anything", body_a.name,
          body_b.name);
   }
@@ -62,7 +60,7 @@ std::size_t add_body_contacts(WorldState<Model>& w) {
   for (std::size_t a = 0; a < w.surfaces.size(); ++a) {
     for (std::size_t b = a + 1; b < w.surfaces.size(); ++b) {
       const BodyId i = w.surfaces[a].body, j = w.surfaces[b].body;
-      const bool skip = i == j || detail::are_fixed_for_good(w.machine.body(i), w.machine.body(j)) ||
+      const bool skip = i == j || are_fixed_for_good(w.machine.body(i), w.machine.body(j)) ||
                         (!coupling::has_points(w.surfaces[a]) && !coupling::has_points(w.surfaces[b])) ||
                         holds(joined, both(i.index(), j.index())) || holds(known_pairs, both(a, b));
       if (!skip) add_body_contact(w, SurfaceId(a), SurfaceId(b));
@@ -71,4 +69,4 @@ std::size_t add_body_contacts(WorldState<Model>& w) {
   return w.body_contacts.pairs.size() - before;
 }
 
-}  // namespace dem
+}  // namespace dem::detail

@@ -169,11 +169,11 @@ void permute_rows(WorldState<Model>& w, const std::vector<std::uint32_t>& order,
                   const std::vector<std::uint16_t>& holders) {
   auto& p = w.particles;
   if (holders.empty()) return p.permute(order, w.executor);
-  std::vector<std::uint32_t> known;
+  std::vector<std::uint32_t> held;
   for (std::size_t k = 0; k < order.size(); ++k) {
-    if (holders[p.id[order[k]]] == w.domain.rank()) known.push_back(static_cast<std::uint32_t>(k));
+    if (holders[p.id[order[k]]] == w.domain.rank()) held.push_back(static_cast<std::uint32_t>(k));
   }
-  p.permute(order, w.executor, &known);
+  p.permute(order, w.executor, &held);
 }
 
 /// When grains are sorted and chunks have new owners: the rows of grains that other ranks had come to these.

@@ -48,14 +48,14 @@ class WorldSetup {
     else if constexpr (Model::Domain::has_ranks) state_.executor.set_threads(Model::Domain::threads_of_a_rank());
   }
 
-  /// A kind of grain. Throws Error unless the density is positive, and for a shape whose volume, radius or moments of
-  /// inertia are none.
+  /// A kind of grain. Throws Error unless the density, and the volume and radius of the shape, are positive, and for
+  /// moments of inertia that no body has.
   SpeciesId add_species(const Shape& shape, const SpeciesOptions& o = {}) {
     Species<Shape> s = make_species(shape, o.density, o.held);
     s.material = state_.materials.id(o.material);
     state_.materials.mark_as_grain(s.material);
     state_.species.push_back(s);
-    state_.inertia.push_back(s.numbers());
+    state_.inertia.push_back(s.for_motion());
     state_.largest_radius = std::max(state_.largest_radius, shape.bounding_radius());
     checked_ = false;
     return SpeciesId(state_.species.size() - 1);
@@ -179,7 +179,7 @@ class WorldSetup {
   /// its points (corners, vertices, rims) to the other; a plane has none. Throws Error for surfaces of one body, of two
   /// fixed bodies without mass (which cannot be set free), or that both have no points.
   BodyContactId add_body_contact(SurfaceId a, SurfaceId b) {
-    const BodyContactId pair = dem::add_body_contact(state_, a, b);
+    const BodyContactId pair = detail::add_body_contact(state_, a, b);
     checked_ = initialised_ = false;
     return pair;
   }
@@ -188,9 +188,8 @@ class WorldSetup {
   /// are known already are not added again. Any number of pairs costs little: only those whose bounding boxes meet are
   /// looked at. Returns how many pairs were added.
   std::size_t add_body_contacts() {
-    const std::size_t added = dem::add_body_contacts(state_);
-    if (added > 0) checked_ = initialised_ = false;
-    return added;
+    checked_ = initialised_ = false;  // first: some may be added before one is refused
+    return detail::add_body_contacts(state_);
   }
   /// Force (N) on the body of the pair's first surface in the last force evaluation; the other body feels the opposite.
   Vec3 body_contact_force(BodyContactId c) const {

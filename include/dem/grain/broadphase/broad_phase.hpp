@@ -29,8 +29,8 @@ struct Sizes {
 ///   - either of them with an executor as well: optional, then called instead, for threads to share the work;
 ///   - finder(): an object of which each thread has its own, with for_each_candidate(i, f). That calls f(j) once for
 ///     each j > i within reach of i, and for others, in any order. Optional: has_runs() and for_each_run(i, f); where
-///     the former is true, the latter calls f(first, last) for runs of those j instead, in rising order. That costs
-///     less. It is not asked for in worlds with images;
+///     the former is true, the latter calls f(first, last) for runs of those j instead, in rising order, no two of
+///     which overlap. That costs less. It is not asked for in worlds with images;
 ///   - order(): a permutation that puts grains near in space near in memory, or an empty span;
 ///   - memory_bytes(): what it holds;
 ///   - reordered() or reordered(executor): optional: the grains were put in order(). Without it they are built anew.

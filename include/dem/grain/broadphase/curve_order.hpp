@@ -14,7 +14,7 @@ class CurveOrder {
     std::uint32_t grain;
   };
 
-  /// Sorts anew; `inverse_cell` in 1/m. What was sorted before is of use.
+  /// Sorts anew; `inverse_cell` in 1/m. Costs little where rows are nearly in this order.
   template <class Executor>
   void sort(const Positions& p, double inverse_cell, Executor& executor) {
     entries_.resize(p.n);

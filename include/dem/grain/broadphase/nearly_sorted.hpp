@@ -39,8 +39,8 @@ void sort_nearly_sorted(std::span<Entry> entries, Less less) {
   }
 }
 
-/// The same on the executor's threads, whose number does not change the result: entries go to as many parts as threads
-/// can share, by some of the entries as bounds, and each part is sorted by itself. `scratch` is kept for the next time.
+/// The same on the executor's threads, whose number does not change the result. Some of the entries divide all of them
+/// into four parts a thread, and each part is sorted by itself. `scratch` is kept for the next time.
 template <class Entry, class Less, class Executor>
 void sort_nearly_sorted(std::vector<Entry>& entries, std::vector<Entry>& scratch, Less less, Executor& executor) {
   const std::size_t n = entries.size(), parts = 4 * static_cast<std::size_t>(executor.threads());
@@ -56,7 +56,7 @@ void sort_nearly_sorted(std::vector<Entry>& entries, std::vector<Entry>& scratch
     return static_cast<std::size_t>(std::upper_bound(bounds.begin(), bounds.end(), e, less) - bounds.begin());
   };
   const auto stretch = [&](std::size_t k) { return k * n / parts; };
-  std::vector<std::size_t> places(parts * parts + 1, 0);  // of what each stretch sends to a part, parts first
+  std::vector<std::size_t> places(parts * parts + 1, 0);  // where a stretch's entries of a part begin
   executor.for_each(parts, [&](std::size_t k) {
     std::vector<std::size_t> counts(parts, 0);
     std::size_t part = k;

@@ -27,8 +27,9 @@ class UniformGrid {
     const auto begins_cell = [&](std::size_t k) { return k == 0 || sorted_[k].code != sorted_[k - 1].code; };
     std::vector<std::uint32_t> cells_before(p.n / exec::block_size + 2, 0);  // of each block of grains
     exec::for_each_block(executor, p.n, [&](std::size_t first, std::size_t last) {
-      std::uint32_t& count = cells_before[first / exec::block_size + 1];
+      std::uint32_t count = 0;
       for (std::size_t k = first; k < last; ++k) count += begins_cell(k) ? 1 : 0;
+      cells_before[first / exec::block_size + 1] = count;
     });
     std::partial_sum(cells_before.begin(), cells_before.end(), cells_before.begin());
     cells_.resize(cells_before.back());

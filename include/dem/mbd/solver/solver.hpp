@@ -3,6 +3,9 @@
 #include <dem/mbd/joint/locked_shafts.hpp>
 #include <dem/mbd/solver/accepted_time_step.hpp>
 #include <dem/mbd/solver/assembly.hpp>
+#include <dem/mbd/solver/close_joints.hpp>
+#include <dem/mbd/solver/derive.hpp>
+#include <dem/mbd/solver/machine_report.hpp>
 #include <dem/mbd/solver/raised_substeps.hpp>
 #include <dem/mbd/solver/stages.hpp>
 

@@ -9,7 +9,7 @@
 namespace dem::mbd {
 
 /// Takes a mechanism through the stages of a step, with sub-steps or without: bodies, forces, prescribed motions.
-/// Solver chooses what it is designed for.
+/// Solver derives stiffness and chooses the sub-steps.
 template <integrator::Integrator I, JointPolicy Joints>
 class Stages {
  public:
