@@ -30,7 +30,6 @@ class CurveOrder {
     sort_nearly_sorted(entries_, scratch_, less, executor);
   }
 
-  std::size_t size() const { return entries_.size(); }
   const Entry& operator[](std::size_t k) const { return entries_[k]; }
   std::size_t memory_bytes() const { return (entries_.capacity() + scratch_.capacity()) * sizeof(Entry); }
 
