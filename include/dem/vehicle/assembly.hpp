@@ -2,6 +2,7 @@
 
 #include <dem/mbd/solver/mechanism.hpp>
 
+#include <cmath>
 #include <string>
 #include <utility>
 
@@ -47,10 +48,17 @@ class Assembly {
     return mechanism_->add_body(
         mbd::given_body(name(part), m.mass, m.inertia).at(point(centre), rotation_).moving(velocity, turn));
   }
-  /// Adds a joint of one point and one axis.
+  /// Adds a joint. Unless it says where x of its frame lies, that follows from the axes of the vehicle as
+  /// JointSpec::with_x says of the global ones: the arms of a cross stand the same way wherever the vehicle heads.
+  DEM_COLD JointId add_joint(const mbd::JointSpec& s) const {
+    if (s.x_axis) return mechanism_->add_joint(s);
+    const bool along_x = std::abs(s.axis_a.normalized().dot(direction(Vec3::UnitX()))) > 0.9;
+    return mechanism_->add_joint(s.with_x(direction(along_x ? Vec3::UnitY() : Vec3::UnitX())));
+  }
+  /// The same for a joint of one point and one axis.
   DEM_COLD JointId joint(mbd::JointKind kind, const std::string& part, BodyId a, BodyId b, const Vec3& at,
                          const Vec3& axis = Vec3::UnitZ()) const {
-    return mechanism_->add_joint(mbd::joint(kind, name(part), a, b, point(at), direction(axis)));
+    return add_joint(mbd::joint(kind, name(part), a, b, point(at), direction(axis)));
   }
 
  private:

@@ -39,8 +39,8 @@ DEM_COLD inline Axle add_axle(const Assembly& in, const std::string& name, BodyI
   a.pinion = in.body(name + " pinion", s.pinion, pinion_at, s.ratio * spin * forward);
   a.pinion_turn = in.joint(JointKind::revolute, name + " pinion", chassis, a.pinion, pinion_at, forward);
   const auto sleeve = [&](const std::string& part, BodyId body, const Vec3& at, double play) {
-    return m.add_joint(cylindrical(in.name(part), chassis, body, in.point(at), in.direction(across))
-                           .with_limits(Dof::slide, -play, play));
+    return in.add_joint(cylindrical(in.name(part), chassis, body, in.point(at), in.direction(across))
+                            .with_limits(Dof::slide, -play, play));
   };
   a.cage = in.body(name + " cage", s.cage, s.middle, spin * across);
   a.cage_turn = sleeve(name + " cage", a.cage, s.middle, 1e-4);
@@ -53,10 +53,10 @@ DEM_COLD inline Axle add_axle(const Assembly& in, const std::string& name, BodyI
     half_shaft = in.body(side_name + " half shaft", s.half_shaft, 0.5 * (from + to), spin * across);
     turn = sleeve(side_name + " side shaft", side_shaft, middle, 0.1);
     const Vec3 along = y * (to - from);  // both shafts point to the left, as the axis of the wheel does
-    inner = m.add_joint(universal(in.name(side_name + " inner joint"), side_shaft, half_shaft, in.point(from),
-                                  in.direction(across), in.direction(along)));
-    outer = m.add_joint(constant_velocity(in.name(side_name + " outer joint"), half_shaft, wheel, in.point(to),
-                                          in.direction(along), in.direction(across)));
+    inner = in.add_joint(universal(in.name(side_name + " inner joint"), side_shaft, half_shaft, in.point(from),
+                                   in.direction(across), in.direction(along)));
+    outer = in.add_joint(constant_velocity(in.name(side_name + " outer joint"), half_shaft, wheel, in.point(to),
+                                           in.direction(along), in.direction(across)));
   };
   side("left", 1.0, left_wheel, a.left_side, a.left_half, a.left_turn, a.left_inner, a.left_outer);
   side("right", -1.0, right_wheel, a.right_side, a.right_half, a.right_turn, a.right_inner, a.right_outer);

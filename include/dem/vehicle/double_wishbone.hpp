@@ -46,8 +46,8 @@ struct BallJoint {
     if (!is_rubber) return in.joint(mbd::JointKind::spherical, part, a, b, at);
     require_positive(stiffness, ("stiffness of " + part).c_str(), "N/m");
     require_positive(damping, ("damping of " + part).c_str(), "N s/m");
-    return in.mechanism().add_joint(mbd::bushing(in.name(part), a, b, in.point(at), in.direction(Vec3::UnitZ()),
-                                                 filled(stiffness), filled(damping), Vec3::Zero(), Vec3::Zero()));
+    return in.add_joint(mbd::bushing(in.name(part), a, b, in.point(at), in.direction(Vec3::UnitZ()), filled(stiffness),
+                                     filled(damping), Vec3::Zero(), Vec3::Zero()));
   }
 };
 
@@ -88,8 +88,8 @@ DEM_COLD inline DoubleWishbone add_double_wishbone(const Assembly& in, const std
     const Vec3 middle = 0.5 * (front + back), axis = front - back;
     return mbd::revolute(in.name(corner + part), chassis, arm, in.point(middle), in.direction(axis));
   };
-  w.upper_hinge = m.add_joint(hinge(" upper hinge", w.upper_arm, p.upper_front, p.upper_back));
-  w.lower_hinge = m.add_joint(
+  w.upper_hinge = in.add_joint(hinge(" upper hinge", w.upper_arm, p.upper_front, p.upper_back));
+  w.lower_hinge = in.add_joint(
       hinge(" lower hinge", w.lower_arm, p.lower_front, p.lower_back).with_limits(-s.lower_angle, s.lower_angle));
   w.upper_ball = s.upper_ball.add(in, corner + " upper ball joint", w.upper_arm, w.knuckle, p.upper_ball);
   w.lower_ball = s.lower_ball.add(in, corner + " lower ball joint", w.lower_arm, w.knuckle, p.lower_ball);
@@ -107,7 +107,7 @@ DEM_COLD inline DoubleWishbone add_double_wishbone(const Assembly& in, const std
 /// A massless link of given length that keeps the knuckle's toe where there is no steering.
 DEM_COLD inline JointId add_toe_link(const Assembly& in, const std::string& corner, BodyId chassis, BodyId knuckle,
                                      const WishbonePoints& p) {
-  return in.mechanism().add_joint(
+  return in.add_joint(
       mbd::distance(in.name(corner + " toe link"), chassis, in.point(p.rod_inner), knuckle, in.point(p.rod_outer)));
 }
 

@@ -48,7 +48,7 @@ DEM_COLD inline RackSteering add_rack_steering(const Assembly& in, BodyId chassi
     const std::string name = std::string(side) + " tie rod";
     body = in.body(name, s.rod, 0.5 * (from + to));
     const Vec3 along = to - from;
-    inner = m.add_joint(
+    inner = in.add_joint(
         universal(in.name(name + " inner"), r.rack, body, in.point(from), in.direction(along), in.direction(along)));
     outer = in.joint(JointKind::spherical, name + " outer", body, knuckle, to);
   };

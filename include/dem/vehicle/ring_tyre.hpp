@@ -122,8 +122,8 @@ DEM_COLD inline RingTyre add_ring_tyre(const Assembly& in, const std::string& co
                                        .at(in.point(at), in.rotation() * axes)
                                        .moving(velocity, in.direction(Vec3(0, spin, 0))));
     tyre.segments.push_back(body);
-    m.add_joint(mbd::bushing(in.name(part), rim, body, in.point(at), in.direction(out), k, c, turn, turn_damping)
-                    .with_x(in.direction(axes.col(0))));
+    in.add_joint(mbd::bushing(in.name(part), rim, body, in.point(at), in.direction(out), k, c, turn, turn_damping)
+                     .with_x(in.direction(axes.col(0))));
     // Along the rim's radius, so that the air's forces on the whole ring are none.
     const Vector3<double> outwards = transpose_times(m.body(rim).motion.rotation, from_eigen(in.direction(out)));
     const double air = s.pressure * s.width * ds;
