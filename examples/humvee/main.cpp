@@ -3,9 +3,10 @@
 //   humvee                    # all scenes, results in the folder humvee
 //   humvee brake out/brake    # one scene: rest, launch, brake, turn, turn_free or slope; the folder may also follow
 //                             # --output. turn_free: the front axle is not driven
+//   humvee tyres              # pneumatic tyres on a plate: load over deflection
 //
-// Each scene writes <scene>.csv (100 rows a second, with units) and plots of speed, loads and wheel travel, and prints
-// what was measured beside what was expected.
+// Each scene of the car writes <scene>.csv (100 rows a second, with units) and plots of speed, loads and wheel travel,
+// and prints what was measured beside what was expected.
 
 #include <dem/io/csv.hpp>
 
@@ -20,6 +21,7 @@
 
 #include "humvee.hpp"
 #include "pictures.hpp"
+#include "tyres.hpp"
 
 namespace {
 
@@ -192,8 +194,9 @@ int main(int argc, char** argv) {
                                      {"turn", {}, turn},
                                      {"turn_free", {.free_front = true}, turn},
                                      {"slope", {.slope = 0.3}, slope}};
-  bool found = false;
+  bool found = wanted == "all" || wanted == "tyres";
   try {
+    if (found) press_tyres(folder);
     for (const Scene& scene : scenes) {
       if (wanted != "all" && wanted != scene.name) continue;
       found = true;
@@ -231,7 +234,7 @@ int main(int argc, char** argv) {
     return 1;
   }
   if (!found) {
-    fmt::print(stderr, "there is no scene '{}': all, rest, launch, brake, turn, turn_free or slope\n", wanted);
+    fmt::print(stderr, "there is no scene '{}': all, tyres, rest, launch, brake, turn, turn_free or slope\n", wanted);
     return 2;
   }
   fmt::print("\nresults in {}\n", folder);

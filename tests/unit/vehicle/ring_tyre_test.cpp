@@ -1,9 +1,8 @@
-#include <dem/integrator/velocity_verlet.hpp>
-#include <dem/mbd/machine.hpp>
 #include <dem/terramechanics/named_soils.hpp>
 #include <dem/vehicle/column_car.hpp>
 #include <dem/vehicle/humvee.hpp>
 #include <dem/vehicle/ring_tyre.hpp>
+#include <dem/vehicle/tyre_press.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -16,65 +15,15 @@ using namespace dem::vehicle;
 using Catch::Approx;
 using Catch::Matchers::ContainsSubstring;
 
-namespace {
-
-/// A tyre whose rim is pressed on a plate at z = 0 with 50 mm/s.
-struct PressedTyre {
-  mbd::Machine<integrator::VelocityVerlet> machine;
-  RingTyre tyre;
-  BodyId rim;
-  double force = 0.0;   ///< N, of the plate, in the newest evaluation
-  double length = 0.0;  ///< m, of the belt that touches it
-  static constexpr double speed = 0.05, dt = 5e-5;
-
-  explicit PressedTyre(const RingTyreSpec& s) {
-    machine.gravity = Vec3::Zero();
-    rim = machine.add_body(mbd::cylinder_body("rim", 0.2, 0.25, 1000).at(Vec3(0, 0, s.radius)));
-    tyre = add_ring_tyre(Assembly(machine, "car", Vec3(0, 0, s.radius)), "test", rim, Vec3::Zero(), s);
-    const Vec3 axes[3] = {Vec3::UnitX(), Vec3::UnitY(), Vec3::UnitZ()};
-    for (int k = 0; k < 3; ++k) {
-      const std::string name = std::to_string(k);
-      const auto way = k == 2 ? mbd::Signal::ramp(0.0, -speed) : mbd::Signal(0.0);
-      machine.add_motion(mbd::prescribed_position("move " + name, rim, axes[k], way));
-      machine.add_motion(mbd::prescribed_rotation("turn " + name, rim, axes[k], 0.0));
-    }
-    for (const BodyId b : tyre.segments) {
-      const auto law = [this, half = 0.5 * s.thickness, arc = s.arc()](double, const Body& body) {
-        const double depth = half - body.motion.position.z;
-        if (!(depth > 0.0)) return Wrench{};
-        const double f = std::max(0.0, 1e6 * depth - 1e3 * body.motion.velocity.z);
-        force += f, length += arc;
-        return Wrench{{0, 0, f}, {0, 0, 0}};
-      };
-      machine.add_load(mbd::custom_load("plate " + machine.body(b).name, b, law));
-    }
-    machine.initialise(0.0, machine.gravity);
-  }
-  PressedTyre(const PressedTyre&) = delete;
-
-  /// The mean force over the last 5 mm up to a deflection (m).
-  double press_to(double deflection) {
-    double sum = 0.0;
-    long n = 0;
-    while (machine.time() < deflection / speed) {
-      force = length = 0.0;
-      REQUIRE(machine.step(dt));
-      if (machine.time() * speed > deflection - 5e-3) sum += force, ++n;
-    }
-    return sum / static_cast<double>(n);
-  }
-};
-
-}  // namespace
-
 TEST_CASE("an inflated ring keeps its radius: air and tension are in balance") {
   RingTyreSpec s;
   s.pressure = 2.5e5;
-  PressedTyre t(s);
-  for (int k = 0; k < 20; ++k) REQUIRE(t.machine.step(t.dt));
+  TyrePress press(s);
+  for (int k = 0; k < 20; ++k) press.step();
+  const mbd::Mechanism& m = press.machine();
   // The free length of the belt is such that air and tension are in balance.
-  for (const BodyId b : t.tyre.segments)
-    CHECK((t.machine.body(b).position() - t.machine.body(t.rim).position()).norm() == Approx(0.475).margin(1e-4));
+  for (const BodyId b : press.tyre().segments)
+    CHECK((m.body(b).position() - m.body(press.tyre().rim).position()).norm() == Approx(0.475).margin(1e-4));
 }
 
 TEST_CASE("a ring tyre is as stiff as Rhyne's formula says, and presses about as hard as its air") {
@@ -82,17 +31,17 @@ TEST_CASE("a ring tyre is as stiff as Rhyne's formula says, and presses about as
     CAPTURE(pressure);
     RingTyreSpec s;
     s.pressure = pressure;
-    PressedTyre t(s);
-    const double d = 0.035, f = t.press_to(d);
+    const double d = 0.035;
+    const auto [f, length] = TyrePress(s).to(d);
     // The sidewalls' two constants were chosen for 1 and 2.5 bar. The formula has one stiffness for all deflections,
     // the ring gets stiffer by a sixth from 12 to 35 mm: half of that is allowed.
     CHECK(f / (d - 2.5e-3) == Approx(rhyne_stiffness(pressure, s.width, s.radius, s.rim_radius)).epsilon(0.08));
     // Of a flat strip as long as the chord that the deflection cuts off: less, as the belt leaves the plate's edge
     // slowly; the sidewalls carry the rest.
     const double chord = 2.0 * std::sqrt(2.0 * s.radius * d);
-    CHECK(t.length > 0.4 * chord);
-    CHECK(t.length < chord);
-    const double on_patch = f / (t.length * s.width);
+    CHECK(length > 0.4 * chord);
+    CHECK(length < chord);
+    const double on_patch = f / (length * s.width);
     CHECK(on_patch > 0.7 * pressure);
     CHECK(on_patch < 1.3 * pressure);
   }
