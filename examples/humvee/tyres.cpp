@@ -6,6 +6,8 @@
 
 #include <fmt/format.h>
 
+#include <string>
+#include <utility>
 #include <vector>
 
 namespace hard_ground {
@@ -14,10 +16,12 @@ using dem::vehicle::RingTyreSpec;
 
 void press_tyres(const std::string& folder) {
   const std::vector<double> pressures = {1.0e5, 1.7e5, 2.5e5, 3.4e5};
-  // The tyre of Project Chrono's public HMMWV model, a 37 x 12.5 R 16.5: of its Fiala and of its TMeasy version.
-  // Neither says at which pressure; the latter is for a load of 8.6 to 30 kN.
-  const std::vector<std::pair<const char*, double>> published = {{"Chrono, Fiala", 3.263e5},
-                                                                 {"Chrono, TMeasy", 4.111e5}};
+  // kN at each deflection, of the tyre (37 x 12.5 R 16.5) of Project Chrono's public HMMWV model,
+  // data/vehicle/hmmwv/tire: curves of HMMWV_FialaTire.json and of HMMWV_Pac89Tire.json. Neither says at which
+  // pressure.
+  const std::vector<std::pair<const char*, std::vector<double>>> published = {
+      {"Chrono, Fiala", {1.286, 3.477, 6.190, 9.027, 12.139, 15.368, 18.469, 21.699}},
+      {"Chrono, Pac89", {2.830, 6.212, 10.146, 14.632, 19.670, 25.260, 31.402, 38.096}}};
   std::vector<double> deflections;
   for (int k = 1; k <= 8; ++k) deflections.push_back(0.01 * k);
 
@@ -36,8 +40,7 @@ void press_tyres(const std::string& folder) {
     columns.push_back(fmt::format("length_{:g}_Pa_m", pressure));
     fmt::print("\n  {:<15}", name);
     for (std::size_t k = 0; k < deflections.size(); ++k) {
-      // The mean over 5 mm about the deflection.
-      const auto load = press.to(deflections[k] + 2.5e-3);
+      const auto load = press.at(deflections[k]);
       rows[k].push_back(load.force), rows[k].push_back(load.length);
       curve.x.push_back(1e3 * deflections[k]), curve.y.push_back(1e-3 * load.force);
       fmt::print("{:>12}", fmt::format("{:.1f}, {:.0f}", 1e-3 * load.force, 1e3 * load.length));
@@ -46,14 +49,14 @@ void press_tyres(const std::string& folder) {
     fmt::print("  Rhyne: {:.0f} kN/m",
                1e-3 * dem::vehicle::rhyne_stiffness(pressure, spec.width, spec.radius, spec.rim_radius));
   }
-  for (const auto& [name, stiffness] : published) {
-    dem::io::Series line{.name = name, .x = {0.0}, .y = {0.0}};
+  for (const auto& [name, loads] : published) {
+    dem::io::Series curve{.name = name};
     fmt::print("\n  {:<15}", name);
-    for (const double d : deflections) {
-      line.x.push_back(1e3 * d), line.y.push_back(1e-3 * stiffness * d);
-      fmt::print("{:>12.1f}", 1e-3 * stiffness * d);
+    for (std::size_t k = 0; k < loads.size(); ++k) {
+      curve.x.push_back(1e3 * deflections[k]), curve.y.push_back(loads[k]);
+      fmt::print("{:>12.1f}", loads[k]);
     }
-    plot.series.push_back(line);
+    plot.series.push_back(curve);
   }
   fmt::print("\n");
   dem::io::CsvWriter csv(folder + "/tyres.csv", columns);
