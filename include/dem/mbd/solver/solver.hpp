@@ -135,11 +135,12 @@ class Solver {
   /// drives add theirs; the bodies move, and prescribed motions are set. A machine with sub-steps takes them all.
   template <class PutForces>
   void stage(Mechanism& m, int stage, double dt, const Vec3& gravity, PutForces&& put_forces) {
-    stages_.stage(m, checked_substeps(m), stage, dt, gravity, put_forces);
+    checked_substeps(m);
+    stages_.stage(m, stage, dt, gravity, put_forces);
   }
 
   /// A step of dt (s), in sub-steps, without forces from outside.
-  void step(Mechanism& m, double dt, const Vec3& gravity) { stages_.step(m, m.substeps, dt, gravity); }
+  void step(Mechanism& m, double dt, const Vec3& gravity) { stages_.step(m, dt, gravity); }
 
   // ---- of a mechanism that is a bare ground: the same without what moves bodies and closes joints (lazy_solver.hpp)
 

@@ -45,9 +45,10 @@ class Stages {
 
   // ---- a step
 
-  /// One of the integrator's stages of a step of dt (s), in n sub-steps: Solver::stage.
+  /// One of the integrator's stages of a step of dt (s), in the machine's sub-steps: Solver::stage.
   template <class PutForces>
-  void stage(Mechanism& m, int n, int stage, double dt, const Vec3& gravity, PutForces&& put_forces) {
+  void stage(Mechanism& m, int stage, double dt, const Vec3& gravity, PutForces&& put_forces) {
+    const int n = m.substeps;
     if (n == 1) return single_stage(m, stage, dt, gravity, put_forces);
     if constexpr (I::predicts_before_forces) take_substeps(m, n, stage, dt, gravity);
     clear_forces(m.parts());
@@ -56,8 +57,9 @@ class Stages {
     if constexpr (!I::predicts_before_forces) take_substeps(m, n, stage, dt, gravity);
   }
 
-  /// A step of dt (s), in n sub-steps, without forces from outside.
-  void step(Mechanism& m, int n, double dt, const Vec3& gravity) {
+  /// A step of dt (s), in the machine's sub-steps, without forces from outside.
+  void step(Mechanism& m, double dt, const Vec3& gravity) {
+    const int n = m.substeps;
     for (int s = 0; s < n; ++s) {
       for (int k = 0; k < I::stages; ++k) single_stage(m, k, dt / n, gravity, [] {});
     }
