@@ -1,11 +1,12 @@
 #!/usr/bin/env bash
 # A mobility map on grains: the car on slopes of soils of several relative densities, side by side, one run on each
-# thread. Prints a table: how each run ended, its speed and its energy for a metre. Runs that are there already are not
-# made again, so a map that was stopped goes on with the same command.
+# thread. Prints a table: how each run ended, its speed and its energy for a metre. A map that was stopped goes on with
+# the same command: runs that have ended are not made again, one that was stopped goes on from what it kept.
 #
 #   map.sh <humvee_soil> <folder> [more options of humvee_soil]
 #
-# SLOPES (percent), DENSITIES (0 to 1; 0: as rained) and JOBS are taken from the environment.
+# SLOPES (percent), DENSITIES (0 to 1; 0: as rained), JOBS and KEEP (s, after which a run is kept again; 0, as for a
+# program without HDF5: never) are taken from the environment.
 set -euo pipefail
 
 [ $# -ge 2 ] || { sed -n 's/^#   //p' "$0" >&2 && exit 2; }
@@ -16,13 +17,17 @@ shift 2
 slopes=${SLOPES:-0 10 20}
 densities=${DENSITIES:-0 0.5}
 jobs=${JOBS:-$(nproc)}
+export keep=${KEEP:-600}
 
 # drive <name> <options>...: a run, unless it is there.
 drive() {
   local name=$1
   shift
   [ ! -e "$name/done" ] || return 0
-  if "$car" "$@" --threads 1 --no-vtk --no-replay --output "$name" > "$name.log" 2>&1; then
+  local kept=()
+  [ "$keep" = 0 ] || kept=(--checkpoint-every "$keep")
+  if compgen -G "$name/checkpoint/*.h5" > /dev/null; then kept+=(--resume); fi
+  if "$car" "$@" "${kept[@]}" --threads 1 --no-vtk --no-replay --output "$name" > "$name.log" 2>&1; then
     touch "$name/done"
   else
     echo "$name did not end well: see $PWD/$name.log" >&2
