@@ -4,6 +4,7 @@
 #include <dem/math/matrix3.hpp>
 #include <dem/math/wrench.hpp>
 #include <dem/mbd/body/body.hpp>
+#include <dem/vehicle/road.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -11,14 +12,7 @@
 
 namespace dem::vehicle {
 
-/// A plane road.
-struct Road {
-  Vec3 point = Vec3::Zero();    ///< m
-  Vec3 normal = Vec3::UnitZ();  ///< out of the road
-  double friction = 1.0;        ///< times the friction of a tyre
-};
-
-/// A tyre on hard ground: one contact point, at the lowest place of the wheel's middle plane.
+/// A tyre on hard ground (road.hpp): one contact point, at the lowest place of the wheel's middle plane.
 ///   across the road   K d + C d', never pulling; d: deflection
 ///   along the road    a tread spring, kx sx and ky sy, with a damper on its rate; their sum is cut at mu Fn
 /// The stretch s of the tread grows with the slip velocity v and is renewed as the tyre rolls by a relaxation length L:
@@ -87,8 +81,9 @@ inline double stretched(double s, double v, double rolling, double length, doubl
 
 /// Force and torque of the road on a wheel that turns about `axis` (unit vector to the left, body frame). Moves the
 /// state on to `time`; a second call at the same time adds nothing to it.
-inline Wrench tyre_wrench(const TyreSpec& tyre, const Road& road, const Body& wheel, const Vec3& axis, double time,
+inline Wrench tyre_wrench(const TyreSpec& tyre, const Road& ground, const Body& wheel, const Vec3& axis, double time,
                           TyreState& s) {
+  const Road road = ground.under(wheel.position(), tyre.radius);
   const double dt = s.time < 0.0 ? 0.0 : std::max(0.0, time - s.time);
   const Vec3 n = road.normal, a = wheel.rotation() * axis;
   const double lean = a.dot(n);

@@ -27,10 +27,11 @@ struct Wheel {
   double largest_brake = 0.0;  ///< N m
   double brake_angle = 0.0;    ///< rad, which the brake holds
   double brake_torque = 0.0;   ///< N m, asked for
+  double brake_work = 0.0;     ///< J, that the brake took so far; summed by drive()
 
   template <class V>
   void fields(V& v) {
-    v("brake_angle", brake_angle, "rad"), v("brake_torque", brake_torque, "N m");
+    v("brake_angle", brake_angle, "rad"), v("brake_torque", brake_torque, "N m"), v("brake_work", brake_work, "J");
   }
 };
 
@@ -54,12 +55,13 @@ DEM_COLD inline void add_tyre(const Assembly& in, const std::string& corner, Whe
                               const Road& road) {
   check_tyre(tyre);
   w.tyre = std::make_shared<TyreState>();
-  Road plane = road;
-  plane.normal = road.normal.normalized();
+  require_positive(road.print, "print of a road under a tyre", "m");
+  Road ground = road;
+  ground.normal = road.normal.normalized();
   const Body& b = in.mechanism().body(w.body);
   const Vec3 axis = b.rotation().transpose() * in.direction(Vec3::UnitY());
-  const auto law = [tyre, plane, axis, state = w.tyre](double time, const Body& body) {
-    return tyre_wrench(tyre, plane, body, axis, time, *state);
+  const auto law = [tyre, ground, axis, state = w.tyre](double time, const Body& body) {
+    return tyre_wrench(tyre, ground, body, axis, time, *state);
   };
   w.road = in.mechanism().add_load(mbd::custom_load(in.name(corner + " tyre"), w.body, law));
 }
