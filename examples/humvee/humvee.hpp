@@ -8,6 +8,8 @@
 
 #include <array>
 #include <cmath>
+#include <functional>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -19,20 +21,22 @@ using dem::Vec3;
 struct Setup {
   /// Rear ball joints of rubber need steps of 1.5e-5 s.
   dem::vehicle::HumveeOptions options = {.rubber_rear = false};
-  double speed = 0.0;          ///< m/s, at the start
-  double friction = 0.8;       ///< of the tyres
-  double slope = 0.0;          ///< rise over run; the car points up it
-  bool free_front = false;     ///< the front axle is not driven: its bevel gear is open
-  double time_step = 5e-5;     ///< s
-  double wheel_centre = 0.46;  ///< m above the road at the start
+  double speed = 0.0;       ///< m/s, at the start
+  double friction = 0.8;    ///< of the tyres
+  double slope = 0.0;       ///< rise over run; the car points up it
+  bool free_front = false;  ///< the front axle is not driven: its bevel gear is open
+  std::shared_ptr<const dem::vehicle::RoadHeights> heights = {};  ///< of the road, in place of a plane
+  double time_step = 5e-5;                                        ///< s
+  double wheel_centre = 0.46;                                     ///< m above the road at the start
 };
 
 /// Energy since the start, J. What is left over went into the dampers of joints and gears.
 struct EnergyBalance {
   double gained = 0.0;                                                            ///< motion, height, joints
   double engine = 0.0, brakes = 0.0, tyres = 0.0, springs = 0.0, steering = 0.0;  ///< work on the bodies
+  double clutch = 0.0;                                                            ///< slip of the clutch, below 0
   double throughput = 0.0;  ///< of all of them, and of motion and height
-  double left_over() const { return engine + brakes + tyres + springs + steering - gained; }
+  double left_over() const { return engine + brakes + tyres + springs + steering + clutch - gained; }
   double error() const { return throughput > 0.0 ? left_over() / throughput : 0.0; }
 };
 
@@ -50,12 +54,12 @@ class Car {
     spec.tyre.friction = s.friction;
     const double angle = std::atan(s.slope);
     machine.gravity = 9.81 * Vec3(-std::sin(angle), 0, -std::cos(angle));
-    machine.joint_tolerance = 0.5;  // m: light shafts wind up; how far joints open and turn is told with the results
+    machine.joint_tolerance = 0.5;  // m: no more sub-steps; what is allowed is compared with the results
     const Assembly in(machine, "car", Vec3(0, 0, s.wheel_centre - spec.front.points.wheel.z()), Mat3::Identity(),
                       s.speed);
-    vehicle = add_vehicle(in, spec, Road{});
+    vehicle = add_vehicle(in, spec, Road{.heights = s.heights});
     if (s.free_front) machine.switch_on(vehicle.driveline.front.bevel_gear, false);
-    machine.design_for(s.time_step);
+    dem::vehicle::design_for(machine, s.time_step);
     machine.initialise(0.0, machine.gravity);
     start_ = stored();
     dem::vehicle::add_columns(columns, dem::vehicle::CarSample{});
@@ -63,6 +67,7 @@ class Car {
       for (const char* what : {"load_N", "pull_N", "side_N", "slip", "slip_angle_rad", "travel_m", "brake_torque_Nm"}) {
         columns.push_back(std::string(corner) + "_" + what);
       }
+      dem::vehicle::add_columns(columns, dem::vehicle::SuspensionSample{}, std::string(corner) + "_");
     }
   }
 
@@ -75,8 +80,11 @@ class Car {
   double weight() const { return dem::vehicle::weight_of(machine); }
   /// The widest joint, m, and the most crooked one, rad, so far. Bushings are meant to give way.
   double widest = 0.0, crooked = 0.0;
-  std::string widest_joint, failed;
+  std::string widest_joint, crooked_joint, failed;
+  static constexpr double widest_allowed = 1e-3, crooked_allowed = 0.1;  ///< m, rad
+  bool is_closed() const { return widest <= widest_allowed && crooked <= crooked_allowed; }
   EnergyBalance energy;
+  std::function<void(double)> each_step = [](double) {};  ///< after each step of dt (s)
 
   /// Drives for a time (s): `controls(car)` is asked every 10 ms and returns false to stop, after it set `now`.
   dem::vehicle::Controls now;
@@ -95,8 +103,11 @@ class Car {
         break;
       }
       add_work(dt);
+      each_step(dt);
     }
     energy.gained = stored() - start_;
+    energy.clutch = 0.0;
+    for (const auto& c : machine.parts().clutches) energy.clutch -= c.history.slip_work;
     energy.throughput = sum_ + std::abs(energy.gained);
     return failed.empty();
   }
@@ -132,7 +143,10 @@ class Car {
         widest = open.displacement;
         widest_joint = machine.parts().joint_specs[j].name;
       }
-      crooked = std::max(crooked, open.rotation);
+      if (open.rotation > crooked) {
+        crooked = open.rotation;
+        crooked_joint = machine.parts().joint_specs[j].name;
+      }
     }
     std::vector<double> row;
     dem::vehicle::add_values(row, dem::vehicle::sample_of(machine, vehicle, now, machine.time()));
@@ -142,6 +156,7 @@ class Car {
                              -machine.actuator(vehicle.wheels[k].brake).force}) {
         row.push_back(x);
       }
+      dem::vehicle::add_values(row, suspension_sample_of(machine, vehicle, k));
     }
     rows.push_back(std::move(row));
   }

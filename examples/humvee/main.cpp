@@ -1,9 +1,12 @@
 // The Humvee of the thesis by itself on hard ground: at rest, driving off, braking, turning, held on a slope.
 //
 //   humvee                    # all scenes, results in the folder humvee
-//   humvee brake out/brake    # one scene: rest, launch, brake, turn, turn_free or slope; the folder may also follow
-//                             # --output. turn_free: the front axle is not driven
+//   humvee brake out/brake    # one scene; the folder may also follow --output
 //   humvee tyres              # pneumatic tyres on a plate: load over deflection
+//
+// Scenes: rest; launch (0 to 60 km/h), launch_gears (with the diesel and its gears), launch_actuator (with the single
+// actuator of the thesis); brake; turn (a tight circle); understeer (a wide one, ever faster); turn_free and
+// understeer_free (the front axle is not driven); slope (30 %, on the brakes); bumps (a road of heights).
 //
 // Each scene of the car writes <scene>.csv (100 rows a second, with units) and plots of speed, loads and wheel travel,
 // and prints what was measured beside what was expected.
@@ -57,6 +60,30 @@ Lines rest(Car& car) {
           {"speed left", car.speed(), 0.0, "m/s"}};
 }
 
+/// What an engine at full throttle gives to the drive shaft, by its curve alone.
+struct OnItsCurve {
+  const dem::vehicle::EngineSpec& e;
+  std::size_t gear = 0;
+  double since_shift = 1e3, rotor = e.idle;  ///< s; rad/s
+
+  /// N m, at a speed of the shaft (rad/s), dt (s) after the last call.
+  double at_shaft(double shaft, double dt) {
+    using Kind = dem::vehicle::EngineSpec::Kind;
+    if (e.kind == Kind::actuator) return e.largest_torque;
+    if (e.kind == Kind::motor) return e.torque.held_outside()(shaft * e.ratio(0)) * e.ratio(0);
+    since_shift += dt;
+    if (shaft * e.ratio(gear) > e.shift_up && since_shift > e.shift_wait && gear + 1 < e.gears.size()) {
+      ++gear, since_shift = 0.0;
+    }
+    // The clutch, as a damper that holds no more than it can.
+    const double input = shaft * e.ratio(gear), closed = (rotor - e.idle) / (e.clutch_speed - e.idle);
+    const double most = e.clutch_torque * std::clamp(closed, 0.0, 1.0);
+    const double passed = std::clamp(100.0 * (rotor - input), -most, most);
+    rotor += dt * (e.torque.held_outside()(rotor) - passed) / e.rotor.inertia.x();
+    return passed * e.ratio(gear);
+  }
+};
+
 /// Full throttle from rest to 60 km/h.
 Lines launch(Car& car) {
   if (!settle(car, 3.0)) return {};
@@ -84,18 +111,16 @@ Lines launch(Car& car) {
       2.0 * (v.spec.driveline.front.cage.inertia.y() + ratio * ratio * v.spec.driveline.front.pinion.inertia.x());
   turning += ratio * ratio * v.spec.driveline.shaft.inertia.x();
   const double inertia = mass + turning / (radius * radius);
-  const auto& e = v.driveline.spec;
+  const auto& e = v.driveline.engine.spec;
+  const double grip = 0.8 * mass * 9.81;
+  OnItsCurve curve{e, {}};
   double time = 0.0, speed = 0.0, slip = 0.0;
-  std::size_t gear = 0;
-  const double dt = 1e-3, grip = 0.8 * mass * 9.81;
-  while (speed < goal) {
-    const double shaft = speed / (1.0 - slip) / radius * ratio;
-    if (shaft * e.gears[gear] * e.transfer > e.shift_up && gear + 1 < e.gears.size()) ++gear;
-    const double total = e.gears[gear] * e.transfer;
-    const double push = std::min(grip, e.torque.held_outside()(shaft * total) * total * ratio / radius);
-    slip = push / (4.0 * v.spec.tyre.tread_stiffness * v.spec.tyre.relaxation_length);
+  for (const double dt = 1e-4; speed < goal; time += dt) {
+    const double torque = curve.at_shaft(speed / (1.0 - slip) / radius * ratio, dt);
+    const double push = std::min(grip, torque * ratio / radius);
+    const double length = v.spec.tyre.relaxation_length, steady = push / (4.0 * v.spec.tyre.tread_stiffness * length);
+    slip += std::min(1.0, dt * std::max(0.5, speed) / length) * (steady - slip);
     speed += dt * push / inertia;
-    time += dt;
   }
   return {{"0 to 60 km/h", reached, time, "s"}, {"way", ran, 0.0, "m"}};
 }
@@ -164,14 +189,109 @@ Lines turn(Car& car) {
   return lines;
 }
 
+/// A wide circle at ever higher speeds: by how much more the wheels must be turned than by Ackermann, over the
+/// acceleration to the side.
+Lines understeer(Car& car) {
+  if (!settle(car, 5.0)) return {};
+  dem::vehicle::SpeedHold hold{.gain = 0.3, .integral = 0.1};
+  Lines lines;
+  const double wheelbase = car.vehicle.spec.wheelbase(), on_front = car.load(0), on_rear = car.load(1);
+  double n = 0.0, sa = 0.0, sd = 0.0, ss = 0.0, sr = 0.0, saa = 0.0, sad = 0.0, sas = 0.0, sar = 0.0;
+  for (const double wanted : {4.0, 7.0, 9.0, 11.0, 12.5}) {
+    double yaw = 0.0, run = 0.0, steer = 0.0, behind = 0.0, drift = 0.0, samples = 0.0;
+    const double begin = car.machine.time();
+    car.drive(12.0, [&](Car& c) {
+      c.now = hold(c.speed(), wanted, 0.01);
+      c.now.steer = 0.08;
+      if (c.machine.time() > begin + 8.0) {
+        yaw += c.machine.body(c.vehicle.chassis).angular_velocity().z();
+        run += c.speed();
+        const double left = steer_of(c.machine, c.vehicle, 0), right = steer_of(c.machine, c.vehicle, 1);
+        steer += std::atan(2.0 / (1.0 / std::tan(left) + 1.0 / std::tan(right)));
+        behind += 0.5 * (steer_of(c.machine, c.vehicle, 2) + steer_of(c.machine, c.vehicle, 3));
+        const auto& w = c.vehicle.wheels;
+        drift += 0.5 * (w[2].tyre->slip_angle + w[3].tyre->slip_angle - w[0].tyre->slip_angle - w[1].tyre->slip_angle);
+        samples += 1.0;
+      }
+      return true;
+    });
+    const double radius = run / yaw, sideways = run * yaw / (samples * samples);
+    const double more = steer / samples - std::atan(wheelbase / radius);
+    drift /= samples, behind /= samples;
+    lines.push_back({fmt::format("radius at {:g} m/s ({:.2f} m/s^2 sideways)", wanted, sideways), radius,
+                     wheelbase / std::tan(steer / samples), "m"});
+    lines.push_back({"  steered beyond Ackermann; by tyres and roll", 1e3 * more, 1e3 * (drift + behind), "mrad"});
+    n += 1.0, sa += sideways, sd += more, ss += drift, sr += behind, saa += sideways * sideways;
+    sad += sideways * more, sas += sideways * drift, sar += sideways * behind;
+  }
+  // A linear bicycle: m (b/L/Cf - a/L/Cr), as the axles' loads over g are those masses.
+  const auto& tyre = car.vehicle.spec.tyre;
+  const double stiffness = 2.0 * tyre.lateral_stiffness * tyre.relaxation_length;
+  const double linear = (on_front - on_rear) / (9.81 * stiffness), below = n * saa - sa * sa;
+  lines.push_back({"understeer gradient", 1e3 * (n * sad - sa * sd) / below, 0.0, "mrad/(m/s^2)"});
+  lines.push_back(
+      {"  of it by the slip angles of the tyres", 1e3 * (n * sas - sa * ss) / below, 1e3 * linear, "mrad/(m/s^2)"});
+  lines.push_back(
+      {"  of it by rear wheels that turn as the car rolls", 1e3 * (n * sar - sa * sr) / below, 0.0, "mrad/(m/s^2)"});
+  return lines;
+}
+
 /// Brakes on a slope of 30 % for a minute.
 Lines slope(Car& car) {
   if (!settle(car, 5.0)) return {};
   const double from = car.position().x();
-  settle(car, 55.0);
-  return {{"way in 55 s", car.position().x() - from, 0.0, "m"},
+  settle(car, 10.0);
+  const double later = car.position().x();
+  settle(car, 50.0);
+  return {{"way in 60 s", car.position().x() - from, 0.0, "m"},
+          {"of it in the last 50 s", car.position().x() - later, 0.0, "m"},
+          {"speed left", car.speed(), 0.0, "m/s"},
           {"load on the front axle", car.load(0), 0.0, "N"},
           {"load on the rear axle", car.load(1), 0.0, "N"}};
+}
+
+/// Half a sine of 0.1 m over 1.5 m, across both tracks at 6 m and under the left wheels only at 14 m.
+double bump(double x, double y) {
+  const auto half_sine = [&](double from) {
+    const double at = (x - from) / 1.5;
+    return at > 0.0 && at < 1.0 ? 0.1 * std::sin(std::numbers::pi * at) : 0.0;
+  };
+  return half_sine(6.0) + (y > 0.0 ? half_sine(14.0) : 0.0);
+}
+std::shared_ptr<const dem::vehicle::RoadHeights> bumpy_road() {
+  return std::make_shared<dem::vehicle::RoadHeights>(dem::vehicle::RoadHeights::of(-5.0, -2.0, 40.0, 4.0, 0.05, bump));
+}
+
+/// Over two bumps at 3 m/s.
+Lines bumps(Car& car) {
+  if (!settle(car, 3.0)) return {};
+  dem::vehicle::SpeedHold hold{.gain = 0.3, .integral = 0.1};
+  const auto& m = car.machine;
+  const auto lift = [&] {  // kg m/s, upward
+    double sum = 0.0;
+    for (const dem::Body& b : m.bodies()) sum += b.mass * b.velocity().z();
+    return sum;
+  };
+  double pushed = 0.0, roll = 0.0, highest = 0.0, lowest = 0.0;
+  const double began = m.time(), before = lift();
+  car.each_step = [&](double dt) {
+    for (const auto& w : car.vehicle.wheels) pushed += dt * m.load(w.road).wrench.force.z;
+  };
+  car.drive(11.0, [&](Car& c) {
+    c.now = hold(c.speed(), 3.0, 0.01);
+    roll = std::max(roll, std::abs(attitude_of(m, c.vehicle).x()));
+    for (std::size_t k = 0; k < 4; ++k) {
+      const double travel = travel_of(m, c.vehicle, k);
+      highest = std::max(highest, travel), lowest = std::min(lowest, travel);
+    }
+    return true;
+  });
+  const double time = m.time() - began;
+  return {{"mean of what the road carries", (pushed - lift() + before) / time, car.weight(), "N"},
+          {"way", car.position().x(), 0.0, "m"},
+          {"largest roll", roll * 180.0 / std::numbers::pi, 0.0, "deg"},
+          {"wheel travel, up", highest, 0.0, "m"},
+          {"wheel travel, down", lowest, 0.0, "m"}};
 }
 
 struct Scene {
@@ -188,12 +308,19 @@ int main(int argc, char** argv) {
     if (std::string(argv[k]) != "--output") words.emplace_back(argv[k]);
   }
   const std::string wanted = !words.empty() ? words[0] : "all", folder = words.size() > 1 ? words[1] : "humvee";
-  const std::vector<Scene> scenes = {{"rest", {}, rest},
-                                     {"launch", {}, launch},
-                                     {"brake", {.speed = 60.0 / 3.6, .friction = 0.5}, brake},
-                                     {"turn", {}, turn},
-                                     {"turn_free", {.free_front = true}, turn},
-                                     {"slope", {.slope = 0.3}, slope}};
+  using Kind = dem::vehicle::EngineSpec::Kind;
+  const std::vector<Scene> scenes = {
+      {"rest", {}, rest},
+      {"launch", {}, launch},
+      {"launch_gears", {.options = {.rubber_rear = false, .engine = Kind::geared}}, launch},
+      {"launch_actuator", {.options = {.rubber_rear = false, .engine = Kind::actuator}}, launch},
+      {"brake", {.speed = 60.0 / 3.6, .friction = 0.5}, brake},
+      {"turn", {}, turn},
+      {"turn_free", {.free_front = true}, turn},
+      {"understeer", {}, understeer},
+      {"understeer_free", {.free_front = true}, understeer},
+      {"slope", {.slope = 0.3}, slope},
+      {"bumps", {.heights = bumpy_road()}, bumps}};
   bool found = wanted == "all" || wanted == "tyres";
   try {
     if (found) press_tyres(folder);
@@ -209,7 +336,7 @@ int main(int argc, char** argv) {
       if (!car.failed.empty()) fmt::print(stderr, "{}: {}\n", scene.name, car.failed);
       fmt::print("\n{}\n", scene.name);
       for (const Line& l : lines) {
-        fmt::print("  {:<46} {:12.5f}", l.what, l.measured);
+        fmt::print("  {:<50} {:12.5f}", l.what, l.measured);
         if (l.expected != 0.0) {
           fmt::print("  expected {:12.5f}  {:+.3f} %", l.expected, 100.0 * (l.measured / l.expected - 1.0));
         }
@@ -218,23 +345,27 @@ int main(int argc, char** argv) {
       const EnergyBalance& e = car.energy;
       fmt::print(
           "  energy, J: gained {:.1f}; engine {:.1f}, brakes {:.1f}, tyres {:.1f}, springs and shocks {:.1f}, "
-          "steering {:.1f}; left over {:.1f}, {:.3f} % of {:.0f}\n",
-          e.gained, e.engine, e.brakes, e.tyres, e.springs, e.steering, e.left_over(), 100.0 * e.error(), e.throughput);
-      fmt::print("  widest joint {:.3f} mm ({}), most crooked {:.3f} mrad\n", 1e3 * car.widest, car.widest_joint,
-                 1e3 * car.crooked);
+          "steering {:.1f}, clutch {:.1f}; left over {:.1f}, {:.3f} % of {:.0f}\n",
+          e.gained, e.engine, e.brakes, e.tyres, e.springs, e.steering, e.clutch, e.left_over(), 100.0 * e.error(),
+          e.throughput);
+      fmt::print("  widest joint {:.3f} mm ({}), most crooked {:.3f} mrad ({}); {} {:g} mm and {:g} mrad\n",
+                 1e3 * car.widest, car.widest_joint, 1e3 * car.crooked, car.crooked_joint,
+                 car.is_closed() ? "within" : "BEYOND", 1e3 * Car::widest_allowed, 1e3 * Car::crooked_allowed);
       fmt::print("  {:.2f} s driven in {:.2f} s of computing on one core (clock {:.2f} s): {:.2f} of real time\n",
                  car.machine.time(), computed, seconds, computed / car.machine.time());
       dem::io::CsvWriter csv(folder + "/" + scene.name + ".csv", car.columns);
       for (const auto& row : car.rows) csv.row(row);
       draw(car, folder, scene.name);
-      if (!car.failed.empty()) return 1;
+      if (!car.failed.empty() || !car.is_closed()) return 1;
     }
   } catch (const dem::Error& e) {
     fmt::print(stderr, "{}\n", e.what());
     return 1;
   }
   if (!found) {
-    fmt::print(stderr, "there is no scene '{}': all, tyres, rest, launch, brake, turn, turn_free or slope\n", wanted);
+    fmt::print(stderr, "there is no scene '{}'; give all, tyres", wanted);
+    for (const Scene& scene : scenes) fmt::print(stderr, ", {}", scene.name);
+    fmt::print(stderr, "\n");
     return 2;
   }
   fmt::print("\nresults in {}\n", folder);

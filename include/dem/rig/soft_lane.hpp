@@ -135,6 +135,7 @@ class SoftLane {
       if (!result.samples.empty()) {
         x.acceleration = (x.car.speed - result.samples.back().car.speed) / soft_lane::interval;
       }
+      if (n.way > 0.1) x.cost_of_transport = x.car.engine_work / (result.weight * n.way);
       result.ended = n.judge(x, soft_lane::wheels_of(stand), stand.patch ? stand.patch->back() + s.rim() : -HUGE_VAL);
       result.samples.push_back(x);
       n.computed = io::steady_seconds() - began;

@@ -71,10 +71,7 @@ class ColumnCar {
     weight = weight_of(machine);
     crane_ = add_crane(machine, car, spec.set_down_speed);
     hitch_ = add_hitch(machine, car, spec.hitch_height);
-    // An engine's own damping comes on top of what is derived: that is made softer until the step bears both.
-    double design = spec.time_step;
-    machine.design_for(design);
-    for (int k = 0; k < 10 && machine.stable_time_step().dt < spec.time_step; ++k) machine.design_for(design *= 1.05);
+    design_for(machine, spec.time_step);
     machine.initialise(0.0, machine.gravity);
   }
   ColumnCar(const ColumnCar&) = delete;
@@ -125,8 +122,10 @@ class ColumnCar {
       const Vector3<double> arm = machine.body(p.body).motion.position - middle;
       soil = soil + Wrench{load.force, load.torque + cross(arm, load.force)};
     }
-    return wheel_sample_of(machine, car, corner, soil, 0.0, spec_.car.tyre.radius);
+    const double deflection = rings_[corner] ? deflection_of(machine, *rings_[corner]) : 0.0;
+    return wheel_sample_of(machine, car, corner, soil, 0.0, spec_.car.tyre.radius, deflection);
   }
+  SuspensionSample suspension(std::size_t corner) const { return suspension_sample_of(machine, car, corner); }
   /// m/s, of the rims, as the drive shaft turns: their mean.
   double rim_speed() const { return rim_speed_of(machine, car); }
   /// m, mean depth of the rut of the left (0) or right (1) wheels between two places along the lane, over the middle
@@ -176,7 +175,7 @@ class ColumnCar {
     pieces_[corner] = {{part, wheel}};
   }
   void add_ring(const Assembly& in, std::size_t corner) {
-    const RingTyre tyre = add_ring_tyre(in, car, corner, *spec_.ring);
+    const RingTyre& tyre = rings_[corner].emplace(add_ring_tyre(in, car, corner, *spec_.ring));
     const auto shape = std::make_shared<terramechanics::ColumnBox>(tyre.edges(), true);
     for (const BodyId b : tyre.segments) {
       const std::size_t part = soil_.add(b, shape, machine.body(b).position(), machine.reference_rotation(b),
@@ -220,7 +219,8 @@ class ColumnCar {
 
   ColumnCarSpec spec_;
   terramechanics::MachineColumns soil_;
-  std::array<std::vector<Piece>, 4> pieces_;  ///< of the tyres
+  std::array<std::vector<Piece>, 4> pieces_;           ///< of the tyres
+  std::array<std::optional<RingTyre>, 4> rings_ = {};  ///< of pneumatic ones
   std::shared_ptr<Hitch> hitch_;
   LoadId crane_;
   Controls controls_;

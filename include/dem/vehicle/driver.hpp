@@ -51,10 +51,13 @@ struct SpeedHold {
   double integral = 0.1;  ///< per m
   double sum = 0.0;       ///< m, of the error so far
 
-  /// Controls for a speed and the wanted one (m/s), dt (s) after the last call.
-  Controls operator()(double speed, double wanted, double dt) {
-    const double error = wanted - speed, out = gain * error + integral * sum;
-    if (!((out >= 1.0 && error > 0.0) || (out <= -1.0 && error < 0.0))) sum += dt * error;
+  /// Controls for a speed and the wanted one (m/s), dt (s) after the last call. `known` is the output that the wanted
+  /// speed is known to take, as that which its rise takes. The integral does not grow while something else eases the
+  /// throttle off.
+  Controls operator()(double speed, double wanted, double dt, double known = 0.0, bool is_eased = false) {
+    const double error = wanted - speed, out = known + gain * error + integral * sum;
+    const bool is_full = out >= 1.0 || is_eased;
+    if (!((is_full && error > 0.0) || (out <= -1.0 && error < 0.0))) sum += dt * error;
     return {.throttle = std::clamp(out, 0.0, 1.0), .brake = std::clamp(-out, 0.0, 1.0)};
   }
   template <class V>

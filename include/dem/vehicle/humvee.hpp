@@ -2,6 +2,12 @@
 
 #include <dem/vehicle/vehicle.hpp>
 
+#include <algorithm>
+#include <numbers>
+#include <string>
+#include <utility>
+#include <vector>
+
 namespace dem::vehicle {
 
 /// Options of the Humvee of the thesis, chapter 6.
@@ -9,9 +15,25 @@ struct HumveeOptions {
   double sprung_mass = 4430.0;  ///< kg, with ballast; the bare vehicle has 2086.52 kg and what hangs on its chassis
   bool rubber_rear = true;      ///< rear ball joints of rubber, as Table 6.2 counts them; else spherical joints
   EngineSpec::Kind engine = EngineSpec::Kind::motor;
-  bool has_gears = false;  ///< a diesel with three gears instead of the motor without gears
   bool low_range = false;  ///< of the transfer case, with gears
 };
+
+/// Names of engines, for command lines.
+inline std::vector<std::string> engine_names() { return {"motor", "gears", "low-range", "actuator"}; }
+inline constexpr const char* engine_words =
+    "motor (no gears), gears (a diesel with six), low-range (the same), actuator (holds a speed, as in the thesis)";
+
+/// The options with an engine of that name. Throws Error for a name that is none.
+DEM_COLD inline HumveeOptions with_engine(HumveeOptions o, const std::string& name) {
+  const auto names = engine_names();
+  if (std::find(names.begin(), names.end(), name) == names.end()) {
+    fail("there is no engine '{}'; give motor, gears, low-range or actuator", name);
+  }
+  using Kind = EngineSpec::Kind;
+  o.engine = name == "actuator" ? Kind::actuator : name == "motor" ? Kind::motor : Kind::geared;
+  o.low_range = name == "low-range";
+  return o;
+}
 
 /// The Humvee of the thesis with the points, masses, springs and shocks of the public HMMWV data of Project Chrono
 /// (from TACOM TR-13337). 34 bodies; 3 prismatic, 16 revolute, 6 spherical and 4 constant-velocity joints; 5 rotational
@@ -106,21 +128,41 @@ DEM_COLD inline VehicleSpec humvee(const HumveeOptions& o = {}) {
   d.shaft = round_part(20.0, 0.05, 3.0, 0);
   d.shaft_middle = Vec3(0, 0, s.front.points.wheel.z());
   d.engine.kind = o.engine;
-  if (o.has_gears) {
-    // A 6.2 l diesel: 339 N m at 2000 rpm, 112 kW at 3600 rpm. Below 800 rpm a converter slips.
-    d.engine.torque = {{83.8, 270}, {209.4, 339}, {314.2, 325}, {377.0, 298}, {408.0, 0}};
-    d.engine.gears = {2.48, 1.48, 1.0};
+  if (o.engine == EngineSpec::Kind::geared) {
+    // N m over rpm at full throttle, ratios and speeds of shifting of Project Chrono's HMMWV_EngineSimpleMap.json and
+    // HMMWV_AutomaticTransmissionSimpleMap.json, the rotor's moment of HMMWV_EngineShafts.cpp. Beyond 2,500 rpm the
+    // torque falls to nothing. Chosen here: a dry clutch in place of a converter, the rotor's mass, and the time from
+    // shift to shift.
+    const std::pair<double, double> map[] = {{0, 309},    {800, 382},  {900, 490},  {1000, 579}, {1100, 650},
+                                             {1200, 706}, {1300, 746}, {1400, 774}, {1500, 789}, {1600, 793},
+                                             {1700, 788}, {1800, 774}, {1900, 754}, {2000, 728}, {2100, 697},
+                                             {2200, 664}, {2300, 628}, {2400, 593}, {2500, 558}, {2617, 0}};
+    constexpr double rpm = std::numbers::pi / 30.0;  // rad/s
+    std::vector<std::pair<double, double>> torque;
+    for (const auto& [speed, of_shaft] : map) torque.emplace_back(speed * rpm, of_shaft);
+    d.engine.torque = mbd::Curve(std::move(torque));
+    d.engine.drag = {{0, 0}, {100 * rpm, 0}, {1000 * rpm, -50}, {2000 * rpm, -70}, {3000 * rpm, -90}};
+    d.engine.rotor = {80.0, Vec3(1.1, 4.0, 4.0)};
+    d.engine.idle = 800.0 * rpm;
+    d.engine.clutch_speed = 1500.0 * rpm;
+    d.engine.clutch_torque = 1000.0;
+    for (const double ratio : {0.1708, 0.2791, 0.4218, 0.6223, 1.0173, 1.5361}) d.engine.gears.push_back(1.0 / ratio);
+    // Low range of the vehicle's transfer case, New Process Gear 242, which locks front and rear as one shaft does
+    // here.
     d.engine.transfer = o.low_range ? 2.72 : 1.0;
-    d.engine.shift_up = 370.0;
-    d.engine.shift_down = 180.0;
+    d.engine.shift_up = 2225.0 * rpm;
+    d.engine.shift_down = 1000.0 * rpm;
+    d.engine.shift_wait = 0.3;
   } else {
     // Peak torque at rest, falling to nothing at 1600 rad/s, behind a fixed gear.
     d.engine.torque = {{0, 793}, {1600, 0}};
     d.engine.gears = {1.0 / 0.3};
   }
   d.engine.largest_torque = 793.0 / 0.3;
+  d.engine.speed_gain = 500.0;  // N m s/rad; 2,000 ask for steps of 2e-5 s
 
-  const double on_chassis = s.steering.rack.mass + s.steering.pinion.mass + d.shaft.mass +
+  const double rotor = o.engine == EngineSpec::Kind::geared ? d.engine.rotor.mass : 0.0;
+  const double on_chassis = rotor + s.steering.rack.mass + s.steering.pinion.mass + d.shaft.mass +
                             2.0 * (d.front.pinion.mass + d.front.cage.mass + 2.0 * d.front.side_shaft.mass);
   if (!(o.sprung_mass > on_chassis)) {
     fail("the sprung mass is {:g} kg, but must exceed {:g} kg, that of the shafts and the steering on the chassis",

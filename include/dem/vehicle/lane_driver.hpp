@@ -1,15 +1,16 @@
 #pragma once
 
 #include <dem/vehicle/driver.hpp>
+#include <dem/vehicle/telemetry.hpp>
 #include <dem/vehicle/vehicle.hpp>
 
 #include <algorithm>
 
 namespace dem::vehicle {
 
-/// Drives along a lane: holds a speed by throttle and brakes and keeps to the middle by steering. The engine's governor
-/// takes back the throttle where the wheels spin: from the spin limit (mean of the rims less the car's speed) on, down
-/// to none at twice that. Asked at even times, a hundred a second.
+/// Drives along a lane: gains speed evenly, holds it by throttle and brakes, and keeps to the middle by steering. The
+/// engine's governor takes back the throttle where the wheels spin: from the spin limit (mean of the rims less the
+/// car's speed) on, down to none at twice that. Asked at even times, a hundred a second.
 class LaneDriver {
  public:
   struct Spec {
@@ -24,11 +25,9 @@ class LaneDriver {
   /// back.
   LaneDriver(const VehicleSpec& car, const Spec& spec, double force)
       : spec_(spec), rear_(car.rear.points.wheel.x(), 0, 0) {
-    const auto& d = car.driveline;
-    const double largest = d.engine.torque.held_outside()(0.0) * d.engine.gears.front() * d.engine.transfer *
-                           d.front.ratio / car.tyre.radius;
+    largest_ = largest_torque(car.driveline.engine) * car.driveline.front.ratio / car.tyre.radius;
     hold_ = {.gain = 0.5, .integral = 0.3};
-    hold_.sum = std::clamp(force / largest, -1.0, 1.0) / hold_.integral;
+    hold_.sum = std::clamp(force / largest_, -1.0, 1.0) / hold_.integral;
     follow_.wheelbase = car.wheelbase();
     follow_.path = {spec.from, spec.to};
     follow_.preview = 4.0;
@@ -43,8 +42,10 @@ class LaneDriver {
   }
   /// Without steering.
   Controls pedals(const mbd::Mechanism& m, const Vehicle& v, double time) {
-    const double speed = speed_of(m, v);
-    return eased(hold_(speed, std::min(spec_.speed, spec_.acceleration * time), spec_.interval), speed);
+    const double speed = speed_of(m, v), wanted = std::min(spec_.speed, spec_.acceleration * time);
+    const double push = wanted < spec_.speed ? spec_.acceleration * weight_of(m) / 9.81 : 0.0;  // N
+    const bool is_eased = rim_speed_of(m, v) > speed + spec_.spin_limit;
+    return eased(hold_(speed, wanted, spec_.interval, push / largest_, is_eased), speed);
   }
   /// rad.
   double steer(const mbd::Mechanism& m, const Vehicle& v) {
@@ -62,7 +63,8 @@ class LaneDriver {
 
  private:
   Spec spec_;
-  Vec3 rear_;  ///< m, of the rear axle, from the vehicle's origin
+  Vec3 rear_;             ///< m, of the rear axle, from the vehicle's origin
+  double largest_ = 0.0;  ///< N, that all wheels push with at most
   SpeedHold hold_;
   PathFollower follow_;
 };

@@ -3,6 +3,7 @@
 #include <dem/mbd/joint/bushing.hpp>
 #include <dem/vehicle/assembly.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <string>
@@ -89,6 +90,17 @@ struct RingTyre {
   /// them where the belt stretches.
   Vector3<double> edges() const { return {1.05 * spec.arc(), spec.width, spec.thickness}; }
 };
+
+/// m, by which the tread's lowest point is nearer to the wheel's middle than that of the unloaded tyre, on ground that
+/// z stands across. The print of a tyre is as deep as this point.
+inline double deflection_of(const mbd::Mechanism& m, const RingTyre& tyre) {
+  double lowest = HUGE_VAL;
+  for (const BodyId b : tyre.segments) {
+    const Vec3 out = m.reference_rotation(b).col(2);
+    lowest = std::min(lowest, m.body(b).position().z() + 0.5 * tyre.spec.thickness * out.z());
+  }
+  return tyre.spec.radius - (m.body(tyre.rim).position().z() - lowest);
+}
 
 /// Puts a tyre on a rim that turns about y of the vehicle, with its middle at `middle` (m) and a `spin` (rad/s). The
 /// rim's mass is that of the wheel without the belt. Outside of the ring is the tread: a segment's own frame has its

@@ -45,9 +45,11 @@ struct CarSample {
   Controls controls;
   double steer = 0.0;          ///< rad, mean of the front wheels
   double gear = 1.0;           ///< from 1
-  double engine_torque = 0.0;  ///< N m, at the drive shaft
+  double engine_torque = 0.0;  ///< N m, at the drive shaft; with gears, at the engine's own
   double engine_speed = 0.0;   ///< rad/s, of the engine's shaft
   double engine_power = 0.0;   ///< W
+  double engine_work = 0.0;    ///< J, since the vehicle was made
+  double brake_work = 0.0;     ///< J, that all brakes took since then
 
   /// f(name with unit, value) for all columns.
   template <class F>
@@ -57,6 +59,7 @@ struct CarSample {
     f("speed_m_per_s", speed), f("yaw_rate_rad_per_s", yaw_rate);
     f("throttle", controls.throttle), f("brake", controls.brake), f("steer_rad", steer), f("gear", gear);
     f("engine_torque_Nm", engine_torque), f("engine_speed_rad_per_s", engine_speed), f("engine_power_W", engine_power);
+    f("engine_work_J", engine_work), f("brake_work_J", brake_work);
   }
   template <class V>
   void fields(V& v) {
@@ -64,14 +67,16 @@ struct CarSample {
     v("pitch", pitch, "rad"), v("speed", speed, "m/s"), v("yaw_rate", yaw_rate, "rad/s");
     v.reals("controls", controls), v("steer", steer, "rad"), v("gear", gear);
     v("engine_torque", engine_torque, "N m"), v("engine_speed", engine_speed, "rad/s");
-    v("engine_power", engine_power, "W");
+    v("engine_power", engine_power, "W"), v("engine_work", engine_work, "J"), v("brake_work", brake_work, "J");
   }
 };
 
 /// `controls`: what the driver does.
 inline CarSample sample_of(const mbd::Mechanism& m, const Vehicle& v, const Controls& controls, double time) {
   const Vec3 turn = attitude_of(m, v);
-  const auto& engine = m.actuator(v.driveline.engine);
+  const auto& engine = m.actuator(v.driveline.engine.drive);
+  double brake_work = 0.0;
+  for (const Wheel& w : v.wheels) brake_work += w.brake_work;
   return {.time = time,
           .position = point_of(m, v, Vec3::Zero()),
           .yaw = turn.z(),
@@ -81,10 +86,12 @@ inline CarSample sample_of(const mbd::Mechanism& m, const Vehicle& v, const Cont
           .yaw_rate = m.body(v.chassis).angular_velocity().z(),
           .controls = controls,
           .steer = 0.5 * (steer_of(m, v, 0) + steer_of(m, v, 1)),
-          .gear = 1.0 + static_cast<double>(v.driveline.gear),
+          .gear = 1.0 + static_cast<double>(v.driveline.engine.gear),
           .engine_torque = engine.force,
           .engine_speed = engine_speed(m, v.driveline),
-          .engine_power = engine.power()};
+          .engine_power = engine.power(),
+          .engine_work = v.driveline.engine.work,
+          .brake_work = brake_work};
 }
 
 /// One wheel over a sample's interval: forces of the ground are means over it, or those at its end.
@@ -95,7 +102,8 @@ struct WheelSample {
   double pull = 0.0;          ///< N, forward along the lane's surface in the wheel's plane
   double side = 0.0;          ///< N, to the left
   double torque = 0.0;        ///< N m, that drives the wheel against the ground
-  double sinkage = 0.0;       ///< m, of the wheel's lowest point below the level of the ground
+  double sinkage = 0.0;       ///< m, of the tyre's lowest point below the level of the ground
+  double deflection = 0.0;    ///< m, of a pneumatic tyre: how much nearer that point is to the middle than unloaded
   double travel = 0.0;        ///< m, of the suspension, up
   double brake_torque = 0.0;  ///< N m
   double spin = 0.0;          ///< rad/s, of the wheel on its knuckle
@@ -103,15 +111,17 @@ struct WheelSample {
   template <class F>
   void each(F&& f) const {
     f("slip", slip), f("slip_angle_rad", slip_angle), f("load_N", load), f("pull_N", pull), f("side_N", side);
-    f("torque_Nm", torque), f("sinkage_m", sinkage), f("travel_m", travel), f("brake_torque_Nm", brake_torque);
+    f("torque_Nm", torque), f("sinkage_m", sinkage), f("deflection_m", deflection), f("travel_m", travel),
+        f("brake_torque_Nm", brake_torque);
     f("spin_rad_per_s", spin);
   }
 };
 
 /// Of a wheel (0 to 3) under the force (N) and torque (N m, about its middle) of soft ground at a level (m). `radius`
-/// (m) is that of the unloaded wheel. Ground without a slope: across it is z.
+/// (m) is that of the unloaded wheel, `deflection` (m) that of a pneumatic tyre. Ground without a slope: across it is
+/// z.
 inline WheelSample wheel_sample_of(const mbd::Mechanism& m, const Vehicle& v, std::size_t corner, const Wrench& ground,
-                                   double level, double radius) {
+                                   double level, double radius, double deflection = 0.0) {
   const Wheel& wheel = v.wheels[corner];
   const Body& body = m.body(wheel.body);
   const Vec3 force = to_eigen(ground.force), torque = to_eigen(ground.torque), speed = body.velocity();
@@ -125,10 +135,53 @@ inline WheelSample wheel_sample_of(const mbd::Mechanism& m, const Vehicle& v, st
   w.pull = force.dot(ahead);
   w.side = force.dot(left);
   w.torque = -torque.dot(axle);
-  w.sinkage = level - (body.position().z() - radius);
+  w.sinkage = level - (body.position().z() - radius + deflection);
+  w.deflection = deflection;
   w.travel = travel_of(m, v, corner);
   w.brake_torque = -m.actuator(wheel.brake).force;
   return w;
+}
+
+/// What the joints of one wheel's suspension carry: forces on the knuckle, N, in the axes of the chassis (forward,
+/// left, up), means over the last telemetry_window.
+struct SuspensionSample {
+  Vec3 upper_ball = Vec3::Zero(), lower_ball = Vec3::Zero();  ///< of the arms
+  Vec3 bearing = Vec3::Zero();                                ///< of the wheel
+  Vec3 rod = Vec3::Zero();                                    ///< of the tie rod in front, the toe link behind
+  double spring = 0.0, shock = 0.0;  ///< N, that push chassis and lower arm apart; at the end of the newest step
+
+  template <class F>
+  void each(F&& f) const {
+    const auto axes = [&](const char* x, const char* y, const char* z, const Vec3& force) {
+      f(x, force.x()), f(y, force.y()), f(z, force.z());
+    };
+    axes("upper_ball_x_N", "upper_ball_y_N", "upper_ball_z_N", upper_ball);
+    axes("lower_ball_x_N", "lower_ball_y_N", "lower_ball_z_N", lower_ball);
+    axes("bearing_x_N", "bearing_y_N", "bearing_z_N", bearing);
+    axes("rod_x_N", "rod_y_N", "rod_z_N", rod);
+    f("spring_N", spring), f("shock_N", shock);
+  }
+  template <class V>
+  void fields(V& v) {
+    v("upper_ball", upper_ball, "N"), v("lower_ball", lower_ball, "N"), v("bearing", bearing, "N");
+    v("rod", rod, "N"), v("spring", spring, "N"), v("shock", shock, "N");
+  }
+};
+
+/// Of a wheel (0 to 3).
+inline SuspensionSample suspension_sample_of(const mbd::Mechanism& m, const Vehicle& v, std::size_t corner) {
+  const DoubleWishbone& s = v.suspension[corner];
+  const auto on_knuckle = [&](std::size_t k) -> Vec3 {
+    const Vec3 force = to_eigen(m.sensor(v.joint_forces[corner][k]).mean().force);  // on the joint's body b
+    const bool is_second = m.joint(v.knuckle_joints(corner)[k]).b == s.knuckle.index();
+    return m.reference_rotation(v.chassis).transpose() * (is_second ? force : Vec3(-force));
+  };
+  return {.upper_ball = on_knuckle(0),
+          .lower_ball = on_knuckle(1),
+          .bearing = on_knuckle(2),
+          .rod = on_knuckle(3),
+          .spring = m.spring(s.spring).force,
+          .shock = m.spring(s.shock).force};
 }
 
 /// Names of the columns of something with each(), after a prefix.

@@ -18,6 +18,8 @@ namespace dem::vehicle {
 /// Corners of a vehicle, in this order everywhere.
 inline constexpr std::array<const char*, 4> corner_names = {"front left", "front right", "rear left", "rear right"};
 
+inline constexpr double telemetry_window = 0.01;  ///< s, over which a vehicle's sensors take means
+
 /// A vehicle with two axles: double wishbones all round, front wheels that steer, all wheels driven.
 struct VehicleSpec {
   PartMass chassis;
@@ -42,6 +44,13 @@ struct Vehicle {
   Driveline driveline;
   VehicleSpec spec;
   double pinion_per_steer = 1.0;  ///< rad of the pinion for a rad of the mean of both wheels, about straight ahead
+  std::array<std::array<SensorId, 4>, 4> joint_forces;  ///< by corner, in the order of knuckle_joints()
+
+  /// What holds a knuckle: upper and lower ball joint, bearing of the wheel, end of the tie rod or toe link.
+  std::array<JointId, 4> knuckle_joints(std::size_t corner) const {
+    const JointId rods[4] = {steering.left_outer, steering.right_outer, toe_links[0], toe_links[1]};
+    return {suspension[corner].upper_ball, suspension[corner].lower_ball, wheels[corner].turn, rods[corner]};
+  }
 
   /// What the controls have come to, besides the state of the mechanism. See take_controls().
   template <class V>
@@ -73,6 +82,14 @@ DEM_COLD inline Vehicle add_vehicle(const Assembly& in, const VehicleSpec& s, co
   if (road) {
     for (std::size_t k = 0; k < 4; ++k) add_tyre(in, corner_names[k], v.wheels[k], s.tyre, *road);
   }
+  constexpr const char* forces[4] = {" upper ball joint", " lower ball joint", " bearing", " rod"};
+  for (std::size_t k = 0; k < 4; ++k) {
+    const auto joints = v.knuckle_joints(k);
+    for (std::size_t j = 0; j < 4; ++j) {
+      const std::string name = in.name(std::string(corner_names[k]) + forces[j]);
+      v.joint_forces[k][j] = in.mechanism().add_sensor(mbd::joint_sensor(name, joints[j], telemetry_window));
+    }
+  }
   // The arm of the tie rod about the line through both ball joints, seen from above.
   const WishbonePoints& p = s.front.points;
   const Vec3 kingpin = p.upper_ball - p.lower_ball;
@@ -80,6 +97,15 @@ DEM_COLD inline Vehicle add_vehicle(const Assembly& in, const VehicleSpec& s, co
   const double arm = std::abs(s.steering.rod_outer.x() - p.lower_ball.x() - share * kingpin.x());
   v.pinion_per_steer = arm / s.steering.pinion_radius;
   return v;
+}
+
+/// Derives what the user left open for a time step (s) of a machine by itself. An engine's own damping comes on top of
+/// what is derived: that is made softer until the step bears both, where ten times 5 % will do.
+template <class Machine>
+void design_for(Machine& machine, double time_step) {
+  double design = time_step;
+  machine.design_for(design);
+  for (int k = 0; k < 10 && machine.stable_time_step().dt < time_step; ++k) machine.design_for(design *= 1.05);
 }
 
 // ------------------------------------------------------------------------------------------------------- looking
@@ -120,25 +146,34 @@ inline double travel_of(const mbd::Mechanism& m, const Vehicle& v, std::size_t c
 
 // ------------------------------------------------------------------------------------------------------ steering
 
-/// For a vehicle that was built anew and whose fields were restored: brakes and gear are set as the controls had set
-/// them, so that the mechanism is the one that was saved.
+/// For a vehicle that was built anew and whose fields were restored: brakes are set as the controls had set them, so
+/// that the mechanism is the one that was saved.
 inline void take_controls(mbd::Mechanism& m, const Vehicle& v) {
   for (const Wheel& w : v.wheels) {
     if (w.brake_torque > 0.0) m.parts().actuators[w.brake.index()].spec.max_force = w.brake_torque;
   }
-  const Driveline& d = v.driveline;
-  if (d.gear > 0) m.parts().actuators[d.engine.index()].spec.torque_curve = detail::curve_at_shaft(d.spec, d.gear);
 }
 
 /// Passes a driver's controls on, to be called before every step: `dt` is the time (s) to the next call. The steering
-/// turns no faster than `steer_rate` (rad/s of the wheels). Throws Error for a governor's limits that make no sense.
+/// turns no faster than `steer_rate` (rad/s of the wheels). An engine that is an actuator holds the speed in the middle
+/// of the governor's limits with the throttle's share of its torque; without limits it gives that torque at any speed.
+/// Sums what engine and brakes do. Throws Error for a governor's limits that make no sense.
 inline void drive(mbd::Mechanism& m, Vehicle& v, const Controls& c, double dt, double steer_rate = 0.5) {
-  for (Wheel& w : v.wheels) set_brake(m, w, c.brake);
   c.check();
-  Driveline& d = v.driveline;
-  if (d.spec.kind == EngineSpec::Kind::motor) {
-    d.governed += (c.governed(rim_speed_of(m, v)) - d.governed) * -std::expm1(-dt / d.spec.governor_lag);
-    set_throttle(m, d, c.throttle * d.governed);
+  Engine& e = v.driveline.engine;
+  e.work += dt * m.actuator(e.drive).power();
+  for (Wheel& w : v.wheels) {
+    w.brake_work -= dt * m.actuator(w.brake).power();
+    set_brake(m, w, c.brake);
+  }
+  if (e.has_throttle()) {
+    e.governed += (c.governed(rim_speed_of(m, v)) - e.governed) * -std::expm1(-dt / e.spec.governor_lag);
+    set_throttle(m, e, c.throttle * e.governed);
+    work_gears(m, e, m.speed(v.driveline.shaft_turn), dt);
+  } else {
+    const double fastest = 1e3;  // m/s
+    const double rims = c.ease_to < Controls::no_limit ? 0.5 * (c.ease_from + c.ease_to) : fastest;
+    hold_speed(m, e, rims / v.spec.tyre.radius * v.spec.driveline.front.ratio, c.throttle);
   }
   mbd::PrescribedMotion& steer = m.parts().motions[v.steering.steer.index()];
   const double limit = v.steering.largest_angle, now = steer.drive.value;

@@ -130,7 +130,7 @@ TEST_CASE("half shafts turn the wheels by the ratio of the axle, straight or ben
   Vehicle v = add_vehicle(Assembly(m), humvee({.rubber_rear = false}));
   m.set_fixed(v.chassis);
   for (std::size_t k = 0; k < 4; ++k) m.set_fixed(v.suspension[k].knuckle);
-  set_throttle(m, v.driveline, 0.2);
+  set_throttle(m, v.driveline.engine, 0.2);
   REQUIRE(m.run(0.5, 5e-5));
   const double shaft = m.speed(v.driveline.shaft_turn);
   CHECK(shaft > 5.0);
@@ -142,7 +142,7 @@ TEST_CASE("half shafts turn the wheels by the ratio of the axle, straight or ben
 TEST_CASE("an engine without gears, or with gears that hunt, is refused") {
   const auto refused = [](auto&& change) {
     return message_of([&] {
-      VehicleSpec s = humvee({.has_gears = true});
+      VehicleSpec s = humvee({.engine = EngineSpec::Kind::geared});
       change(s.driveline.engine);
       Machine m;
       add_vehicle(Assembly(m), s);
@@ -164,6 +164,21 @@ TEST_CASE("a driver holds a speed, and follows a circle") {
   }
   CHECK(v == Approx(5.0).epsilon(1e-3));  // the integral leaves no error
   CHECK(fastest < 6.0);                   // and does not wind up while the throttle is at its limit
+  // What a rise of the speed is known to take is given at once, so that nothing has to unwind at its end.
+  hold = {};
+  v = fastest = 0.0;
+  for (int k = 0; k < 1500; ++k) {
+    const double wanted = std::min(5.0, 0.01 * k);
+    const Controls c = hold(v, wanted, 0.01, wanted < 5.0 ? 1.0 / 3.0 : 0.0);
+    v += 0.01 * (3.0 * c.throttle - 8.0 * c.brake - 0.5);
+    fastest = std::max(fastest, v);
+  }
+  CHECK(v == Approx(5.0).epsilon(0.01));
+  CHECK(fastest < 5.1);
+  // The integral stands still while something else eases the throttle off.
+  const double before = hold.sum;
+  hold(3.0, 5.0, 0.01, 0.0, true);
+  CHECK(hold.sum == before);
   // A kinematic car on a circle of 20 m, drawn with pieces of 0.5 m; with the trim as well, as there is no offset.
   for (const double trim : {0.0, 1.0}) {
     PathFollower path;

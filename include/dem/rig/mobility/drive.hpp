@@ -72,6 +72,7 @@ struct Sample {
   vehicle::CarSample car;         ///< its time counts from where the driver was told to go
   double way = 0.0, hitch = 0.0;  ///< m; N on the load cell
   std::array<vehicle::WheelSample, 4> wheels;
+  std::array<vehicle::SuspensionSample, 4> suspension = {};
 
   [[nodiscard]] double mean(double vehicle::WheelSample::*value) const {
     return 0.25 * (wheels[0].*value + wheels[1].*value + wheels[2].*value + wheels[3].*value);
@@ -82,6 +83,7 @@ struct Sample {
     names.insert(names.end(), {"way_m", "hitch_N"});
     for (std::size_t k = 0; k < 4; ++k) {
       vehicle::add_columns(names, wheels[k], std::string(vehicle::corner_letters[k]) + "_");
+      vehicle::add_columns(names, suspension[k], std::string(vehicle::corner_letters[k]) + "_");
     }
     return names;
   }
@@ -89,7 +91,7 @@ struct Sample {
     std::vector<double> row;
     vehicle::add_values(row, car);
     row.insert(row.end(), {way, hitch});
-    for (const auto& w : wheels) vehicle::add_values(row, w);
+    for (std::size_t k = 0; k < 4; ++k) vehicle::add_values(row, wheels[k]), vehicle::add_values(row, suspension[k]);
     return row;
   }
 };
@@ -103,10 +105,7 @@ inline double thread_seconds() {
 
 /// The car of a case.
 inline vehicle::ColumnCarSpec car_of(const Settings& s, const Case& c) {
-  vehicle::HumveeOptions o{.sprung_mass = c.sprung_mass, .rubber_rear = false};
-  o.has_gears = s.engine != "motor";
-  o.low_range = s.engine == "low-range";
-  return {.car = vehicle::humvee(o),
+  return {.car = vehicle::humvee(vehicle::with_engine({.sprung_mass = c.sprung_mass, .rubber_rear = false}, s.engine)),
           .lane = c.lane,
           .half_width = s.half_width,
           .spacing = s.spacing,
@@ -143,7 +142,7 @@ class Judge {
     for (std::size_t k = 0; k < 4; ++k) {
       // The soil ends some way beyond the wheel that leaves: half its width, and its lean.
       if (std::abs(car.middle_of(k).y()) > car.spec().half_width - 0.5) return vehicle::ending::left_lane;
-      if (x.wheels[k].sinkage > car.spec().car.tyre.radius) return vehicle::ending::dug_in;
+      if (x.wheels[k].sinkage + x.wheels[k].deflection > car.spec().car.tyre.radius) return vehicle::ending::dug_in;
     }
     if (x.way < -0.3) return vehicle::ending::slid_back;
     // A car that just gets under way on a steep slope spins its wheels too.
@@ -253,7 +252,7 @@ Driven drive(const Settings& s, Case c, std::vector<double>& memory, Stages& sta
     car.advance(drive());
     Sample x{.car = car.sample(), .way = car.way() - from, .hitch = car.hitch().force, .wheels = {}};
     x.car.time = time;
-    for (std::size_t k = 0; k < 4; ++k) x.wheels[k] = car.wheel(k);
+    for (std::size_t k = 0; k < 4; ++k) x.wheels[k] = car.wheel(k), x.suspension[k] = car.suspension(k);
     if (samples.size() % 50 == 0) {
       for (std::size_t j = 0; j < car.machine.parts().joints.size(); ++j) {
         r.widest_joint = std::max(r.widest_joint, car.machine.violation(JointId(j)).displacement);

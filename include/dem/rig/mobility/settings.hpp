@@ -29,7 +29,7 @@ struct Settings {
   std::string soils;                ///< of loads: names, with commas
   int passes = 3;                   ///< of passes, one in the ruts of the other
 
-  std::string engine = "motor";  ///< motor, gears or low-range
+  std::string engine = "motor";  ///< one of vehicle::engine_names
   double sprung_mass = 4430.0;   ///< kg
   std::string tyre = "rigid";    ///< rigid, or ring: a pneumatic tyre
   double tyre_pressure = 2e5;    ///< Pa, of a ring
@@ -79,7 +79,7 @@ inline void declare(Options& options, Settings& s) {
   add("--bulldozing", s.bulldozing, "share of the soil that is pushed out of the rut");
   add("--half-width", s.half_width, "of the soil on either side of the middle [m]");
   options.group("Car");
-  add("--engine", s.engine, "motor (no gears), gears (a diesel), low-range").one_of({"motor", "gears", "low-range"});
+  add("--engine", s.engine, vehicle::engine_words).one_of(vehicle::engine_names());
   add("--sprung-mass", s.sprung_mass, "of the car [kg]");
   add("--tyre", s.tyre, "rigid, or ring: pneumatic, a ring of small bodies, three times as dear")
       .one_of({"rigid", "ring"});

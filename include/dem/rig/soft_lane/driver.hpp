@@ -56,8 +56,8 @@ class Judge {
  public:
   explicit Judge(const Settings& s) : settings_(s) {}
 
-  /// One of `ending`, or an empty text while the run goes on. `deepest` (m) is the sinkage at which a wheel's middle is
-  /// at the level of the lane. `back` (m, along x) is where a lane that goes along begins.
+  /// One of `ending`, or an empty text while the run goes on. A wheel whose middle is below the lane's level has dug
+  /// in. `back` (m, along x) is where a lane that goes along begins.
   std::string operator()(const Sample& x, const std::array<Vec3, 4>& wheels, double back = -HUGE_VAL) {
     const Settings& s = settings_;
     const double far = std::numbers::pi / 3.0;
@@ -65,7 +65,7 @@ class Judge {
     for (std::size_t k = 0; k < 4; ++k) {
       const double middle = s.is_bed() ? 0.0 : (k % 2 == 0 ? 0.5 : -0.5) * s.car.track();
       if (std::abs(wheels[k].y() - middle) > 0.5 * s.bed.width) return ending::left_lane;
-      if (x.wheels[k].sinkage > s.car.tyre.radius) return ending::dug_in;
+      if (x.wheels[k].sinkage + x.wheels[k].deflection > s.car.tyre.radius) return ending::dug_in;
     }
     if (s.scene == "drawbar") return x.car.time >= held_time(s) ? ending::held : "";
     if (x.way < -0.3 || std::min(wheels[2].x(), wheels[3].x()) - s.car.tyre.radius < back) return ending::slid_back;

@@ -24,8 +24,8 @@ class LaneRig : public Rig {
   [[nodiscard]] std::string output() const override { return settings.output; }
   [[nodiscard]] ResultNames results() const override {
     return {.files = {"results.csv", "telemetry.csv", "rut.csv", "along.csv", "pull.csv", "soft_lane.pvd"},
-            .plots = {"speed", "slip", "sinkage", "load", "pull", "torque", "travel", "engine", "driver", "attitude",
-                      "rut", "along", "section", "drawbar"},
+            .plots = {"speed", "slip", "sinkage", "load", "pull", "torque", "travel", "engine", "work", "joints",
+                      "driver", "attitude", "rut", "along", "section", "drawbar"},
             .frames = {"grains", "surfaces"}};
   }
   [[nodiscard]] bool can_resume() const override { return true; }
@@ -82,13 +82,18 @@ class LaneRig : public Rig {
     report.plot(page, speed_plot(c), "speed", "Speed of the car along its own axis.");
     wheels(&WheelSample::slip, 1.0, "slip", "Slip", "slip (omega r - v)/max", "Slip of each wheel.");
     wheels(&WheelSample::sinkage, 1e3, "sinkage", "Sinkage", "sinkage [mm]",
-           "Depth of each wheel's lowest point below the level.");
+           "Depth of each tyre's lowest point below the level.");
     wheels(&WheelSample::load, 1e-3, "load", "Load", "load [kN]", "Load of each wheel.");
     wheels(&WheelSample::pull, 1e-3, "pull", "Pull", "pull [kN]", "Net forward force of the grains on each wheel.");
     wheels(&WheelSample::torque, 1e-3, "torque", "Torque", "torque [kN m]",
            "Torque that drives each wheel against the grains.");
     wheels(&WheelSample::travel, 1e3, "travel", "Suspension travel", "travel [mm]", "Travel of each wheel, up.");
     report.plot(page, engine_plot(c), "engine", "Power of the engine.");
+    report.plot(page, energy_plot(c), "work", "What the engine gave and the brakes took so far.");
+    report.plot(
+        page, joint_plot(c), "joints",
+        "Size of the force in the lower ball joint of each wheel. telemetry.csv has the forces of all joints of "
+        "the knuckles.");
     report.plot(page, driver_plot(c), "driver", "What the driver does; steering: mean angle of the front wheels.");
     report.plot(page, pose_plot(c), "attitude", "Attitude of the chassis.");
     if (auto rut = rut_plot(c); !rut.series.empty()) {

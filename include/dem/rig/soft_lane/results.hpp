@@ -25,13 +25,15 @@ inline constexpr double interval = 0.01;  ///< s, of samples and of the driver
 /// A row of telemetry. The time is that since the driver was told to go.
 struct Sample {
   vehicle::CarSample car;
-  double way = 0.0;           ///< m, along the lane, since the start
-  double acceleration = 0.0;  ///< m/s^2, change of the car's speed since the row before
-  double hitch = 0.0;         ///< N, on the load cell of a drawbar, backwards on the car
-  double widest_joint = 0.0;  ///< m, how far a joint is open
-  double overlap = 0.0;       ///< the deepest of all grains, as a share of their edge
-  double asleep = 0.0;        ///< share of the grains
+  double way = 0.0;                ///< m, along the lane, since the start
+  double acceleration = 0.0;       ///< m/s^2, change of the car's speed since the row before
+  double cost_of_transport = 0.0;  ///< work of the engine so far, for a metre of way and the weight; 0 before 0.1 m
+  double hitch = 0.0;              ///< N, on the load cell of a drawbar, backwards on the car
+  double widest_joint = 0.0;       ///< m, how far a joint is open
+  double overlap = 0.0;            ///< the deepest of all grains, as a share of their edge
+  double asleep = 0.0;             ///< share of the grains
   std::array<WheelSample, 4> wheels = {};
+  std::array<vehicle::SuspensionSample, 4> suspension = {};
 
   [[nodiscard]] double mean(double WheelSample::*value) const {
     return 0.25 * (wheels[0].*value + wheels[1].*value + wheels[2].*value + wheels[3].*value);
@@ -39,24 +41,27 @@ struct Sample {
   [[nodiscard]] std::vector<std::string> columns() const {
     std::vector<std::string> names;
     vehicle::add_columns(names, car);
-    names.insert(names.end(),
-                 {"way_m", "acceleration_m_per_s2", "hitch_N", "widest_joint_m", "deepest_overlap_of_edge", "asleep"});
+    names.insert(names.end(), {"way_m", "acceleration_m_per_s2", "cost_of_transport", "hitch_N", "widest_joint_m",
+                               "deepest_overlap_of_edge", "asleep"});
     for (std::size_t k = 0; k < 4; ++k) {
       vehicle::add_columns(names, wheels[k], std::string(vehicle::corner_letters[k]) + "_");
+      vehicle::add_columns(names, suspension[k], std::string(vehicle::corner_letters[k]) + "_");
     }
     return names;
   }
   [[nodiscard]] std::vector<double> row() const {
     std::vector<double> row;
     vehicle::add_values(row, car);
-    row.insert(row.end(), {way, acceleration, hitch, widest_joint, overlap, asleep});
-    for (const WheelSample& w : wheels) vehicle::add_values(row, w);
+    row.insert(row.end(), {way, acceleration, cost_of_transport, hitch, widest_joint, overlap, asleep});
+    for (std::size_t k = 0; k < 4; ++k) vehicle::add_values(row, wheels[k]), vehicle::add_values(row, suspension[k]);
     return row;
   }
   template <class V>
   void fields(V& v) {
-    v("car", car), v("way", way, "m"), v("acceleration", acceleration, "m/s^2"), v("hitch", hitch, "N");
+    v("car", car), v("way", way, "m"), v("acceleration", acceleration, "m/s^2");
+    v("cost_of_transport", cost_of_transport), v("hitch", hitch, "N");
     v("widest_joint", widest_joint, "m"), v("overlap", overlap), v("asleep", asleep), v.reals("wheels", wheels);
+    v("suspension", suspension);
   }
 };
 
@@ -202,17 +207,17 @@ inline void evaluate_rut(const SurfaceProfile& before, const SurfaceProfile& aft
 /// Means over the samples from one way on to another (m; not_known: to the end); not known for less than three.
 inline Means means_between(const Campaign& c, double radius, double from, double to) {
   Means m = {.from_way = from, .to_way = to};
-  double n = 0.0, energy = 0.0, begin = 0.0, way = 0.0, end = 0.0, end_way = 0.0;
+  double n = 0.0, work = 0.0, energy = 0.0, begin = 0.0, way = 0.0, end = 0.0, end_way = 0.0;
   m.speed = m.slip = m.sinkage = m.load = m.torque = m.pull = 0.0;
   for (std::size_t k = 1; k < c.samples.size(); ++k) {
     const Sample& x = c.samples[k];
     if (!(x.way >= from) || x.way >= to) continue;
-    if (n == 0.0) begin = x.car.time, way = x.way;
+    if (n == 0.0) begin = x.car.time, way = x.way, work = c.samples[k - 1].car.engine_work;
     n += 1.0;
     m.speed += x.car.speed, m.slip += x.mean(&WheelSample::slip), m.sinkage += x.mean(&WheelSample::sinkage);
     m.load += 4.0 * x.mean(&WheelSample::load), m.torque += 4.0 * x.mean(&WheelSample::torque);
     m.pull += 4.0 * x.mean(&WheelSample::pull);
-    energy += x.car.engine_power * (x.car.time - c.samples[k - 1].car.time);
+    energy = x.car.engine_work - work;
     end = x.car.time, end_way = x.way;
   }
   if (!(n > 2.0)) return {.from_way = from, .to_way = to};

@@ -24,7 +24,7 @@ struct Settings {
   double slope = 20.0;  ///< percent, of slope (positive: uphill) and side-slope (positive: the left side is high)
 
   vehicle::VehicleSpec car = vehicle::humvee({.rubber_rear = false});
-  std::string engine = "motor";  ///< motor, gears or low-range
+  std::string engine = "motor";  ///< one of vehicle::engine_names
   std::string tyre = "mesh";     ///< mesh, cylinder or ring (pneumatic, vehicle/ring_tyre.hpp)
   int tyre_triangles = 6662;     ///< of a mesh (thesis)
   double tyre_pressure = 2e5;    ///< Pa, of a ring, above the air around
@@ -111,7 +111,7 @@ inline void declare(Options& options, Settings& s) {
       .one_of({"level", "slope", "side-slope", "brake", "turn", "coast", "step", "soils", "drawbar"});
   add("--slope", s.slope, "percent: of slope (below 0: downhill) and of side-slope (above 0: its left side is high)");
   options.group("Car");
-  add("--engine", s.engine, "motor (no gears), gears (a diesel), low-range").one_of({"motor", "gears", "low-range"});
+  add("--engine", s.engine, vehicle::engine_words).one_of(vehicle::engine_names());
   add("--tyre", s.tyre, "mesh of triangles, as in the thesis, cylinder, or ring: pneumatic")
       .one_of({"mesh", "cylinder", "ring"});
   add("--tyre-triangles", s.tyre_triangles, "of a mesh");
@@ -250,9 +250,7 @@ inline void resolve(Settings& s) {
                                      s.goes_along() ? by_size.length : s.bed.length, s.bed.width);
   rig::resolve(s.bed, {s.bed.length, s.bed.width, by_size.depth > 0.0 ? by_size.depth : full_depth}, s.output);
   fill(s.speed, is_held ? 0.5 * by_size.speed : by_size.speed);
-  if (s.engine != "motor") {
-    s.car = vehicle::humvee({.rubber_rear = false, .has_gears = true, .low_range = s.engine == "low-range"});
-  }
+  if (s.engine != "motor") s.car = vehicle::humvee(vehicle::with_engine({.rubber_rear = false}, s.engine));
   if (!s.inputs.empty()) {
     if (s.scene == "brake" || s.scene == "coast" || s.scene == "turn" || is_held) {
       fail("--inputs drive in place of the driver, but --scene {} is what a driver does; give another scene", s.scene);

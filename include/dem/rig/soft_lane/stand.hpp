@@ -36,6 +36,7 @@ struct Stand {
   std::vector<soil::Placement> before = {};  ///< grains before the car came
   vehicle::Vehicle car = {};
   std::array<std::vector<TyrePart>, 4> tyres = {};
+  std::array<std::optional<vehicle::RingTyre>, 4> rings = {};  ///< pneumatic tyres
   LoadId crane = {};
   std::optional<SurfaceId> hard = {};                  ///< ground, of a step
   std::shared_ptr<vehicle::Hitch> hitch = {};          ///< of a drawbar
@@ -103,7 +104,8 @@ void add_tyre(Stand<Model>& stand, const Settings& s, const vehicle::Assembly& i
   } else if (s.tyre == "cylinder") {
     part(wheel, surface::Cylinder(tyre.radius, tyre.width), {.rotation = about_y}, name + " tyre");
   } else {
-    const vehicle::RingTyre ring = vehicle::add_ring_tyre(in, stand.car, corner, s.ring());
+    const vehicle::RingTyre& ring =
+        stand.rings[corner].emplace(vehicle::add_ring_tyre(in, stand.car, corner, s.ring()));
     for (std::size_t k = 0; k < ring.segments.size(); ++k) {
       part(ring.segments[k], surface::Box(to_eigen(ring.edges())), {}, name + " tyre " + std::to_string(k));
     }
@@ -214,7 +216,9 @@ Sample sample_of(const Stand<Model>& stand, const vehicle::Controls& controls, d
   x.overlap = deepest_overlap(stand.world);
   x.asleep = static_cast<double>(stand.world.asleep_count()) / static_cast<double>(stand.world.particle_count());
   for (std::size_t k = 0; k < 4; ++k) {
-    x.wheels[k] = vehicle::wheel_sample_of(m, stand.car, k, ground_on(stand, k), stand.level, radius);
+    const double deflection = stand.rings[k] ? vehicle::deflection_of(m, *stand.rings[k]) : 0.0;
+    x.wheels[k] = vehicle::wheel_sample_of(m, stand.car, k, ground_on(stand, k), stand.level, radius, deflection);
+    x.suspension[k] = vehicle::suspension_sample_of(m, stand.car, k);
   }
   return x;
 }

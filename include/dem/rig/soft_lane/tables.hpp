@@ -129,7 +129,7 @@ inline std::string lane_text(const Settings& s, const Campaign& c) {
 
 inline constexpr const char* words_text =
     "Slip is (omega r - v)/max(|omega r|, |v|) with the unloaded radius r: positive drives, negative brakes. Sinkage "
-    "is that of a wheel's lowest point below the level. Pull is the net forward force of the grains on the four "
+    "is that of a tyre's lowest point below the level. Pull is the net forward force of the grains on the four "
     "wheels, "
     "torque what drives them against the grains, and resistance the sum of torque/r - pull: what the soil takes of the "
     "thrust.";
@@ -172,6 +172,20 @@ inline io::Plot pull_plot(const Campaign& c) {
 inline io::Plot engine_plot(const Campaign& c) {
   io::Plot plot{.title = "Engine", .x_label = "time [s]", .y_label = "power [kW]"};
   plot.series = {line_of(c, "engine", 0, [](const Sample& x) { return 1e-3 * x.car.engine_power; })};
+  return plot;
+}
+inline io::Plot energy_plot(const Campaign& c) {
+  io::Plot plot{.title = "Work", .x_label = "time [s]", .y_label = "work [kJ]"};
+  plot.series = {line_of(c, "engine", 0, [](const Sample& x) { return 1e-3 * x.car.engine_work; }),
+                 line_of(c, "brakes", 1, [](const Sample& x) { return 1e-3 * x.car.brake_work; })};
+  return plot;
+}
+inline io::Plot joint_plot(const Campaign& c) {
+  io::Plot plot{.title = "Lower ball joints", .x_label = "time [s]", .y_label = "force [kN]"};
+  for (std::size_t k = 0; k < 4; ++k) {
+    plot.series.push_back(line_of(c, vehicle::corner_names[k], static_cast<int>(k),
+                                  [&](const Sample& x) { return 1e-3 * x.suspension[k].lower_ball.norm(); }));
+  }
   return plot;
 }
 inline io::Plot driver_plot(const Campaign& c) {
