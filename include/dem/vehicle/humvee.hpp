@@ -159,7 +159,7 @@ DEM_COLD inline VehicleSpec humvee(const HumveeOptions& o = {}) {
     d.engine.gears = {1.0 / 0.3};
   }
   d.engine.largest_torque = 793.0 / 0.3;
-  d.engine.speed_gain = 500.0;  // N m s/rad; 2,000 ask for steps of 2e-5 s
+  d.engine.speed_gain = 200.0;  // N m s/rad; 500 ask for steps of 3e-5 s
 
   const double rotor = o.engine == EngineSpec::Kind::geared ? d.engine.rotor.mass : 0.0;
   const double on_chassis = rotor + s.steering.rack.mass + s.steering.pinion.mass + d.shaft.mass +
