@@ -15,6 +15,7 @@
 
 #include <fmt/format.h>
 
+#include <array>
 #include <chrono>
 #include <ctime>
 #include <numbers>
@@ -60,8 +61,8 @@ Lines rest(Car& car) {
           {"speed left", car.speed(), 0.0, "m/s"}};
 }
 
-/// What an engine at full throttle gives to the drive shaft, by its curve alone.
-struct OnItsCurve {
+/// An engine at full throttle on a bench: its curve, and with gears its rotor, clutch and shifts.
+struct EngineOnBench {
   const dem::vehicle::EngineSpec& e;
   std::size_t gear = 0;
   double since_shift = 1e3, rotor = e.idle;  ///< s; rad/s
@@ -113,10 +114,10 @@ Lines launch(Car& car) {
   const double inertia = mass + turning / (radius * radius);
   const auto& e = v.driveline.engine.spec;
   const double grip = 0.8 * mass * 9.81;
-  OnItsCurve curve{e, {}};
+  EngineOnBench bench{e, {}};
   double time = 0.0, speed = 0.0, slip = 0.0;
   for (const double dt = 1e-4; speed < goal; time += dt) {
-    const double torque = curve.at_shaft(speed / (1.0 - slip) / radius * ratio, dt);
+    const double torque = bench.at_shaft(speed / (1.0 - slip) / radius * ratio, dt);
     const double push = std::min(grip, torque * ratio / radius);
     const double length = v.spec.tyre.relaxation_length, steady = push / (4.0 * v.spec.tyre.tread_stiffness * length);
     slip += std::min(1.0, dt * std::max(0.5, speed) / length) * (steady - slip);
@@ -273,6 +274,8 @@ Lines bumps(Car& car) {
     return sum;
   };
   double pushed = 0.0, roll = 0.0, highest = 0.0, lowest = 0.0;
+  std::array<double, 4> at_rest;
+  for (std::size_t k = 0; k < 4; ++k) at_rest[k] = travel_of(m, car.vehicle, k);
   const double began = m.time(), before = lift();
   car.each_step = [&](double dt) {
     for (const auto& w : car.vehicle.wheels) pushed += dt * m.load(w.road).wrench.force.z;
@@ -281,7 +284,7 @@ Lines bumps(Car& car) {
     c.now = hold(c.speed(), 3.0, 0.01);
     roll = std::max(roll, std::abs(attitude_of(m, c.vehicle).x()));
     for (std::size_t k = 0; k < 4; ++k) {
-      const double travel = travel_of(m, c.vehicle, k);
+      const double travel = travel_of(m, c.vehicle, k) - at_rest[k];
       highest = std::max(highest, travel), lowest = std::min(lowest, travel);
     }
     return true;
@@ -290,8 +293,8 @@ Lines bumps(Car& car) {
   return {{"mean of what the road carries", (pushed - lift() + before) / time, car.weight(), "N"},
           {"way", car.position().x(), 0.0, "m"},
           {"largest roll", roll * 180.0 / std::numbers::pi, 0.0, "deg"},
-          {"wheel travel, up", highest, 0.0, "m"},
-          {"wheel travel, down", lowest, 0.0, "m"}};
+          {"wheel travel from rest, up", highest, 0.0, "m"},
+          {"wheel travel from rest, down", lowest, 0.0, "m"}};
 }
 
 struct Scene {

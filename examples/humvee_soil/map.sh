@@ -5,8 +5,8 @@
 #
 #   map.sh <humvee_soil> <folder> [more options of humvee_soil]
 #
-# SLOPES (percent), DENSITIES (0 to 1; 0: as rained), JOBS and KEEP (s, after which a run is kept again; 0, as for a
-# program without HDF5: never) are taken from the environment.
+# SLOPES (percent), DENSITIES (0 to 1; 0: as rained), JOBS and KEEP (s, after which a run is kept again; 0: never, as in a
+# program without HDF5) are taken from the environment.
 set -euo pipefail
 
 [ $# -ge 2 ] || { sed -n 's/^#   //p' "$0" >&2 && exit 2; }
@@ -18,6 +18,7 @@ slopes=${SLOPES:-0 10 20}
 densities=${DENSITIES:-0 0.5}
 jobs=${JOBS:-$(nproc)}
 export keep=${KEEP:-600}
+if "$car" --resume --output none 2>&1 | grep -q 'needs HDF5'; then keep=0; fi
 
 # drive <name> <options>...: a run, unless it is there.
 drive() {

@@ -10,6 +10,7 @@ rm -rf "$output"
 mkdir -p "$output"
 cat > "$output/car" << 'CAR'
 #!/usr/bin/env bash
+[ "$1" != --resume ] || exit 1  # asked whether it can
 echo "$*" >> ../runs.txt
 while [ $# -gt 0 ]; do [ "$1" != --output ] || out=$2; shift; done
 mkdir -p "$out"

@@ -122,7 +122,7 @@ class SoftLane {
     vehicle::take_controls(world.machine(), stand.car);
     if (!result.has_stood) look_at_rest(stand, result);
     if (s.slope_angle() != 0.0) tilt(stand, result, stages, look);
-    soft_lane::Driving n(s, result.weight, world.time(), soft_lane::place_of(stand));
+    soft_lane::Driving n(s, result.weight, world.time(), soft_lane::place_of(stand), stand.car.driveline.engine.work);
     stages.begin("drive", s.path);
     const auto stage = stages.enter(world, n);
     const double began = io::steady_seconds() - n.computed;
@@ -135,7 +135,7 @@ class SoftLane {
       if (!result.samples.empty()) {
         x.acceleration = (x.car.speed - result.samples.back().car.speed) / soft_lane::interval;
       }
-      if (n.way > 0.1) x.cost_of_transport = x.car.engine_work / (result.weight * n.way);
+      if (n.way > 0.1) x.cost_of_transport = (x.car.engine_work - n.work) / (result.weight * n.way);
       result.ended = n.judge(x, soft_lane::wheels_of(stand), stand.patch ? stand.patch->back() + s.rim() : -HUGE_VAL);
       result.samples.push_back(x);
       n.computed = io::steady_seconds() - began;

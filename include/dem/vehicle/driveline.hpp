@@ -50,8 +50,7 @@ DEM_COLD inline Driveline add_driveline(const Assembly& in, BodyId chassis, cons
   };
   d.front_spline = spline("front spline", d.front.pinion, s.front);
   d.rear_spline = spline("rear spline", d.rear.pinion, s.rear);
-  const Vec3 above = s.shaft_middle + Vec3(0.5, 0, 0.4);  // m
-  d.engine = add_engine(in, chassis, d.shaft_turn, s.engine, above, forward, s.front.ratio * spin);
+  d.engine = add_engine(in, chassis, d.shaft_turn, s.engine, s.shaft_middle, forward, s.front.ratio * spin);
   return d;
 }
 

@@ -16,9 +16,9 @@ namespace dem::vehicle {
 /// A motor has a governor as well. Above a speed of the rims it takes the throttle back, in proportion, to none at a
 /// second speed. It looks at every time step: a driver who looks a hundred times a second is too slow for it, as light
 /// shafts and wheels get faster by metres per second in that time, and would switch the engine on and off. Its valve
-/// lags by EngineSpec::governor_lag (an engine that is an actuator has none): on the light drive shaft it then acts as
-/// a spring and damper in a row, which takes energy, and is stable with steps up to some 1e-4 s for bands of 0.2 m/s
-/// and more.
+/// lags by EngineSpec::governor_lag (an engine that is an actuator has none, and holds the middle of both speeds): on
+/// the light drive shaft it then acts as a spring and damper in a row, which takes energy, and is stable with steps up
+/// to some 1e-4 s for bands of 0.2 m/s and more.
 struct Controls {
   double throttle = 0.0, brake = 0.0, steer = 0.0;
   double ease_from = no_limit, ease_to = no_limit;  ///< m/s, of the rims' mean, as the drive shaft turns
@@ -40,7 +40,7 @@ struct Controls {
 };
 
 /// Turns the rims with a speed (m/s), or up to half of `band` (m/s) slower or faster, whatever the car does: by the
-/// governor alone, at full throttle. It does not brake them. `steer` in rad.
+/// governor alone, at full throttle. It does not brake them, but an engine that is an actuator does. `steer` in rad.
 inline Controls turn_rims(double steer, double wanted, double band = 0.4) {
   return {.throttle = 1.0, .steer = steer, .ease_from = wanted - 0.5 * band, .ease_to = wanted + 0.5 * band};
 }
@@ -51,8 +51,8 @@ struct SpeedHold {
   double integral = 0.1;  ///< per m
   double sum = 0.0;       ///< m, of the error so far
 
-  /// Controls for a speed and the wanted one (m/s), dt (s) after the last call. `known` is the output that the wanted
-  /// speed is known to take, as that which its rise takes. The integral does not grow while something else eases the
+  /// Controls for a speed and the wanted one (m/s), dt (s) after the last call. `known` is output that
+  /// is known to be needed, as for the wanted acceleration. The integral does not grow while something else eases the
   /// throttle off.
   Controls operator()(double speed, double wanted, double dt, double known = 0.0, bool is_eased = false) {
     const double error = wanted - speed, out = known + gain * error + integral * sum;

@@ -23,14 +23,16 @@ struct EngineSpec {
   double speed_gain = 2000.0;      ///< N m s/rad, of the actuator
   double largest_torque = 2643.0;  ///< N m at the drive shaft, of the actuator
   mbd::Curve torque = {};          ///< N m over rad/s of the engine's own shaft, at full throttle
-  std::vector<double> gears =
-      {};                      ///< turns of the engine for one of the transfer case, from low to high; a motor has 1
+  /// Turns of the engine for one of the transfer case, from low to high. A motor has one.
+  std::vector<double> gears = {};
   double transfer = 1.0;       ///< turns of the transfer case for one turn of the drive shaft
   double governor_lag = 2e-3;  ///< s, of the governor's valve; see Controls
 
-  // Geared only. The clutch lets go at the idling speed and holds clutch_torque from clutch_speed on.
+  // Geared only. The clutch lets go at the idling speed, of the rotor or of the gearbox's input, whichever is faster,
+  // and holds clutch_torque from clutch_speed on. So a car that coasts below both rolls freely.
   mbd::Curve drag = {};  ///< N m over rad/s, with closed throttle: below 0
   PartMass rotor;
+  Vec3 rotor_at = Vec3(0.5, 0, 0.4);            ///< m, middle of the rotor from that of the drive shaft
   double idle = 84.0;                           ///< rad/s
   double clutch_speed = 140.0;                  ///< rad/s
   double clutch_torque = 1000.0;                ///< N m
@@ -67,14 +69,16 @@ DEM_COLD inline void check_gears(const EngineSpec& e) {
   }
   require_non_negative(e.shift_wait, "time between two shifts of the engine's gears", "s");
   require_positive(e.clutch_torque, "torque of the engine's clutch", "N m");
-  if (!(e.idle > 0.0 && e.clutch_speed > e.idle)) {
+  require_positive(e.idle, "idling speed of the engine", "rad/s");
+  if (!(e.clutch_speed > e.idle)) {
     fail("the engine idles at {:g} rad/s and its clutch holds from {:g} rad/s on, but the latter must be faster",
          e.idle, e.clutch_speed);
   }
   if (e.drag.empty()) fail("the engine has no curve of its drag; give EngineSpec::drag points (rad/s, N m below 0)");
 }
 
-/// Throws Error for an engine without gears, gears that do not fall, or a shift that would come back at once.
+/// Throws Error for an engine that cannot be: without gears or a curve, with gears that do not fall or would shift back
+/// at once, without drag or an idling speed below that of its clutch; and for a motor with more than one ratio.
 DEM_COLD inline void check_engine(const EngineSpec& e) {
   if (e.kind == EngineSpec::Kind::actuator) {
     require_positive(e.speed_gain, "speed gain of the engine", "N m s/rad");
@@ -103,17 +107,20 @@ struct Engine {
   ClutchId clutch;
   std::size_t gear = 0;      ///< from 0
   double governed = 1.0;     ///< share of the throttle that the governor's valve leaves now
+  double share = 1.0;        ///< of its torque that an actuator may use now
   double since_shift = 0.0;  ///< s
   double work = 0.0;         ///< J, of the engine so far; summed by drive()
 
   bool has_throttle() const { return spec.kind != EngineSpec::Kind::actuator; }
+  double limit() const { return std::max(1e-12, share * spec.largest_torque); }  ///< N m, of an actuator now
   template <class V>
   void fields(V& v) {
-    v("gear", gear), v("governed", governed), v("since_shift", since_shift, "s"), v("work", work, "J");
+    v("gear", gear), v("governed", governed), v("share", share), v("since_shift", since_shift, "s"),
+        v("work", work, "J");
   }
 };
 
-/// `shaft` turns about `forward` in the chassis, at `spin` (rad/s) at the start. A rotor lies at `at` (m).
+/// `shaft` turns about `forward` in the chassis with its middle at `at` (m), at `spin` (rad/s) at the start.
 DEM_COLD inline Engine add_engine(const Assembly& in, BodyId chassis, JointId shaft, const EngineSpec& s,
                                   const Vec3& at, const Vec3& forward, double spin) {
   using namespace mbd;
@@ -129,10 +136,13 @@ DEM_COLD inline Engine add_engine(const Assembly& in, BodyId chassis, JointId sh
   } else if (s.kind == EngineSpec::Kind::motor) {
     e.drive = m.add_actuator(motor(name, shaft, detail::curve_at_shaft(s), 0.0));
   } else {
-    e.rotor = in.body("rotor", s.rotor, at, std::max(s.idle, spin * s.ratio(0)) * forward);
-    e.crank = in.joint(JointKind::revolute, "crank", chassis, e.rotor, at, forward);
+    while (e.gear + 1 < s.gears.size() && spin * s.ratio(e.gear) > s.shift_up) ++e.gear;
+    const Vec3 middle = at + s.rotor_at;
+    e.rotor = in.body("rotor", s.rotor, middle, std::max(s.idle, spin * s.ratio(e.gear)) * forward);
+    e.crank = in.joint(JointKind::revolute, "crank", chassis, e.rotor, middle, forward);
     e.drive =
         m.add_actuator(engine(name, e.crank, s.torque.held_outside(), s.drag.held_outside()).idling_at(s.idle, 0.05));
+    // Open until work_gears() sets the ratio of the gear. What is derived is for the largest, which bears least.
     ClutchSpec plates = clutch(in.name("clutch"), shaft, e.crank, 0.0);
     plates.terms[1].ratio = -s.ratio(0);
     e.clutch = m.add_clutch(std::move(plates));
@@ -166,9 +176,11 @@ inline void work_gears(mbd::Mechanism& m, Engine& e, double shaft_speed, double 
     e.since_shift = 0.0;
     plates.history.slip_work += plates.elastic_energy();
     plates.history.is_closed = false, plates.history.stretch = 0.0;
-    plates.spec.terms[1].ratio = -s.ratio(e.gear);
   }
-  const double closed = (m.speed(e.crank) - s.idle) / (s.clutch_speed - s.idle);
+  const double ratio = s.ratio(e.gear);
+  plates.spec.terms[1].ratio = -ratio;
+  const double fastest = std::max(m.speed(e.crank), shaft_speed * ratio);
+  const double closed = (fastest - s.idle) / (s.clutch_speed - s.idle);
   plates.spec.capacity = s.clutch_torque * std::clamp(closed, 0.0, 1.0);
 }
 
@@ -180,12 +192,13 @@ inline void set_throttle(mbd::Mechanism& m, const Engine& e, double throttle) {
 
 /// Lets an engine that is an actuator hold a speed of the drive shaft (rad/s) with at most `share` (0 to 1) of its
 /// torque.
-inline void hold_speed(mbd::Mechanism& m, const Engine& e, double shaft_speed, double share = 1.0) {
+inline void hold_speed(mbd::Mechanism& m, Engine& e, double shaft_speed, double share = 1.0) {
   if (e.has_throttle()) fail("this engine has a torque curve and a throttle; use set_throttle");
+  e.share = std::clamp(share, 0.0, 1.0);
   mbd::ActuatorSpec& spec = m.parts().actuators[e.drive.index()].spec;
-  spec.on = share > 0.0;
+  spec.on = e.share > 0.0;
   spec.set_point = mbd::Signal::held(0.0, shaft_speed);
-  spec.max_force = std::max(1e-12, std::min(1.0, share) * e.spec.largest_torque);
+  spec.max_force = e.limit();
 }
 
 }  // namespace dem::vehicle

@@ -21,8 +21,8 @@ class LaneDriver {
     Vec3 from = Vec3(-100, 0, 0), to = Vec3(1000, 0, 0);  ///< m, of the path
   };
 
-  /// `force` (N) is what it takes to stand on the slope; the throttle begins with it, so that the car does not roll
-  /// back.
+  /// `force` (N) is what it takes to stand on the slope; the throttle begins with it, so that the car hardly
+  /// rolls back; with gears by some centimetres, until the rotor is up.
   LaneDriver(const VehicleSpec& car, const Spec& spec, double force)
       : spec_(spec), rear_(car.rear.points.wheel.x(), 0, 0) {
     largest_ = largest_torque(car.driveline.engine) * car.driveline.front.ratio / car.tyre.radius;

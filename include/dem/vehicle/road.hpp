@@ -22,6 +22,7 @@ class RoadHeights {
   RoadHeights(double x0, double y0, double spacing, std::size_t across, std::vector<double> heights)
       : x0_(x0), y0_(y0), spacing_(spacing), across_(across), heights_(std::move(heights)) {
     require_positive(spacing, "spacing of the heights of a road", "m");
+    if (!std::isfinite(x0) || !std::isfinite(y0)) fail("the heights of a road begin at ({:g}, {:g}) m", x0, y0);
     if (across < 2 || heights_.size() < 2 * across || heights_.size() % across != 0) {
       fail("a road has {} heights in rows of {}, but needs at least 2 full rows of at least 2", heights_.size(),
            across);
@@ -31,13 +32,18 @@ class RoadHeights {
     }
   }
 
-  /// f(x, y) over a rectangle from (x0, y0), all in m. The spacing is made smaller, so that it fits into length_x.
+  /// f(x, y) over a rectangle from (x0, y0), all in m. The spacing is made smaller, so that it fits into length_x;
+  /// along y the last row may lie up to a spacing beyond length_y. Throws Error for none or more than 1e8 cells.
   template <class F>
   static RoadHeights of(double x0, double y0, double length_x, double length_y, double spacing, F&& f) {
     require_positive(spacing, "spacing of the heights of a road", "m");
     require_positive(length_x, "length of the heights of a road along x", "m");
     require_positive(length_y, "length of the heights of a road along y", "m");
-    require_within(length_x / spacing * (length_y / spacing), 1.0, 1e8, "heights of a road");
+    const double count = length_x / spacing * (length_y / spacing);
+    if (!(count >= 1.0 && count <= 1e8)) {
+      fail("a road of {:g} m x {:g} m has {:g} cells of {:g} m, but must have 1 to 1e8; change the spacing", length_x,
+           length_y, count, spacing);
+    }
     const double cells = std::ceil(length_x / spacing * (1.0 - 1e-12)), fitted = length_x / cells;
     const auto along = static_cast<std::size_t>(cells) + 1;
     const auto across = static_cast<std::size_t>(std::ceil(length_y / fitted * (1.0 - 1e-12))) + 1;

@@ -100,7 +100,8 @@ DEM_COLD inline Vehicle add_vehicle(const Assembly& in, const VehicleSpec& s, co
 }
 
 /// Derives what the user left open for a time step (s) of a machine by itself. An engine's own damping comes on top of
-/// what is derived: that is made softer until the step bears both, where ten times 5 % will do.
+/// what is derived: that is made softer until the step bears both, where ten times 5 % will do. Where they do not, the
+/// first step says what is too stiff.
 template <class Machine>
 void design_for(Machine& machine, double time_step) {
   double design = time_step;
@@ -146,12 +147,14 @@ inline double travel_of(const mbd::Mechanism& m, const Vehicle& v, std::size_t c
 
 // ------------------------------------------------------------------------------------------------------ steering
 
-/// For a vehicle that was built anew and whose fields were restored: brakes are set as the controls had set them, so
-/// that the mechanism is the one that was saved.
+/// For a vehicle that was built anew and whose fields were restored: brakes and an engine that is an actuator are set
+/// as the controls had set them, so that the mechanism is the one that was saved.
 inline void take_controls(mbd::Mechanism& m, const Vehicle& v) {
   for (const Wheel& w : v.wheels) {
     if (w.brake_torque > 0.0) m.parts().actuators[w.brake.index()].spec.max_force = w.brake_torque;
   }
+  const Engine& e = v.driveline.engine;
+  if (!e.has_throttle()) m.parts().actuators[e.drive.index()].spec.max_force = e.limit();
 }
 
 /// Passes a driver's controls on, to be called before every step: `dt` is the time (s) to the next call. The steering

@@ -72,7 +72,7 @@ TEST_CASE("means of a drive are those of its second half, and resistance is the 
     x.car.time = 0.01 * static_cast<double>(k);
     x.way = 0.02 * static_cast<double>(k);
     x.car.speed = k < 50 ? 9.0 : 2.0;
-    x.car.engine_power = k < 50 ? 1e6 : 4e3;
+    x.car.engine_work = k < 50 ? 1e4 * static_cast<double>(k) : 5e5 + 40.0 * static_cast<double>(k - 50);
     for (auto& w : x.wheels) w.torque = 485.0, w.pull = 400.0, w.slip = 0.2, w.sinkage = 0.1;
   }
   mobility::Result r{.way = 2.0, .time = 1.0, .weight = 5e4};

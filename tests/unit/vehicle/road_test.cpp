@@ -21,6 +21,11 @@ TEST_CASE("heights of a road are straight between their points, and level beyond
   CHECK(road(3.0, 1.0) == Approx(5.0));
   CHECK(road(9.0, 1.0) == Approx(5.0));
   CHECK(road(-9.0, -9.0) == Approx(0.0).margin(1e-12));
+  const auto fitted = RoadHeights::of(0.0, 0.0, 1.1, 0.6, 0.5, [](double x, double y) { return x + 10.0 * y; });
+  CHECK(fitted(1.1, 0.0) == Approx(1.1));  // three cells of 0.37 m along x, two of them along y
+  CHECK(fitted(0.0, 0.7) == Approx(7.0));
+  CHECK_THAT(message_of([] { RoadHeights::of(0, 0, 1.0, 1.0, 4.0, [](double, double) { return 0.0; }); }),
+             Contains("0.0625 cells of 4 m"));
   CHECK_THAT(message_of([] { RoadHeights(0, 0, 0.5, 3, {1, 2, 3, 4}); }), Contains("4 heights in rows of 3"));
   CHECK_THAT(message_of([] { RoadHeights(0, 0, 0.0, 2, {1, 2, 3, 4}); }), Contains("spacing of the heights of a road"));
   CHECK_THAT(message_of([] { RoadHeights(0, 0, 1.0, 2, {1, 2, 3, std::nan("")}); }), Contains("height 3 of a road"));

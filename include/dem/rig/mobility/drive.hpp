@@ -168,13 +168,13 @@ inline constexpr double hold_time = 32.0;  ///< s
 /// Means over the second half of the way.
 inline void evaluate(Result& r, const std::vector<Sample>& samples, double radius) {
   if (samples.size() < 3) return;
-  double n = 0.0, energy = 0.0, from = 0.0, begin = 0.0;
+  double n = 0.0, energy = 0.0, work = 0.0, from = 0.0, begin = 0.0;
   double speed = 0.0, slip = 0.0, sinkage = 0.0, pull = 0.0, torque = 0.0;
   using W = vehicle::WheelSample;
   for (const Sample& x : samples) {
     if (!(x.way >= 0.5 * r.way)) continue;
-    if (n == 0.0) begin = x.car.time, from = x.way;
-    else energy += vehicle::ColumnCar::interval * std::max(0.0, x.car.engine_power);
+    if (n == 0.0) begin = x.car.time, from = x.way, work = x.car.engine_work;
+    energy = x.car.engine_work - work;
     n += 1.0;
     speed += x.car.speed, slip += x.mean(&W::slip), sinkage += x.mean(&W::sinkage);
     pull += 4.0 * x.mean(&W::pull), torque += 4.0 * x.mean(&W::torque);

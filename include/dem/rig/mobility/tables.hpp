@@ -55,8 +55,9 @@ inline io::Table pull_table(const Result& r) {
 }
 
 inline constexpr const char* words_text =
-    "Soil is columns with memory (dynamic Bekker), tyres are rigid. Slip is (omega r - v)/max(|omega r|, |v|) with the "
-    "tyre's radius. Sinkage is that of a wheel's lowest point below the untouched soil. Resistance is the sum of "
+    "Soil is columns with memory (dynamic Bekker). Slip is (omega r - v)/max(|omega r|, |v|) with the "
+    "tyre's radius, unloaded. Sinkage is that of a tyre's lowest point below the untouched soil. Resistance is the sum "
+    "of "
     "torque/r - pull over the wheels: what the soil takes of the thrust. Energy is that of the engine. Computing is "
     "seconds of one core for a second of the car.";
 

@@ -106,17 +106,19 @@ struct Driving {
   Judge judge;
   double start, from, way = 0.0;  ///< s, m, m
   double computed = 0.0;          ///< s of wall time
+  double work = 0.0;              ///< J, of the engine at the start
 
   /// `weight` (N) of the car.
-  Driving(const Settings& s, double weight, double start_, double from_)
+  Driving(const Settings& s, double weight, double start_, double from_, double work_)
       : driver(s, s.scene == "slope" ? std::sin(s.slope_angle()) * weight : 0.0),
         judge(s),
         start(start_),
-        from(from_) {}
+        from(from_),
+        work(work_) {}
   template <class V>
   void fields(V& v) {
     v("driver", driver), v("judge", judge), v("start", start, "s"), v("from", from, "m"), v("way", way, "m"),
-        v("computed", computed, "s");
+        v("computed", computed, "s"), v("work", work, "J");
   }
 };
 

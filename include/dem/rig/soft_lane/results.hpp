@@ -212,7 +212,7 @@ inline Means means_between(const Campaign& c, double radius, double from, double
   for (std::size_t k = 1; k < c.samples.size(); ++k) {
     const Sample& x = c.samples[k];
     if (!(x.way >= from) || x.way >= to) continue;
-    if (n == 0.0) begin = x.car.time, way = x.way, work = c.samples[k - 1].car.engine_work;
+    if (n == 0.0) begin = x.car.time, way = x.way, work = x.car.engine_work;
     n += 1.0;
     m.speed += x.car.speed, m.slip += x.mean(&WheelSample::slip), m.sinkage += x.mean(&WheelSample::sinkage);
     m.load += 4.0 * x.mean(&WheelSample::load), m.torque += 4.0 * x.mean(&WheelSample::torque);
