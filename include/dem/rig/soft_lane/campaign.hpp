@@ -99,7 +99,7 @@ void run_campaign(const Settings& settings, ShapeOf&& shape_of, Campaign& c, Ses
       if (k == 1) test.drive(stand, c, session, look);
       else test.drive(stand, c, session, no_look);
       if (k < s.passes) return;
-      const auto lane_too = session.keep("lane", stand);
+      const auto lane_too = session.keep("lane", stand), car_too = session.keep("car", stand.car);
       session.complete(stand.world);
     };
     work_and_save(drive, [&] {
