@@ -23,13 +23,13 @@ struct EngineSpec {
   double speed_gain = 2000.0;      ///< N m s/rad, of the actuator
   double largest_torque = 2643.0;  ///< N m at the drive shaft, of the actuator
   mbd::Curve torque = {};          ///< N m over rad/s of the engine's own shaft, at full throttle
-  /// Turns of the engine for one of the transfer case, from low to high. A motor has one.
+  /// Turns of the engine for one of the transfer case, of the first gear first: they fall. A motor has one.
   std::vector<double> gears = {};
   double transfer = 1.0;       ///< turns of the transfer case for one turn of the drive shaft
   double governor_lag = 2e-3;  ///< s, of the governor's valve; see Controls
 
   // Geared only. The clutch lets go at the idling speed, of the rotor or of the gearbox's input, whichever is faster,
-  // and holds clutch_torque from clutch_speed on. So a car that coasts below both rolls freely.
+  // and holds clutch_torque from clutch_speed on. So a car rolls freely while both are slower.
   mbd::Curve drag = {};  ///< N m over rad/s, with closed throttle: below 0
   PartMass rotor;
   Vec3 rotor_at = Vec3(0.5, 0, 0.4);            ///< m, middle of the rotor from that of the drive shaft
@@ -142,7 +142,8 @@ DEM_COLD inline Engine add_engine(const Assembly& in, BodyId chassis, JointId sh
     e.crank = in.joint(JointKind::revolute, "crank", chassis, e.rotor, middle, forward);
     e.drive =
         m.add_actuator(engine(name, e.crank, s.torque.held_outside(), s.drag.held_outside()).idling_at(s.idle, 0.05));
-    // Open until work_gears() sets the ratio of the gear. What is derived is for the largest, which bears least.
+    // Open until work_gears() sets the ratio of the gear. Its stiffness is derived for the first, whose
+    // ratio is the largest and bears the least.
     ClutchSpec plates = clutch(in.name("clutch"), shaft, e.crank, 0.0);
     plates.terms[1].ratio = -s.ratio(0);
     e.clutch = m.add_clutch(std::move(plates));

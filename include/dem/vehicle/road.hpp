@@ -85,10 +85,11 @@ struct Road {
   Vec3 normal = Vec3::UnitZ();                      ///< out of the plane
   double friction = 1.0;                            ///< times the friction of a tyre
   std::shared_ptr<const RoadHeights> heights = {};  ///< in place of the plane, where given
-  double print = 0.2;  ///< m, length and width over which heights are averaged: what a tyre does not follow
+  double print = 0.2;  ///< m, between points ahead and behind, left and right, that make the plane: a tyre does not
+                       ///< follow what is shorter
 
   /// The plane that a wheel of a radius (m) with its middle at `centre` (m) stands on: the plane itself, or the one
-  /// that has the mean height and slope of the print under the wheel.
+  /// through four points about the print under the wheel.
   Road under(const Vec3& centre, double radius) const {
     if (!heights) return *this;
     // The print lies below the middle along the normal, which is known from a first look straight below it.

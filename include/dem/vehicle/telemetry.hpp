@@ -14,8 +14,8 @@ namespace dem::vehicle {
 inline constexpr std::array<const char*, 4> corner_letters = {"fl", "fr", "rl", "rr"};
 
 /// Longitudinal slip: (rim - way)/max(|rim|, |way|), of the speed of the rim, omega r, and that of the wheel's middle
-/// (m/s). Positive drives, negative brakes, from -1 (locked) to 1 (spins on the spot); 2 or -2 where both turn against
-/// each other. 0 below 1 mm/s.
+/// (m/s). Of a car that goes forward positive drives and negative brakes, from -1 (locked) to 1 (spins on the spot);
+/// beyond that, up to 2, where both go against each other. 0 below 1 mm/s.
 inline double slip_of(double rim, double way) {
   const double fastest = std::max(std::abs(rim), std::abs(way));
   return fastest > 1e-3 ? (rim - way) / fastest : 0.0;
@@ -46,7 +46,7 @@ struct CarSample {
   double steer = 0.0;          ///< rad, mean of the front wheels
   double gear = 1.0;           ///< from 1
   double engine_torque = 0.0;  ///< N m, at the drive shaft; with gears, at the engine's own
-  double engine_speed = 0.0;   ///< rad/s, of the engine's shaft
+  double engine_speed = 0.0;   ///< rad/s, of the engine's own shaft, a motor's too
   double engine_power = 0.0;   ///< W
   double engine_work = 0.0;    ///< J, since the vehicle was made
   double brake_work = 0.0;     ///< J, that all brakes took since then
