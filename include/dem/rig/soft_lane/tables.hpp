@@ -245,7 +245,7 @@ inline io::Plot section_plot(const Settings& s, const Campaign& c) {
   for (const Vec3& g : c.section) grains.x.push_back(g.x()), grains.y.push_back(g.z());
   plot.series.push_back(std::move(grains));
   for (const std::size_t k : {0, 2}) {
-    io::Series wheel{.name = k == 0 ? "tyres" : "", .color = 0};
+    io::Series wheel{.name = k != 0 ? "" : s.tyre == "ring" ? "tyres, not deformed" : "tyres", .color = 0};
     for (int i = 0; i <= 90; ++i) {
       const double angle = i * std::numbers::pi / 45.0;
       wheel.x.push_back(c.wheel_at[k].x() + s.car.tyre.radius * std::cos(angle));
