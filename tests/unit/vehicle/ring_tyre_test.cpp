@@ -24,6 +24,8 @@ TEST_CASE("an inflated ring keeps its radius: air and tension are in balance") {
   // The free length of the belt is such that air and tension are in balance.
   for (const BodyId b : press.tyre().segments)
     CHECK((m.body(b).position() - m.body(press.tyre().rim).position()).norm() == Approx(0.475).margin(1e-4));
+  // A segment's middle lies higher than the circle by no more than 0.475 (1 - cos(pi/48)) = 1.0 mm.
+  CHECK(deflection_of(m, press.tyre()) == Approx(0.0).margin(1.1e-3));
 }
 
 TEST_CASE("a ring tyre is as stiff as Rhyne's formula says, and presses about as hard as its air") {
@@ -70,7 +72,14 @@ TEST_CASE("a car on ring tyres stands with its weight on them, and sinks less th
   // The rut is what the belt pressed, without the tyre's deflection. Under the rigid wheels the soil carries some 107
   // kPa in the middle of the print; the ring presses with its air and some of its carcass.
   const double at = car.middle_of(0).x();
-  CHECK(car.rut_depth(0, at - 0.05, at + 0.05) < 0.9 * rigid.rut_depth(0, at - 0.05, at + 0.05));
+  const double rut = car.rut_depth(0, at - 0.05, at + 0.05);
+  CHECK(rut < 0.9 * rigid.rut_depth(0, at - 0.05, at + 0.05));
+  // A ring is deeper than its rut by as much as a rigid tyre is, some millimetres: its sinkage is that of the tread.
+  // Told by the undeformed wheel it would be deeper by the deflection, 88 mm.
+  const double deeper = rigid.wheel(0).sinkage - rigid.rut_depth(0, at - 0.05, at + 0.05);
+  CHECK(car.wheel(0).sinkage - rut == Approx(deeper).margin(5e-3));
+  CHECK(car.wheel(0).deflection > 0.04);
+  CHECK(rigid.wheel(0).deflection == 0.0);
 }
 
 TEST_CASE("ring tyres that cannot be are refused in words") {
