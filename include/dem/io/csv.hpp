@@ -112,17 +112,17 @@ class CsvWriter {
 
   template <CsvCell T>
   void add_cell(const T& cell) {
-    auto out = std::back_inserter(line_);
+    // Not fmt::format_to, which would have every program compile fmt's own formatting anew.
     if constexpr (std::floating_point<T>) {
       if (options_.digits > 0) {
-        fmt::format_to(out, "{:.{}g}", cell, options_.digits);
+        line_ += fmt::format("{:.{}g}", cell, options_.digits);
       } else {
-        fmt::format_to(out, "{}", cell);  // shortest text that reads back as the same number
+        line_ += fmt::format("{}", cell);  // shortest text that reads back as the same number
       }
     } else if constexpr (std::same_as<T, bool>) {
       line_ += cell ? '1' : '0';
     } else if constexpr (std::is_arithmetic_v<T>) {
-      fmt::format_to(out, "{}", cell);
+      line_ += fmt::format("{}", cell);
     } else {
       line_ += csv_quote(cell, options_.separator);
     }

@@ -37,8 +37,8 @@ inline void save_packing(const Packing& p, const std::filesystem::path& path) {
                                  p.half_edge, p.length_x, p.length_y, io::one_line(p.note), p.grains.size());
   for (const Placement& g : p.grains) {
     const Quaternion q(g.rotation);
-    fmt::format_to(std::back_inserter(text), "{} {} {} {} {} {} {}\n", g.position.x(), g.position.y(), g.position.z(),
-                   q.w(), q.x(), q.y(), q.z());
+    text += fmt::format("{} {} {} {} {} {} {}\n", g.position.x(), g.position.y(), g.position.z(), q.w(), q.x(), q.y(),
+                        q.z());
   }
   io::write_file(path, text);
 }

@@ -93,6 +93,8 @@ class FieldColumns {
   void compare(const Column& c, const void* data);
   void compare_count(std::size_t count, const char* one);
   void add_count(std::size_t count);
+  /// From here on fields are those of item k of a list, in words `one`; `outer` is whose list it is.
+  void begin_item(const std::string& outer, const char* one, std::size_t k);
 
   Task task_;
   StateColumns* columns_;
@@ -187,6 +189,12 @@ DEM_COLD inline void FieldColumns::compare_count(std::size_t count, const char* 
   }
   fail("{}{}: the saved state has {}{}, but this program has {}; set it up as the program did that saved it",
        part_.empty() ? "" : part_ + ", ", one, saved, names, count);
+}
+
+DEM_COLD inline void FieldColumns::begin_item(const std::string& outer, const char* one, std::size_t k) {
+  part_ = (outer.empty() ? "" : outer + ", ") + one + " " + std::to_string(k);
+  named_ = false;
+  kind_of_part_ = one;
 }
 
 DEM_COLD inline void FieldColumns::check_all_read() const {

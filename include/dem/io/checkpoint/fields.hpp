@@ -54,9 +54,7 @@ class Fields : public FieldColumns {
     if (task_ == Task::collect) add_count(items.size());
     const std::string outer = part_;
     for (std::size_t k = 0; k < items.size(); ++k) {
-      part_ = (outer.empty() ? "" : outer + ", ") + one + " " + std::to_string(k);
-      named_ = false;
-      kind_of_part_ = one;
+      begin_item(outer, one, k);
       if constexpr (has_given<std::remove_reference_t<decltype(items[k])>>) visit(items[k], "");
       else given("name", items[k]);
     }
