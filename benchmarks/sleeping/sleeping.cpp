@@ -26,9 +26,9 @@ struct Spheres : Model {
 struct Settings {
   double length = 0.12, width = 0.06, height = 0.06, settle = 0.7, travel = 0.01, speed = 0.05;
   SleepOptions sleep;
-  double blade = 0.03, rest = 0.05, start = -0.3, fill = 1.9;
+  double blade = 0.03, doze = 0.02, rest = 0.05, start = -0.3, fill = 1.9;
   std::string shape = "cubes";
-  int seeds = 3, threads = 1;
+  int first = 1, seeds = 3, threads = 1;
 };
 
 /// Loose grains in an open box, and a blade that stands in them from the start.
@@ -54,7 +54,7 @@ struct Bed {
     const BodyId body = world.machine().add_fixed_body("blade", Vec3(x, 0, 0.75 * s.height + edges.z() / 2));
     blade = world.add_surface(body, surface::Box(edges), {.name = "blade"});
     world.machine().add_motion(mbd::prescribed_position("draw", body, Vec3::UnitX(),
-                                                        mbd::Signal::ramp(0.0, s.speed, s.settle + 0.02 + s.rest)));
+                                                        mbd::Signal::ramp(0.0, s.speed, s.settle + s.doze + s.rest)));
     const SpeciesId cube = world.add_species(Soil::grain(), {.density = 2650});
     std::mt19937 random(seed);
     std::uniform_real_distribution<double> turn(-1.0, 1.0), shift(-1e-4, 1e-4);
@@ -89,7 +89,7 @@ struct Drawn {
 template <class Soil>
 Drawn draw(World<Soil> world, SurfaceId blade, const Settings& s, bool sleep) {
   if (sleep) world.set_sleep(s.sleep);
-  if (const StepReport report = world.run_for(0.02); !report) fail("{}", report.text);  // time to fall asleep
+  if (const StepReport report = world.run_for(s.doze); !report) fail("{}", report.text);  // time to fall asleep
   Drawn d;
   const auto seconds = [] { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; };
   d.at_rest = -seconds();
@@ -118,7 +118,7 @@ void compare(const Settings& s) {
                   .header = {"seed", "grains", "asleep", "CPU s awake", "CPU s asleep", "times faster",
                              "force awake (N)", "asleep (N)", "change (%)", "lift awake (N)", "asleep (N)"},
                   .digits = 4};
-  for (int seed = 1; seed <= s.seeds; ++seed) {
+  for (int seed = s.first; seed < s.first + s.seeds; ++seed) {
     Bed<Soil> bed(s, static_cast<unsigned>(seed));
     const Drawn awake = draw(bed.world, bed.blade, s, false), asleep = draw(bed.world, bed.blade, s, true);
     still.row(seed, bed.grains, asleep.asleep_at_rest, awake.at_rest, asleep.at_rest,
@@ -144,9 +144,11 @@ int main(int argc, char** argv) {
   app.add_option("--start", s.start, "where the blade starts, in lengths of the bed from its middle");
   app.add_option("--fill", s.fill, "height to which loose grains are put, in --height");
   app.add_option("--rest", s.rest, "time before the blade moves that is measured as well [s]");
+  app.add_option("--doze", s.doze, "time to fall asleep, which is not measured [s]")->capture_default_str();
   app.add_option("--balance", s.sleep.balance, "of what a grain bears, out of balance when it falls asleep")
       ->capture_default_str();
   app.add_option("--change", s.sleep.change, "of what a grain bears that leaves it asleep")->capture_default_str();
+  app.add_option("--first", s.first, "seed of the first bed")->capture_default_str();
   app.add_option("--seeds", s.seeds, "beds")->capture_default_str()->check(CLI::Range(1, 100));
   app.add_option("--threads", s.threads, "of the worlds")->capture_default_str()->check(CLI::Range(1, 64));
   CLI11_PARSE(app, argc, argv);
