@@ -28,18 +28,16 @@ target_include_directories(test_worlds PRIVATE "${CMAKE_CURRENT_SOURCE_DIR}")
 dem_program(test_worlds)
 target_link_libraries(test_worlds PRIVATE test_main)
 target_precompile_headers(test_worlds REUSE_FROM test_headers)
+set_target_properties(test_worlds PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 5)
 
 # dem_add_catch_tests(<name> <label> <source>...): the program test_<name>, and a test per TEST_CASE in it. Sources are
-# compiled a few at a time, as most of the work is what they share.
+# compiled a few at a time, as most of the work is what they share. One whose names meet another's stands in a namespace.
 function(dem_add_catch_tests name label)
   add_executable(test_${name} ${ARGN})
   target_include_directories(test_${name} PRIVATE "${CMAKE_CURRENT_SOURCE_DIR}" "${CMAKE_CURRENT_SOURCE_DIR}/unit")
   dem_program(test_${name})
   target_link_libraries(test_${name} PRIVATE test_worlds test_main)
-  # What has no worlds is soon compiled: each source by itself, so that their names do not meet.
-  if(NOT name MATCHES "^(law|geometry|report|rig|io|soil|terramechanics|checkpoint)$")
-    set_target_properties(test_${name} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 4)
-  endif()
+  set_target_properties(test_${name} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 5)
   target_precompile_headers(test_${name} REUSE_FROM test_headers)
   catch_discover_tests(test_${name} TEST_PREFIX "${name}." PROPERTIES LABELS ${label})
 endfunction()
@@ -57,15 +55,15 @@ function(dem_drop package list)
   set(${list} ${${list}} PARENT_SCOPE)
 endfunction()
 
-# dem_add_state_hash_test(<name> <option>...): the program test_<name> runs equivalence/state_hash_test.cpp, compiled with
+# dem_add_state_hash_test(<name> <label> <option>...): the program test_<name> runs equivalence/state_hash_test.cpp, compiled with
 # these options. It shares nothing with other tests: whether products and sums are fused is left to no compiler here.
-function(dem_add_state_hash_test name)
+function(dem_add_state_hash_test name label)
   add_executable(test_${name} equivalence/state_hash_test.cpp)
   target_include_directories(test_${name} PRIVATE "${CMAKE_CURRENT_SOURCE_DIR}")
   dem_program(test_${name})
   target_link_libraries(test_${name} PRIVATE test_main)
   target_compile_options(test_${name} PRIVATE -ffp-contract=off ${ARGN})
-  catch_discover_tests(test_${name} TEST_PREFIX "${name}." PROPERTIES LABELS equivalence)
+  catch_discover_tests(test_${name} TEST_PREFIX "${name}." PROPERTIES LABELS ${label})
 endfunction()
 
 # dem_add_width_1_test(<source>...): the program test_width_1 runs these sources where a pack is a single double, as it is
@@ -76,6 +74,7 @@ function(dem_add_width_1_test)
   dem_program(test_width_1)
   target_link_libraries(test_width_1 PRIVATE test_main)
   target_compile_definitions(test_width_1 PRIVATE DEM_NO_SIMD)
+  set_target_properties(test_width_1 PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 5)
   catch_discover_tests(test_width_1 TEST_PREFIX width_1. PROPERTIES LABELS unit)
 endfunction()
 

@@ -6,6 +6,8 @@
 
 #include <dem/world/energy.hpp>
 
+namespace exact_test {
+
 namespace {
 
 using namespace models;
@@ -203,3 +205,5 @@ TEST_CASE("what else a program keeps is saved with its world") {
   auto third = scene<Balls>({}, false);
   CHECK(error_of([&] { dem::load(third.world, folder / "state.h5"); }).find("program0/") != std::string::npos);
 }
+
+}  // namespace exact_test

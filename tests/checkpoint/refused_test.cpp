@@ -7,6 +7,8 @@
 #include <fstream>
 #include <thread>
 
+namespace refused_test {
+
 namespace {
 
 using models::Balls;
@@ -142,3 +144,5 @@ TEST_CASE("a state is saved and loaded alike under a locale with commas") {
   auto other = scene<Balls>();
   CHECK_NOTHROW(dem::load(other.world, folder / "plain.h5"));
 }
+
+}  // namespace refused_test

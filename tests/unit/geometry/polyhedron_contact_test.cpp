@@ -5,6 +5,8 @@
 #include <dem/geometry/polyhedron/polyhedra.hpp>
 #include <dem/math/rotation.hpp>
 
+namespace polyhedron_contact_test {
+
 using Catch::Approx;
 using dem::Mat3;
 using dem::Vec3;
@@ -269,3 +271,5 @@ TEST_CASE("where edges take over from a face the force turns, by the angle that 
   CHECK(turned == Approx(0.05).epsilon(0.01));
   CHECK(resized < 5e-3);
 }
+
+}  // namespace polyhedron_contact_test

@@ -7,6 +7,8 @@
 
 #include <array>
 
+namespace sphere_cluster_test {
+
 using Catch::Approx;
 using dem::Ball;
 using dem::Mat3;
@@ -221,3 +223,5 @@ TEST_CASE("wrong shapes are refused") {
   check_refused([] { SphereCluster<2>{std::array<Ball, 1>{{{{0, 0, 0}, -1.0}}}}; }, "radius of a sphere of a cluster");
   check_refused([] { SphereCluster<4>(bent, dem::MassProperties{}); }, "volume of a sphere cluster is 0 m^3");
 }
+
+}  // namespace sphere_cluster_test

@@ -4,6 +4,8 @@
 
 #include "catch.hpp"
 
+namespace weights_test {
+
 using dem::Vector3;
 using dem::contact::ContactPoint;
 using dem::contact::Fit;
@@ -110,3 +112,5 @@ TEST_CASE("many points are weighted as if each looked at all the others") {
   }
   CHECK(between > 10);
 }
+
+}  // namespace weights_test

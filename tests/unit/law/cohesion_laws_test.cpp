@@ -9,6 +9,8 @@
 #include <dem/law/cohesion/none.hpp>
 #include <dem/law/normal/hertz.hpp>
 
+namespace cohesion_laws_test {
+
 using Catch::Approx;
 using namespace dem::cohesion;
 
@@ -193,3 +195,5 @@ TEST_CASE("cohesion constants that make no sense are refused") {
   check_refused([] { LiquidBridge::of(0.07, 2.0, 1e-15); }, "contact angle (rad) is 2");
   CHECK_NOTHROW(LiquidBridge::check(LiquidBridge::of(0.07, 0.0, 1e-15)));
 }
+
+}  // namespace cohesion_laws_test

@@ -13,6 +13,8 @@
 #include <cmath>
 #include <limits>
 
+namespace not_a_number_test {
+
 using dem::Pack;
 
 // An overlap that is not a number comes from a shape of the user's own. Were it cut off as a pull is, the contact would
@@ -92,3 +94,5 @@ TEST_CASE("a cohesion law that acts at a distance does not take a NaN for a gap"
   const dem::ContactParameters<Soft> jkr = {{1e8, 0, 0}, {}, {}, {0.1, 1e8}};
   CHECK(std::isnan(dem::grain::normal_force<Soft>(state, jkr, soft).repulsion));
 }
+
+}  // namespace not_a_number_test

@@ -5,6 +5,8 @@
 #include <dem/law/normal/hertz.hpp>
 #include <dem/law/normal/linear_spring_dashpot.hpp>
 
+namespace restitution_test {
+
 using Catch::Approx;
 using namespace dem::contact;
 
@@ -138,3 +140,5 @@ TEST_CASE("damped normal laws refuse constants that make no sense") {
   check_refused([] { Hertz::check({-1.0, 0.1}); }, "effective modulus is -1 Pa");
   CHECK_NOTHROW(Hertz::check(Hertz::with_restitution(alumina, 0.5)));
 }
+
+}  // namespace restitution_test

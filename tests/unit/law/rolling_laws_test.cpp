@@ -7,6 +7,8 @@
 #include <dem/law/rolling/sum.hpp>
 #include <dem/law/rolling/torsion.hpp>
 
+namespace rolling_laws_test {
+
 using Catch::Approx;
 using dem::Vec3;
 using namespace dem::rolling;
@@ -114,3 +116,5 @@ TEST_CASE("rolling constants that make no sense are refused") {
   check_refused([] { Both::check({{0.1, 1, 1}, {0.1, 1, -1}}); }, "twisting damping ratio is -1");
   CHECK_NOTHROW(Both::check({{0.1, 1, 1}, {0.1, 1, 1}}));
 }
+
+}  // namespace rolling_laws_test

@@ -8,6 +8,8 @@
 #include <dem/law/friction/varying.hpp>
 #include <dem/law/normal/hertz.hpp>
 
+namespace spring_laws_test {
+
 using Catch::Approx;
 using dem::Vec3;
 using namespace dem::friction;
@@ -223,3 +225,5 @@ TEST_CASE("constants of tangential laws that make no sense are refused") {
   check_refused([] { Law::check({{1, 1, 0}, 1.5, 1.0, 2.0, 1.0, 0.5}); }, "mean_pressure is 0.5");
   CHECK_NOTHROW(Law::check({{0.4, 1, 0}}));
 }
+
+}  // namespace spring_laws_test

@@ -6,6 +6,8 @@
 
 #include <string>
 
+namespace html_report_test {
+
 using namespace dem::io;
 using Catch::Matchers::ContainsSubstring;
 
@@ -104,3 +106,5 @@ TEST_CASE("bytes that are no UTF-8 become the replacement character, all others 
   const std::string page = HtmlReport("caf\xE9").paragraph("\xFF").html();
   CHECK(page == to_utf8(page));
 }
+
+}  // namespace html_report_test

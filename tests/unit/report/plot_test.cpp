@@ -8,6 +8,8 @@
 #include <string>
 #include <vector>
 
+namespace plot_test {
+
 using namespace dem::io;
 using Catch::Matchers::ContainsSubstring;
 
@@ -191,3 +193,5 @@ TEST_CASE("neither texts nor file names can make gnuplot run anything") {
   CHECK(!std::filesystem::exists(folder / "ran"));
   CHECK_THAT(read_file(folder / "plain.svg"), ContainsSubstring("{x}^2_3"));
 }
+
+}  // namespace plot_test

@@ -9,6 +9,8 @@
 #include <numbers>
 #include <random>
 
+namespace quantise_test {
+
 using namespace dem::report;
 using Catch::Approx;
 using dem::Mat3;
@@ -106,3 +108,5 @@ TEST_CASE("scalars of 8 bits are fine where they are small") {
   CHECK(pack_scalar(0.0, 0.0) == 0);
   CHECK(pack_scalar(9.9, most) == 255);
 }
+
+}  // namespace quantise_test

@@ -12,6 +12,8 @@
 #include <string>
 #include <vector>
 
+namespace replay_forces_test {
+
 using namespace dem::report;
 using Catch::Approx;
 using dem::Vec3;
@@ -137,3 +139,5 @@ TEST_CASE("force chains of a replay that was kept in a file go on as if it had n
   CHECK(encode(second).head == encode(whole).head);
   CHECK(encode(second).bytes == encode(whole).bytes);
 }
+
+}  // namespace replay_forces_test

@@ -9,6 +9,8 @@
 #include <string>
 #include <vector>
 
+namespace replay_page_test {
+
 using namespace dem::report;
 using Catch::Matchers::ContainsSubstring;
 
@@ -95,3 +97,5 @@ TEST_CASE("without three.js the report says what to install, and nothing else is
   const Replay empty;
   check_refused([&] { (void)replay_page(empty); }, "has no frames");
 }
+
+}  // namespace replay_page_test

@@ -12,6 +12,8 @@
 #include <string>
 #include <vector>
 
+namespace replay_test {
+
 using namespace dem::report;
 using Catch::Approx;
 using dem::Mat3;
@@ -345,3 +347,5 @@ TEST_CASE("a replay that was kept in a file goes on as if it had not been") {
   CHECK(encode(second).head == encode(whole).head);
   CHECK(encode(second).bytes == encode(whole).bytes);
 }
+
+}  // namespace replay_test

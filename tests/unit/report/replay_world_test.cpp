@@ -11,6 +11,8 @@
 #include <numbers>
 #include <vector>
 
+namespace replay_world_test {
+
 using namespace dem::report;
 using Catch::Approx;
 using dem::Vec3;
@@ -171,3 +173,5 @@ TEST_CASE("frames of a world hold the largest forces at contacts") {
   const std::vector<ReplayGrain> nowhere = {{.position = Vec3::Constant(std::nan(""))}};
   CHECK(detail::replay_forces(world, nowhere).empty());
 }
+
+}  // namespace replay_world_test

@@ -9,6 +9,8 @@
 #include <string>
 #include <vector>
 
+namespace bevameter_test {
+
 using Catch::Approx;
 using namespace dem::rig;
 namespace mechanics = dem::terramechanics;
@@ -177,3 +179,5 @@ TEST_CASE("a run within another one tells it how far it is, and leaves its progr
   }
   std::filesystem::remove_all(folder);
 }
+
+}  // namespace bevameter_test

@@ -10,6 +10,8 @@
 
 #include <unistd.h>
 
+namespace calibrate_test {
+
 using Catch::Approx;
 using namespace dem::rig::calibrate;
 
@@ -188,3 +190,5 @@ TEST_CASE("searches that cannot work are refused by the names of their options")
   CHECK(value_at(s, Constant::stiffness, 0.5) == Approx(std::sqrt(5e3 * 4e4)));  // by its logarithm
   CHECK(place_of(s, Constant::stiffness, value_at(s, Constant::stiffness, 0.3)) == Approx(0.3));
 }
+
+}  // namespace calibrate_test

@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+namespace config_text_test {
+
 using Catch::Matchers::ContainsSubstring;
 using dem::rig::read_config;
 using Values = std::vector<std::string>;
@@ -71,3 +73,5 @@ TEST_CASE("what is no settings file is refused with its line") {
   refused("a = \"\\u12\"", "four hexadecimal digits");
   refused("a = \"\\u1", "the file ends");
 }
+
+}  // namespace config_text_test

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numbers>
 
+namespace direct_shear_results_test {
+
 using Catch::Approx;
 using namespace dem::rig::direct_shear;
 
@@ -185,3 +187,5 @@ TEST_CASE("relative density is counted between the limits of the grains' shape")
     CHECK(relative_density(s, limits.densest) == Approx(1.0));
   }
 }
+
+}  // namespace direct_shear_results_test

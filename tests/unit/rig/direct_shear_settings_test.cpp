@@ -13,6 +13,8 @@
 
 #include <unistd.h>
 
+namespace direct_shear_settings_test {
+
 using Catch::Approx;
 using Catch::Matchers::ContainsSubstring;
 using dem::rig::direct_shear::Settings;
@@ -341,3 +343,5 @@ TEST_CASE("the area of the stresses shrinks with the displacement only when aske
   CHECK(s.area(0.006) == Catch::Approx(0.9 * 0.06 * 0.06));
   CHECK(s.normal_stress(16.2, 0.006) == Catch::Approx(44145.0 / 0.9));
 }
+
+}  // namespace direct_shear_settings_test

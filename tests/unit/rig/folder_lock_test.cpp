@@ -11,6 +11,8 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+namespace folder_lock_test {
+
 using Catch::Matchers::ContainsSubstring;
 using dem::rig::FolderLock;
 namespace fs = std::filesystem;
@@ -62,3 +64,5 @@ TEST_CASE("a folder that cannot be written to cannot be locked") {
   CHECK_THROWS_WITH(FolderLock("/no/such/folder", "blade"),
                     ContainsSubstring("cannot open '/no/such/folder/run.lock'"));
 }
+
+}  // namespace folder_lock_test

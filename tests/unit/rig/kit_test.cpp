@@ -14,6 +14,8 @@
 
 #include <unistd.h>
 
+namespace kit_test {
+
 using Catch::Matchers::ContainsSubstring;
 using namespace dem::rig;
 
@@ -164,3 +166,5 @@ TEST_CASE("what a run has found is saved, also when it is stopped") {
   CHECK_THROWS_AS(work_and_save([&] { throw Interrupted{}; }, [&] { done += "save"; }), Interrupted);
   CHECK(done == "work save save");
 }
+
+}  // namespace kit_test

@@ -6,6 +6,8 @@
 
 #include "catch.hpp"
 
+namespace mobility_test {
+
 using namespace dem::rig;
 using Catch::Approx;
 using Catch::Matchers::ContainsSubstring;
@@ -104,3 +106,5 @@ TEST_CASE("a map shows what arrived, and the word of what did not") {
   CHECK_NOTHROW(dem::io::check_plot(speed));
   CHECK_NOTHROW(dem::io::check_plot(over(&mobility::Result::energy_per_metre)));  // which what did not go has not
 }
+
+}  // namespace mobility_test

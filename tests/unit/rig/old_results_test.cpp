@@ -10,6 +10,8 @@
 
 #include <unistd.h>
 
+namespace old_results_test {
+
 using namespace dem::rig;
 
 TEST_CASE("a file that a run starts from is none that it removes") {
@@ -107,3 +109,5 @@ TEST_CASE("a file of the run's own is known, however its path is written") {
   CHECK(is_own_file("./results.csv", ".", names));
   fs::remove_all(folder);
 }
+
+}  // namespace old_results_test

@@ -6,6 +6,8 @@
 #include <own_law/slip_weakening.hpp>
 #include <own_shape/capsule.hpp>
 
+namespace own_grains_test {
+
 namespace {
 
 struct Pills : dem::Model {
@@ -58,3 +60,5 @@ TEST_CASE("anybody's grains are packed and sheared") {
   CHECK(weaker.finished);
   CHECK(weaker.residual < 0.75 * result.residual);
 }
+
+}  // namespace own_grains_test

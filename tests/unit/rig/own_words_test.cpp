@@ -2,6 +2,8 @@
 
 #include <dem/rig/own_words.hpp>
 
+namespace own_words_test {
+
 using dem::rig::in_own_words;
 using dem::rig::OwnWord;
 
@@ -22,3 +24,5 @@ TEST_CASE("what the library calls otherwise is said in the program's words, and 
   CHECK(said("'it's skin', skin") == "'it's skin', --reach");
   CHECK(said("'no end of skin") == "'no end of --reach");
 }
+
+}  // namespace own_words_test

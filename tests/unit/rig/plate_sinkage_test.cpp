@@ -5,6 +5,8 @@
 
 #include <cmath>
 
+namespace plate_sinkage_test {
+
 using Catch::Approx;
 using namespace dem::rig;
 
@@ -154,3 +156,5 @@ TEST_CASE(
   CHECK(off == Approx(0.0).margin(0.15));
   CHECK(first.samples.back().time > 0.05);
 }
+
+}  // namespace plate_sinkage_test

@@ -12,6 +12,8 @@
 
 #include <unistd.h>
 
+namespace program_test {
+
 using Catch::Matchers::ContainsSubstring;
 using namespace dem::rig;
 namespace fs = std::filesystem;
@@ -178,3 +180,5 @@ TEST_CASE("a folder that another run holds is refused") {
   CHECK(p.run() == 2);
   CHECK_FALSE(p.has("settings.toml"));
 }
+
+}  // namespace program_test

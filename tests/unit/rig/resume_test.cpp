@@ -15,6 +15,8 @@
 #include <string>
 #include <vector>
 
+namespace resume_test {
+
 using Catch::Matchers::ContainsSubstring;
 using namespace dem::rig;
 namespace fs = std::filesystem;
@@ -238,3 +240,5 @@ TEST_CASE("a new run removes what another could have gone on from") {
   CHECK_FALSE(fs::exists(r.path() / "checkpoint/rest.h5"));
   CHECK(fs::exists(r.path() / "checkpoint/notes.txt"));
 }
+
+}  // namespace resume_test

@@ -5,6 +5,8 @@
 
 #include <cmath>
 
+namespace rigid_wheel_test {
+
 using Catch::Approx;
 using namespace dem::rig;
 
@@ -178,3 +180,5 @@ TEST_CASE("a wheel that spins on the spot on one heavy grain is braked by mu N r
   slider(false);
   slider(true);
 }
+
+}  // namespace rigid_wheel_test

@@ -8,6 +8,8 @@
 #include <cmath>
 #include <string>
 
+namespace sand_pile_test {
+
 using namespace dem;
 using namespace dem::rig;
 using namespace dem::rig::sand_pile;
@@ -102,3 +104,5 @@ TEST_CASE("piles of a kind are one row of the table") {
   CHECK(t.rows[1][2] == "-");  // a run that ended early
   CHECK(spread_of({}).mean != spread_of({}).mean);
 }
+
+}  // namespace sand_pile_test

@@ -7,6 +7,8 @@
 #include <cmath>
 #include <vector>
 
+namespace soft_lane_test {
+
 using Catch::Approx;
 using namespace dem::rig;
 using dem::Vec3;
@@ -334,3 +336,5 @@ TEST_CASE("where the ground changes, each stretch has its own means") {
   CHECK(c.stretches[2].slip == Approx(0.3));
   CHECK(c.stretches[1].energy_per_metre == Approx(4000.0));
 }
+
+}  // namespace soft_lane_test

@@ -7,6 +7,8 @@
 #include <stdexcept>
 #include <vector>
 
+namespace steady_window_test {
+
 using Catch::Approx;
 using namespace dem::rig;
 
@@ -96,3 +98,5 @@ TEST_CASE("a run that fails ends those beside it, and its problem is thrown") {
   CHECK_THROWS_WITH(side_by_side(5, 1, quiet, run), "the second one");
   CHECK(begun == 2);
 }
+
+}  // namespace steady_window_test

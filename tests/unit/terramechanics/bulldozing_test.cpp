@@ -7,6 +7,8 @@
 
 #include "catch.hpp"
 
+namespace bulldozing_test {
+
 using namespace dem;
 using namespace dem::terramechanics;
 using Catch::Approx;
@@ -116,3 +118,5 @@ TEST_CASE("soil that was heaped up is soil when it is driven over, but gives way
   CHECK(touch(33, floor + 0.5 * in_rut) == 0.0);
   CHECK(touch(33, floor - 1e-4) > 0.0);
 }
+
+}  // namespace bulldozing_test

@@ -8,6 +8,8 @@
 
 #include "catch.hpp"
 
+namespace column_mesh_test {
+
 using namespace dem;
 using namespace dem::terramechanics;
 using Catch::Approx;
@@ -97,3 +99,5 @@ TEST_CASE("meshes without a width, and rays without end, are refused") {
   CHECK_THROWS_WITH(ColumnMesh(mesh, 0.0), ContainsSubstring("width of a mesh on soil columns"));
   CHECK_THROWS_WITH(ColumnMesh(mesh, 0.1, 0), ContainsSubstring("has 0 rays"));
 }
+
+}  // namespace column_mesh_test

@@ -5,6 +5,8 @@
 #include <numbers>
 #include <vector>
 
+namespace mohr_coulomb_test {
+
 using Catch::Approx;
 using Catch::Matchers::ContainsSubstring;
 using dem::terramechanics::fit_mohr_coulomb;
@@ -74,3 +76,5 @@ TEST_CASE("what cannot be fitted is refused") {
   CHECK_THROWS_WITH(fit_mohr_coulomb(two, one), ContainsSubstring("2 normal and 1 shear"));
   CHECK_THROWS_WITH(fit_mohr_coulomb(two, bad), ContainsSubstring("point 1"));
 }
+
+}  // namespace mohr_coulomb_test

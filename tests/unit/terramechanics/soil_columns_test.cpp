@@ -9,6 +9,8 @@
 
 #include "catch.hpp"
 
+namespace soil_columns_test {
+
 using namespace dem;
 using namespace dem::terramechanics;
 using Catch::Approx;
@@ -367,3 +369,5 @@ TEST_CASE(
   wrong[0].continues = 0;
   CHECK_THROWS_WITH(columns.apply(wrong, 1e-3), ContainsSubstring("goes on with part 0, but can only with one before"));
 }
+
+}  // namespace soil_columns_test
