@@ -1,5 +1,6 @@
 #pragma once
 
+#include <dem/core/macros.hpp>
 #include <dem/math/vector.hpp>
 
 #include <algorithm>
@@ -28,7 +29,7 @@ class NearPairs {
     for (const std::uint32_t s : {a, b}) reach_[s] = std::max(reach_[s], gap);
   }
   /// To be called when all pairs are there.
-  void finish() {
+  DEM_LAZY void finish() {
     std::vector<char> has_pairs(partners_.size(), 0);
     for (std::uint32_t s = 0; s < partners_.size(); ++s) {
       for (const Partner& p : partners_[s]) has_pairs[s] = has_pairs[p.other] = 1;

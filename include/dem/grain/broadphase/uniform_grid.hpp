@@ -1,5 +1,6 @@
 #pragma once
 
+#include <dem/core/macros.hpp>
 #include <dem/grain/broadphase/block_table.hpp>
 #include <dem/grain/broadphase/curve_order.hpp>
 #include <dem/parallel/serial.hpp>
@@ -16,7 +17,7 @@ namespace dem::broadphase {
 /// of a grain are in the 27 cells around it. Cells and the grains in them are sorted along a Z-order (Morton) curve.
 class UniformGrid {
  public:
-  void build(const Positions& p, double reach) {
+  DEM_LAZY void build(const Positions& p, double reach) {
     exec::Serial alone;
     build(p, reach, alone);
   }
@@ -54,7 +55,7 @@ class UniformGrid {
 
   /// To be called when the grains were put in order(), so that row k is what was row order()[k]: as good as build(),
   /// and cheaper.
-  void reordered() {
+  DEM_LAZY void reordered() {
     exec::Serial alone;
     reordered(alone);
   }

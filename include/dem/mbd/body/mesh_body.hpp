@@ -2,6 +2,7 @@
 
 // Bodies made from closed meshes. Not among what <dem/mbd/mbd.hpp> includes: meshes cost compiling time.
 
+#include <dem/core/macros.hpp>
 #include <dem/geometry/mesh/mesh_mass_properties.hpp>
 #include <dem/geometry/mesh/mesh_topology.hpp>
 #include <dem/mbd/body/body_spec.hpp>
@@ -16,7 +17,7 @@ namespace dem::mbd {
 
 /// A closed triangle mesh (corners counter-clockwise seen from outside), of density in kg/m^3. Throws Error if a corner
 /// index is out of range, the volume is not positive, or the mesh is not closed: what an open one encloses is anything.
-inline BodyMass mesh_mass(const IndexedMesh& mesh, double density) {
+DEM_LAZY inline BodyMass mesh_mass(const IndexedMesh& mesh, double density) {
   const BodyMass mass = of_density(mesh_mass_properties(mesh), density);
   const MeshTopology topology = topology_of(mesh);
   if (!topology.closed() || !topology.oriented()) {
@@ -29,14 +30,14 @@ inline BodyMass mesh_mass(const IndexedMesh& mesh, double density) {
   }
   return mass;
 }
-inline BodyMass mesh_mass(std::span<const Vec3> vertices, std::span<const std::array<std::uint32_t, 3>> triangles,
-                          double density) {
+DEM_LAZY inline BodyMass mesh_mass(std::span<const Vec3> vertices,
+                                   std::span<const std::array<std::uint32_t, 3>> triangles, double density) {
   return mesh_mass(IndexedMesh{{vertices.begin(), vertices.end()}, {triangles.begin(), triangles.end()}}, density);
 }
 
 /// A solid that a closed mesh encloses, in the frame of the mesh (kg/m^3). Throws Error if the mesh is open or encloses
 /// no volume.
-inline BodySpec mesh_body(std::string name, const IndexedMesh& mesh, double density) {
+DEM_LAZY inline BodySpec mesh_body(std::string name, const IndexedMesh& mesh, double density) {
   return {.name = std::move(name), .mass_properties = mesh_mass(mesh, density)};
 }
 

@@ -41,7 +41,7 @@ struct AssemblyReport {
 
 /// Changes the bodies' velocities to what joints with derived stiffness, couplings and prescribed motions allow. Those
 /// of given stiffness may move, and are left alone. Throws Error if they are to be refused.
-DEM_COLD inline AssemblyReport joined_velocities(Parts& m, GivenVelocities how = GivenVelocities::project) {
+DEM_LAZY DEM_COLD inline AssemblyReport joined_velocities(Parts& m, GivenVelocities how = GivenVelocities::project) {
   using namespace detail;
   AssemblyReport report;
   const std::vector<HeldRow> rows = held_rows(m);
@@ -107,7 +107,7 @@ DEM_COLD inline AssemblyReport joined_velocities(Parts& m, GivenVelocities how =
 /// Moves the bodies so that joints and couplings with derived stiffness are off by `part` of what they are, with the
 /// least change of positions as masses weigh them, and takes the speeds at which they open or close. Brakes and
 /// clutches go on with the torque that they have.
-DEM_COLD inline void close_openings(Parts& m, double part) {
+DEM_LAZY DEM_COLD inline void close_openings(Parts& m, double part) {
   using namespace detail;
   const std::vector<HeldRow> rows = held_rows(m);
   std::vector<double> errors;
