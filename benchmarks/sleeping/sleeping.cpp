@@ -2,6 +2,7 @@
 // sleeping grains, for several seeds: at rest, and with a blade drawn through it. Prints CPU time and mean forces.
 
 #include <dem/dem.hpp>
+#include <dem/io/checkpoint.hpp>
 #include <dem/report/ascii_table.hpp>
 
 #include <CLI/CLI.hpp>
@@ -28,6 +29,7 @@ struct Settings {
   SleepOptions sleep;
   double blade = 0.03, doze = 0.02, rest = 0.05, start = -0.3, fill = 1.9;
   std::string shape = "cubes";
+  std::filesystem::path beds;
   int first = 1, seeds = 3, threads = 1;
 };
 
@@ -73,7 +75,20 @@ struct Bed {
       }
     }
     grains = world.particle_count();
-    run(s.settle);
+    settle(s, s.beds.empty() ? s.beds : s.beds / fmt::format("{}_{}_{}.h5", s.shape, grains, seed));
+  }
+  /// Takes the settled bed from the file if there is one, or else settles it and keeps it there.
+  void settle(const Settings& s, const std::filesystem::path& file) {
+    if (file.empty() || !exists(file)) {
+      run(s.settle);
+      if (!file.empty()) save(world, file);
+      return;
+    }
+    load(world, file);
+    if (std::abs(world.time() - s.settle) > world.time_step()) {
+      fail("the bed of {} settled for {} s, but --settle is {}; take another folder for --beds", file.string(),
+           world.time(), s.settle);
+    }
   }
   void run(double seconds) {
     if (const StepReport report = world.run_for(seconds); !report) fail("{}", report.text);
@@ -148,7 +163,12 @@ int main(int argc, char** argv) {
   app.add_option("--balance", s.sleep.balance, "of what a grain bears, out of balance when it falls asleep")
       ->capture_default_str();
   app.add_option("--change", s.sleep.change, "of what a grain bears that leaves it asleep")->capture_default_str();
-  app.add_option("--first", s.first, "seed of the first bed")->capture_default_str();
+  app.add_option("--jolt", s.sleep.jolt, "of what a grain bears that wakes it at once")->capture_default_str();
+  app.add_option("--window", s.sleep.window, "after two of which a grain at rest falls asleep [steps]")
+      ->capture_default_str();
+  app.add_option("--mean", s.sleep.mean, "over which a change of the forces counts [steps]")->capture_default_str();
+  app.add_option("--beds", s.beds, "folder in which settled beds are kept and looked for (needs HDF5)");
+  app.add_option("--first", s.first, "seed of the first bed")->capture_default_str()->check(CLI::Range(0, 1000000));
   app.add_option("--seeds", s.seeds, "beds")->capture_default_str()->check(CLI::Range(1, 100));
   app.add_option("--threads", s.threads, "of the worlds")->capture_default_str()->check(CLI::Range(1, 64));
   CLI11_PARSE(app, argc, argv);

@@ -52,18 +52,21 @@ struct Chunk {
   bool finite = true;                ///< no position or velocity is NaN or infinite
   bool asleep = false;               ///< all of its grains sleep
   bool watched = false;              ///< some of them are watched (grain::watched)
+  bool asked = false;                ///< some of them are beside one that is watched (grain::asked)
+  std::uint32_t awake_beside = 0;    ///< the sum of Sleepers::awake_beside over its grains
+  bool meets_moving = false;         ///< it sleeps, and a surface that moves may touch some of its grains
+  bool evaluated = true;             ///< some of its contacts are; false if it sleeps and only other chunks act on it
   bool changed = false;              ///< some of them fell asleep or woke since contacts were evaluated
   std::vector<std::uint8_t> sleeps;  ///< where grains may sleep, by candidate: both grains slept when it was evaluated
   std::vector<std::uint32_t> reached;  ///< other chunks of whose grains it has candidates
   std::vector<std::uint32_t> around;   ///< chunks with which it has candidates; listed where grains may sleep
 
-  /// The contact histories of this step become the ones that the next step starts from. To be called while the chunk
-  /// has the memory that they were written to (ContactScratch::lend).
+  /// The contact histories of pairs of this step become the ones that the next step starts from. To be called while the
+  /// chunk has the memory that they were written to (ContactScratch::lend).
   /// If only some candidates were evaluated, `renews` says which, and `spare` is used on the way; else it is empty.
-  void commit(std::span<const std::uint8_t> renews, ContactMemory<history_size<Model>>& spare) {
+  void commit_pairs(std::span<const std::uint8_t> renews, ContactMemory<history_size<Model>>& spare) {
     if (renews.empty()) pair_contacts.commit_copy();
     else pair_contacts.commit_some(renews, spare);
-    surface_contacts.commit_copy();
   }
 };
 

@@ -25,6 +25,12 @@ class ForceSums {
     }
   }
 
+  /// Adds columns of forces and torques, from row `begin` on.
+  void add_columns(const Columns3& force, const Columns3& torque, std::size_t begin) {
+    for (std::size_t k = 0; k < chunk_size; ++k)
+      rows_[k].force += force[begin + k], rows_[k].torque += torque[begin + k];
+  }
+
   const Vector3<double>& force(std::size_t local) const { return rows_[local].force; }
   const Vector3<double>& torque(std::size_t local) const { return rows_[local].torque; }
 

@@ -22,7 +22,8 @@ struct PairScratch {
   std::vector<typename Model::Shape::template PairContactPoint<double>> touches;  ///< other shapes: one for each hit
   ContactForces forces;
   // Where grains may sleep:
-  std::vector<std::uint32_t> listed;          ///< candidates that are evaluated
+  bool chooses = false;                       ///< not all candidates are evaluated
+  std::vector<std::uint32_t> listed;          ///< those that are, if not all are
   std::vector<std::uint8_t> renews;           ///< by candidate: see list_evaluated; empty where all are
   ForceSums asleep;                           ///< of contacts between sleepers
   ContactMemory<history_size<Model>> merged;  ///< for Chunk::commit
@@ -206,9 +207,21 @@ DEM_HOT typename Model::Shape::template PairContactPoint<double> touch_of_hit(co
   }
 }
 
+/// Chooses the candidates of a chunk whose contacts are evaluated: where grains may sleep (`doing` is not empty), not
+/// those between sleepers, but for those of grains that are watched, and where most grains are awake. Returns how many.
+template <class Model>
+std::size_t choose_candidates(std::size_t begin, std::size_t end, const Chunk<Model>& chunk, Wakefulness doing,
+                              std::span<const std::uint16_t> awake_beside, PairScratch<Model>& s) {
+  s.renews.clear();
+  s.chooses = !doing.empty() && !evaluates_all(begin, end, doing);
+  if (!s.chooses) return chunk.candidate.size();
+  list_evaluated(chunk, begin, doing, awake_beside, s.listed, s.renews);
+  return s.listed.size();
+}
+
 /// Contacts of the grains of one chunk with their candidates: narrow phase, laws, forces. Writes to the chunk and its
-/// own grains' sums only, so chunks may run at the same time. Where grains may sleep (`doing` is not empty), contacts
-/// between sleepers are left as they are, but for those of grains that are watched, and where most grains are awake.
+/// own grains' sums only, so chunks may run at the same time. To be called after choose_candidates(); contacts that
+/// were not chosen are left as they are.
 template <class Model, class Particles>
 void find_pair_contacts(std::size_t chunk_index, Chunk<Model>& chunk, const Particles& p,
                         std::span<const Species<typename Model::Shape>> species, const Materials<Model>& materials,
@@ -217,13 +230,11 @@ void find_pair_contacts(std::size_t chunk_index, Chunk<Model>& chunk, const Part
   const std::size_t begin = chunk_index * chunk_size;
   const ChunkPairs<Model, Particles> pairs{chunk, p, species, materials, begin};
   std::size_t close_count = 0;
-  s.renews.clear();
-  if (doing.empty() || evaluates_all(begin, std::min(begin + chunk_size, p.count), doing)) {
+  if (!s.chooses) {
     const auto all = static_cast<std::uint32_t>(chunk.candidate.size());
     close_count = list_close(
         pairs, all, [](std::uint32_t k) { return k; }, s.close);
   } else {
-    list_evaluated(chunk, begin, doing, s.listed, s.renews);
     const auto some = static_cast<std::uint32_t>(s.listed.size());
     close_count = list_close(
         pairs, some, [&](std::uint32_t k) { return s.listed[k]; }, s.close);

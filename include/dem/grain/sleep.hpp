@@ -15,9 +15,10 @@ namespace dem::grain {
 
 /// A grain at the end of the last window, or when it fell asleep.
 struct Rest {
-  Vector3<double> position = {0, 0, 0};                   ///< m
-  Vector3<double> force = {0, 0, 0}, torque = {0, 0, 0};  ///< N, N m
-  double borne = 0.0;                                     ///< N, sum of the magnitudes of its contact forces
+  Vector3<double> position = {0, 0, 0};                             ///< m
+  Vector3<double> force = {0, 0, 0}, torque = {0, 0, 0};            ///< N, N m
+  Vector3<double> more_force = {0, 0, 0}, more_torque = {0, 0, 0};  ///< N, N m: running mean of what came since
+  double borne = 0.0;                                               ///< N, sum of the magnitudes of its contact forces
   std::uint8_t quiet_windows = 0;
   bool asleep = false;
 };
@@ -26,14 +27,16 @@ struct Rest {
 struct Sleepers {
   static constexpr std::uint8_t windows_to_sleep = 2;
 
-  std::vector<Rest> grains;            ///< by id
-  std::vector<double> borne;           ///< N, by row: of the contacts that the grain's own chunk holds
-  std::vector<std::uint8_t> doing;     ///< by row, in a step of images too: see Wakefulness
-  std::vector<std::uint8_t> acted_on;  ///< by row: more than what is kept acted on the grain in this evaluation
-  Columns3 kept_force, kept_torque;    ///< N, N m, by row of a sleeper: the sums over its contacts with sleepers
-  std::vector<std::uint32_t> working;  ///< chunks that may have contacts to evaluate
-  bool measuring = false;              ///< a window ends with this step
-  bool all_work = true;                ///< all contacts are, in the next evaluation: neighbour lists are new
+  std::vector<Rest> grains;                 ///< by id
+  std::vector<double> borne;                ///< N, by row: of the contacts that the grain's own chunk holds
+  std::vector<std::uint8_t> doing;          ///< by row, in a step of images too: see Wakefulness
+  std::vector<std::uint8_t> acted_on;       ///< by row: more than what is kept acted on the grain in this evaluation
+  std::vector<std::uint16_t> awake_beside;  ///< by row: how many grains are awake of those with which it has candidates
+  Columns3 kept_force, kept_torque;         ///< N, N m, by row of a sleeper: the sums over its contacts with sleepers
+  Columns3 surface_force, surface_torque;   ///< N, N m, by row of a chunk that sleeps: what surfaces do to the grain
+  std::vector<std::uint32_t> working;       ///< chunks on whose grains new forces may act
+  bool measuring = false;                   ///< a window ends with this step
+  bool all_work = true;                     ///< all contacts are, in the next evaluation: neighbour lists are new
 };
 
 /// Adds up what the grains of one chunk bear by the contacts that were just evaluated.
@@ -61,14 +64,22 @@ double borne_by(std::size_t i, std::span<const Chunk<Model>> chunks, std::span<c
   return borne;
 }
 
-/// Whether the forces on a sleeping grain have changed by too much since it fell asleep.
+/// Whether the forces on a sleeping grain have changed by too much since it fell asleep: in a running mean, or by a
+/// jolt. When grains that are awake act on it no more, it bears what it will bear, and the mean is not waited for
+/// (`is_final`).
 template <class Particles, class Shape>
-bool is_disturbed(std::size_t i, const Particles& p, const Species<Shape>& kind, double g, const Rest& rest,
-                  const SleepOptions& o) {
-  const double most = o.change * std::max(kind.mass * g, rest.borne);
-  // Written such that a NaN disturbs as well.
-  return !(norm(p.force[i] - rest.force) <= most) ||
-         !(norm(p.torque[i] - rest.torque) <= most * kind.shape.bounding_radius());
+bool is_disturbed(std::size_t i, const Particles& p, const Species<Shape>& kind, double g, bool is_final,
+                  const SleepOptions& o, Rest& rest) {
+  const double bears = std::max(kind.mass * g, rest.borne), arm = kind.shape.bounding_radius();
+  const auto exceed = [&](const Vector3<double>& force, const Vector3<double>& torque, double share) {
+    // Written such that a NaN disturbs as well.
+    return !(norm(force) <= share * bears) || !(norm(torque) <= share * bears * arm);
+  };
+  const Vector3<double> force = p.force[i] - rest.force, torque = p.torque[i] - rest.torque;
+  const double share = 1.0 / o.mean;
+  rest.more_force += share * (force - rest.more_force);
+  rest.more_torque += share * (torque - rest.more_torque);
+  return exceed(force, torque, is_final ? o.change : o.jolt) || exceed(rest.more_force, rest.more_torque, o.change);
 }
 
 /// Ends a window for a grain that is awake, and returns whether it was quiet for long enough to sleep.
@@ -99,7 +110,16 @@ inline void keep(std::size_t begin, std::size_t end, const ForceSums& asleep, Sl
   }
 }
 
-/// All that acts on a grain where some sleep (N, N m), and what of it comes from contacts between sleepers.
+/// Keeps what surfaces do to the grains of a chunk that sleeps.
+inline void keep_of_surfaces(std::size_t begin, std::size_t end, const ForceSums& of_surfaces, Sleepers& s) {
+  for (std::size_t i = begin; i < end; ++i) {
+    s.surface_force.set(i, of_surfaces.force(i - begin));
+    s.surface_torque.set(i, of_surfaces.torque(i - begin));
+  }
+}
+
+/// What acts on a sleeper (N, N m): by contacts with grains that are awake and with surfaces, and by contacts between
+/// sleepers, which is kept.
 struct SleeperSums {
   Vector3<double> force, torque, kept_force, kept_torque;
 };
@@ -112,8 +132,11 @@ SleeperSums complete_sums(std::size_t i, std::span<const Chunk<Model>> chunks, c
                           const Sleepers& s) {
   const bool is_watched = (s.doing[i] & watched) != 0;
   SleeperSums sums = {p.force[i], p.torque[i], s.kept_force[i], s.kept_torque[i]};
+  if (!chunks[i / chunk_size].evaluated) sums.force = s.surface_force[i], sums.torque = s.surface_torque[i];
+  if (!is_watched && s.awake_beside[i] == 0) return sums;
   for (std::uint32_t m = incoming_first[i]; m < incoming_first[i + 1]; ++m) {
     const Chunk<Model>& other = chunks[incoming[m].chunk];
+    if (!is_watched && !other.evaluated) continue;  // all of its contacts sleep
     const std::uint32_t first = other.partner_load_first[incoming[m].candidate];
     const std::uint32_t stop = other.partner_load_first[incoming[m].candidate + 1];
     if (first == stop) continue;
@@ -124,7 +147,6 @@ SleeperSums complete_sums(std::size_t i, std::span<const Chunk<Model>> chunks, c
       (sleeps ? sums.kept_torque : sums.torque) += other.partner_loads[c].torque;
     }
   }
-  sums.force += sums.kept_force, sums.torque += sums.kept_torque;
   return sums;
 }
 
@@ -133,6 +155,7 @@ template <class Model, class Particles>
 void gather_forces(std::size_t chunk_index, std::span<const Chunk<Model>> chunks, Particles& p,
                    std::span<const std::uint32_t> incoming_first, std::span<const Incoming> incoming, Sleepers& s) {
   const std::size_t begin = chunk_index * chunk_size, end = std::min(begin + chunk_size, p.count);
+  const Chunk<Model>& chunk = chunks[chunk_index];
   for (std::size_t i = begin; i < end; ++i) {
     if (s.doing[i] & awake) {  // no contact of it sleeps
       Vector3<double> force = p.force[i], torque = p.torque[i];
@@ -141,14 +164,14 @@ void gather_forces(std::size_t chunk_index, std::span<const Chunk<Model>> chunks
       p.torque.set(i, torque);
       continue;
     }
+    if (!chunk.evaluated && s.awake_beside[i] == 0) continue;  // nothing new acts on it
     const SleeperSums sums = complete_sums<Model>(i, chunks, p, incoming_first, incoming, s);
     if (s.doing[i] & watched) s.kept_force.set(i, sums.kept_force), s.kept_torque.set(i, sums.kept_torque);
-    // Written such that a NaN acts as well.
-    const Vector3<double> force = sums.force - sums.kept_force, torque = sums.torque - sums.kept_torque;
-    s.acted_on[i] = !(force.x == 0.0 && force.y == 0.0 && force.z == 0.0) ||
-                    !(torque.x == 0.0 && torque.y == 0.0 && torque.z == 0.0);
-    p.force.set(i, sums.force);
-    p.torque.set(i, sums.torque);
+    // What surfaces do that do not move is no news. One that moves may have left it. Written such that a NaN acts.
+    const auto is_none = [](const Vector3<double>& v) { return v.x == 0.0 && v.y == 0.0 && v.z == 0.0; };
+    s.acted_on[i] = chunk.meets_moving || (s.awake_beside[i] > 0 && !(is_none(sums.force) && is_none(sums.torque)));
+    p.force.set(i, sums.force + sums.kept_force);
+    p.torque.set(i, sums.torque + sums.kept_torque);
   }
 }
 

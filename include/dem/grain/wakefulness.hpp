@@ -16,7 +16,9 @@ namespace dem::grain {
 /// - `changed`: it fell asleep or woke since contacts were evaluated.
 /// - `touched`: it sleeps, and grains that are awake, or surfaces, act on it.
 /// - `recorded`: its contacts are evaluated because energy is counted, and for nothing else.
-inline constexpr std::uint8_t awake = 1, watched = 2, changed = 4, touched = 8, recorded = 16;
+/// - `counted`: those beside it know that it is awake (Sleepers::awake_beside).
+/// - `asked`: a grain beside it is watched.
+inline constexpr std::uint8_t awake = 1, watched = 2, changed = 4, touched = 8, recorded = 16, counted = 32, asked = 64;
 
 /// What the grains of all rows do, images too; empty where no grain may sleep.
 using Wakefulness = std::span<const std::uint8_t>;
@@ -50,15 +52,20 @@ inline bool evaluates_all(std::size_t begin, std::size_t end, Wakefulness doing)
 
 /// Lists the candidates whose contacts are evaluated where not all are. `renews`, by candidate: whether that counts.
 /// Contacts that are only recorded keep their histories, and what they bear, as those do that are not evaluated.
+/// `awake_beside`, by row: how many candidates of a grain are awake.
 template <class Model>
-void list_evaluated(const Chunk<Model>& chunk, std::size_t begin, Wakefulness doing, std::vector<std::uint32_t>& listed,
+void list_evaluated(const Chunk<Model>& chunk, std::size_t begin, Wakefulness doing,
+                    std::span<const std::uint16_t> awake_beside, std::vector<std::uint32_t>& listed,
                     std::vector<std::uint8_t>& renews) {
   constexpr std::uint8_t counts = awake | watched;
   listed.resize(chunk.candidate.size());
-  renews.resize(chunk.candidate.size());
+  renews.assign(chunk.candidate.size(), 0);
   std::size_t count = 0;
   for (std::size_t row = 0; row < chunk_size; ++row) {
     const std::uint32_t first = chunk.candidate_first[row], end = chunk.candidate_first[row + 1];
+    if (first == end || ((doing[begin + row] & (counts | recorded | asked)) == 0 && awake_beside[begin + row] == 0)) {
+      continue;
+    }
     for (std::uint32_t k = first; k < end; ++k) {
       const auto both = static_cast<std::uint8_t>(doing[begin + row] | doing[chunk.candidate[k]]);
       renews[k] = both & counts;

@@ -174,7 +174,7 @@ void take_motion(WorldState<Model>& w) {
 }
 
 /// Hands the loads of this rank's contacts on grains of other ranks to these, and takes those of theirs. Chunks that
-/// did not work keep theirs.
+/// were not evaluated keep theirs.
 template <class Model>
 void swap_loads(WorldState<Model>& w) {
   auto& d = w.domain;
@@ -187,8 +187,8 @@ void swap_loads(WorldState<Model>& w) {
     border.loads_out.clear();
     for (std::size_t m = 0; m < border.chunks_out.size(); ++m) {
       const std::uint32_t c = border.chunks_out[m];
-      if (!std::binary_search(working.begin(), working.end(), c)) continue;
       const Chunk<Model>& chunk = w.chunks[c];
+      if (!chunk.evaluated || !std::binary_search(working.begin(), working.end(), c)) continue;
       const std::span candidates =
           std::span(border.candidates_out).subspan(border.first_out[m], border.first_out[m + 1] - border.first_out[m]);
       detail::append(border.loads_out, &c, 1);

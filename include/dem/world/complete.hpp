@@ -89,7 +89,9 @@ void complete_chunks(WorldState<Model>& w) {
     const std::size_t width = s.borne.empty() ? 0 : chunk_size;
     const auto gather = [&](auto& column) { d.gather_chunks(column.data(), width); };
     gather(s.borne);
-    s.kept_force.for_each_column(gather), s.kept_torque.for_each_column(gather);
+    for (Columns3* columns : {&s.kept_force, &s.kept_torque, &s.surface_force, &s.surface_torque}) {
+      columns->for_each_column(gather);
+    }
     const auto first = s.doing.begin() + static_cast<std::ptrdiff_t>(begin * width),
                last = s.doing.begin() + static_cast<std::ptrdiff_t>(end * width);
     s.doing = d.gathered(std::vector<std::uint8_t>(first, last), false);

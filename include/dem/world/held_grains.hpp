@@ -57,9 +57,10 @@ HeldLoad load_of_held(const WorldState<Model>& w, std::size_t row) {
   if (!w.options.sleep || (w.sleepers.doing[row] & grain::awake) != 0) {
     grain::add_incoming<Model>(row, chunks, w.incoming_first, w.incoming, load.force, load.torque);
   } else if (std::binary_search(w.sleepers.working.begin(), w.sleepers.working.end(), c)) {
-    // One that does not work keeps the whole sum of the last time.
+    // One on which nothing new acts keeps the whole sum of the last time.
+    if (!w.chunks[c].evaluated && w.sleepers.awake_beside[row] == 0) return load;
     const auto sums = grain::complete_sums<Model>(row, chunks, w.particles, w.incoming_first, w.incoming, w.sleepers);
-    load = {sums.force, sums.torque};
+    load = {sums.force + sums.kept_force, sums.torque + sums.kept_torque};
   }
   return load;
 }

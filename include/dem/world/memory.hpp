@@ -37,8 +37,9 @@ std::size_t memory_bytes(const WorldState<Model>& w) {
   }
   if constexpr (Model::Domain::has_images) sum += bytes(w.images.grain) + bytes(w.images.shift) + bytes(w.images.level);
   sum += bytes(w.sleepers.grains) + bytes(w.sleepers.borne) + bytes(w.sleepers.working) + bytes(w.sleepers.doing) +
-         bytes(w.sleepers.acted_on);
-  for (const Columns3* kept : {&w.sleepers.kept_force, &w.sleepers.kept_torque}) {
+         bytes(w.sleepers.acted_on) + bytes(w.sleepers.awake_beside);
+  for (const Columns3* kept :
+       {&w.sleepers.kept_force, &w.sleepers.kept_torque, &w.sleepers.surface_force, &w.sleepers.surface_torque}) {
     sum += bytes(kept->x) + bytes(kept->y) + bytes(kept->z);
   }
   for (const Chunk<Model>& c : w.chunks) sum += bytes(c.around) + bytes(c.reached) + bytes(c.sleeps);

@@ -5,6 +5,7 @@
 #include <dem/grain/neighbours.hpp>
 #include <dem/world/gather.hpp>
 #include <dem/world/images.hpp>
+#include <dem/world/row_order.hpp>
 
 namespace dem {
 
@@ -96,10 +97,12 @@ void rebuild_neighbours(WorldState<Model>& w, Change&& change) {
   wrap_grains(w);
   build(p.count);
   if (const auto order = w.broad_phase.order(); !order.empty()) {
-    const std::vector<std::uint32_t> sorted(order.begin(), order.end());
+    std::vector<std::uint32_t> sorted(order.begin(), order.end());
+    const bool by_space = !put_sleepers_last(w, sorted);
     if constexpr (Model::Domain::has_ranks) permute_rows(w, sorted, holders);
     else p.permute(sorted, w.executor);
-    if constexpr (requires { w.broad_phase.reordered(w.executor); }) w.broad_phase.reordered(w.executor);
+    if (!by_space) build(p.count);
+    else if constexpr (requires { w.broad_phase.reordered(w.executor); }) w.broad_phase.reordered(w.executor);
     else if constexpr (requires { w.broad_phase.reordered(); }) w.broad_phase.reordered();
     else build(p.count);
   }

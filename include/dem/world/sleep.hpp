@@ -39,6 +39,7 @@ void wake_all(WorldState<Model>& w) {
     w.sleepers.doing[i] = grain::awake;
   }
   for (auto& chunk : w.chunks) chunk.asleep = chunk.changed = false;
+  w.sleepers.all_work = true;
 }
 /// Wakes what may feel that a grain is moved or taken away: its chunk and those around it.
 template <class Model>
@@ -62,13 +63,15 @@ void find_sleepers(WorldState<Model>& w) {
   s.acted_on.assign(rows, 0);
   s.doing.assign(p.view.size(), 0);
   const auto clear = [&](AlignedVector<double>& column) { column.assign(rows, 0.0); };
-  s.kept_force.for_each_column(clear), s.kept_torque.for_each_column(clear);
+  for (Columns3* columns : {&s.kept_force, &s.kept_torque, &s.surface_force, &s.surface_torque}) {
+    columns->for_each_column(clear);
+  }
   grain::list_chunks_around<Model>(w.chunks);
   if constexpr (Model::Domain::has_ranks) gather_around(w);
   for (std::size_t c = 0; c < w.chunks.size(); ++c) {
     const std::size_t end = std::min((c + 1) * chunk_size, p.count);
     Chunk<Model>& chunk = w.chunks[c];
-    chunk.asleep = true;
+    chunk.asleep = chunk.evaluated = true;
     chunk.changed = false;
     for (std::size_t i = c * chunk_size; i < end; ++i) {
       s.doing[i] = s.grains[p.id[i]].asleep ? 0 : grain::awake;
@@ -87,11 +90,68 @@ void for_each_beside(const WorldState<Model>& w, std::size_t row, F&& f) {
   }
   for (std::uint32_t m = w.incoming_first[row]; m < w.incoming_first[row + 1]; ++m) {
     const auto [other, candidate] = w.incoming[m];
-    f(other * chunk_size + w.chunks[other].owner[candidate]);
+    if (other != row / chunk_size) f(other * chunk_size + w.chunks[other].owner[candidate]);
   }
   for (std::uint32_t k = 0; k < chunk.candidate_first[local]; ++k) {  // of lower rows of its own chunk
     if (w.images.grain_of(chunk.candidate[k]) == row) f(row - local + chunk.owner[k]);
   }
+}
+
+/// Counts for each grain of this process's chunks how many are awake beside it.
+template <class Model>
+void count_awake_beside(WorldState<Model>& w) {
+  auto& s = w.sleepers;
+  for (auto& does : s.doing) {
+    does = static_cast<std::uint8_t>((does & ~grain::counted) | (does & grain::awake ? grain::counted : 0));
+  }
+  s.awake_beside.assign(w.chunks.size() * chunk_size, 0);
+  const auto [begin, end] = w.own_chunks();
+  w.executor.for_each(end - begin, [&, first = begin](std::size_t k) {
+    const std::size_t c = first + k, row = c * chunk_size;
+    Chunk<Model>& chunk = w.chunks[c];
+    chunk.awake_beside = 0;
+    const auto count = [&](std::size_t i, std::size_t j) {
+      const auto one = static_cast<std::uint16_t>(s.doing[j] & grain::awake);
+      s.awake_beside[i] = static_cast<std::uint16_t>(s.awake_beside[i] + one);
+      chunk.awake_beside += one;
+    };
+    for (std::size_t m = 0; m < chunk.candidate.size(); ++m) {
+      const std::size_t i = row + chunk.owner[m], j = w.images.grain_of(chunk.candidate[m]);
+      count(i, j);
+      if (j / chunk_size == c) count(j, i);
+    }
+    for (std::size_t i = row; i < std::min(row + chunk_size, w.particles.count); ++i) {
+      for (std::uint32_t m = w.incoming_first[i]; m < w.incoming_first[i + 1]; ++m) {
+        const auto [other, candidate] = w.incoming[m];
+        if (other != c) count(i, other * chunk_size + w.chunks[other].owner[candidate]);
+      }
+    }
+  });
+}
+
+/// What all ranks have of a list of which each has a part.
+template <class Model>
+std::vector<std::uint32_t> gathered_rows(WorldState<Model>& w, std::vector<std::uint32_t> rows) {
+  if constexpr (Model::Domain::has_ranks) return w.domain.gathered(rows);
+  return rows;
+}
+
+/// The grains of this process that fell asleep or woke since contacts were evaluated: twice the row, and one if it is
+/// awake.
+template <class Model>
+std::vector<std::uint32_t> take_changed(WorldState<Model>& w) {
+  auto& s = w.sleepers;
+  std::vector<std::uint32_t> changed;
+  const auto [begin, end] = w.own_chunks();
+  for (std::size_t c = begin; c < end; ++c) {
+    if (!std::exchange(w.chunks[c].changed, false)) continue;
+    for (std::size_t i = c * chunk_size; i < std::min((c + 1) * chunk_size, w.particles.count); ++i) {
+      if ((s.doing[i] & grain::changed) == 0) continue;
+      s.doing[i] &= static_cast<std::uint8_t>(~grain::changed);
+      changed.push_back(static_cast<std::uint32_t>(2 * i) | (s.doing[i] & grain::awake));
+    }
+  }
+  return changed;
 }
 
 /// Watches the grains that fell asleep or woke, and those beside them, for a step: the sums over contacts between
@@ -99,40 +159,39 @@ void for_each_beside(const WorldState<Model>& w, std::size_t row, F&& f) {
 template <class Model>
 void watch_changed(WorldState<Model>& w) {
   auto& s = w.sleepers;
+  std::vector<std::uint32_t> watched_here;
   const auto watch = [&](std::size_t i) {
-    if (s.doing[i] & grain::awake) return;
+    if ((s.doing[i] & (grain::awake | grain::watched)) != 0) return;
     s.doing[i] |= grain::watched;
     w.chunks[i / chunk_size].watched = true;
+    watched_here.push_back(static_cast<std::uint32_t>(i));
   };
-  std::vector<std::uint32_t> rows;
-  const auto [begin, end] = w.own_chunks();
-  for (std::size_t c = begin; c < end; ++c) {
-    if (!std::exchange(w.chunks[c].changed, false)) continue;
-    for (std::size_t i = c * chunk_size; i < std::min((c + 1) * chunk_size, w.particles.count); ++i) {
-      if ((s.doing[i] & grain::changed) == 0) continue;
-      s.doing[i] &= static_cast<std::uint8_t>(~grain::changed);
-      rows.push_back(static_cast<std::uint32_t>(i));
-    }
-  }
-  if constexpr (Model::Domain::has_ranks) rows = w.domain.gathered(rows);
-  for (const std::uint32_t row : rows) {
+  for (const std::uint32_t told : gathered_rows(w, take_changed(w))) {
+    const std::size_t row = told / 2;
+    std::uint8_t& does = s.doing[row];
+    const auto is_awake = static_cast<std::uint8_t>(told & 1);
+    does = static_cast<std::uint8_t>((does & ~grain::awake) | is_awake);  // another rank's grain, too
+    const bool is_news = ((does & grain::counted) != 0) != (is_awake != 0);
+    if (is_news) does ^= grain::counted;
     watch(row);
-    for_each_beside(w, row, watch);
+    for_each_beside(w, row, [&](std::size_t j) {
+      watch(j);
+      if (!is_news) return;
+      const int more = is_awake ? 1 : -1;
+      s.awake_beside[j] = static_cast<std::uint16_t>(s.awake_beside[j] + more);
+      w.chunks[j / chunk_size].awake_beside += static_cast<std::uint32_t>(more);
+    });
+  }
+  for (const std::uint32_t row : gathered_rows(w, std::move(watched_here))) {
+    for_each_beside(w, row, [&](std::size_t j) {
+      s.doing[j] |= grain::asked;
+      w.chunks[j / chunk_size].asked = true;
+    });
   }
 }
 
-/// Whether chunks have grains that are awake or watched: each rank knows it of its own, and tells all others.
-template <class Model>
-std::vector<std::uint8_t> active_chunks(WorldState<Model>& w) {
-  std::vector<std::uint8_t> active;
-  const auto [begin, end] = w.own_chunks();
-  for (std::size_t c = begin; c < end; ++c) active.push_back(!w.chunks[c].asleep || w.chunks[c].watched);
-  if constexpr (Model::Domain::has_ranks) active = w.domain.gathered(active);
-  return active;
-}
-
-/// Chooses the chunks that may have contacts to evaluate: those with grains that are awake or watched, those beside
-/// them, and those that a surface that moves may touch. After neighbours were listed it is all of them.
+/// Chooses the chunks on whose grains new forces may act: those with grains that are awake or watched, or beside such
+/// ones, and those that a surface that moves may touch. After neighbours were listed it is all of them.
 template <class Model>
 void choose_working_chunks(WorldState<Model>& w) {
   auto& s = w.sleepers;
@@ -145,6 +204,7 @@ void choose_working_chunks(WorldState<Model>& w) {
   }
   watch_changed(w);
   if (s.all_work) {
+    count_awake_beside(w);
     for (auto& state : s.doing) state |= grain::watched;
     for (auto& chunk : w.chunks) chunk.watched = true;
   }
@@ -156,12 +216,11 @@ void choose_working_chunks(WorldState<Model>& w) {
     }
     return false;
   };
-  const std::vector<std::uint8_t> active = active_chunks(w);
   for (std::size_t c = begin; c < end; ++c) {
-    const Chunk<Model>& chunk = w.chunks[c];
-    const bool works =
-        active[c] || touched_by_moving_surface(chunk) ||
-        std::any_of(chunk.around.begin(), chunk.around.end(), [&](std::uint32_t k) { return active[k]; });
+    Chunk<Model>& chunk = w.chunks[c];
+    chunk.evaluated = false;
+    chunk.meets_moving = touched_by_moving_surface(chunk);
+    const bool works = !chunk.asleep || chunk.watched || chunk.asked || chunk.awake_beside > 0 || chunk.meets_moving;
     if (!works) continue;
     s.working.push_back(static_cast<std::uint32_t>(c));
     if (!w.record_contacts) continue;
@@ -182,17 +241,18 @@ void wake_and_put_to_sleep(WorldState<Model>& w) {
   w.executor.for_each(s.working.size(), [&](std::size_t k) {
     const std::size_t c = s.working[k];
     Chunk<Model>& chunk = w.chunks[c];
-    chunk.watched = false;
+    chunk.watched = chunk.asked = false;
     chunk.asleep = true;
     for (std::size_t i = c * chunk_size; i < std::min((c + 1) * chunk_size, p.count); ++i) {
       const std::uint8_t did = s.doing[i];
-      s.doing[i] &= grain::awake | grain::changed;  // a part that holds grains may just have woken it
+      s.doing[i] &= grain::awake | grain::changed | grain::counted;  // a part that holds grains may just have woken it
       if ((did & grain::awake) == 0) {
         if (s.acted_on[i]) s.doing[i] |= grain::touched;
         // Else nothing acts on it but what is kept, and that is as it was.
         if (((did | s.doing[i]) & (grain::watched | grain::touched)) == 0) continue;
         const auto& kind = w.species[p.species[i]];
-        if (grain::is_disturbed(i, p, kind, g, s.grains[p.id[i]], o)) wake_row(w, i);
+        const bool is_final = (s.doing[i] & grain::touched) == 0;
+        if (grain::is_disturbed(i, p, kind, g, is_final, o, s.grains[p.id[i]])) wake_row(w, i);
       } else if (s.measuring) {
         const auto& kind = w.species[p.species[i]];
         grain::Rest& rest = s.grains[p.id[i]];
@@ -202,7 +262,7 @@ void wake_and_put_to_sleep(WorldState<Model>& w) {
           p.velocity.set(i, {0, 0, 0});
           p.spin.set(i, {0, 0, 0});
           grain::refresh_views(i, i + 1, p, std::span<const Species<typename Model::Shape>>(w.species));
-          s.doing[i] = grain::changed;
+          s.doing[i] = static_cast<std::uint8_t>(grain::changed | (s.doing[i] & grain::counted));
           chunk.changed = true;
         }
       }

@@ -1,42 +1,12 @@
 #pragma once
 
-#include <dem/coupling/surface_contacts.hpp>
 #include <dem/grain/move.hpp>
-#include <dem/grain/pair_contacts.hpp>
 #include <dem/world/border.hpp>
+#include <dem/world/chunk_contacts.hpp>
 #include <dem/world/neighbours.hpp>
 #include <dem/world/sleep.hpp>
 
 namespace dem {
-
-/// Contacts of one chunk's grains with each other and with surfaces. Their forces stay with the chunk, for
-/// gather_forces. In the last stage their histories are committed: the next step starts from them.
-template <class Model>
-void find_chunk_contacts(WorldState<Model>& w, std::size_t c, ContactScratch<Model>& scratch) {
-  const std::size_t begin = c * chunk_size, end = std::min(begin + chunk_size, w.particles.count);
-  Chunk<Model>& chunk = w.chunks[c];
-  scratch.lend(chunk);
-  grain::ForceSums sums;
-  grain::find_pair_contacts<Model>(c, chunk, w.particles, w.species, w.materials, w.time_step, doing(w), sums,
-                                   scratch.pairs);
-  const double start = w.stopwatch.clock();
-  coupling::find_surface_contacts<Model>({begin, end, chunk, w.particles, w.species, w.materials, w.surfaces,
-                                          w.largest_radius, w.domain, scratch.surfaces},
-                                         w.find_hits, w.time_step, sums);
-  chunk.surface_seconds += w.stopwatch.clock() - start;
-  sums.write(c, w.particles);
-  if (w.options.sleep) grain::keep(begin, end, scratch.pairs.asleep, w.sleepers);
-  if (w.sleepers.measuring) {
-    const std::span<double> borne(&w.sleepers.borne[begin], chunk_size);
-    std::fill(borne.begin(), borne.end(), 0.0);
-    grain::add_borne(begin, scratch.pairs.hits, scratch.pairs.forces, true, borne);
-    grain::add_borne(begin, scratch.surfaces.hits, scratch.surfaces.forces, false, borne);
-  }
-  if (w.record_contacts) [[unlikely]]
-    w.record_contacts(w, c, scratch);
-  if (w.move.last) chunk.commit(scratch.pairs.renews, scratch.pairs.merged);
-  scratch.lend(chunk);
-}
 
 /// Completes the sums of forces on the grains of a chunk.
 template <class Model>
@@ -147,6 +117,7 @@ void advance(WorldState<Model>& w) {
   if constexpr (domain::IsSheared<typename Model::Domain>) w.domain.move_to(w.time + w.time_step);
   place_images(w);
   wake_and_put_to_sleep(w);
+  look_at_order(w);
   w.time += w.time_step;
   ++w.step;
   look_at_skin(w);

@@ -258,9 +258,9 @@ TEST_CASE("histories of contacts that were not evaluated stay, whatever comes an
   SECTION("all are gone") { check({}, {first, third, fourth, last}); }
 }
 
-TEST_CASE("a grain that flies past wakes its own chunk at most, however often lists are made anew") {
-  // It rises beside the towers and touches nothing. On its way it comes to be sorted into all three chunks, all of it
-  // in less than the two windows after which a grain that was woken may sleep again.
+TEST_CASE("a grain that flies past wakes nobody, however often lists are made anew") {
+  // It rises beside the towers and touches nothing, all of it in less than the two windows after which a grain that was
+  // woken may sleep again. As the only one that is awake it is sorted before all others.
   Towers bed(true);
   bed.w.set_sleep(dem::SleepOptions{.window = 600});
   REQUIRE(bed.w.run_for(0.15));
@@ -269,16 +269,14 @@ TEST_CASE("a grain that flies past wakes its own chunk at most, however often li
   const auto flier = bed.w.add_particle({SpeciesId(0), Vec3(beside, 7e-3, 1e-3), {0, 0, speed}});
   const auto lists = bed.w.state().rebuilds, steps = bed.w.steps();
   std::size_t least = bed.grains.size();
-  std::set<std::size_t> chunks;
   while (bed.w.position(flier).z() < high) {
     REQUIRE(bed.w.run(5));
     least = std::min(least, bed.w.asleep_count());
-    chunks.insert(bed.w.state().particles.row_of[flier.value] / dem::chunk_size);
+    CHECK(bed.w.state().particles.row_of[flier.value] == 0);
   }
-  CHECK(chunks.size() >= 2);
   CHECK(bed.w.state().rebuilds - lists > 5);
   CHECK(bed.w.steps() - steps < 2 * 600);
-  CHECK(least + dem::chunk_size > bed.grains.size());
+  CHECK(least == bed.grains.size());
 }
 
 TEST_CASE("a bed falls asleep although neighbours are listed anew again and again") {
@@ -316,25 +314,28 @@ TEST_CASE("sleeping worlds are the same bits on any number of threads") {
 }
 
 TEST_CASE("a load that grows slowly reaches the floor through a bed that sleeps") {
+  // In 0.1 s all layers are awake most of the time. In 0.4 s half of them sleep.
+  const auto [seconds, most] = GENERATE(std::pair(0.1, 0.03), std::pair(0.4, 0.09));
   Towers bed(true);
   REQUIRE(bed.w.run_for(0.07));
   auto& m = bed.w.machine();
   const double top = 2e-3 * Towers::high, edge = 2.4e-3 * Towers::across;
   const dem::BodyId lid = m.add_fixed_body("lid", Vec3(0.5 * edge, 0.5 * edge, top + 5e-4));
   bed.w.add_surface(lid, dem::surface::Box(Vec3(2 * edge, 2 * edge, 1e-3)), {.name = "lid"});
-  // Presses by 4e-5 m in 0.1 s. Each tower is 10 contacts of 4 K in a row and has sunk by 45 m g/(4 K) = 5e-6 m, so
+  // Presses by 4e-5 m. Each tower is 10 contacts of 4 K in a row and has sunk by 45 m g/(4 K) = 5e-6 m, so
   // 0.45 N in all, 3.7 times the bed's weight.
-  m.add_motion(dem::mbd::prescribed_position("press", lid, -Vec3::UnitZ(), dem::mbd::Signal::ramp(0.0, 4e-4, 0.07)));
+  m.add_motion(
+      dem::mbd::prescribed_position("press", lid, -Vec3::UnitZ(), dem::mbd::Signal::ramp(0.0, 4e-5 / seconds, 0.07)));
   double worst = 0.0;
   for (int k = 0; k < 10; ++k) {
-    REQUIRE(bed.w.run_for(0.01));
+    REQUIRE(bed.w.run_for(seconds / 10));
     const double press = bed.w.surface_force(SurfaceId(1)).z();
     worst = std::max(worst, std::abs(bed.on_floor() - press - bed.weight) / bed.on_floor());
   }
   CHECK(bed.w.surface_force(SurfaceId(1)).z() == Approx(0.45).epsilon(0.1));
-  // Each of nine layers may pass on changes late of up to 0.01 of what it bears, which is twice the load. They wait for
-  // half of that in the mean, and a layer that wakes passes all on at once.
-  CHECK(worst < 0.03);
+  // Each of nine layers may pass on changes late of up to 0.01 of what it bears, which is twice the load, and waits for
+  // half of that in the mean: 0.09 if all sleep. 0.05 was seen.
+  CHECK(worst < most);
 }
 
 TEST_CASE("a change of load below SleepOptions::change leaves a bed asleep, one above it wakes the bed") {

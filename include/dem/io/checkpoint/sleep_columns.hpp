@@ -15,14 +15,14 @@ void sleep_fields(Fields& v, WorldState<Model>& w) {
   grain::Sleepers& s = w.sleepers;
   bool may_sleep = w.options.sleep.has_value();
   SleepOptions o = w.options.sleep.value_or(SleepOptions{});
-  v("may_sleep", may_sleep), v("balance", o.balance), v("change", o.change), v("motion", o.motion),
-      v("window", o.window);
+  v("may_sleep", may_sleep), v("balance", o.balance), v("change", o.change), v("jolt", o.jolt), v("motion", o.motion),
+      v("window", o.window), v("mean", o.mean);
   v("working_chunks", s.working), v("all_work", s.all_work);
   const bool is_restoring = v.task() == Fields::Task::restore;
   if (is_restoring) w.options.sleep = may_sleep ? std::optional(o) : std::nullopt;
   if (!may_sleep || v.task() == Fields::Task::compare) return;
 
-  constexpr std::size_t width = 12, load_width = 6;
+  constexpr std::size_t width = 18, kept_width = 12, load_width = 6;
   std::vector<double> rests, kept, surface_loads;
   std::vector<std::uint32_t> surface_count, surfaces;
   std::vector<std::uint8_t> doing;  // of grains: their images are told of it
@@ -31,13 +31,14 @@ void sleep_fields(Fields& v, WorldState<Model>& w) {
   };
   if (!is_restoring) {
     for (const grain::Rest& r : s.grains) {
-      for (const auto* x : {&r.position, &r.force, &r.torque}) append(rests, *x);
+      for (const auto* x : {&r.position, &r.force, &r.torque, &r.more_force, &r.more_torque}) append(rests, *x);
       rests.insert(rests.end(), {r.borne, double(r.quiet_windows), double(r.asleep)});
     }
     const std::size_t rows = std::min(s.doing.size(), w.chunks.size() * chunk_size);
     doing.assign(s.doing.begin(), s.doing.begin() + static_cast<std::ptrdiff_t>(rows));
     for (std::size_t i = 0; i < s.kept_force.x.size(); ++i)
-      append(kept, s.kept_force[i]), append(kept, s.kept_torque[i]);
+      for (const Columns3* x : {&s.kept_force, &s.kept_torque, &s.surface_force, &s.surface_torque})
+        append(kept, (*x)[i]);
     for (const Chunk<Model>& c : w.chunks) {
       surface_count.push_back(static_cast<std::uint32_t>(c.surface_loads.size()));
       for (const SurfaceLoad& load : c.surface_loads) {
@@ -49,7 +50,7 @@ void sleep_fields(Fields& v, WorldState<Model>& w) {
   v.copied("resting", ColumnKind::real, width, rests);
   v("borne", s.borne, "N");
   v.copied("doing", ColumnKind::byte, 1, doing);
-  v.copied("kept_loads", ColumnKind::real, load_width, kept);
+  v.copied("kept_loads", ColumnKind::real, kept_width, kept);
   v.copied("surface_load_count", ColumnKind::natural32, 1, surface_count);
   v.copied("surface_load_of", ColumnKind::natural32, 1, surfaces);
   v.copied("surface_loads", ColumnKind::real, load_width, surface_loads);
@@ -65,17 +66,20 @@ void sleep_fields(Fields& v, WorldState<Model>& w) {
     s.grains[k] = {vector_at(rests, at),
                    vector_at(rests, at + 3),
                    vector_at(rests, at + 6),
-                   rests[at + 9],
-                   static_cast<std::uint8_t>(rests[at + 10]),
-                   rests[at + 11] != 0.0};
+                   vector_at(rests, at + 9),
+                   vector_at(rests, at + 12),
+                   rests[at + 15],
+                   static_cast<std::uint8_t>(rests[at + 16]),
+                   rests[at + 17] != 0.0};
   }
-  const auto resize = [&](AlignedVector<double>& column) { column.resize(kept.size() / load_width); };
-  s.kept_force.for_each_column(resize), s.kept_torque.for_each_column(resize);
-  s.acted_on.assign(kept.size() / load_width, 0);
-  for (std::size_t i = 0; i < kept.size() / load_width; ++i) {
-    s.kept_force.set(i, vector_at(kept, i * load_width));
-    s.kept_torque.set(i, vector_at(kept, i * load_width + 3));
+  const std::size_t rows = kept.size() / kept_width;
+  std::size_t at = 0;
+  for (Columns3* x : {&s.kept_force, &s.kept_torque, &s.surface_force, &s.surface_torque}) {
+    x->for_each_column([&](AlignedVector<double>& column) { column.resize(rows); });
+    for (std::size_t i = 0; i < rows; ++i) x->set(i, vector_at(kept, i * kept_width + at));
+    at += 3;
   }
+  s.acted_on.assign(rows, 0);
   std::size_t of_surface = 0;
   for (std::size_t c = 0; c < w.chunks.size(); ++c) {
     Chunk<Model>& chunk = w.chunks[c];
@@ -85,6 +89,7 @@ void sleep_fields(Fields& v, WorldState<Model>& w) {
     chunk.asleep = (some & grain::awake) == 0;
     chunk.changed = (some & grain::changed) != 0;
     chunk.watched = (some & grain::watched) != 0;
+    chunk.asked = (some & grain::asked) != 0;
     chunk.surface_loads.resize(surface_count.at(c));
     for (SurfaceLoad& load : chunk.surface_loads) {
       load = {SurfaceId(surfaces.at(of_surface)), vector_at(surface_loads, of_surface * load_width),

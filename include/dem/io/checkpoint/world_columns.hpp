@@ -241,6 +241,7 @@ void settle_restored(WorldState<Model>& w, bool is_checked) {
   }
   grain::list_incoming<Model>(w.executor, std::span(w.chunks), w.particles.count, w.images, w.incoming_first,
                               w.incoming);
+  if (w.options.sleep) count_awake_beside(w);
 }
 
 }  // namespace detail
