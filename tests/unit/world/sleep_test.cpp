@@ -217,6 +217,25 @@ TEST_CASE("the force on each grain is that of all of its contacts, evaluated in 
   CHECK(mixed > 5);
 }
 
+TEST_CASE("each grain knows how many are awake beside it, while some wake and others fall asleep") {
+  Towers bed(true);
+  for (std::size_t k = 0; k < bed.grains.size(); ++k) {  // towers that fall asleep at different times
+    bed.w.set_position(bed.grains[k], bed.w.position(bed.grains[k]) + Vec3(0, 0, 1e-5 * double(k / 30)));
+  }
+  bed.w.add_particle({SpeciesId(0), Vec3(0, 0, 2e-3 * Towers::high + 4e-3), {0, 0, -0.2}});
+  std::size_t mixed = 0;
+  for (int k = 0; k < 150; ++k) {
+    REQUIRE(bed.w.run(40));
+    dem::World<models::VerletCubes> now = bed.w;
+    dem::watch_changed(now.state());
+    const std::vector<std::uint16_t> kept = now.state().sleepers.awake_beside;
+    dem::count_awake_beside(now.state());
+    CHECK(kept == now.state().sleepers.awake_beside);
+    mixed += bed.w.asleep_count() > 0 && bed.w.asleep_count() < bed.grains.size() ? 1 : 0;
+  }
+  CHECK(mixed > 20);
+}
+
 TEST_CASE("histories of contacts that were not evaluated stay, whatever comes and goes between them") {
   using Memory = dem::ContactMemory<1>;
   struct Entry {
