@@ -26,7 +26,7 @@ struct MachineSurface {
   Vector3<double> origin = {0, 0, 0};
   Matrix3<double> axes = Matrix3<double>::identity();
   Vec3 low = Vec3::Zero(), high = Vec3::Zero();  ///< m, bounding box in global axes
-  bool moved = true;                             ///< since the evaluation before
+  bool moved = true;  ///< where it is, or how fast its body goes, is not what it was in the evaluation before
 
   PartnerView view = {};  ///< of the body
 
@@ -45,14 +45,16 @@ struct MachineSurface {
   }
 
   void follow(const Body& b) {
+    const PartnerView last_view = view;
     view = {b.motion.position, 0.0, b.motion.velocity, b.fixed ? 0.0 : 1.0 / b.mass,
             b.motion.rotation * b.motion.angular_velocity};
     const Vector3<double> last_origin = origin;
     const Matrix3<double> last_axes = axes;
     origin = b.motion.position + b.motion.rotation * from_eigen(position);
     axes = b.motion.rotation * from_eigen(rotation);
-    moved =
-        std::memcmp(&origin, &last_origin, sizeof(origin)) != 0 || std::memcmp(&axes, &last_axes, sizeof(axes)) != 0;
+    const auto differ = [](const auto& x, const auto& y) { return std::memcmp(&x, &y, sizeof(x)) != 0; };
+    moved = differ(origin, last_origin) || differ(axes, last_axes) || differ(view.velocity, last_view.velocity) ||
+            differ(view.angular_velocity, last_view.angular_velocity);
     const surface::Bounds local = std::visit([](const auto& kind) { return kind.bounds(); }, geometry);
     // Half sizes along the global axes: |R| times the local half sizes. The origin comes last: added to the middle of
     // a half space, 1e150 m away, it would be lost.

@@ -54,6 +54,7 @@ struct Chunk {
   bool watched = false;              ///< some of them are watched (grain::watched)
   bool asked = false;                ///< some of them are beside one that is watched (grain::asked)
   std::uint32_t awake_beside = 0;    ///< the sum of Sleepers::awake_beside over its grains
+  bool touched = false;              ///< some of them are touched (grain::touched)
   bool meets_moving = false;         ///< it sleeps, and a surface that moves may touch some of its grains
   bool evaluated = true;             ///< some of its contacts are; false if it sleeps and only other chunks act on it
   bool changed = false;              ///< some of them fell asleep or woke since contacts were evaluated

@@ -164,7 +164,10 @@ void gather_forces(std::size_t chunk_index, std::span<const Chunk<Model>> chunks
       p.torque.set(i, torque);
       continue;
     }
-    if (!chunk.evaluated && s.awake_beside[i] == 0) continue;  // nothing new acts on it
+    if (!chunk.evaluated && s.awake_beside[i] == 0) {  // nothing new acts on it
+      s.acted_on[i] = 0;
+      continue;
+    }
     const SleeperSums sums = complete_sums<Model>(i, chunks, p, incoming_first, incoming, s);
     if (s.doing[i] & watched) s.kept_force.set(i, sums.kept_force), s.kept_torque.set(i, sums.kept_torque);
     // What surfaces do that do not move is no news. One that moves may have left it. Written such that a NaN acts.

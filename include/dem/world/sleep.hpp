@@ -72,7 +72,7 @@ void find_sleepers(WorldState<Model>& w) {
     const std::size_t end = std::min((c + 1) * chunk_size, p.count);
     Chunk<Model>& chunk = w.chunks[c];
     chunk.asleep = chunk.evaluated = true;
-    chunk.changed = false;
+    chunk.changed = chunk.watched = chunk.asked = chunk.touched = false;
     for (std::size_t i = c * chunk_size; i < end; ++i) {
       s.doing[i] = s.grains[p.id[i]].asleep ? 0 : grain::awake;
       chunk.asleep &= s.doing[i] == 0;
@@ -220,7 +220,9 @@ void choose_working_chunks(WorldState<Model>& w) {
     Chunk<Model>& chunk = w.chunks[c];
     chunk.evaluated = false;
     chunk.meets_moving = touched_by_moving_surface(chunk);
-    const bool works = !chunk.asleep || chunk.watched || chunk.asked || chunk.awake_beside > 0 || chunk.meets_moving;
+    // One in which grains were touched has a last look at them.
+    const bool works =
+        !chunk.asleep || chunk.watched || chunk.asked || chunk.touched || chunk.awake_beside > 0 || chunk.meets_moving;
     if (!works) continue;
     s.working.push_back(static_cast<std::uint32_t>(c));
     if (!w.record_contacts) continue;
@@ -241,13 +243,13 @@ void wake_and_put_to_sleep(WorldState<Model>& w) {
   w.executor.for_each(s.working.size(), [&](std::size_t k) {
     const std::size_t c = s.working[k];
     Chunk<Model>& chunk = w.chunks[c];
-    chunk.watched = chunk.asked = false;
+    chunk.watched = chunk.asked = chunk.touched = false;
     chunk.asleep = true;
     for (std::size_t i = c * chunk_size; i < std::min((c + 1) * chunk_size, p.count); ++i) {
       const std::uint8_t did = s.doing[i];
       s.doing[i] &= grain::awake | grain::changed | grain::counted;  // a part that holds grains may just have woken it
       if ((did & grain::awake) == 0) {
-        if (s.acted_on[i]) s.doing[i] |= grain::touched;
+        if (s.acted_on[i]) s.doing[i] |= grain::touched, chunk.touched = true;
         // Else nothing acts on it but what is kept, and that is as it was.
         if (((did | s.doing[i]) & (grain::watched | grain::touched)) == 0) continue;
         const auto& kind = w.species[p.species[i]];

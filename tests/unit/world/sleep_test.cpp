@@ -357,6 +357,28 @@ TEST_CASE("a load that grows slowly reaches the floor through a bed that sleeps"
   CHECK(worst < most);
 }
 
+TEST_CASE("a load that grows in a few steps and stays reaches the floor through a bed that sleeps") {
+  // By 0.05 of what grains bear: no jolt, and over before the running mean has seen it.
+  Towers bed(true);
+  auto& m = bed.w.machine();
+  const double top = 2e-3 * Towers::high, edge = 2.4e-3 * Towers::across, before = 4e-5, more = 2.5e-6;  // m
+  const dem::BodyId lid = m.add_fixed_body("lid", Vec3(0.5 * edge, 0.5 * edge, top + 5e-4));
+  bed.w.add_surface(lid, dem::surface::Box(Vec3(2 * edge, 2 * edge, 1e-3)), {.name = "lid"});
+  m.add_motion(dem::mbd::prescribed_position("press", lid, Vec3::UnitZ(), dem::mbd::Signal::function([=](double t) {
+                                               const double steps = 5 * 1.1e-5;  // s
+                                               return -before * std::clamp(t / 0.05, 0.0, 1.0) -
+                                                      more * std::clamp((t - 0.15) / steps, 0.0, 1.0);
+                                             })));
+  REQUIRE(bed.w.run_for(0.149));
+  REQUIRE(bed.w.asleep_count() == bed.grains.size());
+  const double press = bed.w.surface_force(SurfaceId(1)).z(), floor = bed.on_floor();
+  REQUIRE(bed.w.run_for(0.1));
+  const double pressed_more = bed.w.surface_force(SurfaceId(1)).z() - press;
+  CHECK(pressed_more > 0.03 * press);
+  // What each of nine layers may keep back is 0.01 of what it bears, twice the load; half of that in the mean.
+  CHECK(bed.on_floor() - floor > 0.5 * pressed_more);
+}
+
 TEST_CASE("a change of load below SleepOptions::change leaves a bed asleep, one above it wakes the bed") {
   // Towers of 6 cubes on a table that rises within 10 ms. The lowest cube bears 6 weights from below and 5 from above.
   // While it sleeps it does not give way, so the table's force on it grows by 4 K times the way.

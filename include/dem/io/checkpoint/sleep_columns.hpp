@@ -89,6 +89,7 @@ void sleep_fields(Fields& v, WorldState<Model>& w) {
     chunk.asleep = (some & grain::awake) == 0;
     chunk.changed = (some & grain::changed) != 0;
     chunk.watched = (some & grain::watched) != 0;
+    chunk.touched = (some & grain::touched) != 0;
     chunk.asked = (some & grain::asked) != 0;
     chunk.surface_loads.resize(surface_count.at(c));
     for (SurfaceLoad& load : chunk.surface_loads) {
