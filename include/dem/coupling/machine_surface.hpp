@@ -27,6 +27,7 @@ struct MachineSurface {
   Matrix3<double> axes = Matrix3<double>::identity();
   Vec3 low = Vec3::Zero(), high = Vec3::Zero();  ///< m, bounding box in global axes
   bool moved = true;  ///< where it is, or how fast its body goes, is not what it was in the evaluation before
+  surface::Bounds swept = {Vec3::Zero(), Vec3::Zero()};  ///< m, around both places where it is and was
 
   PartnerView view = {};  ///< of the body
 
@@ -60,8 +61,10 @@ struct MachineSurface {
     // a half space, 1e150 m away, it would be lost.
     const Vec3 middle = to_eigen(axes) * (0.5 * (local.low + local.high));
     const Vec3 half = magnitudes(to_eigen(axes)) * (0.5 * (local.high - local.low));
+    swept = {low, high};
     low = to_eigen(origin) + (middle - half);
     high = to_eigen(origin) + (middle + half);
+    swept = {low.cwiseMin(swept.low), high.cwiseMax(swept.high)};
   }
 };
 

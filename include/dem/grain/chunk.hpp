@@ -55,8 +55,8 @@ struct Chunk {
   bool asked = false;                ///< some of them are beside one that is watched (grain::asked)
   std::uint32_t awake_beside = 0;    ///< the sum of Sleepers::awake_beside over its grains
   bool touched = false;              ///< some of them are touched (grain::touched)
-  bool meets_moving = false;         ///< it sleeps, and a surface that moves may touch some of its grains
-  bool evaluated = true;             ///< some of its contacts are; false if it sleeps and only other chunks act on it
+  bool meets_moving = false;         ///< a surface that moves may touch some of its grains, or did before
+  bool evaluated = true;             ///< some of its contacts are, in this evaluation; true of other ranks' chunks
   bool changed = false;              ///< some of them fell asleep or woke since contacts were evaluated
   std::vector<std::uint8_t> sleeps;  ///< where grains may sleep, by candidate: both grains slept when it was evaluated
   std::vector<std::uint32_t> reached;  ///< other chunks of whose grains it has candidates

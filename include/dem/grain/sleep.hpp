@@ -79,6 +79,7 @@ bool is_disturbed(std::size_t i, const Particles& p, const Species<Shape>& kind,
   const double share = 1.0 / o.mean;
   rest.more_force += share * (force - rest.more_force);
   rest.more_torque += share * (torque - rest.more_torque);
+  if (is_final) rest.more_force = force, rest.more_torque = torque;
   return exceed(force, torque, is_final ? o.change : o.jolt) || exceed(rest.more_force, rest.more_torque, o.change);
 }
 

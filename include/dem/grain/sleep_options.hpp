@@ -12,7 +12,8 @@ namespace dem {
 /// rest for two windows sleeps: it is not moved, and what contacts between sleepers bear counts on without being
 /// evaluated. Contacts with grains that are awake are evaluated on, and near anything that moves those with surfaces,
 /// too. The grain wakes when the sum of the forces or torques on it differs from that when it fell asleep by more than
-/// `change` of what it bore then, in a running mean over `mean` steps; or at once by more than `jolt`.
+/// `change` of what it bore then, in a running mean over `mean` steps; or at once by more than `jolt`. When nothing
+/// that moves acts on it any more, `change` counts at once.
 ///
 /// So `balance` says how exact forces are when grains fall asleep, and `change` how late a grain passes on a load that
 /// grows; a sleeping grain is out of balance by their sum at the most, in the mean. Each layer of a bed adds to that:

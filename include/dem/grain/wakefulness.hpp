@@ -52,7 +52,7 @@ inline bool evaluates_all(std::size_t begin, std::size_t end, Wakefulness doing)
 
 /// Lists the candidates whose contacts are evaluated where not all are. `renews`, by candidate: whether that counts.
 /// Contacts that are only recorded keep their histories, and what they bear, as those do that are not evaluated.
-/// `awake_beside`, by row: how many candidates of a grain are awake.
+/// `awake_beside`, by row: how many grains are awake of those that are its candidates, or whose candidate it is.
 template <class Model>
 void list_evaluated(const Chunk<Model>& chunk, std::size_t begin, Wakefulness doing,
                     std::span<const std::uint16_t> awake_beside, std::vector<std::uint32_t>& listed,

@@ -180,7 +180,6 @@ void swap_loads(WorldState<Model>& w) {
   auto& d = w.domain;
   if (!d.is_shared()) return;
   const auto watch = d.watch_step();
-  const auto& working = w.sleepers.working;
   for (std::size_t r = 0; r < d.borders.size(); ++r) {
     auto& border = d.borders[r];
     if (border.chunks_out.empty()) continue;
@@ -188,7 +187,7 @@ void swap_loads(WorldState<Model>& w) {
     for (std::size_t m = 0; m < border.chunks_out.size(); ++m) {
       const std::uint32_t c = border.chunks_out[m];
       const Chunk<Model>& chunk = w.chunks[c];
-      if (!chunk.evaluated || !std::binary_search(working.begin(), working.end(), c)) continue;
+      if (!chunk.evaluated) continue;
       const std::span candidates =
           std::span(border.candidates_out).subspan(border.first_out[m], border.first_out[m + 1] - border.first_out[m]);
       detail::append(border.loads_out, &c, 1);

@@ -10,7 +10,7 @@
 namespace dem {
 
 /// Whether the contacts of a chunk's grains with surfaces must be found. Those of sleepers are as they were, unless a
-/// surface moves.
+/// surface moves, or grains are watched, or all contacts are counted.
 template <class Model>
 bool surfaces_act_anew(const WorldState<Model>& w, const Chunk<Model>& chunk) {
   return !chunk.asleep || chunk.watched || chunk.meets_moving || w.record_contacts;

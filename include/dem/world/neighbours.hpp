@@ -96,12 +96,16 @@ void rebuild_neighbours(WorldState<Model>& w, Change&& change) {
   };
   wrap_grains(w);
   build(p.count);
-  if (const auto order = w.broad_phase.order(); !order.empty()) {
-    std::vector<std::uint32_t> sorted(order.begin(), order.end());
-    const bool by_space = !put_sleepers_last(w, sorted);
+  const auto by_space = w.broad_phase.order();
+  std::vector<std::uint32_t> sorted(by_space.begin(), by_space.end());
+  if (by_space.empty() && w.options.sleep) {
+    for (std::uint32_t row = 0; row < p.count; ++row) sorted.push_back(row);
+  }
+  const bool sleepers_last = put_sleepers_last(w, sorted);
+  if (!by_space.empty() || sleepers_last) {
     if constexpr (Model::Domain::has_ranks) permute_rows(w, sorted, holders);
     else p.permute(sorted, w.executor);
-    if (!by_space) build(p.count);
+    if (sleepers_last) build(p.count);
     else if constexpr (requires { w.broad_phase.reordered(w.executor); }) w.broad_phase.reordered(w.executor);
     else if constexpr (requires { w.broad_phase.reordered(); }) w.broad_phase.reordered();
     else build(p.count);

@@ -26,8 +26,10 @@ mbd::RestReport find_rest(World<Model>& world, const mbd::RestOptions& options =
   mbd::detail::stop_for_rest(w.machine.parts());
   world.prepare();
   const mbd::RestReport report = mbd::detail::search_rest<typename Model::Joints>(
-      w.machine.parts(), w.options.gravity, w.time, w.time_step / w.machine.substeps, options,
-      [&w] { evaluate_contacts(w); });
+      w.machine.parts(), w.options.gravity, w.time, w.time_step / w.machine.substeps, options, [&w] {
+        w.sleepers.all_work = true;
+        evaluate_contacts(w);
+      });
   if constexpr (Model::Domain::has_ranks) gather_rows(w);
   world.set_gravity(w.options.gravity);  // what integrators remember of forces is out of date, and grains may wake
   return report;

@@ -212,7 +212,7 @@ void choose_working_chunks(WorldState<Model>& w) {
     const double reach = shape::widened(w.largest_radius, w.materials.range());
     const Vec3 low = chunk.low - filled(reach), high = chunk.high + filled(reach);
     for (const auto& surface : w.surfaces) {
-      if (surface.moved && surface.active && coupling::may_meet(w.domain, low, high, surface, reach)) return true;
+      if (surface.moved && surface.active && coupling::may_meet(w.domain, low, high, surface.swept, reach)) return true;
     }
     return false;
   };

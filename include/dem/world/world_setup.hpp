@@ -236,6 +236,7 @@ class WorldSetup {
     typename WorldState<Model>::Surface s{o.name, body, state_.materials.id(o.material), geometry, position, rotation};
     state_.surfaces.push_back(s);
     state_.find_hits.push_back(find_hits);
+    state_.sleepers.all_work = true;  // it may stand still in grains that sleep
     checked_ = false;
     return SurfaceId(state_.surfaces.size() - 1);
   }

@@ -136,6 +136,25 @@ TEST_CASE("a floor that sinks under a sleeping bed takes it along") {
   }
 }
 
+TEST_CASE("no grain hangs in the air when the floor is far away after one step") {
+  dem::World<models::VerletCubes> w(Towers::with(true, 1));
+  w.set_contact({{500.0, 0.06, 1.0}, {0.4, 500.0, 0.05, 0.975}});
+  const auto cube = w.add_species(dem::shape::cube8(1e-3));
+  const auto table = w.machine().add_fixed_body("table", Vec3::Zero());
+  const SurfaceId floor = w.add_surface(table, dem::surface::Plane{});
+  w.machine().add_motion(dem::mbd::prescribed_position(
+      "drop", table, Vec3::UnitZ(), dem::mbd::Signal::function([](double t) { return t < 0.07 ? 0.0 : -0.1; })));
+  std::vector<ParticleId> grains;
+  for (int k = 0; k < 384; ++k) {
+    grains.push_back(w.add_particle({cube, Vec3(2.2e-3 * (k % 8), 2.2e-3 * (k / 8 % 8), 1e-3 + 2e-3 * (k / 64))}));
+  }
+  REQUIRE(w.run_for(0.069));
+  REQUIRE(w.asleep_count() == grains.size());
+  REQUIRE(w.run_for(0.011));
+  for (const ParticleId p : grains) CHECK(w.velocity(p).z() < -0.9 * g * 0.01);
+  CHECK(w.surface_force(floor).norm() == 0.0);
+}
+
 TEST_CASE("grains that a part holds wake as it moves, and so do those that stand on them") {
   // Towers of 5 on cubes that are glued to a table, and a visitor on one of them, so that contacts are evaluated. The
   // table begins to sink in the middle of a step: its grains wake at the step's end, after the contacts.
