@@ -26,7 +26,7 @@ struct PairScratch {
   std::vector<std::uint32_t> listed;          ///< those that are, if not all are
   std::vector<std::uint8_t> renews;           ///< by candidate: see list_evaluated; empty where all are
   ForceSums asleep;                           ///< of contacts between sleepers
-  ContactMemory<history_size<Model>> merged;  ///< for Chunk::commit
+  ContactMemory<history_size<Model>> merged;  ///< for Chunk::commit_pairs
 };
 
 /// The candidates of a chunk as pairs of grains.

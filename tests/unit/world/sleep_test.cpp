@@ -377,7 +377,7 @@ TEST_CASE("a load that grows slowly reaches the floor through a bed that sleeps"
 }
 
 TEST_CASE("a load that grows in a few steps and stays reaches the floor through a bed that sleeps") {
-  // By 0.05 of what grains bear: no jolt, and over before the running mean has seen it.
+  // Over before the running mean has seen it. On its way the lid's damper makes a jolt of it.
   Towers bed(true);
   auto& m = bed.w.machine();
   const double top = 2e-3 * Towers::high, edge = 2.4e-3 * Towers::across, before = 4e-5, more = 2.5e-6;  // m
