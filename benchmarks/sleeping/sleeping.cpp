@@ -1,5 +1,7 @@
 // What sleep saves and changes: a settled bed of cubes or spheres goes on twice from the same state, awake and with
-// sleeping grains, for several seeds: at rest, and with a blade drawn through it. Prints CPU time and mean forces.
+// sleeping grains, for several seeds: at rest, and with a blade drawn through it. Prints CPU time and mean forces. Beds
+// part as soon as anything differs, so each may be drawn through several times, from grains that were pushed a little
+// in other ways: what chance does is seen then.
 
 #include <dem/dem.hpp>
 #include <dem/io/checkpoint.hpp>
@@ -30,7 +32,7 @@ struct Settings {
   double blade = 0.03, doze = 0.02, rest = 0.05, start = -0.3, fill = 1.9;
   std::string shape = "cubes";
   std::filesystem::path beds;
-  int first = 1, seeds = 3, threads = 1;
+  int first = 1, seeds = 3, draws = 1, threads = 1;
 };
 
 /// Loose grains in an open box, and a blade that stands in them from the start.
@@ -100,6 +102,16 @@ struct Drawn {
   double at_rest = 0.0, asleep_at_rest = 0.0;                   // before the blade moves: CPU s, share at the end
 };
 
+/// Gives all grains a speed of up to 1e-5 m/s along each axis, by which they come 1e-7 of their size far.
+template <class Soil>
+void push_a_little(World<Soil>& world, unsigned seed) {
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<double> speed(-1e-5, 1e-5);
+  for (const ParticleId p : world.particles()) {
+    world.set_velocity(p, Vec3(speed(random), speed(random), speed(random)));
+  }
+}
+
 /// The second half of the travel counts for the forces, all of it for the time.
 template <class Soil>
 Drawn draw(World<Soil> world, SurfaceId blade, const Settings& s, bool sleep) {
@@ -124,25 +136,51 @@ Drawn draw(World<Soil> world, SurfaceId blade, const Settings& s, bool sleep) {
   return d;
 }
 
+/// Of several draws: their mean, and its standard error.
+struct Forces {
+  double sum = 0.0, squares = 0.0;
+  int count = 0;
+  void add(double f) { sum += f, squares += f * f, ++count; }
+  double mean() const { return sum / count; }
+  double error() const { return std::sqrt(std::max(0.0, squares / count - mean() * mean()) / (count - 1)); }
+};
+
 template <class Soil>
 void compare(const Settings& s) {
+  double changes = 0.0, variance = 0.0;  // %, of the mean over beds
   io::Table still{.caption = "nothing moves",
                   .header = {"seed", "grains", "asleep", "CPU s awake", "CPU s asleep", "share (%)"},
                   .digits = 3};
   io::Table table{.caption = "the blade is drawn",
-                  .header = {"seed", "grains", "asleep", "CPU s awake", "CPU s asleep", "times faster",
+                  .header = {"seed", "draw", "grains", "asleep", "CPU s awake", "CPU s asleep", "times faster",
                              "force awake (N)", "asleep (N)", "change (%)", "lift awake (N)", "asleep (N)"},
                   .digits = 4};
   for (int seed = s.first; seed < s.first + s.seeds; ++seed) {
     Bed<Soil> bed(s, static_cast<unsigned>(seed));
-    const Drawn awake = draw(bed.world, bed.blade, s, false), asleep = draw(bed.world, bed.blade, s, true);
-    still.row(seed, bed.grains, asleep.asleep_at_rest, awake.at_rest, asleep.at_rest,
-              100.0 * asleep.at_rest / awake.at_rest);
-    table.row(seed, bed.grains, asleep.asleep, awake.seconds, asleep.seconds, awake.seconds / asleep.seconds,
-              awake.force, asleep.force, 100.0 * (asleep.force / awake.force - 1.0), awake.lift, asleep.lift);
+    Forces of_awake, of_asleep;
+    for (int k = 0; k < s.draws; ++k) {
+      if (k > 0) push_a_little(bed.world, static_cast<unsigned>(k));
+      const Drawn awake = draw(bed.world, bed.blade, s, false), asleep = draw(bed.world, bed.blade, s, true);
+      of_awake.add(awake.force), of_asleep.add(asleep.force);
+      if (k == 0) {
+        still.row(seed, bed.grains, asleep.asleep_at_rest, awake.at_rest, asleep.at_rest,
+                  100.0 * asleep.at_rest / awake.at_rest);
+      }
+      table.row(seed, k, bed.grains, asleep.asleep, awake.seconds, asleep.seconds, awake.seconds / asleep.seconds,
+                awake.force, asleep.force, 100.0 * (asleep.force / awake.force - 1.0), awake.lift, asleep.lift);
+    }
     io::print(still), io::print(table);
+    if (s.draws > 1) {
+      const double share = of_asleep.mean() / of_awake.mean();
+      const double error = share * std::hypot(of_asleep.error() / of_asleep.mean(), of_awake.error() / of_awake.mean());
+      changes += 100.0 * (share - 1.0) / s.seeds, variance += std::pow(100.0 * error / s.seeds, 2);
+      fmt::print("bed {}: awake {:.4g} +- {:.2g} N, asleep {:.4g} +- {:.2g} N, change {:+.1f} +- {:.1f} %\n", seed,
+                 of_awake.mean(), of_awake.error(), of_asleep.mean(), of_asleep.error(), 100.0 * (share - 1.0),
+                 100.0 * error);
+    }
     std::fflush(stdout);
   }
+  if (s.draws > 1) fmt::print("all beds: change {:+.1f} +- {:.1f} %\n", changes, std::sqrt(variance));
 }
 
 int main(int argc, char** argv) {
@@ -170,6 +208,9 @@ int main(int argc, char** argv) {
   app.add_option("--beds", s.beds, "folder in which settled beds are kept and looked for (needs HDF5)");
   app.add_option("--first", s.first, "seed of the first bed")->capture_default_str()->check(CLI::Range(0, 1000000));
   app.add_option("--seeds", s.seeds, "beds")->capture_default_str()->check(CLI::Range(1, 100));
+  app.add_option("--draws", s.draws, "of each bed, awake and with sleep; all but the first from grains pushed a little")
+      ->capture_default_str()
+      ->check(CLI::Range(1, 1000));
   app.add_option("--threads", s.threads, "of the worlds")->capture_default_str()->check(CLI::Range(1, 64));
   CLI11_PARSE(app, argc, argv);
   try {
