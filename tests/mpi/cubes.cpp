@@ -22,7 +22,8 @@ struct CubesShared : CubesAlone {
 template <bool is_glued>
 constexpr auto machine_on_cubes = []<class Model>() {
   dem::World<Model> world(
-      {.gravity = {0, 0, 0}, .sleep = dem::SleepOptions{.balance = 0.2, .change = 0.2, .motion = 0.01, .window = 20}});
+      {.gravity = {0, 0, 0},
+       .sleep = dem::SleepOptions{.balance = 0.2, .change = 0.2, .jolt = 0.2, .motion = 0.01, .window = 20}});
   world.set_contact({.normal = {2000, 0.05, 0.05}, .friction = {0.4, 2000, 0.015, 0.975}});
   const double width = 0.15, depth = 0.01;
   add_box(world, width, depth, 0.05);

@@ -59,11 +59,12 @@ constexpr auto flow = []<class Model>() {
 /// borders.
 template <class Model>
 dem::World<Model> rest(int n, std::uint64_t steps) {
-  dem::World<Model> world({.gravity = {0.5, 0.2, -9.81},
-                           .domain = {{{0, 0, -0.01}, {length, width, 0.2}}},
-                           .periodic = {.x = true, .y = true},
-                           .threads = 2,
-                           .sleep = dem::SleepOptions{.balance = 0.2, .change = 0.2, .motion = 0.1, .window = 20}});
+  dem::World<Model> world(
+      {.gravity = {0.5, 0.2, -9.81},
+       .domain = {{{0, 0, -0.01}, {length, width, 0.2}}},
+       .periodic = {.x = true, .y = true},
+       .threads = 2,
+       .sleep = dem::SleepOptions{.balance = 0.2, .change = 0.2, .jolt = 0.2, .motion = 0.1, .window = 20}});
   world.set_contact({.normal = {500, 0.2, 1.0}, .friction = {0.6, 500, 0.1, 0.975}});
   world.add_surface(world.ground(), dem::surface::Plane{});
   pour(world, world.add_species(dem::shape::Sphere(1e-3)), n, 20, 4, 2.5e-3, 0.3);
@@ -100,7 +101,8 @@ constexpr auto allowed_again = []<class Model>() {
 /// Cubes float and fall asleep, and a paddle flies down into them and over the border.
 constexpr auto paddle = []<class Model>() {
   auto world =
-      cell<Model>(1500, {0, 0, 0}, dem::SleepOptions{.balance = 0.2, .change = 0.2, .motion = 0.01, .window = 20}, 0.0);
+      cell<Model>(1500, {0, 0, 0},
+                  dem::SleepOptions{.balance = 0.2, .change = 0.2, .jolt = 0.2, .motion = 0.01, .window = 20}, 0.0);
   const dem::Vec3 edges(2e-3, 4e-3, 8e-3);
   const auto body = world.machine().add_body(
       dem::mbd::box_body("paddle", edges, 2650).at({length - 6e-3, width / 2, 0.053}).moving({3, 0, -1.5}));

@@ -48,6 +48,7 @@ struct Chunk {
   Vec3 low = Vec3::Zero(), high = Vec3::Zero();  ///< of the grains' centres
   double moved2 = 0.0;  ///< m^2, largest squared displacement since the neighbour list was made
   DeepestContact deepest;
+  double stopped = 0.0;              ///< J, motion of grains that fell asleep in this step
   double surface_seconds = 0.0;      ///< s, spent on contacts with surfaces while the stopwatch was on
   bool finite = true;                ///< no position or velocity is NaN or infinite
   bool asleep = false;               ///< all of its grains sleep

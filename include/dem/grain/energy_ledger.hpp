@@ -42,17 +42,25 @@ struct EnergyLedger {
   WorkIntoContacts stored;         ///< J, in springs when it was switched on
   double by_surfaces = 0.0;        ///< J, work of machine parts on contacts of grains
   double came = 0.0;               ///< J, of grains that were added, less that of those that went
+  double stopped = 0.0;            ///< J, motion of grains that fell asleep
 
   std::vector<ContactWork> last;                ///< the contacts of the step before
   std::vector<Vector3<double>> velocity, spin;  ///< m/s, rad/s in global axes, at the end of the step before, by id
   std::vector<double> energy;                   ///< J, kinetic and potential, by id; NaN of grains that are not there
   std::vector<Vector3<double>> body_velocity, body_spin;
 
+  /// A grain (id) falls asleep, and loses its energy of motion (J).
+  void stop(std::uint32_t id, double motion) {
+    velocity[id] = spin[id] = {0, 0, 0};
+    energy[id] -= motion;
+  }
+
   template <class V>
   void fields(V& v) {
     v.given("energy_counted", on);
     v("into_contacts", into_contacts), v("stored_at_start", stored), v("by_surfaces", by_surfaces, "J");
-    v("came", came, "J"), v("last", last), v("velocity", velocity, "m/s"), v("spin", spin, "rad/s");
+    v("came", came, "J"), v("stopped", stopped, "J"), v("last", last), v("velocity", velocity, "m/s"),
+        v("spin", spin, "rad/s");
     v("grains", energy, "J"), v("body_velocity", body_velocity, "m/s"), v("body_spin", body_spin, "rad/s");
   }
 };

@@ -13,12 +13,18 @@
 
 namespace dem::grain {
 
+/// Which way a grain faces: two rows of its rotation. Of shapes without orientation it is the spin (rad/s).
+struct Facing {
+  Vector3<double> first = {0, 0, 0}, second = {0, 0, 0};
+};
+
 /// A grain at the end of the last window, or when it fell asleep.
 struct Rest {
   Vector3<double> position = {0, 0, 0};                             ///< m
   Vector3<double> force = {0, 0, 0}, torque = {0, 0, 0};            ///< N, N m
   Vector3<double> more_force = {0, 0, 0}, more_torque = {0, 0, 0};  ///< N, N m: running mean of what came since
-  double borne = 0.0;                                               ///< N, sum of the magnitudes of its contact forces
+  Facing facing = {};
+  double borne = 0.0;  ///< N, sum of the magnitudes of its contact forces
   std::uint8_t quiet_windows = 0;
   bool asleep = false;
 };
@@ -83,21 +89,54 @@ bool is_disturbed(std::size_t i, const Particles& p, const Species<Shape>& kind,
   return exceed(force, torque, is_final ? o.change : o.jolt) || exceed(rest.more_force, rest.more_torque, o.change);
 }
 
-/// Ends a window for a grain that is awake, and returns whether it was quiet for long enough to sleep.
+template <class Particles>
+Facing facing(std::size_t i, const Particles& p) {
+  if constexpr (Particles::has_orientation) return {p.row0[i], p.row1[i]};
+  return {p.spin[i], {0, 0, 0}};
+}
+
+/// By how much (rad) a grain has turned in a window of `seconds`, at the most. Two rows of a rotation move by 1 to 1.4
+/// times the angle. Without orientation, spins at both ends count as far as they agree: one that swings is not turning.
+template <class Particles>
+double turned(const Facing& before, const Facing& now, double seconds) {
+  if constexpr (Particles::has_orientation) {
+    const Vector3<double> a = now.first - before.first, b = now.second - before.second;
+    return std::sqrt(dot(a, a) + dot(b, b));
+  } else {
+    const bool goes_on = dot(before.first, now.first) > 0.0;
+    return goes_on ? seconds * std::min(norm(before.first), norm(now.first)) : 0.0;
+  }
+}
+
+/// The end of a window of `seconds`.
+struct WindowEnd {
+  const SleepOptions& options;
+  Vec3 gravity;  ///< m/s^2
+  double seconds;
+};
+
+/// Ends a window for a grain that is awake, and returns whether it was quiet for long enough to sleep. One that nothing
+/// touches and that moves flies, however slowly.
 template <class Particles, class Shape>
-bool end_window(std::size_t i, const Particles& p, const Species<Shape>& kind, const Vec3& gravity, double borne,
-                Rest& rest, const SleepOptions& o) {
-  const double radius = kind.shape.bounding_radius(), bears = std::max(kind.mass * gravity.norm(), borne);
-  const Vector3<double> left = p.force[i] + kind.mass * from_eigen(gravity);
+bool end_window(std::size_t i, const Particles& p, const Species<Shape>& kind, double borne, Rest& rest,
+                const WindowEnd& window) {
+  const SleepOptions& o = window.options;
+  const double radius = kind.shape.bounding_radius(), bears = std::max(kind.mass * window.gravity.norm(), borne);
+  const Vector3<double> left = p.force[i] + kind.mass * from_eigen(window.gravity);
   const double most = o.balance * bears;
+  const Facing faces = facing(i, p);
   const bool is_balanced = kind.is_held() || (norm(left) <= most && norm(p.torque[i]) <= most * radius);
+  const bool flies = borne == 0.0 && (norm(p.velocity[i]) > 0.0 || norm(p.spin[i]) > 0.0);
   const bool is_steady = std::abs(borne - rest.borne) <= o.change * bears;
-  const bool is_quiet = is_balanced && is_steady && norm(p.position[i] - rest.position) <= o.motion * radius;
+  const bool is_still = norm(p.position[i] - rest.position) <= o.motion * radius &&
+                        turned<Particles>(rest.facing, faces, window.seconds) <= o.motion;
+  const bool is_quiet = is_balanced && !flies && is_steady && is_still;
   rest.quiet_windows =
       is_quiet ? std::min<std::uint8_t>(rest.quiet_windows + 1, Sleepers::windows_to_sleep) : std::uint8_t{0};
   rest.position = p.position[i];
   rest.force = p.force[i];
   rest.torque = p.torque[i];
+  rest.facing = faces;
   rest.borne = borne;
   return rest.quiet_windows == Sleepers::windows_to_sleep;
 }

@@ -43,6 +43,13 @@ struct Species {
   }
 };
 
+/// J, of a grain with a velocity (m/s) and a spin (rad/s, body frame).
+template <class Shape>
+double kinetic_energy(const Species<Shape>& kind, const Vector3<double>& v, const Vector3<double>& spin) {
+  const Vec3& j = kind.inertia;
+  return 0.5 * kind.mass * dot(v, v) + 0.5 * (j[0] * spin.x * spin.x + j[1] * spin.y * spin.y + j[2] * spin.z * spin.z);
+}
+
 /// Throws Error for moments of inertia that no body has.
 inline void check_moments(const Vec3& moments) {
   const double largest = moments.maxCoeff();

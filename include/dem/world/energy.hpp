@@ -29,12 +29,13 @@ struct GrainEnergy {
   double dissipated_normal = 0.0;    ///< by the dampers of the normal law, or its plastic flow
   double dissipated_friction = 0.0;  ///< by sliding, the dampers of friction, and springs that let go
   double dissipated_rolling = 0.0;   ///< by rolling resistance and torsion
+  double dissipated_asleep = 0.0;    ///< motion of grains that fell asleep
   double by_surfaces = 0.0;          ///< work of machine parts, and of held grains, on the grains
   double came = 0.0;                 ///< what grains that were added had, less what those had that went
 
   double kinetic() const { return translation + rotation; }
   double elastic() const { return normal_springs + friction_springs + rolling_springs + cohesion; }
-  double dissipated() const { return dissipated_normal + dissipated_friction + dissipated_rolling; }
+  double dissipated() const { return dissipated_normal + dissipated_friction + dissipated_rolling + dissipated_asleep; }
   /// What stays the same while energy is counted, but for the integrator's error.
   double balance() const { return kinetic() + potential + elastic() + dissipated() - by_surfaces - came; }
 };
@@ -203,6 +204,7 @@ GrainEnergy energy_of(const World<Model>& world) {
   e.dissipated_normal = in.normal - (e.normal_springs + e.cohesion - start.normal);
   e.dissipated_friction = in.friction - (e.friction_springs - start.friction);
   e.dissipated_rolling = in.rolling - (e.rolling_springs - start.rolling);
+  e.dissipated_asleep = ledger.stopped;
   e.by_surfaces = ledger.by_surfaces;
   e.came = ledger.came;
   return e;

@@ -48,10 +48,8 @@ void change_species(WorldState<Model>& w, std::size_t row, SpeciesId to) {
   const auto& from = w.species[p.species[row]];
   const bool stands = w.species[to.index()].is_held();
   if (w.ledger.on && from.is_held() != stands) {
-    const Vector3<double> v = p.velocity[row], s = p.spin[row],
-                          turn = {from.inertia.x() * s.x, from.inertia.y() * s.y, from.inertia.z() * s.z};
     const double fall = from.mass * dot(from_eigen(w.options.gravity), p.position[row]);
-    w.ledger.came += (stands ? -1.0 : 1.0) * (0.5 * from.mass * dot(v, v) + 0.5 * dot(s, turn) - fall);
+    w.ledger.came += (stands ? -1.0 : 1.0) * (kinetic_energy(from, p.velocity[row], p.spin[row]) - fall);
   }
   p.species[row] = to.value;
   if (p.id[row] < w.sleepers.grains.size()) w.sleepers.grains[p.id[row]] = {};  // it wakes

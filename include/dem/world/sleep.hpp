@@ -240,11 +240,13 @@ void wake_and_put_to_sleep(WorldState<Model>& w) {
   auto& p = w.particles;
   const SleepOptions& o = *w.options.sleep;
   const double g = w.options.gravity.norm();
+  const grain::WindowEnd window = {o, w.options.gravity, o.window * w.time_step};
   w.executor.for_each(s.working.size(), [&](std::size_t k) {
     const std::size_t c = s.working[k];
     Chunk<Model>& chunk = w.chunks[c];
     chunk.watched = chunk.asked = chunk.touched = false;
     chunk.asleep = true;
+    chunk.stopped = 0.0;
     for (std::size_t i = c * chunk_size; i < std::min((c + 1) * chunk_size, p.count); ++i) {
       const std::uint8_t did = s.doing[i];
       s.doing[i] &= grain::awake | grain::changed | grain::counted;  // a part that holds grains may just have woken it
@@ -259,8 +261,13 @@ void wake_and_put_to_sleep(WorldState<Model>& w) {
         const auto& kind = w.species[p.species[i]];
         grain::Rest& rest = s.grains[p.id[i]];
         const double borne = grain::borne_by<Model>(i, w.chunks, w.incoming_first, w.incoming, s);
-        if (grain::end_window(i, p, kind, w.options.gravity, borne, rest, o)) {
+        if (grain::end_window(i, p, kind, borne, rest, window)) {
           rest.asleep = true;
+          if (w.ledger.on) [[unlikely]] {
+            const double motion = kind.is_held() ? 0.0 : kinetic_energy(kind, p.velocity[i], p.spin[i]);
+            chunk.stopped += motion;
+            w.ledger.stop(p.id[i], motion);
+          }
           p.velocity.set(i, {0, 0, 0});
           p.spin.set(i, {0, 0, 0});
           grain::refresh_views(i, i + 1, p, std::span<const Species<typename Model::Shape>>(w.species));
@@ -271,6 +278,8 @@ void wake_and_put_to_sleep(WorldState<Model>& w) {
       if (s.doing[i] & grain::awake) chunk.asleep = false;
     }
   });
+  if (!w.ledger.on) return;
+  for (const std::uint32_t c : s.working) w.ledger.stopped += w.chunks[c].stopped;
 }
 
 }  // namespace dem

@@ -221,7 +221,7 @@ TEST_CASE("a grain that comes to a part wakes nothing in a cell where all others
   // 64 towers of 4 fill one chunk, so the new grain has a row that no list knows yet. A write beyond the chunks is seen
   // where containers check their bounds.
   dem::WorldOptions o = cell({0, 0, -g}, {.x = true, .y = true});
-  o.sleep = dem::SleepOptions{.balance = 0.2, .change = 0.2, .motion = 0.01, .window = 50};
+  o.sleep = dem::SleepOptions{.balance = 0.2, .change = 0.2, .jolt = 0.2, .motion = 0.01, .window = 50};
   dem::World<PeriodicCubes> w(o);
   set_up(w);
   const auto glued = w.add_species(dem::shape::cube8(1e-3), {.held = true});

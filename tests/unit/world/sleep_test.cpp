@@ -2,9 +2,11 @@
 
 #include "core/error_of.hpp"
 
-#include <dem/world/contacts.hpp>
+#include <dem/world/energy.hpp>
+#include <dem/world/rest.hpp>
 
 #include <algorithm>
+#include <functional>
 #include <set>
 
 using Catch::Approx;
@@ -42,6 +44,27 @@ struct Towers {
     return o;
   }
   double on_floor() const { return -w.surface_force(floor).z(); }
+};
+
+/// Towers of 6 cubes on a table that goes up by `height(t)` (m): 384 in all, which sleep after 0.06 s.
+struct TowersOnTable {
+  dem::World<models::VerletCubes> w;
+  std::vector<ParticleId> grains;
+  SurfaceId table;
+
+  explicit TowersOnTable(const std::function<double(double)>& height,
+                         const dem::WorldOptions& o = Towers::with(true, 1))
+      : w(o) {
+    w.set_contact({{500.0, 0.06, 1.0}, {0.4, 500.0, 0.05, 0.975}});
+    const auto cube = w.add_species(dem::shape::cube8(1e-3));
+    const auto body = w.machine().add_fixed_body("table", Vec3::Zero());
+    table = w.add_surface(body, dem::surface::Plane{});
+    w.machine().add_motion(
+        dem::mbd::prescribed_position("lift", body, Vec3::UnitZ(), dem::mbd::Signal::function(height)));
+    for (int k = 0; k < 384; ++k) grains.push_back(w.add_particle({cube, place(k)}));
+  }
+  /// Where cube k stands on a table at height 0.
+  static Vec3 place(int k) { return {2.2e-3 * (k % 8), 2.2e-3 * (k / 8 % 8), 1e-3 + 2e-3 * (k / 64)}; }
 };
 
 /// The force and the torque on each sleeper are the sums over all of its contacts. Of a grain among sleepers they must
@@ -114,45 +137,141 @@ TEST_CASE("no grain hangs in the air when what it stands on is taken away") {
 }
 
 TEST_CASE("a floor that sinks under a sleeping bed takes it along") {
-  dem::World<models::VerletCubes> w(Towers::with(true, 1));
-  w.set_contact({{500.0, 0.06, 1.0}, {0.4, 500.0, 0.05, 0.975}});
-  const auto cube = w.add_species(dem::shape::cube8(1e-3));
-  const auto table = w.machine().add_fixed_body("table", Vec3::Zero());
-  w.add_surface(table, dem::surface::Plane{});
-  w.machine().add_motion(
-      dem::mbd::prescribed_position("sink", table, Vec3::UnitZ(), dem::mbd::Signal::function([](double t) {
-                                      return t < 0.07 ? 0.0 : -0.02 * (t - 0.07);  // m
-                                    })));
-  std::vector<ParticleId> grains;
-  for (int k = 0; k < 384; ++k) {
-    grains.push_back(w.add_particle({cube, Vec3(2.2e-3 * (k % 8), 2.2e-3 * (k / 8 % 8), 1e-3 + 2e-3 * (k / 64))}));
-  }
-  REQUIRE(w.run_for(0.06));
-  REQUIRE(w.asleep_count() == grains.size());
-  REQUIRE(w.run_for(0.06));
+  TowersOnTable bed([](double t) { return t < 0.07 ? 0.0 : -0.02 * (t - 0.07); });
+  REQUIRE(bed.w.run_for(0.06));
+  REQUIRE(bed.w.asleep_count() == bed.grains.size());
+  REQUIRE(bed.w.run_for(0.06));
   // 1 mm down; the contacts of a tower of 6 give by less than 3e-6 m in all.
-  for (std::size_t k = 0; k < grains.size(); ++k) {
-    CHECK(w.position(grains[k]).z() == Approx(1e-3 + 2e-3 * static_cast<double>(k / 64) - 1e-3).margin(1e-5));
+  for (int k = 0; k < 384; ++k) {
+    const double now = bed.w.position(bed.grains[static_cast<std::size_t>(k)]).z();
+    CHECK(now == Approx(TowersOnTable::place(k).z() - 1e-3).margin(1e-5));
   }
 }
 
 TEST_CASE("no grain hangs in the air when the floor is far away after one step") {
+  TowersOnTable bed([](double t) { return t < 0.07 ? 0.0 : -0.1; });
+  REQUIRE(bed.w.run_for(0.069));
+  REQUIRE(bed.w.asleep_count() == bed.grains.size());
+  REQUIRE(bed.w.run_for(0.011));
+  for (const ParticleId p : bed.grains) CHECK(bed.w.velocity(p).z() < -0.9 * g * 0.01);
+  CHECK(bed.w.surface_force(bed.table).norm() == 0.0);
+}
+
+TEST_CASE("a surface that is added where grains sleep is felt in the next step") {
+  Towers bed(true);
+  REQUIRE(bed.w.run_for(0.07));
+  REQUIRE(bed.w.asleep_count() == bed.grains.size());
+  const double top = 2e-3 * Towers::high, edge = 2.4e-3 * Towers::across, into = 2e-5;  // m
+  const SurfaceId lid = bed.w.add_surface(bed.w.ground(), dem::surface::Box(Vec3(2 * edge, 2 * edge, 1e-3)),
+                                          {.position = Vec3(0.5 * edge, 0.5 * edge, top + 5e-4 - into)});
+  REQUIRE(bed.w.run(2));
+  // Each of 64 cubes by four spheres of 500 N/m; towers have sunk by 5e-6 m.
+  CHECK(bed.w.surface_force(lid).z() == Approx(64 * 4 * 500.0 * (into - 5e-6)).epsilon(0.1));
+  CHECK(bed.w.asleep_count() < bed.grains.size());
+}
+
+TEST_CASE("a grain that turns in its place, or flies slowly, does not sleep") {
+  const auto check = [](auto& w, const auto& shape) {
+    const auto kind = w.add_species(shape);
+    w.add_surface(w.ground(), dem::surface::Plane{}, {.material = "ice"});
+    const double radius = 1e-3, turning = 5.0, drift = 1e-7;  // m, rad/s, m/s
+    const auto top = w.add_particle({.species = kind, .position = {0, 0, radius}, .angular_velocity = {0, 0, turning}});
+    const auto rests = w.add_particle({.species = kind, .position = {0.01, 0, radius}});
+    REQUIRE(w.run_for(0.2));
+    CHECK(w.is_asleep(rests));
+    CHECK(!w.is_asleep(top));
+    CHECK(w.angular_velocity(top).z() == Approx(turning).epsilon(1e-9));
+    // Without gravity one that moves goes on; one that does not may sleep.
+    w.remove_particle(top);
+    w.remove_particle(rests);
+    w.set_gravity({0, 0, 0});
+    const auto flier = w.add_particle({kind, Vec3(0, 0, 0.05), {drift, 0, 0}}),
+               stays = w.add_particle({kind, Vec3(0.01, 0, 0.05)});
+    REQUIRE(w.run_for(0.1));
+    CHECK(w.velocity(flier).x() == drift);
+    CHECK(!w.is_asleep(flier));
+    CHECK(w.is_asleep(stays));
+  };
+  const auto without_friction = [](auto& w) {
+    w.set_contact({{500.0, 0.06, 1.0}, {0.4, 500.0, 0.05, 0.975}});
+    w.set_contact("grain", "ice", {{500.0, 0.06, 1.0}, {0.0, 500.0, 0.05, 0.975}});
+  };
+  dem::World<models::VerletCubes> cubes(Towers::with(true, 1));
+  dem::World<models::VerletBalls> balls(Towers::with(true, 1));
+  without_friction(cubes), without_friction(balls);
+  check(cubes, dem::shape::cube8(1e-3));
+  check(balls, Sphere(1e-3));
+}
+
+TEST_CASE("what grains that fall asleep lose of their motion is counted") {
+  // They may move ten times as far, so that there is something to lose.
+  const bool sleeps = GENERATE(false, true);
+  Towers bed(false);
+  if (sleeps) bed.w.set_sleep(dem::SleepOptions{.balance = 0.3, .change = 0.3, .jolt = 0.3, .motion = 0.01});
+  bed.grains.push_back(bed.w.add_particle({SpeciesId(0), Vec3(0, 0, 2e-3 * Towers::high + 2e-3), {0, 0, -0.2}}));
+  dem::count_energy(bed.w);
+  const double before = dem::energy_of(bed.w).balance();
+  REQUIRE(bed.w.run_for(0.08));
+  const dem::GrainEnergy e = dem::energy_of(bed.w);
+  CHECK(bed.w.asleep_count() == (sleeps ? bed.grains.size() : 0));
+  if (sleeps) CHECK(e.dissipated_asleep > 5e-10);
+  // 3e-11 J is the integrator's error, with sleep and without.
+  CHECK(std::abs(e.balance() - before) < 1e-10);
+}
+
+TEST_CASE("neighbours are listed anew where a few grains that are awake lie in many chunks") {
+  Towers bed(true);
+  REQUIRE(bed.w.run_for(0.07));
+  auto& s = bed.w.state();
+  REQUIRE(bed.w.asleep_count() == bed.grains.size());
+  REQUIRE(s.chunks.size() == 3);
+  s.sleepers.measuring = true;
+  dem::look_at_order(s);
+  CHECK(s.list_valid);  // nobody is awake
+  SECTION("all in one chunk") {
+    for (std::size_t row = 0; row < 100; ++row) dem::wake_row(s, row);
+    dem::look_at_order(s);
+    CHECK(s.list_valid);
+  }
+  SECTION("one in each chunk") {
+    for (std::size_t c = 0; c < 3; ++c) dem::wake_row(s, 256 * c + 7);
+    dem::look_at_order(s);
+    CHECK(!s.list_valid);
+    REQUIRE(bed.w.run(1));
+    // They come first now.
+    for (std::size_t row = 0; row < 3; ++row) CHECK(!bed.w.is_asleep(s.particles.name(s.particles.id[row])));
+  }
+}
+
+TEST_CASE("a part that holds grains finds its rest under grains that sleep on them") {
+  // A table of glued cubes on a spring, and towers of 5 on it.
   dem::World<models::VerletCubes> w(Towers::with(true, 1));
   w.set_contact({{500.0, 0.06, 1.0}, {0.4, 500.0, 0.05, 0.975}});
-  const auto cube = w.add_species(dem::shape::cube8(1e-3));
-  const auto table = w.machine().add_fixed_body("table", Vec3::Zero());
-  const SurfaceId floor = w.add_surface(table, dem::surface::Plane{});
-  w.machine().add_motion(dem::mbd::prescribed_position(
-      "drop", table, Vec3::UnitZ(), dem::mbd::Signal::function([](double t) { return t < 0.07 ? 0.0 : -0.1; })));
-  std::vector<ParticleId> grains;
+  const auto cube = w.add_species(dem::shape::cube8(1e-3)),
+             glued = w.add_species(dem::shape::cube8(1e-3), {.held = true});
+  auto& m = w.machine();
+  const Vec3 middle(7.7e-3, 7.7e-3, 0);
+  const auto table = m.add_body(dem::mbd::box_body("table", {0.02, 0.02, 2e-3}, 2650).at(middle));
+  m.add_joint(dem::mbd::prismatic("guide", w.ground(), table, middle, Vec3::UnitZ()));
+  const double stiffness = 200.0;
+  m.add_spring(dem::mbd::spring("spring", w.ground(), middle - Vec3(0, 0, 0.05), table, middle, stiffness, 1.0));
+  std::size_t grains = 0;
   for (int k = 0; k < 384; ++k) {
-    grains.push_back(w.add_particle({cube, Vec3(2.2e-3 * (k % 8), 2.2e-3 * (k / 8 % 8), 1e-3 + 2e-3 * (k / 64))}));
+    const ParticleId p =
+        w.add_particle({k < 64 ? glued : cube, Vec3(2.2e-3 * (k % 8), 2.2e-3 * (k / 8 % 8), 2e-3 * (k / 64))});
+    if (k < 64) w.attach(p, table);
+    grains += k < 64 ? 0 : 1;
   }
-  REQUIRE(w.run_for(0.069));
-  REQUIRE(w.asleep_count() == grains.size());
-  REQUIRE(w.run_for(0.011));
-  for (const ParticleId p : grains) CHECK(w.velocity(p).z() < -0.9 * g * 0.01);
-  CHECK(w.surface_force(floor).norm() == 0.0);
+  const double weight = static_cast<double>(grains) * w.species(cube).mass * g;
+  REQUIRE(w.run_for(0.3));
+  REQUIRE(w.asleep_count() == grains);
+  const double sunk = w.machine().body(table).position().z();
+  CHECK(sunk < -weight / stiffness);  // and by the weight of the table itself
+  const auto rest = dem::find_rest(w);
+  INFO(rest.text);
+  CHECK(rest);
+  // Without what the towers do to the glued cubes it would rise by 3e-4 m.
+  CHECK(w.machine().body(table).position().z() == Approx(sunk).margin(1e-7));
 }
 
 TEST_CASE("grains that a part holds wake as it moves, and so do those that stand on them") {
@@ -220,7 +339,7 @@ TEST_CASE("a grain that lands wakes its surroundings, and is held") {
 TEST_CASE("the force on each grain is that of all of its contacts, evaluated in this step or kept") {
   // Gravity leans, so that friction holds the towers. A visitor lands on one corner: some grains are awake, most sleep.
   Towers bed(true);
-  const dem::SleepOptions lax{.balance = 0.2, .change = 0.2, .motion = 0.01, .window = 50};
+  const dem::SleepOptions lax{.balance = 0.2, .change = 0.2, .jolt = 0.2, .motion = 0.01, .window = 50};
   bed.w.set_gravity({0.03 * g, 0.01 * g, -g});
   bed.w.set_sleep(lax);
   REQUIRE(bed.w.run_for(0.1));

@@ -22,16 +22,19 @@ void sleep_fields(Fields& v, WorldState<Model>& w) {
   if (is_restoring) w.options.sleep = may_sleep ? std::optional(o) : std::nullopt;
   if (!may_sleep || v.task() == Fields::Task::compare) return;
 
-  constexpr std::size_t width = 18, kept_width = 12, load_width = 6;
-  std::vector<double> rests, kept, surface_loads;
-  std::vector<std::uint32_t> surface_count, surfaces;
+  constexpr std::size_t width = 24, kept_width = 12, load_width = 6;
+  std::vector<double> rests, kept, surface_loads, deepest;
+  std::vector<std::uint32_t> surface_count, surfaces, deepest_of;
   std::vector<std::uint8_t> doing;  // of grains: their images are told of it
   const auto append = [](std::vector<double>& list, const Vector3<double>& x) {
     list.insert(list.end(), {x.x, x.y, x.z});
   };
   if (!is_restoring) {
     for (const grain::Rest& r : s.grains) {
-      for (const auto* x : {&r.position, &r.force, &r.torque, &r.more_force, &r.more_torque}) append(rests, *x);
+      for (const auto* x :
+           {&r.position, &r.force, &r.torque, &r.more_force, &r.more_torque, &r.facing.first, &r.facing.second}) {
+        append(rests, *x);
+      }
       rests.insert(rests.end(), {r.borne, double(r.quiet_windows), double(r.asleep)});
     }
     const std::size_t rows = std::min(s.doing.size(), w.chunks.size() * chunk_size);
@@ -40,6 +43,8 @@ void sleep_fields(Fields& v, WorldState<Model>& w) {
       for (const Columns3* x : {&s.kept_force, &s.kept_torque, &s.surface_force, &s.surface_torque})
         append(kept, (*x)[i]);
     for (const Chunk<Model>& c : w.chunks) {
+      deepest.push_back(c.deepest.overlap);
+      deepest_of.insert(deepest_of.end(), {c.deepest.i, c.deepest.partner, c.deepest.with_surface ? 1u : 0u});
       surface_count.push_back(static_cast<std::uint32_t>(c.surface_loads.size()));
       for (const SurfaceLoad& load : c.surface_loads) {
         surfaces.push_back(load.surface.value);
@@ -54,6 +59,8 @@ void sleep_fields(Fields& v, WorldState<Model>& w) {
   v.copied("surface_load_count", ColumnKind::natural32, 1, surface_count);
   v.copied("surface_load_of", ColumnKind::natural32, 1, surfaces);
   v.copied("surface_loads", ColumnKind::real, load_width, surface_loads);
+  v.copied("deepest", ColumnKind::real, 1, deepest);
+  v.copied("deepest_of", ColumnKind::natural32, 3, deepest_of);
   if (!is_restoring) return;
 
   s.doing = doing;
@@ -68,9 +75,10 @@ void sleep_fields(Fields& v, WorldState<Model>& w) {
                    vector_at(rests, at + 6),
                    vector_at(rests, at + 9),
                    vector_at(rests, at + 12),
-                   rests[at + 15],
-                   static_cast<std::uint8_t>(rests[at + 16]),
-                   rests[at + 17] != 0.0};
+                   {vector_at(rests, at + 15), vector_at(rests, at + 18)},
+                   rests[at + 21],
+                   static_cast<std::uint8_t>(rests[at + 22]),
+                   rests[at + 23] != 0.0};
   }
   const std::size_t rows = kept.size() / kept_width;
   std::size_t at = 0;
@@ -91,6 +99,7 @@ void sleep_fields(Fields& v, WorldState<Model>& w) {
     chunk.watched = (some & grain::watched) != 0;
     chunk.touched = (some & grain::touched) != 0;
     chunk.asked = (some & grain::asked) != 0;
+    chunk.deepest = {deepest.at(c), deepest_of.at(3 * c), deepest_of.at(3 * c + 1), deepest_of.at(3 * c + 2) != 0};
     chunk.surface_loads.resize(surface_count.at(c));
     for (SurfaceLoad& load : chunk.surface_loads) {
       load = {SurfaceId(surfaces.at(of_surface)), vector_at(surface_loads, of_surface * load_width),
