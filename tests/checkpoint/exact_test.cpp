@@ -124,7 +124,7 @@ TEST_CASE("a state may be saved between any two steps, and in the middle of what
 TEST_CASE("a bed in which some grains sleep goes on where it was saved, and the same with its energy counted") {
   // 64 towers of 9 cubes in three chunks, onto whose corner one more falls.
   const Folder folder;
-  const dem::SleepOptions lax{.balance = 0.2, .change = 0.2, .motion = 0.01, .window = 40};
+  const dem::SleepOptions lax{.balance = 0.2, .change = 0.2, .jolt = 0.2, .motion = 0.01, .window = 40};
   const auto set_up = [&](dem::World<VerletCubes>& w) {
     w.set_contact({{500.0, 0.06, 1.0}, {0.4, 500.0, 0.05, 0.975}});
     const SpeciesId cube = w.add_species(dem::shape::cube8(1e-3));
@@ -189,6 +189,16 @@ TEST_CASE("energy that is counted goes on where it was saved") {
   CHECK(error_of([&] { dem::load(third.world, folder / "state.h5"); }).find("energy") != std::string::npos);
 }
 
+TEST_CASE("a state of a model with something more is refused, and leaves the world as it is") {
+  auto held = scene<HeldBalls>({});
+  held.run(10);
+  auto columns = dem::io::columns_of(held.world);
+  auto penalty = scene<VerletBalls>({}, false);
+  const auto before = dem::io::hash_of(dem::io::columns_of(penalty.world));
+  CHECK(error_of([&] { dem::io::restore(penalty.world, columns); }).find("model/joints") != std::string::npos);
+  CHECK(dem::io::hash_of(dem::io::columns_of(penalty.world)) == before);
+}
+
 TEST_CASE("what else a program keeps is saved with its world") {
   const Folder folder;
   auto one = scene<Balls>({});
@@ -203,7 +213,9 @@ TEST_CASE("what else a program keeps is saved with its world") {
   CHECK(progress.stage == "shear");
   // A program that does not know of it is told so.
   auto third = scene<Balls>({}, false);
+  const auto before = dem::io::hash_of(dem::io::columns_of(third.world));
   CHECK(error_of([&] { dem::load(third.world, folder / "state.h5"); }).find("program0/") != std::string::npos);
+  CHECK(dem::io::hash_of(dem::io::columns_of(third.world)) == before);  // it is left as it is
 }
 
 }  // namespace exact_test

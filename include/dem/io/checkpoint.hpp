@@ -40,12 +40,16 @@ void save(const World<Model>& world, const std::filesystem::path& path, const Ot
 
 /// Puts a world into a state that was saved. The program has to set it up first, as it did before it saved: options,
 /// materials, species, surfaces and machine, with the functions (signals, loads) that it gave. Grains come from the
-/// file; those that were added already are dropped. What was steered (targets, switches, set_fixed, gravity) is in the
-/// file too, but functions are not: where a function has taken the place of a number since the set-up, give it before
-/// loading.
+/// file; those that were added already are dropped.
+///
+/// What was steered is in the file too: targets, switches, set_fixed, gravity, and whether grains may sleep. So call
+/// set_sleep after loading a bed that was saved awake, if its grains may sleep from now on. Functions are not in the
+/// file: where a function has taken the place of a number since the set-up, give it before loading.
 ///
 /// Throws Error, and leaves the world as it is, if the file cannot be read, is cut short or damaged, has another
-/// schema, or if the set-up differs; the text names what differs: which option, material, species, body, joint.
+/// schema, or if the set-up differs; the text names what differs: which option, material, species, body, joint. A file
+/// that is whole and yet lacks a field of this world is refused while it is being read, and leaves a world that is good
+/// for nothing.
 template <class Model, class... Others>
 void load(World<Model>& world, const std::filesystem::path& path, Others&... others) {
   io::StateColumns columns = io::read_columns(path);

@@ -66,8 +66,9 @@ class FieldColumns {
     for (auto& [name, column] : columns) column.at = 0;
   }
   Task task() const { return task_; }
-  /// Throws Error if there is a column that was not read to its end: a state that this program does not have.
-  void check_all_read() const;
+  /// Throws Error if there is a column that was not read to its end, of those whose names begin with `group`: a state
+  /// that this program does not have.
+  void check_all_read(std::string_view group = "") const;
 
  protected:
   /// While it lives, fields are those of a group of this name.
@@ -197,9 +198,9 @@ DEM_COLD inline void FieldColumns::begin_item(const std::string& outer, const ch
   kind_of_part_ = one;
 }
 
-DEM_COLD inline void FieldColumns::check_all_read() const {
+DEM_COLD inline void FieldColumns::check_all_read(std::string_view group) const {
   for (const auto& [name, column] : *columns_) {
-    if (column.at != column.rows()) {
+    if (column.at != column.rows() && name.starts_with(group)) {
       fail(
           "'{}' of the saved state is not part of this program's; it was saved by another program or for another model",
           name);

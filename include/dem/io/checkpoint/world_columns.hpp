@@ -273,12 +273,19 @@ StateColumns columns_of(const World<Model>& world, const Others&... others) {
 }
 
 /// Puts a world, which the program has set up as it did before, into a state. Grains are those of the state. Throws
-/// Error where the set-up differs, in words, before anything is changed. A state that fits the set-up but lacks
-/// something is refused while it is being read: the world is then good for nothing.
+/// Error where the set-up or the model differs, or the state has things of a program that are not given here, in words,
+/// before anything is changed. A state that fits the set-up but lacks something is refused while it is being read: the
+/// world is then good for nothing.
 template <class Model, class... Others>
 void restore(World<Model>& world, StateColumns& columns, Others&... others) {
   Fields compare(Fields::Task::compare, columns);
   detail::world_fields(compare, world, others...);
+  compare.check_all_read("model/");
+  const std::string more = "program" + std::to_string(sizeof...(Others)) + "/";
+  if (const auto next = columns.lower_bound(more); next != columns.end() && next->first.starts_with(more)) {
+    fail("the saved state has '{}', but this program gives {} things besides the world to be restored", next->first,
+         sizeof...(Others));
+  }
   Fields v(Fields::Task::restore, columns);
   detail::world_fields(v, world, others...);
   v.check_all_read();
