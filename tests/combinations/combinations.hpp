@@ -6,6 +6,7 @@
 #include <dem/geometry/polyhedron/polyhedra.hpp>
 #include <dem/geometry/polyhedron/polyhedron_sphere.hpp>
 #include <dem/geometry/superquadric/superquadric_polyhedron.hpp>
+#include <dem/io/checkpoint/world_columns.hpp>
 #include <dem/law/cohesion/dmt.hpp>
 
 // Every kind of grain under laws that it was not made for: laws are those of a whole contact, shapes hand over points
@@ -63,20 +64,46 @@ std::vector<S> kinds_of() {
     return {shape::cube8(half), shape::cube(half), SuperquadricPoints(radii, exponents, 4)};
 }
 
-/// Grains fall into a box: the energy that they have never grows, they come to rest, and their weight arrives.
+/// A box and the kinds of grain that fall into it.
+template <class Model>
+struct Pouring {
+  static constexpr double pitch = 4.1 * half;
+  World<Model> w;
+  std::vector<SpeciesId> species;
+  std::vector<SurfaceSensorId> scales;
+
+  Pouring()
+      : w([] {
+          WorldOptions o = options({0, 0, -g});
+          o.overlap_limit = 0.2;
+          o.time_step_safety = 0.8;
+          return o;
+        }()) {
+    w.set_contact(constants_of<Model>());
+    for (const auto& kind : kinds_of<typename Model::Shape>()) species.push_back(w.add_species(kind));
+    for (const SurfaceId wall : add_open_box(w, {2 * pitch, pitch, 0}))
+      scales.push_back(w.add_surface_sensor(wall, 0.05));
+  }
+};
+
+/// From the columns of its state a world goes on in the same bits.
+template <class Model>
+void check_goes_on(World<Model> whole) {
+  auto saved = io::columns_of(whole);
+  Pouring<Model> other;
+  io::restore(other.w, saved);
+  for (auto* w : {&whole, &other.w}) REQUIRE(w->run(300));
+  CHECK(io::differences(io::columns_of(whole), io::columns_of(other.w)).empty());
+  CHECK(io::columns_of(whole).at("contacts/surfaces/key").rows() > 0);
+}
+
+/// Grains fall into a box: the energy that they have never grows, they come to rest, and their weight arrives. On the
+/// way their state is saved, and they go on from it.
 template <class Model>
 void pour() {
-  WorldOptions o = options({0, 0, -g});
-  o.overlap_limit = 0.2;
-  o.time_step_safety = 0.8;
-  World<Model> w(o);
-  w.set_contact(constants_of<Model>());
-  std::vector<SpeciesId> species;
-  for (const auto& kind : kinds_of<typename Model::Shape>()) species.push_back(w.add_species(kind));
-  const double pitch = 4.1 * half;
-  const auto walls = add_open_box(w, {2 * pitch, pitch, 0});
-  std::vector<SurfaceSensorId> scales;
-  for (const SurfaceId wall : walls) scales.push_back(w.add_surface_sensor(wall, 0.05));
+  constexpr double pitch = Pouring<Model>::pitch;
+  Pouring<Model> box;
+  auto& [w, species, scales] = box;
   Random random(3);
   for (std::size_t k = 0; k < 8; ++k) {
     NewParticle n;
@@ -97,6 +124,7 @@ void pour() {
     const auto report = w.run_for(0.002);
     INFO(report.text);
     REQUIRE(report);
+    if (k == 30) check_goes_on(w);
     const double now = energy();
     gain = std::max(gain, now - least);
     if (k >= 75) {
