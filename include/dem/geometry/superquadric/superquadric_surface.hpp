@@ -14,6 +14,10 @@ namespace dem::surface {
 /// one that is stuck in a corner narrower than itself gets one of the contacts only. Behind the wall of a cavity grains
 /// are found up to half its size deep. To other bodies and to sharp grains it shows the skin of the grain of that
 /// shape: fixed points, and the one that lies deepest in another body.
+///
+/// A model names it, as the default set of surfaces does not have it:
+///
+///     using Surfaces = dem::surface::Set<dem::surface::Plane, dem::surface::Superquadric>;
 class Superquadric {
  public:
   /// Half sizes (m) and exponents, each from 2 (round) to 32 (a box for all purposes). Throws Error otherwise.
