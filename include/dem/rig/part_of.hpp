@@ -17,7 +17,9 @@ template <class Model>
 class PartOf final : public Part {
  public:
   /// `stages` are those that tell how far the part is: the session, or those of one of several runs side by side.
-  PartOf(Session& session, Stages& stages, std::string name) : Part(session.parts(), std::move(name)), stages_(stages) {
+  PartOf(Session& session, Stages& stages, std::string name) : PartOf(session.parts(), stages, std::move(name)) {}
+  /// The same, kept elsewhere.
+  PartOf(PartStore& store, Stages& stages, std::string name) : Part(store, std::move(name)), stages_(stages) {
     stages_.set_part(this);
   }
   ~PartOf() override { stages_.set_part(nullptr); }

@@ -29,10 +29,11 @@ inline soil::Packing read_bed(const BedSettings& s, const GrainSettings& grains,
   return p;
 }
 
-/// What a bed starts from: its file, or grains to be rained. `repeats`: it repeats itself along x. Throws Error.
+/// What a bed starts from: its file of places, or grains to be rained. `repeats`: it repeats itself along x. Throws
+/// Error.
 inline soil::Packing start_of_bed(const BedSettings& s, const GrainSettings& grains, double volume,
                                   double bounding_radius, bool repeats = false) {
-  return s.file.empty() ? bed_grains(s, grains, volume, bounding_radius) : read_bed(s, grains, repeats);
+  return s.is_rained() ? bed_grains(s, grains, volume, bounding_radius) : read_bed(s, grains, repeats);
 }
 
 }  // namespace dem::rig

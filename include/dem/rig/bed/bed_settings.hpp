@@ -27,8 +27,13 @@ struct BedSettings {
   std::uint64_t seed = 1;         ///< of the rain
   int threads = 0;                ///< 0: all, at least 1000 grains for each
   bool sleep = false;             ///< grains at rest may sleep
-  std::string file;               ///< read instead of made
-  std::string save;               ///< empty: <output>/bed.txt
+  std::string file;               ///< .h5: a bed as it was saved; else grains that settle and are levelled anew
+  std::string save;               ///< .h5: with all contacts; empty: <output>/bed.txt
+
+  /// Whether the file is the state of a bed, or is to be one.
+  static bool is_state(const std::string& file) { return file.ends_with(".h5"); }
+  /// Whether grains are rained, in this run or in the one that saved the state of the bed.
+  [[nodiscard]] bool is_rained() const { return file.empty() || is_state(file); }
 };
 
 /// What the sizes of a rig differ in.
@@ -55,17 +60,21 @@ inline void add_bed_options(Options& options, BedSettings& s) {
   add("--seed", s.seed, "of the rain");
   add("--threads", s.threads, "0: all, at least 1000 grains for each").changes_no_result();
   add_sleep_option(options, s.sleep);
-  add("--bed-file", s.file, "read the grains from this file instead of raining them");
-  add("--save-bed", s.save, "file for the levelled bed; empty: bed.txt in the output folder");
+  add("--bed-file", s.file,
+      ".h5: take the bed as it was saved, with the same settings; else read grains from this file instead of raining "
+      "them");
+  add("--save-bed", s.save,
+      "file for the levelled bed; .h5: with all contacts, so that it needs no settling (needs HDF5); empty: bed.txt in "
+      "the output folder");
 }
 
 /// Those that change nothing with a bed from a file, or one that is not shaken.
 inline void find_idle(IdleOptions& idle, const BedSettings& s) {
-  const bool made = s.file.empty();
-  idle.unless(made, "without --bed-file, which fixes the grains",
+  idle.unless(s.file.empty(), "without --bed-file, which is there already", {"--save-bed"});
+  idle.unless(s.is_rained(), "without --bed-file, which fixes the grains",
               {"--bed-depth", "--relative-density", "--densify-time", "--shake-amplitude", "--shake-frequency",
-               "--strike-off", "--seed", "--save-bed"});
-  if (!made) return;
+               "--strike-off", "--seed"});
+  if (!s.is_rained()) return;
   idle.unless(s.relative_density != 0.0, "with a --relative-density above 0, for which a bed is shaken",
               {"--densify-time", "--shake-amplitude", "--shake-frequency"});
 }

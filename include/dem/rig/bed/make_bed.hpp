@@ -92,13 +92,13 @@ void level(Bed<Model>& bed, double strike_off, Stages& stages) {
 }
 
 /// Stages of progress in make_bed.
-inline int bed_stages(const BedSettings& s) { return 2 + (s.file.empty() && s.relative_density > 0.0 ? 2 : 0); }
+inline int bed_stages(const BedSettings& s) { return 2 + (s.is_rained() && s.relative_density > 0.0 ? 2 : 0); }
 
 /// A levelled bed of these grains, which come to rest first.
 template <class Model>
 Bed<Model> make_bed(const BedSettings& s, const GrainSettings& grains, const typename Model::Shape& shape, bool halves,
                     const soil::Packing& start, Stages& stages) {
-  const bool made = s.file.empty();
+  const bool made = s.is_rained();
   Bed<Model> bed(s, grains, shape, {.halves = halves, .wall_top = walls_for(start, grains)}, start.grains);
   const auto kept = stages.keep("bed", bed);
   stages.begin(made ? "rain" : "settle", 1.0);

@@ -1,7 +1,7 @@
 #pragma once
 
 #include <dem/report/replay_world.hpp>
-#include <dem/rig/bed/bed_file.hpp>
+#include <dem/rig/bed/kept_bed.hpp>
 #include <dem/rig/frames.hpp>
 #include <dem/rig/part_of.hpp>
 #include <dem/rig/plate_sinkage.hpp>
@@ -73,8 +73,7 @@ void run_campaign(const Settings& settings, ShapeOf&& shape_of, Campaign& campai
               (v.name == "slow" ? 0 : bed_stages(v.settings.bed));
   }
   soil::Packing start = start_of(test.settings());
-  const bool made = settings.bed.file.empty();
-  if (made) session.require_writable(settings.bed.save, "--save-bed");
+  BedStore store(session, test.settings().bed, test.settings().grains);
   session.begin_run(stages);
 
   std::optional<Bed<Model>> bed;
@@ -82,11 +81,11 @@ void run_campaign(const Settings& settings, ShapeOf&& shape_of, Campaign& campai
     VariantResult& result = campaign.variants.emplace_back(VariantResult{.variant = v});
     const PlateSinkage<Model> variant(v.settings, shape_of);
     if (v.name != "slow") {
-      PartOf<Model> part(session, session, detail::prefix(v) + "bed");
-      bed.emplace(variant.make_bed(v.name.empty() ? start : start_of(v.settings), session));
-      const auto kept = session.keep("bed", *bed);
-      session.complete(bed->world);
-      if (made && v.name.empty()) soil::save_packing(packing_of(*bed), settings.bed.save);
+      const bool is_first = v.name.empty();
+      bed.emplace(make_kept_bed(variant, is_first ? start : start_of(v.settings), session,
+                                is_first ? static_cast<PartStore&>(store) : session.parts(),
+                                detail::prefix(v) + "bed"));
+      if (is_first) store.save_places(*bed);
     }
     result.level = bed->level;
     result.solid_fraction = bed->solid_fraction(bed->level);

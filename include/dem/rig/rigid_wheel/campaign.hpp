@@ -1,7 +1,6 @@
 #pragma once
 
 #include <dem/report/replay_world.hpp>
-#include <dem/rig/bed/bed_file.hpp>
 #include <dem/rig/bed/kept_bed.hpp>
 #include <dem/rig/frames.hpp>
 #include <dem/rig/part_of.hpp>
@@ -18,13 +17,12 @@ template <class Model, class ShapeOf>
 void run_campaign(const Settings& settings, ShapeOf&& shape_of, Campaign& campaign, Session& session) {
   const RigidWheel<Model> test(settings, shape_of);
   const Settings& s = test.settings();
-  const bool made = s.bed.file.empty();
   const soil::Packing start = start_of_bed(s.bed, s.grains, test.shape().volume(), test.shape().bounding_radius());
-  if (made) session.require_writable(s.bed.save, "--save-bed");
+  BedStore store(session, s.bed, s.grains);
   session.begin_run(bed_stages(s.bed) + 2);
 
-  Bed<Model> bed = make_kept_bed(test, start, session);
-  if (made) soil::save_packing(packing_of(bed), s.bed.save);
+  Bed<Model> bed = make_kept_bed(test, start, session, store);
+  store.save_places(bed);
   campaign.level = bed.level;
   campaign.solid_fraction = bed.solid_fraction(bed.level);
   campaign.grains = bed.world.particle_count();

@@ -3,7 +3,6 @@
 #include <dem/io/csv.hpp>
 #include <dem/io/duration.hpp>
 #include <dem/report/replay_world.hpp>
-#include <dem/rig/bed/bed_file.hpp>
 #include <dem/rig/bed/kept_bed.hpp>
 #include <dem/rig/frames.hpp>
 #include <dem/rig/part_of.hpp>
@@ -32,13 +31,12 @@ void run_campaign(const Settings& settings, ShapeOf&& shape_of, Campaign& c, Ses
   const SoftLane<Model> test(settings, shape_of);
   const SoftLane<Repeating<Model>> of_tile(settings, shape_of);
   const Settings& s = test.settings();
-  const bool made = s.bed.file.empty();
   if (Model::Domain::has_ranks && s.goes_along() && processes.count > 1) {
     fail("--tiles is {}, but processes do not share a lane that goes along; run this on one process", s.tiles);
   }
   const soil::Packing start =
       start_of_bed(s.bed, s.grains, test.shape().volume(), test.shape().bounding_radius(), s.goes_along());
-  if (made) session.require_writable(s.bed.save, "--save-bed");
+  BedStore store(session, s.bed, s.grains, s.goes_along());
   session.begin_run(bed_stages(s.bed) + s.passes * (s.slope_angle() != 0.0 ? 4 : 3));
 
   const io::SurfaceMesh hull = vehicle::drawn_hull(s.car);
@@ -61,21 +59,21 @@ void run_campaign(const Settings& settings, ShapeOf&& shape_of, Campaign& c, Ses
   };
 
   const auto look_at = [&](const auto& bed) {
-    if (made) soil::save_packing(packing_of(bed), s.bed.save);
+    store.save_places(bed);
     c.solid_fraction = bed.solid_fraction(bed.level);
     session.finish(text("{:.1f} mm deep, solid fraction {:.3f}", 1e3 * bed.level, c.solid_fraction));
   };
   std::optional<soil::Tile> tile;
   double level = not_known, time_step = not_known;
   if (s.goes_along()) {
-    const auto bed = make_kept_bed(of_tile, start, session);
+    const auto bed = make_kept_bed(of_tile, start, session, store);
     look_at(bed);
     level = bed.level, time_step = of_tile.time_step(bed);
     tile = make_kept_tile<Model>(s, test.shape(), bed, time_step, session);
     // Not its solid fraction: that would count the ground between the troughs.
     session.finish(text("{} grains, {:.2f} neighbours each", tile->grains.size(), tile->coordination));
   } else {
-    const auto bed = make_kept_bed(test, start, session);
+    const auto bed = make_kept_bed(test, start, session, store);
     look_at(bed);
     c.lane = lane_grains(s, soil::placements(bed.world));
     level = test.level(bed, c.lane), time_step = test.time_step(bed);

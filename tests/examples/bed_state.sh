@@ -1,0 +1,36 @@
+#!/usr/bin/env bash
+# A rig whose bed is saved as a state (--save-bed bed.h5): a run that starts from it ends with the same bytes in its CSV
+# files as the one that made it, and settings of another bed are refused in words, before earlier results are lost.
+#
+#   bed_state.sh <rig> <output folder> <options>...
+set -euo pipefail
+
+rig=$1 output=$2
+shift 2
+export OMP_NUM_THREADS=2
+
+refuse() {
+  echo "$1"
+  tail -n 20 "$output"/*.txt
+  exit 1
+}
+
+if "$rig" --resume --output "$output/none" 2>&1 | grep -q 'needs HDF5'; then
+  echo "the rig was built without HDF5: not tested"
+  exit 77
+fi
+
+rm -rf "$output"
+mkdir -p "$output"
+"$rig" "$@" --save-bed "$output/bed.h5" --output "$output/made" > "$output/made.txt" 2>&1 || refuse "the run that makes the bed ended with $?"
+[ -s "$output/bed.h5" ] || refuse "it left no bed"
+"$rig" "$@" --bed-file "$output/bed.h5" --output "$output/taken" > "$output/taken.txt" 2>&1 || refuse "the run from the bed ended with $?"
+for file in "$output"/made/*.csv; do
+  cmp "$file" "$output/taken/$(basename "$file")" || refuse "$(basename "$file") is not what it is where the bed is made"
+done
+if "$rig" "$@" --bed-file "$output/bed.h5" --seed 7 --output "$output/taken" > "$output/other.txt" 2>&1; then
+  refuse "another seed was not refused"
+fi
+grep -q "was made with bed: .*seed 1.* but the settings say bed: .*seed 7" "$output/other.txt" || refuse "not refused in words"
+[ -s "$output/taken/results.csv" ] || refuse "earlier results are lost"
+echo "The same from the state of the bed"
