@@ -61,10 +61,10 @@ struct MachineSurface {
     // a half space, 1e150 m away, it would be lost.
     const Vec3 middle = to_eigen(axes) * (0.5 * (local.low + local.high));
     const Vec3 half = magnitudes(to_eigen(axes)) * (0.5 * (local.high - local.low));
-    swept = {low, high};
+    const surface::Bounds before = {low, high};
     low = to_eigen(origin) + (middle - half);
     high = to_eigen(origin) + (middle + half);
-    swept = {low.cwiseMin(swept.low), high.cwiseMax(swept.high)};
+    swept = {low.cwiseMin(before.low), high.cwiseMax(before.high)};
   }
 };
 

@@ -33,6 +33,7 @@ TEST_CASE("options out of range are refused") {
   check_says(options_refused([](auto& o) { o.gravity.y() = not_a_number; }), {"gravity is (0, nan", "must be finite"});
   check_says(options_refused([](auto& o) { o.threads = -1; }), {"threads is -1", "at least 1"});
   CHECK_NOTHROW(dem::World<Balls>());
+  CHECK_NOTHROW([] { dem::World<Balls> w({}); }());  // options that all keep their defaults
 }
 
 TEST_CASE("a serial world runs on one thread only") {
