@@ -1,10 +1,10 @@
 #pragma once
 
+#include <dem/core/short_list.hpp>
 #include <dem/geometry/contact_point.hpp>
 
 #include <algorithm>
 #include <cstddef>
-#include <vector>
 
 namespace dem::contact {
 
@@ -40,10 +40,11 @@ void fit_weights(std::size_t count, Fit fit, Point&& point) {
     double part, overlap;  // m, the first times the weight, not negative
     std::size_t direction;
   };
-  static thread_local std::vector<Direction> directions;
-  static thread_local std::vector<Part> parts;
-  directions.clear();
-  parts.clear();
+  ShortList<Direction, 32> list_of_directions;
+  ShortList<Part, 32> list_of_parts;
+  auto& directions = list_of_directions.items;
+  auto& parts = list_of_parts.items;
+  parts.reserve(count);
   const auto direction_of = [&](const Vector3<double>& normal) {
     for (std::size_t k = directions.size(); k-- > 0;) {
       const Vector3<double> d = directions[k].normal - normal;

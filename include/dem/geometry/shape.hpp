@@ -37,9 +37,8 @@ struct AnySamplePoint {
 ///   is_patch(feature)          if contacts of a pair are the points of one patch (see PatchShape);
 ///   penetration(pose, point, depth, outward_normal)   whether a point (m, from the grain's centre, global axes) lies
 ///                        inside, how deep, and which way is out: then corners and edges of surfaces are felt;
-///   touch_ball(pose, centre, radius, touch)   whether a ball touches, and where (contact::BallContactPoint): then
-///   surfaces
-///                        that are balls are felt exactly, and lateral surfaces of cylinders through balls.
+///   touch_ball(pose, centre, radius, touch)   whether a ball touches, and where (contact::BallContactPoint). Then
+///                        surfaces that are balls are felt exactly, and lateral surfaces of cylinders through balls.
 template <class S>
 concept Shape = requires(const S& shape, const Matrix3<double>& rotation, double* pose,
                          const Vector3<double>& separation) {

@@ -1,20 +1,20 @@
 #pragma once
 
+#include <dem/core/short_list.hpp>
 #include <dem/geometry/contact_shares.hpp>
 
 #include <cstdint>
 #include <utility>
-#include <vector>
 
 namespace dem::shape {
 
 /// Finds the points of one contact with find(callback(feature, touch)) and hands them on to `callback`, weighted so
 /// that they are one whole contact (contact::fit_weights).
 template <class Find, class Callback>
-void share_points(Find&& find, Callback&& callback) {
-  static thread_local std::vector<std::pair<std::uint32_t, contact::ContactPoint<double>>> found;
-  found.clear();
-  find([&](std::uint32_t feature, const contact::ContactPoint<double>& touch) { found.push_back({feature, touch}); });
+DEM_HOT void share_points(Find&& find, Callback&& callback) {
+  ShortList<std::pair<std::uint32_t, contact::ContactPoint<double>>, 32> list;
+  auto& found = list.items;
+  find([&](std::uint32_t feature, const contact::ContactPoint<double>& touch) { found.emplace_back(feature, touch); });
   contact::fit_weights(found.size(), contact::Fit::always,
                        [&](std::size_t k) -> contact::ContactPoint<double>& { return found[k].second; });
   for (const auto& [feature, touch] : found) callback(feature, touch);

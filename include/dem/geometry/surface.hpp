@@ -21,14 +21,12 @@ struct AnySink {
 };
 
 /// A surface is what a machine part shows to the grains, a solid in its own frame. It has
-///   near(point, radius)          false only if a sphere there cannot touch (cheap, may say true too often); for T =
-///   double
-///                                and for packs, where it gives a mask;
+///   near(point, radius)   false only if a sphere there cannot touch. It is cheap and may say true too often. It takes
+///                         doubles, and packs, for which it gives a mask;
 ///   touch(point, radius, callback)   calls callback(feature, normal, gap) once per contact of the sphere, features
-///   ascending:
-///                                unit normal from the sphere into the surface, distance along it from the sphere's
-///                                centre to the surface (negative inside);
-///   bounds()                     in its own frame; infinite where it has no end.
+///                         ascending. The unit normal leads from the sphere into the surface. The gap is the distance
+///                         along it from the sphere's centre to the surface, negative inside;
+///   bounds()              in its own frame; infinite where it has no end.
 template <class S>
 concept Surface = requires(const S& s, const Vector3<double>& point, double radius, const Vector3<Pack>& points) {
   { s.near(point, radius) } -> std::same_as<bool>;

@@ -1,10 +1,10 @@
 #pragma once
 
+#include <dem/core/short_list.hpp>
 #include <dem/geometry/mesh/mesh_data.hpp>
 
 #include <algorithm>
 #include <cmath>
-#include <vector>
 
 namespace dem::surface {
 
@@ -13,11 +13,12 @@ struct MeshCrossing {
   double at;      ///< share of the way from tail to head
   bool entering;  ///< through the outer side
 };
+using MeshCrossings = ShortList<MeshCrossing, 16>;
 
 /// Where the way from tail to head (m) crosses the triangles of a mesh, ascending. What only lies in a triangle's plane
 /// does not cross it. A way through an edge crosses both its triangles.
 DEM_LAZY inline void find_crossings(const MeshData& m, const Vector3<double>& tail, const Vector3<double>& head,
-                                    std::vector<MeshCrossing>& crossings) {
+                                    MeshCrossings::Items& crossings) {
   // Of a triangle's heights, so that a way through an edge or a corner misses none of the triangles there.
   constexpr double slack = 1e-9;
   crossings.clear();
@@ -45,7 +46,8 @@ DEM_LAZY inline void find_crossings(const MeshData& m, const Vector3<double>& ta
 /// callback(from, to), shares of the way, ascending.
 template <class Callback>
 void parts_inside(const MeshData& m, const Vector3<double>& tail, const Vector3<double>& head, Callback&& callback) {
-  static thread_local std::vector<MeshCrossing> crossings;
+  MeshCrossings list;
+  auto& crossings = list.items;
   find_crossings(m, tail, head, crossings);
   if (crossings.empty()) return;
   bool inside = !crossings.front().entering;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <dem/core/short_list.hpp>
 #include <dem/geometry/direction_code.hpp>
 #include <dem/geometry/mesh/mesh_parts.hpp>
 
@@ -96,7 +97,7 @@ class TriangleMesh {
     return data_->tree.reaches(p, reach * reach);
   }
 
-  /// callback(feature, normal, gap) for each contact of a sphere; it must not ask a mesh in turn.
+  /// callback(feature, normal, gap) for each contact of a sphere.
   template <class Callback>
   void touch(const Vector3<double>& p, double radius, Callback&& callback) const {
     touch_to(p, radius, radius > 0.0 ? options_.depth : point_depth_, callback);
@@ -167,7 +168,7 @@ class TriangleMesh {
 
     std::uint32_t name() const { return group << direction_bits | direction_code(normal); }
   };
-  using Found = std::vector<Minimum>;
+  using Found = ShortList<Minimum, 16>::Items;
 
   /// True if the nearest point of face f is a local minimum of the distance to the whole surface. A generous tolerance
   /// does no harm: what is found twice has one normal and becomes one contact.
@@ -265,20 +266,22 @@ class TriangleMesh {
   /// Contacts up to a reach before the surface, and if there are none, of a centre up to a depth behind it.
   template <class Callback>
   void touch_to(const Vector3<double>& p, double radius, double depth, Callback&& callback) const {
-    static thread_local Found found;  // sinks only gather, so no query runs within another
-    found.clear();
-    if (radius > 0.0) find_minima(p, radius, found);
-    if (found.empty() && depth > radius) {
-      Minimum nearest;
-      if (find_nearest(p, depth, nearest) && nearest.behind)
-        callback(nearest.name(), nearest.normal, -nearest.distance);
-      return;
-    }
-    if (found.empty()) return;
+    if (radius > 0.0 && touch_minima(p, radius, callback)) return;
+    if (!(depth > radius)) return;
+    Minimum nearest;
+    if (find_nearest(p, depth, nearest) && nearest.behind) callback(nearest.name(), nearest.normal, -nearest.distance);
+  }
+  /// False if there are none within the radius.
+  template <class Callback>
+  bool touch_minima(const Vector3<double>& p, double radius, Callback&& callback) const {
+    ShortList<Minimum, 16> list;
+    Found& found = list.items;
+    find_minima(p, radius, found);
+    if (found.empty()) return false;
     sort(found, [](const Minimum& a, const Minimum& b) { return a.distance < b.distance; });
     if (found[0].behind) {  // the centre is inside: out the shortest way
       callback(found[0].name(), found[0].normal, -found[0].distance);
-      return;
+      return true;
     }
     reduce(found);
     sort(found, [](const Minimum& a, const Minimum& b) { return a.name() < b.name(); });
@@ -288,6 +291,7 @@ class TriangleMesh {
       callback(name, m.normal, m.distance);
       next = name + 1;
     }
+    return true;
   }
 
   /// Equal ones keep their order. By insertion where there are few, as nearly always.
