@@ -88,19 +88,19 @@ class HistoryCarrier {
       std::size_t k = 0;  // owner of the candidate, found by walking along: keys ascend
       for (int c = 0; c < of_pairs.count; ++c) {
         const std::uint64_t key = of_pairs.key[static_cast<std::size_t>(c)];
-        const auto candidate = static_cast<std::uint32_t>(key >> 32);
+        const std::size_t candidate = PairKey::candidate(key);
         DEM_ASSERT(candidate < chunk.candidate.size(), "what is remembered is of a candidate");
         while (chunk.candidate_first[k + 1] <= candidate) ++k;
         pairs_[pairs_first[index] + static_cast<std::size_t>(c)] = {
-            p.id[index * chunk_size + k], p.id[images.grain_of(chunk.candidate[candidate])],
-            static_cast<std::uint32_t>(key), history_of<Memory, size>(of_pairs, c)};
+            p.id[index * chunk_size + k], p.id[images.grain_of(chunk.candidate[candidate])], PairKey::feature(key),
+            history_of<Memory, size>(of_pairs, c)};
       }
       const Memory& of_surfaces = chunk.surface_contacts.last;
       for (int c = 0; c < of_surfaces.count; ++c) {
         const std::uint64_t key = of_surfaces.key[static_cast<std::size_t>(c)];
         surfaces_[surfaces_first[index] + static_cast<std::size_t>(c)] = {
-            p.id[index * chunk_size + SurfaceKey::local(key)], static_cast<std::uint32_t>(key >> 32),
-            static_cast<std::uint32_t>(key), history_of<Memory, size>(of_surfaces, c)};
+            p.id[index * chunk_size + SurfaceKey::local(key)], SurfaceKey::upper(key), SurfaceKey::lower(key),
+            history_of<Memory, size>(of_surfaces, c)};
       }
     });
   }
@@ -119,7 +119,7 @@ class HistoryCarrier {
   /// The same of grain i on a surface; of the key, the grain's place in its chunk does not count.
   void add_surface(std::uint32_t i, std::uint64_t key,
                    const std::array<double, static_cast<std::size_t>(size)>& history) {
-    surfaces_.push_back({i, static_cast<std::uint32_t>(key >> 32), static_cast<std::uint32_t>(key), history});
+    surfaces_.push_back({i, SurfaceKey::upper(key), SurfaceKey::lower(key), history});
   }
 
   /// Hands them to the chunks that own the contacts now, with the keys of the new candidate lists. Those of grains that
@@ -159,13 +159,13 @@ class HistoryCarrier {
         const std::uint32_t to = chunk.candidate_first[r.i % chunk_size + 1];
         const std::size_t at = candidate_of(std::span(chunk.candidate).subspan(from, to - from), r.j, images);
         if (at == to - from) continue;  // parted since
-        keys.emplace_back(std::uint64_t(from + at) << 32 | r.feature, of_pairs.entry[k]);
+        keys.emplace_back(PairKey::make(from + at, r.feature), of_pairs.entry[k]);
       }
       remember(chunk.pair_contacts.last, keys, pairs_);
       keys.clear();
       for (std::uint32_t k = of_surfaces.first[c]; k < of_surfaces.first[c + 1]; ++k) {
         const Entry& r = surfaces_[of_surfaces.entry[k]];
-        const std::uint64_t old = std::uint64_t{r.j} << 32 | r.feature;  // with the old place in the chunk
+        const std::uint64_t old = SurfaceKey::whole(r.j, r.feature);  // with the old place in the chunk
         keys.emplace_back(SurfaceKey::with_local(old, r.i % chunk_size), of_surfaces.entry[k]);
       }
       remember(chunk.surface_contacts.last, keys, surfaces_);

@@ -144,7 +144,7 @@ class ContactEvaluator {
         history_[k][lane] = known ? last.history[k][static_cast<std::size_t>(cursor)] : 0.0;
       }
       if constexpr (shape::PatchShape<Shape>) {
-        if (!known && Shape::is_patch(static_cast<std::uint32_t>(keys[lane]))) {
+        if (!known && Shape::is_patch(PairKey::feature(keys[lane]))) {
           inherit(last, keys[lane], cursor, lane, overlap_of(lane));
         }
       }
@@ -155,10 +155,11 @@ class ContactEvaluator {
   /// what the points of the patch remember; of the normal law what that law makes of the mean (its `inherited()`).
   template <class Memory>
   void inherit(const Memory& last, std::uint64_t key, int cursor, int lane, double overlap) {
-    const auto pair_at = [&](int c) { return last.key[static_cast<std::size_t>(c)] >> 32; };
+    const auto pair_at = [&](int c) { return PairKey::candidate(last.key[static_cast<std::size_t>(c)]); };
+    const std::size_t pair = PairKey::candidate(key);
     int first = cursor, end = cursor;
-    while (first > 0 && pair_at(first - 1) == key >> 32) --first;
-    while (end < last.count && pair_at(end) == key >> 32) ++end;
+    while (first > 0 && pair_at(first - 1) == pair) --first;
+    while (end < last.count && pair_at(end) == pair) ++end;
     if (first == end) return;
     constexpr std::size_t normal = normal_history_size<Model>;
     constexpr std::size_t to = normal + friction_history_size<Model> + rolling_history_size<Model>;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <dem/core/aligned.hpp>
+#include <dem/grain/contact_key.hpp>
 #include <dem/law/state.hpp>
 
 #include <algorithm>
@@ -34,7 +35,7 @@ inline constexpr int history_size = normal_history_size<Model> + friction_histor
                                     rolling_history_size<Model> + cohesion_history_size<Model>;
 
 /// The memory of the contacts of one chunk: keys ascending, one history each. A key says who touches whom, and where:
-/// (candidate << 32 | feature).
+/// grain::PairKey or grain::SurfaceKey.
 template <int Size>
 struct ContactMemory {
   int count = 0;
@@ -83,11 +84,11 @@ struct ContactMemories {
     int count = 0, l = 0;
     const auto keep_below = [&](std::uint64_t key) {
       for (; l < last.count && last.key[static_cast<std::size_t>(l)] < key; ++l) {
-        if (renews[last.key[static_cast<std::size_t>(l)] >> 32] == 0) spare.take(count++, last, l);
+        if (renews[grain::PairKey::candidate(last.key[static_cast<std::size_t>(l)])] == 0) spare.take(count++, last, l);
       }
     };
     for (int k = 0; k < now.count; ++k) {
-      if (renews[now.key[static_cast<std::size_t>(k)] >> 32] == 0) continue;
+      if (renews[grain::PairKey::candidate(now.key[static_cast<std::size_t>(k)])] == 0) continue;
       keep_below(now.key[static_cast<std::size_t>(k)]);
       spare.take(count++, now, k);
     }
@@ -105,13 +106,13 @@ struct ContactMemories {
     int l = 0;
     const auto skip_below = [&](std::uint64_t key) {
       for (; l < last.count && last.key[static_cast<std::size_t>(l)] < key; ++l) {
-        if (renews[last.key[static_cast<std::size_t>(l)] >> 32] != 0) return false;
+        if (renews[grain::PairKey::candidate(last.key[static_cast<std::size_t>(l)])] != 0) return false;
       }
       return true;
     };
     for (int k = 0; k < now.count; ++k) {
       const std::uint64_t key = now.key[static_cast<std::size_t>(k)];
-      if (renews[key >> 32] == 0) continue;
+      if (renews[grain::PairKey::candidate(key)] == 0) continue;
       if (!skip_below(key) || l == last.count || last.key[static_cast<std::size_t>(l)] != key) return false;
       last.take(l++, now, k);
     }

@@ -56,7 +56,7 @@ struct ChunkPairs {
   DEM_HOT Hit hit(std::uint32_t candidate, std::uint32_t feature) const {
     const auto a = static_cast<std::uint32_t>(i(candidate)), b = static_cast<std::uint32_t>(j(candidate));
     const std::uint32_t law = materials.table().size() == 1 ? 0 : materials.row(kind(a).material, kind(b).material);
-    return {std::uint64_t{candidate} << 32 | feature, a, b, law};
+    return {PairKey::make(candidate, feature), a, b, law};
   }
 };
 
@@ -186,7 +186,7 @@ void share_forces(std::size_t begin, Chunk<Model>& chunk, const PairScratch<Mode
     chunk.partner_loads[foreign] = load;
     const std::uint32_t elsewhere = hit.partner - begin >= chunk_size ? 1 : 0;
     foreign += elsewhere;
-    chunk.partner_load_first[(hit.key >> 32) + 1] += elsewhere;
+    chunk.partner_load_first[PairKey::candidate(hit.key) + 1] += elsewhere;
   }
   std::uint32_t total = 0;
   for (std::uint32_t& first : chunk.partner_load_first) first = total += first;
@@ -201,7 +201,7 @@ DEM_HOT typename Model::Shape::template PairContactPoint<double> touch_of_hit(co
   if constexpr (shape::BitShape<Shape>) {
     const std::size_t i = s.hits[c].i, j = s.hits[c].partner;
     return Shape::touch(pairs.kind(i).shape, pairs.p.pose_of(i), pairs.kind(j).shape, pairs.p.pose_of(j),
-                        pairs.separation(i, j), static_cast<std::uint32_t>(s.hits[c].key));
+                        pairs.separation(i, j), PairKey::feature(s.hits[c].key));
   } else {
     return s.touches[c];
   }
@@ -264,7 +264,7 @@ void find_pair_contacts(std::size_t chunk_index, Chunk<Model>& chunk, const Part
     s.asleep = {};
     share_forces(begin, chunk, s, [&](const Hit& hit) -> ForceSums& {
       const bool asleep = sleeps(doing, hit.i, hit.partner);
-      chunk.sleeps[hit.key >> 32] = asleep ? 1 : 0;
+      chunk.sleeps[PairKey::candidate(hit.key)] = asleep ? 1 : 0;
       return asleep ? s.asleep : sums;
     });
     // One that was the deepest and was left as it is still counts.

@@ -23,10 +23,9 @@ std::array<double, 3> slips() {
   ContactMemories<history_size<Model>> memories;
   memories.last.reserve(16);
   memories.last.count = 3;
-  memories.last.key = {5, 9, std::uint64_t{1} << 32 | 2};
+  memories.last.key = {5, 9, PairKey::make(1, 2)};
   memories.last.history[0] = {1e-6, 3e-6, 8e-6};
-  const std::vector<Hit> hits = {
-      {7, 0, 1, 0}, {std::uint64_t{1} << 32 | 2, 0, 2, 0}, {std::uint64_t{2} << 32 | 1, 0, 3, 0}};
+  const std::vector<Hit> hits = {{7, 0, 1, 0}, {PairKey::make(1, 2), 0, 2, 0}, {PairKey::make(2, 1), 0, 3, 0}};
   // Pressed by 1 mm: 1 N, so that 0.5 N limits springs of at most 8e-3 N.
   const contact::ContactPoint<double> touch = {{0, 0, 1}, 1e-3, {0, 0, 1e-3}, 1e-3, 1.0};
   const PartnerView still = {{0, 0, 0}, 1e-3, {0, 0, 0}, 1.0, {0, 0, 0}};
