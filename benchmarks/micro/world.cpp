@@ -79,11 +79,12 @@ void integrator(benchmark::State& state) {
   for (auto _ : state) {
     for (std::size_t c = 0; c < w.chunks.size(); ++c) {
       for (int stage = 0; stage < I::stages; ++stage) {
+        const dem::grain::MovingStage<typename Model::Shape> moving = {
+            .species = w.species, .inertia = w.inertia, .gravity = w.options.gravity, .stage = stage};
         if constexpr (I::predicts_before_forces) {
-          dem::grain::predict_chunk<Model>(c, w.chunks[c], w.particles, w.species, stage, 0.0, {});
+          dem::grain::predict_chunk<Model>(c, w.chunks[c], w.particles, moving);
         }
-        dem::grain::move_chunk<Model>(c, w.chunks[c], w.particles, w.species, w.inertia, w.options.gravity, stage, 0.0,
-                                      false, {});
+        dem::grain::move_chunk<Model>(c, w.chunks[c], w.particles, moving);
       }
     }
   }

@@ -167,18 +167,30 @@ void advance_chunk(std::size_t begin, Particles& p, Wakefulness doing, const Adv
   }
 }
 
+/// What moves the grains in a stage of a step.
+template <class Shape>
+struct MovingStage {
+  std::span<const Species<Shape>> species;
+  std::span<const SpeciesInertia> inertia;
+  Vec3 gravity;                   ///< m/s^2
+  int stage = 0;                  ///< of the integrator
+  double dt = 0.0;                ///< s
+  bool cleans_rotations = false;  ///< takes the rounding out of the rotation matrices
+  Wakefulness doing = {};         ///< empty where no grain may sleep
+};
+
 /// Forces -> accelerations -> motion, for the grains of one chunk.
 template <class Model, class Particles>
 void move_chunk(std::size_t chunk_index, Chunk<Model>& chunk, Particles& p,
-                std::span<const Species<typename Model::Shape>> species, std::span<const SpeciesInertia> inertia,
-                const Vec3& gravity, int stage, double dt, bool clean_rotations, Wakefulness doing) {
+                const MovingStage<typename Model::Shape>& s) {
   using Integrator = typename Model::Integrator;
-  const double lead = integrator::gyroscopic_lead<Integrator>(dt);
-  advance_chunk(chunk_index * chunk_size, p, doing, [&](std::size_t i, integrator::Motion<Pack>& m, auto& memory) {
-    Integrator::template after_forces<Pack>(stage, Pack(dt), m, memory, acceleration(i, p, inertia, gravity, m, lead));
-    if (clean_rotations && Particles::has_orientation) m.rotation = orthonormalised(m.rotation);
+  const double lead = integrator::gyroscopic_lead<Integrator>(s.dt);
+  advance_chunk(chunk_index * chunk_size, p, s.doing, [&](std::size_t i, integrator::Motion<Pack>& m, auto& memory) {
+    Integrator::template after_forces<Pack>(s.stage, Pack(s.dt), m, memory,
+                                            acceleration(i, p, s.inertia, s.gravity, m, lead));
+    if (s.cleans_rotations && Particles::has_orientation) m.rotation = orthonormalised(m.rotation);
   });
-  refresh_chunk<Model>(chunk_index, chunk, p, species, doing);
+  refresh_chunk<Model>(chunk_index, chunk, p, s.species, s.doing);
 }
 
 /// The integrator's memory from the forces at the initial state.
@@ -196,12 +208,12 @@ void initialise_chunk(std::size_t chunk_index, Particles& p, std::span<const Spe
 /// The part of an integration stage that comes before the forces (velocity Verlet's first kick and drift).
 template <class Model, class Particles>
 void predict_chunk(std::size_t chunk_index, Chunk<Model>& chunk, Particles& p,
-                   std::span<const Species<typename Model::Shape>> species, int stage, double dt, Wakefulness doing) {
+                   const MovingStage<typename Model::Shape>& s) {
   using Integrator = typename Model::Integrator;
-  advance_chunk(chunk_index * chunk_size, p, doing, [&](std::size_t, integrator::Motion<Pack>& m, auto& memory) {
-    Integrator::template before_forces<Pack>(stage, Pack(dt), m, memory);
+  advance_chunk(chunk_index * chunk_size, p, s.doing, [&](std::size_t, integrator::Motion<Pack>& m, auto& memory) {
+    Integrator::template before_forces<Pack>(s.stage, Pack(s.dt), m, memory);
   });
-  refresh_chunk<Model>(chunk_index, chunk, p, species, doing);
+  refresh_chunk<Model>(chunk_index, chunk, p, s.species, s.doing);
 }
 
 }  // namespace dem::grain

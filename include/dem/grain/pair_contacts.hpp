@@ -33,7 +33,7 @@ struct PairScratch {
 template <class Model, class Particles>
 struct ChunkPairs {
   using Shape = typename Model::Shape;
-  const Chunk<Model>& chunk;
+  Chunk<Model>& chunk;
   const Particles& p;
   std::span<const Species<Shape>> species;
   const Materials<Model>& materials;
@@ -223,12 +223,10 @@ std::size_t choose_candidates(std::size_t begin, std::size_t end, const Chunk<Mo
 /// own grains' sums only, so chunks may run at the same time. To be called after choose_candidates(); contacts that
 /// were not chosen are left as they are.
 template <class Model, class Particles>
-void find_pair_contacts(std::size_t chunk_index, Chunk<Model>& chunk, const Particles& p,
-                        std::span<const Species<typename Model::Shape>> species, const Materials<Model>& materials,
-                        double dt, Wakefulness doing, ForceSums& sums, PairScratch<Model>& s) {
+void find_pair_contacts(const ChunkPairs<Model, Particles> pairs, double dt, Wakefulness doing, ForceSums& sums,
+                        PairScratch<Model>& s) {
   using Shape = typename Model::Shape;
-  const std::size_t begin = chunk_index * chunk_size;
-  const ChunkPairs<Model, Particles> pairs{chunk, p, species, materials, begin};
+  Chunk<Model>& chunk = pairs.chunk;
   std::size_t close_count = 0;
   if (!s.chooses) {
     const auto all = static_cast<std::uint32_t>(chunk.candidate.size());
@@ -247,22 +245,22 @@ void find_pair_contacts(std::size_t chunk_index, Chunk<Model>& chunk, const Part
   }
 
   const auto touch_of = [&](std::size_t c) { return touch_of_hit<Model>(pairs, s, c); };
-  ContactEvaluator<Model, Shape::template PairContactPoint, Shape> evaluator(materials.table(), dt);
+  ContactEvaluator<Model, Shape::template PairContactPoint, Shape> evaluator(pairs.materials.table(), dt);
   const Deepest deepest = evaluator.run(
       s.hits, chunk.pair_contacts, s.forces, touch_of,
-      [&](std::size_t c) -> const PartnerView& { return p.view[s.hits[c].i]; },
-      [&](std::size_t c) -> const PartnerView& { return p.view[s.hits[c].partner]; });
+      [&](std::size_t c) -> const PartnerView& { return pairs.p.view[s.hits[c].i]; },
+      [&](std::size_t c) -> const PartnerView& { return pairs.p.view[s.hits[c].partner]; });
   const DeepestContact before = chunk.deepest;
   chunk.deepest = {deepest.overlap, 0, 0, false};
   if (deepest.overlap > 0.0)
     chunk.deepest = {deepest.overlap, s.hits[deepest.hit].i, s.hits[deepest.hit].partner, false};
   if (doing.empty()) {
-    share_forces(begin, chunk, s, [&](const Hit&) -> ForceSums& { return sums; });
+    share_forces(pairs.begin, chunk, s, [&](const Hit&) -> ForceSums& { return sums; });
   } else {
     // What contacts between sleepers bear is summed apart.
     chunk.sleeps.resize(chunk.candidate.size());
     s.asleep = {};
-    share_forces(begin, chunk, s, [&](const Hit& hit) -> ForceSums& {
+    share_forces(pairs.begin, chunk, s, [&](const Hit& hit) -> ForceSums& {
       const bool asleep = sleeps(doing, hit.i, hit.partner);
       chunk.sleeps[PairKey::candidate(hit.key)] = asleep ? 1 : 0;
       return asleep ? s.asleep : sums;

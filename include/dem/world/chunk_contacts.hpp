@@ -55,8 +55,8 @@ void find_chunk_contacts(WorldState<Model>& w, std::size_t c, ContactScratch<Mod
   scratch.lend(chunk);
   const DeepestContact deepest = chunk.deepest;
   grain::ForceSums sums;
-  grain::find_pair_contacts<Model>(c, chunk, w.particles, w.species, w.materials, w.time_step, doing(w), sums,
-                                   scratch.pairs);
+  const grain::ChunkPairs<Model, decltype(w.particles)> pairs{chunk, w.particles, w.species, w.materials, begin};
+  grain::find_pair_contacts(pairs, w.time_step, doing(w), sums, scratch.pairs);
   add_surface_contacts(w, c, scratch.surfaces, sums);
   if (!with_surfaces && deepest.with_surface && deepest.overlap > chunk.deepest.overlap) chunk.deepest = deepest;
   sums.write(c, w.particles);

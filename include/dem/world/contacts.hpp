@@ -52,8 +52,8 @@ class ContactFinder {
     const std::size_t begin = c * chunk_size, end = std::min(begin + chunk_size, w_.particles.count);
     const auto& p = w_.particles;
     grain::ForceSums sums;
-    grain::find_pair_contacts<Model>(c, chunk, p, w_.species, w_.materials, w_.time_step, {}, sums, scratch_.pairs);
     const grain::ChunkPairs<Model, std::remove_cvref_t<decltype(p)>> pairs{chunk, p, w_.species, w_.materials, begin};
+    grain::find_pair_contacts(pairs, w_.time_step, {}, sums, scratch_.pairs);
     for (std::size_t k = 0; k < scratch_.pairs.hits.size(); ++k) {
       const grain::Hit& hit = scratch_.pairs.hits[k];
       const auto geometry = grain::touch_of_hit<Model>(pairs, scratch_.pairs, k).geometry();

@@ -18,14 +18,17 @@ void gather_forces(WorldState<Model>& w, std::size_t c) {
   }
 }
 
+/// What moves the grains in the present stage.
+template <class Model>
+grain::MovingStage<typename Model::Shape> moving_stage(const WorldState<Model>& w) {
+  return {w.species, w.inertia, w.options.gravity, w.move.stage, w.time_step, w.move.cleans_rotations, doing(w)};
+}
+
 /// Sums the forces of the grains of a chunk and moves them.
 template <class Model>
 void move_chunk(WorldState<Model>& w, std::size_t c) {
   gather_forces(w, c);
-  if (!w.chunks[c].asleep) {
-    grain::move_chunk<Model>(c, w.chunks[c], w.particles, w.species, w.inertia, w.options.gravity, w.move.stage,
-                             w.time_step, w.move.cleans_rotations, doing(w));
-  }
+  if (!w.chunks[c].asleep) grain::move_chunk<Model>(c, w.chunks[c], w.particles, moving_stage(w));
 }
 
 /// All contacts at the present state, and the loads that they put on bodies, whose sums of forces are clear. Chunks are
@@ -89,8 +92,7 @@ void advance(WorldState<Model>& w) {
       const auto [begin, end] = w.own_chunks();
       w.executor.for_each(end - begin, [&, first = begin](std::size_t k) {
         const std::size_t c = first + k;
-        if (!w.chunks[c].asleep)
-          grain::predict_chunk<Model>(c, w.chunks[c], w.particles, w.species, stage, w.time_step, doing(w));
+        if (!w.chunks[c].asleep) grain::predict_chunk<Model>(c, w.chunks[c], w.particles, moving_stage(w));
       });
     }
     // The machine's stage clears the bodies' sums, calls for the contacts, adds joints and drives, and moves the
