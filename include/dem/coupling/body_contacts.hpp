@@ -83,8 +83,8 @@ void list_pairs(BodyContacts<Model>& c, std::span<const Surface> surfaces, const
   c.memories.resize((c.pairs.size() + BodyKey::pairs_of_a_block - 1) / BodyKey::pairs_of_a_block);
 }
 
-/// What the contacts of a pair have in common.
-struct PairContact {
+/// A pair whose points are tried, and what its contacts have in common.
+struct SampledPair {
   std::size_t pair;
   std::uint32_t law;
   double radius;  ///< m, effective
@@ -93,7 +93,7 @@ struct PairContact {
 /// Contacts of the points of one surface of a pair with the other surface, up to a gap where cohesion acts at a
 /// distance (else NoGap).
 template <class Model, class Surface, class Gap>
-void sample_body(const PairContact& at, bool back, const Surface& from, const Surface& onto, const Body& carrier,
+void sample_body(const SampledPair& at, bool back, const Surface& from, const Surface& onto, const Body& carrier,
                  Gap gap, typename BodyContacts<Model>::Memories& memories, BodyContacts<Model>& c) {
   list_points(from, onto, c.points);
   const Vector3<double> offset = from.origin - carrier.motion.position, start = from.origin - onto.origin;
@@ -140,7 +140,7 @@ void sample_pair(std::size_t k, std::span<const Surface> surfaces, const Materia
   const Surface &a = surfaces[c.pairs[k].a.index()], &b = surfaces[c.pairs[k].b.index()];
   const Body &body_a = bodies[a.body.index()], &body_b = bodies[b.body.index()];
   if (!a.active || !b.active || (body_a.fixed && body_b.fixed)) return;
-  const PairContact at = {k, materials.row(a.material, b.material), pair_radius(a, b)};
+  const SampledPair at = {k, materials.row(a.material, b.material), pair_radius(a, b)};
   const auto gap = body_gap<Model>(materials.table()[at.law], at.radius);
   const double wide = shape::widened(0.0, gap);
   if (!boxes_overlap(a.low, a.high, b.low - filled(wide), b.high + filled(wide))) return;

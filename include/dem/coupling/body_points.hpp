@@ -1,7 +1,6 @@
 #pragma once
 
 #include <dem/coupling/body_shapes.hpp>
-#include <dem/geometry/direction_code.hpp>
 
 #include <algorithm>
 #include <array>
@@ -40,16 +39,16 @@ class PointsTowards {
   void list() {
     points_.clear();
     const surface::Bounds box = shared_box(a_, b_);
-    if constexpr (HasPoints<From>) {
+    if constexpr (surface::HasPoints<From>) {
       from_.points(box, [&](std::uint32_t number, const Vector3<double>& p, double radius) {
         points_.push_back({number, p, radius, 1.0});
       });
     }
     const std::size_t spread = points_.size();
-    if constexpr (HasRims<From>) list_rims(spread);
-    if constexpr (IsSuperquadric<From>) list_deepest(spread);
-    if constexpr (HasLateralSurface<From> && ClipsLines<Onto>) list_lateral();
-    if constexpr (HasEdges<From> && (ClipsLines<Onto> || PartsLines<Onto>)) list_edges(box);
+    if constexpr (surface::HasRims<From>) list_rims(spread);
+    if constexpr (surface::IsSuperquadric<From>) list_deepest(spread);
+    if constexpr (surface::HasLateralSurface<From> && surface::ClipsLines<Onto>) list_lateral();
+    if constexpr (surface::HasEdges<From> && (surface::ClipsLines<Onto> || surface::PartsLines<Onto>)) list_edges(box);
   }
 
  private:
@@ -187,7 +186,7 @@ class PointsTowards {
         if (outside <= 0.0) return;
         add(number, tail + 0.5 * (first + last) * (head - tail), min(1.0, 4.0 * outside / (last - first)));
       };
-      if constexpr (ClipsLines<Onto>) {
+      if constexpr (surface::ClipsLines<Onto>) {
         double first = 0.0, last = 1.0;
         if (onto_.clip(seen(tail), seen(head), first, last)) add_part(first, last);
       } else {
@@ -208,7 +207,7 @@ class PointsTowards {
     if (!from_.grain()) return;
     const auto& grain = *from_.grain();
     const double third = grain.mean_radius() / 3.0;
-    if constexpr (IsSuperquadric<Onto>) {
+    if constexpr (surface::IsSuperquadric<Onto>) {
       if (onto_.grain()) {
         typename std::remove_cvref_t<decltype(grain)>::PairMemory found;
         const Vector3<double> centre = transpose_times(a_.axes, b_.origin - a_.origin);

@@ -2,6 +2,7 @@
 
 #include <dem/coupling/machine_surface.hpp>
 #include <dem/geometry/shape.hpp>
+#include <dem/geometry/surface_traits.hpp>
 #include <dem/mbd/body/body.hpp>
 
 #include <algorithm>
@@ -9,59 +10,12 @@
 
 namespace dem::coupling {
 
-/// A surface whose points cover it: two such surfaces (or one and a plane) find each other by their points.
-template <class S>
-concept HasPoints = requires(const S& s, const surface::Bounds& box) {
-  s.points(box, [](std::uint32_t, const Vector3<double>&, double) {});
-  { s.has_points() } -> std::same_as<bool>;
-};
-/// A surface with straight sharp edges: edges(box, callback) calls callback(number, one end, other end) for those that
-/// may lie in a box of its frame. Numbers are other than those of its points, each with most_parts - 1 free ones behind
-/// it.
-template <class S>
-concept HasEdges = requires(const S& s, const surface::Bounds& box) {
-  s.edges(box, [](std::uint32_t, const Vector3<double>&, const Vector3<double>&) {});
-};
-/// A solid that tells which part of a line from `tail` to `head` lies in it: clip(tail, head, from, to) cuts the range
-/// [from, to] of shares of the way down, and is false if nothing is left.
-template <class S>
-concept ClipsLines = requires(const S& s, const Vector3<double>& p, double& share) {
-  { s.clip(p, p, share, share) } -> std::same_as<bool>;
-};
-/// A solid of any form that does: parts_inside(tail, head, callback) calls callback(from, to) for each part of the line
-/// that lies in it, ascending.
-template <class S>
-concept PartsLines = requires(const S& s, const Vector3<double>& p) {
-  s.parts_inside(p, p, [](double, double) {});
-};
-/// A surface with round edges about its z axis: rims(callback) calls callback(number, middle, radius).
-template <class S>
-concept HasRims = requires(const S& s) {
-  s.rims([](std::uint32_t, const Vector3<double>&, double) {});
-};
-/// A round surface along its z axis: lateral_line(way, low, high) gives the line of it on the side of a direction, and
-/// is false if there is none.
-template <class S>
-concept HasLateralSurface = requires(const S& s, Vector3<double>& p) {
-  { s.lateral_line(p, p, p) } -> std::same_as<bool>;
-  { s.length() } -> std::same_as<double>;
-};
-/// A surface that is a superquadric: grain() is the grain of that shape, or null.
-template <class S>
-concept IsSuperquadric = requires(const S& s) {
-  { s.grain()->even_support(static_cast<const double*>(nullptr), Vector3<double>{}) } -> std::same_as<Vector3<double>>;
-};
-/// A surface that may be one ball: its sample point finds every contact, so the partner's points are not needed.
-template <class S>
-concept MayBeBall = requires(const S& s) {
-  { s.is_ball() } -> std::same_as<bool>;
-};
-
+/// Whether a surface is one ball: its sample point finds every contact, so the partner's points are not needed.
 template <class Surface>
 bool is_ball(const Surface& s) {
   return std::visit(
       []<class G>(const G& geometry) {
-        if constexpr (MayBeBall<G>) return geometry.is_ball();
+        if constexpr (surface::MayBeBall<G>) return geometry.is_ball();
         return false;
       },
       s.geometry);
@@ -71,7 +25,7 @@ template <class Surface>
 bool has_points(const Surface& s) {
   return std::visit(
       []<class G>(const G& geometry) {
-        if constexpr (HasPoints<G>) return geometry.has_points();
+        if constexpr (surface::HasPoints<G>) return geometry.has_points();
         return false;
       },
       s.geometry);

@@ -2,9 +2,8 @@
 
 #include <dem/coupling/support_touches.hpp>
 #include <dem/geometry/contact_shares.hpp>
-#include <dem/geometry/direction_code.hpp>
 #include <dem/geometry/shape.hpp>
-#include <dem/geometry/surface.hpp>
+#include <dem/geometry/surface_traits.hpp>
 #include <dem/grain/contact_evaluator.hpp>
 #include <dem/grain/contact_key.hpp>
 #include <dem/grain/particles.hpp>
@@ -17,46 +16,6 @@ namespace dem::coupling {
 inline constexpr std::uint32_t support_sample = 0xff0, corner_sample = 0xfff;
 inline constexpr std::uint32_t first_ball = 1u << 24;  ///< among its features
 
-/// A sharp grain may be entered by corners and edges of surfaces that none of its own points meets. Such a shape tells
-/// how deep a point (from the grain's centre, global axes) lies inside of it and which way out is the shortest.
-/// If its points are shares of one contact, has_shares(), it says how they are fitted: shares_fit.
-template <class Shape>
-concept HasPenetration = requires(const Shape& shape, const double* pose, const Vector3<double>& point, double& depth,
-                                  Vector3<double>& outward_normal) {
-  { shape.penetration(pose, point, depth, outward_normal) } -> std::same_as<bool>;
-};
-/// A surface with corners: corners(point, radius, callback) calls callback(number, corner) for those within the radius,
-/// or callback(number, corner, weight) with a weight below 1 where they come and go.
-template <class S>
-concept HasCorners = requires(const S& s, const Vector3<double>& point) {
-  s.corners(point, 1.0, [](std::uint32_t, const Vector3<double>&, double = 1.0) {});
-};
-
-/// A solid ball, or one that may be hollow: is_ball().
-template <class S>
-concept IsBall = requires(const S& s) {
-  { s.is_ball() } -> std::same_as<bool>;
-};
-/// A round surface, as balls that fill it: balls(point, radius, callback) calls callback(number, centre, ball's radius)
-/// for those that a grain may touch, and is_on_ball(point) is true where their skin is the surface's.
-template <class S>
-concept HasBalls = requires(const S& s, const Vector3<double>& point) {
-  s.balls(point, 1.0, [](std::uint32_t, const Vector3<double>&, double) {});
-  { s.is_on_ball(point) } -> std::same_as<bool>;
-};
-/// A sharp grain that tells where a ball touches it.
-template <class Shape>
-concept TouchesBalls = requires(const Shape& s, const double* pose, const Vector3<double>& centre,
-                                contact::BallContactPoint& touch) {
-  { s.touch_ball(pose, centre, 1.0, touch) } -> std::same_as<bool>;
-};
-
-/// A round grain that tells which point of its skin meets a plane first, and what its other points weigh beside it.
-template <class Shape>
-concept HasSupport = requires(const Shape& s, const double* pose, const Vector3<double>& v) {
-  { s.even_support(pose, v) } -> std::same_as<Vector3<double>>;
-  { s.beside_support(v, v, v) } -> std::same_as<double>;
-};
 /// Lists that a thread uses again for each chunk.
 struct SurfaceScratch {
   std::vector<std::uint32_t> law_of;
@@ -154,7 +113,7 @@ void touch_with_corners(const GrainAtSurface& at, const Shape& grain, const Surf
            {point, normal, 0.0, -depth, surface::radius_on(geometry, radius / samples), weight});
   };
   const double reach = shape::widened(grain.bounding_radius(), gap);
-  if constexpr (HasCorners<Geometry>) {
+  if constexpr (surface::HasCorners<Geometry>) {
     geometry.corners(at.centre, reach, [&](std::uint32_t corner, const Vector3<double>& place, double weight = 1.0) {
       double depth = 0.0;
       Vector3<double> outward{};
@@ -164,7 +123,7 @@ void touch_with_corners(const GrainAtSurface& at, const Shape& grain, const Surf
       add(corner, point + depth * outward, outward, depth, weight * area / samples);
     });
   }
-  if constexpr (HasBalls<Geometry> && TouchesBalls<Shape>) {
+  if constexpr (surface::HasBalls<Geometry> && shape::TouchesBalls<Shape>) {
     if (!shape::has_shares(grain)) return;
     geometry.balls(at.centre, reach, [&](std::uint32_t ball, const Vector3<double>& centre, double of_ball) {
       contact::BallContactPoint t;
@@ -195,7 +154,7 @@ template <class Shape, class Surface, class Geometry, class Gap>
 void touch_surface(const GrainAtSurface& at, const Shape& grain, const Surface& surface, const Geometry& geometry,
                    Gap gap, SurfaceScratch& s) {
   const std::size_t first = s.touches.size();
-  if constexpr (TouchesBalls<Shape> && IsBall<Geometry>) {
+  if constexpr (shape::TouchesBalls<Shape> && surface::MayBeBall<Geometry>) {
     if (geometry.is_ball() && shape::has_shares(grain)) {  // one contact is all of it
       touch_with_corners(at, grain, surface, geometry, gap, s);
       return;
@@ -211,10 +170,10 @@ void touch_surface(const GrainAtSurface& at, const Shape& grain, const Surface& 
   grain.sample_points(at.pose, [&](std::uint32_t index, const contact::SamplePoint& sample) {
     touch_with_sample(at, index, sample, surface, geometry, gap, s);
   });
-  if constexpr (HasSupport<Shape>) {
+  if constexpr (shape::HasSupport<Shape>) {
     if (shape::has_shares(grain)) touch_with_supports(at, grain, surface, geometry, first, gap, s);
   }
-  if constexpr (HasPenetration<Shape>) touch_with_corners(at, grain, surface, geometry, gap, s);
+  if constexpr (shape::HasPenetration<Shape>) touch_with_corners(at, grain, surface, geometry, gap, s);
   if constexpr (requires { Shape::shares_fit; }) {
     if (!shape::has_shares(grain)) return;
     const auto point = [&](std::size_t k) -> contact::SurfaceContactPoint<double>& { return s.touches[first + k]; };

@@ -13,15 +13,8 @@ namespace dem::coupling {
 
 /// Whether a shape shows points to surfaces, not balls.
 template <class Shape>
-inline constexpr bool shows_points = HasPenetration<Shape> || requires(const Shape& s) {
+inline constexpr bool shows_points = shape::HasPenetration<Shape> || requires(const Shape& s) {
   s.kind();
-};
-
-/// A surface that is much smaller than its bounding box: close(point, radius, points) is false if no sample point in
-/// that sphere can touch; `points`: whether there are sample points without a radius among them.
-template <class S>
-concept KnowsClose = requires(const S& s, const Vector3<double>& point) {
-  { s.close(point, 1.0, true) } -> std::same_as<bool>;
 };
 
 /// The grains of one chunk that meet the surfaces of machine parts.
@@ -91,7 +84,7 @@ void find_hits_on(const ChunkAtSurfaces<Model>& at, std::size_t number) {
   const G& geometry = *std::get_if<G>(&surface.geometry);
   const auto gap = at.gap();
   SurfaceScratch& s = at.scratch;
-  if constexpr (KnowsClose<G> && !Model::Domain::has_images) {
+  if constexpr (surface::KnowsClose<G> && !Model::Domain::has_images) {
     const Vec3 middle = 0.5 * (at.chunk.low + at.chunk.high);
     const Vector3<double> seen = transpose_times(surface.axes, from_eigen(middle) - surface.origin);
     const double radius = 0.5 * (at.chunk.high - at.chunk.low).norm() + at.reach();
@@ -118,7 +111,7 @@ void find_hits_on(const ChunkAtSurfaces<Model>& at, std::size_t number) {
       const double radius = shape::widened(grain.bounding_radius(), gap);
       if (!geometry.near(centre, radius)) continue;
       // A shape of one sample point asks the same question by touching.
-      if constexpr (Shape::has_orientation && KnowsClose<G>) {
+      if constexpr (Shape::has_orientation && surface::KnowsClose<G>) {
         if (!geometry.close(centre, radius, shows_points<Shape>)) continue;
       }
       const GrainAtSurface one = {static_cast<std::uint32_t>(i),

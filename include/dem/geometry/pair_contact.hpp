@@ -49,11 +49,11 @@ concept HasPairContact = requires {
 /// The pair, in whichever order it is specialised, also finds contacts across a gap.
 template <class A, class B>
 concept ReachesInOrder = requires(const A& a, const B& b, const double* pose, const Vector3<double>& separation) {
-  PairContact<A, B>::collide(a, pose, b, pose, separation, AnySink{}, 1.0);
+  PairContact<A, B>::collide(a, pose, b, pose, separation, AnyCallback{}, 1.0);
 }
 || requires(const A& a, const B& b, const double* pose, const Vector3<double>& separation,
             typename PairContact<A, B>::Memory& memory) {
-  PairContact<A, B>::collide(a, pose, b, pose, separation, memory, AnySink{}, 1.0);
+  PairContact<A, B>::collide(a, pose, b, pose, separation, memory, AnyCallback{}, 1.0);
 };
 template <class A, class B>
 concept ReachingPair = ReachesInOrder<A, B> || ReachesInOrder<B, A>;

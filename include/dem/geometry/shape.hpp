@@ -1,5 +1,6 @@
 #pragma once
 
+#include <dem/geometry/any_callback.hpp>
 #include <dem/geometry/contact_point.hpp>
 #include <dem/geometry/mass_properties.hpp>
 
@@ -10,11 +11,7 @@
 
 namespace dem::shape {
 
-/// A callback for the concept check below; a real one evaluates the contact.
-struct AnySink {
-  template <class ContactPoint>
-  void operator()(std::uint32_t, const ContactPoint&) const {}
-};
+/// As AnyCallback, for sample points.
 struct AnySamplePoint {
   void operator()(std::uint32_t, const contact::SamplePoint&) const {}
 };
@@ -38,7 +35,9 @@ struct AnySamplePoint {
 ///   penetration(pose, point, depth, outward_normal)   whether a point (m, from the grain's centre, global axes) lies
 ///                        inside, how deep, and which way is out: then corners and edges of surfaces are felt;
 ///   touch_ball(pose, centre, radius, touch)   whether a ball touches, and where (contact::BallContactPoint). Then
-///                        surfaces that are balls are felt exactly, and lateral surfaces of cylinders through balls.
+///                        surfaces that are balls are felt exactly, and lateral surfaces of cylinders through balls;
+///   even_support(pose, way), beside_support(point, support, way)   of a round grain: the point of its skin that meets
+///                        a plane first, and what another point weighs beside it.
 template <class S>
 concept Shape = requires(const S& shape, const Matrix3<double>& rotation, double* pose,
                          const Vector3<double>& separation) {
@@ -50,7 +49,7 @@ concept Shape = requires(const S& shape, const Matrix3<double>& rotation, double
   { shape.volume() } -> std::convertible_to<double>;
   { shape.unit_inertia() } -> std::convertible_to<Vec3>;
   shape.orient(rotation, pose);
-  S::collide(shape, pose, shape, pose, separation, AnySink{});
+  S::collide(shape, pose, shape, pose, separation, AnyCallback{});
   { S::mirrored(std::uint32_t{}) } -> std::same_as<std::uint32_t>;
   shape.sample_points(pose, AnySamplePoint{});
 };
@@ -72,7 +71,7 @@ concept BitShape = Shape<S> && requires(const S& shape, const double* pose, cons
 template <class S>
 concept RememberingShape = Shape<S> &&
     requires(const S& shape, const double* pose, const Vector3<double>& separation, typename S::PairMemory& memory) {
-  S::collide(shape, pose, shape, pose, separation, memory, AnySink{});
+  S::collide(shape, pose, shape, pose, separation, memory, AnyCallback{});
 };
 
 /// A shape that may meet cohesion at a distance also finds contacts across a gap: collide takes the gap (m) as a last
@@ -80,15 +79,31 @@ concept RememberingShape = Shape<S> &&
 /// likewise. A RememberingShape takes both its memory and the gap.
 template <class S>
 concept ReachingShape = Shape<S> && requires(const S& shape, const double* pose, const Vector3<double>& separation) {
-  S::collide(shape, pose, shape, pose, separation, AnySink{}, 1.0);
+  S::collide(shape, pose, shape, pose, separation, AnyCallback{}, 1.0);
 } &&(!BitShape<S> ||
      requires(const S& shape, const double* pose, const Vector3<double>& separation) {
        { S::touching(shape, pose, shape, pose, separation, 1.0) } -> std::same_as<std::uint64_t>;
      }) &&
     (!RememberingShape<S> ||
      requires(const S& shape, const double* pose, const Vector3<double>& separation, typename S::PairMemory& memory) {
-       S::collide(shape, pose, shape, pose, separation, memory, AnySink{}, 1.0);
+       S::collide(shape, pose, shape, pose, separation, memory, AnyCallback{}, 1.0);
      });
+
+template <class S>
+concept HasPenetration = requires(const S& shape, const double* pose, const Vector3<double>& point, double& depth,
+                                  Vector3<double>& outward_normal) {
+  { shape.penetration(pose, point, depth, outward_normal) } -> std::same_as<bool>;
+};
+template <class S>
+concept TouchesBalls = requires(const S& shape, const double* pose, const Vector3<double>& centre,
+                                contact::BallContactPoint& touch) {
+  { shape.touch_ball(pose, centre, 1.0, touch) } -> std::same_as<bool>;
+};
+template <class S>
+concept HasSupport = requires(const S& shape, const double* pose, const Vector3<double>& v) {
+  { shape.even_support(pose, v) } -> std::same_as<Vector3<double>>;
+  { shape.beside_support(v, v, v) } -> std::same_as<double>;
+};
 
 /// The gap of models without cohesion at a distance: none. Widening by it is no instruction.
 struct NoGap {};

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <dem/math/vector.hpp>
+#include <dem/geometry/any_callback.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -16,10 +16,6 @@ struct Bounds {
   Vec3 low, high;  ///< m
 };
 
-struct AnySink {
-  void operator()(std::uint32_t, const Vector3<double>&, double) const {}
-};
-
 /// A surface is what a machine part shows to the grains, a solid in its own frame. It has
 ///   near(point, radius)   false only if a sphere there cannot touch. It is cheap and may say true too often. It takes
 ///                         doubles, and packs, for which it gives a mask;
@@ -27,35 +23,14 @@ struct AnySink {
 ///                         ascending. The unit normal leads from the sphere into the surface. The gap is the distance
 ///                         along it from the sphere's centre to the surface, negative inside;
 ///   bounds()              in its own frame; infinite where it has no end.
+/// What it may also have stands in surface_traits.hpp.
 template <class S>
 concept Surface = requires(const S& s, const Vector3<double>& point, double radius, const Vector3<Pack>& points) {
   { s.near(point, radius) } -> std::same_as<bool>;
   { s.near(points, Pack(radius)) } -> std::same_as<PackMask>;
-  s.touch(point, radius, AnySink{});
+  s.touch(point, radius, AnyCallback{});
   { s.bounds() } -> std::same_as<Bounds>;
 };
-
-/// m, the effective radius of a skin of a radius on a surface, which tells with radius_on(radius) if it is curved; else
-/// it counts as flat.
-template <class S>
-double radius_on(const S& s, double radius) {
-  if constexpr (requires { s.radius_on(radius); }) {
-    return s.radius_on(radius);
-  } else {
-    return radius;
-  }
-}
-
-/// Contacts of a point (a sample point of radius 0) up to a gap (m) before a surface, as of a sphere of that radius; a
-/// surface that finds points behind it in another way than spheres has touch_point(point, gap, callback).
-template <class S, class Callback>
-DEM_HOT void touch_point(const S& s, const Vector3<double>& point, double gap, Callback&& callback) {
-  if constexpr (requires { s.touch_point(point, gap, callback); }) {
-    s.touch_point(point, gap, callback);
-  } else {
-    s.touch(point, gap, callback);
-  }
-}
 
 /// Cuts the range [from, to] of shares of a way to where |x + share step| < half; false if nothing is left.
 inline bool clip_between(double x, double step, double half, double& from, double& to) {

@@ -168,8 +168,8 @@ void find_points_deep_enough(WorldState<Model>& w) {
   const double share = 1.25 * std::min(1.0, 2.0 * w.options.overlap_limit);  // a step may go beyond
   const auto find_to = [&](auto& surface, double radius) {
     std::visit(
-        [&](auto& geometry) {
-          if constexpr (requires { geometry.find_points_to(1.0); }) geometry.find_points_to(share * radius);
+        [&]<class G>(G& geometry) {
+          if constexpr (surface::FindsPointsDeep<G>) geometry.find_points_to(share * radius);
         },
         surface.geometry);
   };

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <dem/geometry/surface_traits.hpp>
 #include <dem/world/check.hpp>
 
 #include <algorithm>
@@ -7,17 +8,12 @@
 
 namespace dem {
 
-/// A surface that may have no thickness: lets_points_through() tells whether points (radius 0) pass it unseen.
-template <class S>
-concept MayLetPointsThrough = requires(const S& s) {
-  { s.lets_points_through() } -> std::same_as<bool>;
-};
-
+/// Whether points (radius 0) pass a surface unseen.
 template <class Surface>
 bool lets_points_through(const Surface& s) {
   return std::visit(
       []<class G>(const G& geometry) {
-        if constexpr (MayLetPointsThrough<G>) return geometry.lets_points_through();
+        if constexpr (surface::MayLetPointsThrough<G>) return geometry.lets_points_through();
         return false;
       },
       s.geometry);
