@@ -342,3 +342,20 @@ TEST_CASE("a mesh that does not enclose a solid is refused in words, or taken as
   check_refused([&] { TriangleMesh(mesh::box({1, 1, 1}), {.depth = -1}); }, "depth of a mesh is -1 m");
   check_refused([&] { TriangleMesh(mesh::box({1, 1, 1}), {.point_spacing = 1e-7}); }, "raise point_spacing");
 }
+
+TEST_CASE("what is called for a contact may ask meshes in turn") {
+  const TriangleMesh room(mesh::box({1, 1, 1}), {.facing = dem::MeshFacing::inward});
+  using V = dem::Vector3<double>;
+  const auto walls = [&](const V& p, auto&& in_turn) {
+    std::vector<double> gaps;
+    room.touch(p, 0.2, [&](std::uint32_t, const V&, double gap) {
+      in_turn();
+      gaps.push_back(gap);
+    });
+    return gaps;
+  };
+  const V corner = {0.4, 0.39, 0.38};
+  const auto alone = walls(corner, [] {});
+  REQUIRE(alone.size() == 3);
+  CHECK(walls(corner, [&] { CHECK(walls({-0.4, 0, 0}, [] {}).size() == 1); }) == alone);
+}
