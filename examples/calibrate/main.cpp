@@ -20,8 +20,10 @@ namespace rigs = dem::rig;
 // The worlds of the examples direct_shear, plate_sinkage and sand_pile.
 void cube8_verlet(const rigs::direct_shear::Settings&, rigs::direct_shear::Campaign&, rigs::Session&);
 void press_plates(const rigs::plate_sinkage::Settings&, rigs::plate_sinkage::Campaign&, rigs::Session&);
-void cube8(const rigs::sand_pile::Settings&, rigs::sand_pile::PileResult&, dem::report::Replay*, rigs::Session&);
-void sphere(const rigs::sand_pile::Settings&, rigs::sand_pile::PileResult&, dem::report::Replay*, rigs::Session&);
+void cube8(const rigs::sand_pile::Settings&, rigs::sand_pile::PileResult&, dem::report::Replay*, rigs::Session&,
+           rigs::Stages&);
+void sphere(const rigs::sand_pile::Settings&, rigs::sand_pile::PileResult&, dem::report::Replay*, rigs::Session&,
+            rigs::Stages&);
 
 int main(int argc, char** argv) {
   rigs::calibrate::CalibrateRig rig({cube8_verlet, press_plates, cube8, sphere}, minimise);

@@ -143,9 +143,11 @@ void add_surfaces(io::VtkSeries& series, const World& world, const char* part = 
 class Frames {
  public:
   /// `name`.pvd; without a name nothing is written. `interval` in the unit of what goes on; `what` it shows, as in
-  /// "this load".
+  /// "this load". `stages` are those that the frames are of: the session, or those of one of several runs side by side.
+  Frames(Session& session, Stages& stages, const std::string& name, double interval, const char* what = "this run")
+      : session_(session), stages_(stages), interval_(interval), what_(what), name_(name) {}
   Frames(Session& session, const std::string& name, double interval, const char* what = "this run")
-      : session_(session), interval_(interval), what_(what), name_(name) {}
+      : Frames(session, session, name, interval, what) {}
 
   /// Writes a frame, by write(series), if one is due where things are now.
   template <class Write>
@@ -191,11 +193,12 @@ class Frames {
     } catch (const std::exception& error) {
       series_.reset();
       name_.clear();
-      session_.give_up_frames(error.what(), what_);
+      stages_.alone([&] { session_.give_up_frames(error.what(), what_); });
     }
   }
 
   Session& session_;
+  Stages& stages_;
   double interval_, next_ = 0.0, written_ = -1.0;
   const char* what_;
   std::string name_;                     // empty: nothing is written, or no more

@@ -1,8 +1,11 @@
 #pragma once
-// Several runs of a stage side by side, each on a thread of its own.
+// Several runs of a stage side by side, each on a thread of its own, or on several.
 
 #include <dem/rig/stages.hpp>
 
+#include <omp.h>
+
+#include <algorithm>
 #include <atomic>
 #include <cstddef>
 #include <exception>
@@ -13,6 +16,21 @@
 #include <vector>
 
 namespace dem::rig {
+
+/// How several runs share threads.
+struct SharedThreads {
+  int runs = 1;  ///< that go side by side
+  int each = 1;  ///< threads of each
+};
+
+/// A thread for each run where there are as many runs as `threads` (0: all); fewer runs have as many more each. Where
+/// several processes share each run, one goes after the other, on all threads.
+inline SharedThreads share_threads(std::size_t runs, int threads) {
+  if (threads <= 0) threads = std::max(1, omp_get_max_threads());
+  if (processes.count > 1) return {1, threads};
+  const int beside = static_cast<int>(std::clamp<std::size_t>(runs, 1, static_cast<std::size_t>(threads)));
+  return {beside, threads / beside};
+}
 
 /// What one of several runs that go on side by side tells: its progress counts in that of all.
 class SharedStages {
@@ -50,12 +68,23 @@ class SharedStages {
 /// The stages of one of them: what they tell is told of it.
 class StagesOfOne final : public Stages {
  public:
-  StagesOfOne(SharedStages& shared, std::size_t run) : shared_(shared), run_(run) {}
+  /// `stages` are begun one after the other, each a like share of the run. Where none is begun, update() tells the
+  /// share of the run itself.
+  StagesOfOne(SharedStages& shared, std::size_t run, int stages = 1) : shared_(shared), run_(run), stages_(stages) {}
+  void begin(std::string_view name, double total = unknown) override {
+    ++stage_;
+    name_ = name;
+    total_ = total;
+  }
   void update(double done, std::string_view status = {}) override {
-    shared_.update(run_, done, status, std::exchange(goes_on_, false));
+    const double before = std::max(0, stage_ - 1), share = total_ > 0.0 ? std::clamp(done / total_, 0.0, 1.0) : 0.0;
+    const char* between = name_.empty() || status.empty() ? "" : ", ";
+    shared_.update(run_, std::min(1.0, (before + share) / stages_), name_ + between + std::string(status),
+                   std::exchange(goes_on_, false));
     save_if_due();
   }
   void go_on() override { goes_on_ = true; }
+  void alone(const std::function<void()>& f) override { shared_.alone(f); }
   void message(std::string_view text) override {
     shared_.alone([&] { shared_.all().message(text); });
   }
@@ -63,6 +92,9 @@ class StagesOfOne final : public Stages {
  private:
   SharedStages& shared_;
   std::size_t run_;
+  int stages_, stage_ = 0;
+  std::string name_;
+  double total_ = 1.0;  ///< of the stage that it is in
   bool goes_on_ = false;
 };
 

@@ -10,6 +10,7 @@
 #include <cmath>
 #include <concepts>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <stdexcept>
 #include <string>
@@ -104,6 +105,8 @@ class Stages {
   virtual void go_on() {}
   /// The stage is done; `result` is one line on what came out.
   virtual void finish([[maybe_unused]] std::string_view result = {}) {}
+  /// Calls `f` while no run beside this one calls anything so: for what only one may do at a time.
+  virtual void alone(const std::function<void()>& f) { f(); }
   /// Something to know besides, as a warning.
   virtual void message([[maybe_unused]] std::string_view text) {}
 

@@ -87,6 +87,37 @@ TEST_CASE("each of several runs that go on says what of it was done before") {
   CHECK(told.headway == Approx(0.6 + 0.6 + 1.0));
 }
 
+TEST_CASE("stages of one of several runs are each a share of it") {
+  struct Told : Stages {
+    void update(double done, std::string_view status) override { all.push_back(done), text = status; }
+    std::vector<double> all;
+    std::string text;
+  } told;
+  side_by_side(1, 1, told, [&](std::size_t k, SharedStages& stages) {
+    StagesOfOne own(stages, k, 4);
+    own.begin("fill", 2.0), own.update(1.0, "slow");
+    own.begin("let go"), own.update(7.0);  // its end is not known
+    own.begin("rest", 1.0), own.update(3.0);
+    CHECK(told.text == "rest");
+    own.begin("creep", 1.0), own.update(0.5, "slower");
+  });
+  CHECK(told.all == std::vector{0.125, 0.25, 0.75, 0.875});
+  CHECK(told.text == "creep, slower");
+}
+
+TEST_CASE("a thread for each run, and more where there are fewer runs") {
+  const auto shared = [](std::size_t runs, int threads) {
+    const SharedThreads t = share_threads(runs, threads);
+    return std::pair(t.runs, t.each);
+  };
+  CHECK(shared(4, 2) == std::pair(2, 1));
+  CHECK(shared(4, 4) == std::pair(4, 1));
+  CHECK(shared(3, 8) == std::pair(3, 2));
+  CHECK(shared(1, 8) == std::pair(1, 8));
+  CHECK(shared(0, 8) == std::pair(1, 8));
+  CHECK(shared(1000, 0).second == 1);
+}
+
 TEST_CASE("a run that fails ends those beside it, and its problem is thrown") {
   Stages quiet;
   int begun = 0;

@@ -19,8 +19,8 @@ namespace dem::rig::calibrate {
 struct Worlds {
   void (*shear)(const direct_shear::Settings&, direct_shear::Campaign&, Session&);
   void (*press)(const plate_sinkage::Settings&, plate_sinkage::Campaign&, Session&);
-  void (*cubes)(const sand_pile::Settings&, sand_pile::PileResult&, report::Replay*, Session&);
-  void (*spheres)(const sand_pile::Settings&, sand_pile::PileResult&, report::Replay*, Session&);
+  void (*cubes)(const sand_pile::Settings&, sand_pile::PileResult&, report::Replay*, Session&, Stages&);
+  void (*spheres)(const sand_pile::Settings&, sand_pile::PileResult&, report::Replay*, Session&, Stages&);
 };
 
 /// What is told by one of several rigs that run one after the other.
@@ -114,7 +114,7 @@ inline double measure_repose(const Settings& s, const Trial& t, const Worlds& wo
   result.kind = sand_pile::kind_named(s.kind);
   result.seed = t.seed;
   session.begin_run(4);
-  (s.kind == "cube8" ? worlds.cubes : worlds.spheres)(p, result, nullptr, session);
+  (s.kind == "cube8" ? worlds.cubes : worlds.spheres)(p, result, nullptr, session, session);
   return terramechanics::degrees(result.flank.angle);
 }
 

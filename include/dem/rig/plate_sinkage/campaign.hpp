@@ -7,6 +7,7 @@
 #include <dem/rig/plate_sinkage.hpp>
 #include <dem/rig/samples_file.hpp>
 #include <dem/rig/session.hpp>
+#include <dem/rig/side_by_side.hpp>
 
 namespace dem::rig::plate_sinkage {
 
@@ -15,10 +16,10 @@ namespace detail {
 /// What names of a variant's files begin with.
 inline std::string prefix(const Variant& v) { return v.name.empty() ? "" : v.name + "_"; }
 
-/// One plate of a variant, with its file, and for the run itself frames and perhaps a replay.
+/// One plate of a variant on so many threads, with its file, and for the run itself frames and perhaps a replay.
 template <class Model>
-void press(const PlateSinkage<Model>& test, const Bed<Model>& bed, const Variant& variant, PlateResult& r,
-           report::Replay* replay, Session& session) {
+void press(const PlateSinkage<Model>& test, const Bed<Model>& bed, int threads, const Variant& variant, PlateResult& r,
+           report::Replay* replay, Session& session, Stages& stages) {
   const Settings& s = test.settings();
   const std::string plate = text("plate_{:.0f}mm", 1e3 * r.width), file = prefix(variant) + plate;
   const auto save = [&] {
@@ -30,32 +31,62 @@ void press(const PlateSinkage<Model>& test, const Bed<Model>& bed, const Variant
   };
   work_and_save(
       [&] {
-        PartOf<Model> part(session, session, file);
-        Frames frames(session, s.vtk && variant.name.empty() ? plate : "", s.sinkage / 20.0, "this plate");
-        const auto kept = session.keep("plate", r), series = session.keep("frames", frames);
-        const auto pictures = session.keep("replay", replay);
+        PartOf<Model> part(session, stages, file);
+        Frames frames(session, stages, s.vtk && variant.name.empty() ? plate : "", s.sinkage / 20.0, "this plate");
+        const auto kept = stages.keep("plate", r), series = stages.keep("frames", frames);
+        const auto pictures = stages.keep("replay", replay);
         if (part.is_done()) {
-          session.begin(text("press {:.0f} mm", 1e3 * r.width));
-          if (s.unload) session.begin(text("draw up {:.0f} mm", 1e3 * r.width));
-          return;
+          stages.begin(text("press {:.0f} mm", 1e3 * r.width), 1.0);
+          if (s.unload) stages.begin(text("draw up {:.0f} mm", 1e3 * r.width), 1.0);
+          return stages.go_on(), stages.update(1.0);
         }
-        test.press(bed, r, session, [&](const auto& world, double travel) {
+        Bed<Model> own = bed;
+        own.world.set_threads(threads);
+        test.press(std::move(own), r, stages, [&](const auto& world, double travel) {
           frames.show(travel, [&](io::VtkSeries& to) {
             add_grains(to, world);
             add_surfaces(to, world);
           });
           if (replay && replay->due(world.time())) replay->record(world);
         });
-        session.complete();
+        stages.complete();
       },
       save);
-  session.finish(r.fit ? text("n {:.2f}", r.fit->curve.exponent) : "");
+}
+
+/// The plates of a variant, side by side.
+template <class Model>
+void press_all(const PlateSinkage<Model>& test, const Bed<Model>& bed, VariantResult& result,
+               std::optional<report::Replay>& replay, Session& session) {
+  const Variant& v = result.variant;
+  const Settings& s = v.settings;
+  auto& plates = result.plates;
+  for (const double width : s.widths) plates.push_back({.width = width});
+  const std::size_t shown = plates.size() / 2;
+  if (s.replay && v.name.empty())
+    replay.emplace(
+        report::ReplayOptions{.frames = 80, .interval = s.sinkage / s.speed / 60.0, .force_lines = s.replay_forces});
+  const SharedThreads threads = share_threads(plates.size(), s.bed.threads);
+  const int each = std::min(threads.each, bed.world.threads());
+  session.begin(v.name.empty() ? "press" : "press, " + v.text, static_cast<double>(plates.size()));
+  const auto press_one = [&](std::size_t k, SharedStages& stages) {
+    StagesOfOne own(stages, k, s.unload ? 2 : 1);
+    report::Replay* const own_replay = v.name.empty() && k == shown && replay ? &*replay : nullptr;
+    press(test, bed, each, v, plates[k], own_replay, session, own);
+  };
+  work_and_save([&] { side_by_side(plates.size(), threads.runs, session, press_one); },
+                [&] { std::erase_if(plates, [](const PlateResult& r) { return r.samples.empty(); }); });  // not begun
+  std::string found;
+  for (const PlateResult& r : plates) {
+    if (r.fit) found += text("{}{:.2f}", found.empty() ? "n " : ", ", r.fit->curve.exponent);
+  }
+  session.finish(found);
 }
 
 }  // namespace detail
 
-/// The run of a program: a bed and all plates, and those of the study. What can be refused is refused before
-/// session.begin_run(). `campaign` is filled as the run goes.
+/// The run of a program: a bed and all plates, side by side, and those of the study. What can be refused is refused
+/// before session.begin_run(). `campaign` is filled as the run goes.
 template <class Model, class ShapeOf>
 void run_campaign(const Settings& settings, ShapeOf&& shape_of, Campaign& campaign, Session& session) {
   const PlateSinkage<Model> test(settings, shape_of);
@@ -69,8 +100,7 @@ void run_campaign(const Settings& settings, ShapeOf&& shape_of, Campaign& campai
     if (v.settings.study != "none" && v.settings.study != "speed" && !v.settings.bed.file.empty()) {
       fail("--study {} needs other beds than the one of --bed-file; leave --bed-file out", v.settings.study);
     }
-    stages += static_cast<int>(v.settings.widths.size()) * (v.settings.unload ? 2 : 1) +
-              (v.name == "slow" ? 0 : bed_stages(v.settings.bed));
+    stages += 1 + (v.name == "slow" ? 0 : bed_stages(v.settings.bed));
   }
   soil::Packing start = start_of(test.settings());
   BedStore store(session, test.settings().bed, test.settings().grains);
@@ -92,14 +122,7 @@ void run_campaign(const Settings& settings, ShapeOf&& shape_of, Campaign& campai
     result.grains = bed->world.particle_count();
     result.time_step = bed->world.time_step();
     session.finish(text("{:.1f} mm deep, solid fraction {:.3f}", 1e3 * result.level, result.solid_fraction));
-    for (std::size_t k = 0; k < v.settings.widths.size(); ++k) {
-      PlateResult& r = result.plates.emplace_back(PlateResult{.width = v.settings.widths[k]});
-      const bool shown = settings.replay && v.name.empty() && k == v.settings.widths.size() / 2;
-      if (shown)
-        campaign.replay.emplace(report::ReplayOptions{
-            .frames = 80, .interval = settings.sinkage / settings.speed / 60.0, .force_lines = settings.replay_forces});
-      detail::press(variant, *bed, v, r, shown ? &*campaign.replay : nullptr, session);
-    }
+    detail::press_all(variant, *bed, result, campaign.replay, session);
   }
 }
 

@@ -56,17 +56,15 @@ void run_campaign(const Settings& settings, ShapeOf&& shape_of, Campaign& campai
     const auto roll = [&] {
       StagesOfOne own(stages, k);
       PartOf<Model> part(session, own, name);
-      Frames frames(session, s.vtk && k == shown ? name : "", 0.05, "this slip");
+      Frames frames(session, own, s.vtk && k == shown ? name : "", 0.05, "this slip");
       report::Replay* replay = campaign.replay && k == shown ? &*campaign.replay : nullptr;
       const auto kept = own.keep("slip", r), series = own.keep("frames", frames), pictures = own.keep("replay", replay);
       if (part.is_done()) return own.go_on(), own.update(1.0);
       test.roll(stand, r, own, [&](const auto& world, double share) {
         if (k != shown) return;
-        stages.alone([&] {
-          frames.show(share, [&](io::VtkSeries& to) {
-            add_grains(to, world);
-            add_surfaces(to, world);
-          });
+        frames.show(share, [&](io::VtkSeries& to) {
+          add_grains(to, world);
+          add_surfaces(to, world);
         });
         if (replay && replay->due(world.time())) replay->record(world);
       });

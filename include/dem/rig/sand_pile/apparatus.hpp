@@ -1,5 +1,6 @@
 #pragma once
 
+#include <dem/rig/affordable.hpp>
 #include <dem/rig/sand_pile/grains.hpp>
 #include <dem/soil/lattice.hpp>
 #include <dem/world/world.hpp>
@@ -29,7 +30,7 @@ class Apparatus {
   Apparatus(const Settings& s, const Grains<Model>& kind, std::span<const soil::Placement> grains)
       : world({.time_step_safety = s.stable_share,
                .overlap_limit = 1.0,
-               .threads = s.threads,
+               .threads = s.threads > 0 ? s.threads : threads_for(s.grains),
                .sleep = s.sleep ? std::optional<SleepOptions>(SleepOptions{}) : std::nullopt}),
         settings_(s) {
     const SpeciesId species = world.add_species(kind.shape, {.material = "grain", .density = s.density});

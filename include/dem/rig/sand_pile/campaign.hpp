@@ -13,21 +13,23 @@ namespace dem::rig::sand_pile {
 /// What the files of a pile are called.
 inline std::string pile_name(const PileResult& r) { return text("{}_{}", r.kind.name, r.seed); }
 
-/// One pile of a program's run: with its frames, its file of samples, and a replay if there is to be one.
+/// One pile of a program's run: with its frames, its file of samples, and a replay if there is to be one. `stages` are
+/// the session, or those of one of several piles side by side.
 template <class Model>
-void make_pile(const SandPile<Model>& sand_pile, PileResult& r, report::Replay* replay, Session& session) {
+void make_pile(const SandPile<Model>& sand_pile, PileResult& r, report::Replay* replay, Session& session,
+               Stages& stages) {
   const Settings& s = sand_pile.settings();
   const std::string name = pile_name(r);
   const auto make = [&] {
-    PartOf<Model> part(session, session, name);
-    Frames frames(session, s.vtk ? name : "", s.frame_time, "this pile");
-    const auto kept = session.keep("pile", r), series = session.keep("frames", frames);
-    const auto pictures = session.keep("replay", replay);
+    PartOf<Model> part(session, stages, name);
+    Frames frames(session, stages, s.vtk ? name : "", s.frame_time, "this pile");
+    const auto kept = stages.keep("pile", r), series = stages.keep("frames", frames);
+    const auto pictures = stages.keep("replay", replay);
     if (part.is_done()) {
-      for (const char* stage : {": fill", ": let go", ": rest", ": creep"}) session.begin(r.kind.name + stage);
-      return;
+      for (const char* stage : {": fill", ": let go", ": rest", ": creep"}) stages.begin(r.kind.name + stage, 1.0);
+      return stages.go_on(), stages.update(1.0);
     }
-    sand_pile.make(r, session, [&](const auto& world) {
+    sand_pile.make(r, stages, [&](const auto& world) {
       frames.show(world.time(), [&](io::VtkSeries& to) {
         add_grains(to, world);
         add_surfaces(to, world, "apparatus");
@@ -35,7 +37,7 @@ void make_pile(const SandPile<Model>& sand_pile, PileResult& r, report::Replay* 
       });
       if (replay && replay->due(world.time())) replay->record(world);
     });
-    session.complete();
+    stages.complete();
   };
   work_and_save(make, [&] {
     if (!r.samples.empty()) save_samples<Sample>(session.folder() / (name + ".csv"), r.samples, sample_columns);

@@ -58,7 +58,8 @@ inline void declare(Options& options, Settings& s) {
   add("--directions", s.directions, "lines through the flank of a heap; a drained box has a third as many");
   options.group("Numerics");
   add("--stable-share", s.stable_share, "time step as a share of the largest stable one");
-  add("--threads", s.threads, "0: all, at least 1000 grains for each").changes_no_result();
+  add("--threads", s.threads, "of all piles, which go side by side; 0: all, at least 1000 grains of a pile for each")
+      .changes_no_result();
   add_sleep_option(options, s.sleep);
   add_output_options(options, s, "the first pile");
   add("--frame-time", s.frame_time, "between two frames for ParaView [s]");

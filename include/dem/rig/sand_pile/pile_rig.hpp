@@ -1,10 +1,13 @@
 #pragma once
 
+#include <dem/rig/affordable.hpp>
 #include <dem/rig/rig.hpp>
 #include <dem/rig/sand_pile/options.hpp>
 #include <dem/rig/sand_pile/report.hpp>
 #include <dem/rig/sand_pile/resolve.hpp>
+#include <dem/rig/side_by_side.hpp>
 
+#include <algorithm>
 #include <iterator>
 #include <span>
 #include <string>
@@ -14,11 +17,13 @@ namespace dem::rig::sand_pile {
 
 /// Grains that a program has a world for.
 struct PileWorld {
-  const char* name;                                                       ///< Kind::world()
-  void (*make)(const Settings&, PileResult&, report::Replay*, Session&);  ///< calls make_pile() with this world
+  const char* name;  ///< Kind::world()
+  /// Calls make_pile() with this world.
+  void (*make)(const Settings&, PileResult&, report::Replay*, Session&, Stages&);
 };
 
-/// The sand pile as a program. It does not know the worlds, so that they are compiled beside it.
+/// The sand pile as a program: piles of each kind and seed, side by side. It does not know the worlds, so that they are
+/// compiled beside it.
 class PileRig : public Rig {
  public:
   explicit PileRig(std::span<const PileWorld> worlds) : worlds_(worlds) {}
@@ -44,20 +49,32 @@ class PileRig : public Rig {
   void run(Session& session) override {
     const std::vector<Kind> kinds = kinds_in(settings.kinds);
     for (const Kind& kind : kinds) world_of(kind);
-    session.begin_run(4 * static_cast<int>(kinds.size() * settings.seeds));
+    session.begin_run(1);
+    auto& piles = campaign.piles;
     for (const Kind& kind : kinds) {
       for (std::uint64_t k = 0; k < settings.seeds; ++k) {
-        PileResult& r = campaign.piles.emplace_back();
+        PileResult& r = piles.emplace_back();
         r.kind = kind;
         r.seed = settings.seed + k;
-        const bool first = campaign.piles.size() == 1 && settings.replay;
-        if (first)
-          campaign.replay.emplace(report::ReplayOptions{
-              .frames = 100, .interval = settings.frame_time, .force_lines = settings.replay_forces});
-        world_of(kind).make(settings, r, first ? &*campaign.replay : nullptr, session);
-        session.finish(text("{:.1f} deg", degrees * r.flank.angle));
       }
     }
+    if (settings.replay)
+      campaign.replay.emplace(
+          report::ReplayOptions{.frames = 100, .interval = settings.frame_time, .force_lines = settings.replay_forces});
+    const SharedThreads threads = share_threads(piles.size(), settings.threads);
+    Settings of_one = settings;
+    of_one.threads = settings.threads > 0 ? threads.each : std::min(threads.each, threads_for(settings.grains));
+    session.begin("piles", static_cast<double>(piles.size()));
+    const auto make = [&](std::size_t k, SharedStages& stages) {
+      StagesOfOne own(stages, k, 4);
+      report::Replay* replay = k == 0 && campaign.replay ? &*campaign.replay : nullptr;
+      world_of(piles[k].kind).make(of_one, piles[k], replay, session, own);
+    };
+    work_and_save([&] { side_by_side(piles.size(), threads.runs, session, make); },
+                  [&] { std::erase_if(piles, [](const PileResult& r) { return r.poured == 0; }); });  // not begun
+    std::string angles;
+    for (const PileResult& r : piles) angles += text("{}{:.1f}", angles.empty() ? "" : ", ", degrees * r.flank.angle);
+    session.finish(angles + " deg");
   }
 
   bool report(Report& report) const override { return sand_pile::report(report, settings, campaign); }

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <dem/rig/affordable.hpp>
 #include <dem/rig/contact_options.hpp>
 #include <dem/rig/sand_pile/settings.hpp>
 #include <dem/rig/sizes.hpp>
@@ -96,7 +95,6 @@ inline void resolve(Settings& s) {
   if (s.friction_stiffness < 0.0) s.friction_stiffness = s.stiffness;
   if (s.velocity_stiffness < 0.0) s.velocity_stiffness = s.damping;
   detail::check(s);
-  if (s.threads == 0) s.threads = threads_for(s.grains);
 }
 
 }  // namespace dem::rig::sand_pile

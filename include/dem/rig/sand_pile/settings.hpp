@@ -65,7 +65,7 @@ struct Settings {
 
   // Numerics
   double stable_share = 0.8;  ///< of the largest stable time step
-  int threads = 0;            ///< 0: all, but not more than one for each 1000 grains
+  int threads = 0;            ///< of all piles; 0: all, but for a pile not more than one for each 1000 grains
   bool sleep = false;         ///< grains at rest may sleep until the pile is measured
 
   // Output
