@@ -74,9 +74,8 @@ class MachineColumns {
   }
 
   /// A part goes on with an earlier one: soil below both stays in contact when it passes from one to the other, as
-  /// below the pieces of one tread. `first` is the tread's first part; the others
-  /// follow it one after the other. Throws Error otherwise.
-  /// is a part before it.
+  /// below the pieces of one tread. `first` is the tread's first part; the others follow it one after the other. Throws
+  /// Error otherwise.
   void continue_part(std::size_t part, std::size_t first) {
     std::vector<ColumnPart>& parts = terrain().parts;
     const bool follows = part > first && part < parts.size() &&

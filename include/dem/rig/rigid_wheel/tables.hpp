@@ -18,7 +18,7 @@ inline std::string number(double value, const char* format = "{:.2f}") {
   return std::isfinite(value) ? dem::text_of(format, {value}) : "-";
 }
 
-inline io::Table slip_table(const Settings& s, const Campaign& c) {
+inline io::Table slip_table(const Campaign& c) {
   io::Table t{.caption = "Means over the steady window, slip s = 1 - v/(omega r) (± standard deviation in time)",
               .header = {"slip", "pull [N]", "±", "torque [N m]", "±", "sinkage [mm]", "±", "efficiency", "carried [N]",
                          "steady from [s]", "steady", "done"}};
@@ -27,7 +27,6 @@ inline io::Table slip_table(const Settings& s, const Campaign& c) {
           number(r.torque.deviation), number(1e3 * r.sinkage.mean), number(1e3 * r.sinkage.deviation),
           number(r.efficiency), number(r.carried.mean, "{:.1f}"), number(r.window_from), r.is_steady, r.finished);
   }
-  (void)s;
   return t;
 }
 

@@ -38,8 +38,8 @@ class WheelRig : public Rig {
     report.part("results.csv", [&] { write_results(report.folder() / "results.csv"); });
     std::vector<Reference> soils = references(s);
     roll_on_columns(soils, campaign, s);
-    const std::vector<io::Table> tables{slip_table(s, campaign), reference_table(s, campaign, soils),
-                                        rut_table(campaign), print_table(campaign)};
+    const std::vector<io::Table> tables{slip_table(campaign), reference_table(s, campaign, soils), rut_table(campaign),
+                                        print_table(campaign)};
     report.part("under_wheel.csv", [&] { write_print(report.folder() / "under_wheel.csv"); });
     report.part("the printed report", [&] {
       fmt::print("\n{}\n{}\n{}\n\n", bed_text(s, campaign), window_text, print_text);
