@@ -1,7 +1,10 @@
 // A rotating drum with a rough lining: the slope of the flowing grains over the Froude number w^2 R/g. The drum's
 // torque is set beside the weight of the grains times the lever of their centre of mass, which it lifts.
 //
-//   drum --froude 0.001,0.01,0.05,0.2 --seconds 1 --threads 2 --output out/drum       (seconds for each speed)
+//   drum --froude 0.001,0.01,0.05,0.2 --seconds 1 --turns 0.25 --threads 2 --output out/drum
+//
+// At each speed the drum runs in for this many seconds, and is then measured for half as long; either takes at least so
+// many turns.
 //
 // Writes slope.gp (slope over Froude number) and picture.gp, and draws them where gnuplot is installed.
 
@@ -25,11 +28,13 @@ struct Beads : Model {
 
 int main(int argc, char** argv) {
   Arguments arguments(argc, argv);
-  const double seconds = arguments.number("--seconds", 1.0);
+  const double seconds = arguments.number("--seconds", 1.0), turns = arguments.number("--turns", 0.25);
   const std::vector<double> froude_numbers = arguments.numbers("--froude", {1e-3, 1e-2, 5e-2, 0.2});
   const std::string folder = arguments.take("--output", "drum");
   const int threads = static_cast<int>(arguments.number("--threads", 1));
   arguments.check();
+  require_non_negative(turns, "--turns", "turns");
+  for (const double froude : froude_numbers) require_positive(froude, "a number of --froude", "(no unit)");
   const double d = 3e-3, radius = 14 * d, length = 6 * d, g = 9.81, pi = std::numbers::pi;  // m; m/s^2
 
   World<Beads> world({.threads = threads});
@@ -52,9 +57,17 @@ int main(int argc, char** argv) {
   auto& machine = world.machine();
   const BodyId drum = machine.add_body(mbd::cylinder_body("drum", radius, length, 1000));
   const JointId axle = machine.add_joint(mbd::revolute("axle", machine.ground(), drum, {0, 0, 0}, Vec3::UnitY()));
-  double speed = std::sqrt(froude_numbers[0] * g / radius);  // rad/s
+  const auto speed_at = [&](double froude) { return std::sqrt(froude * g / radius); };  // rad/s
+  double speed = speed_at(froude_numbers[0]);
   machine.add_motion(mbd::prescribed_speed("turning", axle, mbd::Signal::function([&](double) { return speed; })));
-  const SensorId load = machine.add_sensor(mbd::contact_sensor("grains on the drum", drum, 0.5 * seconds));
+  const auto measured_for = [&](double froude) {  // s
+    return std::max(0.5 * seconds, 2 * pi * turns / speed_at(froude));
+  };
+  std::vector<SensorId> loads;
+  for (const double froude : froude_numbers) {
+    const std::string name = fmt::format("grains on the drum, {}", loads.size());
+    loads.push_back(machine.add_sensor(mbd::contact_sensor(name, drum, measured_for(froude))));
+  }
   const int around = static_cast<int>(2 * pi * radius / d), across = static_cast<int>(length / d);
   for (int k = 0; k < around; ++k) {
     const double a = 2 * pi * k / around;
@@ -74,26 +87,39 @@ int main(int argc, char** argv) {
   while (world.inlet(rain).mass() < 0.999 * filled && world.time() < 10) run(0.05);
   fmt::print("{} beads of {:g} mm in a drum of {:.0f} mm\n", world.inlet(rain).grains(), 1e3 * d, 2e3 * radius);
 
-  io::Series slope{.name = "of the line through the centre of mass", .style = io::SeriesStyle::LinePoints};
-  for (const double froude : froude_numbers) {
-    speed = std::sqrt(froude * g / radius);
-    run(seconds);
-    Vec3 centre = Vec3::Zero();  // mean over the second half
+  io::Series slope{.name = "of the line through the centre of mass", .style = io::SeriesStyle::LinePoints, .color = 0};
+  io::Series low{.name = "± standard deviation in time", .style = io::SeriesStyle::Dotted, .color = 0}, high = low;
+  high.name = "";
+  const auto slope_of = [&](const Vec3& centre) { return std::atan2(std::abs(centre.x()), -centre.z()) * 180 / pi; };
+  for (std::size_t k = 0; k < froude_numbers.size(); ++k) {
+    const double froude = froude_numbers[k], measured = measured_for(froude);
+    speed = speed_at(froude);
+    run(std::max(seconds, measured));
     constexpr int samples = 40;
-    double mass = 0.0;
+    Vec3 mean = Vec3::Zero();
+    double mass = 0.0, sum = 0.0, squares = 0.0;
     for (int s = 0; s < samples; ++s) {
-      run(0.5 * seconds / samples);
+      run(measured / samples);
+      Vec3 centre = Vec3::Zero();
+      mass = 0.0;
       for (const ParticleId p : world.particles()) {
         if (world.species_of(p) == lining) continue;
         centre += world.species(bead).mass * world.position(p), mass += world.species(bead).mass;
       }
+      centre /= mass;
+      mean += centre / samples;
+      const double angle = slope_of(centre);
+      sum += angle, squares += angle * angle;
     }
-    centre /= mass;
-    const double angle = std::atan2(std::abs(centre.x()), -centre.z()) * 180 / pi;
-    const double torque = machine.sensor(load).mean().torque.y, lever = -centre.x() * g * mass / samples;
-    fmt::print("Froude number {:7.4f}: slope {:4.1f} deg, torque {:8.5f} N m, {:.3f} of weight times lever\n", froude,
-               angle, torque, torque / -lever);
-    slope.x.push_back(froude), slope.y.push_back(angle);
+    const double angle = slope_of(mean), deviation = std::sqrt((squares - sum * sum / samples) / (samples - 1));
+    const double torque = machine.sensor(loads[k]).mean().torque.y, lever = -mean.x() * g * mass;
+    fmt::print(
+        "Froude number {:7.4f}: slope {:4.1f} deg, ± {:.1f} deg in {:.2f} s, {:.2f} turns; torque {:8.5f} N m, {:.3f} "
+        "of "
+        "weight times lever\n",
+        froude, angle, deviation, measured, measured * speed / (2 * pi), torque, torque / -lever);
+    for (io::Series* series : {&slope, &low, &high}) series->x.push_back(froude);
+    slope.y.push_back(angle), low.y.push_back(angle - deviation), high.y.push_back(angle + deviation);
     if (froude == froude_numbers[froude_numbers.size() / 2]) {
       Picture picture({1, 0, 0}, {0, 0, 1});
       picture.grains(world, [&](ParticleId p) {
@@ -103,6 +129,6 @@ int main(int argc, char** argv) {
                    fmt::format("A drum at Froude number {:g}: beads from blue (at rest) to red (0.5 m/s)", froude));
     }
   }
-  io::render_plot({.x_label = "Froude number", .y_label = "slope [deg]", .series = {slope}, .log_x = true},
+  io::render_plot({.x_label = "Froude number", .y_label = "slope [deg]", .series = {slope, low, high}, .log_x = true},
                   folder + "/slope");
 }
