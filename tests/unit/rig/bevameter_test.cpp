@@ -1,5 +1,6 @@
 #include "catch.hpp"
 
+#include <dem/rig/bevameter/circle.hpp>
 #include <dem/rig/bevameter/constants.hpp>
 #include <dem/rig/bevameter/settings.hpp>
 #include <dem/rig/session.hpp>
@@ -142,6 +143,54 @@ TEST_CASE(
   refuses([](auto& x) { x.confidence = 1.0; }, "--confidence");
   refuses([](auto& x) { x.pieces = 1.0; }, "--pieces");
   refuses([](auto& x) { x.grains.half_edge = -1.0; }, "--half-edge");
+}
+
+TEST_CASE("the wheel stands beside Bekker, Reece and dynamic Bekker in the table, the file and the plot") {
+  bevameter::Constants c;
+  c.bekker_soil = mechanics::melanz_sand;
+  c.reece_soil = mechanics::mojave_martian_simulant;
+  rigid_wheel::Settings s;
+  s.size = "smoke";
+  s.slips = {0.3, 0.99};
+  rigid_wheel::resolve(s);
+  rigid_wheel::Campaign w;
+  for (const double slip : s.slips) {
+    w.slips.push_back({.slip = slip, .samples = {{}}, .pull = {.mean = 10.0, .deviation = 1.0}});
+  }
+  const auto predictions = bevameter::predict(c, w, s);
+  const mechanics::ColumnWheel alone{.wheel = rigid_wheel::reference_wheel(s),
+                                     .soil = c.bekker_soil,
+                                     .load = s.load,
+                                     .wheel_mass = 0.1 * s.load / 9.81,
+                                     .spin = 1.0,
+                                     .travel = 1.5 * s.radius,
+                                     .spacing = s.radius / 13.0};
+  const double pull = roll_on_columns(alone, 0.3).pull;
+  REQUIRE(predictions[2].at_runs.size() == 2);
+  REQUIRE(predictions[2].at_runs[0]);
+  CHECK(predictions[2].at_runs[0]->pull == pull);
+  CHECK_FALSE(predictions[2].at_runs[1]);  // it hardly gets on there
+
+  const auto table = bevameter::circle_table(predictions, w);
+  dem::io::check_table(table);
+  CHECK(table.rows.size() == 6);
+  CHECK(table.header[8] == "dynamic Bekker");
+  CHECK(table.rows[0][8] == dem::text("{:.1f}", pull));
+  CHECK(table.rows[0][9] == dem::text("{:.1f}", pull - 10.0));
+  CHECK(table.rows[3][8] == "-");
+
+  const auto folder = std::filesystem::temp_directory_path() / ("dem_circle_" + std::to_string(::getpid()));
+  bevameter::write_predicted(folder / "predicted.csv", predictions, w);
+  const std::string file = dem::io::read_file(folder / "predicted.csv");
+  CHECK(file.find("bekker,reece,dynamic_bekker\n0.3,pull [N],10,1,") != std::string::npos);
+  CHECK(file.find(dem::text(",{}\n0.3,torque", pull)) != std::string::npos);
+  CHECK(file.find("nan\n0.99,torque") != std::string::npos);
+  std::filesystem::remove_all(folder);
+
+  const auto plot = bevameter::circle_plot(c, predictions, w, s, bevameter::compared[0]);
+  CHECK(plot.series.back().name == "dynamic Bekker");
+  CHECK(plot.series.back().y.at(0) == pull);
+  CHECK(plot.series.back().color == plot.series[3].color);  // of the same soil by Bekker and Wong
 }
 
 TEST_CASE("a run within another one tells it how far it is, and leaves its progress alone") {

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <dem/rig/bevameter/circle.hpp>
+#include <dem/rig/bevameter/settings.hpp>
 #include <dem/rig/bevameter/tables.hpp>
 #include <dem/rig/direct_shear/shear_rig.hpp>
 #include <dem/rig/plate_sinkage/plate_rig.hpp>
@@ -66,12 +68,17 @@ class BevameterRig : public Rig {
   bool report(Report& report) const override {
     std::vector<io::Table> tables;
     std::string words = "The run ended before the constants could be found.";
+    Predictions predictions;
     if (constants) {
       words = constants_text(*constants, settings.confidence);
       tables = {constants_table(*constants, settings.confidence), shear_table(*constants)};
-      if (has_rolled()) tables.push_back(circle_table(*constants, wheel_.campaign, wheel_.settings));
+      if (has_rolled()) {
+        predictions = predict(*constants, wheel_.campaign, wheel_.settings);
+        tables.push_back(circle_table(predictions, wheel_.campaign));
+        report.part("predicted.csv",
+                    [&] { write_predicted(report.folder() / "predicted.csv", predictions, wheel_.campaign); });
+      }
       report.part("constants.csv", [&] { write_constants(report.folder() / "constants.csv"); });
-      if (has_rolled()) report.part("predicted.csv", [&] { write_predicted(report.folder() / "predicted.csv"); });
     }
     report.part("the printed report", [&] {
       fmt::print("\n{}\n\n", words);
@@ -89,7 +96,7 @@ class BevameterRig : public Rig {
           "the soil for terramechanics, chrono_scm.txt is the call that gives Bekker's to Project Chrono's SCM "
           "terrain.");
       for (const auto& table : tables) page.table(table);
-      add_plots(report, page);
+      add_plots(report, page, predictions);
     });
     return false;
   }
@@ -133,21 +140,7 @@ class BevameterRig : public Rig {
     csv.flush();
   }
 
-  void write_predicted(const std::filesystem::path& path) const {
-    io::CsvWriter csv(path, {"slip_1-v/(omega*r)", "quantity", "grains", "deviation", "bekker", "reece"});
-    for (const auto& r : wheel_.campaign.slips) {
-      const auto bekker = reference_at(constants->bekker_soil, r.slip, wheel_.settings),
-                 reece = reference_at(constants->reece_soil, r.slip, wheel_.settings);
-      for (const Compared& q : compared) {
-        csv.row(r.slip, text("{} [{}]", q.name, q.unit), q.scale * (r.*q.grains).mean,
-                q.scale * (r.*q.grains).deviation, bekker ? q.scale * (*bekker).*q.predicted : std::nan(""),
-                reece ? q.scale * (*reece).*q.predicted : std::nan(""));
-      }
-    }
-    csv.flush();
-  }
-
-  void add_plots(Report& report, io::HtmlReport& page) const {
+  void add_plots(Report& report, io::HtmlReport& page, const Predictions& predictions) const {
     if (plates_.campaign.variants.empty()) return;
     page.heading("Plots");
     report.plot(page, plates_plot(plates(), constants), "plates",
@@ -159,7 +152,7 @@ class BevameterRig : public Rig {
                 "mohr_coulomb", "Strength over normal stress.");
     if (!has_rolled() || !constants) return;
     for (const Compared& q : compared) {
-      report.plot(page, circle_plot(*constants, wheel_.campaign, wheel_.settings, q), q.name,
+      report.plot(page, circle_plot(*constants, predictions, wheel_.campaign, wheel_.settings, q), q.name,
                   "The wheel in the grains, and predicted from the constants.");
     }
   }

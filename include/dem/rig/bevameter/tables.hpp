@@ -1,11 +1,10 @@
 #pragma once
-// What a bevameter found, as tables and plots, and the wheel beside what its constants predict.
+// What a bevameter found of the soil, as tables and plots.
 
 #include <dem/report/plot_data.hpp>
 #include <dem/report/table.hpp>
 #include <dem/rig/bevameter/constants.hpp>
-#include <dem/rig/bevameter/settings.hpp>
-#include <dem/rig/rigid_wheel/tables.hpp>
+#include <dem/rig/plate_sinkage/tables.hpp>
 
 #include <optional>
 #include <string>
@@ -13,9 +12,8 @@
 
 namespace dem::rig::bevameter {
 
-using rigid_wheel::number;
+using plate_sinkage::number;
 using terramechanics::degrees;
-using terramechanics::WheelForces;
 
 /// A constant under its name, in the unit that it is shown in.
 struct NamedConstant {
@@ -130,73 +128,6 @@ inline io::Plot shear_plot(const direct_shear::Campaign& d, const direct_shear::
     }
     plot.series.push_back(std::move(line));
     if (c) plot.series.push_back(std::move(law));
-  }
-  return plot;
-}
-
-/// A quantity of the wheel: of the grains, and as predicted.
-struct Compared {
-  const char* name;
-  const char* unit;
-  MeanAndDeviation rigid_wheel::SlipResult::*grains;
-  double WheelForces::*predicted;
-  double scale;
-  const char* format;
-};
-inline constexpr Compared compared[] = {
-    {"pull", "N", &rigid_wheel::SlipResult::pull, &WheelForces::pull, 1.0, "{:.1f}"},
-    {"torque", "N m", &rigid_wheel::SlipResult::torque, &WheelForces::torque, 1.0, "{:.2f}"},
-    {"sinkage", "mm", &rigid_wheel::SlipResult::sinkage, &WheelForces::sinkage, 1e3, "{:.1f}"}};
-
-/// The circle closed: pull, torque and sinkage of the wheel in the grains, predicted from the constants, and the error
-/// at each slip.
-inline io::Table circle_table(const Constants& c, const rigid_wheel::Campaign& w, const rigid_wheel::Settings& s) {
-  io::Table t{.caption = "The wheel in the same soil, and what the constants predict; slip s = 1 - v/(omega r)",
-              .header = {"slip", "quantity", "grains", "± in time", "Bekker", "error", "Reece", "error", "unit"}};
-  for (const auto& r : w.slips) {
-    const auto bekker = reference_at(c.bekker_soil, r.slip, s), reece = reference_at(c.reece_soil, r.slip, s);
-    for (const Compared& q : compared) {
-      const MeanAndDeviation& grains = r.*q.grains;
-      const auto value = [&](const std::optional<WheelForces>& f) { return f ? (*f).*q.predicted : std::nan(""); };
-      const auto cell = [&](double v) { return number(q.scale * v, q.format); };
-      t.row(&q == compared ? number(r.slip) : "", q.name, cell(grains.mean), cell(grains.deviation),
-            cell(value(bekker)), cell(value(bekker) - grains.mean), cell(value(reece)),
-            cell(value(reece) - grains.mean), q.unit);
-    }
-  }
-  return t;
-}
-
-/// One of these quantities over slip.
-inline io::Plot circle_plot(const Constants& c, const rigid_wheel::Campaign& w, const rigid_wheel::Settings& s,
-                            const Compared& q) {
-  io::Plot plot{.title = text("{} over slip", q.name),
-                .x_label = "slip s = 1 - v/(ω r)",
-                .y_label = text("{} [{}]", q.name, q.unit)};
-  io::Series points{.name = "grains", .style = io::SeriesStyle::LinePoints, .color = 0};
-  io::Series low{.name = "± standard deviation in time", .style = io::SeriesStyle::Dotted, .color = 0}, high = low;
-  high.name = "";
-  for (const auto& r : w.slips) {
-    const MeanAndDeviation& m = r.*q.grains;
-    if (!std::isfinite(m.mean)) continue;
-    for (io::Series* line : {&points, &low, &high}) line->x.push_back(r.slip);
-    points.y.push_back(q.scale * m.mean);
-    low.y.push_back(q.scale * (m.mean - m.deviation));
-    high.y.push_back(q.scale * (m.mean + m.deviation));
-  }
-  for (auto* line : {&points, &low, &high}) plot.series.push_back(*line);
-  int color = 1;
-  for (const auto& [name, soil] :
-       {std::pair{"Bekker and Wong", &c.bekker_soil}, std::pair{"Reece and Wong", &c.reece_soil}}) {
-    io::Series line{.name = name, .style = io::SeriesStyle::Dashed, .color = color++};
-    for (int k = 0; k <= 40; ++k) {
-      const double slip = s.slips.front() + 0.025 * k * (s.slips.back() - s.slips.front());
-      const auto f = reference_at(*soil, slip, s);
-      if (!f) continue;
-      line.x.push_back(slip);
-      line.y.push_back(q.scale * (*f).*q.predicted);
-    }
-    plot.series.push_back(std::move(line));
   }
   return plot;
 }
