@@ -101,6 +101,30 @@ TEST_CASE("a bevameter gives back the constants of a soil that obeys the laws") 
   }
 }
 
+TEST_CASE("two strengths tell the cohesion of their line without an error, and none is taken; three tell it with one") {
+  const mechanics::Bekker law{.k_c = 2e4, .k_phi = 3e6, .n = 0.9};
+  MadeSoil soil(law, {.cohesion = 800.0, .friction_angle = 0.6, .displacement = 8e-4});
+  const auto three = [&] {
+    soil.shear.loads.resize(3);
+    return soil.constants();
+  }();
+  CHECK(three.has_cohesion);
+  CHECK(bevameter::cohesion_text(three, 0.95) == "The line of the strengths has the cohesion 0.80 ± 0.00 kPa (95 %).");
+  soil.shear.loads.resize(2);  // at 5 and 10 kPa
+  const auto two = soil.constants();
+  CHECK(two.free_cohesion.value == Approx(800.0).epsilon(1e-9));
+  CHECK(std::isnan(two.free_cohesion.half_width()));
+  CHECK_FALSE(two.has_cohesion);
+  CHECK(two.cohesion.value == 0.0);
+  // Least squares through the origin: tan(phi) = tan(0.6) + c sum(sigma)/sum(sigma^2).
+  CHECK(std::tan(two.friction_angle.value) == Approx(std::tan(0.6) + 800.0 * 15e3 / 125e6).epsilon(1e-9));
+  CHECK(two.friction_angle.freedom == 1);
+  const std::string words = bevameter::constants_text(two, 0.95);
+  CHECK(words.find("0.80 kPa, was not tested") != std::string::npos);
+  CHECK(words.find("--normal-stresses") != std::string::npos);
+  CHECK(words.find("no more than none") == std::string::npos);
+}
+
 TEST_CASE("a soil with one plate has no constants, in words; one whose shear curves rise to their end has a K within") {
   MadeSoil one(mechanics::Bekker{.k_c = 0.0, .k_phi = 3e6, .n = 0.9}, dry);
   one.plates.plates.resize(1);
@@ -138,7 +162,7 @@ TEST_CASE(
     CHECK_THROWS_WITH(bevameter::resolve(wrong), Catch::Contains(option));
   };
   refuses([](auto& x) { x.widths = {0.05}; }, "--plates");
-  refuses([](auto& x) { x.normal_stresses = {1e4}; }, "--normal-stresses");
+  refuses([](auto& x) { x.normal_stresses = {1e4}; }, "a cohesion three");
   refuses([](auto& x) { x.normal_stresses = {1e4, -1.0}; }, "--normal-stresses");
   refuses([](auto& x) { x.confidence = 1.0; }, "--confidence");
   refuses([](auto& x) { x.pieces = 1.0; }, "--pieces");

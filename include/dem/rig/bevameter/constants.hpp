@@ -26,9 +26,10 @@ struct Constants {
   Estimate displacement = {};           ///< K, m
   Estimate unloading = {};              ///< Pa/m
   double bekker_r_squared = 0.0, reece_r_squared = 0.0;
-  bool has_cohesion = false;    ///< false: it does not differ from none, and the strength goes through the origin
-  Estimate free_cohesion = {};  ///< Pa, of the line that does not go through the origin; value NaN of too few stresses
-  double unit_weight = 0.0;     ///< N/m^3
+  bool has_cohesion = false;  ///< false: it does not differ from none, and the strength goes through the origin
+  Estimate free_cohesion =
+      {};                    ///< Pa, of the line that does not go through the origin; of two strengths without an error
+  double unit_weight = 0.0;  ///< N/m^3
   double relative_density = 0.0;
   std::vector<terramechanics::JanosiFit> shear_curves = {};
   terramechanics::Soil bekker_soil = {}, reece_soil = {};
@@ -80,7 +81,8 @@ inline Estimate mean_estimate(std::span<const double> values) {
 }
 
 /// Cohesion and friction angle of the strengths, and K of the curves. The cohesion is kept where it differs from none
-/// with the confidence; else the line goes through the origin.
+/// with the confidence; else the line goes through the origin. So it does with two strengths: a line through two points
+/// is exact, and no error can be told.
 inline void find_strength(Constants& c, const direct_shear::Campaign& shear, const direct_shear::Settings& s,
                           double confidence) {
   using terramechanics::Intercept;
@@ -92,7 +94,7 @@ inline void find_strength(Constants& c, const direct_shear::Campaign& shear, con
     c.shear_curves.push_back(terramechanics::fit_janosi_below(shear_curve(r, s), r.maximum));
     bends.push_back(c.shear_curves.back().displacement);
   }
-  if (sigma.size() > 2) {
+  if (sigma.size() > 1) {
     const auto line = terramechanics::fit_mohr_coulomb(sigma, tau, Intercept::free);
     c.free_cohesion = {line.cohesion, line.cohesion_error, sigma.size() - 2};
     c.has_cohesion = line.cohesion > c.free_cohesion.half_width(confidence);

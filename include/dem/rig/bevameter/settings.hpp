@@ -69,7 +69,7 @@ inline void declare(Options& options, Settings& s) {
   add("--bed-depth", s.bed_depth, "[m]; 0: by size");
   add("--pieces", s.pieces, "that the curve of a plate is cut into: the fits are made anew without each");
   options.group("Shear");
-  add("--normal-stresses", s.normal_stresses, "[Pa], at least two; empty: by size");
+  add("--normal-stresses", s.normal_stresses, "[Pa], at least two, for a cohesion three; empty: by size");
   add("--shear-speed", s.shear_speed, "[m/s]; 0: by size");
   add("--shear-travel", s.shear_travel, "[m]; 0: by size");
   options.group("Wheel");
@@ -263,7 +263,11 @@ inline void resolve(Settings& s) {
     fail("--plates has {} width, but k_c and k_phi need plates of at least two; three are usual", s.widths.size());
   }
   if (s.normal_stresses.size() < 2) {
-    fail("--normal-stresses has {} stress, but cohesion and friction need at least two", s.normal_stresses.size());
+    fail(
+        "--normal-stresses has {} stress, but the error of the friction angle needs at least two, and a cohesion "
+        "three; "
+        "four are usual",
+        s.normal_stresses.size());
   }
   for (const double sigma : s.normal_stresses) require_within(sigma, 10.0, 1e7, "a stress of --normal-stresses (Pa)");
   plates_of(s);

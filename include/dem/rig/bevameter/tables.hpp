@@ -48,16 +48,29 @@ inline io::Table constants_table(const Constants& c, double confidence) {
   return t;
 }
 
+/// Which line the strengths have, and why.
+inline std::string cohesion_text(const Constants& c, double confidence) {
+  const Estimate& free = c.free_cohesion;
+  if (free.freedom == 0) {
+    return text(
+        "The strengths are two. A line through two points is exact, and no error can be told: its cohesion, {} kPa, "
+        "was "
+        "not tested against none, and the line that is used goes through the origin. A third of --normal-stresses "
+        "would test it.",
+        number(1e-3 * free.value));
+  }
+  return text("The line of the strengths has the cohesion {} ± {} kPa ({:g} %){}.", number(1e-3 * free.value),
+              number(1e-3 * free.half_width(confidence)), 100.0 * confidence,
+              c.has_cohesion ? "" : ", which is no more than none: it goes through the origin");
+}
+
 inline std::string constants_text(const Constants& c, double confidence) {
   return text(
       "Unit weight {:.2f} kN/m³, relative density {:.2f}. R² of Bekker's pressure {:.3f}, of Reece's {:.3f}. Errors of "
       "the "
       "moduli are those of the jackknife over pieces of the curves, as neighbouring points err alike; of phi, those of "
-      "the line through the strengths; of K and of the unloading, the scatter between the curves. The line of the "
-      "strengths has the cohesion {} ± {} kPa ({:g} %){}.{}",
-      1e-3 * c.unit_weight, c.relative_density, c.bekker_r_squared, c.reece_r_squared,
-      number(1e-3 * c.free_cohesion.value), number(1e-3 * c.free_cohesion.half_width(confidence)), 100.0 * confidence,
-      c.has_cohesion ? "" : ", which is no more than none: it goes through the origin",
+      "the line through the strengths; of K and of the unloading, the scatter between the curves. {}{}",
+      1e-3 * c.unit_weight, c.relative_density, c.bekker_r_squared, c.reece_r_squared, cohesion_text(c, confidence),
       c.bekker[0].value == 0.0   ? " Bekker's k_c came out negative, as wide plates carry more: it is left out."
       : c.bekker[1].value == 0.0 ? " Bekker's k_phi came out negative: it is left out."
                                  : "");
