@@ -68,6 +68,9 @@ class Session final : public Stages {
     io::AtomicFile{file};  // is gone again, for it is not committed
   }
 
+  /// Something to be said as soon as the run begins: nothing of a run that is refused.
+  void say_when_begun(std::string words) { notes_.push_back(std::move(words)); }
+
   /// The check of the start is over: `stages` will follow. Results of an earlier run in the folder go, and it is said
   /// which; `also` is what else will be replaced later. A run that goes on leaves them. The settings file is written.
   /// From here on Ctrl-C and SIGTERM end the run after the present step, or at the next update() of a stage that is
@@ -92,6 +95,7 @@ class Session final : public Stages {
       if (!process_writes_files) options.out = nullptr;
       progress_.emplace(options);
     }
+    for (const std::string& note : notes_) message(note);
     if (!parts_.resumes()) return;
     const auto files = parts_.parts();
     message(files.empty() ? "The run had kept nothing to go on from: it begins anew."
@@ -184,6 +188,7 @@ class Session final : public Stages {
   int stages_ = -1, stage_ = 0;  // of the run, once it has begun; of a run within another one, the stage that it is in
   std::string name_;
   double total_ = unknown;
+  std::vector<std::string> notes_;
   CheckpointFolder parts_;
   std::optional<FolderLock> lock_;
   std::unique_ptr<io::InterruptGuard> guard_;

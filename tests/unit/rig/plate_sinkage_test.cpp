@@ -1,6 +1,7 @@
 #include "catch.hpp"
 #include "worlds.hpp"
 
+#include <dem/rig/bed/small_bed.hpp>
 #include <dem/rig/plate_sinkage.hpp>
 
 #include <cmath>
@@ -97,6 +98,20 @@ TEST_CASE("walls leave room for a heap above a bed that starts level, as one fro
 TEST_CASE("a grain that is lost is told of with the option that helps") {
   CHECK(in_own_words("close the walls, lower time_step (now 5e-05 s), or enlarge domain", bed_words()) ==
         "lower --stable-share (the time step is now 5e-05 s)");
+}
+
+TEST_CASE("a bed that is narrower than five widths of its widest plate, or shallower than two, is told of in numbers") {
+  using Catch::Contains;
+  const auto both = small_bed_note(0.07, 0.16, 0.10);
+  CHECK_THAT(both, Contains("plate of 70 mm"));
+  CHECK_THAT(both, Contains("2.3 widths wide and 1.4 widths deep"));
+  CHECK_THAT(both, Contains("walls and floor"));
+  CHECK_THAT(both, Contains("Give --bed-width 0.35 and --bed-depth 0.14, or narrower --plates"));
+  CHECK_THAT(small_bed_note(0.07, 0.16, 0.14), Contains("Give --bed-width 0.35, or"));
+  CHECK_THAT(small_bed_note(0.07, 0.35, 0.10), Contains("floor may help") && Contains("Give --bed-depth 0.14, or"));
+  CHECK(small_bed_note(0.07, 0.35, 0.14).empty());  // just large enough
+  CHECK(small_bed_note(0.07, 0.35, std::nan("")).empty());
+  CHECK_FALSE(small_bed_note(0.07, 0.34, std::nan("")).empty());
 }
 
 TEST_CASE("a study changes what it says, and nothing else") {

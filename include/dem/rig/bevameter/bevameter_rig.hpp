@@ -39,6 +39,7 @@ class BevameterRig : public Rig {
 
   void run(Session& session) override {
     const Settings& s = settings;
+    plates_.settings = plates_of(s);
     session.begin_run(s.has_wheel() ? 3 : 2);
     {
       PartWithoutWorld begun(session.parts(), "bevameter");
@@ -47,7 +48,6 @@ class BevameterRig : public Rig {
       session.set_part(nullptr);
     }
     session.begin("plates", 1.0);
-    plates_.settings = plates_of(s);
     run_within(session, plates_, "plate_sinkage", "Plates of the bevameter");
     session.begin("shear", 1.0);
     shear_.settings = shear_of(s, bed_density());
@@ -69,6 +69,7 @@ class BevameterRig : public Rig {
     std::vector<io::Table> tables;
     std::string words = "The run ended before the constants could be found.";
     Predictions predictions;
+    const std::string note = plates_.small_bed();
     if (constants) {
       words = constants_text(*constants, settings.confidence);
       tables = {constants_table(*constants, settings.confidence), shear_table(*constants)};
@@ -81,7 +82,9 @@ class BevameterRig : public Rig {
       report.part("constants.csv", [&] { write_constants(report.folder() / "constants.csv"); });
     }
     report.part("the printed report", [&] {
-      fmt::print("\n{}\n\n", words);
+      fmt::print("\n{}\n", words);
+      if (!note.empty()) fmt::print("{}\n", note);
+      fmt::print("\n");
       for (const auto& table : tables) {
         io::print(table);
         fmt::print("\n");
@@ -90,7 +93,9 @@ class BevameterRig : public Rig {
       fmt::print("{} of wall time.\n", io::format_duration(report.outcome().wall_time));
     });
     report.page(list_settings(settings), [&](io::HtmlReport& page) {
-      page.paragraph(words).paragraph(
+      page.paragraph(words);
+      if (!note.empty()) page.paragraph(note);
+      page.paragraph(
           "The folders plates, shear and wheel have the reports of these runs. soil_bekker.toml and soil_reece.toml "
           "are "
           "the soil for terramechanics, chrono_scm.txt is the call that gives Bekker's to Project Chrono's SCM "

@@ -71,7 +71,7 @@ inline std::string constants_text(const Constants& c, double confidence) {
       "moduli are those of the jackknife over pieces of the curves, as neighbouring points err alike; of phi, those of "
       "the line through the strengths; of K and of the unloading, the scatter between the curves. {}{}",
       1e-3 * c.unit_weight, c.relative_density, c.bekker_r_squared, c.reece_r_squared, cohesion_text(c, confidence),
-      c.bekker[0].value == 0.0   ? " Bekker's k_c came out negative, as wide plates carry more: it is left out."
+      c.bekker[0].value == 0.0   ? " Bekker's k_c came out negative, as the wider plates carried more: it is left out."
       : c.bekker[1].value == 0.0 ? " Bekker's k_phi came out negative: it is left out."
                                  : "");
 }

@@ -2,6 +2,7 @@
 
 #include <dem/io/csv.hpp>
 #include <dem/report/replay_page.hpp>
+#include <dem/rig/bed/small_bed.hpp>
 #include <dem/rig/plate_sinkage/tables.hpp>
 #include <dem/rig/rig.hpp>
 
@@ -29,7 +30,10 @@ class PlateRig : public Rig {
   }
   [[nodiscard]] bool can_resume() const override { return true; }
   [[nodiscard]] std::vector<OwnWord> words() const override { return bed_words(); }
-  void run(Session& session) override { run_(settings, campaign, session); }
+  void run(Session& session) override {
+    if (auto note = small_bed(); !note.empty()) session.say_when_begun(std::move(note));
+    run_(settings, campaign, session);
+  }
 
   bool report(Report& report) const override {
     if (campaign.variants.empty()) {
@@ -39,7 +43,9 @@ class PlateRig : public Rig {
     const VariantResult& v = campaign.variants.front();
     report.part("results.csv", [&] { write_results(report.folder() / "results.csv"); });
     report.part("the printed report", [&] {
-      fmt::print("\n{}\n{}\n\n", bed_text(v), finding_text(v));
+      fmt::print("\n{}\n{}\n", bed_text(v), finding_text(v));
+      if (!small_bed().empty()) fmt::print("{}\n", small_bed());
+      fmt::print("\n");
       for (const auto& table : tables()) {
         io::print(table);
         fmt::print("\n");
@@ -48,6 +54,7 @@ class PlateRig : public Rig {
     });
     report.page(list_settings(settings), [&](io::HtmlReport& page) {
       page.paragraph(bed_text(v)).paragraph(finding_text(v));
+      if (!small_bed().empty()) page.paragraph(small_bed());
       for (const auto& table : tables()) page.table(table);
       page.heading("Plots");
       report.plot(page, pressure_plot(v), "pressure",
@@ -58,6 +65,13 @@ class PlateRig : public Rig {
       }
     });
     return settings.vtk && !v.plates.empty();
+  }
+
+  /// What is said of a bed that is too small for the plates; how deep one from a file is, is known once it is read.
+  [[nodiscard]] std::string small_bed() const {
+    const double level = campaign.variants.empty() ? not_known : campaign.variants.front().level;
+    return small_bed_note(settings.widths.back(), settings.bed.width,
+                          settings.bed.file.empty() ? settings.bed.depth : level);
   }
 
   Settings settings;
