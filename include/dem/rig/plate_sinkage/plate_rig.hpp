@@ -22,7 +22,7 @@ class PlateRig : public Rig {
     ResultNames names{.files = {"results.csv", "plate_#+mm.pvd", "plate_#+mm.csv", "plate_#+mm_unloading.csv"},
                       .plots = {"pressure", "fits"},
                       .frames = {"grains", "surfaces"}};
-    for (const char* variant : {"wide", "deep", "slow", "second", "third"}) {
+    for (const char* variant : variant_names) {
       names.files.push_back(std::string(variant) + "_plate_#+mm.csv");
       names.files.push_back(std::string(variant) + "_plate_#+mm_unloading.csv");
     }

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <dem/rig/bed/bed_settings.hpp>
+#include <dem/rig/bed/study.hpp>
 
 #include <algorithm>
 #include <string>
@@ -37,12 +37,7 @@ struct Settings {
   [[nodiscard]] double sample_interval() const { return sinkage / 400.0 / speed; }  ///< s
 };
 
-/// A bed and a speed that the plates are pressed with, and what it is called: the run itself, or one of a study.
-struct Variant {
-  std::string name = {};  ///< of files; empty: the run itself
-  std::string text = "as set";
-  Settings settings = {};
-};
+using Variant = rig::Variant<Settings>;
 
 /// Names every option and the place of its value.
 inline void declare(Options& options, Settings& s) {
@@ -60,8 +55,7 @@ inline void declare(Options& options, Settings& s) {
   add("--smoothing", s.smoothing, "share of the sinkage over which pressures are averaged");
   add("--fit-from", s.fit_from, "share of the sinkage from which points are fitted");
   options.flag("--unload", s.unload, "then draw the plate up again, a tenth as fast: the slope of unloading");
-  add("--study", s.study, "also: a bed twice as wide and one twice as deep (box), half the speed, or two other seeds")
-      .one_of({"none", "box", "speed", "seeds"});
+  add_study_option(options, s.study);
   add_grain_options(options, s.grains);
   add_bed_options(options, s.bed);
   add_output_options(options, s, "a plate");
@@ -111,22 +105,7 @@ inline void resolve(Settings& s) {
 
 /// The run itself, and those of the study.
 inline std::vector<Variant> variants(const Settings& s) {
-  std::vector<Variant> list{{.settings = s}};
-  const auto add = [&](const char* name, std::string text, auto&& change) {
-    Variant v{name, std::move(text), s};
-    change(v.settings);
-    list.push_back(std::move(v));
-  };
-  if (s.study == "box") {
-    add("wide", "bed twice as wide", [](Settings& x) { x.bed.width *= 2.0; });
-    add("deep", "bed twice as deep", [](Settings& x) { x.bed.depth *= 2.0; });
-  } else if (s.study == "speed") {
-    add("slow", "half the speed", [](Settings& x) { x.speed *= 0.5; });
-  } else if (s.study == "seeds") {
-    add("second", "the next seed", [](Settings& x) { x.bed.seed += 1; });
-    add("third", "the seed after it", [](Settings& x) { x.bed.seed += 2; });
-  }
-  return list;
+  return variants_of(s, [](Settings& x) { x.speed *= 0.5; });
 }
 
 /// Names and values for the report.
