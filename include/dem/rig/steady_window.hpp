@@ -24,6 +24,22 @@ inline MeanAndDeviation mean_of(std::span<const double> values) {
   return {mean, std::sqrt(squares / n)};
 }
 
+/// Standard error of the mean of values that follow each other in time and may err alike: that of the means of ten
+/// parts of equal length, each longer than values err alike. NaN of less than ten values.
+inline double error_of_mean(std::span<const double> values) {
+  constexpr std::size_t parts = 10;
+  const std::size_t length = values.size() / parts;
+  if (length == 0) return std::nan("");
+  values = values.last(parts * length);
+  const double mean = mean_of(values).mean;
+  double squares = 0.0;
+  for (std::size_t k = 0; k < parts; ++k) {
+    const double m = mean_of(values.subspan(k * length, length)).mean;
+    squares += (m - mean) * (m - mean);
+  }
+  return std::sqrt(squares / static_cast<double>(parts * (parts - 1)));
+}
+
 /// The steady end of a run.
 struct SteadyWindow {
   std::size_t first = 0;   ///< value that it begins with

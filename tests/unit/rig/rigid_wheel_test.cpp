@@ -2,6 +2,7 @@
 #include "worlds.hpp"
 
 #include <dem/rig/rigid_wheel.hpp>
+#include <dem/rig/rigid_wheel/study.hpp>
 
 #include <cmath>
 
@@ -108,6 +109,77 @@ TEST_CASE("settings of wheels that make no sense are refused by the names of the
   refuses([](auto& s) { s.load = 0.0; }, "--load");
   CHECK(rigid_wheel::slip_name(-0.3) == "slip_m30");
   CHECK(rigid_wheel::slip_name(0.3) == "slip_30");
+}
+
+TEST_CASE("a study of a wheel changes the box, the speed or the seed, and nothing else; it makes its own beds") {
+  auto s = small();
+  rigid_wheel::resolve(s);
+  CHECK(rigid_wheel::variants(s).size() == 1);
+  s.study = "box";
+  const auto box = rigid_wheel::variants(s);
+  REQUIRE(box.size() == 5);  // and two other seeds, for the error
+  CHECK(box[1].settings.bed.width == Approx(2.0 * s.bed.width));
+  CHECK(box[1].settings.bed.depth == s.bed.depth);
+  CHECK(box[2].settings.bed.depth == Approx(2.0 * s.bed.depth));
+  CHECK(box[2].prefix() == "deep_");
+  CHECK(box[3].settings.bed.seed == s.bed.seed + 1);
+  CHECK(box[4].settings.bed.width == s.bed.width);
+  s.study = "speed";
+  const auto speed = rigid_wheel::variants(s);
+  REQUIRE(speed.size() == 2);
+  CHECK(speed[1].settings.spin() == Approx(0.5 * s.spin()));
+  CHECK(speed[1].settings.bed.seed == s.bed.seed);
+  s.study = "seeds";
+  CHECK(rigid_wheel::variants(s).at(2).settings.bed.seed == s.bed.seed + 2);
+  s.bed.file = "bed.txt";
+  CHECK_THROWS_WITH(rigid_wheel::resolve(s), Catch::Contains("--bed-file"));
+  s.study = "speed";
+  rigid_wheel::resolve(s);
+}
+
+TEST_CASE("the change of a pull in a study has an error, and is called small or not where two errors can tell") {
+  const auto at = [](double pull, double error, bool finished = true) {
+    return rigid_wheel::SlipResult{.slip = 0.3, .finished = finished, .pull = {pull, 3.0}, .pull_error = error};
+  };
+  const auto study = [&](const char* name, const rigid_wheel::SlipResult& of_it) {
+    rigid_wheel::Campaign c;
+    c.variant.settings.study = "box";
+    c.slips = {at(-20.0, 0.3)};
+    c.study.push_back({.variant = {.name = name, .text = "other"}, .slips = {of_it}});
+    return c;
+  };
+  const auto change = [](const rigid_wheel::Campaign& c) { return rigid_wheel::PullChange(c, c.study[0], 0); };
+  // In the same bed: errors of means in time.
+  const auto slow = study("slow", at(-26.0, 0.4));
+  CHECK(change(slow).newtons.value == Approx(-6.0));
+  CHECK(change(slow).newtons.error == Approx(0.5));
+  CHECK(change(slow).percent.value == Approx(-30.0));
+  CHECK(change(slow).percent.error == Approx(100.0 * std::hypot(0.4, 1.3 * 0.3) / 20.0));
+  CHECK(change(slow).is_small() == std::string("no"));                                 // 30 +- 2.8 %
+  CHECK(change(study("slow", at(-20.2, 0.1))).is_small() == std::string("yes"));       // 1 +- 1.6 %
+  CHECK(change(study("slow", at(-19.0, 0.4))).is_small() == std::string("not told"));  // 5 +- 2.5 %
+  CHECK(change(study("slow", at(-19.0, 0.4, false))).is_small() == std::string("-"));
+  // With other grains: three beds of -20, -20.2 and -23 N deviate by 1.677 N, which counts for both runs.
+  auto wide = study("wide", at(-26.0, 0.4));
+  wide.study.push_back({.variant = {.name = "second"}, .slips = {at(-20.2, 0.3)}});
+  wide.study.push_back({.variant = {.name = "third"}, .slips = {at(-23.0, 0.3)}});
+  const auto beds = rigid_wheel::scatter_of_beds(wide, 0);
+  CHECK(beds.beds == 3);
+  CHECK(beds.mean == Approx(-21.0667).epsilon(1e-5));
+  CHECK(beds.deviation == Approx(1.6773).epsilon(1e-4));
+  CHECK(beds.error() == Approx(1.6773 / std::sqrt(3.0)).epsilon(1e-4));
+  CHECK(change(wide).newtons.error == Approx(std::sqrt(2.0) * 1.6773).epsilon(1e-4));
+  CHECK(change(wide).percent.error == Approx(100.0 * 1.6773 * std::hypot(1.0, 1.3) / 20.0).epsilon(1e-4));
+  CHECK(change(wide).is_small() == std::string("not told"));               // 30 +- 13.8 %
+  CHECK(std::isnan(change(study("wide", at(-26.0, 0.4))).newtons.error));  // what a bed deviates by is not known
+
+  const auto tables = rigid_wheel::study_tables(wide);
+  REQUIRE(tables.size() == 2);
+  for (const auto& table : tables) dem::io::check_table(table);
+  REQUIRE(tables[0].rows.size() == 4);
+  CHECK(tables[0].rows[0][9].empty());
+  CHECK(tables[0].rows[1][9] == "-30.0");
+  CHECK(rigid_wheel::study_tables({}).empty());
 }
 
 TEST_CASE("a wheel is set down gently, carries its load, and keeps its slip") {

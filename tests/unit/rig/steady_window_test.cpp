@@ -20,6 +20,13 @@ TEST_CASE("mean and standard deviation are those of the values, and not known wi
   CHECK(std::isnan(mean_of({}).mean));
 }
 
+TEST_CASE("the error of a mean is that of ten parts, so that values which err alike count as one") {
+  std::vector<double> values{7.0, -3.0};  // more than ten parts of ten: the first are left out
+  for (int i = 0; i < 100; ++i) values.push_back(i / 10);
+  CHECK(error_of_mean(values) == Approx(std::sqrt(82.5 / 90.0)));  // squares about 4.5, over 10 times 9
+  CHECK(std::isnan(error_of_mean(std::vector<double>(9, 1.0))));
+}
+
 TEST_CASE("the steady window leaves a transient out and keeps what is steady") {
   // An exponential of 20 values' decay under noise of 0.1: after 5 decays, 100 values, 0.7 % of it are left, less than
   // the noise of a batch. Before 2 decays it is above the noise.

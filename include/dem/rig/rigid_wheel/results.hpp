@@ -63,6 +63,7 @@ struct SlipResult {
   double window_from = not_known;  ///< s, where the steady window begins
   bool is_steady = false;
   MeanAndDeviation pull = {}, torque = {}, sinkage = {}, carried = {};
+  double pull_error = not_known;  ///< N, standard error of its mean in time
   double efficiency = not_known;  ///< pull v/(torque omega), thesis eq. 44; known where the wheel drives and pulls
   double rut_depth = not_known;   ///< m, below the level: the mean over the middle half of the wheel's width
   double rut_width = not_known;   ///< m, where the surface is lower than half of that depth
@@ -82,14 +83,20 @@ inline std::size_t shown_slip(const std::vector<double>& slips) {
   return shown;
 }
 
-/// Everything that a run finds.
-struct Campaign {
+/// All slips on a bed.
+struct VariantResult {
+  Variant variant = {};
   double level = not_known;  ///< m
   double solid_fraction = not_known;
   std::size_t grains = 0;
   double time_step = not_known;         ///< s
   double set_down_sinkage = not_known;  ///< m, of the wheel at rest
   std::vector<SlipResult> slips = {};
+};
+
+/// Everything that a run finds: what is its own, and what its study is.
+struct Campaign : VariantResult {
+  std::vector<VariantResult> study = {};
   std::optional<report::Replay> replay = {};
 };
 
@@ -111,6 +118,7 @@ inline void evaluate(SlipResult& r, double level, const Settings& s) {
     return mean_of(std::span(values).subspan(first));
   };
   r.pull = mean(&Sample::pull);
+  r.pull_error = error_of_mean(std::span(pull).subspan(first));
   r.torque = mean(&Sample::torque);
   r.sinkage = mean(&Sample::sinkage);
   r.carried = mean(&Sample::carried);

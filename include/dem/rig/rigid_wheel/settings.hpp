@@ -1,6 +1,6 @@
 #pragma once
 
-#include <dem/rig/bed/bed_settings.hpp>
+#include <dem/rig/bed/study.hpp>
 
 #include <algorithm>
 #include <numbers>
@@ -31,7 +31,8 @@ struct Settings {
   double ramp_time = 0.05;           ///< s, of the smooth start
   double set_down_speed = 0.05;      ///< m/s
 
-  std::string soil;  ///< file of a soil, which the grains stand beside too
+  std::string study = "none";  ///< none, box, speed or seeds
+  std::string soil;            ///< file of a soil, which the grains stand beside too
   std::string output = "rigid_wheel_output";
   bool replay = true;
   std::uint64_t replay_forces = 2000;  ///< force chains of a frame of the replay, the largest; 0: none
@@ -48,6 +49,8 @@ struct Settings {
   /// m, of the wheel with its grousers.
   [[nodiscard]] double outer_radius() const { return radius + (wheel == "grousers" ? grouser_height : 0.0); }
 };
+
+using Variant = rig::Variant<Settings>;
 
 /// What the files of a slip are called: slip_30 or slip_m30, in percent.
 inline std::string slip_name(double slip) {
@@ -75,6 +78,7 @@ inline void declare(Options& options, Settings& s) {
   add("--set-down-speed", s.set_down_speed, "of the load servo [m/s]");
   add("--soil", s.soil,
       "file of a soil as the bevameter writes it: Bekker-Wong and dynamic Bekker with it are drawn too");
+  add_study_option(options, s.study, " (box also makes these, for the error)");
   add_grain_options(options, s.grains);
   add_bed_options(options, s.bed);
   add_output_options(options, s, "a slip");
@@ -110,6 +114,7 @@ inline void resolve(Settings& s) {
   fill(s.spin_deg, by_size.spin_deg);
   fill(s.path, by_size.path);
   if (s.slips.empty()) s.slips = by_size.slips;
+  check_study(s.study, s.bed);
   if (s.wheel_friction < 0.0)
     s.wheel_friction = s.wheel == "smooth" ? 0.2 : s.wheel == "rough" ? 0.8 : s.grains.friction;
   std::sort(s.slips.begin(), s.slips.end());
@@ -137,6 +142,14 @@ inline void resolve(Settings& s) {
   }
 }
 
+/// The run itself, and those of the study. With other boxes come other seeds: what a box changes is to be seen beside
+/// how far beds of one box differ.
+inline std::vector<Variant> variants(const Settings& s) {
+  auto list = variants_of(s, [](Settings& x) { x.spin_deg *= 0.5; });
+  if (s.study == "box") add_seeds(list);
+  return list;
+}
+
 /// Names and values for the report.
 inline NamesAndValues list_settings(const Settings& s) {
   NamesAndValues list{{"size", s.size}};
@@ -151,7 +164,8 @@ inline NamesAndValues list_settings(const Settings& s) {
                {"load", text("{:g} N", s.load)},
                {"spin", text("{:g} deg/s: the rim at {:g} mm/s", s.spin_deg, 1e3 * s.rim_speed())},
                {"slip is", "s = 1 - v/(omega r), as in table 5.3"},
-               {"path of the rim", text("{:g} mm", 1e3 * s.path)}});
+               {"path of the rim", text("{:g} mm", 1e3 * s.path)},
+               {"study", s.study}});
   return list;
 }
 

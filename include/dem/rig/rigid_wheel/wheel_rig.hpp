@@ -4,6 +4,7 @@
 #include <dem/report/replay_page.hpp>
 #include <dem/rig/rig.hpp>
 #include <dem/rig/rigid_wheel/columns.hpp>
+#include <dem/rig/rigid_wheel/study.hpp>
 #include <dem/rig/rigid_wheel/tables.hpp>
 
 #include <algorithm>
@@ -24,10 +25,16 @@ class WheelRig : public Rig {
   }
   [[nodiscard]] std::string output() const override { return settings.output; }
   [[nodiscard]] ResultNames results() const override {
-    return {.files = {"results.csv", "rut.csv", "under_wheel.csv", "slip_#+.csv", "slip_m#+.csv", "slip_#+.pvd",
-                      "slip_m#+.pvd"},
-            .plots = {"pull", "torque", "sinkage", "pull_over_time", "sinkage_over_time", "rut", "stress", "print"},
-            .frames = {"grains", "surfaces"}};
+    ResultNames names{
+        .files = {"results.csv", "rut.csv", "under_wheel.csv", "study.csv", "slip_#+.csv", "slip_m#+.csv",
+                  "slip_#+.pvd", "slip_m#+.pvd"},
+        .plots = {"pull", "torque", "sinkage", "pull_over_time", "sinkage_over_time", "rut", "stress", "print"},
+        .frames = {"grains", "surfaces"}};
+    for (const char* variant : variant_names) {
+      names.files.push_back(std::string(variant) + "_slip_#+.csv");
+      names.files.push_back(std::string(variant) + "_slip_m#+.csv");
+    }
+    return names;
   }
   [[nodiscard]] bool can_resume() const override { return true; }
   [[nodiscard]] std::vector<OwnWord> words() const override { return bed_words(); }
@@ -38,11 +45,19 @@ class WheelRig : public Rig {
     report.part("results.csv", [&] { write_results(report.folder() / "results.csv"); });
     std::vector<Reference> soils = references(s);
     roll_on_columns(soils, campaign, s);
-    const std::vector<io::Table> tables{slip_table(campaign), reference_table(s, campaign, soils), rut_table(campaign),
-                                        print_table(campaign)};
+    std::vector<io::Table> tables{slip_table(campaign), reference_table(s, campaign, soils), rut_table(campaign),
+                                  print_table(campaign)};
     report.part("under_wheel.csv", [&] { write_print(report.folder() / "under_wheel.csv"); });
+    std::vector<std::string> words{bed_text(s, campaign), window_text, print_text};
+    if (!campaign.study.empty()) {
+      words.push_back(study_text);
+      for (auto& table : study_tables(campaign)) tables.push_back(std::move(table));
+      report.part("study.csv", [&] { write_study(report.folder() / "study.csv", campaign); });
+    }
     report.part("the printed report", [&] {
-      fmt::print("\n{}\n{}\n{}\n\n", bed_text(s, campaign), window_text, print_text);
+      fmt::print("\n");
+      for (const auto& line : words) fmt::print("{}\n", line);
+      fmt::print("\n");
       for (const auto& table : tables) {
         io::print(table);
         fmt::print("\n");
@@ -50,7 +65,7 @@ class WheelRig : public Rig {
       fmt::print("{} of wall time.\n", io::format_duration(report.outcome().wall_time));
     });
     report.page(list_settings(s), [&](io::HtmlReport& page) {
-      page.paragraph(bed_text(s, campaign)).paragraph(window_text).paragraph(print_text);
+      for (const auto& line : words) page.paragraph(line);
       for (const auto& table : tables) page.table(table);
       if (any_rolled()) add_plots(report, page, soils);
       if (campaign.replay && campaign.replay->frames().size() > 1) {
