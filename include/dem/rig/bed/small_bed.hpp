@@ -22,14 +22,13 @@ inline std::string small_bed_note(double widest_plate, double bed_width, double 
     const auto more = [](std::string& list, const std::string& item) { list += (list.empty() ? "" : " and ") + item; };
     more(is, text("{:.1f} widths {}", size / widest_plate, what));
     more(helps, helper);
-    more(change, text("{} {:.3g}", option, wanted));
+    more(change, text("{} {:.4g}", option, wanted));
   };
   if (narrow) add(bed_width, width, "wide", "walls", "--bed-width");
   if (shallow) add(bed_depth, depth, "deep", "floor", "--bed-depth");
   return text(
-      "Note: for the plate of {:.0f} mm the bed is {}. Below {:g} widths across and {:g} of depth {} may help to carry "
-      "a "
-      "plate, most of all a wide one. Give {}, or narrower --plates.",
+      "Note: for the plate of {:.0f} mm the bed is {}. Below {:g} widths across and {:g} of depth {} may help to "
+      "carry a plate, most of all a wide one. Give {}, or narrower --plates.",
       1e3 * widest_plate, is, plate_widths_across, plate_widths_deep, helps, change);
 }
 
