@@ -13,15 +13,12 @@ namespace dem::rig::plate_sinkage {
 
 namespace detail {
 
-/// What names of a variant's files begin with.
-inline std::string prefix(const Variant& v) { return v.name.empty() ? "" : v.name + "_"; }
-
 /// One plate of a variant on so many threads, with its file, and for the run itself frames and perhaps a replay.
 template <class Model>
 void press(const PlateSinkage<Model>& test, const Bed<Model>& bed, int threads, const Variant& variant, PlateResult& r,
            report::Replay* replay, Session& session, Stages& stages) {
   const Settings& s = test.settings();
-  const std::string plate = text("plate_{:.0f}mm", 1e3 * r.width), file = prefix(variant) + plate;
+  const std::string plate = text("plate_{:.0f}mm", 1e3 * r.width), file = variant.prefix() + plate;
   const auto save = [&] {
     evaluate(r, s);
     if (r.samples.empty()) return;
@@ -97,9 +94,7 @@ void run_campaign(const Settings& settings, ShapeOf&& shape_of, Campaign& campai
   const auto all = variants(test.settings());
   int stages = 0;
   for (const Variant& v : all) {
-    if (v.settings.study != "none" && v.settings.study != "speed" && !v.settings.bed.file.empty()) {
-      fail("--study {} needs other beds than the one of --bed-file; leave --bed-file out", v.settings.study);
-    }
+    check_study(v.settings.study, v.settings.bed);
     stages += 1 + (v.name == "slow" ? 0 : bed_stages(v.settings.bed));
   }
   soil::Packing start = start_of(test.settings());
@@ -113,8 +108,7 @@ void run_campaign(const Settings& settings, ShapeOf&& shape_of, Campaign& campai
     if (v.name != "slow") {
       const bool is_first = v.name.empty();
       bed.emplace(make_kept_bed(variant, is_first ? start : start_of(v.settings), session,
-                                is_first ? static_cast<PartStore&>(store) : session.parts(),
-                                detail::prefix(v) + "bed"));
+                                is_first ? static_cast<PartStore&>(store) : session.parts(), v.prefix() + "bed"));
       if (is_first) store.save_places(*bed);
     }
     result.level = bed->level;
