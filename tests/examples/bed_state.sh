@@ -28,9 +28,17 @@ mkdir -p "$output"
 for file in "$output"/made/*.csv; do
   cmp "$file" "$output/taken/$(basename "$file")" || refuse "$(basename "$file") is not what it is where the bed is made"
 done
-if "$rig" "$@" --bed-file "$output/bed.h5" --seed 7 --output "$output/taken" > "$output/other.txt" 2>&1; then
-  refuse "another seed was not refused"
-fi
-grep -q "was made with bed: .*seed 1.* but the settings say bed: .*seed 7" "$output/other.txt" || refuse "not refused in words"
-[ -s "$output/taken/results.csv" ] || refuse "earlier results are lost"
+# refused <words> <options>...: and earlier results stay.
+refused() {
+  local words=$1
+  shift
+  if "$rig" "${all[@]}" --output "$output/taken" "$@" > "$output/other.txt" 2>&1; then refuse "not refused: $*"; fi
+  grep -q -- "$words" "$output/other.txt" || refuse "not refused in words: $*"
+  [ -s "$output/taken/results.csv" ] || refuse "earlier results are lost: $*"
+}
+all=("$@")
+refused "was made with --seed 1, but here it is 7" --bed-file "$output/bed.h5" --seed 7
+refused "was made with --stable-share 0.8, but here it is 0.5" --bed-file "$output/bed.h5" --stable-share 0.5
+refused "was made with --strike-off 0.02, but here it is 0.3" --bed-file "$output/bed.h5" --strike-off 0.3
+refused "give another place" --save-bed "$output/taken/checkpoint/bed.h5"
 echo "The same from the state of the bed"

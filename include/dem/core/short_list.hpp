@@ -17,13 +17,17 @@ class ShortRoom {
   };
 
   explicit ShortRoom(std::byte* room) : room_(room) {}
-  T* allocate(std::size_t n) { return n <= N ? reinterpret_cast<T*>(room_) : std::allocator<T>().allocate(n); }
+  T* allocate(std::size_t n) { return has_room(n) ? reinterpret_cast<T*>(room_) : std::allocator<T>().allocate(n); }
   void deallocate(T* at, std::size_t n) {
-    if (n > N) std::allocator<T>().deallocate(at, n);
+    if (!has_room(n)) std::allocator<T>().deallocate(at, n);
   }
+  /// A copy of the list has no room of its own.
+  [[nodiscard]] ShortRoom select_on_container_copy_construction() const { return ShortRoom(nullptr); }
   bool operator==(const ShortRoom& other) const { return room_ == other.room_; }
 
  private:
+  [[nodiscard]] bool has_room(std::size_t n) const { return n <= N && room_ != nullptr; }
+
   std::byte* room_;
 };
 

@@ -70,7 +70,7 @@ inline void add_bed_options(Options& options, BedSettings& s) {
 
 /// Those that change nothing with a bed from a file, or one that is not shaken.
 inline void find_idle(IdleOptions& idle, const BedSettings& s) {
-  idle.unless(s.file.empty(), "without --bed-file, which is there already", {"--save-bed"});
+  idle.unless(s.file.empty(), "without --bed-file: a bed that is read is not saved again", {"--save-bed"});
   idle.unless(s.is_rained(), "without --bed-file, which fixes the grains",
               {"--bed-depth", "--relative-density", "--densify-time", "--shake-amplitude", "--shake-frequency",
                "--strike-off", "--seed"});

@@ -2,10 +2,11 @@
 // Where a bed is kept: with the other parts of its run, and in files of its own that other runs start from.
 
 #include <dem/rig/bed/bed_file.hpp>
+#include <dem/rig/option_text.hpp>
 #include <dem/rig/session.hpp>
 
+#include <algorithm>
 #include <string>
-#include <utility>
 
 namespace dem::rig {
 
@@ -14,21 +15,19 @@ namespace dem::rig {
 /// settings, and passes over all stages of the bed: it is the same bed to the last bit.
 class BedStore final : public PartStore {
  public:
+  /// How the box is built: beds of one kind are no beds of another.
+  static constexpr const char *fixed_box = "a fixed box", *halves = "a box of two halves",
+                              *repeating = "a box that repeats itself along x";
+
   /// To be made before Session::begin_run(): what does not fit is refused here. Reads the state, if the bed is one.
-  /// `repeats`: the bed repeats itself along x. Throws Error.
-  BedStore(Session& session, const BedSettings& bed, const GrainSettings& grains, bool repeats = false)
+  /// Throws Error.
+  BedStore(Session& session, const BedSettings& bed, const GrainSettings& grains, const char* box)
       : run_(session.parts()), files_(session.checkpoints().files), save_(bed.file.empty() ? bed.save : "") {
     for (const std::string& file : {bed.file, save_}) {
-      if (!BedSettings::is_state(file) || files_.read != nullptr) continue;
-      fail("'{}' is to be the state of a bed, but this program was built without HDF5; give a file that ends in .txt",
-           file);
+      if (BedSettings::is_state(file)) check_place(file, session);
     }
     if (!save_.empty()) session.require_writable(save_, "--save-bed");
-    BedSettings made = bed;
-    made.file.clear();
-    list_settings(settings_, grains);
-    list_settings(settings_, made);
-    settings_.emplace_back("repeats itself", repeats ? "yes" : "no");
+    settings_ = settings_of(bed, grains, box);
     if (!BedSettings::is_state(bed.file)) return;
     state_ = files_.read(bed.file);
     check(bed.file);
@@ -38,6 +37,7 @@ class BedStore final : public PartStore {
   [[nodiscard]] bool writes() const override { return run_.writes(); }
   bool is_due(double& last) override { return run_.is_due(last); }
   io::StateColumns read(const std::string& part) override { return state_.empty() ? run_.read(part) : state_; }
+  /// Throws Error if the file of --save-bed cannot be written: the bed was asked for.
   std::string write(const std::string& part, io::StateColumns& columns) override {
     const auto done = columns.find("rig/part/done");
     const bool is_done = done != columns.end() && done->second.bytes()[0] != std::byte{0};
@@ -47,11 +47,7 @@ class BedStore final : public PartStore {
       v(settings_name, settings_);
       io::StateColumns all = columns;
       all.merge(own);
-      try {
-        files_.write(save_, all);
-      } catch (const Error& problem) {
-        return problem.what();
-      }
+      files_.write(save_, all);
     }
     return run_.is_on() ? run_.write(part, columns) : "";
   }
@@ -67,6 +63,35 @@ class BedStore final : public PartStore {
 
   [[nodiscard]] bool saves() const { return BedSettings::is_state(save_); }
 
+  /// Throws Error for a state that this program cannot have, or that the run would remove.
+  void check_place(const std::string& file, const Session& session) const {
+    namespace fs = std::filesystem;
+    if (files_.read == nullptr) {
+      fail("'{}' is to be the state of a bed, but this program was built without HDF5; give a file that ends in .txt",
+           file);
+    }
+    std::error_code ignored;
+    const auto folder_of = [&](const fs::path& path) {
+      return fs::weakly_canonical(fs::absolute(path, ignored), ignored);
+    };
+    if (folder_of(fs::path(file)).parent_path() == folder_of(session.folder() / CheckpointFolder::folder_name)) {
+      fail("'{}' is where the run keeps what it can go on from, and removes it at its end; give another place", file);
+    }
+  }
+
+  /// All that the bed depends on: the options with their values, and how the box is built.
+  static NamesAndValues settings_of(BedSettings bed, GrainSettings grains, const char* box) {
+    Options options;
+    add_grain_options(options, grains);
+    add_bed_options(options, bed);
+    NamesAndValues list{{"box", box}};
+    for (const Option& o : options.all()) {
+      const bool counts = o.changes_results && o.name != "--sleep" && o.name != "--bed-file" && o.name != "--save-bed";
+      if (counts) list.emplace_back(o.name, text_of(o));
+    }
+    return list;
+  }
+
   /// Throws Error unless the bed was made with these settings.
   void check(const std::string& file) {
     NamesAndValues made;
@@ -77,14 +102,13 @@ class BedStore final : public PartStore {
       fail("'{}' is no bed: it was not written by --save-bed; give another --bed-file", file);
     }
     std::erase_if(state_, [](const auto& column) { return column.first.starts_with(settings_name); });
-    for (std::size_t k = 0; k < std::max(made.size(), settings_.size()); ++k) {
-      const auto of = [&](const NamesAndValues& list) {
-        return k < list.size() ? list[k] : NamesAndValues::value_type{};
-      };
-      const auto [name, value] = of(settings_);
-      if (of(made) == of(settings_)) continue;
-      fail("the bed '{}' was made with {}: {}, but the settings say {}: {}; give those that it was made with", file,
-           of(made).first, of(made).second, name, value);
+    for (const auto& [name, value] : settings_) {
+      const auto then = std::find_if(made.begin(), made.end(), [&, &n = name](const auto& m) { return m.first == n; });
+      if (then != made.end() && then->second == value) continue;
+      fail(
+          "the bed '{}' was made with {} {}, but here it is {}; give the settings that it was made with, or another "
+          "bed",
+          file, name, then == made.end() ? "not given" : then->second, value);
     }
   }
 

@@ -12,8 +12,8 @@ namespace dem::rig {
 inline constexpr double plate_widths_across = 5.0, plate_widths_deep = 2.0;
 
 /// What is said of a bed (m) that is too small for its widest plate (m): in numbers, and what to change. Empty of one
-/// that is large enough; a depth that is not known is NaN.
-inline std::string small_bed_note(double widest_plate, double bed_width, double bed_depth) {
+/// that is large enough; a depth that is not known is NaN. `is_given`: the bed is that of a file.
+inline std::string small_bed_note(double widest_plate, double bed_width, double bed_depth, bool is_given = false) {
   const double width = plate_widths_across * widest_plate, depth = plate_widths_deep * widest_plate, same = 1.0 - 1e-9;
   const bool narrow = bed_width < same * width, shallow = bed_depth < same * depth;
   if (!narrow && !shallow) return {};
@@ -29,7 +29,7 @@ inline std::string small_bed_note(double widest_plate, double bed_width, double 
   return text(
       "Note: for the plate of {:.0f} mm the bed is {}. Below {:g} widths across and {:g} of depth {} may help to "
       "carry a plate, most of all a wide one. Give {}, or narrower --plates.",
-      1e3 * widest_plate, is, plate_widths_across, plate_widths_deep, helps, change);
+      1e3 * widest_plate, is, plate_widths_across, plate_widths_deep, helps, is_given ? "another --bed-file" : change);
 }
 
 }  // namespace dem::rig

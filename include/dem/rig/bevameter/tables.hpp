@@ -55,8 +55,8 @@ inline std::string cohesion_text(const Constants& c, double confidence) {
     return text(
         "The strengths are two. A line through two points is exact, and no error can be told: its cohesion, {} kPa, "
         "was "
-        "not tested against none, and the line that is used goes through the origin. A third of --normal-stresses "
-        "would test it.",
+        "not tested against none, and the line that is used goes through the origin. Give three --normal-stresses to "
+        "test it.",
         number(1e-3 * free.value));
   }
   return text("The line of the strengths has the cohesion {} ± {} kPa ({:g} %){}.", number(1e-3 * free.value),

@@ -98,7 +98,7 @@ void run_campaign(const Settings& settings, ShapeOf&& shape_of, Campaign& campai
     stages += 1 + (v.name == "slow" ? 0 : bed_stages(v.settings.bed));
   }
   soil::Packing start = start_of(test.settings());
-  BedStore store(session, test.settings().bed, test.settings().grains);
+  BedStore store(session, test.settings().bed, test.settings().grains, BedStore::halves);
   session.begin_run(stages);
 
   std::optional<Bed<Model>> bed;

@@ -71,7 +71,7 @@ class PlateRig : public Rig {
   [[nodiscard]] std::string small_bed() const {
     const double level = campaign.variants.empty() ? not_known : campaign.variants.front().level;
     return small_bed_note(settings.widths.back(), settings.bed.width,
-                          settings.bed.file.empty() ? settings.bed.depth : level);
+                          settings.bed.file.empty() ? settings.bed.depth : level, !settings.bed.file.empty());
   }
 
   Settings settings;

@@ -83,7 +83,7 @@ void run_campaign(const Settings& settings, ShapeOf&& shape_of, Campaign& campai
   int stages = 0;
   for (std::size_t k = 0; k < all.size(); ++k) stages += (needs_bed(k) ? bed_stages(all[k].settings.bed) : 0) + 2;
   const soil::Packing start = start_of(test.settings());
-  BedStore store(session, test.settings().bed, test.settings().grains);
+  BedStore store(session, test.settings().bed, test.settings().grains, BedStore::fixed_box);
   session.begin_run(stages);
 
   campaign.study.reserve(all.size());

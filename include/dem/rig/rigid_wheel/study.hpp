@@ -93,7 +93,8 @@ inline constexpr const char* study_text =
     "± of a pull is the standard error of its mean in time, by ten parts of the steady window. A change in "
     "the same bed has these errors. A change with other grains has at least the error of a bed: the standard deviation "
     "between the "
-    "seeds in the box as set. It is told whether the pull changes by less than 5 % where two errors can tell.";
+    "seeds in the box as set. 'Below 5 %' says yes or no where the change and two of its errors decide it, else 'not "
+    "told'.";
 
 /// Between the beds in the box as set.
 inline io::Table beds_table(const Campaign& c) {
