@@ -102,14 +102,14 @@ struct Drawn {
   double at_rest = 0.0, asleep_at_rest = 0.0;                   // before the blade moves: CPU s, share at the end
 };
 
-/// Gives all grains a speed of up to 1e-8 m/s along each axis, which changes forces by 1e-5 of a grain's weight: no
-/// more than is needed for beds to part. (1e-5 m/s shook the awake beds: the blade's force fell by 1 to 2 %.)
+/// Adds a speed of up to 1e-8 m/s along each axis to that of all grains, which changes forces by 1e-5 of a grain's
+/// weight: no more than is needed for beds to part.
 template <class Soil>
 void push_a_little(World<Soil>& world, unsigned seed) {
   std::mt19937 random(seed);
   std::uniform_real_distribution<double> speed(-1e-8, 1e-8);
   for (const ParticleId p : world.particles()) {
-    world.set_velocity(p, Vec3(speed(random), speed(random), speed(random)));
+    world.set_velocity(p, world.velocity(p) + Vec3(speed(random), speed(random), speed(random)));
   }
 }
 
