@@ -269,14 +269,8 @@ inline void SoilColumns::press(const ColumnPart& part, double dt, bool shared, S
     const bool in_contact = step_ > 0 && field_.touched[hit.row] == step_ && field_.touched_by[hit.row] == s.owner;
     ColumnChange change{.row = hit.row, .part = s.owner, .shear = {}};
     const std::size_t kind = field_.soil.empty() ? 0 : field_.soil[hit.row];
-    const PressedColumn column = {.law = laws[kind],
-                                  .shear = soils_[kind].shear,
-                                  .slope = slopes_[kind],
-                                  .friction = part.friction,
-                                  .damping = spec_.damping,
-                                  .touch = hit.touch,
-                                  .velocity = velocity,
-                                  .in_contact = in_contact};
+    const PressedColumn column = {laws[kind],    soils_[kind].shear, slopes_[kind], part.friction,
+                                  spec_.damping, hit.touch,          velocity,      in_contact};
     const ColumnForce f = column_force(field_, column, dt, change);
     if (!f.acts) continue;
     s.changes.push_back(change);
