@@ -61,7 +61,7 @@ inline void mix(std::uint64_t& hash, const void* data, std::size_t bytes) {
     mix(hash, word);
   }
   std::uint64_t rest = 0;
-  std::memcpy(&rest, from + k, bytes - k);
+  if (k < bytes) std::memcpy(&rest, from + k, bytes - k);  // of nothing there may be no address
   mix(hash, rest);
   mix(hash, bytes);
 }
