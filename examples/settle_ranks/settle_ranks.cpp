@@ -88,17 +88,22 @@ void settle(const typename Model::Shape& grain, Arguments& arguments) {
   run(settle);
 #endif
   const domain::Traffic before = world.state().domain.traffic();
+  const std::uint64_t lists_before = world.state().rebuilds;
   const auto start = std::chrono::steady_clock::now();
   run(steps);
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   const domain::Traffic after = world.state().domain.traffic();
   const auto& d = world.state().domain;
   const double most_bytes = d.largest(static_cast<double>(after.step_bytes - before.step_bytes));
+  const double most_for_lists = d.largest(static_cast<double>(after.list_bytes - before.list_bytes));
+  const auto lists = static_cast<double>(world.state().rebuilds - lists_before);
   const double most_wait = d.largest(after.step_seconds - before.step_seconds);
   fmt::print("{} grains, {} ranks of {} threads, {} steps in {:.2f} s: {:.3g} grain steps a second\n", grains,
              d.ranks(), world.threads(), steps, seconds, grains * double(steps) / seconds);
   fmt::print("exchange: {:.0f} bytes a step and rank at the most, {:.1f} % of the time in steps, {:.1f} % for lists\n",
              most_bytes / steps, 100 * most_wait / seconds, 100 * (after.list_seconds - before.list_seconds) / seconds);
+  fmt::print("{:.0f} lists, {:.0f} bytes a list and rank at the most, the end of the run included\n", lists,
+             most_for_lists / std::max(1.0, lists));
   fmt::print("state {:016x}\n", io::hash_of(io::columns_of(world)));
 
   io::CsvWriter csv(folder / "settled.csv", {"x_m", "y_m", "z_m", "speed_m_s"});

@@ -94,6 +94,10 @@ bool same_bits(const char* name, const Scene& scene) {
     require(!d.is_shared() || !shared.state().list_valid || images_elsewhere(shared.state()) > 0.0,
             "no candidate is an image of another rank's grain");
   }
+  if constexpr (!Shared::Domain::has_images) {
+    require(!d.is_shared() || d.lists_of_parts > 0 || !shared.state().held.empty(),
+            "each rank looked at all grains for each list");
+  }
   // Otherwise nothing was shared. A rank may be without work where most of the grains sleep.
   const double at_work = d.total(d.own().second > d.own().first ? 1.0 : 0.0);
   require(at_work > 1.0 || !d.is_shared(), "one rank has all chunks");

@@ -4,6 +4,7 @@
 
 #include <dem/domain/cut.hpp>
 #include <dem/domain/messages.hpp>
+#include <dem/domain/sorted_rows.hpp>
 
 #include <algorithm>
 #include <cstddef>
@@ -32,12 +33,14 @@ namespace dem::domain {
 /// by itself, but only between runs: at the end of run() and run_for() every rank is told of all grains, which costs as
 /// much as a step or more. So give run() many steps. contacts_of, energy_of and save are made on every rank.
 ///
-/// Within a step a rank works on its own chunks alone. All ranks hold the rows of all grains, some 400 bytes each. When
-/// neighbours are listed, they tell each other all positions and sort all grains; the rest of a grain goes to its new
-/// owner alone. That bounds how many grains they can share.
+/// Within a run a rank works on its own chunks alone. When neighbours are listed it sorts its own grains, sends those
+/// that have another owner now, and hears of the grains of chunks that its own may touch. Where machine parts hold
+/// grains, and with a broad phase other than UniformGrid, all ranks tell each other all positions instead.
+/// Between runs every rank has the rows of all grains, some 400 bytes each: that bounds how many grains they can share.
 class Ranks : public Messages {
  public:
   static constexpr bool has_images = false, has_ranks = true;
+  using SortKey = domain::SortKey;
 
   /// Throws Error where there is no Session.
   Ranks() { first_.assign(static_cast<std::size_t>(ranks_) + 1, 0); }
@@ -58,6 +61,10 @@ class Ranks : public Messages {
   int owner(std::size_t chunk) const {
     return static_cast<int>(std::upper_bound(first_.begin() + 1, first_.end() - 1, chunk) - first_.begin()) - 1;
   }
+  /// Sorts the grains of all ranks, by one key each: see domain::sort_rows.
+  SortedRows sort_rows(const std::vector<SortKey>& keys, std::size_t all, std::size_t rows_of_a_chunk) const {
+    return domain::sort_rows(*this, keys, all, rows_of_a_chunk);
+  }
   /// Cuts the chunks, with the work that each of them is, into ranges of nearly the same work.
   void cut(const std::vector<double>& of_chunks) { first_ = cut_by_work(of_chunks, ranks_); }
 
@@ -75,6 +82,8 @@ class Ranks : public Messages {
   std::vector<std::uint8_t> is_at_border;  ///< of each chunk: it has candidates of other ranks
   std::vector<float> work;                 ///< of each grain (id), counted in its last list
   bool is_whole = true;                    ///< this rank's rows of all grains are up to date
+  bool has_names = true;                   ///< it knows which grain each row holds, also of those that are not near
+  std::uint64_t lists_of_parts = 0;        ///< neighbour lists for which no rank looked at all grains
   bool is_complete = false;                ///< so are the contacts of all chunks
 
   /// Of a column with `width` numbers a chunk, every rank's own chunks go to all.

@@ -61,13 +61,13 @@ DEM_HOT void append_within(const Particles& p, std::uint32_t first, std::uint32_
   }
 }
 
-/// Candidates of one chunk: all j > i whose bounding spheres come within the skin, ascending; grains first, then
-/// images. No two that are held. `largest_radius` (m): of a bounding sphere.
+/// Candidates of one chunk, whose rows begin with `begin`: all j > i whose bounding spheres come within the skin,
+/// ascending; grains first, then images. No two that are held. `largest_radius` (m): of a bounding sphere. Of `p` it
+/// reads positions and species, and how many rows are grains.
 template <class Model, class Particles, class BroadPhase>
-void list_candidates(std::size_t chunk_index, Chunk<Model>& chunk, const Particles& p, const BroadPhase& broad_phase,
+void list_candidates(std::size_t begin, Chunk<Model>& chunk, const Particles& p, const BroadPhase& broad_phase,
                      const Images<typename Model::Domain>& images,
                      std::span<const Species<typename Model::Shape>> species, double largest_radius, double skin) {
-  const std::size_t begin = chunk_index * chunk_size;
   const std::size_t end = std::min(begin + chunk_size, p.count);
   auto finder = broad_phase.finder();
   FoundRows found;

@@ -219,17 +219,21 @@ struct Particles {
     row_of[id[row]] = static_cast<std::uint32_t>(row);
   }
 
+  /// Grains (ids) are gone; their rows are still there.
+  void note_gone(std::span<const std::uint32_t> ids) {
+    for (const std::uint32_t k : ids) row_of[k] = gone;
+    freed.insert(freed.end(), ids.begin(), ids.end());
+  }
   /// Takes grains (ids) out; the others keep their order. listed_at is to be written anew.
   template <class Executor>
   void remove(std::span<const std::uint32_t> ids, Executor& executor) {
-    for (const std::uint32_t k : ids) row_of[k] = gone;
+    note_gone(ids);
     std::vector<std::uint32_t> kept;
     for (std::size_t i = 0; i < count; ++i) {
       if (row_of[id[i]] != gone) kept.push_back(static_cast<std::uint32_t>(i));
     }
     permute(kept, executor);
     resize(kept.size());
-    freed.insert(freed.end(), ids.begin(), ids.end());
   }
   /// From here on, the ids of grains whose rows are gone may be used again. Nobody may know them any more.
   void release_ids() {
@@ -279,17 +283,19 @@ struct Particles {
     });
   }
 
-  /// The neighbour list is made of grains where they are now.
+  /// The neighbour list is made of grains where they are now: those of all rows, or of the rows first to last - 1.
   template <class Executor>
   void note_listed(Executor& executor) {
     listed_at.for_each_column([&](AlignedVector<double>& column) { column.resize(position.x.size()); });
-    exec::for_each_block(executor, position.x.size(), [&](std::size_t first, std::size_t last) {
-      const auto copy = [&](const AlignedVector<double>& from, AlignedVector<double>& to) {
-        std::copy(from.begin() + static_cast<std::ptrdiff_t>(first), from.begin() + static_cast<std::ptrdiff_t>(last),
-                  to.begin() + static_cast<std::ptrdiff_t>(first));
-      };
-      copy(position.x, listed_at.x), copy(position.y, listed_at.y), copy(position.z, listed_at.z);
-    });
+    exec::for_each_block(executor, position.x.size(),
+                         [&](std::size_t first, std::size_t last) { note_listed(first, last); });
+  }
+  void note_listed(std::size_t first, std::size_t last) {
+    const auto copy = [&](const AlignedVector<double>& from, AlignedVector<double>& to) {
+      std::copy(from.begin() + static_cast<std::ptrdiff_t>(first), from.begin() + static_cast<std::ptrdiff_t>(last),
+                to.begin() + static_cast<std::ptrdiff_t>(first));
+    };
+    copy(position.x, listed_at.x), copy(position.y, listed_at.y), copy(position.z, listed_at.z);
   }
 };
 

@@ -109,7 +109,7 @@ void complete_chunks(WorldState<Model>& w) {
 template <class Model>
 void share_chunks(WorldState<Model>& w) {
   auto& d = w.domain;
-  d.is_whole = true;
+  d.is_whole = d.has_names = true;
   cut_chunks(w);
   make_borders(w);
   if (!d.is_shared()) return;

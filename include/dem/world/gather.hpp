@@ -105,12 +105,29 @@ void gather_around(WorldState<Model>& w) {
   }
 }
 
+/// Every rank knows which grain each row holds, of which species it is, and where it was listed.
+template <class Model>
+void gather_names(WorldState<Model>& w) {
+  auto& d = w.domain;
+  if (d.has_names) return;
+  auto& p = w.particles;
+  d.gather_chunks(p.id.data(), chunk_size);
+  d.gather_chunks(p.species.data(), chunk_size);
+  p.listed_at.for_each_column([&](AlignedVector<double>& column) { d.gather_chunks(column.data(), chunk_size); });
+  for (std::size_t row = 0; row < p.count; ++row) {
+    std::uint32_t& at = p.row_of[p.id[row]];
+    if (at != p.gone) at = static_cast<std::uint32_t>(row);
+  }
+  d.has_names = true;
+}
+
 /// Every rank's rows of all grains become those of their owners, and so do the bounds of chunks and what is known of
 /// resting grains. Nothing where they are already.
 template <class Model>
 void gather_rows(WorldState<Model>& w) {
   auto& d = w.domain;
   if (d.is_whole) return;
+  gather_names(w);
   auto& p = w.particles;
   p.for_each_state_column([&](AlignedVector<double>& column) { d.gather_chunks(column.data(), chunk_size); });
 
@@ -153,6 +170,7 @@ std::vector<std::uint16_t> gather_positions(WorldState<Model>& w) {
   auto& d = w.domain;
   const auto& p = w.particles;
   if (d.is_whole) return {};
+  gather_names(w);
   w.particles.position.for_each_column(
       [&](AlignedVector<double>& column) { d.gather_chunks(column.data(), chunk_size); });
   gather_resting(w);

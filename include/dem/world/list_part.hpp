@@ -279,6 +279,7 @@ double list_part(WorldState<Model>& w) {
     grain::refresh_chunk<Model>(first + k, chunk, p, w.species);
   });
   make_borders(w);
+  ++d.lists_of_parts;
   return skin;
 }
 

@@ -20,7 +20,9 @@ grain::Wakefulness doing(const WorldState<Model>& w) {
 template <class Model>
 void wake_row(WorldState<Model>& w, std::size_t i) {
   auto& s = w.sleepers;
-  if (const std::uint32_t id = w.particles.id[i]; id < s.grains.size()) s.grains[id] = {};
+  bool is_known = true;  // which grain it is; else who owns it knows
+  if constexpr (Model::Domain::has_ranks) is_known = w.domain.has_names || w.domain.owns(i / chunk_size);
+  if (const std::uint32_t id = w.particles.id[i]; is_known && id < s.grains.size()) s.grains[id] = {};
   // One that came since neighbours were listed is in no chunk, and awake.
   if (i / chunk_size >= w.chunks.size() || i >= s.doing.size() || (s.doing[i] & grain::awake)) return;
   s.doing[i] |= grain::awake | grain::changed;
@@ -50,6 +52,19 @@ void wake_around(WorldState<Model>& w, std::size_t row) {
   wake_chunk(w, c);
 }
 
+/// By row, whether the grain sleeps: of all grains, also of those that other ranks own.
+template <class Model>
+std::vector<std::uint8_t> who_sleeps(const WorldState<Model>& w) {
+  const auto& p = w.particles;
+  const auto [begin, end] = w.own_chunks();
+  std::vector<std::uint8_t> asleep;
+  for (std::size_t i = begin * chunk_size; i < std::min(end * chunk_size, p.count); ++i) {
+    asleep.push_back(w.sleepers.grains[p.id[i]].asleep ? 1 : 0);
+  }
+  if constexpr (Model::Domain::has_ranks) return w.domain.gathered(asleep, false);
+  return asleep;
+}
+
 /// New neighbour lists: rows hold other grains than before. All contacts are evaluated once.
 template <class Model>
 void find_sleepers(WorldState<Model>& w) {
@@ -68,13 +83,14 @@ void find_sleepers(WorldState<Model>& w) {
   }
   grain::list_chunks_around<Model>(w.chunks);
   if constexpr (Model::Domain::has_ranks) gather_around(w);
+  const std::vector<std::uint8_t> asleep = who_sleeps(w);
   for (std::size_t c = 0; c < w.chunks.size(); ++c) {
     const std::size_t end = std::min((c + 1) * chunk_size, p.count);
     Chunk<Model>& chunk = w.chunks[c];
     chunk.asleep = chunk.evaluated = true;
     chunk.changed = chunk.watched = chunk.asked = chunk.touched = false;
     for (std::size_t i = c * chunk_size; i < end; ++i) {
-      s.doing[i] = s.grains[p.id[i]].asleep ? 0 : grain::awake;
+      s.doing[i] = asleep[i] ? 0 : grain::awake;
       chunk.asleep &= s.doing[i] == 0;
     }
   }

@@ -7,15 +7,14 @@
 
 namespace dem {
 
-/// The grain of this row is out of the world from here on, and who leaned on it wakes. The row goes when the next
+/// The grain `id` of this row is out of the world from here on, and who leaned on it wakes. The row goes when the next
 /// neighbour list is made.
 template <class Model>
-void take_out_row(WorldState<Model>& w, std::size_t row) {
+void take_out_row(WorldState<Model>& w, std::size_t row, std::uint32_t id) {
   // A new list costs as much as a few steps, so grains that leave one after the other wait for each other.
   constexpr std::uint64_t most_steps = 16;
   if (w.to_remove.empty()) w.remove_by = w.step + most_steps;
   wake_around(w, row);
-  const std::uint32_t id = w.particles.id[row];
   w.particles.row_of[id] = w.particles.gone;
   w.to_remove.push_back(id);
 }
@@ -28,22 +27,25 @@ void take_out(WorldState<Model>& w) {
   if (w.outlets.empty() && !ends) [[likely]]
     return;
   const auto& p = w.particles;
-  std::vector<std::uint32_t> rows;
+  struct Leaver {
+    std::uint32_t row, id, species;
+  };
+  std::vector<Leaver> leavers;
   const auto take = [&](Outlet& outlet, auto&& reaches, auto&& holds) {
-    rows.clear();
+    leavers.clear();
     const auto [begin, end] = w.own_chunks();
     for (std::size_t c = begin; c < end; ++c) {
       if (!reaches(w.chunks[c])) continue;
       for (std::size_t i = c * chunk_size; i < std::min((c + 1) * chunk_size, p.count); ++i) {
         if (p.row_of[p.id[i]] == p.gone || !holds(to_eigen(p.position[i]))) continue;
         if (w.species[p.species[i]].is_held()) continue;  // a part of the apparatus
-        rows.push_back(static_cast<std::uint32_t>(i));
+        leavers.push_back({static_cast<std::uint32_t>(i), p.id[i], p.species[i]});
       }
     }
-    if constexpr (Model::Domain::has_ranks) rows = w.domain.gathered(rows);
-    for (const std::uint32_t i : rows) {
-      outlet.take(w.species[p.species[i]].mass);
-      take_out_row(w, i);
+    if constexpr (Model::Domain::has_ranks) leavers = w.domain.gathered(leavers);
+    for (const Leaver& l : leavers) {
+      outlet.take(w.species[l.species].mass);
+      take_out_row(w, l.row, l.id);
     }
     outlet.end_step(w.time_step);
   };

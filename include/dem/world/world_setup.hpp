@@ -116,7 +116,8 @@ class WorldSetup {
   }
   /// Takes a grain out of the world; its number is not given again. The ids of others stay.
   void remove_particle(ParticleId p) {
-    take_out_row(state_, row(p));
+    const std::size_t at = row(p);
+    take_out_row(state_, at, state_.particles.id[at]);
     touched();
   }
   /// A box that takes grains out while the world runs, and counts them: an outlet of a silo, the end of a conveyor. It

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <dem/math/vector.hpp>
+
 #include <concepts>
 #include <cstdint>
 #include <span>
@@ -32,6 +34,8 @@ struct Sizes {
 ///     the former is true, the latter calls f(first, last) for runs of those j instead, in rising order, no two of
 ///     which overlap. That costs less. It is not asked for in worlds with images;
 ///   - order(): a permutation that puts grains near in space near in memory, or an empty span;
+///   - place(x, reach): optional, static: the number by which order() sorts a grain at x. With it, ranks sort grains
+///     together of which each has a part;
 ///   - memory_bytes(): what it holds;
 ///   - reordered() or reordered(executor): optional: the grains were put in order(). Without it they are built anew.
 template <class B>
@@ -46,6 +50,12 @@ concept BroadPhase = requires(B& b, const B& built, const Positions& positions, 
 template <class B>
 concept KnowsSizes = requires(B& b, const Positions& positions, const Sizes& sizes) {
   b.build(positions, sizes);
+};
+
+/// A broad phase that sorts each grain by itself.
+template <class B>
+concept KnowsPlaces = requires(const Vector3<double>& x, double reach) {
+  { B::place(x, reach) } -> std::same_as<std::uint64_t>;
 };
 
 /// A finder of a broad phase that may know runs of grains.

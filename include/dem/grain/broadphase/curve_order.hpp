@@ -3,6 +3,7 @@
 #include <dem/grain/broadphase/broad_phase.hpp>
 #include <dem/grain/broadphase/morton.hpp>
 #include <dem/grain/broadphase/nearly_sorted.hpp>
+#include <dem/math/vector.hpp>
 
 namespace dem::broadphase {
 
@@ -14,14 +15,19 @@ class CurveOrder {
     std::uint32_t grain;
   };
 
+  /// Where the cell of a grain is on the curve; `inverse_cell` in 1/m.
+  static std::uint64_t code(const Vector3<double>& x, double inverse_cell) {
+    const auto cell = [&](double along) { return morton::cell(along * inverse_cell); };
+    return morton::code(cell(x.x), cell(x.y), cell(x.z));
+  }
+
   /// Sorts anew; `inverse_cell` in 1/m. Costs little where rows are nearly in this order.
   template <class Executor>
   void sort(const Positions& p, double inverse_cell, Executor& executor) {
     entries_.resize(p.n);
     exec::for_each_block(executor, p.n, [&](std::size_t first, std::size_t last) {
       for (std::size_t i = first; i < last; ++i) {
-        const auto cell = [&](const double* x) { return morton::cell(x[i] * inverse_cell); };
-        entries_[i] = {morton::code(cell(p.x), cell(p.y), cell(p.z)), static_cast<std::uint32_t>(i)};
+        entries_[i] = {code({p.x[i], p.y[i], p.z[i]}, inverse_cell), static_cast<std::uint32_t>(i)};
       }
     });
     const auto less = [](const Entry& a, const Entry& b) {

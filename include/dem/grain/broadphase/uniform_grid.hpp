@@ -192,6 +192,9 @@ class UniformGrid {
   };
   Finder finder() const { return Finder(*this); }
 
+  /// By what order() sorts: grains of lower numbers come first, those of one number by their rows.
+  static std::uint64_t place(const Vector3<double>& x, double reach) { return CurveOrder::code(x, 1.0 / reach); }
+
   std::span<const std::uint32_t> order() const { return order_; }
 
   std::size_t memory_bytes() const {
