@@ -74,10 +74,11 @@ inline void resolve(Settings& s) {
     double half_edge, length, speed, sinkage;
     std::vector<double> widths;
   };
-  // quick and smoke press faster, on coarser grains and smaller beds.
+  // quick and smoke press faster, on coarser grains. The bed of quick is wide and deep enough for its widest plate
+  // (small_bed.hpp); that of full is the thesis's.
   const auto by_size = BySize<Defaults>{
       .smoke = {{0.10, 0.06, 0.04}, 4e-3, 0.05, 0.10, 4e-3, {0.03}},
-      .quick = {{0.20, 0.16, 0.10}, 3e-3, 0.13, 0.05, 0.015, {0.03, 0.05, 0.07}},
+      .quick = {{0.20, 0.35, 0.14}, 4e-3, 0.13, 0.05, 0.015, {0.03, 0.05, 0.07}},
       .full = {{0.25, 0.20, 0.2833}, 1.86e-3, 0.13, 0.01, 0.03, {0.03, 0.05, 0.07}}}[size_named(s.size)];
   rig::resolve(s.grains, by_size.half_edge);
   rig::resolve(s.bed, by_size.bed, s.output);
