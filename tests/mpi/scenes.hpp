@@ -40,14 +40,15 @@ void add_box(World& world, double width, double depth, double height) {
   }
 }
 
-/// n grains on a lattice of this pitch, a little shaken, in columns of nx times ny.
+/// n grains on a lattice of this pitch, a little shaken, in columns of nx times ny, from `height` (m) upwards.
 template <class World>
-void pour(World& world, dem::SpeciesId grain, int n, int nx, int ny, double pitch, double speed) {
+void pour(World& world, dem::SpeciesId grain, int n, int nx, int ny, double pitch, double speed, double height = 0.0) {
   Numbers number;
   for (int k = 0; k < n; ++k) {
     const double cell[] = {k % nx + 0.5, k / nx % ny + 0.5, k / (nx * ny) + 0.5};
     dem::Vec3 x;
     for (int i = 0; i < 3; ++i) x[i] = pitch * (cell[i] + 0.05 * (number() - 0.5));
+    x.z() += height;
     const dem::Mat3 r = dem::Quaternion(1, number(), number(), number()).normalized().toRotationMatrix();
     const double u = number(), v = number();
     world.add_particle({.species = grain, .position = x, .velocity = {u * speed, v * speed, -speed}, .rotation = r});

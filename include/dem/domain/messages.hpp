@@ -67,7 +67,7 @@ class Messages {
                is_smallest = reduced(x, MPI_UINT64_T, MPI_MIN) == x;
     return all(is_largest && is_smallest);
   }
-  /// Sums of numbers that only one rank has, and that are zero on all others: exact.
+  /// Sums of numbers that only one rank has, and that are zero on all others, or of whole numbers: exact.
   void share_sums(std::vector<double>& numbers) const {
     if (!is_shared()) return;
     const Watch watch(traffic_.step_seconds);

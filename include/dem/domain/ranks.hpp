@@ -35,7 +35,8 @@ namespace dem::domain {
 ///
 /// Within a run a rank works on its own chunks alone. When neighbours are listed it sorts its own grains, sends those
 /// that have another owner now, and hears of the grains of chunks that its own may touch. Where machine parts hold
-/// grains, and with a broad phase other than UniformGrid, all ranks tell each other all positions instead.
+/// grains or inlets put some in, in periodic cells, and with a broad phase other than UniformGrid, all ranks tell each
+/// other all positions instead.
 /// Between runs every rank has the rows of all grains, some 400 bytes each: that bounds how many grains they can share.
 class Ranks : public Messages {
  public:

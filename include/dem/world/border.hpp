@@ -15,9 +15,14 @@ namespace dem {
 
 namespace detail {
 
-/// A chunk of another rank has no candidates but those that reach this rank.
+/// A chunk of another rank has no candidates but those that reach this rank: most have none.
 template <class Model>
 void forget_contacts(Chunk<Model>& chunk) {
+  const bool has_lists = !chunk.candidate.empty() || !chunk.sleeps.empty() || !chunk.surface_loads.empty();
+  if (!has_lists && chunk.pair_contacts.last.count == 0 && chunk.surface_contacts.last.count == 0 &&
+      chunk.partner_load_first.size() == 1) {
+    return chunk.around.clear();
+  }
   chunk.candidate.clear();
   chunk.candidate_first.fill(0);
   chunk.pair_contacts.last.count = chunk.surface_contacts.last.count = 0;

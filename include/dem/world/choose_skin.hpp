@@ -46,4 +46,10 @@ double choose_skin(WorldState<Model>& w, const std::vector<double>& grains) {
   return skin;
 }
 
+/// How far apart (m) the centres of two grains may be that are listed with this skin: the cells' size.
+template <class Model>
+double list_reach(const WorldState<Model>& w, double skin) {
+  return 2.0 * w.largest_radius + w.materials.range() + skin;
+}
+
 }  // namespace dem

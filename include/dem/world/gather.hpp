@@ -22,8 +22,7 @@ void append_work(const WorldState<Model>& w, std::size_t c, std::vector<float>& 
   for (std::size_t k = 0; k < rows; ++k) {
     const auto candidates = static_cast<float>(chunk.candidate_first[k + 1] - chunk.candidate_first[k]);
     const std::uint32_t id = w.particles.id[c * chunk_size + k];
-    const bool sleeps = id < w.sleepers.grains.size() && w.sleepers.grains[id].asleep;
-    to.push_back(sleeps ? asleep : motion + candidates);
+    to.push_back(is_asleep(w, id) ? asleep : motion + candidates);
   }
   if (chunk.asleep) return;
   const auto& contacts = chunk.pair_contacts.last;

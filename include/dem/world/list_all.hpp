@@ -33,7 +33,7 @@ double list_all(WorldState<Model>& w, grain::HistoryCarrier<Model>& histories, C
   }
   give_up_list(w);
   const double skin = choose_skin(w, count_species(w, 0, p.count));
-  const double reach = 2.0 * w.largest_radius + w.materials.range() + skin;
+  const double reach = list_reach(w, skin);
   const auto build = [&](std::size_t rows) {
     const broadphase::Positions at = {p.position.x.data(), p.position.y.data(), p.position.z.data(), rows};
     const auto with = [&](const auto& how_far) {

@@ -21,7 +21,7 @@ namespace dem {
 /// Whether ranks may list by parts. Images are made of all grains, and not every broad phase sorts each by itself.
 template <class Model>
 inline constexpr bool lists_parts =
-    Model::Domain::has_ranks && !Model::Domain::has_images && broadphase::KnowsPlaces<typename Model::BroadPhase>;
+    Model::Domain::has_ranks && !Model::Domain::has_images && broadphase::SortsByPlace<typename Model::BroadPhase>;
 
 /// Whether this process has a part of the grains, and lists that alone: not between runs, when every rank knows all of
 /// them, nor where machine parts hold grains, which every rank carries along.
@@ -50,7 +50,7 @@ std::vector<typename Model::Domain::SortKey> sort_keys(WorldState<Model>& w, dou
     keys.push_back({.place = Model::BroadPhase::place(p.position[first + k], reach),
                     .row = static_cast<std::uint32_t>(first + k),
                     .work = work[k],
-                    .asleep = sleepers_last && w.sleepers.grains[id].asleep ? 1u : 0u});
+                    .asleep = sleepers_last && is_asleep(w, id) ? 1u : 0u});
   }
   broadphase::sort_nearly_sorted(keys, scratch, std::less<>(), w.executor);
   return keys;
@@ -141,49 +141,71 @@ struct NearRows {
   }
 };
 
-/// The chunks of higher ranks whose grains those of this process may touch: by the boxes of all chunks, which all ranks
-/// tell each other.
-template <class Model>
-std::vector<std::uint32_t> chunks_within_reach(const WorldState<Model>& w, double reach) {
-  struct Box {
-    Vector3<double> low = {HUGE_VAL, HUGE_VAL, HUGE_VAL}, high = {-HUGE_VAL, -HUGE_VAL, -HUGE_VAL};
-    void add(const Vector3<double>& from, const Vector3<double>& to) {
-      low = {std::min(low.x, from.x), std::min(low.y, from.y), std::min(low.z, from.z)};
-      high = {std::max(high.x, to.x), std::max(high.y, to.y), std::max(high.z, to.z)};
-    }
-    bool meets(const Box& o, double gap) const {
-      return low.x - gap <= o.high.x && o.low.x - gap <= high.x && low.y - gap <= o.high.y && o.low.y - gap <= high.y &&
-             low.z - gap <= o.high.z && o.low.z - gap <= high.z;
-    }
-  };
-  const auto& p = w.particles;
-  const auto [begin, end] = w.own_chunks();
-  std::vector<Box> boxes;
-  Box all;
-  for (std::size_t c = begin; c < end; ++c) {
-    Box box;
-    for (std::size_t i = c * chunk_size; i < std::min((c + 1) * chunk_size, p.count); ++i) {
-      box.add(p.position[i], p.position[i]);
-    }
-    all.add(box.low, box.high);
-    boxes.push_back(box);
+/// A box around grains; at first around none.
+struct GrainBox {
+  Vector3<double> low = {HUGE_VAL, HUGE_VAL, HUGE_VAL}, high = {-HUGE_VAL, -HUGE_VAL, -HUGE_VAL};
+
+  void add(const Vector3<double>& from, const Vector3<double>& to) {
+    low = {std::min(low.x, from.x), std::min(low.y, from.y), std::min(low.z, from.z)};
+    high = {std::max(high.x, to.x), std::max(high.y, to.y), std::max(high.z, to.z)};
   }
-  boxes = w.domain.gathered(boxes, false);
-  std::vector<std::uint32_t> near;
-  for (std::size_t c = end; c < boxes.size() && begin < end; ++c) {
-    if (!all.meets(boxes[c], reach)) continue;
-    const auto meets = [&](const Box& own) { return own.meets(boxes[c], reach); };
-    const auto first = boxes.begin() + static_cast<std::ptrdiff_t>(begin);
-    if (std::any_of(first, first + static_cast<std::ptrdiff_t>(end - begin), meets)) {
-      near.push_back(static_cast<std::uint32_t>(c));
+  bool meets(const GrainBox& o, double gap) const {
+    return low.x - gap <= o.high.x && o.low.x - gap <= high.x && low.y - gap <= o.high.y && o.low.y - gap <= high.y &&
+           low.z - gap <= o.high.z && o.low.z - gap <= high.z;
+  }
+};
+
+/// Boxes around the two parts of a chunk, before and behind the farthest jump of the curve in it.
+struct ChunkBoxes {
+  GrainBox before, behind;
+
+  bool meets(const GrainBox& o, double gap) const { return before.meets(o, gap) || behind.meets(o, gap); }
+  bool meets(const ChunkBoxes& o, double gap) const { return meets(o.before, gap) || meets(o.behind, gap); }
+};
+
+/// The boxes of this process's chunks; `cell` (m): the reach that grains were sorted by.
+template <class Model>
+std::vector<ChunkBoxes> boxes_of_chunks(const WorldState<Model>& w, double cell) {
+  const auto& p = w.particles;
+  std::vector<ChunkBoxes> boxes;
+  const auto [first, last] = w.own_chunks();
+  for (std::size_t c = first; c < last; ++c) {
+    const std::size_t begin = c * chunk_size, end = std::min(begin + chunk_size, p.count);
+    std::size_t split = end;
+    std::uint64_t jump = 0, place = Model::BroadPhase::place(p.position[begin], cell);
+    for (std::size_t i = begin + 1; i < end; ++i) {
+      const std::uint64_t next = Model::BroadPhase::place(p.position[i], cell);
+      if ((place ^ next) > jump) jump = place ^ next, split = i;
+      place = next;
     }
+    ChunkBoxes& box = boxes.emplace_back();
+    for (std::size_t i = begin; i < end; ++i) (i < split ? box.before : box.behind).add(p.position[i], p.position[i]);
+  }
+  return boxes;
+}
+
+/// The chunks of higher ranks whose grains those of this process may touch (m: `reach`): by the boxes of all chunks,
+/// which all ranks tell each other.
+template <class Model>
+std::vector<std::uint32_t> chunks_within_reach(const WorldState<Model>& w, double reach, double cell) {
+  const std::vector<ChunkBoxes> own = boxes_of_chunks(w, cell), all = w.domain.gathered(own, false);
+  GrainBox around;
+  for (const ChunkBoxes& box : own) {
+    around.add(box.before.low, box.before.high), around.add(box.behind.low, box.behind.high);
+  }
+  std::vector<std::uint32_t> near;
+  for (std::size_t c = w.own_chunks().second; c < all.size(); ++c) {
+    if (!all[c].meets(around, reach)) continue;
+    const auto meets = [&](const ChunkBoxes& box) { return box.meets(all[c], reach); };
+    if (std::any_of(own.begin(), own.end(), meets)) near.push_back(static_cast<std::uint32_t>(c));
   }
   return near;
 }
 
-/// Asks the other ranks for the grains of chunks that this process's grains may touch.
+/// Asks the other ranks for the grains of chunks that this process's grains may touch (m: `reach`); `cell` (m): the
+/// reach that grains were sorted by.
 template <class Model>
-NearRows find_near_rows(WorldState<Model>& w, double reach) {
+NearRows find_near_rows(WorldState<Model>& w, double reach, double cell) {
   auto& d = w.domain;
   auto& p = w.particles;
   struct Told {
@@ -196,7 +218,8 @@ NearRows find_near_rows(WorldState<Model>& w, double reach) {
     near.add(static_cast<std::uint32_t>(i), p.position[i], p.species[i]);
   }
   std::vector<std::vector<std::uint32_t>> asked(static_cast<std::size_t>(d.ranks()));
-  for (const std::uint32_t c : chunks_within_reach(w, reach)) asked[static_cast<std::size_t>(d.owner(c))].push_back(c);
+  for (const std::uint32_t c : chunks_within_reach(w, reach, cell))
+    asked[static_cast<std::size_t>(d.owner(c))].push_back(c);
   const auto wanted = d.exchanged(asked);
   std::vector<std::vector<Told>> told(asked.size());
   for (std::size_t r = 0; r < told.size(); ++r) {
@@ -249,12 +272,12 @@ double list_part(WorldState<Model>& w) {
   for (auto [i, end] = rows(); i < end; ++i) {
     if (p.row_of[p.id[i]] == p.gone) continue;
     kept[p.species[i]] += 1.0;
-    if (w.options.sleep && w.sleepers.grains[p.id[i]].asleep) asleep[0] += 1.0;
+    if (is_asleep(w, p.id[i])) asleep[0] += 1.0;
   }
   d.share_sums(kept), d.share_sums(asleep);
   const bool sleepers_last = w.options.sleep && sleepers_go_last(static_cast<std::size_t>(asleep[0]), all);
   const double skin = choose_skin(w, kept);
-  const double range = w.materials.range() + skin, reach = 2.0 * w.largest_radius + range;
+  const double range = w.materials.range() + skin, reach = list_reach(w, skin);
 
   const auto keys = detail::sort_keys(w, reach, sleepers_last);
   const auto sorted = d.sort_rows(keys, all, chunk_size);
@@ -266,10 +289,15 @@ double list_part(WorldState<Model>& w) {
   p.pad();
   w.chunks.resize(p.chunks());
 
-  const detail::NearRows near = detail::find_near_rows(w, reach);
-  w.broad_phase.build({near.position.x.data(), near.position.y.data(), near.position.z.data(), near.count}, reach,
-                      w.executor);
-  if (!sleepers_last) w.broad_phase.reordered(w.executor);  // near rows are in the order of space, as all rows are
+  // Sums in another order may be larger in the last bit.
+  const detail::NearRows near = detail::find_near_rows(w, std::max(reach, 2.0 * w.largest_radius + range), reach);
+  const broadphase::Positions at = {near.position.x.data(), near.position.y.data(), near.position.z.data(), near.count};
+  if constexpr (requires { w.broad_phase.build(at, reach, w.executor); }) w.broad_phase.build(at, reach, w.executor);
+  else w.broad_phase.build(at, reach);
+  if (!sleepers_last) {  // near rows are in the order of space, as all rows are
+    if constexpr (requires { w.broad_phase.reordered(w.executor); }) w.broad_phase.reordered(w.executor);
+    else w.broad_phase.reordered();
+  }
   const auto [begin, end] = w.own_chunks();
   w.executor.for_each(end - begin, [&, first = begin](std::size_t k) {
     Chunk<Model>& chunk = w.chunks[first + k];

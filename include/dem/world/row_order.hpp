@@ -16,14 +16,10 @@ inline bool sleepers_go_last(std::size_t asleep, std::size_t grains) { return 4 
 template <class Model>
 bool put_sleepers_last(const WorldState<Model>& w, std::vector<std::uint32_t>& order) {
   if (!w.options.sleep) return false;
-  const auto& rests = w.sleepers.grains;
-  const auto is_asleep = [&](std::uint32_t row) {
-    const std::uint32_t id = w.particles.id[row];
-    return id < rests.size() && rests[id].asleep;
-  };
-  const auto asleep = static_cast<std::size_t>(std::count_if(order.begin(), order.end(), is_asleep));
-  if (!sleepers_go_last(asleep, order.size())) return false;
-  std::stable_partition(order.begin(), order.end(), [&](std::uint32_t row) { return !is_asleep(row); });
+  const auto is_awake = [&](std::uint32_t row) { return !is_asleep(w, w.particles.id[row]); };
+  const auto awake = static_cast<std::size_t>(std::count_if(order.begin(), order.end(), is_awake));
+  if (!sleepers_go_last(order.size() - awake, order.size())) return false;
+  std::stable_partition(order.begin(), order.end(), is_awake);
   return true;
 }
 

@@ -72,12 +72,14 @@ void find_sleepers(WorldState<Model>& w) {
   const auto& p = w.particles;
   s.all_work = true;
   if (!w.options.sleep) return;
-  const std::size_t rows = w.chunks.size() * chunk_size;
   s.grains.resize(p.row_of.size());
-  s.borne.assign(rows, 0.0);
-  s.acted_on.assign(rows, 0);
   s.doing.assign(p.view.size(), 0);
-  const auto clear = [&](AlignedVector<double>& column) { column.assign(rows, 0.0); };
+  const auto clear = [&, own = w.own_chunks()](auto& column) {
+    column.resize(w.chunks.size() * chunk_size);
+    std::fill_n(column.begin() + static_cast<std::ptrdiff_t>(own.first * chunk_size),
+                (own.second - own.first) * chunk_size, 0);
+  };
+  clear(s.borne), clear(s.acted_on);
   for (Columns3* columns : {&s.kept_force, &s.kept_torque, &s.surface_force, &s.surface_torque}) {
     columns->for_each_column(clear);
   }

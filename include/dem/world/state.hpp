@@ -155,6 +155,12 @@ struct WorldState {
   }
 };
 
+/// Whether the grain of this id sleeps, as far as this process knows.
+template <class Model>
+bool is_asleep(const WorldState<Model>& w, std::uint32_t id) {
+  return w.options.sleep && id < w.sleepers.grains.size() && w.sleepers.grains[id].asleep;
+}
+
 /// A new neighbour list is due, whether grains have left this one or not.
 template <class Model>
 void give_up_list(WorldState<Model>& w) {

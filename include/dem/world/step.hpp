@@ -88,7 +88,7 @@ void advance(WorldState<Model>& w) {
     }
     if constexpr (Integrator::predicts_before_forces) {
       if constexpr (Model::Domain::has_ranks)
-        w.domain.is_whole = !w.domain.is_shared();  // a list made now gathers rows
+        w.domain.is_whole = !w.domain.is_shared();  // a list made now is of grains that each rank has moved alone
       const auto [begin, end] = w.own_chunks();
       w.executor.for_each(end - begin, [&, first = begin](std::size_t k) {
         const std::size_t c = first + k;

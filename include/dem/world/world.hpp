@@ -19,7 +19,7 @@ template <class M>
 class World : public WorldSetup<M> {
   using Setup = WorldSetup<M>;
   using Setup::state_, Setup::checked_, Setup::initialised_, Setup::row, Setup::row_that_moves, Setup::require_finite,
-      Setup::touched;
+      Setup::require_between_runs, Setup::touched;
 
  public:
   using Model = M;
@@ -154,12 +154,10 @@ class World : public WorldSetup<M> {
   Vec3 force(ParticleId p) const { return to_eigen(state_.particles.force[row(p)]); }
   Vec3 torque(ParticleId p) const { return to_eigen(state_.particles.torque[row(p)]); }
   /// Whether a grain sleeps (WorldOptions::sleep).
-  bool is_asleep(ParticleId p) const {
-    const std::uint32_t id = state_.particles.id[row(p)];
-    return state_.options.sleep && id < state_.sleepers.grains.size() && state_.sleepers.grains[id].asleep;
-  }
+  bool is_asleep(ParticleId p) const { return dem::is_asleep(state_, state_.particles.id[row(p)]); }
   /// How many grains sleep.
   std::size_t asleep_count() const {
+    require_between_runs("how many grains sleep");
     if (!state_.options.sleep) return 0;
     const auto& rests = state_.sleepers.grains;
     const auto& rows = state_.particles.row_of;

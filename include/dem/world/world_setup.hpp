@@ -76,6 +76,7 @@ class WorldSetup {
 
   /// Adds a grain. Throws Error for an unknown species, a position that is not finite, or a rotation that is none.
   ParticleId add_particle(const NewParticle& n) {
+    require_between_runs("a new grain");
     auto& p = state_.particles;
     const std::uint32_t id = p.given;
     if (n.species.index() >= state_.species.size()) {
@@ -242,17 +243,21 @@ class WorldSetup {
     return SurfaceId(state_.surfaces.size() - 1);
   }
   std::size_t row(ParticleId p) const {
-    if constexpr (Model::Domain::has_ranks) {
-      if (!state_.domain.is_whole) {
-        fail("grain {} is asked for within a run, when no rank knows all grains; end the run first", p.value);
-      }
-    }
+    require_between_runs("a grain");
     const auto& grains = state_.particles;
     const std::uint32_t at = grains.find(p), row = at == grains.gone ? grains.gone : grains.row_of[at];
     if (row != grains.gone) [[likely]]
       return row;
     if (p.value >= grains.given) fail_unknown(p, grains.given, "grain");
     fail("grain {} is asked for, but it was removed", p.value);
+  }
+  /// Throws Error within a run that ranks share, when no rank knows all grains.
+  void require_between_runs([[maybe_unused]] const char* what) const {
+    if constexpr (Model::Domain::has_ranks) {
+      if (!state_.domain.is_whole) {
+        fail("{} is asked for within a run, when no rank knows all grains; end the run first", what);
+      }
+    }
   }
   static void require_finite(const Vec3& v, const char* what) {
     if (!is_finite(v)) fail("{} is ({:g}, {:g}, {:g}), but must be finite", what, v.x(), v.y(), v.z());

@@ -52,10 +52,12 @@ concept KnowsSizes = requires(B& b, const Positions& positions, const Sizes& siz
   b.build(positions, sizes);
 };
 
-/// A broad phase that sorts each grain by itself.
+/// A broad phase of grains of one reach that sorts each by itself.
 template <class B>
-concept KnowsPlaces = requires(const Vector3<double>& x, double reach) {
+concept SortsByPlace = !KnowsSizes<B> && requires(B & b, const Positions& all, const Vector3<double>& x, double reach) {
   { B::place(x, reach) } -> std::same_as<std::uint64_t>;
+  b.build(all, reach);
+  b.reordered();
 };
 
 /// A finder of a broad phase that may know runs of grains.
