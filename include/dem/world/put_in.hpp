@@ -1,7 +1,7 @@
 #pragma once
 
 #include <dem/world/free_room.hpp>
-#include <dem/world/neighbours.hpp>
+#include <dem/world/relist.hpp>
 #include <dem/world/sleep.hpp>
 
 #include <algorithm>
@@ -87,10 +87,7 @@ void fill_from(WorldState<Model>& w, Inlet& inlet, std::size_t listed) {
     add_ball(x, radius);
     const Vec3 v = o.velocity + inlet.random().in_ball(o.velocity_spread);
     const std::size_t row = p.append(kind.value, from_eigen(x), from_eigen(v), from_eigen(rotation), {0, 0, 0});
-    // Nothing touches it, so weight alone accelerates it: integrators that remember start from that.
-    typename Model::Integrator::template Memory<double> memory{};
-    Model::Integrator::template initialise<double>(memory, {from_eigen(w.options.gravity), {0, 0, 0}});
-    p.set_memory(row, memory);
+    begin_to_fall(w, row);
     inlet.put(mass_of(kind));
   }
 }
@@ -111,13 +108,7 @@ void put_in(WorldState<Model>& w) {
     if (inlet.want(w.time, mass_of)) fill_from(w, inlet, before);
   }
   if (w.particles.count == before) return;
-  // The lists are made here: an integrator that predicts moves grains by chunks before it asks for forces.
-  w.stopwatch.start();
-  rebuild_neighbours(w);
-  find_sleepers(w);
-  choose_working_chunks(w);
-  w.sleepers.all_work = true;
-  w.stopwatch.stop(Phase::neighbours);
+  list_between_steps(w, [&] { rebuild_neighbours(w); });
 }
 
 }  // namespace dem

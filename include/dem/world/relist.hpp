@@ -6,8 +6,31 @@
 
 namespace dem {
 
-/// Lists neighbours anew between two steps, with grains that `change(histories)` puts in, while all others and the
-/// machine go on as they were: nothing is initialised again.
+/// Calls list(), which lists neighbours, between two steps: all others and the machine go on as they were, and nothing
+/// is initialised again. Integrators that predict move grains by chunks before they ask for forces, so new grains have
+/// to be listed by then.
+template <class Model, class List>
+void list_between_steps(WorldState<Model>& w, List&& list) {
+  w.stopwatch.start();
+  list();
+  find_sleepers(w);
+  choose_working_chunks(w);
+  w.sleepers.all_work = true;
+  w.grains_added = false;
+  w.stopwatch.stop(Phase::neighbours);
+}
+
+/// What an integrator remembers of the grain of a new row: nothing touched it, so weight alone accelerates it.
+template <class Model>
+void begin_to_fall(WorldState<Model>& w, std::size_t row) {
+  auto& p = w.particles;
+  if (w.species[p.species[row]].is_held()) return;
+  typename Model::Integrator::template Memory<double> memory{};
+  Model::Integrator::template initialise<double>(memory, {from_eigen(w.options.gravity), {0, 0, 0}});
+  p.set_memory(row, memory);
+}
+
+/// Lists neighbours anew between two steps, with grains that `change(histories)` puts in.
 template <class Model, class Change>
 void relist(WorldState<Model>& w, Change&& change) {
   if constexpr (Model::Domain::has_ranks) {
@@ -15,12 +38,7 @@ void relist(WorldState<Model>& w, Change&& change) {
       fail("ranks do not share beds whose grains come or go with their contacts, as tiles do: run this on one rank");
     }
   }
-  w.stopwatch.start();
-  rebuild_neighbours(w, change);
-  find_sleepers(w);
-  choose_working_chunks(w);
-  w.sleepers.all_work = true;
-  w.stopwatch.stop(Phase::neighbours);
+  list_between_steps(w, [&] { rebuild_neighbours(w, change); });
 }
 
 /// The species of grains that are held and are otherwise like those of `s`; made when the world has none.

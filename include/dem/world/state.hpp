@@ -83,6 +83,7 @@ struct WorldState {
   double list_skin = 0.0;                ///< m, with which the neighbour list was made
   grain::SkinChoice skin_choice;         ///< unless a skin was given
   bool list_valid = false;               ///< false after grains were added or moved by hand
+  bool grains_added = false;             ///< by hand, since the last step: they are in no list yet
   std::uint64_t rebuilds = 0;            ///< neighbour lists made
   std::set<std::uint32_t> known_lost;    ///< ids of grains that were reported as lost
   std::vector<std::uint32_t> to_remove;  ///< ids of grains that are gone, but whose rows are there until the next list
@@ -128,6 +129,7 @@ struct WorldState {
     v.list("surfaces", surfaces, "surface"), v.list("surface_sensors", surface_sensors, "surface sensor");
     v.list("body_contacts", body_contacts.pairs, "body contact"), v("near_pairs", body_contacts.near);
     v("machine_solver", machine_solver), v("list_skin", list_skin, "m"), v("list_valid", list_valid);
+    v("grains_added", grains_added);
     v("skin_choice", skin_choice), v("rebuilds", rebuilds), v("to_remove", to_remove), v("remove_by", remove_by);
     v.given("beyond_domain", options.beyond_domain), v.list("outlets", outlets, "outlet");
     v("beyond", beyond_domain), v("energy", ledger), v.list("inlets", inlets, "inlet"), v("put_in_at", put_in_at);

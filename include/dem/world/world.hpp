@@ -38,7 +38,7 @@ class World : public WorldSetup<M> {
           "new one",
           time());
     }
-    if constexpr (Model::Domain::has_ranks) check_agreement(state_, checked_, !initialised_);
+    if constexpr (Model::Domain::has_ranks) check_agreement(state_, checked_, !initialised_ || state_.grains_added);
     if (!checked_ || !machine_is_initialised()) {
       state_.materials.check_complete();
       state_.materials.check_names(used_materials());
@@ -60,10 +60,13 @@ class World : public WorldSetup<M> {
     if (!initialised_ || !machine_is_initialised()) {
       initialise(state_);
       initialised_ = true;
+      state_.grains_added = false;
+    } else if (state_.grains_added) {
+      list_between_steps(state_, [&] { rebuild_neighbours(state_); });
     }
   }
   /// Whether prepare() has nothing left to do: nothing was changed since the last step.
-  bool is_prepared() const { return checked_ && initialised_ && machine_is_initialised(); }
+  bool is_prepared() const { return checked_ && initialised_ && !state_.grains_added && machine_is_initialised(); }
   [[nodiscard]] StepReport step() { return run(1); }
   /// Runs n steps, or fewer if a problem shows. A lost grain is reported once: a run may go on without it. An exception
   /// of a law, a shape or a function of your own arrives here, from whichever thread; the world may then be looked at,

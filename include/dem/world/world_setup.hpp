@@ -74,7 +74,9 @@ class WorldSetup {
     checked_ = false;
   }
 
-  /// Adds a grain. Throws Error for an unknown species, a position that is not finite, or a rotation that is none.
+  /// Adds a grain. In a world that runs, all others go on as they were; the new one begins with weight alone, so that
+  /// what it touches already acts on it from the next evaluation on. Throws Error for an unknown species, a position
+  /// that is not finite, or a rotation that is none.
   ParticleId add_particle(const NewParticle& n) {
     require_between_runs("a new grain");
     auto& p = state_.particles;
@@ -97,7 +99,9 @@ class WorldSetup {
     const Mat3 rotation = Shape::has_orientation ? n.rotation : Mat3(Mat3::Identity());
     const std::size_t row = p.append(n.species.value, from_eigen(n.position), from_eigen(n.velocity),
                                      from_eigen(rotation), from_eigen(Vec3(rotation.transpose() * n.angular_velocity)));
-    touched();
+    state_.list_valid = false;
+    state_.grains_added = true;
+    begin_to_fall(state_, row);
     return p.name(p.id[row]);
   }
 
