@@ -40,7 +40,7 @@ int main(int argc, char** argv) {
   const double d = 1e-3, g = 9.81, density = 2500, weight = density * std::numbers::pi / 6 * d * d * d * g;
   const double stiffness = 2e4 * weight / d, length = 12 * d, width = 8 * d;
   World<Beads> world({.gravity = {g * std::sin(slope), 0, -g * std::cos(slope)},
-                      .domain = surface::Bounds{{0, 0, -2 * d}, {length, width, 60 * d}},
+                      .domain = surface::Aabb{{0, 0, -2 * d}, {length, width, 60 * d}},
                       .periodic = {.x = true, .y = true}});
   world.set_contact({.normal = contact::LinearSpringDashpot::with_restitution(stiffness, 0.88),
                      .friction = {0.5, 2.0 / 7 * stiffness, 0.05}});

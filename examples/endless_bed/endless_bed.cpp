@@ -44,7 +44,7 @@ double now() { return std::chrono::duration<double>(std::chrono::steady_clock::n
 World<Beads> ground(bool repeats_along) {
   World<Beads> world(
       {.time_step_safety = 0.8,
-       .domain = surface::Bounds{{repeats_along ? 0.0 : -1.0, 0, -1}, {repeats_along ? length : 1e3, width, 1}},
+       .domain = surface::Aabb{{repeats_along ? 0.0 : -1.0, 0, -1}, {repeats_along ? length : 1e3, width, 1}},
        .periodic = {.x = repeats_along, .y = true},
        .threads = 1});
   world.set_contact({.normal = contact::LinearSpringDashpot::with_restitution(stiffness, 0.3),

@@ -17,7 +17,7 @@ struct ShearedCubes : models::Cubes {
 
 dem::World<PeriodicCubes> bed(int threads, int layers) {
   dem::WorldOptions o = options({2.0, 0, -9.81}, 1e-5);
-  o.domain = dem::surface::Bounds{{0, 0, -1}, {0.03, 0.03, 1}};
+  o.domain = dem::surface::Aabb{{0, 0, -1}, {0.03, 0.03, 1}};
   o.periodic = {.x = true, .y = true};
   o.threads = threads;
   dem::World<PeriodicCubes> w(o);
@@ -49,7 +49,7 @@ TEST_CASE("a sheared cell goes on from a file in every bit, with the cells aroun
   const Folder folder;
   const auto cell = [](int threads, int layers) {
     dem::WorldOptions o = options(Vec3::Zero(), 1e-5);
-    o.domain = dem::surface::Bounds{{0, 0, 0}, {0.03, 0.03, 0.012}};
+    o.domain = dem::surface::Aabb{{0, 0, 0}, {0.03, 0.03, 0.012}};
     o.periodic = {.x = true, .y = true, .z = true};
     o.shear_rate = 40.0;
     o.threads = threads;

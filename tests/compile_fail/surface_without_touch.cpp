@@ -2,7 +2,7 @@
 #include <dem/world/model.hpp>
 
 struct Veil {
-  dem::surface::Bounds bounds() const { return {}; }
+  dem::surface::Aabb bounds() const { return {}; }
 };
 struct Grain : dem::Model {
   using Surfaces = std::variant<Veil>;

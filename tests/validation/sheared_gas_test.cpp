@@ -54,7 +54,7 @@ Flow simulated(double nu, double e) {
   const double edge = std::cbrt(n * n * n * pi / 6.0 * d * d * d / nu);
   dem::World<Gas> w({.gravity = Vec3::Zero(),
                      .time_step_safety = 0.15,
-                     .domain = dem::surface::Bounds{{0, 0, 0}, {edge, edge, edge}},
+                     .domain = dem::surface::Aabb{{0, 0, 0}, {edge, edge, edge}},
                      .periodic = {true, true, true},
                      .shear_rate = rate,
                      .threads = 1});

@@ -19,7 +19,7 @@ struct BodyPoint {
 
 /// The box (in the frame of `from`) that both surfaces' bounding boxes share.
 template <class Surface>
-surface::Bounds shared_box(const Surface& from, const Surface& onto) {
+surface::Aabb shared_box(const Surface& from, const Surface& onto) {
   const Vec3 low = upper(from.low, onto.low), high = lower(from.high, onto.high);
   const Mat3 axes = to_eigen(from.axes);
   const Vec3 centre = axes.transpose() * (0.5 * (low + high) - to_eigen(from.origin));
@@ -38,7 +38,7 @@ class PointsTowards {
 
   void list() {
     points_.clear();
-    const surface::Bounds box = shared_box(a_, b_);
+    const surface::Aabb box = shared_box(a_, b_);
     if constexpr (surface::HasPoints<From>) {
       from_.points(box, [&](std::uint32_t number, const Vector3<double>& p, double radius) {
         points_.push_back({number, p, radius, 1.0});
@@ -178,7 +178,7 @@ class PointsTowards {
 
   /// Where a straight edge passes through the other surface, the middle of each part of the edge that lies inside it.
   /// Two bodies that meet edge across edge have no corner in each other.
-  void list_edges(const surface::Bounds& box) {
+  void list_edges(const surface::Aabb& box) {
     from_.edges(box, [&](std::uint32_t number, const Vector3<double>& tail, const Vector3<double>& head) {
       const auto add_part = [&](double first, double last) {
         // Where a corner is inside it is the point; as it comes out, the edge takes over.

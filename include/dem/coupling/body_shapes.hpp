@@ -33,7 +33,7 @@ bool has_points(const Surface& s) {
 /// The scale on which a surface is round, for laws that ask for a radius (m): half its smaller extent.
 template <class Surface>
 double point_radius(const Surface& s) {
-  const surface::Bounds b = std::visit([](const auto& geometry) { return geometry.bounds(); }, s.geometry);
+  const surface::Aabb b = std::visit([](const auto& geometry) { return geometry.bounds(); }, s.geometry);
   const Vec3 extent = b.high - b.low;
   double smallest = extent.maxCoeff();
   for (int k = 0; k < 3; ++k) {

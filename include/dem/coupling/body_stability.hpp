@@ -8,7 +8,7 @@ namespace dem::coupling {
 /// From the centre of mass of a surface's body to the farthest corner of the surface's box, m.
 template <class Surface>
 double reach_of(const Surface& s) {
-  const surface::Bounds b = std::visit([](const auto& geometry) { return geometry.bounds(); }, s.geometry);
+  const surface::Aabb b = std::visit([](const auto& geometry) { return geometry.bounds(); }, s.geometry);
   double farthest = 0.0;
   for (unsigned k = 0; k < 8; ++k) {
     const Vec3 corner(k & 1 ? b.high.x() : b.low.x(), k & 2 ? b.high.y() : b.low.y(), k & 4 ? b.high.z() : b.low.z());

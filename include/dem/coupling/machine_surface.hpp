@@ -27,7 +27,7 @@ struct MachineSurface {
   Matrix3<double> axes = Matrix3<double>::identity();
   Vec3 low = Vec3::Zero(), high = Vec3::Zero();  ///< m, bounding box in global axes
   bool moved = true;  ///< where it is, or how fast its body goes, is not what it was in the evaluation before
-  surface::Bounds swept = {Vec3::Zero(), Vec3::Zero()};  ///< m, around both places where it is and was
+  surface::Aabb swept = {Vec3::Zero(), Vec3::Zero()};  ///< m, around both places where it is and was
 
   PartnerView view = {};  ///< of the body
 
@@ -39,7 +39,7 @@ struct MachineSurface {
   void fields(V& v) {
     v.given("name", name), v.given("body", body), v.given("material", material);
     v.given("kind", geometry.index()), v.given("position", position, "m"), v.given("rotation", rotation);
-    const surface::Bounds own = std::visit([](const auto& kind) { return kind.bounds(); }, geometry);
+    const surface::Aabb own = std::visit([](const auto& kind) { return kind.bounds(); }, geometry);
     v.given("lowest", own.low, "m"), v.given("highest", own.high, "m");
     v("active", active), v("origin", origin, "m"), v("axes", axes), v("low", low, "m"), v("high", high, "m");
     v.reals("view", view), v("force", force, "N"), v("torque", torque, "N m");
@@ -56,12 +56,12 @@ struct MachineSurface {
     const auto differ = [](const auto& x, const auto& y) { return std::memcmp(&x, &y, sizeof(x)) != 0; };
     moved = differ(origin, last_origin) || differ(axes, last_axes) || differ(view.velocity, last_view.velocity) ||
             differ(view.angular_velocity, last_view.angular_velocity);
-    const surface::Bounds local = std::visit([](const auto& kind) { return kind.bounds(); }, geometry);
+    const surface::Aabb local = std::visit([](const auto& kind) { return kind.bounds(); }, geometry);
     // Half sizes along the global axes: |R| times the local half sizes. The origin comes last: added to the middle of
     // a half space, 1e150 m away, it would be lost.
     const Vec3 middle = to_eigen(axes) * (0.5 * (local.low + local.high));
     const Vec3 half = magnitudes(to_eigen(axes)) * (0.5 * (local.high - local.low));
-    const surface::Bounds before = {low, high};
+    const surface::Aabb before = {low, high};
     low = to_eigen(origin) + (middle - half);
     high = to_eigen(origin) + (middle + half);
     swept = {low.cwiseMin(before.low), high.cwiseMax(before.high)};

@@ -25,7 +25,7 @@ class Periodic {
 
   Periodic() = default;
   /// Directions that repeat have finite corners, low < high.
-  Periodic(const surface::Bounds& cell, const std::array<bool, 3>& repeats) {
+  Periodic(const surface::Aabb& cell, const std::array<bool, 3>& repeats) {
     for (std::size_t k = 0; k < 3; ++k) {
       if (!repeats[k]) continue;
       low_[k] = cell.low.data()[k];

@@ -20,7 +20,7 @@ class PeriodicRanks : public Periodic, public Ranks {
   static constexpr bool has_images = true, has_ranks = true;
 
   PeriodicRanks() = default;
-  PeriodicRanks(const surface::Bounds& cell, const std::array<bool, 3>& repeats) : Periodic(cell, repeats) {}
+  PeriodicRanks(const surface::Aabb& cell, const std::array<bool, 3>& repeats) : Periodic(cell, repeats) {}
 };
 
 }  // namespace dem::domain

@@ -22,7 +22,7 @@ class Sheared : public Periodic {
   using Cell = Sheared;
 
   Sheared() = default;
-  Sheared(const surface::Bounds& cell, const std::array<bool, 3>& repeats) : Periodic(cell, repeats) {}
+  Sheared(const surface::Aabb& cell, const std::array<bool, 3>& repeats) : Periodic(cell, repeats) {}
 
   double shear_rate() const { return rate_; }  ///< 1/s, dv_x/dz
   /// From a time (s) on.

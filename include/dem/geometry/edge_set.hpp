@@ -31,7 +31,7 @@ class EdgeSet {
  public:
   EdgeSet() = default;
   DEM_LAZY explicit EdgeSet(const std::vector<std::array<Vec3, 2>>& edges) {
-    std::vector<Bounds> boxes;
+    std::vector<Aabb> boxes;
     for (const auto& [a, b] : edges) boxes.push_back({lower(a, b), upper(a, b)});
     tree_ = BoundingVolumeTree(boxes);
     for (const std::uint32_t k : tree_.order()) {
@@ -44,7 +44,7 @@ class EdgeSet {
 
   /// f(number, one end, other end) for the edges that may lie in a box.
   template <class F>
-  void for_each_in(const Bounds& box, F&& f) const {
+  void for_each_in(const Aabb& box, F&& f) const {
     tree_.for_each_in(from_eigen(box.low), from_eigen(box.high),
                       [&](std::uint32_t k) { f(k, ends_[k][0], ends_[k][1]); });
   }

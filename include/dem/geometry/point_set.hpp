@@ -11,7 +11,7 @@ class PointSet {
  public:
   PointSet() = default;
   DEM_LAZY explicit PointSet(const std::vector<Vec3>& points) {
-    std::vector<Bounds> boxes;
+    std::vector<Aabb> boxes;
     for (const Vec3& p : points) boxes.push_back({p, p});
     tree_ = BoundingVolumeTree(boxes);
     for (const std::uint32_t k : tree_.order()) points_.push_back(from_eigen(points[k]));
@@ -31,7 +31,7 @@ class PointSet {
   }
   /// f(number, point) for the points in a box.
   template <class F>
-  void for_each_in(const Bounds& box, F&& f) const {
+  void for_each_in(const Aabb& box, F&& f) const {
     const Vector3<double> low = from_eigen(box.low), high = from_eigen(box.high);
     tree_.for_each_in(low, high, [&](std::uint32_t k) {
       const Vector3<double>& p = points_[k];

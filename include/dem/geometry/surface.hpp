@@ -11,8 +11,8 @@
 
 namespace dem::surface {
 
-/// Axis-aligned box.
-struct Bounds {
+/// Axis-aligned bounding box.
+struct Aabb {
   Vec3 low, high;  ///< m
 };
 
@@ -29,7 +29,7 @@ concept Surface = requires(const S& s, const Vector3<double>& point, double radi
   { s.near(point, radius) } -> std::same_as<bool>;
   { s.near(points, Pack(radius)) } -> std::same_as<PackMask>;
   s.touch(point, radius, AnyCallback{});
-  { s.bounds() } -> std::same_as<Bounds>;
+  { s.bounds() } -> std::same_as<Aabb>;
 };
 
 /// Cuts the range [from, to] of shares of a way to where |x + share step| < half; false if nothing is left.
@@ -49,9 +49,9 @@ template <class S>
 constexpr void check_surface() {
   static_assert(
       requires(const S& s) {
-        { s.bounds() } -> std::same_as<Bounds>;
+        { s.bounds() } -> std::same_as<Aabb>;
       },
-      "Surface: needs bounds() that returns surface::Bounds in the surface's own frame");
+      "Surface: needs bounds() that returns surface::Aabb in the surface's own frame");
   static_assert(Surface<S>,
                 "Surface: needs near(point, radius), for doubles (bool) and packs (PackMask), and touch(point, radius, "
                 "callback)");

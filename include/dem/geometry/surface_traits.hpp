@@ -60,7 +60,7 @@ concept MayLetPointsThrough = requires(const S& s) {
   { s.lets_points_through() } -> std::same_as<bool>;
 };
 template <class S>
-concept HasPoints = requires(const S& s, const Bounds& box) {
+concept HasPoints = requires(const S& s, const Aabb& box) {
   s.points(box, [](std::uint32_t, const Vector3<double>&, double) {});
   { s.has_points() } -> std::same_as<bool>;
 };
@@ -69,7 +69,7 @@ concept MayBeBall = requires(const S& s) {
   { s.is_ball() } -> std::same_as<bool>;
 };
 template <class S>
-concept HasEdges = requires(const S& s, const Bounds& box) {
+concept HasEdges = requires(const S& s, const Aabb& box) {
   s.edges(box, [](std::uint32_t, const Vector3<double>&, const Vector3<double>&) {});
 };
 template <class S>

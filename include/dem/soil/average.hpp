@@ -37,7 +37,7 @@ struct Average {
 
 /// Cells of one size that fill a box.
 struct AverageGrid {
-  surface::Bounds box;                   ///< m, finite
+  surface::Aabb box;                     ///< m, finite
   std::array<int, 3> cells = {1, 1, 1};  ///< along x, y, z
 
   std::size_t count() const {

@@ -118,12 +118,12 @@ class TimeAverages {
 
 /// The average over a box.
 template <class Model>
-Average average_in(const World<Model>& world, const surface::Bounds& box) {
+Average average_in(const World<Model>& world, const surface::Aabb& box) {
   return averages(world, {box, {1, 1, 1}}).values[0];
 }
 /// The averages over n slices of a box, across an axis (0: x, 1: y, 2: z). Throws Error for another axis.
 template <class Model>
-std::vector<Average> average_slices(const World<Model>& world, const surface::Bounds& box, int axis, int n) {
+std::vector<Average> average_slices(const World<Model>& world, const surface::Aabb& box, int axis, int n) {
   if (axis < 0 || axis > 2) fail("slices are asked for across axis {}, but it must be 0 (x), 1 (y) or 2 (z)", axis);
   AverageGrid grid{box, {1, 1, 1}};
   grid.cells[static_cast<std::size_t>(axis)] = n;

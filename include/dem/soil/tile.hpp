@@ -179,7 +179,7 @@ void measure_tile(Tile& t, const WorldState<Model>& w) {
 /// names of these. Grains that are held stay held. The world is not changed; it costs a copy of it. Throws Error for an
 /// open world or one without grains, and as World::prepare does.
 ///
-///     World<Sand> cell({.domain = surface::Bounds{{0, 0, -1}, {0.1, 0.1, 1}}, .periodic = {.x = true, .y = true}});
+///     World<Sand> cell({.domain = surface::Aabb{{0, 0, -1}, {0.1, 0.1, 1}}, .periodic = {.x = true, .y = true}});
 ///     ...                                            // grains fall and come to rest
 ///     const soil::Tile tile = soil::take_tile(cell);
 template <class Model>

@@ -20,7 +20,7 @@ class ColumnMesh final : public ColumnShape {
       : mesh_(mesh), width_(require_positive(width, "width of a mesh on soil columns", "m")), rays_(rays) {
     if (rays < 1 || rays > 16)
       fail("a mesh on soil columns has {} rays a side of a column, but 1 to 16 make sense", rays);
-    const surface::Bounds box = mesh.data().bounds;
+    const surface::Aabb box = mesh.data().bounds;
     middle_ = from_eigen(Vec3(0.5 * (box.low + box.high)));
     half_ = from_eigen(Vec3(0.5 * (box.high - box.low)));
   }

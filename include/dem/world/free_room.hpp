@@ -17,7 +17,7 @@ namespace dem {
 class FreeRoom {
  public:
   /// `largest`: m, radius of the largest ball, plus half of the gap that is to stay between two.
-  FreeRoom(const surface::Bounds& region, double largest)
+  FreeRoom(const surface::Aabb& region, double largest)
       : low_(region.low - filled(2.0 * largest)), high_(region.high + filled(2.0 * largest)), cell_(2.0 * largest) {
     // A region that is large beside its grains gets larger cells: their number is bounded, not the work in each.
     constexpr double most_cells = 1 << 18;

@@ -61,7 +61,7 @@ class InletRegion {
     }
   }
   /// A box along the axes that holds it.
-  surface::Bounds bounds() const {
+  surface::Aabb bounds() const {
     const Vec3 half = magnitudes(axes_) * half_;
     return {centre_ - half, centre_ + half};
   }

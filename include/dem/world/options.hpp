@@ -26,7 +26,7 @@ struct WorldOptions {
   bool allow_unstable_time_step = false;  ///< accept a time step above the stable one
   double skin = 0.0;                      ///< m, reach of the neighbour lists; 0: chosen while it runs (grain/skin.hpp)
   double overlap_limit = 0.5;  ///< overlap, in effective diameters 2 Ri Rj/(Ri + Rj), that is reported as a problem
-  std::optional<surface::Bounds> domain = {};         ///< where grains are expected; none: anywhere
+  std::optional<surface::Aabb> domain = {};           ///< where grains are expected; none: anywhere
   BeyondDomain beyond_domain = BeyondDomain::report;  ///< what becomes of a grain whose centre leaves it
   PeriodicAxes periodic = {};              ///< in which the domain repeats itself; for models with a periodic Domain
   double shear_rate = 0.0;                 ///< 1/s, dv_x/dz; for models whose Domain is domain::Sheared

@@ -35,7 +35,7 @@ class Outlet {
   Outlet() : Outlet({filled(-HUGE_VAL), filled(HUGE_VAL)}, {.name = "everywhere"}) {}
   /// A box, which may be without end: corners may be infinite. Throws Error for a box that is none, and a window that
   /// is negative.
-  Outlet(const surface::Bounds& region, const OutletOptions& o) : name_(o.name), region_(region), flow_(o.window) {
+  Outlet(const surface::Aabb& region, const OutletOptions& o) : name_(o.name), region_(region), flow_(o.window) {
     if (all_below(region.low, region.high)) return;
     const Vec3 &a = region.low, &b = region.high;
     fail(
@@ -50,7 +50,7 @@ class Outlet {
   }
 
   const std::string& name() const { return name_; }
-  const surface::Bounds& region() const { return region_; }
+  const surface::Aabb& region() const { return region_; }
   std::uint64_t grains() const { return grains_; }  ///< taken so far
   double mass() const { return mass_; }             ///< kg, taken so far
   /// kg/s, the mean over the window, or over the time that there is of it so far.
@@ -69,7 +69,7 @@ class Outlet {
 
  private:
   std::string name_;
-  surface::Bounds region_;
+  surface::Aabb region_;
   mbd::WindowAverage flow_;  // kg/s, in force.x
   std::uint64_t grains_ = 0;
   double mass_ = 0.0, now_ = 0.0;  // kg; the second in this step

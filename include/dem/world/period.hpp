@@ -18,7 +18,7 @@ void set_period(WorldState<Model>& w) {
           "and WorldOptions::periodic to the directions in which it repeats",
           !w.options.domain ? "domain" : "periodic direction");
     }
-    surface::Bounds& d = *w.borders;
+    surface::Aabb& d = *w.borders;
     for (std::size_t k = 0; k < 3; ++k) {
       if (repeats[k]) require_positive(d.high.data()[k] - d.low.data()[k], "period of the domain", "m");
     }
@@ -52,7 +52,7 @@ void set_period(WorldState<Model>& w) {
 
 /// Throws Error unless the region of an inlet is in the cell of a periodic world.
 template <class Model>
-void check_region(const WorldState<Model>& w, const surface::Bounds& region, const std::string& inlet) {
+void check_region(const WorldState<Model>& w, const surface::Aabb& region, const std::string& inlet) {
   if constexpr (Model::Domain::has_images) {
     for (std::size_t k = 0; k < 3; ++k) {
       const double period = w.domain.period()[k], low = w.domain.low(k), slack = 1e-9 * period;

@@ -75,7 +75,7 @@ struct WorldState {
   Particles<Shape, Integrator> particles;
   std::vector<Chunk<Model>> chunks;
   typename Model::BroadPhase broad_phase;
-  std::optional<surface::Bounds> borders;  ///< WorldOptions::domain, without end where it repeats itself
+  std::optional<surface::Aabb> borders;  ///< WorldOptions::domain, without end where it repeats itself
   typename Model::Domain domain;
   grain::Images<typename Model::Domain> images;
   std::vector<std::uint32_t> incoming_first;

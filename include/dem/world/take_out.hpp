@@ -50,13 +50,13 @@ void take_out(WorldState<Model>& w) {
     outlet.end_step(w.time_step);
   };
   for (Outlet& outlet : w.outlets) {
-    const surface::Bounds region = outlet.region();
+    const surface::Aabb region = outlet.region();
     take(
         outlet, [&](const auto& chunk) { return boxes_overlap(chunk.low, chunk.high, region.low, region.high); },
         [&](const Vec3& x) { return none_below(x, region.low) && none_below(region.high, x); });
   }
   if (ends) {
-    const surface::Bounds& d = *w.borders;
+    const surface::Aabb& d = *w.borders;
     // Written such that a NaN is no grain that left: it is reported.
     const auto is_out = [&](const Vec3& low, const Vec3& high) {
       return low.x() < d.low.x() || low.y() < d.low.y() || low.z() < d.low.z() || high.x() > d.high.x() ||

@@ -129,7 +129,7 @@ class WorldSetup {
   /// may be without end: {{-1, -1, -HUGE_VAL}, {1, 1, -0.1}} takes what falls below z = -0.1 m. A grain that is taken
   /// is gone at once for who looks; others feel it for up to 16 steps more, until the next neighbour list. Throws Error
   /// for a box that is none.
-  OutletId add_outlet(const surface::Bounds& region, const OutletOptions& o = {}) {
+  OutletId add_outlet(const surface::Aabb& region, const OutletOptions& o = {}) {
     state_.outlets.emplace_back(region, o);
     return OutletId(state_.outlets.size() - 1);
   }

@@ -6,14 +6,14 @@
 #include <random>
 
 using dem::Vec3;
+using dem::surface::Aabb;
 using dem::surface::BoundingVolumeTree;
-using dem::surface::Bounds;
 
 TEST_CASE("a tree of boxes finds what a loop over all boxes finds, in the order of its places") {
   std::mt19937 engine(1);
   std::uniform_real_distribution<double> place(-1.0, 1.0), size(0.0, 0.2);
   for (const std::size_t n : {0u, 1u, 4u, 5u, 37u, 1000u}) {
-    std::vector<Bounds> boxes;
+    std::vector<Aabb> boxes;
     for (std::size_t k = 0; k < n; ++k) {
       const Vec3 low(place(engine), place(engine), place(engine));
       boxes.push_back({low, low + Vec3(size(engine), size(engine), size(engine))});
@@ -21,16 +21,16 @@ TEST_CASE("a tree of boxes finds what a loop over all boxes finds, in the order 
     const BoundingVolumeTree tree(boxes);
     REQUIRE(tree.order().size() == n);
     // The boxes of the leaves, which are halves of halves of the places.
-    std::vector<Bounds> leaf(n);
+    std::vector<Aabb> leaf(n);
     const std::function<void(std::size_t, std::size_t)> halve = [&](std::size_t from, std::size_t to) {
       if (to - from > BoundingVolumeTree::items_in_a_leaf) {
         halve(from, from + (to - from) / 2);
         halve(from + (to - from) / 2, to);
         return;
       }
-      Bounds all = boxes[tree.order()[from]];
+      Aabb all = boxes[tree.order()[from]];
       for (std::size_t k = from; k < to; ++k) {
-        const Bounds& b = boxes[tree.order()[k]];
+        const Aabb& b = boxes[tree.order()[k]];
         all = {all.low.cwiseMin(b.low), all.high.cwiseMax(b.high)};
       }
       std::fill(leaf.begin() + static_cast<std::ptrdiff_t>(from), leaf.begin() + static_cast<std::ptrdiff_t>(to), all);
@@ -54,16 +54,16 @@ TEST_CASE("a tree of boxes finds what a loop over all boxes finds, in the order 
       CHECK(std::adjacent_find(on_way.begin(), on_way.end()) == on_way.end());
       // What is wanted is there; what is there besides lies in a leaf that the question meets.
       for (std::uint32_t k = 0; k < n; ++k) {
-        const auto away = [&](const Bounds& b) { return (p.cwiseMax(b.low).cwiseMin(b.high) - p).norm(); };
-        const auto meets = [&](const Bounds& b) {
+        const auto away = [&](const Aabb& b) { return (p.cwiseMax(b.low).cwiseMin(b.high) - p).norm(); };
+        const auto meets = [&](const Aabb& b) {
           return (b.low.array() <= p.array() + radius).all() && (b.high.array() >= p.array()).all();
         };
-        const Bounds& b = boxes[tree.order()[k]];
+        const Aabb& b = boxes[tree.order()[k]];
         const bool near = std::binary_search(found.begin(), found.end(), k);
         const bool in = std::binary_search(in_box.begin(), in_box.end(), k);
         if (away(b) < radius) CHECK(near);
         if (meets(b)) CHECK(in);
-        const auto on = [&](const Bounds& wanted) {  // some of the way in all three slabs at once
+        const auto on = [&](const Aabb& wanted) {  // some of the way in all three slabs at once
           const Vec3 d = tip - p, one = (wanted.low - p).cwiseQuotient(d), other = (wanted.high - p).cwiseQuotient(d);
           return std::max(0.0, one.cwiseMin(other).maxCoeff()) < std::min(1.0, one.cwiseMax(other).minCoeff());
         };
@@ -76,7 +76,7 @@ TEST_CASE("a tree of boxes finds what a loop over all boxes finds, in the order 
 }
 
 TEST_CASE("boxes that lie on each other do not spoil a tree") {
-  const std::vector<Bounds> boxes(1000, {Vec3(0, 0, 0), Vec3(1, 1, 1)});
+  const std::vector<Aabb> boxes(1000, {Vec3(0, 0, 0), Vec3(1, 1, 1)});
   const BoundingVolumeTree tree(boxes);
   CHECK(tree.nodes() < 2000);
   std::size_t found = 0;

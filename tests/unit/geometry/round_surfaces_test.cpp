@@ -158,7 +158,7 @@ TEST_CASE("superquadrics of any exponent: the place found is the nearest one, an
 
 TEST_CASE("points of round surfaces lie on them") {
   int n = 0;
-  const dem::surface::Bounds all = {Vec3::Constant(-9), Vec3::Constant(9)};
+  const dem::surface::Aabb all = {Vec3::Constant(-9), Vec3::Constant(9)};
   const Superquadric s({1.0, 1.5, 2.0}, {4, 3, 2});
   s.points(all, [&](std::uint32_t k, const auto& p, double) {
     CHECK(k == static_cast<std::uint32_t>(n++));

@@ -16,7 +16,7 @@ using dem::soil::AverageGrid;
 using dem::soil::Averages;
 using dem::soil::averages;
 using dem::soil::Kernel;
-using dem::surface::Bounds;
+using dem::surface::Aabb;
 
 namespace {
 
@@ -91,7 +91,7 @@ TEST_CASE("the averages of a compressed lattice are those of its cell") {
     }
   };
   // A box of whole cells, whose borders run midway between grains; and the same cut into cells.
-  const Bounds box = {Vec3(1.5 * pitch), Vec3(5.5 * pitch)};
+  const Aabb box = {Vec3(1.5 * pitch), Vec3(5.5 * pitch)};
   check(average_in(w, box), 1e-12);
   for (const Average& a : average_slices(w, box, 1, 4)) check(a, 1e-12);
   for (const Average& a : averages(w, {box, {2, 4, 1}}).values) check(a, 1e-12);

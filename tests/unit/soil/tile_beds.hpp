@@ -23,7 +23,7 @@ void set_up_tiled(World& w, const char* floor = "floor") {
 /// A cell of so many tiles, without grains.
 inline dem::World<TiledCubes> tiled_cell(int along_x = 1, int along_y = 1, int threads = 1) {
   dem::WorldOptions o = options({0, 0, -g}, 1e-5);
-  o.domain = dem::surface::Bounds{{0, 0, -1}, {along_x * tile_length, along_y * tile_width, 1}};
+  o.domain = dem::surface::Aabb{{0, 0, -1}, {along_x * tile_length, along_y * tile_width, 1}};
   o.periodic = {.x = true, .y = true};
   o.threads = threads;
   dem::World<TiledCubes> w(o);

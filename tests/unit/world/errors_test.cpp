@@ -174,7 +174,7 @@ TEST_CASE("a material that nothing is made of is refused, with those that are th
 TEST_CASE("domains, gravity and velocities that make no sense are refused") {
   check_refused(
       [] {
-        dem::World<Balls> w(with([](auto& o) { o.domain = dem::surface::Bounds{{0, 0, 0}, {1, NAN, 1}}; }));
+        dem::World<Balls> w(with([](auto& o) { o.domain = dem::surface::Aabb{{0, 0, 0}, {1, NAN, 1}}; }));
       },
       "domain's lower corner");
   dem::World<Balls> w(options({0, 0, 0}, 1e-3));

@@ -6,12 +6,12 @@
 
 using Catch::Approx;
 using dem::BeyondDomain;
-using dem::surface::Bounds;
+using dem::surface::Aabb;
 using Problem = dem::StepReport::Problem;
 
 namespace {
 
-const Bounds below_the_floor = {Vec3(-HUGE_VAL, -HUGE_VAL, -HUGE_VAL), Vec3(HUGE_VAL, HUGE_VAL, 0.0)};
+const Aabb below_the_floor = {Vec3(-HUGE_VAL, -HUGE_VAL, -HUGE_VAL), Vec3(HUGE_VAL, HUGE_VAL, 0.0)};
 
 /// Balls of 1 mm on their way, without weight unless given.
 dem::World<Balls> balls(dem::WorldOptions o = options({0, 0, 0}, 1e-5)) {
@@ -99,7 +99,7 @@ TEST_CASE("who leaned on a grain that was taken feels it for 16 steps at the mos
 TEST_CASE("a domain reports, removes, or lets go on") {
   for (const BeyondDomain what : {BeyondDomain::report, BeyondDomain::remove, BeyondDomain::go_on}) {
     dem::WorldOptions o = options({0, 0, -g}, 1e-5);
-    o.domain = Bounds{Vec3(-1, -1, -0.01), Vec3(1, 1, 1)};
+    o.domain = Aabb{Vec3(-1, -1, -0.01), Vec3(1, 1, 1)};
     o.beyond_domain = what;
     auto w = balls(o);
     for (int k = 0; k < 300; ++k) add(w, {3e-3 * (k % 20), 3e-3 * (k / 20), 1e-3 * (k % 7)});
@@ -117,7 +117,7 @@ TEST_CASE("a domain reports, removes, or lets go on") {
 
 TEST_CASE("grains that are not finite are reported, not counted as gone") {
   dem::WorldOptions o = options({0, 0, 0}, 1e-5);
-  o.domain = Bounds{Vec3(-1, -1, -1), Vec3(1, 1, 1)};
+  o.domain = Aabb{Vec3(-1, -1, -1), Vec3(1, 1, 1)};
   o.beyond_domain = BeyondDomain::remove;
   auto w = balls(o);
   add(w, {0, 0, 0});

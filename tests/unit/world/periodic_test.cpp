@@ -19,7 +19,7 @@ constexpr double length = 0.030, width = 0.024;  // m, of the cell
 
 dem::WorldOptions cell(const Vec3& gravity, dem::PeriodicAxes periodic, int threads = 1) {
   dem::WorldOptions o = options(gravity, 1e-5);
-  o.domain = dem::surface::Bounds{{0, 0, -1}, {length, width, 1}};
+  o.domain = dem::surface::Aabb{{0, 0, -1}, {length, width, 1}};
   o.periodic = periodic;
   o.threads = threads;
   return o;
@@ -273,7 +273,7 @@ TEST_CASE("a cell that cannot be is refused in words") {
   check_refused([] { dem::World<PeriodicCubes> w; }, "set WorldOptions::domain to the cell");
   check_refused(
       [] {
-        dem::World<PeriodicCubes> w({.domain = dem::surface::Bounds{{0, 0, 0}, {1, 1, 1}}});
+        dem::World<PeriodicCubes> w({.domain = dem::surface::Aabb{{0, 0, 0}, {1, 1, 1}}});
       },
       "name no periodic direction");
   dem::WorldOptions o = cell({0, 0, -g}, {.x = true});
@@ -309,7 +309,7 @@ TEST_CASE("contacts across a border count in lists, stresses and energies") {
     w.add_particle({SpeciesId(0), {0.7e-3 + pitch * (k % 10), 1e-3 + pitch * (k / 10), 0}});
   }
   CHECK(dem::contacts_of(w).size() == 80 * 2 * 4);
-  const dem::surface::Bounds box = {{0, 0, -0.5 * high}, {length, width, 0.5 * high}};
+  const dem::surface::Aabb box = {{0, 0, -0.5 * high}, {length, width, 0.5 * high}};
   for (const auto& a : dem::soil::averages(w, {box, {5, 3, 1}}).values) {
     // 2.5 faces in a cell of the grid along x, and so on: only the sum is that of whole cubes.
     CHECK(a.contact_stress(2, 2) == Catch::Approx(0.0).margin(1e-9));

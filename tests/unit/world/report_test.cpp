@@ -39,7 +39,7 @@ TEST_CASE("a good run says that all is well") {
 
 TEST_CASE("a grain that leaves the domain is named") {
   dem::WorldOptions o = options({0, 0, 0}, 2e-5);
-  o.domain = dem::surface::Bounds{Vec3(-1, -1, -1), Vec3(1, 1, 1)};
+  o.domain = dem::surface::Aabb{Vec3(-1, -1, -1), Vec3(1, 1, 1)};
   for (const Vec3& way :
        {Vec3(1, 0, 0), Vec3(-1, 0, 0), Vec3(0, 1, 0), Vec3(0, -1, 0), Vec3(0, 0, 1), Vec3(0, 0, -1)}) {
     auto w = make(o);
@@ -64,7 +64,7 @@ TEST_CASE("a grain that leaves the domain is named") {
 
 TEST_CASE("a lost grain does not stop a run that goes on, nor the contacts of others") {
   dem::WorldOptions o = options({0, 0, -9.81}, 1e-5);
-  o.domain = dem::surface::Bounds{Vec3(-1, -1, -1), Vec3(1, 1, 1)};
+  o.domain = dem::surface::Aabb{Vec3(-1, -1, -1), Vec3(1, 1, 1)};
   auto w = make<Cubes>(o);
   const auto plate = w.add_surface(w.ground(), dem::surface::Plane{});
   add(w, {0, 0, 1e-3});

@@ -22,7 +22,7 @@ constexpr double edge = 0.02, rate = 30.0;  // m, of the cell; 1/s
 
 dem::WorldOptions cell(double low_z, double shear = rate) {
   dem::WorldOptions o = options(Vec3::Zero(), 1e-5);
-  o.domain = dem::surface::Bounds{{0, 0, low_z}, {edge, edge, low_z + edge}};
+  o.domain = dem::surface::Aabb{{0, 0, low_z}, {edge, edge, low_z + edge}};
   o.periodic = {true, true, true};
   o.shear_rate = shear;
   return o;

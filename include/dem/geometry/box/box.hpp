@@ -58,7 +58,7 @@ class Box {
 
   /// Points for contact with other surfaces: callback(number, point, radius), numbers ascending.
   template <class Callback>
-  void points(const Bounds&, Callback&& callback) const {
+  void points(const Aabb&, Callback&& callback) const {
     for_each_point([&](std::uint32_t k, const Vector3<double>& p) { callback(k, p, 0.0); });
   }
   /// For grains that offer penetration(), within a radius of p: corners 0 to 7, and from 8 on points of the edges near
@@ -79,7 +79,7 @@ class Box {
   bool has_points() const { return true; }
   /// The edges, for contact with other bodies: callback(number, one end, other end), most_parts numbers an edge.
   template <class Callback>
-  void edges(const Bounds&, Callback&& callback) const {
+  void edges(const Aabb&, Callback&& callback) const {
     const double half[3] = {half_.x, half_.y, half_.z};
     for (std::uint32_t k = 0; k < 12; ++k) {
       const std::uint32_t axis = k / 4;
@@ -101,7 +101,7 @@ class Box {
            clip_between(tail.z, d.z, half_.z, from, to);
   }
 
-  Bounds bounds() const { return {-to_eigen(half_), to_eigen(half_)}; }
+  Aabb bounds() const { return {-to_eigen(half_), to_eigen(half_)}; }
 
  private:
   static constexpr std::uint32_t first_edge = 12 * 1001;  ///< beyond the numbers of points

@@ -91,7 +91,7 @@ class Cylinder {
 
   /// Fixed points of the rims, for contact with other bodies: callback(number, point, radius), numbers ascending.
   template <class Callback>
-  void points(const Bounds&, Callback&& callback) const {
+  void points(const Aabb&, Callback&& callback) const {
     rims([&](std::uint32_t rim, const Vector3<double>& middle, double r) {
       for_each_point_of_rim(rim, middle, r, [&](std::uint32_t k, const Vector3<double>& p) { callback(k, p, 0.0); });
     });
@@ -169,7 +169,7 @@ class Cylinder {
     return from < to;
   }
 
-  Bounds bounds() const {
+  Aabb bounds() const {
     const double behind = is_drum_ ? outer_ : 0.0;
     const Vec3 half(outer_ + behind, outer_ + behind, half_ + behind);
     return {-half, half};

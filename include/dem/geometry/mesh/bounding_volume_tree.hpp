@@ -18,10 +18,10 @@ class BoundingVolumeTree {
   static constexpr std::uint32_t items_in_a_leaf = 2;
 
   BoundingVolumeTree() = default;
-  DEM_LAZY explicit BoundingVolumeTree(std::span<const Bounds> boxes) : order_(boxes.size()) {
+  DEM_LAZY explicit BoundingVolumeTree(std::span<const Aabb> boxes) : order_(boxes.size()) {
     std::iota(order_.begin(), order_.end(), 0u);
     std::vector<Vec3> middle;
-    for (const Bounds& b : boxes) middle.push_back(0.5 * (b.low + b.high));
+    for (const Aabb& b : boxes) middle.push_back(0.5 * (b.low + b.high));
     if (!boxes.empty()) split(boxes, middle, 0, static_cast<std::uint32_t>(boxes.size()));
   }
 
@@ -101,7 +101,7 @@ class BoundingVolumeTree {
     for (std::uint32_t k = 0; k < node.count; ++k) f(node.first + k);
   }
 
-  void split(std::span<const Bounds> boxes, const std::vector<Vec3>& middle, std::uint32_t from, std::uint32_t to) {
+  void split(std::span<const Aabb> boxes, const std::vector<Vec3>& middle, std::uint32_t from, std::uint32_t to) {
     const std::size_t self = nodes_.size();
     Vec3 low = filled(1e300), high = -low, first = low, last = high;
     for (std::uint32_t k = from; k < to; ++k) {

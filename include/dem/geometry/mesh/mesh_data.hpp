@@ -62,7 +62,7 @@ struct MeshData {
   PointSet corners;  ///< those of them that stick out: on sharp edges, or on a convex surface
   EdgeSet edges;     ///< that stick out, see is_ridge
   EdgeSet bends;     ///< others that are long, see is_long_bend; for bodies, which may meet between far vertices
-  Bounds bounds;
+  Aabb bounds;
   double mean_edge = 0.0;  ///< m
 };
 
@@ -219,7 +219,7 @@ DEM_LAZY inline MeshData build_mesh(const IndexedMesh& given, MeshFacing facing,
   RepairedMesh whole = repaired(given, facing, tolerance);
   MeshData m;
   m.report = whole.report;
-  std::vector<Bounds> boxes;
+  std::vector<Aabb> boxes;
   m.bounds = {filled(1e300), filled(-1e300)};
   for (std::size_t t = 0; t < whole.mesh.triangles.size(); ++t) {
     const Vec3 a = whole.mesh.corner(t, 0), b = whole.mesh.corner(t, 1), c = whole.mesh.corner(t, 2);

@@ -111,7 +111,7 @@ class TriangleMesh {
 
   /// Points for contact with other surfaces: callback(number, point, radius), numbers ascending.
   template <class Callback>
-  void points(const Bounds& box, Callback&& callback) const {
+  void points(const Aabb& box, Callback&& callback) const {
     data_->points.for_each_in(box, [&](std::uint32_t k, const Vector3<double>& p) { callback(k, p, 0.0); });
   }
   /// What sticks out within a radius of p, for grains that offer penetration(): vertices, and points of the edges near
@@ -128,7 +128,7 @@ class TriangleMesh {
   /// Edges that stick out and may lie in a box, for contact with other bodies: callback(number, one end, other end),
   /// most_parts numbers an edge.
   template <class Callback>
-  void edges(const Bounds& box, Callback&& callback) const {
+  void edges(const Aabb& box, Callback&& callback) const {
     const auto numbered_from = [&](std::size_t first) {
       return [first, &callback](std::uint32_t k, const Vector3<double>& tail, const Vector3<double>& head) {
         // As many as the keys of contacts can tell apart.
@@ -146,7 +146,7 @@ class TriangleMesh {
     if (options_.side == MeshSide::solid) surface::parts_inside(*data_, tail, head, callback);
   }
 
-  Bounds bounds() const { return {to_eigen(low_), to_eigen(high_)}; }
+  Aabb bounds() const { return {to_eigen(low_), to_eigen(high_)}; }
 
   /// Points of partners that may be so deep (m) are found behind the surface, if no `depth` was chosen: a solid's to
   /// that depth, a sheet's to a quarter of it, as there may be others beyond.
@@ -317,7 +317,7 @@ class TriangleMesh {
   }
 
   void set_point_depth(double depth) {
-    const Bounds& box = data_->bounds;
+    const Aabb& box = data_->bounds;
     if (options_.depth == 0.0 && options_.side == MeshSide::solid) {
       depth = std::min(depth, 0.5 * (box.high - box.low).minCoeff());
     }

@@ -17,7 +17,7 @@ class Plane {
     if (p.z < radius) callback(0u, Vector3<double>{0, 0, -1}, p.z);
   }
 
-  Bounds bounds() const {
+  Aabb bounds() const {
     const double far = 1e150;
     return {filled(-far), Vec3(far, far, 0.0)};
   }

@@ -45,7 +45,7 @@ class Sphere {
 
   /// A ball shows itself to other bodies: callback(number, point, radius).
   template <class Callback>
-  void points(const Bounds&, Callback&& callback) const {
+  void points(const Aabb&, Callback&& callback) const {
     if (side_ == Side::outside) callback(0u, Vector3<double>{0, 0, 0}, radius_);
   }
   bool has_points() const { return side_ == Side::outside; }
@@ -61,7 +61,7 @@ class Sphere {
   }
   bool is_on_ball(const Vector3<double>&) const { return true; }
 
-  Bounds bounds() const {
+  Aabb bounds() const {
     const Vec3 half = filled(side_ == Side::inside ? 2.0 * radius_ : radius_);
     return {-half, half};
   }

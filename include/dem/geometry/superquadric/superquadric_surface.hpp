@@ -62,7 +62,7 @@ class Superquadric {
 
   /// Points spread over the skin, for contact with other bodies: callback(number, point, radius), numbers ascending.
   template <class Callback>
-  void points(const Bounds& box, Callback&& callback) const {
+  void points(const Aabb& box, Callback&& callback) const {
     const Vector3<double> low = from_eigen(box.low), high = from_eigen(box.high);
     for_each_point([&](std::uint32_t k, const Vector3<double>& p) {
       if (p.x >= low.x && p.y >= low.y && p.z >= low.z && p.x <= high.x && p.y <= high.y && p.z <= high.z)
@@ -80,7 +80,7 @@ class Superquadric {
   const shape::Superquadric* grain() const { return grain_.get(); }
   bool has_points() const { return side_ == Side::outside; }
 
-  Bounds bounds() const {
+  Aabb bounds() const {
     const Vec3 half = side_ == Side::inside ? Vec3(1.5 * radii()) : radii();
     return {-half, half};
   }

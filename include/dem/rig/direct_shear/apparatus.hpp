@@ -82,7 +82,7 @@ class Apparatus {
   SensorId bottom_sensor, lid_sensor, shearing_sensor;
 
  private:
-  static surface::Bounds domain(const Settings& s, const Height& height) {
+  static surface::Aabb domain(const Settings& s, const Height& height) {
     const double x = 0.5 * s.box_length + s.wall_thickness, y = 0.5 * s.box_width + s.wall_thickness;
     return {Vec3(-x, -y, -s.wall_thickness), Vec3(x, y, height.wall_top + lid_thickness)};
   }

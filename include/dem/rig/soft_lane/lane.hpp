@@ -89,7 +89,7 @@ World<Model> make_lane(const Settings& s, const typename Model::Shape& shape, st
   const double over_x = is_tile ? 0.0 : t, far_y = 0.5 * (track + width) + t;
   World<Model> world({.time_step = time_step,
                       .overlap_limit = 1.8,  // a grain that is jammed for a moment does not end a run; the report tells
-                      .domain = surface::Bounds{Vec3(low_x - over_x, -far_y, -t), Vec3(high_x + over_x, far_y, top)},
+                      .domain = surface::Aabb{Vec3(low_x - over_x, -far_y, -t), Vec3(high_x + over_x, far_y, top)},
                       .beyond_domain = BeyondDomain::remove,
                       .periodic = {.x = is_tile},
                       .threads = s.bed.threads > 0 ? s.bed.threads : threads_for(grains.size() + to_come),
