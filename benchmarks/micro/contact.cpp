@@ -146,7 +146,7 @@ void narrow_phase_cube8(benchmark::State& state) {
   for (auto _ : state) {
     for (std::size_t k = 0; k < pairs; ++k) {
       const double* pose = poses.data() + 2 * k * Cube::pose_size;
-      benchmark::DoNotOptimize(Cube::touching(cube, pose, cube, pose + Cube::pose_size, separations[k]));
+      benchmark::DoNotOptimize(Cube::contact_bits(cube, pose, cube, pose + Cube::pose_size, separations[k]));
     }
   }
   state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(pairs));

@@ -20,7 +20,7 @@ std::vector<dem::Vector3<double>> places(const dem::surface::TriangleMesh& tyre,
   while (result.size() < 1000) {
     const dem::Vector3<double> p = {place(engine), place(engine), 0.35 * place(engine)};
     double gap = 1e300;
-    tyre.touch(p, high, [&](std::uint32_t, const dem::Vector3<double>&, double g) { gap = std::min(gap, g); });
+    tyre.contacts(p, high, [&](std::uint32_t, const dem::Vector3<double>&, double g) { gap = std::min(gap, g); });
     if (gap > low && gap < high) result.push_back(p);
   }
   return result;
@@ -39,7 +39,7 @@ void query(benchmark::State& state, double low, double high) {
   double sum = 0.0;
   std::size_t k = 0;
   for (auto _ : state) {
-    tyre.touch(centres[k], 8e-3, [&](std::uint32_t, const dem::Vector3<double>&, double gap) { sum += gap; });
+    tyre.contacts(centres[k], 8e-3, [&](std::uint32_t, const dem::Vector3<double>&, double gap) { sum += gap; });
     k = (k + 1) % centres.size();
   }
   benchmark::DoNotOptimize(sum);

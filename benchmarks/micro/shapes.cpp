@@ -43,8 +43,8 @@ void narrow_phase(benchmark::State& state, const A& a, const B& b, bool known) {
   const auto collide = [&](std::size_t k, Memory& memory) {
     std::int64_t contacts = 0;
     dem::shape::collide_pair(a, at(pose_a, k), b, at(pose_b, k), separation[k], memory,
-                             [&](std::uint32_t, const auto& touch) {
-                               benchmark::DoNotOptimize(touch);
+                             [&](std::uint32_t, const auto& point) {
+                               benchmark::DoNotOptimize(point);
                                ++contacts;
                              });
     return contacts;
@@ -57,7 +57,7 @@ void narrow_phase(benchmark::State& state, const A& a, const B& b, bool known) {
     a.orient(turn(), at(pose_a, k));
     b.orient(turn(), at(pose_b, k));
     const Vec3 way = Vec3(normal(random), normal(random), normal(random)).normalized();
-    // From apart to the first touch, which is at most half a percent of the distance deep.
+    // From apart to first contact, which is at most half a percent of the distance deep.
     for (double distance = a.bounding_radius() + b.bounding_radius(); distance > 0; distance *= 0.995) {
       separation[k] = dem::from_eigen(Vec3(distance * way));
       Memory nothing{};

@@ -73,7 +73,7 @@ TEMPLATE_TEST_CASE("n steps, a file and n steps are 2n steps in every bit", "", 
   const auto columns = dem::io::columns_of(whole.world);
   CHECK(columns.at("contacts/pairs/key").rows() > 20);
   CHECK(columns.at("contacts/surfaces/key").rows() > 5);
-  CHECK(whole.touches_of_bodies > 0);
+  CHECK(whole.contacts_of_bodies > 0);
   CHECK(whole.world.state().rebuilds > 3);
   const auto& parts = whole.world.machine().parts();
   CHECK(parts.friction[0].force.x * parts.friction[0].force.x +

@@ -79,7 +79,7 @@ void add_machine(World& world, const SceneOptions& o) {
 template <class Model>
 struct Scene {
   dem::World<Model> world;
-  int touches_of_bodies = 0;  ///< seen at the ends of pieces of run()
+  int contacts_of_bodies = 0;  ///< seen at the ends of pieces of run()
 
   explicit Scene(const SceneOptions& o, const dem::ContactParameters<Model>& contact,
                  const std::vector<typename Model::Shape>& shapes, bool has_grains = true)
@@ -116,7 +116,7 @@ struct Scene {
       const auto report = world.run(std::min<std::uint64_t>(10, steps - k));
       INFO(report.text);
       REQUIRE(report);
-      for (const auto& pair : world.state().body_contacts.pairs) touches_of_bodies += pair.contacts;
+      for (const auto& pair : world.state().body_contacts.pairs) contacts_of_bodies += pair.contacts;
     }
   }
 };

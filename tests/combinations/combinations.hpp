@@ -29,7 +29,7 @@ template <class S>
 using PlasticGrains = Laws<contact::Hysteretic, friction::CoulombViscous, rolling::None, cohesion::DMT, S>;
 
 inline constexpr double half = 1e-3;                           // m, of the cubes' edges
-inline constexpr double spring = 500.0, pull_of_touch = 4e-4;  // N/m, N: twice the weight of a grain
+inline constexpr double spring = 500.0, constant_pull = 4e-4;  // N/m, N: twice the weight of a grain
 
 /// The constants of a model, with a restitution of 0.3.
 template <class Model>
@@ -41,10 +41,10 @@ ContactParameters<Model> constants_of() {
             friction::Mindlin::with(pair, 0.4, 0.3),
             {{0.1, spring, 0.3}, {0.05, spring, 0.3}}};
   } else if constexpr (std::is_same_v<Normal, Linear>) {
-    return {Linear::with_restitution(spring, 0.3), {0.4, spring, 0.3}, {}, {pull_of_touch}};
+    return {Linear::with_restitution(spring, 0.3), {0.4, spring, 0.3}, {}, {constant_pull}};
   } else {
     // 2 pi w R* with the largest effective radius, that of a cube on a plane.
-    return {contact::Hysteretic::with_restitution(spring, 0.3), {0.4, 0.05}, {}, {pull_of_touch / (2 * M_PI * half)}};
+    return {contact::Hysteretic::with_restitution(spring, 0.3), {0.4, 0.05}, {}, {constant_pull / (2 * M_PI * half)}};
   }
 }
 

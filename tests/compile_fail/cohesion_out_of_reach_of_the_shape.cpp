@@ -4,9 +4,9 @@
 
 struct Short : dem::shape::Sphere {
   using dem::shape::Sphere::Sphere;
-  static std::uint64_t touching(const Short& a, const double* pa, const Short& b, const double* pb,
-                                const dem::Vector3<double>& separation) {
-    return dem::shape::Sphere::touching(a, pa, b, pb, separation);
+  static std::uint64_t contact_bits(const Short& a, const double* pa, const Short& b, const double* pb,
+                                    const dem::Vector3<double>& separation) {
+    return dem::shape::Sphere::contact_bits(a, pa, b, pb, separation);
   }
 };
 struct Grain : dem::Model {

@@ -15,7 +15,7 @@ template <class Surface>
 __device__ double nearest(const Surface& surface, const Vector3<double>& p, double radius) {
   double least = radius;
   if (!surface.near(p, radius)) return least;
-  surface.touch(p, radius, [&](auto, const Vector3<double>&, double gap) { least = dem::min(least, gap); });
+  surface.contacts(p, radius, [&](auto, const Vector3<double>&, double gap) { least = dem::min(least, gap); });
   return least;
 }
 
@@ -24,7 +24,7 @@ template <class Shape>
 __device__ double overlap(const Shape& a, const double* pose_a, const Shape& b, const double* pose_b,
                           const Vector3<double>& d) {
   double sum = 0.0;
-  Shape::collide(a, pose_a, b, pose_b, d, [&](auto, const auto& touch) { sum += touch.geometry().overlap; });
+  Shape::collide(a, pose_a, b, pose_b, d, [&](auto, const auto& point) { sum += point.geometry().overlap; });
   return sum;
 }
 

@@ -32,12 +32,12 @@ dem::World<M> mixed_balls(int threads, double skin = 0.0) {
   return w;
 }
 
-using TouchingPairs = std::set<std::pair<ParticleId, ParticleId>>;
+using PairsInContact = std::set<std::pair<ParticleId, ParticleId>>;
 
-/// Pairs of grains in touch, each with the lower id first: all are tried.
+/// Pairs of grains in contact, each with the lower id first: all are tried.
 template <class World>
-TouchingPairs touching_by_brute_force(const World& w) {
-  TouchingPairs pairs;
+PairsInContact pairs_by_brute_force(const World& w) {
+  PairsInContact pairs;
   const auto grains = w.particles();
   std::vector<double> radius;
   std::vector<Vec3> x;
@@ -53,8 +53,8 @@ TouchingPairs touching_by_brute_force(const World& w) {
   return pairs;
 }
 template <class Model>
-TouchingPairs touching_in_lists(const dem::World<Model>& w) {
-  TouchingPairs pairs;
+PairsInContact pairs_in_lists(const dem::World<Model>& w) {
+  PairsInContact pairs;
   for (const auto& c : contacts_of(w)) {
     if (c.kind != dem::ContactKind::grains) continue;
     CHECK(pairs.insert(std::minmax(c.grain, c.other_grain)).second);
@@ -69,8 +69,8 @@ TEST_CASE("the contacts of a mixture of 1 : 20 are those that brute force finds"
   std::size_t most = 0, with_large = 0;
   for (int k = 0; k < 20; ++k) {
     REQUIRE(w.run(100));
-    const TouchingPairs expected = touching_by_brute_force(w);
-    CHECK(touching_in_lists(w) == expected);
+    const PairsInContact expected = pairs_by_brute_force(w);
+    CHECK(pairs_in_lists(w) == expected);
     most = std::max(most, expected.size());
     for (const auto& pair : expected) with_large += w.species_of(pair.second) == SpeciesId(2);
     CHECK(w.state().broad_phase.levels() >= 3);

@@ -61,7 +61,7 @@ void check_tower(const Shape& cube, const typename Resistance::template Paramete
 
 TEST_CASE("a tower of cubes with one contact a pair and torsion stands still for ten seconds") {
   // One point does not resist turning about its normal: without torsion the upper cubes keep the slow turn that the
-  // first touch gave them, 1e-5 rad/s here. A face of half edge h presses like a circle of radius h, on R* = 0.6 h: 3
+  // first contact gave them, 1e-5 rad/s here. A face of half edge h presses like a circle of radius h, on R* = 0.6 h: 3
   // pi/16 mu h/R* = 0.5 at the most.
   check_tower<Superquadric, dem::rolling::Torsion>(Superquadric(Vec3::Constant(half), Vec3::Constant(8)),
                                                    {0.3, stiffness, 0.3});

@@ -49,7 +49,7 @@ struct BodyContacts {
 
   std::vector<BodyPoint> points;
   std::vector<grain::Hit> hits;
-  std::vector<contact::SurfaceContactPoint<double>> touches;
+  std::vector<contact::SurfaceContactPoint<double>> contact_points;
   grain::ContactForces forces;
 
   /// What contacts remember of this step becomes what the next one starts from.
@@ -104,10 +104,11 @@ void sample_body(const SampledPair& at, bool back, const Surface& from, const Su
           const Vector3<double> place = from.axes * point.place, p = transpose_times(onto.axes, start + place);
           const double reach = shape::widened(point.radius, gap);
           if (!geometry.near(p, reach)) continue;
-          geometry.touch(p, reach, [&](std::uint32_t feature, const Vector3<double>& normal, double distance) {
+          geometry.contacts(p, reach, [&](std::uint32_t feature, const Vector3<double>& normal, double distance) {
             c.hits.push_back({BodyKey::make(at.pair, back, point.number, feature), static_cast<std::uint32_t>(at.pair),
                               back ? 1u : 0u, at.law});
-            c.touches.push_back({offset + place, onto.axes * normal, point.radius, distance, at.radius, point.weight});
+            c.contact_points.push_back(
+                {offset + place, onto.axes * normal, point.radius, distance, at.radius, point.weight});
           });
         }
         if constexpr (history_size < Model >> 0 && surface::NamesDirections<G>) {
@@ -118,17 +119,18 @@ void sample_body(const SampledPair& at, bool back, const Surface& from, const Su
       onto.geometry);
 }
 
-/// Makes the touches of a pair from `first` on one whole contact. Those of `b` with `a` look the other way.
+/// Makes the contact points of a pair from `first` on one whole contact. Those of `b` with `a` look the other way.
 template <class Model>
 void fit_pair(std::size_t first, BodyContacts<Model>& c) {
   const auto turn_round = [&] {
-    for (std::size_t k = first; k < c.touches.size(); ++k) {
-      if (c.hits[k].partner != 0) c.touches[k].normal = -c.touches[k].normal;
+    for (std::size_t k = first; k < c.contact_points.size(); ++k) {
+      if (c.hits[k].partner != 0) c.contact_points[k].normal = -c.contact_points[k].normal;
     }
   };
   turn_round();
-  contact::fit_weights(c.touches.size() - first, contact::Fit::always,
-                       [&](std::size_t k) -> contact::SurfaceContactPoint<double>& { return c.touches[first + k]; });
+  contact::fit_weights(
+      c.contact_points.size() - first, contact::Fit::always,
+      [&](std::size_t k) -> contact::SurfaceContactPoint<double>& { return c.contact_points[first + k]; });
   turn_round();
 }
 
@@ -144,10 +146,10 @@ void sample_pair(std::size_t k, std::span<const Surface> surfaces, const Materia
   const auto gap = body_gap<Model>(materials.table()[at.law], at.radius);
   const double wide = shape::widened(0.0, gap);
   if (!boxes_overlap(a.low, a.high, b.low - filled(wide), b.high + filled(wide))) return;
-  const std::size_t first = c.touches.size();
+  const std::size_t first = c.contact_points.size();
   if (!is_ball(b)) sample_body(at, false, a, b, body_a, gap, memories, c);
   if (is_ball(b) || !is_ball(a)) sample_body(at, true, b, a, body_b, gap, memories, c);
-  if (!is_ball(a) && !is_ball(b)) fit_pair(first, c);  // each touch of a ball is a contact
+  if (!is_ball(a) && !is_ball(b)) fit_pair(first, c);  // each point of a ball is a contact
 }
 
 /// The laws for the contacts that were found, and their forces for pairs and bodies.
@@ -163,7 +165,7 @@ void load_pairs(std::span<const Surface> surfaces, const Materials<Model>& mater
   };
   grain::ContactEvaluator<Model, contact::SurfaceContactPoint> evaluator(materials.table(), dt);
   const grain::Deepest deepest = evaluator.run(
-      c.hits, memories, c.forces, [&](std::size_t k) { return c.touches[k]; },
+      c.hits, memories, c.forces, [&](std::size_t k) { return c.contact_points[k]; },
       [&](std::size_t k) -> const PartnerView& { return surface_of(k, false).view; },
       [&](std::size_t k) -> const PartnerView& { return surface_of(k, true).view; });
   if (deepest.overlap > c.worst_overlap) {
@@ -205,7 +207,7 @@ void find_body_contacts(BodyContacts<Model>& c, std::span<const Surface> surface
   for (std::size_t at = 0; at < c.near.size();) {
     const std::size_t block = c.near[at] / BodyKey::pairs_of_a_block;
     c.hits.clear();
-    c.touches.clear();
+    c.contact_points.clear();
     for (; at < c.near.size() && c.near[at] / BodyKey::pairs_of_a_block == block; ++at) {
       sample_pair(c.near[at], surfaces, materials, std::span<const Body>(bodies), c.memories[block], c);
     }

@@ -83,15 +83,15 @@ class PointsTowards {
   }
   /// callback(wall, normal, gap) for all contacts of a ball at p, in the own frame.
   template <class Callback>
-  void touch(const Vector3<double>& p, double radius, Callback&& callback) const {
-    onto_.touch(seen(p), radius, [&](std::uint32_t feature, const Vector3<double>& normal, double gap) {
+  void contacts(const Vector3<double>& p, double radius, Callback&& callback) const {
+    onto_.contacts(seen(p), radius, [&](std::uint32_t feature, const Vector3<double>& normal, double gap) {
       callback(surface::family_of<Onto>(feature), transpose_times(a_.axes, b_.axes * normal), gap);
     });
   }
   /// The directions in which a ball at p meets the other surface; the nearest ones if they are too many.
   Ways find_ways(const Vector3<double>& p, double radius) const {
     Ways ways;
-    touch(p, radius, [&](std::uint32_t wall, const Vector3<double>& normal, double gap) {
+    contacts(p, radius, [&](std::uint32_t wall, const Vector3<double>& normal, double gap) {
       if (ways.count == most_ways) {
         const auto farthest = std::max_element(ways.way.begin(), ways.way.end(),
                                                [](const Way& a, const Way& b) { return a.gap < b.gap; });
@@ -112,7 +112,7 @@ class PointsTowards {
   static constexpr std::uint32_t any_wall = ~0u;
   Place nearest(const Vector3<double>& p, double radius, std::uint32_t of = any_wall) const {
     Place best = {1e300, {0, 0, 0}};
-    touch(p, radius, [&](std::uint32_t wall, const Vector3<double>& normal, double gap) {
+    contacts(p, radius, [&](std::uint32_t wall, const Vector3<double>& normal, double gap) {
       if (gap < best.gap && (of == any_wall || wall == of)) best = {gap, normal};
     });
     return best;

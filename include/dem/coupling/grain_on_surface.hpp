@@ -1,6 +1,6 @@
 #pragma once
 
-#include <dem/coupling/support_touches.hpp>
+#include <dem/coupling/support_contacts.hpp>
 #include <dem/geometry/contact_shares.hpp>
 #include <dem/geometry/shape.hpp>
 #include <dem/geometry/surface_traits.hpp>
@@ -20,11 +20,11 @@ inline constexpr std::uint32_t first_ball = 1u << 24;  ///< among its features
 struct SurfaceScratch {
   std::vector<std::uint32_t> law_of;
   std::vector<grain::Hit> hits;
-  std::vector<contact::SurfaceContactPoint<double>> touches;
-  std::vector<double> total_share;  ///< of the touches of patches (contact::PatchContactPoint); 1 from where it ends
+  std::vector<contact::SurfaceContactPoint<double>> contact_points;
+  std::vector<double> total_share;  ///< of contact points of patches (contact::PatchContactPoint); 1 from where it ends
   Columns3 images;                  ///< m, of the grains of a chunk, for one surface of a periodic world
-  std::vector<PartnerView> views;   ///< of the touches' grains as those images, in a periodic world
-  SupportTouches supports;          ///< of one grain on one surface
+  std::vector<PartnerView> views;   ///< of the contacts' grains as those images, in a periodic world
+  SupportContacts supports;         ///< of one grain on one surface
   grain::ContactForces forces;
 };
 
@@ -35,16 +35,16 @@ struct GrainAtSurface {
   Vector3<double> centre;  ///< m, of the grain in the surface's frame
 
   void add(SurfaceScratch& s, std::uint32_t sample, std::uint32_t feature,
-           const contact::SurfaceContactPoint<double>& touch) const {
+           const contact::SurfaceContactPoint<double>& point) const {
     s.hits.push_back({grain::SurfaceKey::make(surface, local, sample, feature), grain, surface, law});
-    s.touches.push_back(touch);
+    s.contact_points.push_back(point);
   }
 };
 
 /// A sample point of the grain on a surface, up to a gap where cohesion acts at a distance (else NoGap).
 template <class Surface, class Geometry, class Gap>
-void touch_with_sample(const GrainAtSurface& at, std::uint32_t index, const contact::SamplePoint& sample,
-                       const Surface& surface, const Geometry& geometry, Gap gap, SurfaceScratch& s) {
+void add_sample_contacts(const GrainAtSurface& at, std::uint32_t index, const contact::SamplePoint& sample,
+                         const Surface& surface, const Geometry& geometry, Gap gap, SurfaceScratch& s) {
   const Vector3<double> seen = at.centre + transpose_times(surface.axes, sample.centre);
   const auto add = [&](std::uint32_t feature, const Vector3<double>& normal, double distance) {
     at.add(s, index, feature,
@@ -53,41 +53,41 @@ void touch_with_sample(const GrainAtSurface& at, std::uint32_t index, const cont
   };
   if constexpr (!std::is_same_v<Gap, shape::NoGap>) {
     if (sample.radius == 0.0) {
-      surface::touch_point(geometry, seen, gap, add);
+      surface::point_contacts(geometry, seen, gap, add);
       return;
     }
   }
-  geometry.touch(seen, shape::widened(sample.radius, gap), add);
+  geometry.contacts(seen, shape::widened(sample.radius, gap), add);
 }
 
 /// Where a surface is flat, a grain meets it first with its support point, which lies between its sample points. The
-/// bounding sphere of the grain finds the directions to the surface. `first`: number of the first touch of the grain's
-/// own points, which lose their weight near a support point.
+/// bounding sphere of the grain finds the directions to the surface. `first`: number of the first contact of the
+/// grain's own points, which lose their weight near a support point.
 template <class Shape, class Surface, class Geometry, class Gap>
-void touch_with_supports(const GrainAtSurface& at, const Shape& grain, const Surface& surface, const Geometry& geometry,
-                         std::size_t first, Gap gap, SurfaceScratch& s) {
+void add_support_contacts(const GrainAtSurface& at, const Shape& grain, const Surface& surface,
+                          const Geometry& geometry, std::size_t first, Gap gap, SurfaceScratch& s) {
   s.supports.clear();
   const auto add_way = [&](std::uint32_t feature, const Vector3<double>& seen, double) {
     const Vector3<double> way = surface.axes * seen;
     s.supports.add_way({surface::family_of<Geometry>(feature), way, grain.even_support(at.pose, way)});
   };
-  geometry.touch(at.centre, shape::widened(grain.bounding_radius(), gap), add_way);
+  geometry.contacts(at.centre, shape::widened(grain.bounding_radius(), gap), add_way);
   const double radius = surface::radius_on(geometry, grain.mean_radius());
   for (std::size_t k = 0; k < s.supports.way_count(); ++k) {
     const Vector3<double> point = s.supports.way(k).point;
     const auto add = [&](std::uint32_t feature, const Vector3<double>& normal, double distance) {
-      s.supports.add_touch(k, surface::family_of<Geometry>(feature), feature,
+      s.supports.add_point(k, surface::family_of<Geometry>(feature), feature,
                            {point, surface.axes * normal, 0.0, distance, radius, 1.0});
     };
-    surface::touch_point(geometry, at.centre + transpose_times(surface.axes, point), shape::widened(0.0, gap), add);
+    surface::point_contacts(geometry, at.centre + transpose_times(surface.axes, point), shape::widened(0.0, gap), add);
   }
-  const std::size_t end = s.touches.size();
-  for (const auto& t : s.supports.sorted()) at.add(s, support_sample, t.feature, t.touch);
+  const std::size_t end = s.contact_points.size();
+  for (const auto& t : s.supports.sorted()) at.add(s, support_sample, t.feature, t.point);
   for (std::size_t way = 0; way < s.supports.way_count(); ++way) {
     if (!s.supports.is_used(way)) continue;
     for (std::size_t k = first; k < end; ++k) {
-      s.touches[k].area *=
-          grain.beside_support(s.touches[k].centre, s.supports.way(way).point, s.supports.way(way).along);
+      s.contact_points[k].area *=
+          grain.beside_support(s.contact_points[k].centre, s.supports.way(way).point, s.supports.way(way).along);
     }
   }
 }
@@ -95,8 +95,8 @@ void touch_with_supports(const GrainAtSurface& at, const Shape& grain, const Sur
 /// Corners and balls of a surface in a grain. A corner has the mean weight of the grain's own sample points, a ball
 /// that of a whole contact.
 template <class Shape, class Surface, class Geometry, class Gap>
-void touch_with_corners(const GrainAtSurface& at, const Shape& grain, const Surface& surface, const Geometry& geometry,
-                        Gap gap, SurfaceScratch& s) {
+void add_corner_contacts(const GrainAtSurface& at, const Shape& grain, const Surface& surface, const Geometry& geometry,
+                         Gap gap, SurfaceScratch& s) {
   double samples = 0.0, area = 0.0, radius = 0.0;
   const auto look_at_samples = [&] {
     if (samples > 0.0) return;
@@ -123,15 +123,15 @@ void touch_with_corners(const GrainAtSurface& at, const Shape& grain, const Surf
       add(corner, point + depth * outward, outward, depth, weight * area / samples);
     });
   }
-  if constexpr (surface::HasBalls<Geometry> && shape::TouchesBalls<Shape>) {
+  if constexpr (surface::HasBalls<Geometry> && shape::HasBallContact<Shape>) {
     if (!shape::has_shares(grain)) return;
     geometry.balls(at.centre, reach, [&](std::uint32_t ball, const Vector3<double>& centre, double of_ball) {
       contact::BallContactPoint t;
       const Vector3<double> seen = surface.axes * (centre - at.centre);
-      bool touches = false;
-      if constexpr (std::is_same_v<Gap, shape::NoGap>) touches = grain.touch_ball(at.pose, seen, of_ball, t);
-      else touches = grain.touch_ball(at.pose, seen, of_ball, t, gap);
-      if (!touches) return;
+      bool found = false;
+      if constexpr (std::is_same_v<Gap, shape::NoGap>) found = grain.ball_contact(at.pose, seen, of_ball, t);
+      else found = grain.ball_contact(at.pose, seen, of_ball, t, gap);
+      if (!found) return;
       if (!geometry.is_on_ball(at.centre + transpose_times(surface.axes, t.point))) return;
       look_at_samples();
       add(first_ball + ball, t.point + (0.5 * t.overlap) * t.normal, t.normal, t.overlap, 1.0);
@@ -151,33 +151,35 @@ bool touches_as_ball(const Shape& grain) {
 
 /// All contacts of a grain of one kind with a surface.
 template <class Shape, class Surface, class Geometry, class Gap>
-void touch_surface(const GrainAtSurface& at, const Shape& grain, const Surface& surface, const Geometry& geometry,
-                   Gap gap, SurfaceScratch& s) {
-  const std::size_t first = s.touches.size();
-  if constexpr (shape::TouchesBalls<Shape> && surface::MayBeBall<Geometry>) {
+void add_grain_contacts(const GrainAtSurface& at, const Shape& grain, const Surface& surface, const Geometry& geometry,
+                        Gap gap, SurfaceScratch& s) {
+  const std::size_t first = s.contact_points.size();
+  if constexpr (shape::HasBallContact<Shape> && surface::MayBeBall<Geometry>) {
     if (geometry.is_ball() && shape::has_shares(grain)) {  // one contact is all of it
-      touch_with_corners(at, grain, surface, geometry, gap, s);
+      add_corner_contacts(at, grain, surface, geometry, gap, s);
       return;
     }
   }
   if constexpr (requires { grain.mean_radius(); }) {
     if (touches_as_ball(grain)) {
       const double radius = grain.mean_radius();
-      touch_with_sample(at, 0, {{0, 0, 0}, radius, radius, 1.0}, surface, geometry, gap, s);
+      add_sample_contacts(at, 0, {{0, 0, 0}, radius, radius, 1.0}, surface, geometry, gap, s);
       return;
     }
   }
   grain.sample_points(at.pose, [&](std::uint32_t index, const contact::SamplePoint& sample) {
-    touch_with_sample(at, index, sample, surface, geometry, gap, s);
+    add_sample_contacts(at, index, sample, surface, geometry, gap, s);
   });
   if constexpr (shape::HasSupport<Shape>) {
-    if (shape::has_shares(grain)) touch_with_supports(at, grain, surface, geometry, first, gap, s);
+    if (shape::has_shares(grain)) add_support_contacts(at, grain, surface, geometry, first, gap, s);
   }
-  if constexpr (shape::HasPenetration<Shape>) touch_with_corners(at, grain, surface, geometry, gap, s);
+  if constexpr (shape::HasPenetration<Shape>) add_corner_contacts(at, grain, surface, geometry, gap, s);
   if constexpr (requires { Shape::shares_fit; }) {
     if (!shape::has_shares(grain)) return;
-    const auto point = [&](std::size_t k) -> contact::SurfaceContactPoint<double>& { return s.touches[first + k]; };
-    const std::size_t count = s.touches.size() - first;
+    const auto point = [&](std::size_t k) -> contact::SurfaceContactPoint<double>& {
+      return s.contact_points[first + k];
+    };
+    const std::size_t count = s.contact_points.size() - first;
     contact::fit_weights(count, Shape::shares_fit, point);
     if constexpr (shape::PatchShape<Shape>) {
       s.total_share.resize(first, 1.0);

@@ -110,7 +110,7 @@ void find_hits_on(const ChunkAtSurfaces<Model>& at, std::size_t number) {
       const Vector3<double> centre = transpose_times(surface.axes, positions[i] - surface.origin);
       const double radius = shape::widened(grain.bounding_radius(), gap);
       if (!geometry.near(centre, radius)) continue;
-      // A shape of one sample point asks the same question by touching.
+      // A shape of one sample point asks the same question by contacts().
       if constexpr (Shape::has_orientation && surface::KnowsClose<G>) {
         if (!geometry.close(centre, radius, shows_points<Shape>)) continue;
       }
@@ -120,7 +120,7 @@ void find_hits_on(const ChunkAtSurfaces<Model>& at, std::size_t number) {
                                   s.law_of[p.species[i]],
                                   p.pose_of(i),
                                   centre};
-      shape::visit_kind(grain, [&](const auto& kind) { touch_surface(one, kind, surface, geometry, gap, s); });
+      shape::visit_kind(grain, [&](const auto& kind) { add_grain_contacts(one, kind, surface, geometry, gap, s); });
     }
   }
   if constexpr (Model::Domain::has_images) {
@@ -139,7 +139,7 @@ void find_hits_on(const ChunkAtSurfaces<Model>& at, std::size_t number) {
 template <class Model>
 using FindHits = void (*)(const ChunkAtSurfaces<Model>&, std::size_t);
 
-/// The touch of a grain's point on a surface: of shapes whose contacts may be patches it knows the others' shares.
+/// The contact point of a grain on a surface: of shapes whose contacts may be patches it knows the others' shares.
 template <class Shape>
 struct OnSurface {
   template <class T>
@@ -147,11 +147,11 @@ struct OnSurface {
       std::conditional_t<shape::PatchShape<Shape>, contact::PatchContactPoint<T>, contact::SurfaceContactPoint<T>>;
 };
 
-/// The grain of a touch, where the surface sees it.
+/// The grain of a contact, where the surface sees it.
 template <class Model, class GrainParticles>
-const PartnerView& view_of(const SurfaceScratch& s, std::size_t touch, const GrainParticles& p) {
-  if constexpr (Model::Domain::has_images) return s.views[touch];
-  else return p.view[s.hits[touch].i];
+const PartnerView& view_of(const SurfaceScratch& s, std::size_t hit, const GrainParticles& p) {
+  if constexpr (Model::Domain::has_images) return s.views[hit];
+  else return p.view[s.hits[hit].i];
 }
 
 /// Contacts of the grains of one chunk with the surfaces of machine parts, and the load that the chunk puts on each
@@ -167,7 +167,7 @@ void find_surface_contacts(const ChunkAtSurfaces<Model>& at, std::span<const Fin
   const std::vector<grain::Hit>& hits = scratch.hits;
   scratch.hits.clear();
   scratch.views.clear();
-  scratch.touches.clear();
+  scratch.contact_points.clear();
   scratch.total_share.clear();
   chunk.surface_loads.clear();
   scratch.law_of.resize(species.size());
@@ -176,17 +176,17 @@ void find_surface_contacts(const ChunkAtSurfaces<Model>& at, std::span<const Fin
     if (surface.active && may_meet(domain, low, high, surface, reach)) find_hits[s](at, s);
   }
 
-  if constexpr (shape::PatchShape<Shape>) scratch.total_share.resize(scratch.touches.size(), 1.0);
-  const auto touch_of = [&scratch = scratch](std::size_t c) {
+  if constexpr (shape::PatchShape<Shape>) scratch.total_share.resize(scratch.contact_points.size(), 1.0);
+  const auto contact_point_of = [&scratch = scratch](std::size_t c) {
     if constexpr (shape::PatchShape<Shape>) {
-      return contact::PatchContactPoint<double>{scratch.touches[c], scratch.total_share[c]};
+      return contact::PatchContactPoint<double>{scratch.contact_points[c], scratch.total_share[c]};
     } else {
-      return scratch.touches[c];
+      return scratch.contact_points[c];
     }
   };
   grain::ContactEvaluator<Model, OnSurface<Shape>::template ContactPoint> evaluator(materials.table(), dt);
   const grain::Deepest deepest = evaluator.run(
-      hits, chunk.surface_contacts, scratch.forces, touch_of,
+      hits, chunk.surface_contacts, scratch.forces, contact_point_of,
       [&](std::size_t c) -> const PartnerView& { return view_of<Model>(at.scratch, c, at.particles); },
       [&](std::size_t c) -> const PartnerView& { return at.surfaces[hits[c].partner].view; });
   if (deepest.overlap > chunk.deepest.overlap) {

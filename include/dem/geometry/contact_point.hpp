@@ -4,8 +4,8 @@
 
 namespace dem::contact {
 
-// A touch is what a narrow phase hands to its callback: the raw numbers of one contact, from which `geometry()`
-// computes normal, overlap and lever arm for a whole pack of contacts at once. A touch is a struct of Ts only. All
+// A contact point is what a narrow phase hands to its callback: the raw numbers of one contact, from which `geometry()`
+// computes normal, overlap and lever arm for a whole pack of contacts at once. It is a struct of Ts only. All
 // vectors are in global axes, seen from the centre of particle i.
 
 /// The contact as the laws need it.
@@ -66,7 +66,7 @@ struct ContactPoint {
 /// contacts are points of its skin.
 struct Patch {
   double points = 1.0;
-  double area = 1.0;  ///< m^2, or without unit, as the touches' areas
+  double area = 1.0;  ///< m^2, or without unit, as the contact points' areas
 };
 
 /// The one contact of a grain with a ball, where they share a normal.

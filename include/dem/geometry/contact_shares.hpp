@@ -22,7 +22,7 @@ enum class Fit {
 /// - With Fit::if_more points count as N = (sum w d)^2 / sum w d^2, which is n w for n points of equal depth. Up to N =
 /// 1 they keep their weights; from N = 1 to N = 2 one rule goes over into the other.
 /// - Across a gap (cohesion at a distance) the nearest point is the whole contact. It was the last one to part.
-/// `point(k)` gives touch k, one of the touch types.
+/// `point(k)` gives contact point k, of any of the types in contact_point.hpp.
 ///
 /// Such shares have no potential, and none could have one. n equal points are as stiff as one. So a second point that
 /// sinks to the depth of a first must do no work on the way, and yet push when it is there. Turning a body on its

@@ -140,7 +140,7 @@ class Mixed : public detail::MixedBase<detail::MixedMemories<Kinds...>::any, Kin
         using B = std::remove_cvref_t<decltype(y)>;
         // Features of a pair of one kind carry its number, so that mirrored() knows whom to ask.
         constexpr std::uint32_t kind = I == J ? std::uint32_t{I + 1} << feature_bits : 0u;
-        const auto marked = [&](std::uint32_t feature, const auto& touch) { callback(kind | feature, touch); };
+        const auto marked = [&](std::uint32_t feature, const auto& point) { callback(kind | feature, point); };
         if constexpr (std::same_as<typename PairMemoryOf<A, B>::type, NoMemory>) {
           NoMemory none;
           collide_pair(x, pose_a, y, pose_b, separation, none, marked, gap);

@@ -12,10 +12,10 @@ namespace dem::shape {
 ///     static void collide(const Egg& a, const double* pose_a, const Brick& b, const double* pose_b,
 ///                         const Vector3<double>& separation, Callback&& callback);
 ///   };
-/// collide calls callback(feature, touch) as a Shape's own does: touches seen from a's centre, features ascending and
-/// below 2^24; any touch with geometry() will do. What a search wants to keep for a pair of neighbours goes into a type
-/// Memory (copyable, empty when made), and collide then takes a Memory& before the callback. To meet cohesion at a
-/// distance, collide also takes a gap (m) as a last argument, as that of a ReachingShape does.
+/// collide calls callback(feature, point) as a Shape's own does: contact points seen from a's centre, features
+/// ascending and below 2^24; any type with geometry() will do. What a search wants to keep for a pair of neighbours
+/// goes into a type Memory (copyable, empty when made), and collide then takes a Memory& before the callback. To meet
+/// cohesion at a distance, collide also takes a gap (m) as a last argument, as that of a ReachingShape does.
 template <class A, class B>
 struct PairContact;
 
@@ -81,8 +81,8 @@ DEM_HOT contact::ContactPoint<double> turned_round(const contact::Geometry<doubl
   return {-g.normal, g.overlap, g.arm + separation, g.effective_radius, g.area, g.total_share};
 }
 
-/// Contacts of any two kinds as point touches, through PairContact<A, B> or PairContact<B, A>; up to a gap (m) where
-/// cohesion acts at a distance (else NoGap).
+/// Contacts of any two kinds, each a ContactPoint, through PairContact<A, B> or PairContact<B, A>; up to a gap (m)
+/// where cohesion acts at a distance (else NoGap).
 template <class A, class B, class Memory, class Callback, class Gap = NoGap>
 DEM_HOT void collide_pair(const A& a, const double* pose_a, const B& b, const double* pose_b,
                           const Vector3<double>& separation, Memory& memory, Callback&& callback, Gap gap = {}) {
@@ -103,8 +103,8 @@ DEM_HOT void collide_pair(const A& a, const double* pose_a, const B& b, const do
     else with(gap);
   };
   if constexpr (HasPairContact<A, B>) {
-    call(PairContact<A, B>{}, a, pose_a, b, pose_b, separation, [&](std::uint32_t feature, const auto& touch) {
-      const contact::Geometry<double> g = touch.geometry();
+    call(PairContact<A, B>{}, a, pose_a, b, pose_b, separation, [&](std::uint32_t feature, const auto& point) {
+      const contact::Geometry<double> g = point.geometry();
       callback(feature,
                contact::ContactPoint<double>{g.normal, g.overlap, g.arm, g.effective_radius, g.area, g.total_share});
     });
@@ -113,8 +113,8 @@ DEM_HOT void collide_pair(const A& a, const double* pose_a, const B& b, const do
         HasPairContact<B, A>,
         "Mixed: nothing says how these two shapes touch; specialise dem::shape::PairContact<A, B> for them, or include "
         "polyhedron_sphere.hpp / superquadric_polyhedron.hpp");
-    call(PairContact<B, A>{}, b, pose_b, a, pose_a, -separation, [&](std::uint32_t feature, const auto& touch) {
-      callback(feature, turned_round(touch.geometry(), separation));
+    call(PairContact<B, A>{}, b, pose_b, a, pose_a, -separation, [&](std::uint32_t feature, const auto& point) {
+      callback(feature, turned_round(point.geometry(), separation));
     });
   }
 }

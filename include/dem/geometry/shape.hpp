@@ -34,7 +34,7 @@ struct AnySamplePoint {
 ///   is_patch(feature)          if contacts of a pair are the points of one patch (see PatchShape);
 ///   penetration(pose, point, depth, outward_normal)   whether a point (m, from the grain's centre, global axes) lies
 ///                        inside, how deep, and which way is out: then corners and edges of surfaces are felt;
-///   touch_ball(pose, centre, radius, touch)   whether a ball touches, and where (contact::BallContactPoint). Then
+///   ball_contact(pose, centre, radius, contact)   whether a ball touches, and where (contact::BallContactPoint). Then
 ///                        surfaces that are balls are felt exactly, and lateral surfaces of cylinders through balls;
 ///   even_support(pose, way), beside_support(point, support, way)   of a round grain: the point of its skin that meets
 ///                        a plane first, and what another point weighs beside it.
@@ -55,14 +55,16 @@ concept Shape = requires(const S& shape, const Matrix3<double>& rotation, double
 };
 
 /// A shape whose pairs have at most 64 possible contacts may also say which of them touch as bits, without branches,
-/// and make the touch of each later; the contact loop then has no branch that depends on the answer:
-///   touching(a, pose_a, b, pose_b, separation) -> uint64_t,  feature_of(bit), ascending with the bits,
-///   touch(a, pose_a, b, pose_b, separation, feature) -> PairContactPoint.
+/// and make the contact point of each later; the contact loop then has no branch that depends on the answer:
+///   contact_bits(a, pose_a, b, pose_b, separation) -> uint64_t,  feature_of(bit), ascending with the bits,
+///   contact_point(a, pose_a, b, pose_b, separation, feature) -> PairContactPoint.
 template <class S>
 concept BitShape = Shape<S> && requires(const S& shape, const double* pose, const Vector3<double>& separation) {
-  { S::touching(shape, pose, shape, pose, separation) } -> std::same_as<std::uint64_t>;
+  { S::contact_bits(shape, pose, shape, pose, separation) } -> std::same_as<std::uint64_t>;
   { S::feature_of(0) } -> std::same_as<std::uint32_t>;
-  { S::touch(shape, pose, shape, pose, separation, 0u) } -> std::same_as<typename S::template PairContactPoint<double>>;
+  {
+    S::contact_point(shape, pose, shape, pose, separation, 0u)
+    } -> std::same_as<typename S::template PairContactPoint<double>>;
 };
 
 /// A shape whose search for contacts starts from what the last step found. PairMemory is what it keeps for each pair of
@@ -75,14 +77,14 @@ concept RememberingShape = Shape<S> &&
 };
 
 /// A shape that may meet cohesion at a distance also finds contacts across a gap: collide takes the gap (m) as a last
-/// argument and then hands over pairs of points up to that far apart, with a negative overlap; touching of a BitShape
-/// likewise. A RememberingShape takes both its memory and the gap.
+/// argument and then hands over pairs of points up to that far apart, with a negative overlap; contact_bits of a
+/// BitShape likewise. A RememberingShape takes both its memory and the gap.
 template <class S>
 concept ReachingShape = Shape<S> && requires(const S& shape, const double* pose, const Vector3<double>& separation) {
   S::collide(shape, pose, shape, pose, separation, AnyCallback{}, 1.0);
 } &&(!BitShape<S> ||
      requires(const S& shape, const double* pose, const Vector3<double>& separation) {
-       { S::touching(shape, pose, shape, pose, separation, 1.0) } -> std::same_as<std::uint64_t>;
+       { S::contact_bits(shape, pose, shape, pose, separation, 1.0) } -> std::same_as<std::uint64_t>;
      }) &&
     (!RememberingShape<S> ||
      requires(const S& shape, const double* pose, const Vector3<double>& separation, typename S::PairMemory& memory) {
@@ -95,9 +97,9 @@ concept HasPenetration = requires(const S& shape, const double* pose, const Vect
   { shape.penetration(pose, point, depth, outward_normal) } -> std::same_as<bool>;
 };
 template <class S>
-concept TouchesBalls = requires(const S& shape, const double* pose, const Vector3<double>& centre,
-                                contact::BallContactPoint& touch) {
-  { shape.touch_ball(pose, centre, 1.0, touch) } -> std::same_as<bool>;
+concept HasBallContact = requires(const S& shape, const double* pose, const Vector3<double>& centre,
+                                  contact::BallContactPoint& contact) {
+  { shape.ball_contact(pose, centre, 1.0, contact) } -> std::same_as<bool>;
 };
 template <class S>
 concept HasSupport = requires(const S& shape, const double* pose, const Vector3<double>& v) {
@@ -118,9 +120,10 @@ DEM_HOT T widened(const T& reach, double gap) {
 
 template <class S>
 constexpr void check_reaching_shape() {
-  static_assert(ReachingShape<S>,
-                "Shape: the model's cohesion acts at a distance, so collide (and touching, if there) must take a gap "
-                "in m as a last argument and find pairs up to that far apart; or choose a cohesion without range()");
+  static_assert(
+      ReachingShape<S>,
+      "Shape: the model's cohesion acts at a distance, so collide (and contact_bits, if there) must take a gap "
+      "in m as a last argument and find pairs up to that far apart; or choose a cohesion without range()");
 }
 
 /// What RememberingShapes keep for a list of pairs (PairMemory); nothing for other shapes.

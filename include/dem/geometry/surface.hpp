@@ -19,7 +19,7 @@ struct Aabb {
 /// A surface is what a machine part shows to the grains, a solid in its own frame. It has
 ///   near(point, radius)   false only if a sphere there cannot touch. It is cheap and may say true too often. It takes
 ///                         doubles, and packs, for which it gives a mask;
-///   touch(point, radius, callback)   calls callback(feature, normal, gap) once per contact of the sphere, features
+///   contacts(point, radius, callback)   calls callback(feature, normal, gap) once per contact of the sphere, features
 ///                         ascending. The unit normal leads from the sphere into the surface. The gap is the distance
 ///                         along it from the sphere's centre to the surface, negative inside;
 ///   bounds()              in its own frame; infinite where it has no end.
@@ -28,7 +28,7 @@ template <class S>
 concept Surface = requires(const S& s, const Vector3<double>& point, double radius, const Vector3<Pack>& points) {
   { s.near(point, radius) } -> std::same_as<bool>;
   { s.near(points, Pack(radius)) } -> std::same_as<PackMask>;
-  s.touch(point, radius, AnyCallback{});
+  s.contacts(point, radius, AnyCallback{});
   { s.bounds() } -> std::same_as<Aabb>;
 };
 
@@ -53,8 +53,8 @@ constexpr void check_surface() {
       },
       "Surface: needs bounds() that returns surface::Aabb in the surface's own frame");
   static_assert(Surface<S>,
-                "Surface: needs near(point, radius), for doubles (bool) and packs (PackMask), and touch(point, radius, "
-                "callback)");
+                "Surface: needs near(point, radius), for doubles (bool) and packs (PackMask), and "
+                "contacts(point, radius, callback)");
 }
 
 /// The kinds of surface that a model's machine parts may have.

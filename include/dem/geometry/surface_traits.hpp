@@ -17,8 +17,8 @@ namespace dem::surface {
 //                         callback(number, centre, ball's radius) for those that a grain may touch; is_on_ball() is
 //                         true where their skin is the surface's;
 //   radius_on(radius)     the effective radius of a skin of that radius on it, if it is curved;
-//   touch_point(point, gap, callback)   contacts of a point up to a gap before it, where they are not found as those of
-//                         spheres are;
+//   point_contacts(point, gap, callback)   contacts of a point up to a gap before it, where they are not found as
+//                         those of spheres are;
 //   find_points_to(depth)   from now on points are found so deep behind it;
 //   lets_points_through()   whether points (radius 0) pass it unseen, as a sheet without thickness;
 //   names_directions      true if features end in the direction of their contact (direction_code.hpp).
@@ -105,13 +105,13 @@ double radius_on(const S& s, double radius) {
 }
 
 /// Contacts of a point (a sample point of radius 0) up to a gap (m) before a surface; as of a sphere of that radius
-/// where there is no touch_point().
+/// where there is no point_contacts().
 template <class S, class Callback>
-DEM_HOT void touch_point(const S& s, const Vector3<double>& point, double gap, Callback&& callback) {
-  if constexpr (requires { s.touch_point(point, gap, callback); }) {
-    s.touch_point(point, gap, callback);
+DEM_HOT void point_contacts(const S& s, const Vector3<double>& point, double gap, Callback&& callback) {
+  if constexpr (requires { s.point_contacts(point, gap, callback); }) {
+    s.point_contacts(point, gap, callback);
   } else {
-    s.touch(point, gap, callback);
+    s.contacts(point, gap, callback);
   }
 }
 

@@ -49,11 +49,11 @@ class ContactEvaluator {
 
   ContactEvaluator(const std::vector<Parameters>& table, double dt) : table_(table), dt_(dt) { set_uniform(0); }
 
-  /// Fills the contact histories of this step and the forces; touch_of(k) gives the raw numbers of contact k, view_i(k)
-  /// and view_j(k) its partners. Returns the deepest contact.
-  template <class TouchOf, class ViewI, class ViewJ>
-  Deepest run(std::span<const Hit> hits, Memories& memories, ContactForces& forces, TouchOf&& touch_of, ViewI&& view_i,
-              ViewJ&& view_j) {
+  /// Fills the contact histories of this step and the forces; contact_point_of(k) gives the raw numbers of contact k,
+  /// view_i(k) and view_j(k) its partners. Returns the deepest contact.
+  template <class ContactPointOf, class ViewI, class ViewJ>
+  Deepest run(std::span<const Hit> hits, Memories& memories, ContactForces& forces, ContactPointOf&& contact_point_of,
+              ViewI&& view_i, ViewJ&& view_j) {
     const int count = static_cast<int>(hits.size());
     memories.now.count = count;
     memories.now.make_room(count);
@@ -68,13 +68,13 @@ class ContactEvaluator {
         const Hit& hit = hits[k];
         DEM_ASSERT(k == 0 || hits[k - 1].key < hit.key, "contacts ascend in their keys, and each has its own");
         memories.now.key[k] = hit.key;
-        scatter(touch_of(k), &touch_[0][0], lane);
+        scatter(contact_point_of(k), &contact_point_[0][0], lane);
         partners.set(lane, view_i(k), view_j(k));
         law_[lane] = hit.law;
       }
       if constexpr (history_size < Model >> 0) {
         const auto overlap_of = [&](int lane) {
-          return touch_of(static_cast<std::size_t>(at + lane)).geometry().overlap;
+          return contact_point_of(static_cast<std::size_t>(at + lane)).geometry().overlap;
         };
         recall(memories, at, lanes, cursor, overlap_of);
       }
@@ -90,7 +90,7 @@ class ContactEvaluator {
   }
 
  private:
-  static constexpr int touch_size = contact::field_count<ContactPoint<double>>;
+  static constexpr int contact_point_size = contact::field_count<ContactPoint<double>>;
 
   using PackParameters = ContactParameters<Model, Pack>;
 
@@ -178,7 +178,7 @@ class ContactEvaluator {
   }
   /// Lanes that no contact fills repeat another, so that they hold ordinary numbers and change nothing.
   void copy_lane(int from, int to) {
-    for (auto& row : touch_) row[to] = row[from];
+    for (auto& row : contact_point_) row[to] = row[from];
     for (auto& row : history_) row[to] = row[from];
     law_[to] = law_[from];
   }
@@ -218,7 +218,7 @@ class ContactEvaluator {
         history, [&](auto& h, int row) { h = packed<std::decay_t<decltype(h)>>(&history_[0][0] + row * pack_width); });
     const PackParameters parameters = same ? uniform_ : gather_parameters();
     Pack overlap_ratio;
-    const PairWrench<Pack> w = contact_wrench<Model, Pack>(packed<ContactPoint<Pack>>(&touch_[0][0]), relative,
+    const PairWrench<Pack> w = contact_wrench<Model, Pack>(packed<ContactPoint<Pack>>(&contact_point_[0][0]), relative,
                                                            parameters, Pack(dt_), history, overlap_ratio);
     store3(w.force, forces.force, at);
     store3(w.torque_i, forces.torque_i, at);
@@ -250,7 +250,7 @@ class ContactEvaluator {
     store(v.z, &columns[2][at]);
   }
 
-  alignas(64) double touch_[touch_size][pack_width];
+  alignas(64) double contact_point_[contact_point_size][pack_width];
   alignas(64) double history_[history_size<Model> > 0 ? history_size<Model> : 1][pack_width];
   std::uint32_t law_[pack_width];
   PackParameters uniform_;

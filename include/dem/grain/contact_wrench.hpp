@@ -67,10 +67,10 @@ DEM_HOT NormalForce<T> normal_force(const contact::NormalState<T>& state, const 
 /// The laws applied to one contact (T = double) or to a pack of contacts: eqs. 20-30. Updates the history and returns
 /// the wrench and, in `overlap_ratio`, the overlap in effective diameters.
 template <class Model, class T, class ContactPoint>
-DEM_HOT PairWrench<T> contact_wrench(const ContactPoint& touch, const RelativeMotion<T>& e,
+DEM_HOT PairWrench<T> contact_wrench(const ContactPoint& point, const RelativeMotion<T>& e,
                                      const ContactParameters<Model, T>& parameters, T dt,
                                      ContactHistory<Model, T>& history, T& overlap_ratio) {
-  const contact::Geometry<T> g = touch.geometry();
+  const contact::Geometry<T> g = point.geometry();
   const Vector3<T> arm_j = g.arm - e.separation;
   const Vector3<T> velocity = e.velocity + cross(e.spin_i, g.arm) - cross(e.spin_j, arm_j);
   const T approach = dot(velocity, g.normal);

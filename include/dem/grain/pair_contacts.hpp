@@ -16,10 +16,11 @@ namespace dem::grain {
 /// Lists that a thread uses again for each chunk.
 template <class Model>
 struct PairScratch {
-  std::vector<std::uint32_t> close;     ///< candidates whose bounding spheres overlap
-  std::vector<std::uint64_t> touching;  ///< BitShape: answers that are not zero
+  std::vector<std::uint32_t> close;         ///< candidates whose bounding spheres overlap
+  std::vector<std::uint64_t> contact_bits;  ///< BitShape: answers that are not zero
   std::vector<Hit> hits;
-  std::vector<typename Model::Shape::template PairContactPoint<double>> touches;  ///< other shapes: one for each hit
+  std::vector<typename Model::Shape::template PairContactPoint<double>>
+      contact_points;  ///< other shapes: one for each hit
   ContactForces forces;
   // Where grains may sleep:
   bool chooses = false;                       ///< not all candidates are evaluated
@@ -91,14 +92,14 @@ std::size_t list_close(const Pairs& pairs, std::uint32_t candidates, const Candi
 
 /// Which points of grain i touch which of grain j, or come within the reach of cohesion, as bits.
 template <class Model, class Pairs>
-DEM_HOT std::uint64_t touching(const Pairs& pairs, std::size_t i, std::size_t j) {
+DEM_HOT std::uint64_t contact_bits(const Pairs& pairs, std::size_t i, std::size_t j) {
   using Shape = typename Model::Shape;
   const auto& a = pairs.kind(i).shape;
   const auto& b = pairs.kind(j).shape;
   if constexpr (cohesion::reaches<typename Model::Cohesion>) {
-    return Shape::touching(a, pairs.p.pose_of(i), b, pairs.p.pose_of(j), pairs.separation(i, j), pairs.gap());
+    return Shape::contact_bits(a, pairs.p.pose_of(i), b, pairs.p.pose_of(j), pairs.separation(i, j), pairs.gap());
   } else {
-    return Shape::touching(a, pairs.p.pose_of(i), b, pairs.p.pose_of(j), pairs.separation(i, j));
+    return Shape::contact_bits(a, pairs.p.pose_of(i), b, pairs.p.pose_of(j), pairs.separation(i, j));
   }
 }
 
@@ -112,30 +113,30 @@ void find_hits_by_bits(const Pairs& pairs, std::size_t close_count, PairScratch<
     for (std::size_t c = 0; c < close_count; ++c) s.hits[c] = pairs.hit(s.close[c], 0);
     return;
   }
-  s.touching.resize(close_count + 1);
-  std::size_t touching_pairs = 0, total = 0;
+  s.contact_bits.resize(close_count + 1);
+  std::size_t pairs_in_contact = 0, total = 0;
   for (std::size_t c = 0; c < close_count; ++c) {
     const std::uint32_t k = s.close[c];
     const std::size_t i = pairs.i(k), j = pairs.j(k);
     constexpr std::size_t ahead = 8;  // how many pairs ahead poses are asked for
     const std::size_t later = pairs.j(s.close[std::min(c + ahead, close_count - 1)]);
     prefetch(pairs.p.pose_of(later), Shape::pose_size * sizeof(double));
-    const std::uint64_t bits = touching<Model>(pairs, i, j);
+    const std::uint64_t bits = contact_bits<Model>(pairs, i, j);
     total += static_cast<std::size_t>(std::popcount(bits));
-    s.close[touching_pairs] = k;
-    s.touching[touching_pairs] = bits;
-    touching_pairs += bits != 0 ? 1 : 0;
+    s.close[pairs_in_contact] = k;
+    s.contact_bits[pairs_in_contact] = bits;
+    pairs_in_contact += bits != 0 ? 1 : 0;
   }
-  s.touching[touching_pairs] = 0;
+  s.contact_bits[pairs_in_contact] = 0;
 
   s.hits.resize(total);
   std::size_t pair = 0;
-  std::uint64_t bits = s.touching[0];
+  std::uint64_t bits = s.contact_bits[0];
   for (Hit& hit : s.hits) {
     hit = pairs.hit(s.close[pair], Shape::feature_of(std::countr_zero(bits)));
     bits &= bits - 1;
     pair += bits == 0 ? 1 : 0;
-    bits = bits == 0 ? s.touching[pair] : bits;
+    bits = bits == 0 ? s.contact_bits[pair] : bits;
   }
 }
 
@@ -145,14 +146,14 @@ void find_hits_one_by_one(const Pairs& pairs, std::size_t close_count,
                           shape::PairMemories<typename Model::Shape>& searches, PairScratch<Model>& s) {
   using Shape = typename Model::Shape;
   s.hits.clear();
-  s.touches.clear();
+  s.contact_points.clear();
   for (std::size_t c = 0; c < close_count; ++c) {
     const std::uint32_t k = s.close[c];
     const std::size_t i = pairs.i(k), j = pairs.j(k);
     const Shape &a = pairs.kind(i).shape, &b = pairs.kind(j).shape;
-    const auto callback = [&](std::uint32_t feature, const auto& touch) {
+    const auto callback = [&](std::uint32_t feature, const auto& point) {
       s.hits.push_back(pairs.hit(k, feature));
-      s.touches.push_back(touch);
+      s.contact_points.push_back(point);
     };
     const auto collide = [&](auto&&... more) {
       Shape::collide(a, pairs.p.pose_of(i), b, pairs.p.pose_of(j), pairs.separation(i, j), more...);
@@ -192,18 +193,18 @@ void share_forces(std::size_t begin, Chunk<Model>& chunk, const PairScratch<Mode
   for (std::uint32_t& first : chunk.partner_load_first) first = total += first;
 }
 
-/// The touch of hit c of a chunk.
+/// The contact point of hit c of a chunk.
 template <class Model, class Pairs>
-DEM_HOT typename Model::Shape::template PairContactPoint<double> touch_of_hit(const Pairs& pairs,
-                                                                              const PairScratch<Model>& s,
-                                                                              std::size_t c) {
+DEM_HOT typename Model::Shape::template PairContactPoint<double> contact_point_of_hit(const Pairs& pairs,
+                                                                                      const PairScratch<Model>& s,
+                                                                                      std::size_t c) {
   using Shape = typename Model::Shape;
   if constexpr (shape::BitShape<Shape>) {
     const std::size_t i = s.hits[c].i, j = s.hits[c].partner;
-    return Shape::touch(pairs.kind(i).shape, pairs.p.pose_of(i), pairs.kind(j).shape, pairs.p.pose_of(j),
-                        pairs.separation(i, j), PairKey::feature(s.hits[c].key));
+    return Shape::contact_point(pairs.kind(i).shape, pairs.p.pose_of(i), pairs.kind(j).shape, pairs.p.pose_of(j),
+                                pairs.separation(i, j), PairKey::feature(s.hits[c].key));
   } else {
-    return s.touches[c];
+    return s.contact_points[c];
   }
 }
 
@@ -244,10 +245,10 @@ void find_pair_contacts(const ChunkPairs<Model, Particles> pairs, double dt, Wak
     find_hits_one_by_one<Model>(pairs, close_count, chunk.searches, s);
   }
 
-  const auto touch_of = [&](std::size_t c) { return touch_of_hit<Model>(pairs, s, c); };
+  const auto contact_point_of = [&](std::size_t c) { return contact_point_of_hit<Model>(pairs, s, c); };
   ContactEvaluator<Model, Shape::template PairContactPoint, Shape> evaluator(pairs.materials.table(), dt);
   const Deepest deepest = evaluator.run(
-      s.hits, chunk.pair_contacts, s.forces, touch_of,
+      s.hits, chunk.pair_contacts, s.forces, contact_point_of,
       [&](std::size_t c) -> const PartnerView& { return pairs.p.view[s.hits[c].i]; },
       [&](std::size_t c) -> const PartnerView& { return pairs.p.view[s.hits[c].partner]; });
   const DeepestContact before = chunk.deepest;

@@ -32,7 +32,8 @@ class ColumnMesh final : public ColumnShape {
     const double ex = reach(r.row0), ey = reach(r.row1);
     return {p.x - ex, p.x + ex, p.y - ey, p.y + ey};
   }
-  bool touch(const ShapePose& pose, const ColumnPlace& place, double top, ColumnContactPoint& touch) const override {
+  bool column_contact(const ShapePose& pose, const ColumnPlace& place, double top,
+                      ColumnContactPoint& contact) const override {
     const double bottom =
         pose.position.z + dot(pose.rotation.row2, middle_) - reach(pose.rotation.row2) - 1e-3 * place.spacing;
     if (!(bottom < top)) return false;
@@ -47,8 +48,8 @@ class ColumnMesh final : public ColumnShape {
     };
     const int own_x = next_to(place.at_x - place.x), own_y = next_to(place.at_y - place.y);
     // Most columns that are asked lie before or behind what presses: one ray settles that.
-    int hits = cast(own_x, own_y, touch) ? 1 : 0;
-    if (hits == 1 && !(touch.point.z < top)) return false;
+    int hits = cast(own_x, own_y, contact) ? 1 : 0;
+    if (hits == 1 && !(contact.point.z < top)) return false;
     double nearest = hits == 1 ? 0.0 : 1e300;
     for (int k = 0; k < rays_ * rays_; ++k) {
       ColumnContactPoint hit;
@@ -57,10 +58,10 @@ class ColumnMesh final : public ColumnShape {
       const double dx = hit.point.x - place.at_x, dy = hit.point.y - place.at_y, distance = dx * dx + dy * dy;
       if (distance >= nearest) continue;
       nearest = distance;
-      touch = hit;
+      contact = hit;
     }
-    touch.share = static_cast<double>(hits) / (rays_ * rays_);
-    return hits > 0 && touch.point.z < top;
+    contact.share = static_cast<double>(hits) / (rays_ * rays_);
+    return hits > 0 && contact.point.z < top;
   }
   double width() const override { return width_; }
 
@@ -69,11 +70,11 @@ class ColumnMesh final : public ColumnShape {
     return std::abs(row.x) * half_.x + std::abs(row.y) * half_.y + std::abs(row.z) * half_.z;
   }
   /// The first face above a point's x and y between two heights (m): sets its height and normal, turned downwards.
-  bool lowest(const ShapePose& pose, double bottom, double top, ColumnContactPoint& touch) const {
+  bool lowest(const ShapePose& pose, double bottom, double top, ColumnContactPoint& contact) const {
     constexpr double slack = 1e-9;  // of a triangle's heights, so that a ray through an edge meets it
     const surface::MeshData& m = mesh_.data();
     const Vector3<double> tail =
-        transpose_times(pose.rotation, Vector3<double>{touch.point.x, touch.point.y, bottom} - pose.position);
+        transpose_times(pose.rotation, Vector3<double>{contact.point.x, contact.point.y, bottom} - pose.position);
     const Vector3<double> up = transpose_times(pose.rotation, Vector3<double>{0, 0, 1}), way = (top - bottom) * up;
     double nearest = 1.0;
     const surface::Face* found = nullptr;
@@ -91,9 +92,9 @@ class ColumnMesh final : public ColumnShape {
       found = &f;
     });
     if (!found) return false;
-    touch.point.z = bottom + nearest * (top - bottom);
+    contact.point.z = bottom + nearest * (top - bottom);
     const Vector3<double> n = pose.rotation * found->normal;
-    touch.normal = n.z < 0.0 ? n : -n;
+    contact.normal = n.z < 0.0 ? n : -n;
     return true;
   }
 

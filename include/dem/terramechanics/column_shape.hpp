@@ -46,7 +46,8 @@ class ColumnShape {
   /// up to one spacing beyond it are asked too, as they may lie partly under an edge.
   virtual PlanBox shadow(const ShapePose& pose, double top) const = 0;
   /// The underside over a column, or false if it has none below `top` (m).
-  virtual bool touch(const ShapePose& pose, const ColumnPlace& place, double top, ColumnContactPoint& touch) const = 0;
+  virtual bool column_contact(const ShapePose& pose, const ColumnPlace& place, double top,
+                              ColumnContactPoint& contact) const = 0;
   /// b of the pressure law, m: the smaller side of what presses on the soil; 0 if the shape does not tell.
   virtual double width() const = 0;
 };

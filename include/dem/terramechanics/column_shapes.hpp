@@ -21,13 +21,14 @@ class ColumnBall final : public ColumnShape {
     const Vector3<double>& p = pose.position;
     return {p.x - reach, p.x + reach, p.y - reach, p.y + reach};
   }
-  bool touch(const ShapePose& pose, const ColumnPlace& place, double top, ColumnContactPoint& touch) const override {
+  bool column_contact(const ShapePose& pose, const ColumnPlace& place, double top,
+                      ColumnContactPoint& contact) const override {
     const double dx = place.at_x - pose.position.x, dy = place.at_y - pose.position.y;
     const double rest = radius_ * radius_ - dx * dx - dy * dy;
     if (!(rest > 0.0)) return false;
     const double down = std::sqrt(rest), z = pose.position.z - down;
     if (z >= top) return false;
-    touch = {{place.at_x, place.at_y, z}, {dx / radius_, dy / radius_, -down / radius_}, 1.0};
+    contact = {{place.at_x, place.at_y, z}, {dx / radius_, dy / radius_, -down / radius_}, 1.0};
     return true;
   }
   double width() const override { return 0.0; }
@@ -58,7 +59,8 @@ class ColumnCylinder final : public ColumnShape {
     const Vector3<double>& p = pose.position;
     return {p.x - ex, p.x + ex, p.y - ey, p.y + ey};
   }
-  bool touch(const ShapePose& pose, const ColumnPlace& place, double top, ColumnContactPoint& touch) const override {
+  bool column_contact(const ShapePose& pose, const ColumnPlace& place, double top,
+                      ColumnContactPoint& contact) const override {
     const Vector3<double> a = axis(pose);
     const double level2 = 1.0 - a.z * a.z;
     Vector3<double> q = {place.at_x - pose.position.x, place.at_y - pose.position.y, 0.0};
@@ -80,14 +82,14 @@ class ColumnCylinder final : public ColumnShape {
           found = lateral(a, level2, q);
         }
         if (found) {
-          touch.point = pose.position + q;
-          touch.normal = (1.0 / radius_) * (q - dot(a, q) * a);
-          touch.share = share;
-          return touch.point.z < top && touch.normal.z < 0.0;
+          contact.point = pose.position + q;
+          contact.normal = (1.0 / radius_) * (q - dot(a, q) * a);
+          contact.share = share;
+          return contact.point.z < top && contact.normal.z < 0.0;
         }
       }
     }
-    return on_side(pose, a, q, top, touch);
+    return on_side(pose, a, q, top, contact);
   }
   double width() const override { return std::min(2.0 * half_, 2.0 * radius_); }
 
@@ -108,13 +110,13 @@ class ColumnCylinder final : public ColumnShape {
   }
   /// The flat side that looks down, where the wheel leans by more than 6 degrees.
   bool on_side(const ShapePose& pose, const Vector3<double>& a, Vector3<double> q, double top,
-               ColumnContactPoint& touch) const {
+               ColumnContactPoint& contact) const {
     if (std::abs(a.z) < 0.1) return false;
     const Vector3<double> down = a.z < 0.0 ? a : -a;
     q.z = (half_ - down.x * q.x - down.y * q.y) / down.z;
     const Vector3<double> across = q - half_ * down;
     if (dot(across, across) > radius_ * radius_ || pose.position.z + q.z >= top) return false;
-    touch = {pose.position + q, down, 1.0};
+    contact = {pose.position + q, down, 1.0};
     return true;
   }
 
@@ -141,7 +143,8 @@ class ColumnBox final : public ColumnShape {
     const double ex = reach(r.row0), ey = reach(r.row1);
     return {p.x - ex, p.x + ex, p.y - ey, p.y + ey};
   }
-  bool touch(const ShapePose& pose, const ColumnPlace& place, double top, ColumnContactPoint& touch) const override {
+  bool column_contact(const ShapePose& pose, const ColumnPlace& place, double top,
+                      ColumnContactPoint& contact) const override {
     const Vector3<double>& up = pose.rotation.row2;
     const double reach = std::abs(up.x) * half_.x + std::abs(up.y) * half_.y + std::abs(up.z) * half_.z;
     if (pose.position.z - reach >= top) return false;
@@ -154,9 +157,9 @@ class ColumnBox final : public ColumnShape {
     for (std::size_t k = 1; k < 3; ++k) {
       if (std::abs(axis[k].z) > std::abs(axis[flattest].z)) flattest = k;
     }
-    if (row_ && flattest != 0) return on_face(pose, axis, half, flattest, q, &at, place.spacing, top, touch);
-    return on_face(pose, axis, half, flattest, q, nullptr, place.spacing, top, touch) ||
-           on_any(pose, axis, half, q, top, touch);
+    if (row_ && flattest != 0) return on_face(pose, axis, half, flattest, q, &at, place.spacing, top, contact);
+    return on_face(pose, axis, half, flattest, q, nullptr, place.spacing, top, contact) ||
+           on_any(pose, axis, half, q, top, contact);
   }
   /// The smaller of the edges along x and y of the box.
   double width() const override { return 2.0 * std::min(half_.x, half_.y); }
@@ -168,7 +171,7 @@ class ColumnBox final : public ColumnShape {
   /// sides, `point` being the column's.
   static bool on_face(const ShapePose& pose, const Axes& axis, const std::array<double, 3>& half, std::size_t k,
                       const Vector3<double>& centre, const Vector3<double>* point, double spacing, double top,
-                      ColumnContactPoint& touch) {
+                      ColumnContactPoint& contact) {
     const Vector3<double> normal = axis[k].z < 0.0 ? axis[k] : -axis[k];
     const auto drop = [&](Vector3<double> at) {
       at.z = (half[k] - normal.x * at.x - normal.y * at.y) / normal.z;
@@ -194,12 +197,12 @@ class ColumnBox final : public ColumnShape {
     }
     if (!(share > 0.0)) return false;
     q = drop(q + shift);
-    touch = {pose.position + q, normal, share};
-    return touch.point.z < top;
+    contact = {pose.position + q, normal, share};
+    return contact.point.z < top;
   }
   /// Whichever face the vertical enters by, for blocks that lean.
   static bool on_any(const ShapePose& pose, const Axes& axis, const std::array<double, 3>& half,
-                     const Vector3<double>& q, double top, ColumnContactPoint& touch) {
+                     const Vector3<double>& q, double top, ColumnContactPoint& contact) {
     double low = -std::numeric_limits<double>::infinity(), high = -low;
     std::size_t face = 3;
     for (std::size_t k = 0; k < 3; ++k) {
@@ -216,7 +219,7 @@ class ColumnBox final : public ColumnShape {
       high = std::min(high, std::max(one, other));
     }
     if (face == 3 || !(low < high) || std::abs(axis[face].z) < 0.1 || pose.position.z + low >= top) return false;
-    touch = {pose.position + Vector3<double>{q.x, q.y, low}, axis[face].z < 0.0 ? axis[face] : -axis[face], 1.0};
+    contact = {pose.position + Vector3<double>{q.x, q.y, low}, axis[face].z < 0.0 ? axis[face] : -axis[face], 1.0};
     return true;
   }
 

@@ -125,7 +125,7 @@ class SoilColumns {
 
   struct Hit {
     std::size_t row;
-    ColumnContactPoint touch;
+    ColumnContactPoint contact;
   };
   /// A row of columns under a part: the unit of work for threads and of sums.
   struct Strip {
@@ -240,7 +240,7 @@ inline void SoilColumns::look(const ColumnPart& part, Strip& s) const {
   for (std::size_t ix = s.from; ix <= s.to; ++ix) {
     Hit hit{g.row(ix, s.iy), {}};
     const double top = field_.resting(hit.row);
-    if (part.shape->touch(pose, g.place(ix, s.iy), top, hit.touch)) s.hits.push_back(hit);
+    if (part.shape->column_contact(pose, g.place(ix, s.iy), top, hit.contact)) s.hits.push_back(hit);
   }
 }
 
@@ -249,9 +249,9 @@ inline void SoilColumns::claim(std::size_t parts) {
   if (parts < 2) return;
   for (std::size_t k = 0; k < strip_count_; ++k) {
     for (const Hit& hit : strips_[k].hits) {
-      if (claim_[hit.row] != free && claim_height_[hit.row] <= hit.touch.point.z) continue;
+      if (claim_[hit.row] != free && claim_height_[hit.row] <= hit.contact.point.z) continue;
       claim_[hit.row] = strips_[k].part;
-      claim_height_[hit.row] = hit.touch.point.z;
+      claim_height_[hit.row] = hit.contact.point.z;
     }
   }
 }
@@ -264,13 +264,14 @@ inline void SoilColumns::press(const ColumnPart& part, double dt, bool shared, S
   const Vector3<double> spin = part.body.rotation * part.body.angular_velocity;
   for (const Hit& hit : s.hits) {
     if (shared && claim_[hit.row] != s.part) continue;
-    const Vector3<double> arm = hit.touch.point - part.body.position, velocity = part.body.velocity + cross(spin, arm);
+    const Vector3<double> arm = hit.contact.point - part.body.position,
+                          velocity = part.body.velocity + cross(spin, arm);
     // A column that passes from one piece of a tread to the next is still in contact.
     const bool in_contact = step_ > 0 && field_.touched[hit.row] == step_ && field_.touched_by[hit.row] == s.owner;
     ColumnChange change{.row = hit.row, .part = s.owner, .shear = {}};
     const std::size_t kind = field_.soil.empty() ? 0 : field_.soil[hit.row];
     const PressedColumn column = {laws[kind],    soils_[kind].shear, slopes_[kind], part.friction,
-                                  spec_.damping, hit.touch,          velocity,      in_contact};
+                                  spec_.damping, hit.contact,        velocity,      in_contact};
     const ColumnForce f = column_force(field_, column, dt, change);
     if (!f.acts) continue;
     s.changes.push_back(change);

@@ -56,7 +56,7 @@ class ContactFinder {
     grain::find_pair_contacts(pairs, w_.time_step, {}, sums, scratch_.pairs);
     for (std::size_t k = 0; k < scratch_.pairs.hits.size(); ++k) {
       const grain::Hit& hit = scratch_.pairs.hits[k];
-      const auto geometry = grain::touch_of_hit<Model>(pairs, scratch_.pairs, k).geometry();
+      const auto geometry = grain::contact_point_of_hit<Model>(pairs, scratch_.pairs, k).geometry();
       Contact<Model>& contact = add(hit, geometry, p.view[hit.i], p.view[hit.partner], scratch_.pairs.forces, k);
       contact.kind = ContactKind::grains;
       contact.grain = p.name(p.id[hit.i]);
@@ -69,7 +69,7 @@ class ContactFinder {
         w_.time_step, sums);
     for (std::size_t k = 0; k < s.hits.size(); ++k) {
       const grain::Hit& hit = s.hits[k];
-      Contact<Model>& contact = add(hit, s.touches[k].geometry(), coupling::view_of<Model>(s, k, p),
+      Contact<Model>& contact = add(hit, s.contact_points[k].geometry(), coupling::view_of<Model>(s, k, p),
                                     surfaces_[hit.partner].view, s.forces, k);
       contact.kind = ContactKind::grain_on_surface;
       contact.grain = p.name(p.id[hit.i]);
@@ -89,7 +89,7 @@ class ContactFinder {
             const coupling::BodyPair& pair = found.pairs[hit.i];
             const bool back = hit.partner != 0;
             const SurfaceId own = back ? pair.b : pair.a, other = back ? pair.a : pair.b;
-            Contact<Model>& contact = add(hit, found.touches[k].geometry(), surfaces_[own.index()].view,
+            Contact<Model>& contact = add(hit, found.contact_points[k].geometry(), surfaces_[own.index()].view,
                                           surfaces_[other.index()].view, found.forces, k);
             contact.kind = ContactKind::bodies;
             contact.own_surface = own;

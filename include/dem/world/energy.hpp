@@ -97,12 +97,12 @@ void record_contacts(WorldState<Model>& w, std::size_t c, ContactScratch<Model>&
   for (std::size_t k = 0; k < scratch.pairs.hits.size(); ++k) {
     const grain::Hit& hit = scratch.pairs.hits[k];
     add(hit, p.id[hit.partner], false, p.view[hit.i], p.view[hit.partner],
-        grain::touch_of_hit<Model>(pairs, scratch.pairs, k).geometry(), scratch.pairs.forces, k);
+        grain::contact_point_of_hit<Model>(pairs, scratch.pairs, k).geometry(), scratch.pairs.forces, k);
   }
   for (std::size_t k = 0; k < scratch.surfaces.hits.size(); ++k) {
     const grain::Hit& hit = scratch.surfaces.hits[k];
     add(hit, hit.partner, true, coupling::view_of<Model>(scratch.surfaces, k, p), w.surfaces[hit.partner].view,
-        scratch.surfaces.touches[k].geometry(), scratch.surfaces.forces, k);
+        scratch.surfaces.contact_points[k].geometry(), scratch.surfaces.forces, k);
   }
 }
 

@@ -29,11 +29,11 @@ std::size_t memory_bytes(const WorldState<Model>& w) {
     return b;
   };
   for (const ContactScratch<Model>& s : w.scratch) {
-    sum += sizeof(s) + bytes(s.pairs.close) + bytes(s.pairs.touching) + bytes(s.pairs.hits) + bytes(s.pairs.touches) +
-           bytes(s.pairs.listed) + bytes(s.pairs.renews) + of_memory(s.pairs.merged) + of_forces(s.pairs.forces) +
-           bytes(s.surfaces.law_of) + bytes(s.surfaces.hits) + bytes(s.surfaces.touches) +
-           bytes(s.surfaces.total_share) + s.surfaces.supports.bytes() + of_forces(s.surfaces.forces) +
-           of_memory(s.pairs_now) + of_memory(s.surfaces_now);
+    sum += sizeof(s) + bytes(s.pairs.close) + bytes(s.pairs.contact_bits) + bytes(s.pairs.hits) +
+           bytes(s.pairs.contact_points) + bytes(s.pairs.listed) + bytes(s.pairs.renews) + of_memory(s.pairs.merged) +
+           of_forces(s.pairs.forces) + bytes(s.surfaces.law_of) + bytes(s.surfaces.hits) +
+           bytes(s.surfaces.contact_points) + bytes(s.surfaces.total_share) + s.surfaces.supports.bytes() +
+           of_forces(s.surfaces.forces) + of_memory(s.pairs_now) + of_memory(s.surfaces_now);
   }
   if constexpr (Model::Domain::has_images) sum += bytes(w.images.grain) + bytes(w.images.shift) + bytes(w.images.level);
   sum += bytes(w.sleepers.grains) + bytes(w.sleepers.borne) + bytes(w.sleepers.working) + bytes(w.sleepers.doing) +

@@ -27,7 +27,7 @@ class SurfaceTrial {
         0, 1, chunk_, grain_, w_.species, w_.materials, w_.surfaces, w_.largest_radius, w_.domain, scratch_};
     const double reach = at.reach();
     const Vec3 low = x - filled(reach), high = x + filled(reach);
-    scratch_.hits.clear(), scratch_.touches.clear(), scratch_.total_share.clear(), scratch_.views.clear();
+    scratch_.hits.clear(), scratch_.contact_points.clear(), scratch_.total_share.clear(), scratch_.views.clear();
     scratch_.law_of.resize(w_.species.size());
     for (std::size_t s = 0; s < w_.surfaces.size() && scratch_.hits.empty(); ++s) {
       const auto& surface = w_.surfaces[s];

@@ -21,8 +21,8 @@ std::vector<Contact> contacts(const Shape& a, const dem::Mat3& turn_a, const Sha
   a.orient(dem::from_eigen(turn_a), pose_a);
   b.orient(dem::from_eigen(turn_b), pose_b);
   std::vector<Contact> found;
-  const auto sink = [&](std::uint32_t feature, const auto& touch) {
-    const auto g = touch.geometry();
+  const auto sink = [&](std::uint32_t feature, const auto& point) {
+    const auto g = point.geometry();
     found.push_back({feature, to_eigen(g.normal), to_eigen(g.arm), g.overlap, g.effective_radius, g.area});
   };
   Shape::collide(a, pose_a, b, pose_b, dem::from_eigen(separation), sink, gap...);

@@ -89,7 +89,7 @@ TEST_CASE("balls that do not touch add up") {
   CHECK(exact.inertia(2, 2) == Approx(a.inertia(2, 2) + b.inertia(2, 2)).epsilon(1e-14));
 }
 
-TEST_CASE("balls overlap when they share more than a touch") {
+TEST_CASE("balls overlap when they share more than a contact point") {
   const auto overlap = [](double distance) {
     return dem::any_overlap(std::array<Ball, 2>{{{{0, 0, 0}, 0.4}, {{0, distance, 0}, 0.2}}});
   };

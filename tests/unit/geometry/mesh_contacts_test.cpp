@@ -1,6 +1,6 @@
 #include "fillet.hpp"
 #include "random.hpp"
-#include "touches.hpp"
+#include "surface_contacts.hpp"
 
 #include <dem/geometry/mesh/mesh_shapes.hpp>
 #include <dem/geometry/mesh/triangle_mesh.hpp>
@@ -65,8 +65,9 @@ TEST_CASE("contacts on one smooth group of triangles have names of their own, by
   // A floor and a wall joined by a fillet of radius 1; a ball of radius 2 touches both, on one group.
   const TriangleMesh surface(fillet(1.0, 6, 4.0), {.side = MeshSide::one_sided});
   CHECK(surface.data().groups.count == 1);
-  const auto both = touches(surface, {1.9, 0, 1.95}, 2.0), floor = touches(surface, {2.1, 0, 1.95}, 2.0),
-             wall = touches(surface, {1.9, 0, 2.1}, 2.0);
+  const auto both = surface_contacts(surface, {1.9, 0, 1.95}, 2.0),
+             floor = surface_contacts(surface, {2.1, 0, 1.95}, 2.0),
+             wall = surface_contacts(surface, {1.9, 0, 2.1}, 2.0);
   REQUIRE(both.size() == 2);
   REQUIRE(floor.size() == 1);
   REQUIRE(wall.size() == 1);
@@ -105,10 +106,10 @@ TEST_CASE("a polygon's corner below smooth_angle turns the force at once; above 
     Vec3 last_force = Vec3::Zero();
     double last_depth = 0.0;
     for (double way = 0.0; way < 1.0; way += step) {  // over three corners
-      const auto found = touches(drum, 0.7 * Vec3(std::cos(way), std::sin(way), 0.5), radius);
+      const auto found = surface_contacts(drum, 0.7 * Vec3(std::cos(way), std::sin(way), 0.5), radius);
       Vec3 force = Vec3::Zero();
       double depth = 0.0;
-      for (const Touch& t : found) {
+      for (const SurfaceContact& t : found) {
         force -= (radius - t.gap) * t.normal;
         depth = std::max(depth, radius - t.gap);
       }

@@ -1,6 +1,6 @@
 #include "core/error_of.hpp"
 #include "random.hpp"
-#include "touches.hpp"
+#include "surface_contacts.hpp"
 
 #include <dem/geometry/cylinder/cylinder.hpp>
 #include <dem/geometry/sphere/sphere_surface.hpp>
@@ -17,7 +17,7 @@ using dem::surface::Superquadric;
 
 namespace {
 
-/// near() must say yes wherever touch() finds something, for doubles and for packs, and bounds() must hold it.
+/// near() must say yes wherever contacts() finds something, for doubles and for packs, and bounds() must hold it.
 template <class Surface>
 void check_near(const Surface& surface, const Vec3& half) {
   Random random(11);
@@ -25,12 +25,12 @@ void check_near(const Surface& surface, const Vec3& half) {
   for (int trial = 0; trial < 4000; ++trial) {
     const Vec3 p = random.in(half);
     const double r = trial % 4 == 0 ? 0.0 : random.between(0.0, 0.4);
-    const auto found = touches(surface, p, r);
+    const auto found = surface_contacts(surface, p, r);
     const dem::Vector3<dem::Pack> packed = {dem::Pack(p.x()), dem::Pack(p.y()), dem::Pack(p.z())};
     const bool near = surface.near(dem::from_eigen(p), r);
     CHECK(near == dem::any_of(surface.near(packed, dem::Pack(r))));
     excluded += !near;
-    for (const Touch& t : found) {
+    for (const SurfaceContact& t : found) {
       CHECK(near);
       CHECK(t.gap < r);
       const auto bounds = surface.bounds();
@@ -48,14 +48,14 @@ void check_near(const Surface& surface, const Vec3& half) {
 TEST_CASE("a ball and a round cavity are touched where the closed form says") {
   const Sphere ball(2.0), cavity(2.0, Side::inside);
   const Vec3 u = Vec3(1, -2, 2) / 3;
-  check_one(touches(ball, 2.3 * u, 0.5), -u, 0.3);
-  check_one(touches(ball, 1.5 * u, 0.1), -u, -0.5);
-  check_one(touches(ball, 1.5 * u, 0.0), -u, -0.5);
-  CHECK(touches(ball, 2.6 * u, 0.5).empty());
-  check_one(touches(cavity, 1.7 * u, 0.5), u, 0.3);
-  check_one(touches(cavity, 2.3 * u, 0.5), u, -0.3);
-  CHECK(touches(cavity, 1.4 * u, 0.5).empty());
-  CHECK(touches(ball, Vec3::Zero(), 0.5).size() == 1);
+  check_one(surface_contacts(ball, 2.3 * u, 0.5), -u, 0.3);
+  check_one(surface_contacts(ball, 1.5 * u, 0.1), -u, -0.5);
+  check_one(surface_contacts(ball, 1.5 * u, 0.0), -u, -0.5);
+  CHECK(surface_contacts(ball, 2.6 * u, 0.5).empty());
+  check_one(surface_contacts(cavity, 1.7 * u, 0.5), u, 0.3);
+  check_one(surface_contacts(cavity, 2.3 * u, 0.5), u, -0.3);
+  CHECK(surface_contacts(cavity, 1.4 * u, 0.5).empty());
+  CHECK(surface_contacts(ball, Vec3::Zero(), 0.5).size() == 1);
   check_near(ball, {3, 3, 3});
   check_near(cavity, {2.1, 2.1, 2.1});
 }
@@ -63,42 +63,43 @@ TEST_CASE("a ball and a round cavity are touched where the closed form says") {
 TEST_CASE("a solid cylinder is touched on lateral surface, ends and rims") {
   const Cylinder c(1.0, 3.0);
   const Vec3 u(0.6, 0.8, 0);
-  check_one(touches(c, 1.2 * u + Vec3(0, 0, 0.7), 0.3), -u, 0.2);
-  check_one(touches(c, 0.5 * u + Vec3(0, 0, 1.7), 0.3), {0, 0, -1}, 0.2);
-  check_one(touches(c, 0.5 * u + Vec3(0, 0, -1.7), 0.3), {0, 0, 1}, 0.2);
-  check_one(touches(c, 1.12 * u + Vec3(0, 0, 1.66), 0.3), -0.6 * u - Vec3(0, 0, 0.8), 0.2);  // a rim
-  check_one(touches(c, 0.9 * u, 0.3), -u, -0.1);                                             // from inside: out
-  check_one(touches(c, 0.2 * u + Vec3(0, 0, -1.45), 0.0), {0, 0, 1}, -0.05);
-  CHECK(touches(c, 1.4 * u, 0.3).empty());
-  CHECK(touches(c, Vec3(0, 0, 0), 0.1).size() == 1);
+  check_one(surface_contacts(c, 1.2 * u + Vec3(0, 0, 0.7), 0.3), -u, 0.2);
+  check_one(surface_contacts(c, 0.5 * u + Vec3(0, 0, 1.7), 0.3), {0, 0, -1}, 0.2);
+  check_one(surface_contacts(c, 0.5 * u + Vec3(0, 0, -1.7), 0.3), {0, 0, 1}, 0.2);
+  check_one(surface_contacts(c, 1.12 * u + Vec3(0, 0, 1.66), 0.3), -0.6 * u - Vec3(0, 0, 0.8), 0.2);  // a rim
+  check_one(surface_contacts(c, 0.9 * u, 0.3), -u, -0.1);  // from inside: out
+  check_one(surface_contacts(c, 0.2 * u + Vec3(0, 0, -1.45), 0.0), {0, 0, 1}, -0.05);
+  CHECK(surface_contacts(c, 1.4 * u, 0.3).empty());
+  CHECK(surface_contacts(c, Vec3(0, 0, 0), 0.1).size() == 1);
   check_near(c, {1.8, 1.8, 2.2});
 }
 
 TEST_CASE("a drum is touched from inside on its lateral surface and its ends") {
   const Cylinder drum(1.0, 3.0, Side::inside);
   const Vec3 u(0.6, 0.8, 0);
-  check_one(touches(drum, 0.8 * u, 0.3), u, 0.2);
-  check_one(touches(drum, 1.1 * u, 0.3), u, -0.1);
-  const auto corner = touches(drum, 0.8 * u + Vec3(0, 0, -1.4), 0.3);
+  check_one(surface_contacts(drum, 0.8 * u, 0.3), u, 0.2);
+  check_one(surface_contacts(drum, 1.1 * u, 0.3), u, -0.1);
+  const auto corner = surface_contacts(drum, 0.8 * u + Vec3(0, 0, -1.4), 0.3);
   REQUIRE(corner.size() == 2);
   CHECK(corner[0].feature == Cylinder::lateral);
   CHECK(corner[1].feature == Cylinder::low_end);
   CHECK((corner[1].normal - Vec3(0, 0, -1)).norm() == 0.0);
   CHECK(corner[1].gap == Approx(0.1));
-  CHECK(touches(drum, Vec3(0, 0, 0), 0.3).empty());
+  CHECK(surface_contacts(drum, Vec3(0, 0, 0), 0.3).empty());
   check_near(drum, {1.1, 1.1, 1.6});
 }
 
 TEST_CASE("a tube is touched from inside, from outside, and on its rims") {
   const Cylinder tube = Cylinder::tube(1.0, 1.2, 3.0);
   const Vec3 u(0.6, 0.8, 0), top(0, 0, 1.5);
-  check_one(touches(tube, 0.8 * u, 0.3), u, 0.2);
-  check_one(touches(tube, 1.4 * u, 0.3), -u, 0.2);
-  check_one(touches(tube, 1.1 * u + Vec3(0, 0, 1.6), 0.3), {0, 0, -1}, 0.1);
-  check_one(touches(tube, 0.88 * u + top + Vec3(0, 0, 0.16), 0.3), 0.6 * u - Vec3(0, 0, 0.8), 0.2);  // inner rim
-  check_one(touches(tube, 1.05 * u, 0.3), u, -0.05);   // in the wall: back inside
-  check_one(touches(tube, 1.15 * u, 0.3), -u, -0.05);  // or outside
-  CHECK(touches(tube, Vec3(0, 0, 1.5), 0.3).empty());
+  check_one(surface_contacts(tube, 0.8 * u, 0.3), u, 0.2);
+  check_one(surface_contacts(tube, 1.4 * u, 0.3), -u, 0.2);
+  check_one(surface_contacts(tube, 1.1 * u + Vec3(0, 0, 1.6), 0.3), {0, 0, -1}, 0.1);
+  check_one(surface_contacts(tube, 0.88 * u + top + Vec3(0, 0, 0.16), 0.3), 0.6 * u - Vec3(0, 0, 0.8),
+            0.2);                                               // inner rim
+  check_one(surface_contacts(tube, 1.05 * u, 0.3), u, -0.05);   // in the wall: back inside
+  check_one(surface_contacts(tube, 1.15 * u, 0.3), -u, -0.05);  // or outside
+  CHECK(surface_contacts(tube, Vec3(0, 0, 1.5), 0.3).empty());
   check_near(tube, {1.8, 1.8, 2.2});
 }
 
@@ -107,18 +108,18 @@ TEST_CASE("round superquadrics are balls and ellipsoids") {
   Random random(11);
   for (int trial = 0; trial < 300; ++trial) {
     const Vec3 u = random.in({1, 1, 1}).normalized();
-    check_one(touches(ball, 2.3 * u, 0.5), -u, 0.3, 1e-11);
-    check_one(touches(ball, 1.8 * u, 0.0), -u, -0.2, 1e-11);
-    check_one(touches(Superquadric(Vec3::Constant(2.0), Vec3::Constant(2.0), Side::inside), 1.7 * u, 0.5), u, 0.3,
-              1e-11);
+    check_one(surface_contacts(ball, 2.3 * u, 0.5), -u, 0.3, 1e-11);
+    check_one(surface_contacts(ball, 1.8 * u, 0.0), -u, -0.2, 1e-11);
+    check_one(surface_contacts(Superquadric(Vec3::Constant(2.0), Vec3::Constant(2.0), Side::inside), 1.7 * u, 0.5), u,
+              0.3, 1e-11);
   }
   // From a place on an ellipsoid along its normal n = grad F/|grad F|: that is the way back, from both sides.
   const Superquadric egg({1.0, 1.5, 2.0});
   for (int trial = 0; trial < 300; ++trial) {
     const Vec3 s = random.in({1, 1, 1}).normalized(), x = s.cwiseProduct(egg.radii());
     const Vec3 n = x.cwiseQuotient(egg.radii().cwiseProduct(egg.radii())).normalized();
-    check_one(touches(egg, x + 0.2 * n, 0.3), -n, 0.2, 1e-10);
-    check_one(touches(egg, x - 0.2 * n, 0.0), -n, -0.2, 1e-10);  // 0.2 < smallest radius of curvature, 1/2
+    check_one(surface_contacts(egg, x + 0.2 * n, 0.3), -n, 0.2, 1e-10);
+    check_one(surface_contacts(egg, x - 0.2 * n, 0.0), -n, -0.2, 1e-10);  // 0.2 < smallest radius of curvature, 1/2
   }
   check_near(egg, {1.5, 2.0, 2.5});
   check_near(Superquadric({1.0, 1.5, 2.0}, {4, 3, 2}, Side::inside), {0.9, 1.4, 1.9});
@@ -131,7 +132,7 @@ TEST_CASE("superquadrics of any exponent: the place found is the nearest one, an
     for (int trial = 0; trial < 200; ++trial) {
       const Vec3 p = random.in({1.6, 2.1, 2.6});
       if (s.function().value(p.data()) < 0.0) continue;
-      const auto found = touches(s, p, 9.0);
+      const auto found = surface_contacts(s, p, 9.0);
       REQUIRE(found.size() == 1);
       const Vec3 foot = p + found[0].gap * found[0].normal;
       CHECK(std::abs(s.function().value(foot.data())) < 1e-10);
@@ -151,8 +152,9 @@ TEST_CASE("superquadrics of any exponent: the place found is the nearest one, an
     }
   }
   // Large exponents make a box.
-  check_one(touches(Superquadric({1.0, 1.5, 2.0}, Vec3::Constant(32)), {1.2, 0.1, 0.1}, 0.3), {-1, 0, 0}, 0.2, 1e-9);
-  const auto middle = touches(Superquadric({1.0, 1.5, 2.0}), Vec3::Zero(), 0.0);
+  check_one(surface_contacts(Superquadric({1.0, 1.5, 2.0}, Vec3::Constant(32)), {1.2, 0.1, 0.1}, 0.3), {-1, 0, 0}, 0.2,
+            1e-9);
+  const auto middle = surface_contacts(Superquadric({1.0, 1.5, 2.0}), Vec3::Zero(), 0.0);
   check_one(middle, {-1, 0, 0}, -1.0, 1e-9);
 }
 

@@ -30,7 +30,7 @@ Vec3 push(const Shape& a, const Mat3& ra, const Shape& b, const Mat3& rb, const 
   b.orient(dem::from_eigen(rb), pose_b);
   Vec3 sum = Vec3::Zero();
   Shape::collide(a, pose_a, b, pose_b, dem::from_eigen(separation),
-                 [&](std::uint32_t, const auto& touch) { sum += touch.area * touch.overlap * to_eigen(touch.normal); });
+                 [&](std::uint32_t, const auto& point) { sum += point.area * point.overlap * to_eigen(point.normal); });
   return sum;
 }
 

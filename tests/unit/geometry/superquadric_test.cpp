@@ -184,7 +184,7 @@ TEST_CASE("a search that goes on from the last step finds what a new one finds")
     alignas(64) double pose_a[Superquadric::pose_size], pose_b[Superquadric::pose_size];
     CommonNormal memory;
     int touching = 0;
-    // b tumbles over a, faster than grains do, in and out of touch; the overlaps stay below the radii of the edges.
+    // b tumbles over a, faster than grains do, in and out of contact; the overlaps stay below the radii of the edges.
     for (int k = 0; k < 2000; ++k) {
       const Mat3 rb(Eigen::AngleAxisd(1e-3 * k, Vec3(1, 2, 3).normalized()));
       const Vec3 n = Eigen::AngleAxisd(1e-3 * k, Vec3(2, -1, 1).normalized()) * Vec3(0.9, 0.3, 0.3).normalized();
@@ -194,9 +194,9 @@ TEST_CASE("a search that goes on from the last step finds what a new one finds")
       b.orient(dem::from_eigen(rb), pose_b);
       double warm = 0.0, cold = 0.0;
       Superquadric::collide(a, pose_a, b, pose_b, dem::from_eigen(d), memory,
-                            [&](std::uint32_t, const auto& touch) { warm = touch.overlap; });
+                            [&](std::uint32_t, const auto& point) { warm = point.overlap; });
       Superquadric::collide(a, pose_a, b, pose_b, dem::from_eigen(d),
-                            [&](std::uint32_t, const auto& touch) { cold = touch.overlap; });
+                            [&](std::uint32_t, const auto& point) { cold = point.overlap; });
       touching += warm > 0.0;
       CHECK(warm == Approx(std::max(0.0, overlap)).margin(1e-9));
       CHECK(cold == Approx(warm).margin(1e-9));

@@ -1,6 +1,6 @@
 #include "core/error_of.hpp"
 #include "random.hpp"
-#include "touches.hpp"
+#include "surface_contacts.hpp"
 
 #include <dem/geometry/box/box.hpp>
 #include <dem/geometry/mesh/mesh_shapes.hpp>
@@ -34,7 +34,7 @@ double distance_to_triangle(const Vec3& p, const Vec3& a, const Vec3& b, const V
 }
 
 /// The name that contacts on one group of triangles share, whatever way they point.
-std::uint32_t group_of(const Touch& t) { return t.feature >> dem::surface::direction_bits; }
+std::uint32_t group_of(const SurfaceContact& t) { return t.feature >> dem::surface::direction_bits; }
 
 }  // namespace
 
@@ -48,8 +48,8 @@ TEST_CASE("a box of triangles is touched as a box is") {
     for (int trial = 0; trial < 4000; ++trial) {
       const Vec3 p = random.in(0.5 * edges + Vec3::Constant(0.6));
       const double radius = trial % 3 == 0 ? 0.0 : random.between(0.05, 0.6);
-      const auto expected = touches(box, p, radius);
-      const auto found = touches(triangles, p, radius);
+      const auto expected = surface_contacts(box, p, radius);
+      const auto found = surface_contacts(triangles, p, radius);
       const double depth = expected.empty() ? 0.0 : -expected[0].gap;
       if (depth > 0.45) continue;  // near the middle two ways out are equally short, and deeper is not promised
       REQUIRE(found.size() == expected.size());
@@ -79,12 +79,12 @@ TEST_CASE("the nearest triangle through the tree is the nearest of all") {
       nearest = std::min(nearest, distance_to_triangle(p, tyre.corner(t, 0), tyre.corner(t, 1), tyre.corner(t, 2)));
     }
     const double radius = random.between(0.01, 0.06);
-    const auto found = touches(surface, p, radius);
+    const auto found = surface_contacts(surface, p, radius);
     CHECK(found.empty() == !(nearest < radius));
     if (found.empty()) continue;
     ++touching;
     double deepest = 1e300;
-    for (const Touch& t : found) deepest = std::min(deepest, t.gap);
+    for (const SurfaceContact& t : found) deepest = std::min(deepest, t.gap);
     CHECK(std::abs(deepest) == Approx(nearest).epsilon(1e-12));
     // Inside the surface covers the whole sky, 4 pi, and outside nothing (van Oosterom & Strackee 1983).
     double sky = 0.0;
@@ -111,7 +111,7 @@ TEST_CASE("a sphere on a flat mesh has one contact, wherever it is, with one nam
     if (trial % 3 == 0) p.x() = 2.0 * (std::floor(random.between(0, 6)) / 7 - 0.5) + 2.0 / 7;
     if (trial % 6 == 0) p.y() = 2.0 * (std::floor(random.between(0, 4)) / 5 - 0.5) + 2.0 / 5;
     p.z() = random.between(-0.05, 0.29);
-    const auto found = touches(flat, p, 0.3);
+    const auto found = surface_contacts(flat, p, 0.3);
     REQUIRE(found.size() == 1);
     CHECK((found[0].normal - Vec3(0, 0, -1)).norm() < 1e-14);
     CHECK(std::abs(found[0].gap - p.z()) < 1e-15);
@@ -130,22 +130,23 @@ TEST_CASE("a convex edge pushes once, a concave one from both sides") {
   CHECK(surface.report().components == 1);
   CHECK(surface.data().groups.count == 2);  // the wall and the upper floor are one, the lower floor must be another
 
-  const auto corner = touches(surface, {-0.2, 0.1, 0.25}, 0.3);  // touches floor and wall
+  const auto corner = surface_contacts(surface, {-0.2, 0.1, 0.25}, 0.3);  // touches floor and wall
   REQUIRE(corner.size() == 2);
   CHECK(corner[0].normal.dot(corner[1].normal) == Approx(0.0).margin(1e-14));
   CHECK(corner[0].gap + corner[1].gap == Approx(0.45));
-  const auto edge = touches(surface, {-0.12, 0.1, 1.16}, 0.3);  // above the upper edge, outside
+  const auto edge = surface_contacts(surface, {-0.12, 0.1, 1.16}, 0.3);  // above the upper edge, outside
   check_one(edge, Vec3(0.6, 0, -0.8), 0.2, 1e-12);
   // Round the upper edge: the contact keeps its name.
-  const auto above = touches(surface, {0.05, 0.1, 1.2}, 0.3), beside = touches(surface, {-0.2, 0.1, 0.9}, 0.3);
+  const auto above = surface_contacts(surface, {0.05, 0.1, 1.2}, 0.3),
+             beside = surface_contacts(surface, {-0.2, 0.1, 0.9}, 0.3);
   check_one(above, {0, 0, -1}, 0.2, 1e-12);
   check_one(beside, {1, 0, 0}, 0.2, 1e-12);
   CHECK(group_of(above[0]) == group_of(edge[0]));
   CHECK(group_of(above[0]) == group_of(beside[0]));
   // The floor's contact has the same name with and without the wall's.
-  const auto floor = touches(surface, {-0.5, 0.1, 0.25}, 0.3);
+  const auto floor = surface_contacts(surface, {-0.5, 0.1, 0.25}, 0.3);
   REQUIRE(floor.size() == 1);
-  const Touch& same = std::abs(corner[0].normal.z()) > 0.5 ? corner[0] : corner[1];
+  const SurfaceContact& same = std::abs(corner[0].normal.z()) > 0.5 ? corner[0] : corner[1];
   CHECK(floor[0].feature == same.feature);
 }
 
@@ -154,12 +155,12 @@ TEST_CASE("the contact with a mesh moves steadily over its edges and corners") {
   Random random(7);
   for (int walk = 0; walk < 20; ++walk) {
     const Vec3 from = random.in({1, 1, 1}).normalized() * 1.9, to = random.in({1, 1, 1}).normalized() * 1.9;
-    Touch last{};
+    SurfaceContact last{};
     Vec3 last_p = from;
     bool any = false;
     for (double t = 0; t <= 1.0; t += 0.002) {
       const Vec3 p = ((1 - t) * from + t * to).normalized() * 1.85;
-      const auto found = touches(box, p, 1.0);
+      const auto found = surface_contacts(box, p, 1.0);
       REQUIRE(found.size() <= 1);  // a convex body has one nearest point
       if (!found.empty() && any) {
         const double step = (p - last_p).norm();
@@ -182,7 +183,7 @@ TEST_CASE("inside a finely cut bowl a sphere has one contact with one name and a
   for (int k = 0; k < 5000; ++k) {
     const double angle = 2 * std::numbers::pi * k / 5000;
     const Vec3 p(0.61 * std::cos(angle), 0.61 * std::sin(angle), 0.3);
-    const auto found = touches(drum, p, 0.4);
+    const auto found = surface_contacts(drum, p, 0.4);
     REQUIRE(found.size() == 1);
     names.insert(group_of(found[0]));
     // Between the inscribed circle and the round wall; facets change where their distances are equal.
@@ -193,7 +194,7 @@ TEST_CASE("inside a finely cut bowl a sphere has one contact with one name and a
   }
   CHECK(names.size() == 1);
   // At an end there are two contacts, and the wall keeps its name.
-  const auto found = touches(drum, {0.61, 0, 1.7}, 0.4);
+  const auto found = surface_contacts(drum, {0.61, 0, 1.7}, 0.4);
   REQUIRE(found.size() == 2);
   CHECK((names.contains(group_of(found[0])) != names.contains(group_of(found[1]))));
 }
@@ -204,7 +205,7 @@ TEST_CASE("a ball that nearly fills a drum still feels its end, however many fac
   const double r = 0.97, into_lateral = 1e-3;
   for (const double into_end : {1e-6, 1e-4, 5e-4, 2e-3}) {
     CAPTURE(into_end);
-    const auto found = touches(drum, {1.0 - r + into_lateral, 0, 2.0 - r + into_end}, r);
+    const auto found = surface_contacts(drum, {1.0 - r + into_lateral, 0, 2.0 - r + into_end}, r);
     REQUIRE(found.size() == 2);
     const auto& end = found[0].normal.z() > 0.5 ? found[0] : found[1];
     const auto& lateral = found[0].normal.z() > 0.5 ? found[1] : found[0];
@@ -222,30 +223,30 @@ TEST_CASE("flanks of a slot keep names of their own") {
   const double middle = std::numbers::pi / 24, flank = 0.32 * std::sin(middle) - 0.01;
   const auto at = [&](double shift, double r) {
     const double radius = 0.3 + 0.02;
-    return touches(wheel,
-                   Vec3(radius * std::cos(middle + shift / radius), radius * std::sin(middle + shift / radius), 0), r);
+    return surface_contacts(
+        wheel, Vec3(radius * std::cos(middle + shift / radius), radius * std::sin(middle + shift / radius), 0), r);
   };
   const auto left = at(-0.015, 0.019), right = at(0.015, 0.019), both = at(0.0, flank + 0.001);
   REQUIRE(left.size() == 1);
   REQUIRE(right.size() == 1);
   CHECK(group_of(left[0]) != group_of(right[0]));
   std::set<std::uint32_t> names;
-  for (const Touch& t : both) names.insert(group_of(t));
+  for (const SurfaceContact& t : both) names.insert(group_of(t));
   CHECK(names.contains(group_of(left[0])));
   CHECK(names.contains(group_of(right[0])));
 }
 
 TEST_CASE("points see how deep they are in a solid, by the normals of faces, edges and corners") {
   const TriangleMesh box(mesh::box({2, 2, 2}), {.depth = 0.4});
-  check_one(touches(box, {0.9, 0.1, -0.2}, 0.0), {-1, 0, 0}, -0.1);
-  check_one(touches(box, {0.1, -0.75, 0.2}, 0.0), {0, 1, 0}, -0.25);
-  CHECK(touches(box, {0.0, 0.0, 0.0}, 0.0).empty());  // deeper than it is looked for
+  check_one(surface_contacts(box, {0.9, 0.1, -0.2}, 0.0), {-1, 0, 0}, -0.1);
+  check_one(surface_contacts(box, {0.1, -0.75, 0.2}, 0.0), {0, 1, 0}, -0.25);
+  CHECK(surface_contacts(box, {0.0, 0.0, 0.0}, 0.0).empty());  // deeper than it is looked for
   Random random(7);
   for (int trial = 0; trial < 2000; ++trial) {
     const Vec3 p = random.in({1.2, 1.2, 1.2});
     const double depth = 1.0 - p.cwiseAbs().maxCoeff();
     if (std::abs(depth - 0.4) < 1e-9) continue;
-    CHECK(touches(box, p, 0.0).empty() == !(depth > 0.0 && depth < 0.4));
+    CHECK(surface_contacts(box, p, 0.0).empty() == !(depth > 0.0 && depth < 0.4));
   }
   // A needle's tip: face normals there disagree about the side, the angle-weighted one does not.
   IndexedMesh spike = {{{0, 0, 5}, {0.3, 0, 0}, {-0.2, 0.3, 0}, {-0.2, -0.3, 0}},
@@ -258,7 +259,7 @@ TEST_CASE("points see how deep they are in a solid, by the normals of faces, edg
     for (std::size_t t = 0; t < 4; ++t) {
       inside &= needle.mesh().area_vector(t).dot(p - needle.mesh().corner(t, 0)) < 0.0;
     }
-    CHECK(touches(needle, p, 0.0).empty() == !inside);
+    CHECK(surface_contacts(needle, p, 0.0).empty() == !inside);
   }
 }
 
@@ -267,8 +268,8 @@ TEST_CASE("a point that is held at a gap before a solid is pushed out from as de
   const TriangleMesh box(mesh::box({2, 2, 2}, 3), {.depth = 0.4}), chosen(mesh::box({2, 2, 2}, 3));
   const double gap = 0.01;
   const auto held = [&](const TriangleMesh& m, const Vec3& p) {
-    std::vector<Touch> found;
-    m.touch_point(dem::from_eigen(p), gap, [&](std::uint32_t feature, const dem::Vector3<double>& normal, double d) {
+    std::vector<SurfaceContact> found;
+    m.point_contacts(dem::from_eigen(p), gap, [&](std::uint32_t feature, const dem::Vector3<double>& normal, double d) {
       found.push_back({feature, to_eigen(normal), d});
     });
     return found;
@@ -279,9 +280,9 @@ TEST_CASE("a point that is held at a gap before a solid is pushed out from as de
   Random random(5);
   for (int trial = 0; trial < 2000; ++trial) {
     const Vec3 p = random.in({1.2, 1.2, 1.2});
-    const auto found = held(box, p), alone = touches(box, p, 0.0);
+    const auto found = held(box, p), alone = surface_contacts(box, p, 0.0);
     if (alone.empty()) {
-      CHECK(std::all_of(found.begin(), found.end(), [](const Touch& t) { return t.gap >= 0.0; }));
+      CHECK(std::all_of(found.begin(), found.end(), [](const SurfaceContact& t) { return t.gap >= 0.0; }));
     } else {
       REQUIRE(found.size() == 1);
       CHECK(found[0].feature == alone[0].feature);
@@ -294,21 +295,21 @@ TEST_CASE("a point that is held at a gap before a solid is pushed out from as de
 TEST_CASE("sheets are touched from one side, or from both") {
   const IndexedMesh square = mesh::rectangle(2, 2, 2, 2);
   const TriangleMesh one(square, {.side = MeshSide::one_sided}), two(square, {.side = MeshSide::two_sided});
-  check_one(touches(one, {0.1, 0.2, 0.2}, 0.3), {0, 0, -1}, 0.2);
-  check_one(touches(one, {0.1, 0.2, -0.2}, 0.3), {0, 0, -1}, -0.2);  // pushed back to the front
-  check_one(touches(one, {0.1, 0.2, -0.2}, 0.0), {0, 0, -1}, -0.2);
-  check_one(touches(two, {0.1, 0.2, 0.2}, 0.3), {0, 0, -1}, 0.2);
-  check_one(touches(two, {0.1, 0.2, -0.2}, 0.3), {0, 0, 1}, 0.2);
-  CHECK(touches(two, {0.1, 0.2, -0.01}, 0.0).empty());
+  check_one(surface_contacts(one, {0.1, 0.2, 0.2}, 0.3), {0, 0, -1}, 0.2);
+  check_one(surface_contacts(one, {0.1, 0.2, -0.2}, 0.3), {0, 0, -1}, -0.2);  // pushed back to the front
+  check_one(surface_contacts(one, {0.1, 0.2, -0.2}, 0.0), {0, 0, -1}, -0.2);
+  check_one(surface_contacts(two, {0.1, 0.2, 0.2}, 0.3), {0, 0, -1}, 0.2);
+  check_one(surface_contacts(two, {0.1, 0.2, -0.2}, 0.3), {0, 0, 1}, 0.2);
+  CHECK(surface_contacts(two, {0.1, 0.2, -0.01}, 0.0).empty());
   for (const TriangleMesh& sheet : {one, two}) {  // beside the rim it is pushed away from the rim
-    check_one(touches(sheet, {1.12, 0.2, -0.16}, 0.3), Vec3(-0.6, 0, 0.8), 0.2, 1e-12);
+    check_one(surface_contacts(sheet, {1.12, 0.2, -0.16}, 0.3), Vec3(-0.6, 0, 0.8), 0.2, 1e-12);
   }
 }
 
 TEST_CASE("a thin plate is touched on the side where the sphere is") {
   const TriangleMesh plate(mesh::box({2, 2, 0.01}, 4));
-  check_one(touches(plate, {0.1, 0.2, 0.105}, 0.3), {0, 0, -1}, 0.1, 1e-13);
-  check_one(touches(plate, {0.1, 0.2, -0.105}, 0.3), {0, 0, 1}, 0.1, 1e-13);
+  check_one(surface_contacts(plate, {0.1, 0.2, 0.105}, 0.3), {0, 0, -1}, 0.1, 1e-13);
+  check_one(surface_contacts(plate, {0.1, 0.2, -0.105}, 0.3), {0, 0, 1}, 0.1, 1e-13);
 }
 
 TEST_CASE("points of a mesh: its vertices, points on long sharp edges, and which of them are corners") {
@@ -348,7 +349,7 @@ TEST_CASE("what is called for a contact may ask meshes in turn") {
   using V = dem::Vector3<double>;
   const auto walls = [&](const V& p, auto&& in_turn) {
     std::vector<double> gaps;
-    room.touch(p, 0.2, [&](std::uint32_t, const V&, double gap) {
+    room.contacts(p, 0.2, [&](std::uint32_t, const V&, double gap) {
       in_turn();
       gaps.push_back(gap);
     });

@@ -17,12 +17,13 @@ struct Point {
   Vector3<double> normal = {1, 0, 0};
 };
 
-/// Touches with these weights, fitted.
+/// Contact points with these weights, fitted.
 std::vector<ContactPoint<double>> fitted(const std::vector<Point>& points, Fit fit) {
-  std::vector<ContactPoint<double>> touches;
-  for (const Point& p : points) touches.push_back({p.normal, p.overlap, {0, 0, 0}, 1.0, p.weight});
-  dem::contact::fit_weights(touches.size(), fit, [&](std::size_t k) -> ContactPoint<double>& { return touches[k]; });
-  return touches;
+  std::vector<ContactPoint<double>> contact_points;
+  for (const Point& p : points) contact_points.push_back({p.normal, p.overlap, {0, 0, 0}, 1.0, p.weight});
+  dem::contact::fit_weights(contact_points.size(), fit,
+                            [&](std::size_t k) -> ContactPoint<double>& { return contact_points[k]; });
+  return contact_points;
 }
 double weight(const std::vector<Point>& points, Fit fit) {
   double sum = 0.0;
@@ -94,7 +95,7 @@ TEST_CASE("many points are weighted as if each looked at all the others") {
       points.push_back({0.01 * (k % 11) - 0.02, weight * (1.0 + 0.1 * (k % 5)), normal});
     }
     for (const Fit fit : {Fit::always, Fit::if_more}) {
-      const auto touches = fitted(points, fit);
+      const auto contact_points = fitted(points, fit);
       for (std::size_t k = 0; k < points.size(); ++k) {
         double first = 0.0, second = 0.0;
         for (const Point& p : points) {
@@ -106,7 +107,8 @@ TEST_CASE("many points are weighted as if each looked at all the others") {
         between += n > 1.0 && n < 2.0;
         const double whole = points[k].weight * std::max(0.0, points[k].overlap) / first;
         const double kept = n > 1.0 ? (1.0 - over) * points[k].weight / n : points[k].weight;
-        CHECK(touches[k].area == Approx(fit == Fit::always ? whole : kept + over * whole).epsilon(1e-12).margin(1e-14));
+        CHECK(contact_points[k].area ==
+              Approx(fit == Fit::always ? whole : kept + over * whole).epsilon(1e-12).margin(1e-14));
       }
     }
   }

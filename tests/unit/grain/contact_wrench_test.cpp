@@ -82,11 +82,11 @@ TEST_CASE("what limits friction is the repulsion and the grip, never less than n
 
 TEST_CASE("a contact's wrench has the torque of rolling and torsion, equal and opposite") {
   const ContactParameters<Sticky> p = {{1e8, 0.0}, {0, 0}, {0.2, 1e9, 0.0}, {0.0}};
-  const contact::SphereContactPoint<double> touch = {{2 * radius - 1e-6, 0, 0}, radius, radius};
-  const grain::RelativeMotion<double> e = {touch.link, {0, 0, 0}, {3, 0, 0}, {1, 0, 0}, 1e5};
+  const contact::SphereContactPoint<double> point = {{2 * radius - 1e-6, 0, 0}, radius, radius};
+  const grain::RelativeMotion<double> e = {point.link, {0, 0, 0}, {3, 0, 0}, {1, 0, 0}, 1e5};
   ContactHistory<Sticky, double> h = {};
   double ratio = 0.0;
-  const auto w = grain::contact_wrench<Sticky, double>(touch, e, p, 1e-3, h, ratio);
+  const auto w = grain::contact_wrench<Sticky, double>(point, e, p, 1e-3, h, ratio);
   // R* = r/2; the spring is stiff, so it is at its limit: mu_t R* Fn against the spin of i.
   const double limit = 0.2 * 0.5 * radius * -w.force.x;
   CHECK(-w.force.x == Approx(4.0 / 3.0 * 1e8 * std::sqrt(0.5 * radius * 1e-6) * 1e-6));
@@ -106,8 +106,8 @@ TEST_CASE("a point of a patch gives its share of what the whole contact gives, b
   const grain::RelativeMotion<double> e = {{0, 0, 2 * radius}, {0.02, -0.01, 0.1}, {3, 4, 5}, {-1, 0, 2}, 1e5};
   const auto of = [&](double share, ContactHistory<Elastic, double>& h) {
     double overlap_ratio;
-    const contact::ContactPoint<double> touch = {{0, 0, 1}, 1e-5, {0, 0, radius}, 0.5 * radius, share};
-    return grain::contact_wrench<Elastic, double>(touch, e, p, 1e-6, h, overlap_ratio);
+    const contact::ContactPoint<double> point = {{0, 0, 1}, 1e-5, {0, 0, radius}, 0.5 * radius, share};
+    return grain::contact_wrench<Elastic, double>(point, e, p, 1e-6, h, overlap_ratio);
   };
   ContactHistory<Elastic, double> whole_history = {}, share_history = {};
   for (int step = 0; step < 3; ++step) {
@@ -132,10 +132,10 @@ TEST_CASE("points that are less than a whole contact together keep its damping r
   const double k = 1000.0, b = 0.3, inverse_mass = 1e5, speed = 0.1, d = 1e-5, share = 0.25;
   const ContactParameters<Damped> p = {{k, b}, {}};
   const grain::RelativeMotion<double> e = {{0, 0, 2 * radius}, {0, 0, speed}, {0, 0, 0}, {0, 0, 0}, inverse_mass};
-  const contact::ContactPoint<double> touch = {{0, 0, 1}, d, {0, 0, radius}, 0.5 * radius, share, share};
+  const contact::ContactPoint<double> point = {{0, 0, 1}, d, {0, 0, radius}, 0.5 * radius, share, share};
   ContactHistory<Damped, double> h = {};
   double overlap_ratio;
-  const double force = -grain::contact_wrench<Damped, double>(touch, e, p, 1e-6, h, overlap_ratio).force.z;
+  const double force = -grain::contact_wrench<Damped, double>(point, e, p, 1e-6, h, overlap_ratio).force.z;
   CHECK(force == Approx(share * k * d + 2.0 * b * std::sqrt(share * k / inverse_mass) * speed).epsilon(1e-14));
 }
 

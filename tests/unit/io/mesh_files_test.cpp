@@ -142,7 +142,7 @@ TEST_CASE("no file, however broken, does more than be read or be refused") {
         ++read;
         // And a surface can be made of it and touched.
         const dem::surface::TriangleMesh sheet(m, {.side = dem::surface::MeshSide::two_sided, .point_spacing = 0.7});
-        sheet.touch({0.5, 0.4, 0.3}, 0.6, [](std::uint32_t, const dem::Vector3<double>& normal, double) {
+        sheet.contacts({0.5, 0.4, 0.3}, 0.6, [](std::uint32_t, const dem::Vector3<double>& normal, double) {
           CHECK(std::abs(norm(normal) - 1.0) < 1e-9);
         });
       } catch (const dem::Error& error) {
@@ -157,13 +157,13 @@ TEST_CASE("no file, however broken, does more than be read or be refused") {
 
 TEST_CASE("surfaces of all kinds are drawn where grains touch them") {
   using namespace dem::surface;
-  // Every vertex that is drawn lies on the surface: its distance, as touch finds it, is 0.
+  // Every vertex that is drawn lies on the surface: its distance, as contacts() finds it, is 0.
   const auto check = [](const auto& surface, const dem::io::SurfaceMesh& drawn, double tolerance) {
     CHECK(drawn.triangles.size() + drawn.quads.size() > 5);
     for (const Vec3& v : drawn.vertices) {
       double nearest = 1e300;
-      surface.touch(dem::from_eigen(v), 0.05,
-                    [&](std::uint32_t, const auto&, double gap) { nearest = std::min(nearest, std::abs(gap)); });
+      surface.contacts(dem::from_eigen(v), 0.05,
+                       [&](std::uint32_t, const auto&, double gap) { nearest = std::min(nearest, std::abs(gap)); });
       if (nearest > tolerance) nearest = v.head(2).norm() < 1e-12 ? 0.0 : nearest;  // middles of ends are on no rim
       CHECK(nearest <= tolerance);
     }

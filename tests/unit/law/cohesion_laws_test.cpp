@@ -48,7 +48,7 @@ TEST_CASE("with Hertz's law JKR cohesion follows the JKR curve") {
   }
 }
 
-TEST_CASE("JKR's contact starts at the touch and ends at the pull-off") {
+TEST_CASE("JKR's contact starts when surfaces meet and ends at the pull-off") {
   const double last = JKR::range(sticky, radius);
   CHECK(last == Approx(0.75 * std::cbrt(M_PI * M_PI * work * work * radius / (modulus * modulus))));
   JKR::History<double> h = {};
@@ -61,7 +61,7 @@ TEST_CASE("JKR's contact starts at the touch and ends at the pull-off") {
   CHECK(largest == Approx(pull_off).epsilon(1e-5));  // a flat peak met to one part in a thousand of its width
   CHECK(force<JKR>(sticky, -last * 0.999999, h).pull == Approx(5.0 / 9.0 * pull_off).epsilon(2e-3));
   CHECK(force<JKR>(sticky, -last * 1.000001, h).pull == 0.0);
-  CHECK(force<JKR>(sticky, -0.5 * last, h).pull == 0.0);  // and not again before the next touch
+  CHECK(force<JKR>(sticky, -0.5 * last, h).pull == 0.0);  // and not again before the next contact
   CHECK(force<JKR>(sticky, 1e-7, h).pull > 0.0);
 }
 
@@ -127,7 +127,7 @@ TEST_CASE("a constant stress pulls on the area of Hertz's circle") {
   CHECK(force<ContactStress>({stress}, even, h).pull == Approx(hertz(even)).epsilon(1e-12));
 }
 
-TEST_CASE("a liquid bridge forms at the touch, weakens with the gap, and breaks") {
+TEST_CASE("a liquid bridge forms at first contact, weakens with the gap, and breaks") {
   const double tension = 0.072, angle = 0.3, volume = 1e-15;
   const auto p = LiquidBridge::of(tension, angle, volume);
   CHECK(p.rupture == Approx(1.15e-5));

@@ -7,7 +7,7 @@ struct Rebound {
   double restitution = 0.0, peak_force = 0.0, lowest_force = 0.0, peak_overlap = 0.0, duration = 0.0;
 };
 
-/// Integrates m d'' = m gravity - F from the first touch until the overlap is gone, with a time step that resolves
+/// Integrates m d'' = m gravity - F from first contact until the overlap is gone, with a time step that resolves
 /// sqrt(m/k) in `steps` steps, k the law's stiffness at the overlap `depth`. The error of a step is 1/steps of what
 /// happens in it.
 template <class Law>

@@ -98,7 +98,7 @@ TEST_CASE("soil that was heaped up is soil when it is driven over, but gives way
   press(soil);
   const ColumnField& f = soil.field();
   const auto plate = std::make_shared<ColumnBox>(Vector3<double>{0.01, 0.01, 0.01});
-  const auto touch = [&](std::size_t ix, double height) {
+  const auto force_on_plate = [&](std::size_t ix, double height) {
     const std::array<ColumnPart, 1> parts = {ColumnPart{
         .shape = plate,
         .body = {{f.grid.x(ix), f.grid.y(30), height + 0.005}, {0, 0, 0}, {0, 0, 0}, Matrix3<double>::identity()}}};
@@ -108,15 +108,15 @@ TEST_CASE("soil that was heaped up is soil when it is driven over, but gives way
   const std::size_t beside = f.grid.row(36, 30), rut = f.grid.row(33, 30);
   const double heap = f.heap[beside];
   REQUIRE(heap > 1e-3);
-  CHECK(touch(36, heap - 1e-4) == Approx(1e-4 * under(melanz_sand.pressure, 0.01).pressure(1e-4)));
+  CHECK(force_on_plate(36, heap - 1e-4) == Approx(1e-4 * under(melanz_sand.pressure, 0.01).pressure(1e-4)));
   CHECK(f.ground[beside] == Approx(heap));
   CHECK(f.heap[beside] == 0.0);
   // Some has rolled back to the edge of the rut by now, as the plate there is gone.
-  for (int k = 0; k < 300; ++k) touch(38, 0.0);
+  for (int k = 0; k < 300; ++k) force_on_plate(38, 0.0);
   const double in_rut = f.heap[rut], floor = f.surface(rut) - in_rut;
   CHECK(in_rut > 1e-4);
-  CHECK(touch(33, floor + 0.5 * in_rut) == 0.0);
-  CHECK(touch(33, floor - 1e-4) > 0.0);
+  CHECK(force_on_plate(33, floor + 0.5 * in_rut) == 0.0);
+  CHECK(force_on_plate(33, floor - 1e-4) > 0.0);
 }
 
 }  // namespace bulldozing_test

@@ -27,7 +27,7 @@ Sums sums(const ColumnShape& shape, const ShapePose& pose, double spacing, doubl
     for (std::size_t ix = 0; ix < n; ++ix) {
       const double x = grid.x(ix), y = grid.y(iy);
       ColumnContactPoint t;
-      if (!shape.touch(pose, grid.place(ix, iy), top, t)) continue;
+      if (!shape.column_contact(pose, grid.place(ix, iy), top, t)) continue;
       const double area = t.share * spacing * spacing, h = spacing;
       s.area += area;
       s.volume += area * (top - t.point.z);

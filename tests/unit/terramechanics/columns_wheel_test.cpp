@@ -28,7 +28,7 @@ RollingWheel::Mean rolled(const Soil& soil, RollingWheel wheel, double spacing, 
 
 TEST_CASE("columns half as wide change a wheel's pull, torque and sinkage by less than 3 %, and by far less") {
   // The contact is 50 mm long: 20 mm are 2.5 columns. As columns take their heights at different points of themselves,
-  // the wheel feels eight times as many; what is left is the shake of its first touch.
+  // the wheel feels eight times as many; what is left is the shake of its first contact.
   for (const Soil& soil : {melanz_sand, mojave_martian_simulant}) {
     for (const double slip : {-0.3, 0.0, 0.3}) {
       const RollingWheel wheel = {.slip = slip, .y = 0.003};
@@ -111,9 +111,9 @@ TEST_CASE("a towed wheel without shear strength meets Bekker's compaction resist
 }
 
 TEST_CASE("a column is sheared by the way that the rim slides over it") {
-  // While the wheel passes, dj = (omega r - v cos theta) dt with r cos theta d theta = -v dt: from the first touch at
+  // While the wheel passes, dj = (omega r - v cos theta) dt with r cos theta d theta = -v dt: from the first contact at
   // theta_f to theta j = r [sin/(1 - s) - theta/2 - sin(2 theta)/4], the difference of both. A column just ahead of the
-  // lowest point was only compacted so far: its share is that of j. Its first touch is known to a step's share.
+  // lowest point was only compacted so far: its share is that of j. Its first contact is known to a step's share.
   Soil soil = melanz_sand;
   soil.unloading_stiffness = 1e13;
   soil.shear.displacement = 0.02;  // far from saturated

@@ -343,7 +343,7 @@ TEST_CASE("an elastic head-on collision of two bodies exchanges their velocities
   const auto b = w.machine().add_body(box_body("b", {0.1, 0.08, 0.08}, 1000.0 / 0.64).at({0.11, 0, 0}));
   w.add_body_contact(w.add_surface(a, Box({0.1, 0.1, 0.1})), w.add_surface(b, Box({0.1, 0.08, 0.08})));
   REQUIRE(w.run_for(0.05));
-  CHECK(w.machine().body(a).velocity().norm() < 1e-4);  // O(omega dt) of symplectic Euler at the first and last touch
+  CHECK(w.machine().body(a).velocity().norm() < 1e-4);  // O(omega dt) of symplectic Euler at the first and last contact
   CHECK(w.machine().body(b).velocity().x() == Approx(1.0).epsilon(1e-4));
 }
 

@@ -26,9 +26,9 @@ constexpr double work = 0.5;
 const contact::ElasticPair soft = {1e7, 3e6};
 const double pull_off = 1.5 * M_PI * work * r;
 const double unit = std::cbrt(2.0 * M_PI * work * r * r / soft.modulus);  // of the contact radius
-// Energy (J) that JKR takes from an impact: what tearing costs beyond the overlap 0, minus what the jump at the touch
-// does not give back. The integral of F dd over the curve from x = a/unit = 1 (touch) to 4^(-2/3) (pull-off) is
-// pi w unit^2 [16/15 x^5 - 8/3 x^(7/2) + x^2].
+// Energy (J) that JKR takes from an impact: what tearing costs beyond the overlap 0, minus what the jump at first
+// contact does not give back. The integral of F dd over the curve from x = a/unit = 1 (first contact) to 4^(-2/3)
+// (pull-off) is pi w unit^2 [16/15 x^5 - 8/3 x^(7/2) + x^2].
 const double torn = [] {
   const auto f = [](double x) { return 16.0 / 15.0 * std::pow(x, 5) - 8.0 / 3.0 * std::pow(x, 3.5) + x * x; };
   return M_PI * work * unit * unit * (f(std::pow(4.0, -2.0 / 3.0)) - f(1.0));
@@ -114,7 +114,7 @@ TEST_CASE("JKR takes the work of tearing from an impact, and catches what is too
     OnPlane<JkrModel> ball(jkr(1.0), 1e-7, {0, 0, -speed}, 2e-7);
     REQUIRE(ball.world.run_for(2e-3));
     CAPTURE(speed, capture);
-    // The touch and the pull-off fall anywhere within steps of 2e-7 s v: 2 % of the torn energy.
+    // First contact and pull-off fall anywhere within steps of 2e-7 s v: 2 % of the torn energy.
     CHECK(ball.speed() * ball.speed() == Approx(speed * speed - 2 * torn / mass).margin(0.02 * capture * capture));
     CHECK(ball.gap() > 0.0);
   }
@@ -123,7 +123,7 @@ TEST_CASE("JKR takes the work of tearing from an impact, and catches what is too
   CHECK(caught.gap() < cohesion::JKR::range(jkr(1.0).cohesion, r));
 }
 
-TEST_CASE("a liquid bridge pulls after the touch only, over its distance, and takes its work") {
+TEST_CASE("a liquid bridge pulls after first contact only, over its distance, and takes its work") {
   const double speed = 0.2;
   for (const bool box : {false, true}) {
     OnPlane<WetModel> ball(wet(1.0), 0.9 * water.rupture, {0, 0, -speed}, 1e-6, box);
@@ -306,9 +306,10 @@ TEST_CASE("what cohesion presses together rubs") {
 }
 
 TEST_CASE("two grains that swing in an undamped pull across gaps keep their energy") {
-  // Two balls that meet beside their middles, too slow to part. Where they pass the touch, at v = 2 v0, the slope of
-  // the force jumps by at most k, and a step of dt that this falls into errs by at most k (v dt)^2/8. Signs are random,
-  // so N passages err by the root of N times that; three times it is the bound. Within each side Verlet has no trend.
+  // Two balls that meet beside their middles, too slow to part. Where they pass first contact, at v = 2 v0, the slope
+  // of the force jumps by at most k, and a step of dt that this falls into errs by at most k (v dt)^2/8. Signs are
+  // random, so N passages err by the root of N times that; three times it is the bound. Within each side Verlet has no
+  // trend.
   const auto check = [](auto& w, double v0, double k) {
     w.add_species(Sphere(r), {"grain", density});
     const double across = 0.7 * r, along = std::sqrt(4 * r * r - across * across);
@@ -338,7 +339,7 @@ TEST_CASE("two grains that swing in an undamped pull across gaps keep their ener
   check(bridge, 0.01, stiffness);
   World<JkrModel> neck(o);
   neck.set_contact(jkr(1.0));
-  // JKR's curve is smooth at the touch once it is joined: the kink of half its slope is room for rounding only.
+  // JKR's curve is smooth at first contact once it is joined: the kink of half its slope is room for rounding only.
   check(neck, 0.01, soft.modulus * unit);
 }
 
@@ -358,7 +359,7 @@ TEST_CASE("sticky grains in a box never gain more than their cohesion can give")
   {
     World<JkrModel> w(options({0, 0, 0}));
     w.set_contact(jkr(0.7, 0.4));
-    // At zero load the energy is lower than at the touch by the integral above from x = 1 to 1.31.
+    // At zero load the energy is lower than at first contact by the integral above from x = 1 to 1.31.
     const double x = std::pow(1.5, 2.0 / 3.0);
     const auto f = [](double y) { return 16.0 / 15.0 * std::pow(y, 5) - 8.0 / 3.0 * std::pow(y, 3.5) + y * y; };
     const double well = M_PI * work * unit * unit * (f(1.0) - f(x));

@@ -42,7 +42,7 @@ constexpr double ball_radius = 1e-3;
 }  // namespace
 
 TEST_CASE("what laws store is the work that was put in") {
-  // The energy of each law is the integral of its force over the overlap, from the touch on, without speed.
+  // The energy of each law is the integral of its force over the overlap, from first contact on, without speed.
   const auto check = []<class Law>(Law, const auto& parameters, double deepest) {
     typename Law::template History<double> h{}, h2{};
     double work = 0.0;
@@ -130,7 +130,7 @@ TEST_CASE("what a damper takes is 1 - e^2 of an impact") {
   REQUIRE(w.run(1000));
   REQUIRE(w.force(ball).norm() == 0.0);
   const GrainEnergy e = energy_of(w);
-  // The force jumps at the touch, which a step finds up to dt late: omega dt = 0.013 of the damper's work.
+  // The force jumps at first contact, which a step finds up to dt late: omega dt = 0.013 of the damper's work.
   CHECK(e.dissipated_normal == Approx((1 - restitution * restitution) * start).epsilon(0.01));
   CHECK(e.dissipated_friction == Approx(0.0).margin(1e-12 * start));
   CHECK(e.balance() == Approx(start).epsilon(1e-3));

@@ -36,7 +36,7 @@ inline NewParticle grain_at(const Vec3& position, const Vec3& velocity = {0, 0, 
 
 /// What holds grains together, for run_box.
 struct Attracted {
-  double well = 0.0;                                                     ///< J, lower at rest than at the touch
+  double well = 0.0;                                                     ///< J, lower at rest than at first contact
   double (*stretched)(double gap, double radius) = [](double, double) {  ///< J, higher across a gap, of that
     return 0.0;                                                          ///< effective radius
   };

@@ -136,9 +136,9 @@ class BluntBall : public Sphere {
     outward = (1.0 / distance) * point;
     return depth > 0.0;
   }
-  static std::uint64_t touching(const BluntBall& a, const double* pa, const BluntBall& b, const double* pb,
-                                const dem::Vector3<double>& d) {
-    return Sphere::touching(a, pa, b, pb, d);
+  static std::uint64_t contact_bits(const BluntBall& a, const double* pa, const BluntBall& b, const double* pb,
+                                    const dem::Vector3<double>& d) {
+    return Sphere::contact_bits(a, pa, b, pb, d);
   }
 };
 

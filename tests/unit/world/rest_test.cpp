@@ -35,7 +35,7 @@ TEMPLATE_TEST_CASE("a plate on a spring comes to rest under its weight and a gra
   CHECK(-machine.coordinate(slide) == Approx(mass * g / k).epsilon(1e-6));
   CHECK(machine.spring(spring).force == Approx(mass * g).epsilon(1e-6));
 
-  // With a stiff spring it stays in touch.
+  // With a stiff spring it stays in contact.
   dem::World<TestType> stiff({.gravity = {0, 0, -g}, .time_step = 1e-6});
   stiff.set_contact({.normal = {.stiffness = kn, .damping = 0, .separation_factor = 1}, .friction = {}});
   const auto same = stiff.add_species(dem::shape::Sphere(radius));

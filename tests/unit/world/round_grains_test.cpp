@@ -147,9 +147,9 @@ TEST_CASE("a superquadric ball touches the face of a polyhedron as a plane") {
     double force = 0.0;
     dem::shape::PairContact<Superquadric, dem::shape::Polyhedron>::collide(
         ball, pose_a, cube, pose_b, {0.013, 0.004, -(0.05 + ball_radius - overlap)},
-        [&](std::uint32_t, const auto& touch) {
-          CHECK(touch.normal.z == Approx(-1.0));
-          force += touch.area * touch.overlap;
+        [&](std::uint32_t, const auto& point) {
+          CHECK(point.normal.z == Approx(-1.0));
+          force += point.area * point.overlap;
         });
     // As above: the spot's radius is r/15.
     CHECK(force == Approx(overlap).epsilon(3e-3));

@@ -129,7 +129,7 @@ void for_each_pair_contact(const dem::World<Model>& w, F&& f) {
       const dem::Vector3<double> separation = p.position[j] - p.position[i];
       if (norm(separation) > a.bounding_radius() + b.bounding_radius()) continue;
       Model::Shape::collide(a, p.pose_of(i), b, p.pose_of(j), separation,
-                            [&](std::uint32_t, const auto& touch) { f(touch.geometry()); });
+                            [&](std::uint32_t, const auto& point) { f(point.geometry()); });
     }
   }
 }

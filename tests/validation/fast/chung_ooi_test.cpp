@@ -127,7 +127,7 @@ TEST_CASE("Chung and Ooi 6: an impact that slides throughout") {
   const auto check = [&](auto& drop, double spin) {
     drop.pass();
     auto& w = drop.world;
-    // The damper's force is there at the touch: mu Fn = 1.9 kN. At 20 rad/s a spring of 1.6e8 N/m takes 6 us of the
+    // The damper's force is there at first contact: mu Fn = 1.9 kN. At 20 rad/s a spring of 1.6e8 N/m takes 6 us of the
     // 0.75 ms to come up to that, so half of that impulse is missing. The arm is short by half the overlap of 5e-5 m:
     // 3e-4.
     CHECK(w.velocity(drop.ball).x() == Approx(mu * (1 + e) * vn).epsilon(5e-3));

@@ -28,7 +28,7 @@ class Box {
   }
 
   template <class Callback>
-  DEM_HOT void touch(const Vector3<double>& p, double radius, Callback&& callback) const {
+  DEM_HOT void contacts(const Vector3<double>& p, double radius, Callback&& callback) const {
     // From the point to the nearest point of the solid box.
     const Vector3<double> to_box = {clamped(p.x, half_.x) - p.x, clamped(p.y, half_.y) - p.y,
                                     clamped(p.z, half_.z) - p.z};

@@ -58,8 +58,8 @@ inline MassProperties union_mass_properties(std::span<const Ball> balls, int col
   return p;
 }
 
-/// Whether two balls share more than a touch: overlaps of less than a millionth of the smaller radius, whose volume is
-/// lost in rounding, are a touch.
+/// Whether two balls share more than a contact point: overlaps of less than a millionth of the smaller radius, whose
+/// volume is lost in rounding, count as one.
 inline bool any_overlap(std::span<const Ball> balls) {
   for (std::size_t k = 0; k < balls.size(); ++k) {
     for (std::size_t m = 0; m < k; ++m) {

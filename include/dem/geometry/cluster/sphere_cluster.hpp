@@ -82,18 +82,18 @@ class SphereCluster {
   /// Which spheres of a overlap which of b, without branches, for clusters small enough that one word holds all
   /// answers: bit k * stride + m for sphere k of a and sphere m of b.
   template <class Gap = NoGap>
-  static DEM_HOT std::uint64_t touching(const SphereCluster& a, const double* pose_a, const SphereCluster& b,
-                                        const double* pose_b, const Vector3<double>& separation,
-                                        Gap gap = {}) requires(N* stride <= 64) {
-    return touching_bits(a, pose_a, 0, b, pose_b, 0, separation, gap);
+  static DEM_HOT std::uint64_t contact_bits(const SphereCluster& a, const double* pose_a, const SphereCluster& b,
+                                            const double* pose_b, const Vector3<double>& separation,
+                                            Gap gap = {}) requires(N* stride <= 64) {
+    return contact_bits_of_block(a, pose_a, 0, b, pose_b, 0, separation, gap);
   }
   static constexpr std::uint32_t feature_of(int bit) requires(N* stride <= 64) {
     return static_cast<std::uint32_t>(bit / stride * N + bit % stride);
   }
   /// The contact of sphere feature / N of a with sphere feature % N of b.
-  static DEM_HOT PairContactPoint<double> touch(const SphereCluster& a, const double* pose_a, const SphereCluster& b,
-                                                const double* pose_b, const Vector3<double>& separation,
-                                                std::uint32_t feature) {
+  static DEM_HOT PairContactPoint<double> contact_point(const SphereCluster& a, const double* pose_a,
+                                                        const SphereCluster& b, const double* pose_b,
+                                                        const Vector3<double>& separation, std::uint32_t feature) {
     const std::uint32_t k = feature / N, m = feature % N;
     const Vector3<double> centre = {pose_a[k], pose_a[stride + k], pose_a[2 * stride + k]};
     const Vector3<double> other = {pose_b[m], pose_b[stride + m], pose_b[2 * stride + m]};
@@ -106,12 +106,12 @@ class SphereCluster {
                               Gap gap = {}) {
     for (int row = 0; row < N; row += rows_per_word) {
       for (int lane = 0; lane < stride; lane += lanes_per_word) {
-        for (std::uint64_t found = touching_bits(a, pose_a, row, b, pose_b, lane, separation, gap); found != 0;
+        for (std::uint64_t found = contact_bits_of_block(a, pose_a, row, b, pose_b, lane, separation, gap); found != 0;
              found &= found - 1) {
           const int bit = std::countr_zero(found);
           const auto feature =
               static_cast<std::uint32_t>((row + bit / lanes_per_word) * N + lane + bit % lanes_per_word);
-          callback(feature, touch(a, pose_a, b, pose_b, separation, feature));
+          callback(feature, contact_point(a, pose_a, b, pose_b, separation, feature));
         }
       }
     }
@@ -138,10 +138,10 @@ class SphereCluster {
 
   /// Bit (k - row) * lanes_per_word + (m - lane): sphere k of a overlaps sphere m of b, or comes within the gap.
   template <class Gap>
-  static DEM_HOT std::uint64_t touching_bits(const SphereCluster& a, const double* pose_a, int row,
-                                             const SphereCluster& b, const double* pose_b, int lane,
-                                             const Vector3<double>& separation, Gap gap) {
-    std::uint64_t touching = 0;
+  static DEM_HOT std::uint64_t contact_bits_of_block(const SphereCluster& a, const double* pose_a, int row,
+                                                     const SphereCluster& b, const double* pose_b, int lane,
+                                                     const Vector3<double>& separation, Gap gap) {
+    std::uint64_t found = 0;
     for (int m = lane; m < lane + lanes_per_word && m < stride; m += pack_width) {
       const Pack x = load(pose_b + m) + Pack(separation.x);
       const Pack y = load(pose_b + stride + m) + Pack(separation.y);
@@ -151,10 +151,10 @@ class SphereCluster {
         const Pack dx = x - Pack(pose_a[k]), dy = y - Pack(pose_a[stride + k]), dz = z - Pack(pose_a[2 * stride + k]);
         const Pack reach = widened(radius + Pack(a.radius_[k]), gap);
         const auto hits = std::uint64_t{bits(dx * dx + dy * dy + dz * dz < reach * reach)};
-        touching |= hits << ((k - row) * lanes_per_word + m - lane);
+        found |= hits << ((k - row) * lanes_per_word + m - lane);
       }
     }
-    return touching;
+    return found;
   }
 
   // Unused lanes hold points that no comparison finds near anything, each other included.

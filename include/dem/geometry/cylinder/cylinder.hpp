@@ -59,7 +59,7 @@ class Cylinder {
   }
 
   template <class Callback>
-  DEM_HOT void touch(const Vector3<double>& p, double radius, Callback&& callback) const {
+  DEM_HOT void contacts(const Vector3<double>& p, double radius, Callback&& callback) const {
     const double rho = std::sqrt(p.x * p.x + p.y * p.y);
     // Away from the axis; on the axis every direction is as good.
     const Vector3<double> out = rho > 0.0 ? Vector3<double>{p.x / rho, p.y / rho, 0.0} : Vector3<double>{1, 0, 0};
@@ -115,7 +115,7 @@ class Cylinder {
       }
     });
   }
-  /// The outer lateral surface for grains that offer touch_ball(), within a radius of p: balls that fill the cylinder
+  /// The outer lateral surface for grains that offer ball_contact(), within a radius of p: balls that fill the cylinder
   /// where it is nearest to p and half a radius on either side: callback(number, centre, radius of the ball). None for
   /// grains over a flat end or in the hole of a tube.
   template <class Callback>

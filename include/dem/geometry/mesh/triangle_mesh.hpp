@@ -99,14 +99,14 @@ class TriangleMesh {
 
   /// callback(feature, normal, gap) for each contact of a sphere.
   template <class Callback>
-  void touch(const Vector3<double>& p, double radius, Callback&& callback) const {
-    touch_to(p, radius, radius > 0.0 ? options_.depth : point_depth_, callback);
+  void contacts(const Vector3<double>& p, double radius, Callback&& callback) const {
+    contacts_to(p, radius, radius > 0.0 ? options_.depth : point_depth_, callback);
   }
   /// Of a point that is also held at a gap (m) before the surface: the gap is no radius, and may be less than how deep
   /// the point lies behind it.
   template <class Callback>
-  void touch_point(const Vector3<double>& p, double gap, Callback&& callback) const {
-    touch_to(p, gap, point_depth_, callback);
+  void point_contacts(const Vector3<double>& p, double gap, Callback&& callback) const {
+    contacts_to(p, gap, point_depth_, callback);
   }
 
   /// Points for contact with other surfaces: callback(number, point, radius), numbers ascending.
@@ -265,15 +265,15 @@ class TriangleMesh {
 
   /// Contacts up to a reach before the surface, and if there are none, of a centre up to a depth behind it.
   template <class Callback>
-  void touch_to(const Vector3<double>& p, double radius, double depth, Callback&& callback) const {
-    if (radius > 0.0 && touch_minima(p, radius, callback)) return;
+  void contacts_to(const Vector3<double>& p, double radius, double depth, Callback&& callback) const {
+    if (radius > 0.0 && contacts_of_minima(p, radius, callback)) return;
     if (!(depth > radius)) return;
     Minimum nearest;
     if (find_nearest(p, depth, nearest) && nearest.behind) callback(nearest.name(), nearest.normal, -nearest.distance);
   }
   /// False if there are none within the radius.
   template <class Callback>
-  bool touch_minima(const Vector3<double>& p, double radius, Callback&& callback) const {
+  bool contacts_of_minima(const Vector3<double>& p, double radius, Callback&& callback) const {
     ShortList<Minimum, 16> list;
     Found& found = list.items;
     find_minima(p, radius, found);

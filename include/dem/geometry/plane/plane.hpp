@@ -13,7 +13,7 @@ class Plane {
   }
 
   template <class Callback>
-  DEM_HOT void touch(const Vector3<double>& p, double radius, Callback&& callback) const {
+  DEM_HOT void contacts(const Vector3<double>& p, double radius, Callback&& callback) const {
     if (p.z < radius) callback(0u, Vector3<double>{0, 0, -1}, p.z);
   }
 

@@ -119,15 +119,15 @@ class Polyhedron {
 
   /// The contact of a ball (centre in m from the grain's, global axes) with a face, an edge or a corner. False if they
   /// are apart.
-  bool touch_ball(const double* pose, const Vector3<double>& centre, double radius,
-                  contact::BallContactPoint& touch) const {
+  bool ball_contact(const double* pose, const Vector3<double>& centre, double radius,
+                    contact::BallContactPoint& contact) const {
     const Matrix3<double> turn = rotation(pose);
     NearestPoint nearest;
     if (!nearest_point(*tables_, transpose_times(turn, centre), radius, nearest)) return false;
     const double overlap = radius - nearest.height;
-    touch.normal = turn * nearest.outward;
-    touch.overlap = overlap;
-    touch.point = centre - (radius - 0.5 * overlap) * touch.normal;
+    contact.normal = turn * nearest.outward;
+    contact.overlap = overlap;
+    contact.point = centre - (radius - 0.5 * overlap) * contact.normal;
     return true;
   }
 

@@ -13,11 +13,11 @@ namespace dem::shape {
 template <class Callback>
 void collide_sphere(const Vector3<double>& centre, double radius, std::uint32_t feature, const Polyhedron& b,
                     const double* pose_b, const Vector3<double>& separation, Callback&& callback) {
-  contact::BallContactPoint touch;
-  if (!b.touch_ball(pose_b, centre - separation, radius, touch)) return;
+  contact::BallContactPoint contact;
+  if (!b.ball_contact(pose_b, centre - separation, radius, contact)) return;
   const double effective = radius * b.radius() / (radius + b.radius());
   callback(feature,
-           contact::ContactPoint<double>{-touch.normal, touch.overlap, separation + touch.point, effective, 1.0});
+           contact::ContactPoint<double>{-contact.normal, contact.overlap, separation + contact.point, effective, 1.0});
 }
 
 /// Spheres and clusters against polyhedra: one contact a ball at the most, whose number is the feature.

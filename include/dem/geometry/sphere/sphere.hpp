@@ -25,20 +25,21 @@ class Sphere {
   void orient(const Matrix3<double>&, double*) const {}
 
   template <class Gap = NoGap>
-  static DEM_HOT std::uint64_t touching(const Sphere& a, const double*, const Sphere& b, const double*,
-                                        const Vector3<double>& separation, Gap gap = {}) {
+  static DEM_HOT std::uint64_t contact_bits(const Sphere& a, const double*, const Sphere& b, const double*,
+                                            const Vector3<double>& separation, Gap gap = {}) {
     const double reach = widened(a.radius_ + b.radius_, gap);
     return dot(separation, separation) < reach * reach ? 1u : 0u;
   }
   static constexpr std::uint32_t feature_of(int bit) { return static_cast<std::uint32_t>(bit); }
-  static DEM_HOT PairContactPoint<double> touch(const Sphere& a, const double*, const Sphere& b, const double*,
-                                                const Vector3<double>& separation, std::uint32_t) {
+  static DEM_HOT PairContactPoint<double> contact_point(const Sphere& a, const double*, const Sphere& b, const double*,
+                                                        const Vector3<double>& separation, std::uint32_t) {
     return {separation, a.radius_, b.radius_};
   }
   template <class Callback, class Gap = NoGap>
   static DEM_HOT void collide(const Sphere& a, const double* pose_a, const Sphere& b, const double* pose_b,
                               const Vector3<double>& separation, Callback&& callback, Gap gap = {}) {
-    if (touching(a, pose_a, b, pose_b, separation, gap) != 0) callback(0u, touch(a, pose_a, b, pose_b, separation, 0u));
+    if (contact_bits(a, pose_a, b, pose_b, separation, gap) != 0)
+      callback(0u, contact_point(a, pose_a, b, pose_b, separation, 0u));
   }
   static std::uint32_t mirrored(std::uint32_t feature) { return feature; }
 

@@ -34,7 +34,7 @@ class Sphere {
   }
 
   template <class Callback>
-  DEM_HOT void touch(const Vector3<double>& p, double radius, Callback&& callback) const {
+  DEM_HOT void contacts(const Vector3<double>& p, double radius, Callback&& callback) const {
     const double distance = norm(p);
     const double gap = side_ == Side::inside ? radius_ - distance : distance - radius_;
     if (!(gap < radius)) return;
@@ -54,7 +54,7 @@ class Sphere {
   double radius_on(double radius) const {
     return side_ == Side::inside ? radius : 1.0 / (1.0 / radius + 1.0 / radius_);
   }
-  /// For grains that offer touch_ball(): callback(number, centre, radius of the ball).
+  /// For grains that offer ball_contact(): callback(number, centre, radius of the ball).
   template <class Callback>
   void balls(const Vector3<double>&, double, Callback&& callback) const {
     if (is_ball()) callback(0u, Vector3<double>{0, 0, 0}, radius_);

@@ -118,12 +118,12 @@ class SuperquadricGrain {
   }
   /// The contact of a ball (centre in m from the grain's, global axes) along the common normal. False if they are
   /// farther apart than the gap (m).
-  bool touch_ball(const double* pose, const Vector3<double>& centre, double radius, contact::BallContactPoint& touch,
-                  double gap = 0.0) const {
+  bool ball_contact(const double* pose, const Vector3<double>& centre, double radius,
+                    contact::BallContactPoint& contact, double gap = 0.0) const {
     const Matrix3<double> r = rotation(pose);
     CommonNormal found;
     if (!find_ball_contact(solid_, transpose_times(r, centre), radius, found, gap)) return false;
-    touch = {r * found.normal, found.overlap, r * found.point};
+    contact = {r * found.normal, found.overlap, r * found.point};
     return true;
   }
   /// Whether a point (m, from the grain's centre, global axes) lies inside; then its depth and the outward normal

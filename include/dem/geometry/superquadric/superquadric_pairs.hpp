@@ -78,9 +78,9 @@ struct PairContact<SuperquadricPoints, Superquadric> {
   static DEM_HOT void collide(const SuperquadricPoints& a, const double* pose_a, const Superquadric& b,
                               const double* pose_b, const Vector3<double>& separation, Callback&& callback) {
     SuperquadricPoints::collide_skins(a, pose_a, b, pose_b, separation,
-                                      [&](std::uint32_t feature, const contact::ContactPoint<double>& touch) {
+                                      [&](std::uint32_t feature, const contact::ContactPoint<double>& point) {
                                         if (a.has_shares() || (feature & SuperquadricPoints::other_way) == 0)
-                                          callback(feature, touch);
+                                          callback(feature, point);
                                       });
   }
 };

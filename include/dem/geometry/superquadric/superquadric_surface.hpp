@@ -50,7 +50,7 @@ class Superquadric {
   }
 
   template <class Callback>
-  void touch(const Vector3<double>& p, double radius, Callback&& callback) const {
+  void contacts(const Vector3<double>& p, double radius, Callback&& callback) const {
     const double at[3] = {p.x, p.y, p.z};
     const bool within = function_.value(at) < 0.0;
     if (!within && radius == 0.0 && side_ == Side::outside) return;

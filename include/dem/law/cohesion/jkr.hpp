@@ -28,7 +28,7 @@ struct JKR {
   };
   template <class T>
   struct History {
-    T joined;  ///< 1 from the touch to the pull-off
+    T joined;  ///< 1 from first contact to the pull-off
   };
 
   static Parameters<double> with(const contact::ElasticPair& pair, double work_of_adhesion) {

@@ -21,7 +21,7 @@ struct LiquidBridge {
   };
   template <class T>
   struct History {
-    T formed;  ///< 1 from the touch to the rupture
+    T formed;  ///< 1 from first contact to the rupture
   };
 
   /// Constants of a liquid with the surface tension (N/m) and contact angle (rad, below pi/2): the rupture distance is

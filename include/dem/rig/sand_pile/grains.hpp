@@ -47,8 +47,8 @@ inline double sphere_radius(double half_edge) { return half_edge * std::cbrt(6.0
 /// a spring, which is Coulomb-viscous friction: min(cv |vt|, mu Fn).
 template <class Model>
 Grains<Model> grains_of(const Settings& s, const Kind& kind, const typename Model::Shape& shape) {
-  const double scale = s.scale_contacts ? s.half_edge / s.constants_for : 1.0, touches = kind.shape == "cube8" ? 1 : 4;
-  const double k = touches * scale, c = touches * scale * scale;
+  const double scale = s.scale_contacts ? s.half_edge / s.constants_for : 1.0, points = kind.shape == "cube8" ? 1 : 4;
+  const double k = points * scale, c = points * scale * scale;
   const double spring = kind.viscous ? 0.0 : k * s.friction_stiffness;
   const auto constants = [&](double mu, double rolling_length, double effective_radius) {
     ContactParameters<Model> p{{k * s.stiffness, c * s.damping, s.separation_factor},

@@ -49,7 +49,7 @@ inline constexpr const char* second_grain = "second grain";  ///< a material
 /// touch each other with the mean of their friction and cohesion. Throws Error for cohesion if the Model has none.
 template <class Model>
 std::array<SpeciesId, 2> add_soils(World<Model>& world, const Settings& s, const typename Model::Shape& shape) {
-  const auto touch = [&](double friction, double cohesion) {
+  const auto constants = [&](double friction, double cohesion) {
     ContactParameters<Model> c = grain_contact<Model>(s.grains, friction);
     const double weight = 9.81 * s.grains.density * shape.volume();
     if constexpr (requires { c.cohesion.force; }) {
@@ -62,15 +62,15 @@ std::array<SpeciesId, 2> add_soils(World<Model>& world, const Settings& s, const
     return c;
   };
   const double mu = s.grains.friction;
-  world.set_contact("grain", "wall", touch(s.grains.wall_friction, 0.0));
-  world.set_contact("grain", "grain", touch(mu, 0.0));
+  world.set_contact("grain", "wall", constants(s.grains.wall_friction, 0.0));
+  world.set_contact("grain", "grain", constants(mu, 0.0));
   const SpeciesId first = world.add_species(shape, {.material = "grain", .density = s.grains.density});
-  if (s.scene == "step") world.set_contact("grain", hard_ground, touch(s.grains.wall_friction, 0.0));
+  if (s.scene == "step") world.set_contact("grain", hard_ground, constants(s.grains.wall_friction, 0.0));
   if (s.scene != "soils") return {first, first};
   const char* second = second_grain;
-  world.set_contact(second, "wall", touch(s.grains.wall_friction, 0.0));
-  world.set_contact(second, "grain", touch(0.5 * (mu + s.second_friction), 0.5 * s.second_cohesion));
-  world.set_contact(second, second, touch(s.second_friction, s.second_cohesion));
+  world.set_contact(second, "wall", constants(s.grains.wall_friction, 0.0));
+  world.set_contact(second, "grain", constants(0.5 * (mu + s.second_friction), 0.5 * s.second_cohesion));
+  world.set_contact(second, second, constants(s.second_friction, s.second_cohesion));
   return {first, world.add_species(shape, {.material = second, .density = s.grains.density})};
 }
 

@@ -274,7 +274,7 @@ std::vector<double> overlaps_under_tyres(const Stand<Model>& stand, const Settin
         Shape::collide(
             world.species(world.species_of(near[i])).shape, &pose[i * Shape::pose_size],
             world.species(world.species_of(near[j])).shape, &pose[j * Shape::pose_size], from_eigen(link),
-            [&](std::uint32_t, const auto& touch) { overlaps.push_back(touch.geometry().overlap / s.grains.edge()); });
+            [&](std::uint32_t, const auto& point) { overlaps.push_back(point.geometry().overlap / s.grains.edge()); });
       }
     }
   }

@@ -1,4 +1,4 @@
-// expect: Surface: needs near\(point, radius\), for doubles .bool. and packs .PackMask., and touch\(point, radius, callback\)
+// expect: Surface: needs near\(point, radius\), for doubles .bool. and packs .PackMask., and contacts\(point, radius, callback\)
 #include <dem/world/model.hpp>
 
 struct Veil {
