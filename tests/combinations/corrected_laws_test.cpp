@@ -3,7 +3,7 @@
 #include <dem/geometry/mesh/mesh_shapes.hpp>
 
 // The predictor-corrector evaluates every contact twice a step, and what contacts remember is kept of the second time
-// only: with every kind of memory, and every kind of grain that renames its points, it must tell the same as an
+// only: with every kind of history, and every kind of grain that renames its points, it must tell the same as an
 // integrator that evaluates once.
 
 namespace {
@@ -67,7 +67,7 @@ Eigen::Matrix<double, 12, 1> collide(double dt) {
 TEMPLATE_TEST_CASE("a collision under any law is the same by predictor-corrector and by velocity Verlet", "", HertzJkr,
                    PlasticDmt, LinearWet, Asperities) {
   // Where a contact begins, slips or ends, each is off by a part of a step: of the 1,000 steps and more of a contact by
-  // up to 2 in all, and by a quarter of that with a quarter of the step. A memory that counted steps twice would stay
+  // up to 2 in all, and by a quarter of that with a quarter of the step. A history that counted steps twice would stay
   // apart by its whole.
   const auto apart = [](double dt) { return (collide<Corrected<TestType>>(dt) - collide<TestType>(dt)).norm(); };
   CHECK(apart(1e-7) < 2e-3 * 0.4);  // of the speed

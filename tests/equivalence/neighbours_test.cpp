@@ -1,6 +1,6 @@
 #include "world/scenes.hpp"
 
-// Neighbour lists, re-sorting and the memory of contacts, seen through worlds.
+// Neighbour lists, re-sorting and the histories of contacts, seen through worlds.
 
 using Catch::Approx;
 
@@ -129,7 +129,7 @@ TEST_CASE("friction remembers across new neighbour lists and re-sorting") {
   CHECK(differs < 1e-9);
 }
 
-TEST_CASE("a contact keeps its memory when its grains change places in storage") {
+TEST_CASE("a contact keeps its history when its grains change places in storage") {
   // Two balls pressed together and sheared: the friction spring is loaded. Then a third grain makes the order change.
   for (const bool swapped : {false, true}) {
     dem::World<Balls> w(options({0, 0, 0}, 1e-6, 1e-5));

@@ -38,13 +38,13 @@ struct BodyKey {
 /// Contacts of machine parts with each other and with the ground: their pairs, their histories, and lists for a step.
 template <class Model>
 struct BodyContacts {
-  using Memories = ContactMemories<history_size<Model>>;
+  using Histories = HistoriesOfSteps<history_size<Model>>;
 
   std::vector<BodyPair> pairs;
   NearPairs broad_phase;
-  std::vector<std::uint32_t> near;  ///< pairs whose boxes met in the last force evaluation, ascending; no others push
-  std::vector<Memories> memories;   ///< of each block of pairs
-  double worst_overlap = 0.0;       ///< in effective diameters, of the last force evaluation
+  std::vector<std::uint32_t> near;   ///< pairs whose boxes met in the last force evaluation, ascending; no others push
+  std::vector<Histories> histories;  ///< of each block of pairs
+  double worst_overlap = 0.0;        ///< in effective diameters, of the last force evaluation
   std::size_t worst_pair = 0;
 
   std::vector<BodyPoint> points;
@@ -54,7 +54,7 @@ struct BodyContacts {
 
   /// What contacts remember of this step becomes what the next one starts from.
   void commit() {
-    for (Memories& m : memories) m.commit();
+    for (Histories& m : histories) m.commit();
   }
 };
 
@@ -80,7 +80,7 @@ void list_pairs(BodyContacts<Model>& c, std::span<const Surface> surfaces, const
     c.broad_phase.add(c.pairs[k].a.value, c.pairs[k].b.value, k, gap);
   }
   c.broad_phase.finish();
-  c.memories.resize((c.pairs.size() + BodyKey::pairs_of_a_block - 1) / BodyKey::pairs_of_a_block);
+  c.histories.resize((c.pairs.size() + BodyKey::pairs_of_a_block - 1) / BodyKey::pairs_of_a_block);
 }
 
 /// A pair whose points are tried, and what its contacts have in common.
@@ -94,7 +94,7 @@ struct SampledPair {
 /// distance (else NoGap).
 template <class Model, class Surface, class Gap>
 void sample_body(const SampledPair& at, bool back, const Surface& from, const Surface& onto, const Body& carrier,
-                 Gap gap, typename BodyContacts<Model>::Memories& memories, BodyContacts<Model>& c) {
+                 Gap gap, typename BodyContacts<Model>::Histories& histories, BodyContacts<Model>& c) {
   list_points(from, onto, c.points);
   const Vector3<double> offset = from.origin - carrier.motion.position, start = from.origin - onto.origin;
   const std::size_t first = c.hits.size();
@@ -112,7 +112,7 @@ void sample_body(const SampledPair& at, bool back, const Surface& from, const Su
           });
         }
         if constexpr (history_size < Model >> 0 && surface::NamesDirections<G>) {
-          follow_turns(std::span<const grain::Hit>(c.hits).subspan(first), memories.last,
+          follow_turns(std::span<const grain::Hit>(c.hits).subspan(first), histories.last,
                        [](std::uint64_t) { return true; });
         }
       },
@@ -137,7 +137,7 @@ void fit_pair(std::size_t first, BodyContacts<Model>& c) {
 /// Finds the contacts of a pair, with the histories of its block.
 template <class Model, class Surface>
 void sample_pair(std::size_t k, std::span<const Surface> surfaces, const Materials<Model>& materials,
-                 std::span<const Body> bodies, typename BodyContacts<Model>::Memories& memories,
+                 std::span<const Body> bodies, typename BodyContacts<Model>::Histories& histories,
                  BodyContacts<Model>& c) {
   const Surface &a = surfaces[c.pairs[k].a.index()], &b = surfaces[c.pairs[k].b.index()];
   const Body &body_a = bodies[a.body.index()], &body_b = bodies[b.body.index()];
@@ -147,15 +147,15 @@ void sample_pair(std::size_t k, std::span<const Surface> surfaces, const Materia
   const double wide = shape::widened(0.0, gap);
   if (!boxes_overlap(a.low, a.high, b.low - filled(wide), b.high + filled(wide))) return;
   const std::size_t first = c.contact_points.size();
-  if (!is_ball(b)) sample_body(at, false, a, b, body_a, gap, memories, c);
-  if (is_ball(b) || !is_ball(a)) sample_body(at, true, b, a, body_b, gap, memories, c);
+  if (!is_ball(b)) sample_body(at, false, a, b, body_a, gap, histories, c);
+  if (is_ball(b) || !is_ball(a)) sample_body(at, true, b, a, body_b, gap, histories, c);
   if (!is_ball(a) && !is_ball(b)) fit_pair(first, c);  // each point of a ball is a contact
 }
 
 /// The laws for the contacts that were found, and their forces for pairs and bodies.
 template <class Model, class Surface>
 void load_pairs(std::span<const Surface> surfaces, const Materials<Model>& materials, std::span<Body> bodies, double dt,
-                typename BodyContacts<Model>::Memories& memories, BodyContacts<Model>& c) {
+                typename BodyContacts<Model>::Histories& histories, BodyContacts<Model>& c) {
   const auto surface_of = [&](std::size_t hit, bool partner) -> const Surface& {
     const BodyPair& pair = c.pairs[c.hits[hit].i];
     return surfaces[((c.hits[hit].partner != 0) != partner ? pair.b : pair.a).index()];
@@ -165,7 +165,7 @@ void load_pairs(std::span<const Surface> surfaces, const Materials<Model>& mater
   };
   grain::ContactEvaluator<Model, contact::SurfaceContactPoint> evaluator(materials.table(), dt);
   const grain::Deepest deepest = evaluator.run(
-      c.hits, memories, c.forces, [&](std::size_t k) { return c.contact_points[k]; },
+      c.hits, histories, c.forces, [&](std::size_t k) { return c.contact_points[k]; },
       [&](std::size_t k) -> const PartnerView& { return surface_of(k, false).view; },
       [&](std::size_t k) -> const PartnerView& { return surface_of(k, true).view; });
   if (deepest.overlap > c.worst_overlap) {
@@ -194,14 +194,14 @@ void load_pairs(std::span<const Surface> surfaces, const Materials<Model>& mater
 /// Contacts between surfaces of machine parts (thesis section 2.2.4). The points of each surface of a pair are tried
 /// against the other surface. Points that push in one direction are weighted so that they are one whole contact. Laws
 /// and histories are those of grains. Forces are added to the bodies. Pairs whose bounding boxes do not meet cost
-/// nothing. One thread does it in the order of pairs and points, so sums are the same in every run. `look(memories)` is
-/// called for each block of pairs while its lists are there.
+/// nothing. One thread does it in the order of pairs and points, so sums are the same in every run. `look(histories)`
+/// is called for each block of pairs while its lists are there.
 template <class Model, class Surface, class Look>
 void find_body_contacts(BodyContacts<Model>& c, std::span<const Surface> surfaces, const Materials<Model>& materials,
                         std::span<Body> bodies, double dt, Look&& look) {
   if (c.pairs.empty()) return;
   for (const std::uint32_t k : c.near) c.pairs[k] = {c.pairs[k].a, c.pairs[k].b};
-  for (auto& memories : c.memories) memories.now.count = 0;
+  for (auto& histories : c.histories) histories.now.count = 0;
   c.worst_overlap = 0.0;
   c.broad_phase.find(surfaces, c.near);
   for (std::size_t at = 0; at < c.near.size();) {
@@ -209,10 +209,10 @@ void find_body_contacts(BodyContacts<Model>& c, std::span<const Surface> surface
     c.hits.clear();
     c.contact_points.clear();
     for (; at < c.near.size() && c.near[at] / BodyKey::pairs_of_a_block == block; ++at) {
-      sample_pair(c.near[at], surfaces, materials, std::span<const Body>(bodies), c.memories[block], c);
+      sample_pair(c.near[at], surfaces, materials, std::span<const Body>(bodies), c.histories[block], c);
     }
-    load_pairs(surfaces, materials, bodies, dt, c.memories[block], c);
-    look(c.memories[block]);
+    load_pairs(surfaces, materials, bodies, dt, c.histories[block], c);
+    look(c.histories[block]);
   }
 }
 template <class Model, class Surface>

@@ -15,7 +15,7 @@ namespace detail {
 /// Those whose key is found again stay. Of the others the two that point most alike become one contact, as long as
 /// there are two that are less than 60 degrees apart.
 template <int Size>
-void follow_turns_of(std::span<const grain::Hit> hits, ContactMemory<Size>& last, int first, int end) {
+void follow_turns_of(std::span<const grain::Hit> hits, ContactHistories<Size>& last, int first, int end) {
   const auto key_of = [&](int c) -> std::uint64_t& { return last.key[static_cast<std::size_t>(c)]; };
   const auto direction = [](std::uint64_t key) {
     return surface::direction_of(static_cast<std::uint32_t>(key & ((1u << surface::direction_bits) - 1u)));
@@ -64,7 +64,7 @@ void follow_turns_of(std::span<const grain::Hit> hits, ContactMemory<Size>& last
 /// stays. `hits`: of this step with that surface, keys ascending; `has_direction(key)`: whether a key ends in a
 /// direction.
 template <int Size, class HasDirection>
-void follow_turns(std::span<const grain::Hit> hits, ContactMemory<Size>& last, HasDirection&& has_direction) {
+void follow_turns(std::span<const grain::Hit> hits, ContactHistories<Size>& last, HasDirection&& has_direction) {
   const auto family = [](std::uint64_t key) { return key >> surface::direction_bits; };
   const auto family_at = [&](int c) { return family(last.key[static_cast<std::size_t>(c)]); };
   if (hits.empty()) return;

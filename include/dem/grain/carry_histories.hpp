@@ -71,7 +71,7 @@ template <class Model>
 class HistoryCarrier {
   static constexpr int size = history_size<Model>;
   using Entry = Remembered<size>;
-  using Memory = ContactMemory<size>;
+  using Histories = ContactHistories<size>;
 
  public:
   /// Reads the committed histories of all contacts.
@@ -84,7 +84,7 @@ class HistoryCarrier {
     surfaces_.resize(surfaces_first.back());
     executor.for_each(chunks.size(), [&](std::size_t index) {
       const Chunk<Model>& chunk = chunks[index];
-      const Memory& of_pairs = chunk.pair_contacts.last;
+      const Histories& of_pairs = chunk.pair_contacts.last;
       std::size_t k = 0;  // owner of the candidate, found by walking along: keys ascend
       for (int c = 0; c < of_pairs.count; ++c) {
         const std::uint64_t key = of_pairs.key[static_cast<std::size_t>(c)];
@@ -93,14 +93,14 @@ class HistoryCarrier {
         while (chunk.candidate_first[k + 1] <= candidate) ++k;
         pairs_[pairs_first[index] + static_cast<std::size_t>(c)] = {
             p.id[index * chunk_size + k], p.id[images.grain_of(chunk.candidate[candidate])], PairKey::feature(key),
-            history_of<Memory, size>(of_pairs, c)};
+            history_of<Histories, size>(of_pairs, c)};
       }
-      const Memory& of_surfaces = chunk.surface_contacts.last;
+      const Histories& of_surfaces = chunk.surface_contacts.last;
       for (int c = 0; c < of_surfaces.count; ++c) {
         const std::uint64_t key = of_surfaces.key[static_cast<std::size_t>(c)];
         surfaces_[surfaces_first[index] + static_cast<std::size_t>(c)] = {
             p.id[index * chunk_size + SurfaceKey::local(key)], SurfaceKey::upper(key), SurfaceKey::lower(key),
-            history_of<Memory, size>(of_surfaces, c)};
+            history_of<Histories, size>(of_surfaces, c)};
       }
     });
   }
@@ -199,15 +199,15 @@ class HistoryCarrier {
       first[c + 1] = first[c] + static_cast<std::size_t>(count(chunks[c]));
     return first;
   }
-  static void remember(Memory& memory, std::vector<std::pair<std::uint64_t, std::uint32_t>>& keys,
+  static void remember(Histories& histories, std::vector<std::pair<std::uint64_t, std::uint32_t>>& keys,
                        const std::vector<Entry>& entries) {
     std::sort(keys.begin(), keys.end());
-    memory.count = static_cast<int>(keys.size());
-    if (memory.key.size() < keys.size()) memory.reserve(keys.size() * 5 / 4);
+    histories.count = static_cast<int>(keys.size());
+    if (histories.key.size() < keys.size()) histories.reserve(keys.size() * 5 / 4);
     for (std::size_t at = 0; at < keys.size(); ++at) {
-      memory.key[at] = keys[at].first;
+      histories.key[at] = keys[at].first;
       const auto& history = entries[keys[at].second].history;
-      for (std::size_t k = 0; k < history.size(); ++k) memory.history[k][at] = history[k];
+      for (std::size_t k = 0; k < history.size(); ++k) histories.history[k][at] = history[k];
     }
   }
 

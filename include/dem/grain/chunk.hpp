@@ -38,7 +38,7 @@ struct Chunk {
   std::vector<std::uint32_t> candidate;                            ///< partners j > i, ascending for each i
   std::vector<std::uint8_t> owner;                                 ///< of each candidate: its i in the chunk
   [[no_unique_address]] shape::PairMemories<typename Model::Shape> searches;  ///< of the candidates
-  ContactMemories<history_size<Model>> pair_contacts, surface_contacts;
+  HistoriesOfSteps<history_size<Model>> pair_contacts, surface_contacts;
 
   std::vector<PartnerLoad> partner_loads;         ///< of the contacts whose partner is in another chunk, in their order
   std::vector<std::uint32_t> partner_load_first;  ///< for each candidate, and one entry more
@@ -66,7 +66,7 @@ struct Chunk {
   /// The contact histories of pairs of this step become the ones that the next step starts from. To be called while the
   /// chunk has the memory that they were written to (ContactScratch::lend).
   /// If only some candidates were evaluated, `renews` says which, and `spare` is used on the way; else it is empty.
-  void commit_pairs(std::span<const std::uint8_t> renews, ContactMemory<history_size<Model>>& spare) {
+  void commit_pairs(std::span<const std::uint8_t> renews, ContactHistories<history_size<Model>>& spare) {
     if (renews.empty()) pair_contacts.commit_copy();
     else pair_contacts.commit_some(renews, spare);
   }

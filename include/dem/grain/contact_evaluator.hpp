@@ -10,7 +10,7 @@ namespace dem::grain {
 
 /// A contact as the narrow phase found it.
 struct Hit {
-  std::uint64_t key;      ///< of the contact's memory
+  std::uint64_t key;      ///< of the contact's history
   std::uint32_t i;        ///< row of the grain
   std::uint32_t partner;  ///< row of the other grain, or number of the surface
   std::uint32_t law;      ///< row of the table of contact parameters
@@ -38,13 +38,13 @@ struct ContactForces {
   }
 };
 
-/// Evaluates the laws for a list of contacts, a pack at a time, and finds each contact's memory by walking along last
+/// Evaluates the laws for a list of contacts, a pack at a time, and finds each contact's history by walking along last
 /// step's in step: both lists ascend in their keys. What a contact gives does not depend on its neighbours in the pack.
 /// `Shape`: whose pairs these are, if they may be patches.
 template <class Model, template <class> class ContactPoint, class Shape = void>
 class ContactEvaluator {
  public:
-  using Memories = ContactMemories<history_size<Model>>;
+  using Histories = HistoriesOfSteps<history_size<Model>>;
   using Parameters = ContactParameters<Model>;
 
   ContactEvaluator(const std::vector<Parameters>& table, double dt) : table_(table), dt_(dt) { set_uniform(0); }
@@ -52,11 +52,11 @@ class ContactEvaluator {
   /// Fills the contact histories of this step and the forces; contact_point_of(k) gives the raw numbers of contact k,
   /// view_i(k) and view_j(k) its partners. Returns the deepest contact.
   template <class ContactPointOf, class ViewI, class ViewJ>
-  Deepest run(std::span<const Hit> hits, Memories& memories, ContactForces& forces, ContactPointOf&& contact_point_of,
+  Deepest run(std::span<const Hit> hits, Histories& histories, ContactForces& forces, ContactPointOf&& contact_point_of,
               ViewI&& view_i, ViewJ&& view_j) {
     const int count = static_cast<int>(hits.size());
-    memories.now.count = count;
-    memories.now.make_room(count);
+    histories.now.count = count;
+    histories.now.make_room(count);
     forces.make_room(hits.size());
     Deepest deepest;
     int cursor = 0;
@@ -67,7 +67,7 @@ class ContactEvaluator {
         const auto k = static_cast<std::size_t>(at + lane);
         const Hit& hit = hits[k];
         DEM_ASSERT(k == 0 || hits[k - 1].key < hit.key, "contacts ascend in their keys, and each has its own");
-        memories.now.key[k] = hit.key;
+        histories.now.key[k] = hit.key;
         scatter(contact_point_of(k), &contact_point_[0][0], lane);
         partners.set(lane, view_i(k), view_j(k));
         law_[lane] = hit.law;
@@ -76,13 +76,13 @@ class ContactEvaluator {
         const auto overlap_of = [&](int lane) {
           return contact_point_of(static_cast<std::size_t>(at + lane)).geometry().overlap;
         };
-        recall(memories, at, lanes, cursor, overlap_of);
+        recall(histories, at, lanes, cursor, overlap_of);
       }
       for (int lane = lanes; lane < pack_width; ++lane) {
         copy_lane(0, lane);
         partners.set(lane, *partners.i[0], *partners.j[0]);
       }
-      const Pack overlap = evaluate(relative_motions(partners), memories, forces, static_cast<std::size_t>(at));
+      const Pack overlap = evaluate(relative_motions(partners), histories, forces, static_cast<std::size_t>(at));
       if (any_of(overlap > Pack(deepest.overlap))) [[unlikely]]
         deepest = deepest_of(overlap, lanes, static_cast<std::size_t>(at));
     }
@@ -122,9 +122,9 @@ class ContactEvaluator {
   /// The histories of the contacts from `at` on go to the lanes; zero where a contact is new. Mostly the contacts of
   /// last step are there again, in the same order: then whole packs are copied.
   template <class OverlapOf>
-  DEM_HOT void recall(const Memories& memories, int at, int lanes, int& cursor, const OverlapOf& overlap_of) {
-    const auto& last = memories.last;
-    const std::uint64_t* keys = memories.now.key.data() + at;
+  DEM_HOT void recall(const Histories& histories, int at, int lanes, int& cursor, const OverlapOf& overlap_of) {
+    const auto& last = histories.last;
+    const std::uint64_t* keys = histories.now.key.data() + at;
     if (lanes == pack_width && cursor + pack_width <= last.count) {
       std::uint64_t differ = 0;
       for (int lane = 0; lane < pack_width; ++lane)
@@ -153,8 +153,8 @@ class ContactEvaluator {
   }
   /// A new point in a patch that touched before starts with a history of its own: of friction and rolling the mean of
   /// what the points of the patch remember; of the normal law what that law makes of the mean (its `inherited()`).
-  template <class Memory>
-  void inherit(const Memory& last, std::uint64_t key, int cursor, int lane, double overlap) {
+  template <class Last>
+  void inherit(const Last& last, std::uint64_t key, int cursor, int lane, double overlap) {
     const auto pair_at = [&](int c) { return PairKey::candidate(last.key[static_cast<std::size_t>(c)]); };
     const std::size_t pair = PairKey::candidate(key);
     int first = cursor, end = cursor;
@@ -206,7 +206,7 @@ class ContactEvaluator {
     uniform_law_ = law;
   }
 
-  DEM_HOT Pack evaluate(const RelativeMotion<Pack>& relative, Memories& memories, ContactForces& forces,
+  DEM_HOT Pack evaluate(const RelativeMotion<Pack>& relative, Histories& histories, ContactForces& forces,
                         std::size_t at) {
     bool same = true;
     for (int lane = 0; lane < pack_width; ++lane) same &= law_[lane] == law_[0];
@@ -224,11 +224,11 @@ class ContactEvaluator {
     store3(w.torque_i, forces.torque_i, at);
     store3(w.torque_j, forces.torque_j, at);
     for_each_history(history,
-                     [&](const auto& h, int row) { store_history(h, memories, static_cast<std::size_t>(row), at); });
+                     [&](const auto& h, int row) { store_history(h, histories, static_cast<std::size_t>(row), at); });
     return overlap_ratio;
   }
 
-  /// Calls f(history, row) for each law's history, where its fields begin at that row of the memories.
+  /// Calls f(history, row) for each law's history, where its fields begin at that row of the histories.
   template <class F>
   static DEM_HOT void for_each_history(ContactHistory<Model, Pack>& h, F&& f) {
     constexpr int friction = normal_history_size<Model>, rolling = friction + friction_history_size<Model>;
@@ -238,10 +238,10 @@ class ContactEvaluator {
     f(h.cohesion, rolling + rolling_history_size<Model>);
   }
   template <class History>
-  static DEM_HOT void store_history(const History& h, Memories& memories, std::size_t offset, std::size_t at) {
+  static DEM_HOT void store_history(const History& h, Histories& histories, std::size_t offset, std::size_t at) {
     if constexpr (!std::is_empty_v<History>) {
       const auto packs = std::bit_cast<std::array<Pack, sizeof(History) / sizeof(Pack)>>(h);
-      for (std::size_t k = 0; k < packs.size(); ++k) store(packs[k], &memories.now.history[k + offset][at]);
+      for (std::size_t k = 0; k < packs.size(); ++k) store(packs[k], &histories.now.history[k + offset][at]);
     }
   }
   static DEM_HOT void store3(const Vector3<Pack>& v, std::array<AlignedVector<double>, 3>& columns, std::size_t at) {

@@ -34,10 +34,10 @@ template <class Model>
 inline constexpr int history_size = normal_history_size<Model> + friction_history_size<Model> +
                                     rolling_history_size<Model> + cohesion_history_size<Model>;
 
-/// The memory of the contacts of one chunk: keys ascending, one history each. A key says who touches whom, and where:
+/// The histories of the contacts of one chunk, one each, keys ascending. A key says who touches whom, and where:
 /// grain::PairKey or grain::SurfaceKey.
 template <int Size>
-struct ContactMemory {
+struct ContactHistories {
   int count = 0;
   std::vector<std::uint64_t> key;
   std::array<AlignedVector<double>, static_cast<std::size_t>(Size)> history;
@@ -51,13 +51,13 @@ struct ContactMemory {
     const auto need = static_cast<std::size_t>(n + pack_width);
     if (key.size() < need) reserve((need + need / 4 + 15) / 16 * 16);
   }
-  void copy(const ContactMemory& from) {
+  void copy(const ContactHistories& from) {
     make_room(count = from.count);
     std::copy_n(from.key.begin(), count, key.begin());
     for (std::size_t k = 0; k < history.size(); ++k) std::copy_n(from.history[k].begin(), count, history[k].begin());
   }
   /// Contact `at` becomes contact `other` of another list.
-  void take(int at, const ContactMemory& from, int other) {
+  void take(int at, const ContactHistories& from, int other) {
     key[static_cast<std::size_t>(at)] = from.key[static_cast<std::size_t>(other)];
     for (std::size_t k = 0; k < history.size(); ++k) {
       history[k][static_cast<std::size_t>(at)] = from.history[k][static_cast<std::size_t>(other)];
@@ -68,8 +68,8 @@ struct ContactMemory {
 /// The histories of all contacts of one chunk with one kind of partner (grains or surfaces): those of this step and the
 /// last ones that were committed.
 template <int HistorySize>
-struct ContactMemories {
-  ContactMemory<HistorySize> now, last;
+struct HistoriesOfSteps {
+  ContactHistories<HistorySize> now, last;
 
   /// The histories of this step become the committed ones.
   void commit() { std::swap(now, last); }
@@ -77,7 +77,7 @@ struct ContactMemories {
   void commit_copy() { last.copy(now); }
   /// The same where only some candidates were evaluated (`renews`, by candidate): the committed histories of others
   /// stay. `spare` is used on the way.
-  void commit_some(std::span<const std::uint8_t> renews, ContactMemory<HistorySize>& spare) {
+  void commit_some(std::span<const std::uint8_t> renews, ContactHistories<HistorySize>& spare) {
     if (rewrite(renews)) return;
     // Contacts came or went: both lists become one, in the order of their keys.
     spare.make_room(now.count + last.count);

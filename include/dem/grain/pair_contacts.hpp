@@ -23,11 +23,11 @@ struct PairScratch {
       contact_points;  ///< other shapes: one for each hit
   ContactForces forces;
   // Where grains may sleep:
-  bool chooses = false;                       ///< not all candidates are evaluated
-  std::vector<std::uint32_t> listed;          ///< those that are, if not all are
-  std::vector<std::uint8_t> renews;           ///< by candidate: see list_evaluated; empty where all are
-  ForceSums asleep;                           ///< of contacts between sleepers
-  ContactMemory<history_size<Model>> merged;  ///< for Chunk::commit_pairs
+  bool chooses = false;                          ///< not all candidates are evaluated
+  std::vector<std::uint32_t> listed;             ///< those that are, if not all are
+  std::vector<std::uint8_t> renews;              ///< by candidate: see list_evaluated; empty where all are
+  ForceSums asleep;                              ///< of contacts between sleepers
+  ContactHistories<history_size<Model>> merged;  ///< for Chunk::commit_pairs
 };
 
 /// The candidates of a chunk as pairs of grains.

@@ -14,12 +14,12 @@ namespace dem {
 
 namespace detail {
 
-/// Calls f(items, count) for each list of a contact memory.
-template <class Memory, class F>
-void for_each_list(Memory& memory, F&& f) {
-  const auto n = static_cast<std::size_t>(memory.count);
-  f(memory.key.data(), n);
-  for (auto& column : memory.history) f(column.data(), n);
+/// Calls f(items, count) for each list of contact histories.
+template <class Histories, class F>
+void for_each_list(Histories& histories, F&& f) {
+  const auto n = static_cast<std::size_t>(histories.count);
+  f(histories.key.data(), n);
+  for (auto& column : histories.history) f(column.data(), n);
 }
 
 /// What a chunk knows and no other rank does, as bytes.
@@ -56,10 +56,10 @@ void read_chunk(const std::vector<std::byte>& message, std::size_t& at, Chunk<Mo
   chunk.surface_loads.resize(sizes[4]);
   get(chunk.surface_loads.data(), sizes[4]);
   if constexpr (shape::RememberingShape<typename Model::Shape>) get(chunk.searches.memory.data(), sizes[0]);
-  const auto of = [&](auto& memory, std::uint64_t n) {
-    memory.reserve(n + static_cast<std::size_t>(pack_width));
-    memory.count = static_cast<int>(n);
-    for_each_list(memory, get);
+  const auto of = [&](auto& histories, std::uint64_t n) {
+    histories.reserve(n + static_cast<std::size_t>(pack_width));
+    histories.count = static_cast<int>(n);
+    for_each_list(histories, get);
   };
   of(chunk.pair_contacts.last, sizes[1]);
   of(chunk.surface_contacts.last, sizes[2]);

@@ -12,16 +12,16 @@ namespace dem {
 
 namespace detail {
 
-/// A contact's history from the columns of a memory.
+/// A contact's history from the columns of histories.
 template <class Model>
-ContactHistory<Model, double> history_at(const ContactMemory<history_size<Model>>& memory, std::size_t c) {
+ContactHistory<Model, double> history_at(const ContactHistories<history_size<Model>>& histories, std::size_t c) {
   ContactHistory<Model, double> history{};
   std::size_t row = 0;
   const auto read = [&](auto& of_law) {
     using History = std::remove_reference_t<decltype(of_law)>;
     if constexpr (!std::is_empty_v<History>) {
       std::array<double, sizeof(History) / sizeof(double)> fields;
-      for (double& field : fields) field = memory.history[row++][c];
+      for (double& field : fields) field = histories.history[row++][c];
       std::memcpy(static_cast<void*>(&of_law), fields.data(), sizeof(of_law));
     }
   };
@@ -45,7 +45,7 @@ class ContactFinder {
 
  private:
   using Surface = typename WorldState<Model>::Surface;
-  using Memories = ContactMemories<history_size<Model>>;
+  using Histories = HistoriesOfSteps<history_size<Model>>;
 
   void find_of_chunk(std::size_t c) {
     Chunk<Model> chunk = w_.chunks[c];
@@ -83,7 +83,7 @@ class ContactFinder {
     std::vector<Body> bodies = w_.machine.bodies();
     coupling::find_body_contacts<Model>(
         found, std::span<const Surface>(surfaces_), w_.materials, std::span(bodies), w_.time_step,
-        [&](Memories& memories) {
+        [&](Histories& histories) {
           for (std::size_t k = 0; k < found.hits.size(); ++k) {
             const grain::Hit& hit = found.hits[k];
             const coupling::BodyPair& pair = found.pairs[hit.i];
@@ -95,7 +95,7 @@ class ContactFinder {
             contact.own_surface = own;
             contact.surface = other;
             contact.pair = BodyContactId(hit.i);
-            remember(contact, memories, hit.key, k);
+            remember(contact, histories, hit.key, k);
           }
         });
   }
@@ -117,12 +117,12 @@ class ContactFinder {
     c.other_torque = to_eigen(grain::ContactForces::at(forces.torque_j, k));
     return c;
   }
-  void remember(Contact<Model>& c, const Memories& memories, std::uint64_t key, std::size_t k) const {
-    c.history = history_at<Model>(memories.now, k);
-    const auto begin = memories.last.key.begin(), end = begin + memories.last.count;
+  void remember(Contact<Model>& c, const Histories& histories, std::uint64_t key, std::size_t k) const {
+    c.history = history_at<Model>(histories.now, k);
+    const auto begin = histories.last.key.begin(), end = begin + histories.last.count;
     const auto at = std::lower_bound(begin, end, key);
     c.last = {};
-    if (at != end && *at == key) c.last = history_at<Model>(memories.last, static_cast<std::size_t>(at - begin));
+    if (at != end && *at == key) c.last = history_at<Model>(histories.last, static_cast<std::size_t>(at - begin));
   }
 
   const WorldState<Model>& w_;

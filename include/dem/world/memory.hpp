@@ -15,12 +15,14 @@ std::size_t memory_bytes(const WorldState<Model>& w) {
   sum += bytes(p.view) + bytes(p.pose) + bytes(p.species) + bytes(p.id) + bytes(p.row_of) + bytes(p.number) +
          bytes(p.freed) + bytes(p.free_again);
   sum += bytes(w.incoming_first) + bytes(w.incoming) + w.broad_phase.memory_bytes() + w.turns.bytes();
-  const auto of_memory = [&](const auto& memory) {
-    std::size_t b = bytes(memory.key);
-    for (const auto& column : memory.history) b += bytes(column);
+  const auto of_histories = [&](const auto& histories) {
+    std::size_t b = bytes(histories.key);
+    for (const auto& column : histories.history) b += bytes(column);
     return b;
   };
-  const auto of_memories = [&](const auto& memories) { return of_memory(memories.now) + of_memory(memories.last); };
+  const auto of_steps = [&](const auto& histories) {
+    return of_histories(histories.now) + of_histories(histories.last);
+  };
   const auto of_forces = [&](const grain::ContactForces& f) {
     std::size_t b = 0;
     for (const auto* columns : {&f.force, &f.torque_i, &f.torque_j}) {
@@ -30,10 +32,11 @@ std::size_t memory_bytes(const WorldState<Model>& w) {
   };
   for (const ContactScratch<Model>& s : w.scratch) {
     sum += sizeof(s) + bytes(s.pairs.close) + bytes(s.pairs.contact_bits) + bytes(s.pairs.hits) +
-           bytes(s.pairs.contact_points) + bytes(s.pairs.listed) + bytes(s.pairs.renews) + of_memory(s.pairs.merged) +
-           of_forces(s.pairs.forces) + bytes(s.surfaces.law_of) + bytes(s.surfaces.hits) +
-           bytes(s.surfaces.contact_points) + bytes(s.surfaces.total_share) + s.surfaces.supports.bytes() +
-           of_forces(s.surfaces.forces) + of_memory(s.pairs_now) + of_memory(s.surfaces_now);
+           bytes(s.pairs.contact_points) + bytes(s.pairs.listed) + bytes(s.pairs.renews) +
+           of_histories(s.pairs.merged) + of_forces(s.pairs.forces) + bytes(s.surfaces.law_of) +
+           bytes(s.surfaces.hits) + bytes(s.surfaces.contact_points) + bytes(s.surfaces.total_share) +
+           s.surfaces.supports.bytes() + of_forces(s.surfaces.forces) + of_histories(s.pairs_now) +
+           of_histories(s.surfaces_now);
   }
   if constexpr (Model::Domain::has_images) sum += bytes(w.images.grain) + bytes(w.images.shift) + bytes(w.images.level);
   sum += bytes(w.sleepers.grains) + bytes(w.sleepers.borne) + bytes(w.sleepers.working) + bytes(w.sleepers.doing) +
@@ -47,7 +50,7 @@ std::size_t memory_bytes(const WorldState<Model>& w) {
   sum += bytes(l.last) + bytes(l.velocity) + bytes(l.spin) + bytes(l.energy);
   for (const Chunk<Model>& c : w.chunks) {
     sum += sizeof(c) + bytes(c.candidate) + bytes(c.owner) + bytes(c.partner_load_first) + bytes(c.partner_loads) +
-           bytes(c.surface_loads) + bytes(c.work) + of_memories(c.pair_contacts) + of_memories(c.surface_contacts) +
+           bytes(c.surface_loads) + bytes(c.work) + of_steps(c.pair_contacts) + of_steps(c.surface_contacts) +
            c.searches.bytes();
   }
   return sum;

@@ -38,7 +38,7 @@ template <class Model>
 struct ContactScratch {
   grain::PairScratch<Model> pairs;
   coupling::SurfaceScratch surfaces;
-  ContactMemory<history_size<Model>> pairs_now, surfaces_now;  ///< lent to the chunk that is worked on
+  ContactHistories<history_size<Model>> pairs_now, surfaces_now;  ///< lent to the chunk that is worked on
 
   /// A chunk gets memory for the histories of this step, which the thread has in its cache, or gives it back.
   void lend(Chunk<Model>& chunk) {

@@ -5,7 +5,7 @@
 
 using dem::Vec3;
 using dem::grain::Hit;
-using Memory = dem::ContactMemory<1>;
+using Histories = dem::ContactHistories<1>;
 
 namespace {
 
@@ -16,10 +16,10 @@ std::uint64_t key(std::uint64_t family, const Vec3& direction) {
 struct Step {
   std::vector<std::pair<std::uint64_t, double>> contacts;
 
-  Memory memory() const {
+  Histories histories() const {
     auto sorted = contacts;
     std::sort(sorted.begin(), sorted.end());
-    Memory m;
+    Histories m;
     m.reserve(16);
     for (const auto& [k, value] : sorted) {
       m.key[static_cast<std::size_t>(m.count)] = k;
@@ -30,7 +30,7 @@ struct Step {
 };
 /// What the contacts with these keys remember of the step before; -1: nothing.
 std::vector<double> recalled(const Step& before, std::vector<std::uint64_t> keys, bool have_directions = true) {
-  Memory m = before.memory();
+  Histories m = before.histories();
   auto sorted = keys;
   std::sort(sorted.begin(), sorted.end());
   std::vector<Hit> hits;
@@ -80,7 +80,7 @@ TEST_CASE("of two contacts of a group either may vanish, come back, or turn") {
   CHECK(recalled(floor_only, {key(5, tilted)}, false) == Values{-1.0});
 }
 
-TEST_CASE("among many contacts each keeps its own memory when all turn a little") {
+TEST_CASE("among many contacts each keeps its own history when all turn a little") {
   Random random(9);
   for (int trial = 0; trial < 200; ++trial) {
     const dem::Mat3 turn = random.rotation();

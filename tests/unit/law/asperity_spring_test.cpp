@@ -75,7 +75,7 @@ TEST_CASE("friction may point elsewhere than against the velocity, but within th
   CHECK(capped.y() < -0.2);  // the cap turns nothing
 }
 
-TEST_CASE("without a normal force there is no friction and no memory") {
+TEST_CASE("without a normal force there is no friction and no history") {
   History h = {{1e-4, 2e-4, 0}};
   CHECK(force(constants(0.975), {1.0, 0, 0}, 0.0, h) == Vec3::Zero());
   CHECK(to_eigen(h.slip) == Vec3::Zero());
@@ -146,7 +146,7 @@ TEST_CASE("friction constants that make no sense are refused") {
   CHECK_NOTHROW(AsperitySpring::check(constants(0.975)));
 }
 
-TEST_CASE("no friction is no force and no memory") {
+TEST_CASE("no friction is no force and no history") {
   STATIC_REQUIRE(dem::contact::field_count<dem::friction::None::History<double>> == 0);
   dem::friction::None::History<double> h;
   const auto f = dem::friction::None::force({}, TangentialState<double>{{1, 2, 3}, 5.0, 1e-5, 1, 1, time_step}, h);

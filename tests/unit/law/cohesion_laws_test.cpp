@@ -170,7 +170,7 @@ TEMPLATE_TEST_CASE("every lane of a pack gets what a double gets from the cohesi
       });
 }
 
-TEST_CASE("no cohesion is no force and no memory") {
+TEST_CASE("no cohesion is no force and no history") {
   STATIC_REQUIRE(dem::contact::field_count<None::History<double>> == 0);
   STATIC_REQUIRE_FALSE(reaches<None>);
   None::History<double> h;

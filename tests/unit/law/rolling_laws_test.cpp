@@ -71,7 +71,7 @@ TEST_CASE("the twisting spring acts about the normal and slips at mu_t R Fn") {
   CHECK(torque<Torsion>(p, {0, 0, 1}, 0.0, h) == Vec3::Zero());
 }
 
-TEST_CASE("a sum of rolling laws is both of them, with both memories") {
+TEST_CASE("a sum of rolling laws is both of them, with both histories") {
   STATIC_REQUIRE(dem::contact::field_count<Both::History<double>> == 4);
   STATIC_REQUIRE(dem::contact::field_count<Sum<ConstantTorque, Torsion>::History<double>> == 1);
   STATIC_REQUIRE(dem::contact::field_count<None::History<double>> == 0);

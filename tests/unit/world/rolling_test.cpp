@@ -163,16 +163,16 @@ TEST_CASE("torques of rolling and torsion are equal and opposite") {
   CHECK((angular_momentum(w) - l).norm() < 1e-11 * l.norm());
 }
 
-TEST_CASE("a rolling memory seen from the other grain points the other way, and a twist stays") {
+TEST_CASE("a rolling history seen from the other grain points the other way, and a twist stays") {
   constexpr int size = history_size<SpringModel>;
   STATIC_REQUIRE(size == 3 + 3 + 1);
-  grain::Remembered<size> memory = {3, 5, 0, {1, 2, 3, 4, 5, 6, 7}};
-  grain::mirror<SpringModel>(memory);
-  CHECK(memory.i == 5);
-  CHECK(memory.history == std::array<double, 7>{-1, -2, -3, -4, -5, -6, 7});
+  grain::Remembered<size> remembered = {3, 5, 0, {1, 2, 3, 4, 5, 6, 7}};
+  grain::mirror<SpringModel>(remembered);
+  CHECK(remembered.i == 5);
+  CHECK(remembered.history == std::array<double, 7>{-1, -2, -3, -4, -5, -6, 7});
 }
 
-TEST_CASE("rolling memories survive new neighbour lists") {
+TEST_CASE("rolling histories survive new neighbour lists") {
   const auto run = [](double skin) {
     World<SpringModel> w(options({0, 0, 0}, 1e-5, skin * r));
     w.set_contact(constants<SpringModel>(0.4));

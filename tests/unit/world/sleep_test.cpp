@@ -375,12 +375,12 @@ TEST_CASE("each grain knows how many are awake beside it, while some wake and ot
 }
 
 TEST_CASE("histories of contacts that were not evaluated stay, whatever comes and goes between them") {
-  using Memory = dem::ContactMemory<1>;
+  using Histories = dem::ContactHistories<1>;
   struct Entry {
     std::uint64_t candidate, point;
     double history;
   };
-  const auto list = [](Memory& m, const std::vector<Entry>& entries) {
+  const auto list = [](Histories& m, const std::vector<Entry>& entries) {
     m.make_room(m.count = static_cast<int>(entries.size()));
     for (std::size_t k = 0; k < entries.size(); ++k) {
       m.key[k] = entries[k].candidate << 32 | entries[k].point;
@@ -389,8 +389,8 @@ TEST_CASE("histories of contacts that were not evaluated stay, whatever comes an
   };
   const std::vector<std::uint8_t> renews = {0, 1, 0, 1, 0};
   const auto check = [&](const std::vector<Entry>& now, const std::vector<Entry>& wanted) {
-    dem::ContactMemories<1> m;
-    Memory spare;
+    dem::HistoriesOfSteps<1> m;
+    Histories spare;
     list(m.last, {{0, 3, 1.0}, {1, 2, 2.0}, {1, 5, 3.0}, {2, 0, 4.0}, {2, 1, 5.0}, {3, 0, 6.0}, {4, 7, 7.0}});
     list(m.now, now);
     m.commit_some(renews, spare);

@@ -25,12 +25,12 @@ void contact_fields(Fields& v, const char* name, Blocks& blocks, Last&& last) {
     const bool is_collecting = v.task() == Fields::Task::collect;
     if (is_collecting) {
       for (auto& block : blocks) {
-        const ContactMemory<Size>& memory = last(block);
-        const auto n = static_cast<std::size_t>(memory.count);
+        const ContactHistories<Size>& of_block = last(block);
+        const auto n = static_cast<std::size_t>(of_block.count);
         counts.push_back(static_cast<std::uint32_t>(n));
-        keys.insert(keys.end(), memory.key.begin(), memory.key.begin() + memory.count);
+        keys.insert(keys.end(), of_block.key.begin(), of_block.key.begin() + of_block.count);
         for (std::size_t c = 0; c < n; ++c) {
-          for (const auto& column : memory.history) histories.push_back(column[c]);
+          for (const auto& column : of_block.history) histories.push_back(column[c]);
         }
       }
       v.copied("count", ColumnKind::natural32, 1, counts);
@@ -42,15 +42,15 @@ void contact_fields(Fields& v, const char* name, Blocks& blocks, Last&& last) {
       if (Size > 0) v.copied("history", ColumnKind::real, Size, histories);
       std::size_t at = 0, k = 0;
       for (auto& block : blocks) {
-        ContactMemory<Size>& memory = last(block);
+        ContactHistories<Size>& of_block = last(block);
         const std::size_t n = counts.at(k++);
         if (at + n > keys.size()) fail("the contacts of '{}' in the saved state are fewer than their count", name);
-        memory.reserve(n + static_cast<std::size_t>(pack_width));
-        memory.count = static_cast<int>(n);
+        of_block.reserve(n + static_cast<std::size_t>(pack_width));
+        of_block.count = static_cast<int>(n);
         for (std::size_t c = 0; c < n; ++c, ++at) {
-          memory.key[c] = keys[at];
-          for (std::size_t h = 0; h < memory.history.size(); ++h) {
-            memory.history[h][c] = histories[at * memory.history.size() + h];
+          of_block.key[c] = keys[at];
+          for (std::size_t h = 0; h < of_block.history.size(); ++h) {
+            of_block.history[h][c] = histories[at * of_block.history.size() + h];
           }
         }
       }
@@ -207,11 +207,11 @@ void world_fields(Fields& v, World<Model>& world, Others&... others) {
     if (v.task() == Fields::Task::restore) w.known_lost = {lost.begin(), lost.end()};
   });
   v.group("body_contacts", [&] {
-    std::uint64_t blocks = w.body_contacts.memories.size();
+    std::uint64_t blocks = w.body_contacts.histories.size();
     v("blocks", blocks);
-    w.body_contacts.memories.resize(blocks);
+    w.body_contacts.histories.resize(blocks);
     contact_fields<history_size<Model>>(
-        v, "points", w.body_contacts.memories, [](auto& m) -> auto& { return m.last; });
+        v, "points", w.body_contacts.histories, [](auto& m) -> auto& { return m.last; });
   });
   int number = 0;
   (v.group("program" + std::to_string(number++), [&] { others.fields(v); }), ...);

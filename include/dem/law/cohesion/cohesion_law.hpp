@@ -24,7 +24,7 @@ struct Attraction {
 ///   stiffness(parameters, state) -> double   the largest slope of the pull against the overlap in N/m;
 ///   range(parameters, radius) -> double      only of a law that acts at a distance: the largest gap in m at which
 ///                  partners of that effective radius (or a smaller one) still attract each other. The search, the
-///                  narrow phase and the memory of contacts then keep pairs up to that gap;
+///                  narrow phase and the histories of contacts then keep pairs up to that gap;
 ///   energy(parameters, state, history) -> double   optional: the potential of the pull in J, 0 where the partners are
 ///                  apart for good, so negative where they hold each other; without it none;
 ///   NormalLaw, check_with(parameters, its parameters)   only of a law that is made for one normal law.

@@ -20,11 +20,11 @@ namespace {
 template <class Shape>
 std::array<double, 3> slips() {
   const std::vector<ContactParameters<Model>> table = {{{1000.0, 0.0, 1.0}, {0.5, 1000.0, 0.0, 1.0}, {}, {}}};
-  ContactMemories<history_size<Model>> memories;
-  memories.last.reserve(16);
-  memories.last.count = 3;
-  memories.last.key = {5, 9, PairKey::make(1, 2)};
-  memories.last.history[0] = {1e-6, 3e-6, 8e-6};
+  HistoriesOfSteps<history_size<Model>> histories;
+  histories.last.reserve(16);
+  histories.last.count = 3;
+  histories.last.key = {5, 9, PairKey::make(1, 2)};
+  histories.last.history[0] = {1e-6, 3e-6, 8e-6};
   const std::vector<Hit> hits = {{7, 0, 1, 0}, {PairKey::make(1, 2), 0, 2, 0}, {PairKey::make(2, 1), 0, 3, 0}};
   // Pressed by 1 mm: 1 N, so that 0.5 N limits springs of at most 8e-3 N.
   const contact::ContactPoint<double> point = {{0, 0, 1}, 1e-3, {0, 0, 1e-3}, 1e-3, 1.0};
@@ -33,8 +33,8 @@ std::array<double, 3> slips() {
   ContactEvaluator<Model, contact::ContactPoint, Shape> evaluator(table, 1e-6);
   const auto view = [&](std::size_t) -> const PartnerView& { return still; };
   evaluator.run(
-      hits, memories, forces, [&](std::size_t) { return point; }, view, view);
-  const auto& now = memories.now.history[0];
+      hits, histories, forces, [&](std::size_t) { return point; }, view, view);
+  const auto& now = histories.now.history[0];
   return {now[0], now[1], now[2]};
 }
 
