@@ -33,16 +33,16 @@ SuperquadricPoints points218() { return {Vec3::Constant(1e-3), Vec3::Constant(8)
 template <class A, class B>
 void narrow_phase(benchmark::State& state, const A& a, const B& b, bool known) {
   constexpr std::size_t pairs = 256;
-  using Memory = typename dem::shape::PairMemoryOf<A, B>::type;
+  using Start = typename dem::shape::WarmStartOf<A, B>::type;
   std::mt19937 random(1);
   std::normal_distribution<double> normal;
   dem::AlignedVector<double> pose_a(pairs * (A::pose_size + 8)), pose_b(pairs * (B::pose_size + 8));
   const auto at = [](dem::AlignedVector<double>& poses, std::size_t k) { return &poses[k * (poses.size() / pairs)]; };
   std::vector<dem::Vector3<double>> separation(pairs);
-  std::vector<Memory> memories(pairs);
-  const auto collide = [&](std::size_t k, Memory& memory) {
+  std::vector<Start> starts(pairs);
+  const auto collide = [&](std::size_t k, Start& start) {
     std::int64_t contacts = 0;
-    dem::shape::collide_pair(a, at(pose_a, k), b, at(pose_b, k), separation[k], memory,
+    dem::shape::collide_pair(a, at(pose_a, k), b, at(pose_b, k), separation[k], start,
                              [&](std::uint32_t, const auto& point) {
                                benchmark::DoNotOptimize(point);
                                ++contacts;
@@ -60,7 +60,7 @@ void narrow_phase(benchmark::State& state, const A& a, const B& b, bool known) {
     // From apart to first contact, which is at most half a percent of the distance deep.
     for (double distance = a.bounding_radius() + b.bounding_radius(); distance > 0; distance *= 0.995) {
       separation[k] = dem::from_eigen(Vec3(distance * way));
-      Memory nothing{};
+      Start nothing{};
       if (collide(k, nothing) > 0) break;
     }
   }
@@ -68,9 +68,9 @@ void narrow_phase(benchmark::State& state, const A& a, const B& b, bool known) {
   for (auto _ : state) {
     for (std::size_t k = 0; k < pairs; ++k) {
       if (known) {
-        contacts += collide(k, memories[k]);
+        contacts += collide(k, starts[k]);
       } else {
-        Memory nothing{};
+        Start nothing{};
         contacts += collide(k, nothing);
       }
     }

@@ -209,7 +209,7 @@ class PointsTowards {
     const double third = grain.mean_radius() / 3.0;
     if constexpr (surface::IsSuperquadric<Onto>) {
       if (onto_.grain()) {
-        typename std::remove_cvref_t<decltype(grain)>::PairMemory found;
+        typename std::remove_cvref_t<decltype(grain)>::WarmStart found;
         const Vector3<double> centre = transpose_times(a_.axes, b_.origin - a_.origin);
         if (!grain.shares_normal(*onto_.grain(), transposed(a_.axes) * b_.axes, centre, found)) return;
         const Vector3<double> p = found.point + (0.5 * found.overlap) * found.normal;

@@ -12,24 +12,24 @@ namespace detail {
 
 /// For each ordered pair of kinds what it keeps between searches; alternative 0 is nothing.
 template <class... Kinds>
-struct MixedMemories {
+struct MixedWarmStarts {
   template <class A>
-  using Row = std::tuple<typename PairMemoryOf<A, Kinds>::type...>;
-  template <class... Memories>
-  static std::variant<NoMemory, Memories...> as_variant(std::tuple<Memories...>);
+  using Row = std::tuple<typename WarmStartOf<A, Kinds>::type...>;
+  template <class... Starts>
+  static std::variant<NoWarmStart, Starts...> as_variant(std::tuple<Starts...>);
   using Variant = decltype(as_variant(std::tuple_cat(std::declval<Row<Kinds>>()...)));
 
   template <class A>
-  static constexpr bool row_has_memory = !(std::same_as<typename PairMemoryOf<A, Kinds>::type, NoMemory> && ...);
-  static constexpr bool any = (row_has_memory<Kinds> || ...);
+  static constexpr bool row_has_warm_start = !(std::same_as<typename WarmStartOf<A, Kinds>::type, NoWarmStart> && ...);
+  static constexpr bool any = (row_has_warm_start<Kinds> || ...);
 };
 
-/// Gives Mixed its PairMemory only where some pair of kinds needs one.
+/// Gives Mixed its WarmStart only where some pair of kinds needs one.
 template <bool Any, class... Kinds>
 struct MixedBase {};
 template <class... Kinds>
 struct MixedBase<true, Kinds...> {
-  using PairMemory = typename MixedMemories<Kinds...>::Variant;
+  using WarmStart = typename MixedWarmStarts<Kinds...>::Variant;
 };
 
 }  // namespace detail
@@ -39,9 +39,9 @@ struct MixedBase<true, Kinds...> {
 /// are those that the pair hands over: with points of physical area in one kind and whole contacts in another, give
 /// each pair of materials its own constants.
 template <class... Kinds>
-class Mixed : public detail::MixedBase<detail::MixedMemories<Kinds...>::any, Kinds...> {
+class Mixed : public detail::MixedBase<detail::MixedWarmStarts<Kinds...>::any, Kinds...> {
   static_assert(sizeof...(Kinds) >= 1 && sizeof...(Kinds) <= 255, "Mixed: name 1 to 255 shapes");
-  using Memory = typename detail::MixedMemories<Kinds...>::Variant;
+  using Start = typename detail::MixedWarmStarts<Kinds...>::Variant;
   template <class A>
   static constexpr bool reaches_each = (ReachingPair<A, Kinds> && ...);
 
@@ -80,31 +80,31 @@ class Mixed : public detail::MixedBase<detail::MixedMemories<Kinds...>::any, Kin
   DEM_HOT void sample_points(const double* pose, Callback&& callback) const {
     visit([&](const auto& s) { s.sample_points(pose, callback); });
   }
-  /// With a memory, for models whose kinds keep their searches; with a gap (m), for cohesion at a distance, where all
-  /// kinds find contacts across it.
+  /// With a warm start, for models whose kinds keep their searches; with a gap (m), for cohesion at a distance, where
+  /// all kinds find contacts across it.
   template <class Callback>
   static DEM_HOT void collide(const Mixed& a, const double* pose_a, const Mixed& b, const double* pose_b,
-                              const Vector3<double>& separation, Memory& memory, Callback&& callback) {
-    collide_kinds(a, pose_a, b, pose_b, separation, memory, callback, NoGap{});
+                              const Vector3<double>& separation, Start& start, Callback&& callback) {
+    collide_kinds(a, pose_a, b, pose_b, separation, start, callback, NoGap{});
   }
   template <class Callback>
   static DEM_HOT void collide(const Mixed& a, const double* pose_a, const Mixed& b, const double* pose_b,
                               const Vector3<double>& separation, Callback&& callback) {
-    Memory nothing;
+    Start nothing;
     collide_kinds(a, pose_a, b, pose_b, separation, nothing, callback, NoGap{});
   }
   template <class Callback>
   static DEM_HOT void collide(const Mixed& a, const double* pose_a, const Mixed& b, const double* pose_b,
                               const Vector3<double>& separation, Callback&& callback,
                               double gap) requires(reaches_each<Kinds>&&...) {
-    Memory nothing;
+    Start nothing;
     collide_kinds(a, pose_a, b, pose_b, separation, nothing, callback, gap);
   }
   template <class Callback>
   static DEM_HOT void collide(const Mixed& a, const double* pose_a, const Mixed& b, const double* pose_b,
-                              const Vector3<double>& separation, Memory& memory, Callback&& callback,
+                              const Vector3<double>& separation, Start& start, Callback&& callback,
                               double gap) requires(reaches_each<Kinds>&&...) {
-    collide_kinds(a, pose_a, b, pose_b, separation, memory, callback, gap);
+    collide_kinds(a, pose_a, b, pose_b, separation, start, callback, gap);
   }
 
   /// Patches are found between grains of one kind only.
@@ -133,7 +133,7 @@ class Mixed : public detail::MixedBase<detail::MixedMemories<Kinds...>::any, Kin
 
   template <class Callback, class Gap>
   static DEM_HOT void collide_kinds(const Mixed& a, const double* pose_a, const Mixed& b, const double* pose_b,
-                                    const Vector3<double>& separation, Memory& memory, Callback&& callback, Gap gap) {
+                                    const Vector3<double>& separation, Start& start, Callback&& callback, Gap gap) {
     a.visit_indexed([&]<std::size_t I>(const auto& x, std::integral_constant<std::size_t, I>) {
       b.visit_indexed([&]<std::size_t J>(const auto& y, std::integral_constant<std::size_t, J>) {
         using A = std::remove_cvref_t<decltype(x)>;
@@ -141,13 +141,13 @@ class Mixed : public detail::MixedBase<detail::MixedMemories<Kinds...>::any, Kin
         // Features of a pair of one kind carry its number, so that mirrored() knows whom to ask.
         constexpr std::uint32_t kind = I == J ? std::uint32_t{I + 1} << feature_bits : 0u;
         const auto marked = [&](std::uint32_t feature, const auto& point) { callback(kind | feature, point); };
-        if constexpr (std::same_as<typename PairMemoryOf<A, B>::type, NoMemory>) {
-          NoMemory none;
+        if constexpr (std::same_as<typename WarmStartOf<A, B>::type, NoWarmStart>) {
+          NoWarmStart none;
           collide_pair(x, pose_a, y, pose_b, separation, none, marked, gap);
         } else {
           constexpr std::size_t place = 1 + I * sizeof...(Kinds) + J;
-          if (memory.index() != place) memory.template emplace<place>();
-          collide_pair(x, pose_a, y, pose_b, separation, *std::get_if<place>(&memory), marked, gap);
+          if (start.index() != place) start.template emplace<place>();
+          collide_pair(x, pose_a, y, pose_b, separation, *std::get_if<place>(&start), marked, gap);
         }
       });
     });

@@ -14,8 +14,8 @@ namespace dem::shape {
 ///   };
 /// collide calls callback(feature, point) as a Shape's own does: contact points seen from a's centre, features
 /// ascending and below 2^24; any type with geometry() will do. What a search wants to keep for a pair of neighbours
-/// goes into a type Memory (copyable, empty when made), and collide then takes a Memory& before the callback. To meet
-/// cohesion at a distance, collide also takes a gap (m) as a last argument, as that of a ReachingShape does.
+/// goes into a type WarmStart (copyable, empty when made), and collide then takes a WarmStart& before the callback. To
+/// meet cohesion at a distance, collide also takes a gap (m) as a last argument, as that of a ReachingShape does.
 template <class A, class B>
 struct PairContact;
 
@@ -29,14 +29,14 @@ struct PairContact<S, S> {
     S::collide(a, pose_a, b, pose_b, separation, callback, gap...);
   }
 };
-template <RememberingShape S>
+template <WarmStartedShape S>
 struct PairContact<S, S> {
-  using Memory = typename S::PairMemory;
+  using WarmStart = typename S::WarmStart;
   template <class Callback, class... Gap>
   requires(sizeof...(Gap) == 0 || ReachingShape<S>) static DEM_HOT
       void collide(const S& a, const double* pose_a, const S& b, const double* pose_b,
-                   const Vector3<double>& separation, Memory& memory, Callback&& callback, Gap... gap) {
-    S::collide(a, pose_a, b, pose_b, separation, memory, callback, gap...);
+                   const Vector3<double>& separation, WarmStart& start, Callback&& callback, Gap... gap) {
+    S::collide(a, pose_a, b, pose_b, separation, start, callback, gap...);
   }
 };
 
@@ -52,27 +52,27 @@ concept ReachesInOrder = requires(const A& a, const B& b, const double* pose, co
   PairContact<A, B>::collide(a, pose, b, pose, separation, AnyCallback{}, 1.0);
 }
 || requires(const A& a, const B& b, const double* pose, const Vector3<double>& separation,
-            typename PairContact<A, B>::Memory& memory) {
-  PairContact<A, B>::collide(a, pose, b, pose, separation, memory, AnyCallback{}, 1.0);
+            typename PairContact<A, B>::WarmStart& start) {
+  PairContact<A, B>::collide(a, pose, b, pose, separation, start, AnyCallback{}, 1.0);
 };
 template <class A, class B>
 concept ReachingPair = ReachesInOrder<A, B> || ReachesInOrder<B, A>;
 
 /// What a pair of A and B keeps between searches, in whichever order it is specialised.
-struct NoMemory {};
+struct NoWarmStart {};
 template <class A, class B>
-struct PairMemoryOf {
-  using type = NoMemory;
+struct WarmStartOf {
+  using type = NoWarmStart;
 };
 template <class A, class B>
-requires requires { typename PairContact<A, B>::Memory; }
-struct PairMemoryOf<A, B> {
-  using type = typename PairContact<A, B>::Memory;
+requires requires { typename PairContact<A, B>::WarmStart; }
+struct WarmStartOf<A, B> {
+  using type = typename PairContact<A, B>::WarmStart;
 };
 template <class A, class B>
-requires(!HasPairContact<A, B>) && requires { typename PairContact<B, A>::Memory; }
-struct PairMemoryOf<A, B> {
-  using type = typename PairContact<B, A>::Memory;
+requires(!HasPairContact<A, B>) && requires { typename PairContact<B, A>::WarmStart; }
+struct WarmStartOf<A, B> {
+  using type = typename PairContact<B, A>::WarmStart;
 };
 
 /// A contact that was found from b's side, seen from a's.
@@ -83,16 +83,16 @@ DEM_HOT contact::ContactPoint<double> turned_round(const contact::Geometry<doubl
 
 /// Contacts of any two kinds, each a ContactPoint, through PairContact<A, B> or PairContact<B, A>; up to a gap (m)
 /// where cohesion acts at a distance (else NoGap).
-template <class A, class B, class Memory, class Callback, class Gap = NoGap>
+template <class A, class B, class WarmStart, class Callback, class Gap = NoGap>
 DEM_HOT void collide_pair(const A& a, const double* pose_a, const B& b, const double* pose_b,
-                          const Vector3<double>& separation, Memory& memory, Callback&& callback, Gap gap = {}) {
+                          const Vector3<double>& separation, WarmStart& start, Callback&& callback, Gap gap = {}) {
   const auto call = [&](auto pair, const auto&... arguments) {
     using Pair = decltype(pair);
     const auto with = [&](const auto&... reach) {
-      if constexpr (requires { typename Pair::Memory; }) {
+      if constexpr (requires { typename Pair::WarmStart; }) {
         const auto split = [&](const auto& x, const double* pose_x, const auto& y, const double* pose_y,
                                const Vector3<double>& between, const auto& given) {
-          Pair::collide(x, pose_x, y, pose_y, between, memory, given, reach...);
+          Pair::collide(x, pose_x, y, pose_y, between, start, given, reach...);
         };
         split(arguments...);
       } else {

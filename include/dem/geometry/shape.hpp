@@ -67,18 +67,18 @@ concept BitShape = Shape<S> && requires(const S& shape, const double* pose, cons
     } -> std::same_as<typename S::template PairContactPoint<double>>;
 };
 
-/// A shape whose search for contacts starts from what the last step found. PairMemory is what it keeps for each pair of
-/// neighbours (empty when they are listed anew), and collide(a, pose_a, b, pose_b, separation, memory, callback) uses
-/// it. The memory belongs to the pair, not to a thread: results stay the same for any number of threads.
+/// A shape whose search for contacts starts warm, from what the last step found. WarmStart is what it keeps for each
+/// pair of neighbours (empty when they are listed anew), and collide(a, pose_a, b, pose_b, separation, start, callback)
+/// uses it. It belongs to the pair, not to a thread: results stay the same for any number of threads.
 template <class S>
-concept RememberingShape = Shape<S> &&
-    requires(const S& shape, const double* pose, const Vector3<double>& separation, typename S::PairMemory& memory) {
-  S::collide(shape, pose, shape, pose, separation, memory, AnyCallback{});
+concept WarmStartedShape = Shape<S> &&
+    requires(const S& shape, const double* pose, const Vector3<double>& separation, typename S::WarmStart& start) {
+  S::collide(shape, pose, shape, pose, separation, start, AnyCallback{});
 };
 
 /// A shape that may meet cohesion at a distance also finds contacts across a gap: collide takes the gap (m) as a last
 /// argument and then hands over pairs of points up to that far apart, with a negative overlap; contact_bits of a
-/// BitShape likewise. A RememberingShape takes both its memory and the gap.
+/// BitShape likewise. A WarmStartedShape takes both its warm start and the gap.
 template <class S>
 concept ReachingShape = Shape<S> && requires(const S& shape, const double* pose, const Vector3<double>& separation) {
   S::collide(shape, pose, shape, pose, separation, AnyCallback{}, 1.0);
@@ -86,9 +86,9 @@ concept ReachingShape = Shape<S> && requires(const S& shape, const double* pose,
      requires(const S& shape, const double* pose, const Vector3<double>& separation) {
        { S::contact_bits(shape, pose, shape, pose, separation, 1.0) } -> std::same_as<std::uint64_t>;
      }) &&
-    (!RememberingShape<S> ||
-     requires(const S& shape, const double* pose, const Vector3<double>& separation, typename S::PairMemory& memory) {
-       S::collide(shape, pose, shape, pose, separation, memory, AnyCallback{}, 1.0);
+    (!WarmStartedShape<S> ||
+     requires(const S& shape, const double* pose, const Vector3<double>& separation, typename S::WarmStart& start) {
+       S::collide(shape, pose, shape, pose, separation, start, AnyCallback{}, 1.0);
      });
 
 template <class S>
@@ -126,17 +126,17 @@ constexpr void check_reaching_shape() {
       "in m as a last argument and find pairs up to that far apart; or choose a cohesion without range()");
 }
 
-/// What RememberingShapes keep for a list of pairs (PairMemory); nothing for other shapes.
+/// What WarmStartedShapes keep for a list of pairs (WarmStart); nothing for other shapes.
 template <class S>
-struct PairMemories {
+struct WarmStarts {
   void reset(std::size_t) {}
   std::size_t bytes() const { return 0; }
 };
-template <RememberingShape S>
-struct PairMemories<S> {
-  std::vector<typename S::PairMemory> memory;
-  void reset(std::size_t pairs) { memory.assign(pairs, {}); }
-  std::size_t bytes() const { return memory.capacity() * sizeof(typename S::PairMemory); }
+template <WarmStartedShape S>
+struct WarmStarts<S> {
+  std::vector<typename S::WarmStart> start;
+  void reset(std::size_t pairs) { start.assign(pairs, {}); }
+  std::size_t bytes() const { return start.capacity() * sizeof(typename S::WarmStart); }
 };
 
 /// A shape whose pair contacts may be the points of one patch tells by their features, with `static bool

@@ -37,7 +37,7 @@ struct Chunk {
   std::array<std::uint32_t, chunk_size + 1> candidate_first = {};  ///< candidates of the k-th grain of the chunk
   std::vector<std::uint32_t> candidate;                            ///< partners j > i, ascending for each i
   std::vector<std::uint8_t> owner;                                 ///< of each candidate: its i in the chunk
-  [[no_unique_address]] shape::PairMemories<typename Model::Shape> searches;  ///< of the candidates
+  [[no_unique_address]] shape::WarmStarts<typename Model::Shape> searches;  ///< of the candidates
   HistoriesOfSteps<history_size<Model>> pair_contacts, surface_contacts;
 
   std::vector<PartnerLoad> partner_loads;         ///< of the contacts whose partner is in another chunk, in their order

@@ -143,7 +143,7 @@ void find_hits_by_bits(const Pairs& pairs, std::size_t close_count, PairScratch<
 /// Narrow phase of all other shapes.
 template <class Model, class Pairs>
 void find_hits_one_by_one(const Pairs& pairs, std::size_t close_count,
-                          shape::PairMemories<typename Model::Shape>& searches, PairScratch<Model>& s) {
+                          shape::WarmStarts<typename Model::Shape>& searches, PairScratch<Model>& s) {
   using Shape = typename Model::Shape;
   s.hits.clear();
   s.contact_points.clear();
@@ -159,9 +159,9 @@ void find_hits_one_by_one(const Pairs& pairs, std::size_t close_count,
       Shape::collide(a, pairs.p.pose_of(i), b, pairs.p.pose_of(j), pairs.separation(i, j), more...);
     };
     constexpr bool reaches = cohesion::reaches<typename Model::Cohesion>;
-    if constexpr (shape::RememberingShape<Shape>) {
-      if constexpr (reaches) collide(searches.memory[k], callback, pairs.gap());
-      else collide(searches.memory[k], callback);
+    if constexpr (shape::WarmStartedShape<Shape>) {
+      if constexpr (reaches) collide(searches.start[k], callback, pairs.gap());
+      else collide(searches.start[k], callback);
     } else {
       if constexpr (reaches) collide(callback, pairs.gap());
       else collide(callback);

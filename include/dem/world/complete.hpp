@@ -35,8 +35,8 @@ void write_chunk(std::vector<std::byte>& message, Chunk<Model>& chunk) {
   put(chunk.partner_load_first.data(), chunk.partner_load_first.size());
   put(chunk.partner_loads.data(), sizes[3]);
   put(chunk.surface_loads.data(), chunk.surface_loads.size());
-  if constexpr (shape::RememberingShape<typename Model::Shape>) {
-    put(chunk.searches.memory.data(), chunk.searches.memory.size());
+  if constexpr (shape::WarmStartedShape<typename Model::Shape>) {
+    put(chunk.searches.start.data(), chunk.searches.start.size());
   }
   for_each_list(chunk.pair_contacts.last, put);
   for_each_list(chunk.surface_contacts.last, put);
@@ -55,7 +55,7 @@ void read_chunk(const std::vector<std::byte>& message, std::size_t& at, Chunk<Mo
   get(chunk.partner_loads.data(), sizes[3]);
   chunk.surface_loads.resize(sizes[4]);
   get(chunk.surface_loads.data(), sizes[4]);
-  if constexpr (shape::RememberingShape<typename Model::Shape>) get(chunk.searches.memory.data(), sizes[0]);
+  if constexpr (shape::WarmStartedShape<typename Model::Shape>) get(chunk.searches.start.data(), sizes[0]);
   const auto of = [&](auto& histories, std::uint64_t n) {
     histories.reserve(n + static_cast<std::size_t>(pack_width));
     histories.count = static_cast<int>(n);

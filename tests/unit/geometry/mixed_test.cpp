@@ -26,7 +26,7 @@ using Sharp = Mixed<Polyhedron, Superquadric>;
 using SharpPoints = Mixed<Polyhedron, SuperquadricPoints>;
 using Clusters = Mixed<Cube, dem::shape::SphereCluster<3>>;
 
-static_assert(dem::shape::RememberingShape<Any> && !dem::shape::RememberingShape<WithPoints>);
+static_assert(dem::shape::WarmStartedShape<Any> && !dem::shape::WarmStartedShape<WithPoints>);
 static_assert(dem::shape::ReachingShape<Clusters> && dem::shape::ReachingShape<Mixed<Sphere, Cube>>);
 static_assert(dem::shape::ReachingShape<Any> && !dem::shape::ReachingShape<WithPolyhedra>);
 static_assert(!dem::shape::ReachingShape<WithPoints>);

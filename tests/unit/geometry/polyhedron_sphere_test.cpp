@@ -23,7 +23,7 @@ std::vector<Found> contacts(const A& a, const Mat3& ra, const B& b, const Mat3& 
   a.orient(dem::from_eigen(ra), pose_a);
   b.orient(dem::from_eigen(rb), pose_b);
   std::vector<Found> found;
-  NoMemory none;
+  NoWarmStart none;
   collide_pair(a, pose_a, b, pose_b, dem::from_eigen(link), none, [&](std::uint32_t feature, const auto& t) {
     found.push_back({feature, to_eigen(t.normal), to_eigen(t.arm), t.overlap, t.area});
   });

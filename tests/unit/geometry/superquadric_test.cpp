@@ -182,7 +182,7 @@ TEST_CASE("a search that goes on from the last step finds what a new one finds")
   for (const Vec3& e : exponents) {
     const Superquadric a(random.radii(), e, 1), b(random.radii(), e, 1);
     alignas(64) double pose_a[Superquadric::pose_size], pose_b[Superquadric::pose_size];
-    CommonNormal memory;
+    CommonNormal found;
     int touching = 0;
     // b tumbles over a, faster than grains do, in and out of contact; the overlaps stay below the radii of the edges.
     for (int k = 0; k < 2000; ++k) {
@@ -193,7 +193,7 @@ TEST_CASE("a search that goes on from the last step finds what a new one finds")
       a.orient(dem::Matrix3<double>::identity(), pose_a);
       b.orient(dem::from_eigen(rb), pose_b);
       double warm = 0.0, cold = 0.0;
-      Superquadric::collide(a, pose_a, b, pose_b, dem::from_eigen(d), memory,
+      Superquadric::collide(a, pose_a, b, pose_b, dem::from_eigen(d), found,
                             [&](std::uint32_t, const auto& point) { warm = point.overlap; });
       Superquadric::collide(a, pose_a, b, pose_b, dem::from_eigen(d),
                             [&](std::uint32_t, const auto& point) { cold = point.overlap; });

@@ -15,30 +15,30 @@ namespace dem::shape {
 class Superquadric : public SuperquadricGrain {
  public:
   static constexpr std::size_t most_contacts = 1;
-  using PairMemory = CommonNormal;
+  using WarmStart = CommonNormal;
 
   /// Radii in m, exponents from 2 to 32, and how many cells the points for surfaces have along an edge. Throws Error
   /// for values out of range.
   Superquadric(const Vec3& radii, const Vec3& exponents, int divisions = 4)
       : SuperquadricGrain(radii, exponents, divisions, PointArea::share) {}
 
-  /// `memory` holds what the last search found for this pair: it makes the search short, and leaves the answer the same
+  /// `found` holds what the last search found for this pair: it makes the search short, and leaves the answer the same
   /// up to the search's tolerance. With a gap (m) pairs up to that far apart are handed over too, with a negative
   /// overlap.
   template <class Callback>
   static DEM_HOT void collide(const Superquadric& a, const double* pose_a, const Superquadric& b, const double* pose_b,
-                              const Vector3<double>& separation, PairMemory& memory, Callback&& callback,
+                              const Vector3<double>& separation, WarmStart& found, Callback&& callback,
                               double gap = 0.0) {
     const Matrix3<double> ra = rotation(pose_a), rb = rotation(pose_b);
     const SolidPair pair = {a.solid(), b.solid(), transposed(ra) * rb, transpose_times(ra, separation), gap};
-    if (!find_common_normal(pair, memory)) return;
-    callback(0u, PairContactPoint<double>{ra * memory.normal, memory.overlap, ra * memory.point, a.effective_radius(b),
-                                          1.0});
+    if (!find_common_normal(pair, found)) return;
+    callback(0u,
+             PairContactPoint<double>{ra * found.normal, found.overlap, ra * found.point, a.effective_radius(b), 1.0});
   }
   template <class Callback>
   static DEM_HOT void collide(const Superquadric& a, const double* pose_a, const Superquadric& b, const double* pose_b,
                               const Vector3<double>& separation, Callback&& callback, double gap = 0.0) {
-    PairMemory nothing;
+    WarmStart nothing;
     collide(a, pose_a, b, pose_b, separation, nothing, callback, gap);
   }
   /// Where the surfaces of this and of another grain share a normal, in the frame of this one; `turn` leads from the

@@ -10,23 +10,23 @@ namespace dem::shape {
 /// Feature: the ball. Grains of one ball keep their search. Found up to a gap (m).
 template <BallShape Balls>
 struct PairContact<Superquadric, Balls> {
-  using Memory = CommonNormal;
+  using WarmStart = CommonNormal;
 
   template <class Callback>
   static DEM_HOT void collide(const Superquadric& a, const double* pose_a, const Balls& b, const double* pose_b,
-                              const Vector3<double>& separation, Memory& memory, Callback&& callback,
+                              const Vector3<double>& separation, WarmStart& found, Callback&& callback,
                               double gap = 0.0) {
     const Matrix3<double> r = Superquadric::rotation(pose_a);
     for (int k = 0; k < ball_count(b); ++k) {
       const PosedBall ball = posed_ball(b, pose_b, k);
-      if (k > 0) memory = {};
+      if (k > 0) found = {};
       const Vector3<double> centre = transpose_times(r, separation + ball.centre);
-      if (!find_ball_contact(a.solid(), centre, ball.radius, memory, gap)) continue;
+      if (!find_ball_contact(a.solid(), centre, ball.radius, found, gap)) continue;
       const double radius = a.mean_radius() * ball.radius / (a.mean_radius() + ball.radius);
       callback(static_cast<std::uint32_t>(k),
-               contact::ContactPoint<double>{r * memory.normal, memory.overlap, r * memory.point, radius, 1.0});
+               contact::ContactPoint<double>{r * found.normal, found.overlap, r * found.point, radius, 1.0});
     }
-    if (ball_count(b) > 1) memory = {};
+    if (ball_count(b) > 1) found = {};
   }
 };
 

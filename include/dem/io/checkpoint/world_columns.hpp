@@ -147,24 +147,23 @@ void chunk_fields(Fields& v, WorldState<Model>& w) {
       }
     }
   }
-  if constexpr (shape::RememberingShape<typename Model::Shape>) {
-    using Memory = typename Model::Shape::PairMemory;
-    static_assert(std::is_trivially_copyable_v<Memory>, "PairMemory: must be trivially copyable to be saved");
-    std::vector<std::uint8_t> bytes(is_restoring ? 0 : partner.size() * sizeof(Memory));
+  if constexpr (shape::WarmStartedShape<typename Model::Shape>) {
+    using Start = typename Model::Shape::WarmStart;
+    static_assert(std::is_trivially_copyable_v<Start>, "WarmStart: must be trivially copyable to be saved");
+    std::vector<std::uint8_t> bytes(is_restoring ? 0 : partner.size() * sizeof(Start));
     std::size_t at = 0;
     if (v.task() == Fields::Task::collect) {
       for (const Chunk<Model>& c : w.chunks) {
-        std::memcpy(bytes.data() + at, c.searches.memory.data(), c.searches.memory.size() * sizeof(Memory));
-        at += c.searches.memory.size() * sizeof(Memory);
+        std::memcpy(bytes.data() + at, c.searches.start.data(), c.searches.start.size() * sizeof(Start));
+        at += c.searches.start.size() * sizeof(Start);
       }
     }
-    v.copied("searches", ColumnKind::byte, sizeof(Memory), bytes);
+    v.copied("searches", ColumnKind::byte, sizeof(Start), bytes);
     if (is_restoring) {
       for (Chunk<Model>& c : w.chunks) {
-        if (at + c.candidate.size() * sizeof(Memory) > bytes.size()) fail("the saved searches are too few");
-        std::memcpy(static_cast<void*>(c.searches.memory.data()), bytes.data() + at,
-                    c.candidate.size() * sizeof(Memory));
-        at += c.candidate.size() * sizeof(Memory);
+        if (at + c.candidate.size() * sizeof(Start) > bytes.size()) fail("the saved searches are too few");
+        std::memcpy(static_cast<void*>(c.searches.start.data()), bytes.data() + at, c.candidate.size() * sizeof(Start));
+        at += c.candidate.size() * sizeof(Start);
       }
     }
   }
