@@ -106,8 +106,9 @@ TEST_CASE("a block on a slab is one Hertz contact of its own size, whichever of 
         // twice as stiff each, at the far corner.
         const double limit = w.state().options.overlap_limit;
         const double k = 4.0 * 2.0 * rubber.modulus * std::sqrt(R * 2 * R * limit);
-        const double m = 1.6, I = m / 12 * (0.01 + 0.0064), softness = 1 / m + 0.25 * edges.squaredNorm() / I;
-        CHECK(w.stable_time_step().dt == Approx(2.0 / std::sqrt(k * softness)));
+        const double m = 1.6, I = m / 12 * (0.01 + 0.0064),
+                     inverse_effective_mass = 1 / m + 0.25 * edges.squaredNorm() / I;
+        CHECK(w.stable_time_step().dt == Approx(2.0 / std::sqrt(k * inverse_effective_mass)));
       }
     }
   }

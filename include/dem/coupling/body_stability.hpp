@@ -16,10 +16,10 @@ double reach_of(const Surface& s) {
   }
   return farthest;
 }
-/// How little a body resists at the farthest point of its surface, 1/m + R^2/I (1/kg); 0 for a fixed one. An endless
-/// surface is touched at `lever` (m).
+/// The inverse effective mass of a body at the farthest point of its surface, 1/m + R^2/I (1/kg); 0 for a fixed one. An
+/// endless surface is touched at `lever` (m).
 template <class Surface>
-double softness_of(const Surface& s, const Body& body, double lever) {
+double inverse_effective_mass_of(const Surface& s, const Body& body, double lever) {
   if (body.fixed) return 0.0;
   if (const double reach = reach_of(s); reach < 1e100) lever = reach;
   return 1.0 / body.mass + lever * lever / body.inertia.minCoeff();
@@ -58,8 +58,8 @@ StableTimeStep stable_time_step_of_bodies(std::span<const BodyPair> pairs, std::
     check_body_cohesion(a, b, body_a, body_b, materials);
     // An endless surface is touched where its partner is.
     const double smaller = std::min(reach_of(a), reach_of(b));
-    const double soft = softness_of(a, body_a, smaller) + softness_of(b, body_b, smaller);
-    if (!(soft > 0.0)) continue;
+    const double w = inverse_effective_mass_of(a, body_a, smaller) + inverse_effective_mass_of(b, body_b, smaller);
+    if (!(w > 0.0)) continue;
     const auto turning_of = [](const Body& body) { return body.fixed ? 0.0 : 1.0 / body.inertia.minCoeff(); };
     const double turning = turning_of(body_a) + turning_of(body_b);
     const double inverse_mass = (body_a.fixed ? 0.0 : 1.0 / body_a.mass) + (body_b.fixed ? 0.0 : 1.0 / body_b.mass);
@@ -68,8 +68,9 @@ StableTimeStep stable_time_step_of_bodies(std::span<const BodyPair> pairs, std::
     const auto& parameters = materials.table()[materials.row(a.material, b.material)];
     const contact::NormalState<double> deepest = {2.0 * overlap_limit * radius, 0.0, radius, 1.0 / inverse_mass, 0.0};
     grain::for_each_swing<Model>(
-        parameters, deepest, 1.0, soft, turning, [&](double k, double c, double mobility, const auto& text) {
-          const double dt = grain::stable_step(Model::Integrator::stability_limit, n * k, n * c, mobility);
+        parameters, deepest, 1.0, w, turning, [&](double k, double c, double inverse_effective_mass, const auto& text) {
+          const double dt =
+              grain::stable_step(Model::Integrator::stability_limit, n * k, n * c, inverse_effective_mass);
           if (!(dt < result.dt)) return;
           result = {dt, dem::text("body '{}' on body '{}': {}, {:g} times", body_a.name, body_b.name, text(), n)};
         });

@@ -59,7 +59,7 @@ DEM_HOT integrator::Acceleration<Pack> acceleration(std::size_t i, const Particl
   const bool one_species = inertia.size() == 1;
   const auto value = [&](auto&& member) { return one_species ? Pack(member(inertia[0])) : of(member); };
   const Pack inverse_mass = value([](const SpeciesInertia& s) { return s.inverse_mass; });
-  const Pack mobility = value([](const SpeciesInertia& s) { return s.mobility; });
+  const Pack gravity_scale = value([](const SpeciesInertia& s) { return s.gravity_scale; });
   const Vector3<Pack> moments = {value([](const SpeciesInertia& s) { return s.inertia[0]; }),
                                  value([](const SpeciesInertia& s) { return s.inertia[1]; }),
                                  value([](const SpeciesInertia& s) { return s.inertia[2]; })};
@@ -69,7 +69,7 @@ DEM_HOT integrator::Acceleration<Pack> acceleration(std::size_t i, const Particl
   const Vector3<Pack> g = {Pack(gravity.x()), Pack(gravity.y()), Pack(gravity.z())};
   Vector3<Pack> torque = p.torque.pack(i);
   if constexpr (Particles::has_orientation) torque = transpose_times(m.rotation, torque);
-  return {inverse_mass * p.force.pack(i) + mobility * g,
+  return {inverse_mass * p.force.pack(i) + gravity_scale * g,
           integrator::angular_acceleration(torque, m.angular_velocity, moments, inverse, Pack(lead))};
 }
 

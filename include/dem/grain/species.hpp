@@ -11,7 +11,7 @@ namespace dem {
 /// The numbers of a species that the integration loop reads.
 struct SpeciesInertia {
   double inverse_mass;
-  double mobility;  ///< 1, or 0 for grains that never move
+  double gravity_scale;  ///< 1, or 0 for grains that never move
   double inertia[3], inverse_inertia[3];
 };
 

@@ -63,7 +63,8 @@ void for_each_swing(const Parameters& p, const contact::NormalState<double>& dee
 /// What the stable time step has to know of a surface.
 struct SurfaceMatter {
   MaterialId material;
-  double softness = 0.0;  ///< 1/kg, of its body: 1/m + R^2/I at the surface's farthest point; 0 for a fixed one
+  /// 1/kg, of its body: 1/m + R^2/I at the surface's farthest point; 0 for a fixed one.
+  double inverse_effective_mass = 0.0;
 };
 
 /// Largest stable time step of the grains: the smallest of all laws and pairs of species and surfaces. A shape whose
@@ -74,7 +75,7 @@ StableTimeStep stable_time_step(std::span<const Species<typename Model::Shape>> 
                                 const Materials<Model>& materials, std::span<const SurfaceMatter> surfaces,
                                 double overlap_limit) {
   StableTimeStep result;
-  const auto softness = [](const Species<typename Model::Shape>& s) {  // 1/kg
+  const auto inverse_effective_mass_of = [](const Species<typename Model::Shape>& s) {  // 1/kg
     const double radius = s.shape.bounding_radius();
     return 1.0 / s.mass + radius * radius / s.inertia.minCoeff();
   };
@@ -84,9 +85,10 @@ StableTimeStep stable_time_step(std::span<const Species<typename Model::Shape>> 
     const auto& p = materials.table()[materials.row(a, b)];
     const contact::NormalState<double> deepest = {2.0 * overlap_limit * radius, 0.0, radius, mass, 0.0};
     for_each_swing<Model>(p, deepest, damped_share, w, w_turning,
-                          [&](double k, double c, double mobility, const auto& text) {
+                          [&](double k, double c, double inverse_effective_mass, const auto& text) {
                             const double n = contacts_in_line * patch.area;
-                            const double dt = stable_step(Model::Integrator::stability_limit, n * k, n * c, mobility);
+                            const double dt =
+                                stable_step(Model::Integrator::stability_limit, n * k, n * c, inverse_effective_mass);
                             if (!(dt < result.dt)) return;
                             const char* damper = c > 0.0 ? " with a damper" : "";
                             result = {dt, dem::text("{} on {}: {}{}, grain of {:.4g} kg", materials.name(a),
@@ -97,11 +99,11 @@ StableTimeStep stable_time_step(std::span<const Species<typename Model::Shape>> 
     const double ra = a.shape.bounding_radius();
     for (const auto& b : species) {
       const double rb = b.shape.bounding_radius();
-      consider(a.material, b.material, softness(a) + softness(b), turning(a) + turning(b), std::min(a.mass, b.mass),
-               ra * rb / (ra + rb), shape::patch_of(a.shape));
+      consider(a.material, b.material, inverse_effective_mass_of(a) + inverse_effective_mass_of(b),
+               turning(a) + turning(b), std::min(a.mass, b.mass), ra * rb / (ra + rb), shape::patch_of(a.shape));
     }
     for (const SurfaceMatter& s : surfaces) {
-      consider(a.material, s.material, softness(a) + s.softness, turning(a), a.mass, ra,
+      consider(a.material, s.material, inverse_effective_mass_of(a) + s.inverse_effective_mass, turning(a), a.mass, ra,
                shape::surface_patch_of(a.shape));
     }
   }

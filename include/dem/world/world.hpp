@@ -270,7 +270,8 @@ class World : public WorldSetup<M> {
   StableTimeStep stable_time_step_of_contacts() const {
     std::vector<grain::SurfaceMatter> of_surfaces;
     for (const auto& s : state_.surfaces) {
-      of_surfaces.push_back({s.material, coupling::softness_of(s, state_.machine.bodies()[s.body.index()], 0.0)});
+      of_surfaces.push_back(
+          {s.material, coupling::inverse_effective_mass_of(s, state_.machine.bodies()[s.body.index()], 0.0)});
     }
     auto limit =
         grain::stable_time_step<Model>(state_.species, state_.materials, of_surfaces, state_.options.overlap_limit);

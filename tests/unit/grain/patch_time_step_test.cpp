@@ -53,7 +53,7 @@ TEST_CASE("points that touch at once count in the stable time step") {
     CHECK(limit(Any(points), 2000 / patch.area, 0) == Approx(one).epsilon(1e-12));
   }
   // Points that share a contact, in pairs or on surfaces, are as stiff as a whole one. A pair of grains has twice the
-  // softness of a grain on a wall, so it is what limits.
+  // inverse effective mass of a grain on a wall, so it is what limits.
   CHECK(limit(SuperquadricPoints(radii, exponents), 2000, 0) == Approx(one).epsilon(1e-12));
   CHECK(limit(whole, 2000, 0, true) == Approx(one).epsilon(1e-12));
 }

@@ -137,7 +137,7 @@ TEST_CASE("what a machine derived stays while grains come and go, and follows wh
   const auto species = world.add_species(dem::shape::Sphere(1e-3));
   auto& machine = world.machine();
   const dem::BodyId rod = add_pendulum(machine);
-  // Two links, so that the mobility at the second hinge depends on the pose.
+  // Two links, so that the inverse mass at the second hinge depends on the pose.
   const dem::BodyId second = machine.add_body(dem::mbd::box_body("second", {1.0, 0.1, 0.1}, 100.0).at({1.5, 0.0, 0.0}));
   const auto hinge = machine.add_joint(dem::mbd::revolute("elbow", rod, second, {1, 0, 0}, {0, 1, 0}));
   REQUIRE(world.run(3000));
