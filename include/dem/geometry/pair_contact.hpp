@@ -14,8 +14,9 @@ namespace dem::shape {
 ///   };
 /// collide calls callback(feature, point) as a Shape's own does: contact points seen from a's centre, features
 /// ascending and below 2^24; any type with geometry() will do. What a search wants to keep for a pair of neighbours
-/// goes into a type WarmStart (copyable, empty when made), and collide then takes a WarmStart& before the callback. To
-/// meet cohesion at a distance, collide also takes a gap (m) as a last argument, as that of a ReachingShape does.
+/// goes into a type WarmStart (copyable, empty when made, no byte of it padding), and collide then takes a WarmStart&
+/// before the callback. To meet cohesion at a distance, collide also takes a gap (m) as a last argument, as that of a
+/// ReachingShape does.
 template <class A, class B>
 struct PairContact;
 

@@ -2,15 +2,17 @@
 
 #include <dem/geometry/superquadric/superquadric_solid.hpp>
 
+#include <cstdint>
+
 namespace dem::shape {
 
 /// What one pair of solids keeps from a search to the next, in the frame of a: the solution, or at least a direction
 /// that parts the boxes around them.
 struct CommonNormal {
-  Vector3<double> normal = {0, 0, 0};  ///< unit vector from a to b
-  Vector3<double> point = {0, 0, 0};   ///< m, midway between the two surface points that share the normal
-  double overlap = 0.0;                ///< m, of the surface points along the normal; negative: a gap
-  bool has_normal = false, has_point = false;
+  Vector3<double> normal = {0, 0, 0};           ///< unit vector from a to b
+  Vector3<double> point = {0, 0, 0};            ///< m, midway between the two surface points that share the normal
+  double overlap = 0.0;                         ///< m, of the surface points along the normal; negative: a gap
+  std::uint32_t has_normal = 0, has_point = 0;  ///< 0 or 1; in 32 bits no byte is padding, which a saved state has
 };
 
 /// Two solids as the search sees them: b turned and shifted into the frame of a.

@@ -91,7 +91,7 @@ DEM_FN bool find_common_normal(const SolidPair& s, CommonNormal& c) {
   const BoxSeparation boxes = separate_boxes(s.a.radius(), s.b.radius(), s.turn, s.centre, s.gap);
   if (boxes.overlap < -s.gap) {
     c.normal = boxes.axis;
-    c.has_normal = true;
+    c.has_normal = 1;
     return false;
   }
   return search_from(s, guess_common_normal(s, boxes.axis, s.centre), c);

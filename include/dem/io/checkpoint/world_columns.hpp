@@ -5,6 +5,7 @@
 #include <dem/core/type_name.hpp>
 #include <dem/io/checkpoint/fields.hpp>
 #include <dem/io/checkpoint/sleep_columns.hpp>
+#include <dem/io/checkpoint/warm_starts.hpp>
 #include <dem/world/complete.hpp>
 #include <dem/world/world.hpp>
 
@@ -149,21 +150,24 @@ void chunk_fields(Fields& v, WorldState<Model>& w) {
   }
   if constexpr (shape::WarmStartedShape<typename Model::Shape>) {
     using Start = typename Model::Shape::WarmStart;
-    static_assert(std::is_trivially_copyable_v<Start>, "WarmStart: must be trivially copyable to be saved");
-    std::vector<std::uint8_t> bytes(is_restoring ? 0 : partner.size() * sizeof(Start));
+    std::vector<std::uint8_t> bytes(is_restoring ? 0 : partner.size() * sizeof(Start), 0);
     std::size_t at = 0;
     if (v.task() == Fields::Task::collect) {
       for (const Chunk<Model>& c : w.chunks) {
-        std::memcpy(bytes.data() + at, c.searches.start.data(), c.searches.start.size() * sizeof(Start));
-        at += c.searches.start.size() * sizeof(Start);
+        for (const Start& start : c.searches.start) {
+          put_warm_start(start, bytes.data() + at);
+          at += sizeof(Start);
+        }
       }
     }
     v.copied("searches", ColumnKind::byte, sizeof(Start), bytes);
     if (is_restoring) {
       for (Chunk<Model>& c : w.chunks) {
         if (at + c.candidate.size() * sizeof(Start) > bytes.size()) fail("the saved searches are too few");
-        std::memcpy(static_cast<void*>(c.searches.start.data()), bytes.data() + at, c.candidate.size() * sizeof(Start));
-        at += c.candidate.size() * sizeof(Start);
+        for (Start& start : c.searches.start) {
+          get_warm_start(start, bytes.data() + at);
+          at += sizeof(Start);
+        }
       }
     }
   }
