@@ -20,6 +20,10 @@ constexpr auto changing = []<class Model>() {
   world.add_particle({.species = dem::SpeciesId(0), .position = {0.015, 0.01, 0.09}});
   run(world, 300);
   require(bool(world.run(1000, [left = 50]() mutable { return --left > 0; })), "the run did not end");
+  for (int k = 0; k < 4; ++k) {  // each in the first step of a run, before the inlet looks for room
+    world.add_particle({.species = dem::SpeciesId(0), .position = {0.006 + 0.005 * k, 0.01, 0.15}});
+    run(world, 64);
+  }
   require(world.outlet(dem::OutletId(0)).grains() > 0, "nothing left through the outlet");
   require(world.particle_count() > 1300, "nothing came through the inlet");
   return world;

@@ -69,7 +69,8 @@ concept BitShape = Shape<S> && requires(const S& shape, const double* pose, cons
 
 /// A shape whose search for contacts starts warm, from what the last step found. WarmStart is what it keeps for each
 /// pair of neighbours (empty when they are listed anew), and collide(a, pose_a, b, pose_b, separation, start, callback)
-/// uses it. It belongs to the pair, not to a thread: results stay the same for any number of threads.
+/// uses it. It belongs to the pair, not to a thread: results stay the same for any number of threads. To be saved it
+/// must be trivially copyable, with no byte of padding.
 template <class S>
 concept WarmStartedShape = Shape<S> &&
     requires(const S& shape, const double* pose, const Vector3<double>& separation, typename S::WarmStart& start) {

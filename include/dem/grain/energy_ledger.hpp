@@ -49,6 +49,8 @@ struct EnergyLedger {
   std::vector<double> energy;                   ///< J, kinetic and potential, by id; NaN of grains that are not there
   std::vector<Vector3<double>> body_velocity, body_spin;
 
+  /// Whether the energy of a grain (id) is counted already: not of one that came since the last step.
+  bool knows(std::uint32_t id) const { return id < energy.size() && energy[id] == energy[id]; }
   /// A grain (id) falls asleep, and loses its energy of motion (J).
   void stop(std::uint32_t id, double motion) {
     velocity[id] = spin[id] = {0, 0, 0};

@@ -35,7 +35,7 @@ void wrap_grains(WorldState<Model>& w) {
         }
       }
       const auto& kind = w.species[p.species[i]];
-      if (w.ledger.on && !kind.is_held()) {
+      if (w.ledger.on && w.ledger.knows(p.id[i]) && !kind.is_held()) {
         w.ledger.came -= kind.mass * dot(from_eigen(w.options.gravity), inside - p.position[i]);
       }
       p.position.set(i, inside);

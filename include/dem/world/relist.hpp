@@ -6,9 +6,9 @@
 
 namespace dem {
 
-/// Calls list(), which lists neighbours, between two steps: all others and the machine go on as they were, and nothing
-/// is initialised again. Integrators that predict move grains by chunks before they ask for forces, so new grains have
-/// to be listed by then.
+/// Calls list(), which lists neighbours, between two steps, as grains have come: those that were there before and the
+/// machine go on as they were, and nothing is initialised again. Integrators that predict move grains by chunks before
+/// they ask for forces, so new grains have to be listed by then.
 template <class Model, class List>
 void list_between_steps(WorldState<Model>& w, List&& list) {
   w.stopwatch.start();

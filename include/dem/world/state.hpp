@@ -83,7 +83,7 @@ struct WorldState {
   double list_skin = 0.0;                ///< m, with which the neighbour list was made
   grain::SkinChoice skin_choice;         ///< unless a skin was given
   bool list_valid = false;               ///< false after grains were added or moved by hand
-  bool grains_added = false;             ///< by hand, since the last step: they are in no list yet
+  bool grains_added = false;             ///< by hand, and are in no list yet: see World::prepare
   std::uint64_t rebuilds = 0;            ///< neighbour lists made
   std::set<std::uint32_t> known_lost;    ///< ids of grains that were reported as lost
   std::vector<std::uint32_t> to_remove;  ///< ids of grains that are gone, but whose rows are there until the next list

@@ -125,8 +125,8 @@ void advance(WorldState<Model>& w) {
   look_at_skin(w);
 }
 
-/// Before the first step, and after anything was changed by hand: forces at the present state, from which integrators
-/// that remember an acceleration take their first one.
+/// Before the first step, and after anything but grains that were added was changed by hand: forces at the present
+/// state, from which integrators that remember an acceleration take their first one.
 template <class Model>
 void initialise(WorldState<Model>& w) {
   w.sleepers.all_work = true;

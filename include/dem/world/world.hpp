@@ -28,9 +28,9 @@ class World : public WorldSetup<M> {
 
   // ---- running ---------------------------------------------------------------------------------------------------
 
-  /// Checks the set-up and chooses or checks the time step; called by step() and run(). Throws Error if contact
-  /// constants are missing, the time step is too large, points would pass a two-sided sheet, or a prescribed motion
-  /// would have to jump.
+  /// Checks the set-up, chooses or checks the time step, and lists grains that were added; called by step() and run().
+  /// Throws Error if contact constants are missing, the time step is too large, points would pass a two-sided sheet, or
+  /// a prescribed motion would have to jump.
   void prepare() {
     if (unfinished_) {
       fail(
@@ -61,8 +61,8 @@ class World : public WorldSetup<M> {
       initialise(state_);
       initialised_ = true;
       state_.grains_added = false;
-    } else if (state_.grains_added) {
-      list_between_steps(state_, [&] { rebuild_neighbours(state_); });
+    } else {
+      list_added();
     }
   }
   /// Whether prepare() has nothing left to do: nothing was changed since the last step.
@@ -234,6 +234,7 @@ class World : public WorldSetup<M> {
   StepReport run_steps(std::uint64_t n, F& goes_on) {
     for (std::uint64_t k = 0; k < n; ++k) {
       unfinished_ = true;
+      list_added();  // goes_on() may have added some
       if (state_.put_in) state_.put_in(state_);
       advance(state_);
       release_ids(state_);
@@ -248,6 +249,16 @@ class World : public WorldSetup<M> {
       }
     }
     return ok();
+  }
+  /// Lists grains that were added by hand since the last step.
+  void list_added() {
+    if (!state_.grains_added) [[likely]]
+      return;
+    list_between_steps(state_, [&] { rebuild_neighbours(state_); });
+    if constexpr (Model::Domain::has_ranks) {  // inlets look at the bounds of all chunks
+      state_.domain.is_whole = !state_.domain.is_shared();
+      gather_rows(state_);
+    }
   }
   std::vector<MaterialId> used_materials() const {
     std::vector<MaterialId> used;

@@ -274,7 +274,7 @@ class WorldSetup {
     }
     return r;
   }
-  /// Grains came or were moved by hand.
+  /// Grains were taken out or moved by hand.
   void touched() {
     state_.list_valid = false;
     initialised_ = false;

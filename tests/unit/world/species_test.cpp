@@ -192,14 +192,22 @@ TEST_CASE("grains may be added during a run") {
 
 TEST_CASE("a grain that is added leaves the others as they were, to the bit, and falls by its weight") {
   // A tower of three that slides, so that contact histories and what integrators remember count.
-  const auto run = []<class Model>(Model, bool adds) {
+  enum How { alone, added_between, added_within };  // runs
+  const auto run = []<class Model>(Model, How how) {
     dem::World<Model> w(options({0, 0, -g}, 1e-5, 1e-4));
     w.set_contact(sand<Model>());
     const auto ball = w.add_species(Sphere(1e-3));
     w.add_surface(w.ground(), dem::surface::Plane{});
     for (int k = 0; k < 3; ++k) w.add_particle({ball, {0.1e-3 * k, 0, 1e-3 + 1.998e-3 * k}, {0.05, 0, 0}});
     REQUIRE(w.run(501));
-    if (adds) {
+    if (how == added_within) {
+      ParticleId added;
+      REQUIRE(w.run(400, [&, k = 0]() mutable {
+        if (++k == 200) added = w.add_particle({ball, {0.02, 0, 0.05}});
+        return true;
+      }));
+      CHECK(w.velocity(added).z() == Approx(-g * 200e-5).epsilon(1e-12));
+    } else if (how == added_between) {
       const ParticleId added = w.add_particle({ball, {0.02, 0, 0.05}});
       REQUIRE(w.run(400));
       CHECK(w.velocity(added).z() == Approx(-g * 400e-5).epsilon(1e-12));
@@ -213,7 +221,11 @@ TEST_CASE("a grain that is added leaves the others as they were, to the bit, and
     motion.resize(9);
     return motion;
   };
-  CHECK(run(models::VerletBalls{}, true) == run(models::VerletBalls{}, false));
-  CHECK(run(models::CorrectedBalls{}, true) == run(models::CorrectedBalls{}, false));
-  CHECK(run(models::Balls{}, true) == run(models::Balls{}, false));
+  const auto check = [&](auto model) {
+    CHECK(run(model, added_between) == run(model, alone));
+    CHECK(run(model, added_within) == run(model, alone));
+  };
+  check(models::VerletBalls{});
+  check(models::CorrectedBalls{});
+  check(models::Balls{});
 }
