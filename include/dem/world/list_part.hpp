@@ -10,9 +10,11 @@
 #include <dem/world/gather.hpp>
 #include <dem/world/row_order.hpp>
 
-#include <array>
+#include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <utility>
 #include <vector>
 

@@ -74,7 +74,7 @@ inline void resolve(Settings& s) {
     double half_edge, length, speed, sinkage;
     std::vector<double> widths;
   };
-  // quick and smoke press faster, on coarser grains. The bed of quick is wide and deep enough for its widest plate
+  // quick and smoke press faster, on coarser grains. The bed of quick is as large as its widest plate asks for
   // (small_bed.hpp); that of full is the thesis's.
   const auto by_size = BySize<Defaults>{
       .smoke = {{0.10, 0.06, 0.04}, 4e-3, 0.05, 0.10, 4e-3, {0.03}},
