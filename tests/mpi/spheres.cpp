@@ -20,7 +20,7 @@ constexpr auto changing = []<class Model>() {
   world.add_particle({.species = dem::SpeciesId(0), .position = {0.015, 0.01, 0.09}});
   run(world, 300);
   require(bool(world.run(1000, [left = 50]() mutable { return --left > 0; })), "the run did not end");
-  for (int k = 0; k < 4; ++k) {  // each in the first step of a run, before the inlet looks for room
+  for (int k = 0; k < 4; ++k) {  // each before a run, which lists it first
     world.add_particle({.species = dem::SpeciesId(0), .position = {0.006 + 0.005 * k, 0.01, 0.15}});
     run(world, 64);
   }
