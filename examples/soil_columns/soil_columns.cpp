@@ -72,8 +72,8 @@ int main(int argc, char** argv) {
       }
     }
     io::CsvWriter csv(output + "/wheel.csv",
-                      {"slip", "pull_N", "eqs_pull_N", "plain_pull_N", "torque_Nm", "eqs_torque_Nm", "plain_torque_Nm",
-                       "sinkage_mm", "eqs_sinkage_mm", "plain_sinkage_mm"});
+                      {"slip_1-v/(omega*r)", "pull_N", "eqs_pull_N", "plain_pull_N", "torque_Nm", "eqs_torque_Nm",
+                       "plain_torque_Nm", "sinkage_mm", "eqs_sinkage_mm", "plain_sinkage_mm"});
     if (kind == "smooth") fmt::print("The equations know no smooth rim: theirs are of soil on soil.\n");
     const std::clock_t start = std::clock();
     double simulated = 0.0;

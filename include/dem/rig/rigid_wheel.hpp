@@ -90,7 +90,7 @@ class RigidWheel {
     return stand;
   }
 
-  /// Depth (m) of the wheel's lowest point, without grousers, below the level of the bed.
+  /// Depth (m) of the wheel's lowest point, without grousers, below the mean surface of the bed.
   [[nodiscard]] double sinkage(const Stand& stand) const {
     return stand.bed.level - (stand.bed.world.machine().body(stand.wheel).position().z() - settings_.radius);
   }

@@ -137,6 +137,15 @@ TEST_CASE(
   CHECK(m.parts().joints.size() == 3);
   CHECK(m.parts().actuators.size() == 3);
 
+  // Sinkage is measured from the mean surface: grains in a layer as high as that, and as dense, weigh what they do, and
+  // an untouched bed has no rut. The lid, which stands on the highest grains, would be 4 mm higher.
+  const auto places = dem::soil::placements(bed.world);
+  const auto surface = surface_profile(places, 5e-3, -0.03, 0.03, -0.03, 0.03);
+  CHECK(bed.level == Approx(mean_surface(std::span(&surface, 1))));
+  const SurfaceProfile flat{surface.y, std::vector<double>(surface.y.size(), bed.level)};
+  CHECK(rut_between(flat, surface, 0.0, 0.12).depth == Approx(0.0).margin(1e-9));
+  CHECK(bed.lid_low() > bed.level + 1e-3);
+
   // At rest the box carries the grains: friction holds no part of them but against the box itself.
   double up = 0.0;
   for (std::size_t k = 0; k < 9; ++k) up -= bed.world.surface_force(dem::SurfaceId(k)).z();  // floor and 8 walls

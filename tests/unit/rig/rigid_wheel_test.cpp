@@ -67,8 +67,8 @@ TEST_CASE("a groove in a flat surface is found with its depth and width") {
   rigid_wheel::find_rut(grains, s, 0.0, 0.08, r);
   for (int i = 0; i < 400; ++i) r.samples.push_back({0.01 * i, 0, 0, 1.0, 1.0, 0.0, 0, 0, 0});
   rigid_wheel::evaluate(r, 0.030, s);
-  CHECK(r.rut_depth == Approx(6e-3));
-  CHECK(r.rut_width == Approx(8 * 8e-3));  // the eight strips whose middles lie within 30 mm
+  CHECK(r.rut.depth == Approx(6e-3));
+  CHECK(r.rut.width == Approx(8 * 8e-3));  // the eight strips whose middles lie within 30 mm
 }
 
 TEST_CASE("the print of a wheel under given stresses has them back, with the area that carries") {

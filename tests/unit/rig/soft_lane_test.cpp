@@ -212,21 +212,6 @@ TEST_CASE(
   CHECK(c.drift == Approx(0.02));
 }
 
-TEST_CASE("the depth and the width of a rut are those of its profile") {
-  SurfaceProfile before, after;
-  for (int k = 0; k < 20; ++k) {
-    const double y = 0.05 * k - 0.475;
-    before.y.push_back(y);
-    before.z.push_back(0.2);
-    after.y.push_back(y);
-    after.z.push_back(std::abs(y - 0.1) < 0.15 ? 0.14 : 0.21);
-  }
-  double depth = 0.0, width = 0.0;
-  soft_lane::evaluate_rut(before, after, 0.1, 0.25, depth, width);
-  CHECK(depth == Approx(0.06));
-  CHECK(width == Approx(0.3));
-}
-
 TEST_CASE("each option of a lane has a name of its own, and grains sleep unless they are asked not to") {
   soft_lane::Settings s;
   Options options;

@@ -113,11 +113,11 @@ class Bed {
   /// What of it is not the world's, for a run that goes on after it was stopped.
   template <class V>
   void fields(V& v) {
-    v("level", level, "m");
+    v("surface_level", level, "m");
   }
 
   World world;
-  double level = std::nan("");  ///< m, of the levelled surface
+  double level = std::nan("");  ///< m, mean height of the levelled surface
   BodyId bottom, top, lid;      ///< a fixed box is both bottom and top
   JointId lid_slide;
   ActuatorId lid_drive;

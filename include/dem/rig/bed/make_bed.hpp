@@ -3,6 +3,7 @@
 
 #include <dem/rig/bed/bed.hpp>
 #include <dem/rig/bed/settle.hpp>
+#include <dem/rig/bed/surface_profile.hpp>
 #include <dem/soil/lattice.hpp>
 #include <dem/soil/making.hpp>
 
@@ -54,7 +55,8 @@ void densify(Bed<Model>& bed, Stages& stages) {
 }
 
 /// Takes the highest grains off, presses the bed flat with the lid until the grains carry its weight within 2 % and it
-/// rests (both for 10 ms), and takes the lid off. Sets bed.level.
+/// rests (both for 10 ms), and takes the lid off. Sets bed.level to the mean height of the surface then. Single grains
+/// stand out of it: the lid had stood on those, some grain's edge higher.
 template <class Model>
 void level(Bed<Model>& bed, double strike_off, Stages& stages) {
   const BedSettings& s = bed.settings();
@@ -84,11 +86,13 @@ void level(Bed<Model>& bed, double strike_off, Stages& stages) {
                  s.stage_limit, force, weight));
       }
     }
-    bed.level = bed.lid_low();
   }
   settle(
       world, bed.grains().edge(), s.stage_limit, "--stage-limit", stages, [] { return 1.0; },
       [&] { bed.take_lid_off(); });
+  const SurfaceProfile surface = surface_profile(soil::placements(world), bed.grains().half_edge, -0.5 * s.length,
+                                                 0.5 * s.length, -0.5 * s.width, 0.5 * s.width);
+  bed.level = mean_surface(std::span(&surface, 1));
 }
 
 /// Stages of progress in make_bed.

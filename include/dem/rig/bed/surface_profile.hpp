@@ -5,6 +5,7 @@
 #include <dem/soil/packing.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <span>
 #include <vector>
@@ -40,6 +41,39 @@ inline SurfaceProfile surface_profile(std::span<const soil::Placement> grains, d
     p.z.push_back(mean_of(std::span(highest).subspan(j * nx, nx)).mean);
   }
   return p;
+}
+
+/// Mean height (m) of surfaces: what sinkage and ruts are measured from. Not a number where there is none.
+inline double mean_surface(std::span<const SurfaceProfile> profiles) {
+  double sum = 0.0, count = 0.0;
+  for (const SurfaceProfile& p : profiles) {
+    for (const double z : p.z) sum += z, count += 1.0;
+  }
+  return sum / count;
+}
+
+/// A rut across a track.
+struct Rut {
+  double depth = std::nan("");  ///< m: the mean over the middle half of the tool's width; NaN: there is none to see
+  double width = std::nan("");  ///< m, where the surface sank by more than half of that depth
+};
+
+/// The rut that a tool of this width (m), whose middle went along y = `middle`, left: the surface after it against the
+/// surface before.
+inline Rut rut_between(const SurfaceProfile& before, const SurfaceProfile& after, double middle, double tool) {
+  Rut rut;
+  if (before.z.size() != after.z.size() || before.z.empty()) return rut;
+  double sum = 0.0, count = 0.0;
+  for (std::size_t k = 0; k < before.z.size(); ++k) {
+    if (std::abs(before.y[k] - middle) < 0.25 * tool) sum += before.z[k] - after.z[k], count += 1.0;
+  }
+  if (count == 0.0) return rut;
+  rut.depth = sum / count;
+  rut.width = 0.0;
+  for (std::size_t k = 0; k < before.z.size(); ++k) {
+    if (before.z[k] - after.z[k] > 0.5 * rut.depth) rut.width += before.strip();
+  }
+  return rut;
 }
 
 }  // namespace dem::rig

@@ -59,15 +59,16 @@ inline constexpr Compared compared[] = {
 /// Pull, torque and sinkage of the wheel in the grains, what is predicted, and by how much it errs, at each slip.
 inline io::Table circle_table(const Predictions& predictions, const rigid_wheel::Campaign& w) {
   io::Table t{.caption = "The wheel in the same soil, and what the constants predict; slip s = 1 - v/(omega r)",
-              .header = {"slip", "quantity", "grains", "± in time"}};
+              .header = {"slip", "steady", "quantity", "grains", "± in time"}};
   for (const Prediction& p : predictions) t.header.insert(t.header.end(), {p.name, "error"});
   t.header.push_back("unit");
   for (std::size_t k = 0; k < w.slips.size(); ++k) {
     const auto& r = w.slips[k];
     for (const Compared& q : compared) {
       const double grains = q.scale * (r.*q.grains).mean, deviation = q.scale * (r.*q.grains).deviation;
-      std::vector<std::string> row{&q == compared ? number(r.slip) : "", q.name, number(grains, q.format),
-                                   number(deviation, q.format)};
+      const bool first = &q == compared;
+      std::vector<std::string> row{first ? number(r.slip) : "", first ? (r.is_steady ? "yes" : "no") : "", q.name,
+                                   number(grains, q.format), number(deviation, q.format)};
       for (const Prediction& p : predictions) {
         const double value = q.of(p.at_runs[k]);
         row.push_back(number(value, q.format)), row.push_back(number(value - grains, q.format));
@@ -82,14 +83,14 @@ inline io::Table circle_table(const Predictions& predictions, const rigid_wheel:
 /// The same as a file.
 inline void write_predicted(const std::filesystem::path& path, const Predictions& predictions,
                             const rigid_wheel::Campaign& w) {
-  io::CsvWriter csv(path,
-                    {"slip_1-v/(omega*r)", "quantity", "grains", "deviation", "bekker", "reece", "dynamic_bekker"});
+  io::CsvWriter csv(
+      path, {"slip_1-v/(omega*r)", "quantity", "grains", "deviation", "steady", "bekker", "reece", "dynamic_bekker"});
   for (std::size_t k = 0; k < w.slips.size(); ++k) {
     const auto& r = w.slips[k];
     for (const Compared& q : compared) {
       const auto of = [&](std::size_t p) { return q.of(predictions[p].at_runs[k]); };
       csv.row(r.slip, text("{} [{}]", q.name, q.unit), q.scale * (r.*q.grains).mean, q.scale * (r.*q.grains).deviation,
-              of(0), of(1), of(2));
+              r.is_steady, of(0), of(1), of(2));
     }
   }
   csv.flush();

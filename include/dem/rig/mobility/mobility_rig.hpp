@@ -208,7 +208,7 @@ class MobilityRig : public Rig {
   }
 
   void write_pulls(const std::filesystem::path& path) const {
-    io::CsvWriter csv(path, {"slip", "pull_N", "torque_Nm", "sinkage_m", "power_W", "efficiency"});
+    io::CsvWriter csv(path, {"slip_1-v/(omega*r)", "pull_N", "torque_Nm", "sinkage_m", "power_W", "efficiency"});
     for (const PullPoint& p : campaign.results[0].pulls) {
       csv.row(p.slip, p.pull, p.torque, p.sinkage, p.power, p.efficiency);
     }

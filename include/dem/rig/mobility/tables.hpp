@@ -45,7 +45,7 @@ inline io::Table drive_table(const Campaign& c) {
 
 inline io::Table pull_table(const Result& r) {
   io::Table t{
-      .caption = "Pull on the load cell over slip",
+      .caption = "Pull on the load cell over slip 1 - v/(omega r)",
       .header = {"slip", "pull [kN]", "of the weight", "torque [kN m]", "sinkage [mm]", "engine [kW]", "efficiency"}};
   for (const PullPoint& p : r.pulls) {
     t.row(number(p.slip, "{:.3f}"), number(1e-3 * p.pull), number(p.pull / r.weight, "{:.3f}"), number(1e-3 * p.torque),

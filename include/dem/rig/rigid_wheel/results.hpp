@@ -24,7 +24,7 @@ struct Sample {
   double travel;        ///< m, of the carriage
   double pull;          ///< N, drawbar pull: forward force of the grains on the wheel
   double torque;        ///< N m, that drives the wheel: minus that of the grains on it
-  double sinkage;       ///< m, of the wheel's lowest point (without grousers) below the level of the bed
+  double sinkage;       ///< m, of the wheel's lowest point (without grousers) below the mean surface of the bed
   double carried;       ///< N, upward force of the grains on the wheel
   double drive_force;   ///< N, of the carriage's actuator, backwards: what pulls
   double motor_torque;  ///< N m, of the wheel's actuator
@@ -65,8 +65,7 @@ struct SlipResult {
   MeanAndDeviation pull = {}, torque = {}, sinkage = {}, carried = {};
   double pull_error = not_known;  ///< N, standard error of its mean in time
   double efficiency = not_known;  ///< pull v/(torque omega), thesis eq. 44; known where the wheel drives and pulls
-  double rut_depth = not_known;   ///< m, below the level: the mean over the middle half of the wheel's width
-  double rut_width = not_known;   ///< m, where the surface is lower than half of that depth
+  Rut rut = {};                   ///< against the level of the bed
 
   /// What a run that goes on takes over.
   template <class V>
@@ -86,7 +85,7 @@ inline std::size_t shown_slip(const std::vector<double>& slips) {
 /// All slips on a bed.
 struct VariantResult {
   Variant variant = {};
-  double level = not_known;  ///< m
+  double level = not_known;  ///< m, mean height of the surface
   double solid_fraction = not_known;
   std::size_t grains = 0;
   double time_step = not_known;         ///< s
@@ -125,14 +124,7 @@ inline void evaluate(SlipResult& r, double level, const Settings& s) {
   if (r.pull.mean > 0.0 && r.torque.mean > 0.0) {
     r.efficiency = r.pull.mean * (1.0 - r.slip) * s.radius / r.torque.mean;
   }
-  double sum = 0.0, count = 0.0, wide = 0.0;
-  for (std::size_t k = 0; k < r.rut_y.size(); ++k) {
-    if (std::abs(r.rut_y[k]) < 0.25 * s.width) sum += level - r.rut_z[k], count += 1.0;
-  }
-  if (count == 0.0) return;
-  r.rut_depth = sum / count;
-  for (const double z : r.rut_z) wide += level - z > 0.5 * r.rut_depth ? r.rut_y[1] - r.rut_y[0] : 0.0;
-  r.rut_width = wide;
+  r.rut = rut_between({r.rut_y, std::vector<double>(r.rut_y.size(), level)}, {r.rut_y, r.rut_z}, 0.0, s.width);
 }
 
 /// The surface across the bed between two places along x (m). Sets y and z.

@@ -65,9 +65,10 @@ struct PullChange {
 };
 
 inline io::Table study_table(const Campaign& c) {
-  io::Table t{.caption = "Pull of the run and of its study (± standard error of the mean in time)",
-              .header = {"run", "grains", "solid fraction", "rel. density", "slip", "pull [N]", "±", "change [N]", "±",
-                         "change [%]", "±", "below 5 %"}};
+  io::Table t{
+      .caption = "Pull of the run and of its study (± standard error of the mean in time), slip s = 1 - v/(omega r)",
+      .header = {"run", "grains", "solid fraction", "rel. density", "slip", "pull [N]", "±", "change [N]", "±",
+                 "change [%]", "±", "below 5 %"}};
   for (const VariantResult* v : all_runs(c)) {
     const double density =
         std::isfinite(v->solid_fraction) ? soil::relative_density(v->solid_fraction, soil::cube8_limits) : not_known;
@@ -98,7 +99,7 @@ inline constexpr const char* study_text =
 
 /// Between the beds in the box as set.
 inline io::Table beds_table(const Campaign& c) {
-  io::Table t{.caption = "Between beds of several seeds, in the box as set",
+  io::Table t{.caption = "Between beds of several seeds, in the box as set, slip s = 1 - v/(omega r)",
               .header = {"slip", "beds", "mean pull [N]", "±", "deviation of a bed [N]", "deviation [%]"}};
   for (std::size_t k = 0; k < c.slips.size(); ++k) {
     const BedScatter b = scatter_of_beds(c, k);

@@ -49,7 +49,7 @@ inline io::Table reference_table(const Settings& s, const Campaign& c, std::span
 }
 
 inline io::Table rut_table(const Campaign& c) {
-  io::Table t{.caption = "Ruts and checks",
+  io::Table t{.caption = "Ruts and checks, slip s = 1 - v/(omega r)",
               .header = {"slip", "rut depth [mm]", "rut width [mm]", "drive against grains [N]",
                          "motor against grains [N m]", "slip as it was"}};
   for (const SlipResult& r : c.slips) {
@@ -58,7 +58,7 @@ inline io::Table rut_table(const Campaign& c) {
       if (!(x.time >= r.window_from)) continue;
       force += x.drive_force - x.pull, torque += x.motor_torque - x.torque, slip += x.slip, count += 1.0;
     }
-    t.row(number(r.slip), number(1e3 * r.rut_depth), number(1e3 * r.rut_width, "{:.0f}"), number(force / count),
+    t.row(number(r.slip), number(1e3 * r.rut.depth), number(1e3 * r.rut.width, "{:.0f}"), number(force / count),
           number(torque / count, "{:.3f}"), number(slip / count, "{:.3f}"));
   }
   return t;
@@ -93,6 +93,12 @@ io::Plot slip_plot(const Settings& s, const Campaign& c, std::span<const Referen
     for (std::size_t k = 0; k < soil.on_columns.size(); ++k) add(columns, c.slips[k].slip, soil.on_columns[k]);
     for (auto* series : {&line, &columns}) plot.series.push_back(std::move(*series));
   }
+  double lowest = 0.0, highest = 0.0;  // with room around points, so that none lies on the frame
+  for (const io::Series& series : plot.series) {
+    for (const double y : series.y) lowest = std::fmin(lowest, y), highest = std::fmax(highest, y);
+  }
+  const double room = 0.05 * (highest - lowest);
+  if (room > 0.0) plot.y_range = {lowest < 0.0 ? lowest - room : 0.0, highest + room};
   return plot;
 }
 
@@ -129,7 +135,7 @@ inline io::Plot rut_plot(const Campaign& c) {
 }
 
 inline io::Table print_table(const Campaign& c) {
-  io::Table t{.caption = "Under the wheel, means over the second half of each run",
+  io::Table t{.caption = "Under the wheel, means over the second half of each run, slip s = 1 - v/(omega r)",
               .header = {"slip", "contact area [cm²]", "pressure there [kPa]", "largest pressure [kPa]", "at [deg]",
                          "shear stress there [kPa]"}};
   for (const SlipResult& r : c.slips) {
@@ -154,14 +160,14 @@ inline io::Plot print_plot(const Settings& s, const SlipResult& r) {
                 .y_label = "stress [kPa]"};
   const double degree = std::numbers::pi / 180.0;
   io::Series pressure{.name = "pressure of the grains", .style = io::SeriesStyle::LinePoints, .color = 0};
-  io::Series shear{.name = "shear stress of the grains", .style = io::SeriesStyle::LinePoints, .color = 1};
+  io::Series shear{.name = "shear stress of the grains", .style = io::SeriesStyle::Points, .color = 0};
   for (std::size_t a = 0; a < ContactPrint::along; ++a) {
     for (auto* series : {&pressure, &shear}) series->x.push_back(r.print.angle(a) / degree);
     pressure.y.push_back(1e-3 * r.print.pressure(a));
     shear.y.push_back(1e-3 * r.print.shear(a));
   }
   plot.series = {pressure, shear};
-  int color = 2;
+  int color = 1;  // the soils' colours over slip
   for (const auto& [name, soil, on_columns] : references(s)) {
     const auto f = reference_at(soil, r.slip, s);
     if (!f) continue;
@@ -200,9 +206,9 @@ inline std::string bed_text(const Settings& s, const Campaign& c) {
   const double fraction = c.solid_fraction;
   const double density = std::isfinite(fraction) ? soil::relative_density(fraction, soil::cube8_limits) : not_known;
   return text(
-      "Bed: {} grains of half-edge {:g} mm, {} mm deep, solid fraction {} (relative density {}). Time step {:.3g} s. "
-      "The "
-      "wheel, set down by the load servo, rests {} mm deep.",
+      "Bed: {} grains of half-edge {:g} mm, {} mm deep to its mean surface, from which sinkages and ruts are measured; "
+      "solid fraction {} (relative density {}). Time step {:.3g} s. The wheel, set down by the load servo, rests {} mm "
+      "deep.",
       c.grains, 1e3 * s.grains.half_edge, number(1e3 * c.level, "{:.1f}"), number(fraction, "{:.3f}"), number(density),
       c.time_step, number(1e3 * c.set_down_sinkage));
 }
@@ -210,6 +216,12 @@ inline std::string bed_text(const Settings& s, const Campaign& c) {
 inline constexpr const char* window_text =
     "The steady window of a run begins where both pull and sinkage are steady by the marginal standard error rule "
     "MSER-5: as much of the start is left out as makes the standard error of the mean of the rest least, at most half "
-    "of the run. A run is not called steady if the halves of that window differ by more than it swings.";
+    "of the run. A run is not called steady if the halves of that window differ by more than it swings: its mean is "
+    "that of "
+    "a wheel that still digs itself in or out.";
+
+inline constexpr const char* reference_text =
+    "Bekker and Wong's equations jump where the slip changes its sign. From a slip of -0.05 to 0 their shear stress is "
+    "bridged by a straight line here.";
 
 }  // namespace dem::rig::rigid_wheel

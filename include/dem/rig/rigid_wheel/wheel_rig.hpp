@@ -47,8 +47,9 @@ class WheelRig : public Rig {
     roll_on_columns(soils, campaign, s);
     std::vector<io::Table> tables{slip_table(campaign), reference_table(s, campaign, soils), rut_table(campaign),
                                   print_table(campaign)};
+    report.part("rut.csv", [&] { write_ruts(report.folder() / "rut.csv"); });
     report.part("under_wheel.csv", [&] { write_print(report.folder() / "under_wheel.csv"); });
-    std::vector<std::string> words{bed_text(s, campaign), window_text, print_text};
+    std::vector<std::string> words{bed_text(s, campaign), window_text, reference_text, print_text};
     if (!campaign.study.empty()) {
       words.push_back(study_text);
       for (auto& table : study_tables(campaign)) tables.push_back(std::move(table));
@@ -125,7 +126,15 @@ class WheelRig : public Rig {
     for (const SlipResult& r : campaign.slips) {
       csv.row(r.slip, cell(r.pull.mean), cell(r.pull.deviation), cell(r.torque.mean), cell(r.torque.deviation),
               cell(r.sinkage.mean), cell(r.sinkage.deviation), cell(r.efficiency), cell(r.carried.mean),
-              cell(r.window_from), r.is_steady, cell(r.rut_depth), cell(r.rut_width), r.finished);
+              cell(r.window_from), r.is_steady, cell(r.rut.depth), cell(r.rut.width), r.finished);
+    }
+    csv.flush();
+  }
+
+  void write_ruts(const std::filesystem::path& path) const {
+    io::CsvWriter csv(path, {"slip_1-v/(omega*r)", "across_m", "above_level_m"});
+    for (const SlipResult& r : campaign.slips) {
+      for (std::size_t k = 0; k < r.rut_y.size(); ++k) csv.row(r.slip, r.rut_y[k], r.rut_z[k] - campaign.level);
     }
     csv.flush();
   }

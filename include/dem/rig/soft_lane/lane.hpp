@@ -138,15 +138,13 @@ SurfaceId add_hard_ground(World<Model>& world, const Settings& s, double level) 
 inline double level_of(const Settings& s, std::span<const soil::Placement> grains) {
   const double away = s.grains.edge(), x = 0.5 * s.length() - away, y = 0.5 * s.bed.width - away;
   const double from = s.scene == "step" ? s.border_at() + away : -x;
-  double sum = 0.0, count = 0.0;
+  std::vector<SurfaceProfile> profiles;
   for (int k = 0; k < s.troughs(); ++k) {
     const double middle = s.is_bed() ? 0.0 : (k == 0 ? 0.5 : -0.5) * s.car.track();
-    for (const double z : surface_profile(grains, s.grains.half_edge, from, x, middle - y, middle + y).z) {
-      sum += z;
-      count += 1.0;
-    }
+    profiles.push_back(surface_profile(grains, s.grains.half_edge, from, x, middle - y, middle + y));
   }
-  return count > 0.0 ? sum / count : 0.0;
+  const double level = mean_surface(profiles);
+  return std::isfinite(level) ? level : 0.0;
 }
 
 /// Overlap of the deepest contact in the last step, as a share of the edge of the cubes of 8 spheres. The world knows

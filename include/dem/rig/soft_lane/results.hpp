@@ -188,22 +188,6 @@ struct Campaign {
   }
 };
 
-/// Depth and width of a rut, from the surface before and after (m); `middle` is that of the track.
-inline void evaluate_rut(const SurfaceProfile& before, const SurfaceProfile& after, double middle, double tyre,
-                         double& depth, double& width) {
-  if (before.z.size() != after.z.size() || before.z.empty()) return;
-  double sum = 0.0, count = 0.0;
-  for (std::size_t k = 0; k < before.z.size(); ++k) {
-    if (std::abs(before.y[k] - middle) < 0.25 * tyre) sum += before.z[k] - after.z[k], count += 1.0;
-  }
-  if (count == 0.0) return;
-  depth = sum / count;
-  width = 0.0;
-  for (std::size_t k = 0; k < before.z.size(); ++k) {
-    if (before.z[k] - after.z[k] > 0.5 * depth) width += before.strip();
-  }
-}
-
 /// Means over the samples from one way on to another (m; not_known: to the end); not known for less than three.
 inline Means means_between(const Campaign& c, double radius, double from, double to) {
   Means m = {.from_way = from, .to_way = to};
@@ -267,11 +251,10 @@ inline void evaluate_pulls(Campaign& c, const Settings& s) {
 inline void evaluate(Campaign& c, const Settings& s) {
   const double radius = s.car.tyre.radius;
   c.forget_evaluation();
-  double width = 0.0;
   for (std::size_t k = 0; k < 2; ++k) {
-    const double middle = (k == 0 ? 0.5 : -0.5) * s.car.track();
-    evaluate_rut(c.before[k], c.after[k], middle, s.car.tyre.width, c.rut_depth[k], width);
-    if (k == 0 && width > 0.0) c.rut_width = width;
+    const Rut rut = rut_between(c.before[k], c.after[k], (k == 0 ? 0.5 : -0.5) * s.car.track(), s.car.tyre.width);
+    c.rut_depth[k] = rut.depth;
+    if (k == 0 && rut.width > 0.0) c.rut_width = rut.width;
   }
   if (c.samples.size() < 3) return;
   c.deepest = 0.0;
