@@ -51,5 +51,5 @@ for _ in $(seq "$repeats"); do
   done
   mpi 1 liggghts cubes.liggghts && line cubes liggghts 1 4000
 done
-"$bed" --work cubes --threads 2 --settle 22000 --steps 5000 --repeats "$repeats"
-"$bed" --work spheres --threads 2 --settle 40000 --steps 5000 --repeats "$repeats"
+"$bed" --one --work cubes --threads 2 --settle 22000 --steps 5000 --repeats "$repeats"
+"$bed" --one --work spheres --threads 2 --settle 40000 --steps 5000 --repeats "$repeats"

@@ -33,8 +33,8 @@ struct Settings {
   std::string work = "both", shape = "cube8";
   int steps = 5000, settle = 60000, repeats = 3, threads = 0;
   double skin = 0.0;
-  bool flow = false;               ///< beds of `sizes` flow
-  std::vector<std::size_t> sizes;  ///< grains of beds that are made of boxes beside each other (sizes.cpp)
+  bool flow = false;                                                ///< beds of `sizes` flow
+  std::vector<std::size_t> sizes = {4000, 40000, 300000, 2000000};  ///< of beds made of boxes (sizes.cpp)
 };
 
 /// Constants of a contact with restitution 0.3 for an effective mass (kg): C = 2 zeta sqrt(K m), zeta = 0.3579.
