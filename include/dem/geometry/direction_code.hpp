@@ -7,10 +7,10 @@
 
 namespace dem::surface {
 
-/// The last bits of a feature in which a surface that may be touched in several places at once says where the normal
-/// points, roughly: the square of the cube around the unit sphere that it goes through, each side cut into 6 x 6
-/// squares (of 25 degrees from corner to corner at most). By it a contact is found again among its neighbours, see
-/// coupling::follow_turns. Two contacts in one square take numbers that follow each other.
+/// The last bits of a feature say roughly where the normal points, on surfaces that may be touched in several places at
+/// once. The code is the square of a cube around the unit sphere that the normal goes through. Each side of the cube is
+/// cut into 6 x 6 squares, of 25 degrees from corner to corner at most. By the code a contact is found again among its
+/// neighbours (coupling::follow_turns). Two contacts in one square take consecutive numbers.
 inline constexpr int direction_bits = 8;
 inline constexpr std::uint32_t directions = 216;
 

@@ -25,12 +25,14 @@ struct PackedGrain {
   bool operator==(const PackedGrain&) const = default;
 };
 
-/// The bytes of all frames. Plane 0 says of each grain and frame what has changed since the grain was last there:
-/// 1 position, 2 rotation, 4 scalars, added up, and 16 where the grain sleeps; 8: the grain is not there. Only what has
-/// changed is in the others, as differences with their sign in the lowest bit: low and high bytes of x, y and z (1 to
-/// 6), low bytes of the three components of the rotation (7 to 9) and what is left of them (10: the change of the two
-/// highest bits, then two bits of each), speed (11), force (12). So a grain at rest costs a bit a frame, and less among
-/// others at rest.
+/// The bytes of all frames, in 13 planes. Plane 0 has a byte for each grain and frame: what has changed since the grain
+/// was last there. It is a sum: 1 position, 2 rotation, 4 scalars, 8 not there, 16 asleep. The other planes hold only
+/// what has changed, as differences with their sign in the lowest bit:
+///   1 to 6   low and high bytes of x, y and z
+///   7 to 9   low bytes of the three components of the rotation
+///   10       what is left of these: the change of the two highest bits, then two bits of each
+///   11, 12   speed, force
+/// Compressed, a grain at rest costs a bit a frame, and less among others at rest.
 struct ReplayPlanes {
   std::array<std::string, 13> bytes = {};
 };

@@ -17,9 +17,9 @@ namespace dem::vehicle {
 ///   along the road    a tread spring, kx sx and ky sy, with a damper on its rate; their sum is cut at mu Fn
 /// The stretch s of the tread grows with the slip velocity v and is renewed as the tyre rolls by a relaxation length L:
 ///   s' = v - |omega| r s / L
-/// So a tyre that stands holds like a spring, and one that rolls has the slip stiffness kx L and the cornering
-/// stiffness ky L. An endless L is the thesis's rigid wheel with asperity friction. (Pacejka, Tire and Vehicle
-/// Dynamics, the single contact point transient model, doi 10.1016/C2010-0-68548-8.)
+/// So a tyre that stands holds like a spring. One that rolls has the slip stiffness kx L and the cornering stiffness
+/// ky L. With an infinite L it is the thesis's rigid wheel with asperity friction. The model is the single contact
+/// point transient model of Pacejka, Tire and Vehicle Dynamics, doi 10.1016/C2010-0-68548-8.
 struct TyreSpec {
   double radius = 0.485;           ///< m, unloaded
   double width = 0.254;            ///< m

@@ -8,14 +8,15 @@
 namespace dem::friction {
 
 /// Another friction law with a coefficient that falls or rises with the sliding speed v and the normal pressure P:
-///   mu = mu0 (rv + (1 - rv) exp(-v/v0)) (rp + (1 - rp) exp(-P/p0)),
-/// mu0 the law's own coefficient (static, lightly pressed), rv = fast/static, rp = heavily/lightly pressed: below 1
-/// friction falls, above it rises; with the default ratios of 1 it is the law itself. P is, as mean_pressure says,
-///   0: the normal force in N, that of the whole contact where the contact is a patch of shares (so p0 is a force); per
-///      area of the point, in Pa, where points have areas in m^2;
-///   1: in Pa, that force over the area pi R* d of Hertz's circle: for contacts of curved bodies.
-/// Friction that rises steeply is a damper of its own, mu0 (rv - 1) F/v0, which the stable time step does not know:
-/// take v0 well above mu F dt/m, the speed that friction takes off in a step.
+///   mu = mu0 (rv + (1 - rv) exp(-v/v0)) (rp + (1 - rp) exp(-P/p0))
+/// mu0 is the law's own coefficient: static, lightly pressed. rv = fast/static, rp = heavily/lightly pressed. A ratio
+/// below 1 lets friction fall, one above 1 lets it rise. With the default ratios of 1 it is the law itself.
+/// What P is follows from mean_pressure:
+///   0: the normal force F of the whole contact, in N; p0 is then a force. Where points have areas in m^2, F per area,
+///      in Pa.
+///   1: F over the area pi R* d of Hertz's circle, in Pa: for contacts of curved bodies.
+/// Friction that rises steeply is a damper of its own, mu0 (rv - 1) F/v0, which the stable time step does not count.
+/// Take v0 well above mu F dt/m, the speed that friction takes off in a step.
 template <class Law>
 struct Varying {
   template <class T>

@@ -1,7 +1,8 @@
 #pragma once
 
 // What the library knows of a kind of joint. Each kind says it in a file of its own, beside the function that makes
-// such a joint; kinds.hpp has the list. A new kind is a file, a name in JointKind and a line in that list.
+// such a joint. A kind of your own is a JointKind of your own traits and needs no change of the library. The library's
+// kinds also have a name in JointKind and a line in kinds.hpp.
 
 #include <dem/core/error.hpp>
 #include <dem/core/macros.hpp>

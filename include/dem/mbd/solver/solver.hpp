@@ -130,9 +130,9 @@ class Solver {
     is_assembled_ = true;
   }
 
-  /// One of the integrator's stages of a step of dt (s): where the integrator predicts, the bodies move first; then
-  /// `put_forces()` adds the forces from outside (the grains) to the bodies, whose sums are cleared; joints, loads and
-  /// drives add theirs; the bodies move, and prescribed motions are set. A machine with sub-steps takes them all.
+  /// One of the integrator's stages of a step of dt (s). Where the integrator predicts, the bodies move first. Their
+  /// sums of forces are cleared, and `put_forces()` adds those from outside (the grains). Joints, loads and drives add
+  /// theirs. Then the bodies move, and prescribed motions are set. A machine with sub-steps takes them all.
   template <class PutForces>
   void stage(Mechanism& m, int stage, double dt, const Vec3& gravity, PutForces&& put_forces) {
     checked_substeps(m);
