@@ -284,7 +284,7 @@ TEST_CASE("a superquadric body that is a ball rolls on flat ground as a ball doe
       highest = std::max(highest, z);
     }
     const dem::Body& b = w.machine().body(body);
-    // Points of the skin that pass by the support point weigh (2 R d/(R/3)^2)^2 = 3e-4 at the most, there and back.
+    // Points of the boundary that pass by the support point weigh (2 R d/(R/3)^2)^2 = 3e-4 at the most, there and back.
     CHECK((b.velocity().x() - v) / 0.6 == Approx(5.0 / 7.0 * g * std::sin(angle)).epsilon(2e-3));
     CHECK(b.angular_velocity().y() == Approx(b.velocity().x() / R).epsilon(2e-3));
     CHECK(std::abs(b.velocity().y()) < 1e-3);

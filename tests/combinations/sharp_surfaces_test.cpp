@@ -135,8 +135,8 @@ TEMPLATE_TEST_CASE("a face is pushed by parts that are smaller than it, where ne
     CHECK(force.z() < (1.0 + tolerance) * depth);
   }
   SECTION("a corner of a mesh, a fine ball of triangles, a superquadric") {
-    // Points of a round skin share the contact by their depths d, evenly spread over a cap of depth D: sum d^2/sum d is
-    // 2/3 D. The caps have 30 vertices and 9 points.
+    // Points of a round boundary share the contact by their depths d, evenly spread over a cap of depth D: sum d^2/sum
+    // d is 2/3 D. The caps have 30 vertices and 9 points.
     const TriangleMesh ball(dem::mesh::sphere(0.1 * h, 3));
     CHECK(push<TestType>(ball, Vec3(0.3 * h, 0.2 * h, 1.1 * h - depth)).z() == Approx(2.0 / 3 * depth).epsilon(0.03));
     const dem::surface::Superquadric egg(Vec3(0.1 * h, 0.1 * h, 0.2 * h));

@@ -56,7 +56,7 @@ __device__ Vector3<double> force(const dem::contact::Geometry<double>& g, const 
   const Vector3<double> friction = dem::friction::AsperitySpring::force<double>(c.friction, state, history);
   slip = history.slip;
   dem::friction::None::History<double> nothing;
-  return g.area * (friction + dem::friction::None::force<double>({}, state, nothing) - normal * g.normal);
+  return g.weight * (friction + dem::friction::None::force<double>({}, state, nothing) - normal * g.normal);
 }
 
 __global__ void contact_forces(int n, Contact* contacts, Constants constants, Vector3<double>* forces) {

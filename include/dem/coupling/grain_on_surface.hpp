@@ -49,7 +49,7 @@ void add_sample_contacts(const GrainAtSurface& at, std::uint32_t index, const co
   const auto add = [&](std::uint32_t feature, const Vector3<double>& normal, double distance) {
     at.add(s, index, feature,
            {sample.centre, surface.axes * normal, sample.radius, distance,
-            surface::radius_on(geometry, sample.effective_radius), sample.area});
+            surface::radius_on(geometry, sample.effective_radius), sample.weight});
   };
   if constexpr (!std::is_same_v<Gap, shape::NoGap>) {
     if (sample.radius == 0.0) {
@@ -86,7 +86,7 @@ void add_support_contacts(const GrainAtSurface& at, const Shape& grain, const Su
   for (std::size_t way = 0; way < s.supports.way_count(); ++way) {
     if (!s.supports.is_used(way)) continue;
     for (std::size_t k = first; k < end; ++k) {
-      s.contact_points[k].area *=
+      s.contact_points[k].weight *=
           grain.beside_support(s.contact_points[k].centre, s.supports.way(way).point, s.supports.way(way).along);
     }
   }
@@ -97,16 +97,16 @@ void add_support_contacts(const GrainAtSurface& at, const Shape& grain, const Su
 template <class Shape, class Surface, class Geometry, class Gap>
 void add_corner_contacts(const GrainAtSurface& at, const Shape& grain, const Surface& surface, const Geometry& geometry,
                          Gap gap, SurfaceScratch& s) {
-  double samples = 0.0, area = 0.0, radius = 0.0;
+  double samples = 0.0, weights = 0.0, radius = 0.0;
   const auto look_at_samples = [&] {
     if (samples > 0.0) return;
     grain.sample_points(at.pose, [&](std::uint32_t, const contact::SamplePoint& sample) {
       samples += 1.0;
-      area += sample.area;
+      weights += sample.weight;
       radius += sample.effective_radius;
     });
   };
-  // Seen from the grain, its skin at `point` lies `depth` behind the surface.
+  // Seen from the grain, its boundary at `point` lies `depth` behind the surface.
   const auto add = [&](std::uint32_t number, const Vector3<double>& point, const Vector3<double>& normal, double depth,
                        double weight) {
     at.add(s, corner_sample, number,
@@ -120,7 +120,7 @@ void add_corner_contacts(const GrainAtSurface& at, const Shape& grain, const Sur
       const Vector3<double> point = surface.axes * (place - at.centre);
       if (!grain.penetration(at.pose, point, depth, outward)) return;
       look_at_samples();
-      add(corner, point + depth * outward, outward, depth, weight * area / samples);
+      add(corner, point + depth * outward, outward, depth, weight * weights / samples);
     });
   }
   if constexpr (surface::HasBalls<Geometry> && shape::HasBallContact<Shape>) {

@@ -15,8 +15,8 @@ struct Geometry {
   T overlap;           ///< m
   Vector3<T> arm;      ///< m, from the centre of i to the contact point
   T effective_radius;  ///< m
-  T area;              ///< m^2; 1 for spheres
-  /// What the areas of all points of the same patch add up to, where they are shares that may be less than one whole
+  T weight;            ///< share of a whole contact, 1 for spheres; or m^2 where points have areas
+  /// What the weights of all points of the same patch add up to, where they are shares that may be less than one whole
   /// contact together; else 1. See contact::NormalState::effective_mass.
   T total_share = T(1);
 };
@@ -56,17 +56,17 @@ struct ContactPoint {
   T overlap;             ///< m
   Vector3<T> arm;        ///< m, from the centre of i to the contact point
   T effective_radius;    ///< m
-  T area;                ///< m^2; 1 where the laws' stiffness is that of a whole contact, less for a point of a patch
+  T weight;              ///< as Geometry's: 1 for a whole contact, less for a point of a patch; or m^2
   T total_share = T(1);  ///< as Geometry's
 
-  DEM_HOT Geometry<T> geometry() const { return {normal, overlap, arm, effective_radius, area, total_share}; }
+  DEM_HOT Geometry<T> geometry() const { return {normal, overlap, arm, effective_radius, weight, total_share}; }
 };
 
-/// How many contacts a shape may have at once where others have one, and their area in all: the face of a grain whose
-/// contacts are points of its skin.
+/// How many contacts a shape may have at once where others have one, and their weight in all: the face of a grain whose
+/// contacts are points of its surface.
 struct Patch {
   double points = 1.0;
-  double area = 1.0;  ///< m^2, or without unit, as the contact points' areas
+  double weight = 1.0;  ///< as the contact points' weights
 };
 
 /// The one contact of a grain with a ball, where they share a normal.
@@ -76,12 +76,12 @@ struct BallContactPoint {
   Vector3<double> point;   ///< m, midway in the overlap, from the grain's centre
 };
 
-/// What a grain shows to surfaces: a sphere, or a point of its skin (radius 0).
+/// What a grain shows to surfaces: a sphere, or a point of its surface (radius 0).
 struct SamplePoint {
   Vector3<double> centre;   ///< m, from the grain's centre, global axes
   double radius;            ///< m
-  double effective_radius;  ///< m, of the grain's skin there
-  double area = 1.0;        ///< m^2 of skin that belongs to a point; 1 for spheres
+  double effective_radius;  ///< m, of the grain's surface there
+  double weight = 1.0;      ///< as Geometry's: of a point the part of the surface that belongs to it; 1 for spheres
 };
 
 /// A sample point of a grain and a surface of a machine part.
@@ -92,11 +92,11 @@ struct SurfaceContactPoint {
   T radius;           ///< of the sample point
   T gap;              ///< distance from the sample point's centre to the surface along the normal; negative behind it
   T effective_radius;
-  T area;
+  T weight;
 
   DEM_HOT Geometry<T> geometry() const {
     const T overlap = radius - gap;
-    return {normal, overlap, centre + (radius - T(0.5) * overlap) * normal, effective_radius, area};
+    return {normal, overlap, centre + (radius - T(0.5) * overlap) * normal, effective_radius, weight};
   }
 };
 

@@ -56,7 +56,7 @@ void fit_weights(std::size_t count, Fit fit, Point&& point) {
   for (std::size_t k = 0; k < count; ++k) {
     const Geometry<double> g = point(k).geometry();
     const double depth = std::max(0.0, g.overlap);
-    parts.push_back({depth * g.area, g.overlap, direction_of(g.normal)});
+    parts.push_back({depth * g.weight, g.overlap, direction_of(g.normal)});
     Direction& own = directions[parts.back().direction];
     own.first += parts.back().part;
     own.second += parts.back().part * depth;
@@ -74,7 +74,7 @@ void fit_weights(std::size_t count, Fit fit, Point&& point) {
   }
   for (std::size_t k = 0; k < count; ++k) {
     const auto& [normal, own_first, own_second, first, second] = directions[parts[k].direction];
-    double& weight = point(k).area;
+    double& weight = point(k).weight;
     if (!(first > 0.0)) {
       if (!(parts[k].overlap < 0.0)) continue;
       bool nearest = true;
@@ -104,7 +104,7 @@ double total_share(std::size_t count, std::size_t k, Point&& point) {
   double sum = least_total_share;
   for (std::size_t m = 0; m < count; ++m) {
     const double cosine = std::max(0.0, dot(normal, point(m).normal));
-    sum += cosine * cosine * point(m).area;
+    sum += cosine * cosine * point(m).weight;
   }
   return sum;
 }

@@ -79,7 +79,7 @@ struct WarmStartOf<A, B> {
 /// A contact that was found from b's side, seen from a's.
 DEM_HOT contact::ContactPoint<double> turned_round(const contact::Geometry<double>& g,
                                                    const Vector3<double>& separation) {
-  return {-g.normal, g.overlap, g.arm + separation, g.effective_radius, g.area, g.total_share};
+  return {-g.normal, g.overlap, g.arm + separation, g.effective_radius, g.weight, g.total_share};
 }
 
 /// Contacts of any two kinds, each a ContactPoint, through PairContact<A, B> or PairContact<B, A>; up to a gap (m)
@@ -107,7 +107,7 @@ DEM_HOT void collide_pair(const A& a, const double* pose_a, const B& b, const do
     call(PairContact<A, B>{}, a, pose_a, b, pose_b, separation, [&](std::uint32_t feature, const auto& point) {
       const contact::Geometry<double> g = point.geometry();
       callback(feature,
-               contact::ContactPoint<double>{g.normal, g.overlap, g.arm, g.effective_radius, g.area, g.total_share});
+               contact::ContactPoint<double>{g.normal, g.overlap, g.arm, g.effective_radius, g.weight, g.total_share});
     });
   } else {
     static_assert(

@@ -36,8 +36,8 @@ struct AnySamplePoint {
 ///                        inside, how deep, and which way is out: then corners and edges of surfaces are felt;
 ///   ball_contact(pose, centre, radius, contact)   whether a ball touches, and where (contact::BallContactPoint). Then
 ///                        surfaces that are balls are felt exactly, and lateral surfaces of cylinders through balls;
-///   even_support(pose, way), beside_support(point, support, way)   of a round grain: the point of its skin that meets
-///                        a plane first, and what another point weighs beside it.
+///   even_support(pose, way), beside_support(point, support, way)   of a round grain: the point that meets a plane
+///                        first, and what another point weighs beside it.
 template <class S>
 concept Shape = requires(const S& shape, const Matrix3<double>& rotation, double* pose,
                          const Vector3<double>& separation) {
@@ -168,7 +168,7 @@ bool has_shares(const S& shape) {
   }
 }
 
-/// A shape made of points may touch with many at once: patch() says with how many and of what area, in a pair of
+/// A shape made of points may touch with many at once: patch() says with how many and of what weight, in a pair of
 /// grains, and surface_patch() on a surface. For all others both are one.
 template <class S>
 contact::Patch patch_of(const S& shape) {

@@ -15,8 +15,8 @@ namespace dem::surface {
 //                         callback(number, corner, weight) with a weight below 1 where they come and go;
 //   balls(point, radius, callback), is_on_ball(point)   a round surface as balls that fill it: calls
 //                         callback(number, centre, ball's radius) for those that a grain may touch; is_on_ball() is
-//                         true where their skin is the surface's;
-//   radius_on(radius)     the effective radius of a skin of that radius on it, if it is curved;
+//                         true where their boundary is the surface's;
+//   radius_on(radius)     the effective radius of a boundary of that radius on it, if it is curved;
 //   point_contacts(point, gap, callback)   contacts of a point up to a gap before it, where they are not found as
 //                         those of spheres are;
 //   find_points_to(depth)   from now on points are found so deep behind it;
@@ -94,7 +94,7 @@ concept PartsLines = requires(const S& s, const Vector3<double>& p) {
   s.parts_inside(p, p, [](double, double) {});
 };
 
-/// m, the effective radius of a skin of a radius on a surface; one without radius_on() counts as flat.
+/// m, the effective radius of a boundary of a radius on a surface; one without radius_on() counts as flat.
 template <class S>
 double radius_on(const S& s, double radius) {
   if constexpr (requires { s.radius_on(radius); }) {

@@ -15,10 +15,10 @@ namespace dem::grain {
 /// Motion of the two partners of a contact relative to each other, global axes.
 template <class T>
 struct RelativeMotion {
-  Vector3<T> separation;      ///< m, from the centre of i to the centre of j
-  Vector3<T> velocity;        ///< m/s, of the centre of i minus that of j
-  Vector3<T> spin_i, spin_j;  ///< rad/s
-  T inverse_mass;             ///< 1/kg, 1/mi + 1/mj
+  Vector3<T> separation;                              ///< m, from the centre of i to the centre of j
+  Vector3<T> velocity;                                ///< m/s, of the centre of i minus that of j
+  Vector3<T> angular_velocity_i, angular_velocity_j;  ///< rad/s, global
+  T inverse_mass;                                     ///< 1/kg, 1/mi + 1/mj
 };
 
 template <class T>
@@ -72,7 +72,7 @@ DEM_HOT PairWrench<T> contact_wrench(const ContactPoint& point, const RelativeMo
                                      ContactHistory<Model, T>& history, T& overlap_ratio) {
   const contact::Geometry<T> g = point.geometry();
   const Vector3<T> arm_j = g.arm - e.separation;
-  const Vector3<T> velocity = e.velocity + cross(e.spin_i, g.arm) - cross(e.spin_j, arm_j);
+  const Vector3<T> velocity = e.velocity + cross(e.angular_velocity_i, g.arm) - cross(e.angular_velocity_j, arm_j);
   const T approach = dot(velocity, g.normal);
   const Vector3<T> sliding = velocity - approach * g.normal;
   const T mass = T(1) / (e.inverse_mass * g.total_share);
@@ -82,25 +82,25 @@ DEM_HOT PairWrench<T> contact_wrench(const ContactPoint& point, const RelativeMo
 
   // The history's vectors follow the contact: they turn with the mean twist of the partners about the normal and stay
   // in the tangent plane.
-  const T twist = T(0.5) * dt * dot(e.spin_i + e.spin_j, g.normal);
+  const T twist = T(0.5) * dt * dot(e.angular_velocity_i + e.angular_velocity_j, g.normal);
   const auto turn = [&](const Vector3<T>& v) { return v + twist * cross(g.normal, v) - dot(g.normal, v) * g.normal; };
   Model::Friction::carry(history.friction, turn);
   const Vector3<T> friction = Model::Friction::force(
       parameters.friction,
       contact::TangentialState<T>{sliding, normal.pressing, g.overlap, g.effective_radius, mass, dt}, history.friction);
 
-  const Vector3<T> force = g.area * (friction - normal.repulsion * g.normal);
+  const Vector3<T> force = g.weight * (friction - normal.repulsion * g.normal);
   overlap_ratio = T(0.5) * g.overlap / g.effective_radius;
   PairWrench<T> wrench = {force, cross(g.arm, force), -cross(arm_j, force)};
   if constexpr (!std::is_same_v<typename Model::Rolling, rolling::None>) {
-    const Vector3<T> spin = e.spin_i - e.spin_j;
+    const Vector3<T> spin = e.angular_velocity_i - e.angular_velocity_j;
     const T twisting = dot(spin, g.normal);
     Model::Rolling::carry(history.rolling, turn);
     const Vector3<T> torque =
-        g.area * Model::Rolling::torque(parameters.rolling,
-                                        rolling::RollingState<T>{g.normal, spin - twisting * g.normal, twisting,
-                                                                 normal.pressing, g.effective_radius, mass, dt},
-                                        history.rolling);
+        g.weight * Model::Rolling::torque(parameters.rolling,
+                                          rolling::RollingState<T>{g.normal, spin - twisting * g.normal, twisting,
+                                                                   normal.pressing, g.effective_radius, mass, dt},
+                                          history.rolling);
     wrench.torque_i += torque;
     wrench.torque_j -= torque;
   }

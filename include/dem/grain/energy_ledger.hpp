@@ -44,16 +44,16 @@ struct EnergyLedger {
   double came = 0.0;               ///< J, of grains that were added, less that of those that went
   double stopped = 0.0;            ///< J, motion of grains that fell asleep
 
-  std::vector<ContactWork> last;                ///< the contacts of the step before
-  std::vector<Vector3<double>> velocity, spin;  ///< m/s, rad/s in global axes, at the end of the step before, by id
-  std::vector<double> energy;                   ///< J, kinetic and potential, by id; NaN of grains that are not there
-  std::vector<Vector3<double>> body_velocity, body_spin;
+  std::vector<ContactWork> last;                                   ///< the contacts of the step before
+  std::vector<Vector3<double>> velocity, global_angular_velocity;  ///< m/s, rad/s, at the end of the step before, by id
+  std::vector<double> energy;  ///< J, kinetic and potential, by id; NaN of grains that are not there
+  std::vector<Vector3<double>> body_velocity, body_angular_velocity;
 
   /// Whether the energy of a grain (id) is counted already: not of one that came since the last step.
   bool knows(std::uint32_t id) const { return id < energy.size() && energy[id] == energy[id]; }
   /// A grain (id) falls asleep, and loses its energy of motion (J).
   void stop(std::uint32_t id, double motion) {
-    velocity[id] = spin[id] = {0, 0, 0};
+    velocity[id] = global_angular_velocity[id] = {0, 0, 0};
     energy[id] -= motion;
   }
 
@@ -62,8 +62,8 @@ struct EnergyLedger {
     v.given("energy_counted", on);
     v("into_contacts", into_contacts), v("stored_at_start", stored), v("by_surfaces", by_surfaces, "J");
     v("came", came, "J"), v("stopped", stopped, "J"), v("last", last), v("velocity", velocity, "m/s"),
-        v("spin", spin, "rad/s");
-    v("grains", energy, "J"), v("body_velocity", body_velocity, "m/s"), v("body_spin", body_spin, "rad/s");
+        v("spin", global_angular_velocity, "rad/s");
+    v("grains", energy, "J"), v("body_velocity", body_velocity, "m/s"), v("body_spin", body_angular_velocity, "rad/s");
   }
 };
 

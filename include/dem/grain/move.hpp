@@ -99,7 +99,7 @@ void refresh_chunk(std::size_t chunk_index, Chunk<Model>& chunk, Particles& p,
   Vector3<Pack> low = p.position.pack(begin), high = low;
   Pack moved2(0.0), check(0.0);
   for (std::size_t i = begin; i < begin + chunk_size; i += static_cast<std::size_t>(pack_width)) {
-    const Vector3<Pack> x = p.position.pack(i), v = p.velocity.pack(i), w = p.spin.pack(i);
+    const Vector3<Pack> x = p.position.pack(i), v = p.velocity.pack(i), w = p.local_angular_velocity.pack(i);
     low = {min(low.x, x.x), min(low.y, x.y), min(low.z, x.z)};
     high = {max(high.x, x.x), max(high.y, x.y), max(high.z, x.z)};
     const Vector3<Pack> moved = x - p.listed_at.pack(i);

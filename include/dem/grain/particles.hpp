@@ -57,12 +57,12 @@ struct Particles {
   static constexpr int memory_size = contact::field_count<Memory<double>>;
   static_assert(sizeof(Memory<Pack>) == sizeof(Pack) * (memory_size > 0 ? memory_size : 1) || memory_size == 0);
 
-  std::size_t count = 0;        ///< grains, padding not counted
-  Columns3 position, velocity;  ///< m, m/s
-  Columns3 spin;                ///< rad/s, body frame (what the integrator advances)
-  Columns3 row0, row1, row2;    ///< rotation, body -> global, by rows
-  Columns3 force, torque;       ///< N, N m of the last force evaluation, gravity not included; global axes
-  Columns3 listed_at;           ///< m, position when the neighbour list was made
+  std::size_t count = 0;            ///< grains, padding not counted
+  Columns3 position, velocity;      ///< m, m/s
+  Columns3 local_angular_velocity;  ///< rad/s, body frame (what the integrator advances)
+  Columns3 row0, row1, row2;        ///< rotation, body -> global, by rows
+  Columns3 force, torque;           ///< N, N m of the last force evaluation, gravity not included; global axes
+  Columns3 listed_at;               ///< m, position when the neighbour list was made
   std::array<AlignedVector<double>, static_cast<std::size_t>(memory_size)> memory;  ///< of the integrator
   AlignedVector<PartnerView> view;                                                  ///< what contacts read
   AlignedVector<double> pose;                                                       ///< Shape::pose_size a grain
@@ -94,8 +94,8 @@ struct Particles {
   Matrix3<double> rotation(std::size_t i) const { return {row0[i], row1[i], row2[i]}; }
   /// rad/s, global axes.
   Vector3<double> angular_velocity(std::size_t i) const {
-    if constexpr (has_orientation) return rotation(i) * spin[i];
-    return spin[i];
+    if constexpr (has_orientation) return rotation(i) * local_angular_velocity[i];
+    return local_angular_velocity[i];
   }
   void set_rotation(std::size_t i, const Matrix3<double>& r) {
     row0.set(i, r.row0);
@@ -105,15 +105,18 @@ struct Particles {
 
   Motion motion(std::size_t i) const {
     if constexpr (Shape::has_orientation) {
-      return {position.pack(i), velocity.pack(i), spin.pack(i), {row0.pack(i), row1.pack(i), row2.pack(i)}};
+      return {position.pack(i),
+              velocity.pack(i),
+              local_angular_velocity.pack(i),
+              {row0.pack(i), row1.pack(i), row2.pack(i)}};
     } else {
-      return {position.pack(i), velocity.pack(i), spin.pack(i), Matrix3<Pack>::identity()};
+      return {position.pack(i), velocity.pack(i), local_angular_velocity.pack(i), Matrix3<Pack>::identity()};
     }
   }
   void set_motion(std::size_t i, const Motion& m) {
     position.set_pack(i, m.position);
     velocity.set_pack(i, m.velocity);
-    spin.set_pack(i, m.angular_velocity);
+    local_angular_velocity.set_pack(i, m.angular_velocity);
     if constexpr (Shape::has_orientation) {
       row0.set_pack(i, m.rotation.row0);
       row1.set_pack(i, m.rotation.row1);
@@ -157,7 +160,8 @@ struct Particles {
   /// All but listed_at, which is made of the positions; those of position come first.
   template <class F>
   void for_each_state_column(F&& f) {
-    for (Columns3* c : {&position, &velocity, &spin, &row0, &row1, &row2, &force, &torque}) c->for_each_column(f);
+    for (Columns3* c : {&position, &velocity, &local_angular_velocity, &row0, &row1, &row2, &force, &torque})
+      c->for_each_column(f);
     for (auto& column : memory) f(column);
   }
 
@@ -191,7 +195,7 @@ struct Particles {
     resize(row + 1);
     position.set(row, x);
     velocity.set(row, v);
-    spin.set(row, turning);
+    local_angular_velocity.set(row, turning);
     set_rotation(row, rotation);
     for (Columns3* c : {&force, &torque}) c->set(row, {0, 0, 0});
     set_memory(row, {});
@@ -247,7 +251,7 @@ struct Particles {
     for (std::size_t i = count; i < chunks() * chunk_size; ++i) {
       position.set(i, position[count - 1]);
       listed_at.set(i, listed_at[count - 1]);
-      for (Columns3* c : {&velocity, &spin, &force, &torque}) c->set(i, {0, 0, 0});
+      for (Columns3* c : {&velocity, &local_angular_velocity, &force, &torque}) c->set(i, {0, 0, 0});
       set_rotation(i, Matrix3<double>::identity());
     }
   }

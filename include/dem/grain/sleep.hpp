@@ -13,7 +13,7 @@
 
 namespace dem::grain {
 
-/// Which way a grain faces: two rows of its rotation. Of shapes without orientation it is the spin (rad/s).
+/// Which way a grain faces: two rows of its rotation. Of shapes without orientation it is the angular velocity (rad/s).
 struct Facing {
   Vector3<double> first = {0, 0, 0}, second = {0, 0, 0};
 };
@@ -92,11 +92,12 @@ bool is_disturbed(std::size_t i, const Particles& p, const Species<Shape>& kind,
 template <class Particles>
 Facing facing(std::size_t i, const Particles& p) {
   if constexpr (Particles::has_orientation) return {p.row0[i], p.row1[i]};
-  return {p.spin[i], {0, 0, 0}};
+  return {p.local_angular_velocity[i], {0, 0, 0}};
 }
 
 /// By how much (rad) a grain has turned in a window of `seconds`, at the most. Two rows of a rotation move by 1 to 1.4
-/// times the angle. Without orientation, spins at both ends count as far as they agree: one that swings is not turning.
+/// times the angle. Without orientation, angular velocities at both ends count as far as they agree: one that swings is
+/// not turning.
 template <class Particles>
 double turned(const Facing& before, const Facing& now, double seconds) {
   if constexpr (Particles::has_orientation) {
@@ -126,7 +127,7 @@ bool end_window(std::size_t i, const Particles& p, const Species<Shape>& kind, d
   const double most = o.balance * bears;
   const Facing faces = facing(i, p);
   const bool is_balanced = kind.is_held() || (norm(left) <= most && norm(p.torque[i]) <= most * radius);
-  const bool flies = borne == 0.0 && (norm(p.velocity[i]) > 0.0 || norm(p.spin[i]) > 0.0);
+  const bool flies = borne == 0.0 && (norm(p.velocity[i]) > 0.0 || norm(p.local_angular_velocity[i]) > 0.0);
   const bool is_steady = std::abs(borne - rest.borne) <= o.change * bears;
   const bool is_still = norm(p.position[i] - rest.position) <= o.motion * radius &&
                         turned<Particles>(rest.facing, faces, window.seconds) <= o.motion;

@@ -43,7 +43,7 @@ struct Species {
   }
 };
 
-/// J, of a grain with a velocity (m/s) and a spin (rad/s, body frame).
+/// J, of a grain with a velocity (m/s) and an angular velocity (rad/s, body frame).
 template <class Shape>
 double kinetic_energy(const Species<Shape>& kind, const Vector3<double>& v, const Vector3<double>& spin) {
   const Vec3& j = kind.inertia;

@@ -86,7 +86,7 @@ StableTimeStep stable_time_step(std::span<const Species<typename Model::Shape>> 
     const contact::NormalState<double> deepest = {2.0 * overlap_limit * radius, 0.0, radius, mass, 0.0};
     for_each_swing<Model>(p, deepest, damped_share, w, w_turning,
                           [&](double k, double c, double inverse_effective_mass, const auto& text) {
-                            const double n = contacts_in_line * patch.area;
+                            const double n = contacts_in_line * patch.weight;
                             const double dt =
                                 stable_step(Model::Integrator::stability_limit, n * k, n * c, inverse_effective_mass);
                             if (!(dt < result.dt)) return;

@@ -10,12 +10,12 @@
 
 namespace dem::io {
 
-/// The skin of a superquadric with `divisions` cells along each edge of the cube that it is drawn from [m].
+/// The boundary of a superquadric with `divisions` cells along each edge of the cube that it is drawn from [m].
 [[nodiscard]] inline SurfaceMesh grain_mesh(const shape::SuperquadricSolid& solid, int divisions = 8) {
-  const shape::SuperquadricSkin skin = shape::superquadric_skin(solid, divisions);
+  const shape::SuperquadricBoundary boundary = shape::superquadric_boundary(solid, divisions);
   SurfaceMesh mesh;
-  for (const shape::SurfacePoint& point : skin.points) mesh.vertices.push_back(to_eigen(point.position));
-  mesh.quads = skin.quads;
+  for (const shape::SurfacePoint& point : boundary.points) mesh.vertices.push_back(to_eigen(point.position));
+  mesh.quads = boundary.quads;
   return mesh;
 }
 [[nodiscard]] inline SurfaceMesh grain_mesh(const shape::SuperquadricGrain& grain, int divisions = 8) {

@@ -6,7 +6,7 @@
 
 namespace dem::io {
 
-/// The skin of a polyhedron, in the grain's frame: each face one polygon.
+/// The boundary of a polyhedron, in the grain's frame: each face one polygon.
 [[nodiscard]] inline SurfaceMesh polyhedron_mesh(const shape::Polyhedron& body) {
   SurfaceMesh mesh;
   mesh.vertices = body.mesh().corners;

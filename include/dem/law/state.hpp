@@ -8,9 +8,9 @@ namespace dem::contact {
 
 /// What a normal law may read about one contact (T = double) or a pack of contacts (T = Pack).
 ///
-/// Laws describe whole contacts. A contact may be a patch of points, each with an area or a share (Geometry::area). The
-/// laws are then evaluated at each point as if it were the whole contact, and the result is multiplied by that area: A
-/// of eq. 25.
+/// Laws describe whole contacts. A contact may be a patch of points, each with a weight: a share or an area
+/// (Geometry::weight). The laws are then evaluated at each point as if it were the whole contact, and the result is
+/// multiplied by it: A of eq. 25.
 ///
 /// Points whose shares add up to S < 1 are together a spring S K. A law that makes its damper c(m) from a damping ratio
 /// and the effective mass m is then handed m/S. The mass m/S swings on K as m does on S K. So the damper S c(m/S) is

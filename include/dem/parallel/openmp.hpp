@@ -33,7 +33,7 @@ inline void watch_for_forks() {
 #endif
 
 /// OpenMP's threads, for programs that use OpenMP themselves and want no others; runs on one thread when the compiler
-/// has no OpenMP. Its threads have equal shares and spin while they wait, unless OMP_WAIT_POLICY=passive: exec::Threads
+/// has no OpenMP. Its threads have equal shares and busy-wait for work, unless OMP_WAIT_POLICY=passive: exec::Threads
 /// is the better choice where other programs run. Unless a number is set, it uses as many threads as OpenMP offers, but
 /// gives each at least a few pieces of work: waking a thread costs more than a small piece.
 ///

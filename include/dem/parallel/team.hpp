@@ -15,7 +15,8 @@ namespace dem::exec {
 ///
 /// Each member has a range of the pieces, so that it meets the same memory in each phase of a step; who is done with
 /// its own range helps with the others'. Nobody waits for a member that has not begun: where another program has its
-/// processor, the rest do its share. Members spin for a tenth of a millisecond for the next work, and sleep after that.
+/// processor, the rest do its share. Members busy-wait for a tenth of a millisecond for the next work, and sleep after
+/// that.
 class Team {
  public:
   using Piece = void (*)(void* work, std::size_t piece, int thread);
@@ -24,7 +25,7 @@ class Team {
   explicit Team(int members)
       : ranges_(new Range[static_cast<std::size_t>(members)]),
         members_(members),
-        spins_(static_cast<unsigned>(members) <= std::thread::hardware_concurrency() ? 4000 : 0) {
+        busy_waits_(static_cast<unsigned>(members) <= std::thread::hardware_concurrency() ? 4000 : 0) {
     for (int k = 1; k < members; ++k) {
       threads_.emplace_back([this, k] { serve(k); });
     }
@@ -58,8 +59,8 @@ class Team {
     take_part(0);
     // All pieces are taken. Who has not begun need not, and the others end theirs.
     std::uint32_t inside = gate_.fetch_and(~open) & ~open;
-    for (int spins = 0; inside != 0; inside = gate_.load()) {
-      if (++spins < spins_) {
+    for (int waited = 0; inside != 0; inside = gate_.load()) {
+      if (++waited < busy_waits_) {
         pause();
       } else {
         gate_.wait(inside);
@@ -98,9 +99,9 @@ class Team {
   }
   void serve(int member) {
     for (std::uint32_t seen = 0;;) {
-      int spins = 0;
+      int waited = 0;
       while (call_.load() == seen) {
-        if (++spins < spins_) {
+        if (++waited < busy_waits_) {
           pause();
         } else {
           call_.wait(seen);
@@ -120,7 +121,7 @@ class Team {
 
   std::unique_ptr<Range[]> ranges_;
   int members_;
-  int spins_;  // before a member sleeps; none where there are more members than processors
+  int busy_waits_;  // looks before a member sleeps; none where there are more members than processors
   Piece piece_ = nullptr;
   void* work_ = nullptr;
   std::atomic<bool> stop_ = false;

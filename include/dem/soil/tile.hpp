@@ -19,7 +19,7 @@ struct TileGrain {
   Vector3<double> position;                 ///< m; from the tile's lower corner where the tile repeats itself
   Matrix3<double> rotation;                 ///< grain frame -> global
   Vector3<double> velocity;                 ///< m/s
-  Vector3<double> spin;                     ///< rad/s, body frame
+  Vector3<double> local_angular_velocity;   ///< rad/s, body frame
   std::uint32_t species = 0, reserved = 0;  ///< the number of its species
 };
 
@@ -208,11 +208,11 @@ Tile take_tile(const World<Model>& world, const TileOptions& o = {}) {
   const Vector3<double> corner = {w.domain.low(0), w.domain.low(1), 0.0};  // 0 where it does not repeat itself
   t.grains.resize(p.count);
   for (std::size_t k = 0; k < p.count; ++k) {
-    t.grains[k] = {p.position[k] - corner, p.rotation(k), p.velocity[k], p.spin[k], p.species[k]};
+    t.grains[k] = {p.position[k] - corner, p.rotation(k), p.velocity[k], p.local_angular_velocity[k], p.species[k]};
   }
   detail::measure_tile(t, w);
   if (o.stopped) {
-    for (TileGrain& g : t.grains) g.velocity = g.spin = {0, 0, 0};
+    for (TileGrain& g : t.grains) g.velocity = g.local_angular_velocity = {0, 0, 0};
   }
 
   const ContactForce* before = nullptr;

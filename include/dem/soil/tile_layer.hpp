@@ -123,7 +123,7 @@ struct TileLayer {
       p.position.set(row, list[n].x);
       p.set_rotation(row, turn == 0.0 || !Model::Shape::has_orientation ? g.rotation : r * g.rotation);
       p.velocity.set(row, stands ? Vector3<double>{0, 0, 0} : turn == 0.0 ? g.velocity : r * g.velocity);
-      p.spin.set(row, stands ? Vector3<double>{0, 0, 0} : g.spin);
+      p.local_angular_velocity.set(row, stands ? Vector3<double>{0, 0, 0} : g.local_angular_velocity);
       for (Columns3* c : {&p.force, &p.torque}) c->set(row, {0, 0, 0});
       p.set_memory(row, {});
       p.species[row] = list[n].species;

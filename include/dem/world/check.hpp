@@ -56,7 +56,7 @@ StepReport find_problem_of_grains(WorldState<Model>& w) {
     const std::size_t begin = c * chunk_size, end = std::min(begin + chunk_size, p.count);
     if (!chunk.finite) [[unlikely]] {
       for (std::size_t i = begin; i < end; ++i) {
-        const Vector3<double> x = p.position[i], v = p.velocity[i], turn = p.spin[i];
+        const Vector3<double> x = p.position[i], v = p.velocity[i], turn = p.local_angular_velocity[i];
         // The sum that the chunk was judged by, so that one of its grains fails it: 1e308 twice is infinite as well.
         if (0.0 * (x.x + x.y + x.z + v.x + v.y + v.z + turn.x + turn.y + turn.z) == 0.0) continue;
         return problem(StepReport::Problem::not_finite, i,

@@ -30,7 +30,7 @@ struct ContactForce {
   Vec3 normal;              ///< unit vector from the first partner into the second
   double overlap;           ///< m; negative across a gap
   double effective_radius;  ///< m
-  double share;             ///< of a whole contact, or m^2 where points have areas
+  double weight;            ///< share of a whole contact, or m^2 where points have areas
   Vec3 arm, other_arm;      ///< m, from the partner's centre of mass to the point
   Vec3 force;               ///< N, on the first partner
   Vec3 torque;              ///< N m, on the first partner about its centre of mass

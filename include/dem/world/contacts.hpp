@@ -109,7 +109,7 @@ class ContactFinder {
     c.normal = to_eigen(g.normal);
     c.overlap = g.overlap;
     c.effective_radius = g.effective_radius;
-    c.share = g.area;
+    c.weight = g.weight;
     c.arm = to_eigen(g.arm);
     c.other_arm = to_eigen(g.arm - (j.position - i.position));
     c.force = to_eigen(grain::ContactForces::at(forces.force, k));

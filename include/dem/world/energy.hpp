@@ -55,13 +55,13 @@ void add_stored(const Contact<Model>& c, const ContactParameters<Model>& p, Grai
   contact::NormalState<double> touching = gap;
   touching.overlap = std::max(0.0, c.overlap);
   if constexpr (requires { Model::Normal::energy(p.normal, touching, h.normal); })
-    e.normal_springs += c.share * Model::Normal::energy(p.normal, touching, h.normal);
+    e.normal_springs += c.weight * Model::Normal::energy(p.normal, touching, h.normal);
   if constexpr (requires { Model::Friction::energy(p.friction, h.friction); })
-    e.friction_springs += c.share * Model::Friction::energy(p.friction, h.friction);
+    e.friction_springs += c.weight * Model::Friction::energy(p.friction, h.friction);
   if constexpr (requires { Model::Rolling::energy(p.rolling, 1.0, h.rolling); })
-    e.rolling_springs += c.share * Model::Rolling::energy(p.rolling, c.effective_radius, h.rolling);
+    e.rolling_springs += c.weight * Model::Rolling::energy(p.rolling, c.effective_radius, h.rolling);
   if constexpr (requires { Model::Cohesion::energy(p.cohesion, gap, h.cohesion); })
-    e.cohesion += c.share * Model::Cohesion::energy(p.cohesion, gap, h.cohesion);
+    e.cohesion += c.weight * Model::Cohesion::energy(p.cohesion, gap, h.cohesion);
 }
 
 /// J, kinetic (translation, rotation) and potential of the grain of a row; none of a held one, which is a part of what
@@ -70,7 +70,7 @@ template <class Model>
 GrainEnergy energy_of_row(const WorldState<Model>& w, std::size_t row) {
   const auto& p = w.particles;
   const auto& kind = w.species[p.species[row]];
-  const Vector3<double> v = p.velocity[row], s = p.spin[row];
+  const Vector3<double> v = p.velocity[row], s = p.local_angular_velocity[row];
   GrainEnergy e;
   if (kind.is_held()) return e;
   e.translation = 0.5 * kind.mass * dot(v, v);
@@ -114,15 +114,15 @@ void count_step(WorldState<Model>& w) {
   grain::EnergyLedger& ledger = w.ledger;
   const auto& p = w.particles;
   struct Mean {
-    Vector3<double> velocity, spin;
+    Vector3<double> velocity, angular_velocity;  // m/s, rad/s, global
   };
   std::vector<Mean> grains(p.row_of.size()), bodies;
   const std::size_t known = ledger.velocity.size();
   ledger.velocity.resize(p.row_of.size());
-  ledger.spin.resize(p.row_of.size());
+  ledger.global_angular_velocity.resize(p.row_of.size());
   ledger.energy.resize(p.row_of.size(), std::numeric_limits<double>::quiet_NaN());
   for (std::size_t id = 0; id < known; ++id) {
-    grains[id] = {ledger.velocity[id], ledger.spin[id]};
+    grains[id] = {ledger.velocity[id], ledger.global_angular_velocity[id]};
     if (p.row_of[id] != p.gone || std::isnan(ledger.energy[id])) continue;
     ledger.came -= ledger.energy[id];
     ledger.energy[id] = std::numeric_limits<double>::quiet_NaN();
@@ -132,9 +132,10 @@ void count_step(WorldState<Model>& w) {
     const Vector3<double> v = p.velocity[row], s = p.angular_velocity(row);
     // The velocities of an id that is given again are those of another grain.
     const bool is_known = id < known && (p.row_of[id] == p.gone || !std::isnan(ledger.energy[id]));
-    grains[id] = is_known ? Mean{0.5 * (ledger.velocity[id] + v), 0.5 * (ledger.spin[id] + s)} : Mean{v, s};
+    grains[id] =
+        is_known ? Mean{0.5 * (ledger.velocity[id] + v), 0.5 * (ledger.global_angular_velocity[id] + s)} : Mean{v, s};
     ledger.velocity[id] = v;
-    ledger.spin[id] = s;
+    ledger.global_angular_velocity[id] = s;
     if (p.row_of[id] == p.gone) continue;
     const GrainEnergy e = energy_of_row(w, row);
     const double sum = e.kinetic() + e.potential;
@@ -142,13 +143,13 @@ void count_step(WorldState<Model>& w) {
     ledger.energy[id] = sum;
   }
   ledger.body_velocity.resize(w.machine.bodies().size());
-  ledger.body_spin.resize(w.machine.bodies().size());
+  ledger.body_angular_velocity.resize(w.machine.bodies().size());
   for (std::size_t b = 0; b < w.machine.bodies().size(); ++b) {
     const auto& m = w.machine.bodies()[b].motion;
     const Vector3<double> spin = m.rotation * m.angular_velocity;
-    bodies.push_back({0.5 * (ledger.body_velocity[b] + m.velocity), 0.5 * (ledger.body_spin[b] + spin)});
+    bodies.push_back({0.5 * (ledger.body_velocity[b] + m.velocity), 0.5 * (ledger.body_angular_velocity[b] + spin)});
     ledger.body_velocity[b] = m.velocity;
-    ledger.body_spin[b] = spin;
+    ledger.body_angular_velocity[b] = spin;
   }
 
   const auto is_held = [&](std::uint32_t id) {
@@ -158,14 +159,16 @@ void count_step(WorldState<Model>& w) {
   const auto add = [&](const grain::ContactWork& c, double time) {
     const Mean& i = grains[c.i];
     const Mean& j = c.on_surface ? bodies[w.surfaces[c.partner].body.index()] : grains[c.partner];
-    const Vector3<double> at_i = i.velocity + cross(i.spin, c.arm), at_j = j.velocity + cross(j.spin, c.other_arm);
+    const Vector3<double> at_i = i.velocity + cross(i.angular_velocity, c.arm),
+                          at_j = j.velocity + cross(j.angular_velocity, c.other_arm);
     const Vector3<double> velocity = at_i - at_j;
     const double push = dot(c.force, c.normal), along = push * dot(c.normal, velocity);
     ledger.into_contacts.normal -= time * along;
     ledger.into_contacts.friction -= time * (dot(c.force, velocity) - along);
-    ledger.into_contacts.rolling -= time * dot(c.moment, i.spin - j.spin);
-    if (is_held(c.i)) ledger.by_surfaces -= time * (dot(c.force, at_i) + dot(c.moment, i.spin));
-    if (c.on_surface || is_held(c.partner)) ledger.by_surfaces += time * (dot(c.force, at_j) + dot(c.moment, j.spin));
+    ledger.into_contacts.rolling -= time * dot(c.moment, i.angular_velocity - j.angular_velocity);
+    if (is_held(c.i)) ledger.by_surfaces -= time * (dot(c.force, at_i) + dot(c.moment, i.angular_velocity));
+    if (c.on_surface || is_held(c.partner))
+      ledger.by_surfaces += time * (dot(c.force, at_j) + dot(c.moment, j.angular_velocity));
   };
   constexpr bool at_end = evaluates_at_end<typename Model::Integrator>;
   const double dt = w.time_step, share = at_end ? 0.5 : 1.0;
@@ -244,19 +247,19 @@ void count_energy(World<Model>& world) {
   }
   const auto& p = w.particles;
   ledger.velocity.resize(p.row_of.size());
-  ledger.spin.resize(p.row_of.size());
+  ledger.global_angular_velocity.resize(p.row_of.size());
   ledger.energy.resize(p.row_of.size(), std::numeric_limits<double>::quiet_NaN());
   for (std::size_t row = 0; row < p.count; ++row) {
     const std::uint32_t id = p.id[row];
     ledger.velocity[id] = p.velocity[row];
-    ledger.spin[id] = p.angular_velocity(row);
+    ledger.global_angular_velocity[id] = p.angular_velocity(row);
     if (p.row_of[id] == p.gone) continue;
     const GrainEnergy one = detail::energy_of_row(w, row);
     ledger.energy[id] = one.kinetic() + one.potential;
   }
   for (const Body& b : w.machine.bodies()) {
     ledger.body_velocity.push_back(b.motion.velocity);
-    ledger.body_spin.push_back(b.motion.rotation * b.motion.angular_velocity);
+    ledger.body_angular_velocity.push_back(b.motion.rotation * b.motion.angular_velocity);
   }
   w.record_contacts = &detail::record_contacts<Model>;
   w.count_energy = &detail::count_step<Model>;

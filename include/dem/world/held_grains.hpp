@@ -28,9 +28,9 @@ void carry_held(WorldState<Model>& w) {
       if constexpr (Model::Domain::has_images) x = w.domain.beside(x, p.position[row]);
       p.position.set(row, x);
       p.velocity.set(row, motion.velocity + cross(turning, arm));
-      p.spin.set(row, Particles<typename Model::Shape, typename Model::Integrator>::has_orientation
-                          ? transpose_times(rotation, turning)
-                          : turning);
+      p.local_angular_velocity.set(row, Particles<typename Model::Shape, typename Model::Integrator>::has_orientation
+                                            ? transpose_times(rotation, turning)
+                                            : turning);
       if constexpr (Model::Shape::has_orientation) p.set_rotation(row, rotation);
       if (w.options.sleep) wake_row(w, row);
       const auto c = static_cast<std::uint32_t>(row / chunk_size);

@@ -47,7 +47,7 @@ std::size_t memory_bytes(const WorldState<Model>& w) {
   }
   for (const Chunk<Model>& c : w.chunks) sum += bytes(c.around) + bytes(c.reached) + bytes(c.sleeps);
   const grain::EnergyLedger& l = w.ledger;
-  sum += bytes(l.last) + bytes(l.velocity) + bytes(l.spin) + bytes(l.energy);
+  sum += bytes(l.last) + bytes(l.velocity) + bytes(l.global_angular_velocity) + bytes(l.energy);
   for (const Chunk<Model>& c : w.chunks) {
     sum += sizeof(c) + bytes(c.candidate) + bytes(c.owner) + bytes(c.partner_load_first) + bytes(c.partner_loads) +
            bytes(c.surface_loads) + bytes(c.work) + of_steps(c.pair_contacts) + of_steps(c.surface_contacts) +

@@ -28,7 +28,7 @@ void release_ids(WorldState<Model>& w) {
     if (id >= ledger.energy.size()) continue;
     if (ledger.energy[id] == ledger.energy[id]) ledger.came -= ledger.energy[id];
     ledger.energy[id] = std::numeric_limits<double>::quiet_NaN();
-    ledger.velocity[id] = ledger.spin[id] = {0, 0, 0};
+    ledger.velocity[id] = ledger.global_angular_velocity[id] = {0, 0, 0};
   }
   w.particles.release_ids();
 }

@@ -67,13 +67,14 @@ void change_species(WorldState<Model>& w, std::size_t row, SpeciesId to) {
   const bool stands = w.species[to.index()].is_held();
   if (w.ledger.on && from.is_held() != stands) {
     const double fall = from.mass * dot(from_eigen(w.options.gravity), p.position[row]);
-    w.ledger.came += (stands ? -1.0 : 1.0) * (kinetic_energy(from, p.velocity[row], p.spin[row]) - fall);
+    w.ledger.came +=
+        (stands ? -1.0 : 1.0) * (kinetic_energy(from, p.velocity[row], p.local_angular_velocity[row]) - fall);
   }
   p.species[row] = to.value;
   if (p.id[row] < w.sleepers.grains.size()) w.sleepers.grains[p.id[row]] = {};  // it wakes
   if (!stands) return;
   p.velocity.set(row, {0, 0, 0});
-  p.spin.set(row, {0, 0, 0});
+  p.local_angular_velocity.set(row, {0, 0, 0});
   p.set_memory(row, {});
 }
 

@@ -282,12 +282,13 @@ void wake_and_put_to_sleep(WorldState<Model>& w) {
         if (grain::end_window(i, p, kind, borne, rest, window)) {
           rest.asleep = true;
           if (w.ledger.on) [[unlikely]] {
-            const double motion = kind.is_held() ? 0.0 : kinetic_energy(kind, p.velocity[i], p.spin[i]);
+            const double motion =
+                kind.is_held() ? 0.0 : kinetic_energy(kind, p.velocity[i], p.local_angular_velocity[i]);
             chunk.stopped += motion;
             w.ledger.stop(p.id[i], motion);
           }
           p.velocity.set(i, {0, 0, 0});
-          p.spin.set(i, {0, 0, 0});
+          p.local_angular_velocity.set(i, {0, 0, 0});
           grain::refresh_views(i, i + 1, p, std::span<const Species<typename Model::Shape>>(w.species));
           s.doing[i] = static_cast<std::uint8_t>(grain::changed | (s.doing[i] & grain::counted));
           chunk.changed = true;

@@ -19,7 +19,7 @@ bool lets_points_through(const Surface& s) {
       s.geometry);
 }
 
-/// Whether a grain meets surfaces with points of its skin, which have no radius.
+/// Whether a grain meets surfaces with points of its boundary, which have no radius.
 template <class Shape>
 bool meets_with_points(const Shape& shape) {
   bool any = false;
@@ -46,7 +46,8 @@ void check_thin_sheets(const WorldState<Model>& w) {
     for (std::size_t s = 0; s < w.species.size(); ++s) {
       if (!meets_with_points(w.species[s].shape)) continue;
       fail(
-          "{} is a two-sided sheet of triangles, but grains of species {} meet surfaces with points of their skins: {}",
+          "{} is a two-sided sheet of triangles, but grains of species {} meet surfaces with points of their "
+          "boundaries: {}",
           surface_in_words(w, k), s, remedy);
     }
   }

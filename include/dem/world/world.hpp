@@ -183,7 +183,7 @@ class World : public WorldSetup<M> {
   void set_angular_velocity(ParticleId p, const Vec3& w) {
     require_finite(w, "angular velocity of a grain");
     wake_around(state_, row_that_moves(p));
-    state_.particles.spin.set(row(p), from_eigen(Vec3(rotation(p).transpose() * w)));
+    state_.particles.local_angular_velocity.set(row(p), from_eigen(Vec3(rotation(p).transpose() * w)));
     initialised_ = false;
   }
   /// Puts a grain elsewhere; its contacts there start without friction, those that it still has go on.

@@ -21,7 +21,7 @@ TEST_CASE("two spheres touch in the middle of their overlap") {
   CHECK(g.overlap == Approx(0.5).epsilon(1e-15));
   check_close(g.arm, 1.75 * Vec3(0, 0.6, 0.8));  // 2 - 0.25 from the centre of i; 1 - 0.25 from that of j
   CHECK(g.effective_radius == Approx(2.0 / 3.0).epsilon(1e-15));
-  CHECK(g.area == 1.0);
+  CHECK(g.weight == 1.0);
 }
 
 TEST_CASE("spheres of a cluster touch at arms from the grain's centre") {

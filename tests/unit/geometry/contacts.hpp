@@ -9,7 +9,7 @@ struct Contact {
   std::uint32_t feature;
   dem::Vec3 normal, point;  ///< the point from the centre of a
   double overlap, effective_radius;
-  double area = 1.0;
+  double weight = 1.0;
 };
 
 /// All contacts of shape a with b, b being `separation` away, in the order in which they are found; with a gap (m) for
@@ -23,7 +23,7 @@ std::vector<Contact> contacts(const Shape& a, const dem::Mat3& turn_a, const Sha
   std::vector<Contact> found;
   const auto sink = [&](std::uint32_t feature, const auto& point) {
     const auto g = point.geometry();
-    found.push_back({feature, to_eigen(g.normal), to_eigen(g.arm), g.overlap, g.effective_radius, g.area});
+    found.push_back({feature, to_eigen(g.normal), to_eigen(g.arm), g.overlap, g.effective_radius, g.weight});
   };
   Shape::collide(a, pose_a, b, pose_b, dem::from_eigen(separation), sink, gap...);
   return found;

@@ -227,10 +227,11 @@ TEST_CASE("pieces that touch from inside are inside, those that touch from outsi
   inside += mesh::box({1, 1, 1}).flipped().moved({0.5, 0.1, 0.1});
   CHECK(dem::repaired(inside.flipped()).report.enclosed_volume == Approx(7.0));
   IndexedMesh beside = mesh::tyre(1.0, 0.25, 600);  // a ring's bounding box holds a block that touches its flat cells
-  const Vec3 on_skin = (beside.corner(0, 0) + beside.corner(0, 1) + beside.corner(0, 2)) / 3.0;
+  const Vec3 on_boundary = (beside.corner(0, 0) + beside.corner(0, 1) + beside.corner(0, 2)) / 3.0;
   const Vec3 out = beside.area_vector(0).normalized();
-  beside +=
-      mesh::box({0.01, 0.01, 0.01}).flipped().moved(on_skin + 0.005 * out, dem::rotation_between(Vec3::UnitZ(), out));
+  beside += mesh::box({0.01, 0.01, 0.01})
+                .flipped()
+                .moved(on_boundary + 0.005 * out, dem::rotation_between(Vec3::UnitZ(), out));
   const double volume = dem::repaired(mesh::tyre(1.0, 0.25, 600)).report.enclosed_volume;
   CHECK(dem::repaired(beside).report.enclosed_volume == Approx(volume + 1e-6).epsilon(1e-12));
 }

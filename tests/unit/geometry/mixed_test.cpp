@@ -60,8 +60,8 @@ TEST_CASE("a mixed shape is what its kind is") {
   CHECK(Any::pose_size == std::max({Cube::pose_size, Superquadric::pose_size}));
   CHECK(mixed.kind().index() == 1);
   const SuperquadricPoints points({1, 1, 1}, {8, 8, 8}, 4, PointArea::physical);
-  CHECK(WithPoints(points).patch().area == points.patch().area);
-  CHECK(WithPoints(cube).patch().area == cube.patch().area);
+  CHECK(WithPoints(points).patch().weight == points.patch().weight);
+  CHECK(WithPoints(cube).patch().weight == cube.patch().weight);
 
   // Two grains of one kind: the kind's own contacts, to the bit, and its own numbers behind the mark of the kind.
   Random random(3);
@@ -147,14 +147,14 @@ TEST_CASE("superquadrics of either policy touch each other by the points of both
     const auto expected = contacts(points, ra, other, rb, d);
     const auto found = contacts(Both(points), ra, Both(smooth), rb, d);
     check_same(found, expected, 1e-14);  // the same numbers by the same way
-    for (std::size_t c = 0; c < found.size(); ++c) CHECK(found[c].area == Approx(expected[c].area).epsilon(1e-12));
+    for (std::size_t c = 0; c < found.size(); ++c) CHECK(found[c].weight == Approx(expected[c].weight).epsilon(1e-12));
     // From the other side: the same contacts, mirrored.
     auto turned = contacts(Both(smooth), rb, Both(points), ra, -d);
     REQUIRE(turned.size() == found.size());
     for (std::size_t c = 0; c < found.size(); ++c) {
       CHECK((turned[c].normal + found[c].normal).norm() < 1e-12);
       CHECK((turned[c].point + d - found[c].point).norm() < 1e-12);
-      CHECK(turned[c].area == Approx(found[c].area));
+      CHECK(turned[c].weight == Approx(found[c].weight));
       CHECK(turned[c].feature == found[c].feature);
     }
     touching += !found.empty();
@@ -166,7 +166,7 @@ TEST_CASE("superquadrics of either policy touch each other by the points of both
       if ((c.feature & SuperquadricPoints::other_way) != 0) continue;
       REQUIRE(own < by_area.size());
       CHECK(by_area[own].overlap == Approx(c.overlap));
-      CHECK(by_area[own].area == weighed.points().area[c.feature]);
+      CHECK(by_area[own].weight == weighed.points().weight[c.feature]);
       ++own;
     }
     CHECK(by_area.size() == own);
@@ -181,11 +181,11 @@ TEMPLATE_TEST_CASE("a superquadric and a polyhedron touch as one contact", "", S
   const Mat3 one = Mat3::Identity();
   const auto push = [](const Both& a, const Mat3& ra, const Both& b, const Mat3& rb, const Vec3& d) {
     Vec3 sum = Vec3::Zero();
-    for (const Contact& c : contacts(a, ra, b, rb, d)) sum += c.area * c.overlap * c.normal;
+    for (const Contact& c : contacts(a, ra, b, rb, d)) sum += c.weight * c.overlap * c.normal;
     return sum;
   };
   const Both cube(TestType(Vec3::Ones(), Vec3::Constant(32), 8));
-  // A face on a face; the skin of the rounded cube is flat to 1 % of the depth over most of it.
+  // A face on a face; the boundary of the rounded cube is flat to 1 % of the depth over most of it.
   Vec3 force = push(cube, one, brick, one, Vec3(2.5 - depth, 0.1, 0.2));
   CHECK(force.x() == Approx(depth).epsilon(0.05));
   CHECK(force.tail<2>().norm() < 5e-3 * depth);  // points near the rim, off the middle on one side
@@ -200,7 +200,7 @@ TEMPLATE_TEST_CASE("a superquadric and a polyhedron touch as one contact", "", S
   force = push(cube, one, brick, on_corner, Vec3(1 + diagonal.norm() - depth, 0.1, 0.05));
   CHECK(force.x() == Approx(depth).epsilon(1e-2));
   CHECK(push(cube, one, brick, on_corner, Vec3(1 + diagonal.norm() + 1e-9, 0.1, 0.05)).norm() == 0.0);
-  const Both egg(TestType({1, 1, 1.5}, {2, 2, 2}, 10));  // its poles are points of the skin
+  const Both egg(TestType({1, 1, 1.5}, {2, 2, 2}, 10));  // its poles are points of the boundary
   CHECK(push(egg, one, brick, one, Vec3(0, 0, 3.5 - depth)).z() == Approx(depth).epsilon(1e-9));
 }
 
@@ -246,7 +246,7 @@ TEMPLATE_TEST_CASE("pairs of different kinds look the same from either side", ""
           CHECK(same->overlap == Approx(from_a[c].overlap).margin(searched ? 1e-9 : 1e-12));
           CHECK((same->normal + from_a[c].normal).norm() < (searched ? 1e-5 : 1e-12));
           CHECK((same->point + d - from_a[c].point).norm() < (searched ? 1e-4 : 1e-12));
-          CHECK(same->area == Approx(from_a[c].area).epsilon(1e-9));
+          CHECK(same->weight == Approx(from_a[c].weight).epsilon(1e-9));
           CHECK(same->effective_radius == Approx(from_a[c].effective_radius).epsilon(1e-12));
         }
       }

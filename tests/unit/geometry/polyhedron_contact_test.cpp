@@ -28,7 +28,7 @@ std::vector<Point> patch(const Polyhedron& a, const Mat3& ra, const Polyhedron& 
   b.orient(dem::from_eigen(rb), pose_b);
   std::vector<Point> found;
   Polyhedron::collide(a, pose_a, b, pose_b, dem::from_eigen(link), [&](std::uint32_t feature, const auto& t) {
-    found.push_back({{feature, to_eigen(t.normal), to_eigen(t.arm), t.overlap, t.effective_radius}, t.area});
+    found.push_back({{feature, to_eigen(t.normal), to_eigen(t.arm), t.overlap, t.effective_radius}, t.weight});
   });
   return found;
 }
@@ -150,7 +150,7 @@ TEST_CASE("the points of a patch lie in both bodies, and their shares add up to 
     ++touching;
     double sum = 0.0;
     for (const Point& p : points) {
-      // Halfway between the skins; on the border of the patch it is inside by rounding and by the patch's slack of
+      // Halfway between the boundaries; on the border of the patch it is inside by rounding and by the patch's slack of
       // 1e-6.
       CHECK(height_above(a, ra, p.point) < 0.25 * p.overlap + 2e-6);
       CHECK(height_above(b, rb, p.point - scale * link) < 0.25 * p.overlap + 2e-6);

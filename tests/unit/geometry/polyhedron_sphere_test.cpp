@@ -25,7 +25,7 @@ std::vector<Found> contacts(const A& a, const Mat3& ra, const B& b, const Mat3& 
   std::vector<Found> found;
   NoWarmStart none;
   collide_pair(a, pose_a, b, pose_b, dem::from_eigen(link), none, [&](std::uint32_t feature, const auto& t) {
-    found.push_back({feature, to_eigen(t.normal), to_eigen(t.arm), t.overlap, t.area});
+    found.push_back({feature, to_eigen(t.normal), to_eigen(t.arm), t.overlap, t.weight});
   });
   return found;
 }
@@ -42,7 +42,7 @@ TEST_CASE("a sphere touches a box on a face, an edge, a corner, or from inside")
     REQUIRE(found.size() == 1);
     CHECK(found[0].overlap == Approx(0.5 - height).epsilon(1e-12));
     CHECK((found[0].normal + turn * outward).norm() < 1e-13);
-    // Halfway between the skins of ball and box.
+    // Halfway between the boundaries of ball and box.
     CHECK((found[0].point - turn * (nearest - ball_at - 0.5 * found[0].overlap * outward)).norm() < 1e-12);
     CHECK(found[0].share == 1.0);
     // And the other way round.
@@ -63,7 +63,7 @@ TEST_CASE("a sphere touches a box on a face, an edge, a corner, or from inside")
   CHECK(none({1.3, 2.3, 3.3}));
 }
 
-TEST_CASE("the nearest point of a polyhedron is nearer than any other point of its skin") {
+TEST_CASE("the nearest point of a polyhedron is nearer than any other point of its boundary") {
   std::mt19937 random(8);
   std::normal_distribution<double> normal;
   for (const Polyhedron& body : {tetrahedron(1.0), dodecahedron(1.0), rock({.length = 2.0, .flatness = 0.5})}) {
@@ -93,7 +93,7 @@ TEST_CASE("the nearest point of a polyhedron is nearer than any other point of i
       // The true distance is below that of all samples, which are up to 0.06 apart: 1e-3 more at distances around 1.
       CHECK(nearest.height <= sampled + 1e-12);
       CHECK(nearest.height > sampled - 0.06);
-      const Vec3 q = p - nearest.height * to_eigen(nearest.outward);  // on the skin
+      const Vec3 q = p - nearest.height * to_eigen(nearest.outward);  // on the boundary
       double height = -1e300;
       for (std::size_t f = 0; f < mesh.faces.size(); ++f) {
         height = std::max(height, mesh.normals[f].dot(q) - mesh.offsets[f]);

@@ -308,7 +308,7 @@ TEST_CASE("what a polyhedron shows to surfaces are its corners, with shares that
       CHECK(index == share.size());
       CHECK(sample.radius == 0.0);
       CHECK((to_eigen(sample.centre) - turn * body.mesh().corners[index]).norm() < 1e-14);
-      share.push_back(sample.area);
+      share.push_back(sample.weight);
     });
     REQUIRE(share.size() == body.mesh().corners.size());
     for (const auto& face : body.mesh().faces) {

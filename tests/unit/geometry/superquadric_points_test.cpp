@@ -22,15 +22,16 @@ double deepest(const std::vector<Contact>& found) {
   return depth;
 }
 
-/// Sum of area times depth along the normals: the force of a stiffness of one.
+/// Sum of weight times depth along the normals: the force of a stiffness of one.
 template <class Shape>
 Vec3 push(const Shape& a, const Mat3& ra, const Shape& b, const Mat3& rb, const Vec3& separation) {
   double pose_a[Shape::pose_size], pose_b[Shape::pose_size];
   a.orient(dem::from_eigen(ra), pose_a);
   b.orient(dem::from_eigen(rb), pose_b);
   Vec3 sum = Vec3::Zero();
-  Shape::collide(a, pose_a, b, pose_b, dem::from_eigen(separation),
-                 [&](std::uint32_t, const auto& point) { sum += point.area * point.overlap * to_eigen(point.normal); });
+  Shape::collide(a, pose_a, b, pose_b, dem::from_eigen(separation), [&](std::uint32_t, const auto& point) {
+    sum += point.weight * point.overlap * to_eigen(point.normal);
+  });
   return sum;
 }
 
@@ -139,18 +140,18 @@ TEST_CASE("faces that lie on each other push with the area of the face") {
   // Relative areas: the same force, in mean points.
   const SuperquadricPoints relative(Vec3::Ones(), Vec3::Constant(8), 24, PointArea::relative);
   double total = 0.0;
-  for (int k = 0; k < cube.points().count; ++k) total += cube.points().area[static_cast<std::size_t>(k)];
+  for (int k = 0; k < cube.points().count; ++k) total += cube.points().weight[static_cast<std::size_t>(k)];
   const Vec3 same = push(relative, one, relative, one, Vec3(2 - depth, 0, 0));
   CHECK(same.x() * total / cube.points().count == Approx(force.x()).epsilon(1e-12));
 
-  // What the time step is told: the points of a face and their area.
+  // What the time step is told: the points of a face and their weight.
   const auto patch = cube.surface_patch();
   CHECK(cube.patch().points == 2 * patch.points);  // in a pair, a face of each
-  CHECK(cube.patch().area == 2 * patch.area);
+  CHECK(cube.patch().weight == 2 * patch.weight);
   // Behind the face's plane by less than a tenth of the mean radius 1.216: |y|^8 + |z|^8 < 1 - 0.878^8 = 0.647, which
   // is 4 * 0.647^(1/4) Gamma(9/8)^2 / Gamma(5/4) = 3.51; less the slope at the rim.
-  CHECK(patch.area < 3.51);
-  CHECK(patch.area == Approx(3.51).epsilon(0.1));
+  CHECK(patch.weight < 3.51);
+  CHECK(patch.weight == Approx(3.51).epsilon(0.1));
   CHECK(patch.points == Approx(25 * 25).epsilon(0.15));
 }
 
@@ -166,14 +167,14 @@ TEST_CASE("points that share a contact are one contact, however many there are")
     double weights = 0.0;
     std::size_t points = 0;
     for (const Contact& c : contacts(cube, one, cube, one, Vec3(2 - depth, 0, 0))) {
-      weights += c.area;
+      weights += c.weight;
       points += 1;
     }
     CHECK(points >= 2 * 3 * 3);
     // Points at the rim, which are less deep, count less: the weights sum to a little more than what counts.
     CHECK(weights == Approx(1.0).epsilon(0.1));
-    CHECK(cube.patch().area == 1.0);
-    CHECK(cube.surface_patch().area == 1.0);
+    CHECK(cube.patch().weight == 1.0);
+    CHECK(cube.surface_patch().weight == 1.0);
   }
   // The force does not jump when points come and go: a corner pressed into a face, in small steps.
   const SuperquadricPoints cube(Vec3::Ones(), Vec3::Constant(8), 12);

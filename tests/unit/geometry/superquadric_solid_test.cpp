@@ -1,7 +1,7 @@
 #include "core/error_of.hpp"
 
+#include <dem/geometry/superquadric/superquadric_boundary.hpp>
 #include <dem/geometry/superquadric/superquadric_integrals.hpp>
-#include <dem/geometry/superquadric/superquadric_skin.hpp>
 
 #include <numbers>
 #include <random>
@@ -175,11 +175,11 @@ TEST_CASE("depth and normal of a point in a superquadric err by no more than the
 TEST_CASE("the points of a superquadric's surface share its area") {
   // A sphere, a prolate spheroid in closed form, and a cube whose exponent is as high as it goes.
   const auto total = [](const Vec3& radii, const Vec3& exponents, int divisions) {
-    const auto skin = dem::shape::superquadric_skin(SuperquadricSolid(radii, exponents), divisions);
-    CHECK(skin.points.size() == std::size_t(6 * divisions * divisions + 2));
-    CHECK(skin.quads.size() == std::size_t(6 * divisions * divisions));
+    const auto boundary = dem::shape::superquadric_boundary(SuperquadricSolid(radii, exponents), divisions);
+    CHECK(boundary.points.size() == std::size_t(6 * divisions * divisions + 2));
+    CHECK(boundary.quads.size() == std::size_t(6 * divisions * divisions));
     double sum = 0.0;
-    for (const double a : skin.areas) {
+    for (const double a : boundary.areas) {
       CHECK(a > 0.0);
       sum += a;
     }
@@ -196,9 +196,9 @@ TEST_CASE("the points of a superquadric's surface share its area") {
 
   // The quads look outward, and normals are those of the surface.
   const SuperquadricSolid solid({1, 1.3, 0.7}, {3, 4, 2});
-  const auto skin = dem::shape::superquadric_skin(solid, 5);
-  for (const auto& quad : skin.quads) {
-    const auto at = [&](std::size_t k) { return skin.points[static_cast<std::size_t>(quad[k])]; };
+  const auto boundary = dem::shape::superquadric_boundary(solid, 5);
+  for (const auto& quad : boundary.quads) {
+    const auto at = [&](std::size_t k) { return boundary.points[static_cast<std::size_t>(quad[k])]; };
     CHECK(dot(cross(at(2).position - at(0).position, at(3).position - at(1).position), at(0).normal) > 0.0);
   }
 }
@@ -207,5 +207,5 @@ TEST_CASE("wrong superquadrics are refused in words") {
   check_refused([] { SuperquadricSolid(Vec3(1, 0, 1), Vec3(2, 2, 2)); }, "radius of a superquadric is 0 m");
   check_refused([] { SuperquadricSolid(Vec3(1, 1, 1), Vec3(2, 1.5, 2)); }, "exponent of a superquadric is 1.5");
   check_refused([] { SuperquadricSolid(Vec3(1, 1, 1), Vec3(2, 33, 2)); }, "is 33", "between 2 and 32");
-  check_refused([] { dem::shape::superquadric_skin(SuperquadricSolid(1.0), 27); }, "27 divisions", "1 to 26");
+  check_refused([] { dem::shape::superquadric_boundary(SuperquadricSolid(1.0), 27); }, "27 divisions", "1 to 26");
 }

@@ -27,13 +27,13 @@ std::vector<ContactPoint<double>> fitted(const std::vector<Point>& points, Fit f
 }
 double weight(const std::vector<Point>& points, Fit fit) {
   double sum = 0.0;
-  for (const auto& t : fitted(points, fit)) sum += t.area;
+  for (const auto& t : fitted(points, fit)) sum += t.weight;
   return sum;
 }
 /// Sum of weight times overlap: the force of a contact with K = 1.
 double force(const std::vector<Point>& points, Fit fit = Fit::always) {
   double sum = 0.0;
-  for (const auto& t : fitted(points, fit)) sum += t.area * std::max(0.0, t.overlap);
+  for (const auto& t : fitted(points, fit)) sum += t.weight * std::max(0.0, t.overlap);
   return sum;
 }
 
@@ -43,9 +43,9 @@ TEST_CASE("points that share a contact are one whole contact, and none jumps in 
   CHECK(force({}) == 0.0);
   // Across a gap the nearest is the whole of it; a point that faces another way is a contact of its own.
   const auto apart = fitted({{-2e-4, 0.5}, {-1e-4, 0.3}, {-3e-4, 0.7, {-1, 0, 0}}}, Fit::always);
-  CHECK(apart[0].area == 0.0);
-  CHECK(apart[1].area == 1.0);
-  CHECK(apart[2].area == 1.0);
+  CHECK(apart[0].weight == 0.0);
+  CHECK(apart[1].weight == 1.0);
+  CHECK(apart[2].weight == 1.0);
   CHECK(force({{0.1, 0.3}}) == Approx(0.1));
   CHECK(force({{0.1, 2.0}, {0.1, 3.0}, {0.1, 1.0}}) == Approx(0.1));
   CHECK(force({{0.1, 1.0}, {0.1, 1.0}, {1e-9, 1.0}}) == Approx(0.1).epsilon(1e-7));
@@ -56,7 +56,7 @@ TEST_CASE("points that share a contact are one whole contact, and none jumps in 
   std::vector<Point> shallow(25, Point{0.01, 1.0});
   shallow.push_back({1.0, 1.0});
   CHECK(weight(shallow, Fit::always) == Approx(1.0));
-  CHECK(fitted({{0.1, 1.0}, {1e-12, 1.0}}, Fit::always)[1].area < 1e-10);
+  CHECK(fitted({{0.1, 1.0}, {1e-12, 1.0}}, Fit::always)[1].weight < 1e-10);
 }
 
 TEST_CASE("shares of less than a contact stay what they are, and go over into one without a jump") {
@@ -76,10 +76,10 @@ TEST_CASE("shares of less than a contact stay what they are, and go over into on
 TEST_CASE("points on different sides are different contacts") {
   const Vector3<double> x = {1, 0, 0}, y = {0, 1, 0};
   const auto corner = fitted({{0.1, 1.0, x}, {0.1, 1.0, x}, {0.2, 1.0, y}, {0.2, 1.0, -x}}, Fit::always);
-  CHECK(corner[0].area == Approx(0.5));
-  CHECK(corner[1].area == Approx(0.5));
-  CHECK(corner[2].area == Approx(1.0));
-  CHECK(corner[3].area == Approx(1.0));
+  CHECK(corner[0].weight == Approx(0.5));
+  CHECK(corner[1].weight == Approx(0.5));
+  CHECK(corner[2].weight == Approx(1.0));
+  CHECK(corner[3].weight == Approx(1.0));
 }
 
 TEST_CASE("many points are weighted as if each looked at all the others") {
@@ -107,7 +107,7 @@ TEST_CASE("many points are weighted as if each looked at all the others") {
         between += n > 1.0 && n < 2.0;
         const double whole = points[k].weight * std::max(0.0, points[k].overlap) / first;
         const double kept = n > 1.0 ? (1.0 - over) * points[k].weight / n : points[k].weight;
-        CHECK(contact_points[k].area ==
+        CHECK(contact_points[k].weight ==
               Approx(fit == Fit::always ? whole : kept + over * whole).epsilon(1e-12).margin(1e-14));
       }
     }

@@ -45,12 +45,12 @@ TEST_CASE("points that touch at once count in the stable time step") {
     const SuperquadricPoints points(radii, exponents, 6, kind);
     const auto patch = points.patch();
     // The same grain with a patch of so much area: as if the stiffness were that of the patch.
-    CHECK(limit(points, 2000 / patch.area, 0) == Approx(one).epsilon(1e-12));
+    CHECK(limit(points, 2000 / patch.weight, 0) == Approx(one).epsilon(1e-12));
     // Friction springs are per area as well.
-    CHECK(limit(points, 1e-9 / patch.area, 2000 / patch.area) == Approx(one).epsilon(1e-12));
+    CHECK(limit(points, 1e-9 / patch.weight, 2000 / patch.weight) == Approx(one).epsilon(1e-12));
     // In any mixture as well.
     using Any = dem::shape::Mixed<dem::shape::Sphere, SuperquadricPoints>;
-    CHECK(limit(Any(points), 2000 / patch.area, 0) == Approx(one).epsilon(1e-12));
+    CHECK(limit(Any(points), 2000 / patch.weight, 0) == Approx(one).epsilon(1e-12));
   }
   // Points that share a contact, in pairs or on surfaces, are as stiff as a whole one. A pair of grains has twice the
   // inverse effective mass of a grain on a wall, so it is what limits.

@@ -26,9 +26,9 @@ TEST_CASE("partners of a pack come out lane by lane, whatever the width of a pac
     CHECK(lane(e.velocity.y, k) == -2.0 + k);
     CHECK(lane(e.velocity.z, k) == 3.0 * k - 4.0);
     CHECK(lane(e.inverse_mass, k) == 0.75);
-    CHECK(lane(e.spin_i.x, k) == 7.0 + k);
-    CHECK(lane(e.spin_i.z, k) == 9.0);
-    CHECK(lane(e.spin_j.x, k) == 1.0);
-    CHECK(lane(e.spin_j.z, k) == 3.0 + k);
+    CHECK(lane(e.angular_velocity_i.x, k) == 7.0 + k);
+    CHECK(lane(e.angular_velocity_i.z, k) == 9.0);
+    CHECK(lane(e.angular_velocity_j.x, k) == 1.0);
+    CHECK(lane(e.angular_velocity_j.z, k) == 3.0 + k);
   }
 }

@@ -181,11 +181,11 @@ TEST_CASE("surface sensors feel other machine parts, too") {
   world.set_contact({.normal = {.stiffness = 1000, .damping = 1.0, .separation_factor = 1}, .friction = {}});
   const auto table = world.add_surface(world.ground(), dem::surface::Plane{});
   const dem::BodyId body = world.machine().add_body(dem::mbd::sphere_body("ball", 5e-3, 2000.0).at({0.02, 0, 5e-3}));
-  const auto skin = world.add_surface(body, dem::surface::Sphere(5e-3));
-  world.add_body_contact(skin, table);
+  const auto ball = world.add_surface(body, dem::surface::Sphere(5e-3));
+  world.add_body_contact(ball, table);
   const auto grain = world.add_species(dem::shape::Sphere(1e-3));
   world.add_particle({.species = grain, .position = {0, 0, 1e-3}});
-  const auto on_table = world.add_surface_sensor(table, 0.01), on_ball = world.add_surface_sensor(skin, 0.01);
+  const auto on_table = world.add_surface_sensor(table, 0.01), on_ball = world.add_surface_sensor(ball, 0.01);
   REQUIRE(world.run_for(0.5));
   const double weight = 9.81 * world.machine().body(body).mass, grains = 9.81 * world.species(grain).mass;
   // At rest: what the dampers leave after 0.5 s is nothing.

@@ -62,8 +62,8 @@ TEMPLATE_TEST_CASE("a superquadric ball rests on a floor as a sphere does", "", 
     auto& w = scene.world;
     REQUIRE(w.run_for(1.0));
     const double weight = mass_of(w, scene.grain) * g;
-    // It lies m g/K = 7e-6 m deep, over a spot of sqrt(2 r 7e-6) = r/19 radius; what other points of the skin are in
-    // there weighs (3/19)^4 = 6e-4 at most.
+    // It lies m g/K = 7e-6 m deep, over a spot of sqrt(2 r 7e-6) = r/19 radius; what other points of the boundary are
+    // in there weighs (3/19)^4 = 6e-4 at most.
     CHECK(ball_radius - w.position(scene.grain).z() == Approx(weight / 2000.0).epsilon(2e-3));
     CHECK(w.force(scene.grain).z() == Approx(weight).epsilon(1e-6));
   }
@@ -79,8 +79,8 @@ TEMPLATE_TEST_CASE("a superquadric ball rolls down a slope as a sphere does", ""
     REQUIRE(w.run_for(0.1));
     const double v = w.velocity(scene.grain).x();
     REQUIRE(w.run_for(0.3));
-    // Without slip 5/7 g sin. Points of the skin that pass the spot of contact push with an arm of r/60 and a weight
-    // of 6e-6, forwards and back.
+    // Without slip 5/7 g sin. Points of the boundary that pass the spot of contact push with an arm of r/60 and a
+    // weight of 6e-6, forwards and back.
     CHECK((w.velocity(scene.grain).x() - v) / 0.3 == Approx(5.0 / 7.0 * g * std::sin(angle)).epsilon(2e-3));
     CHECK(w.angular_velocity(scene.grain).y() == Approx(w.velocity(scene.grain).x() / ball_radius).epsilon(2e-3));
     CHECK(std::abs(w.position(scene.grain).y() - 0.001) < 1e-2 * w.position(scene.grain).x());
@@ -149,7 +149,7 @@ TEST_CASE("a superquadric ball touches the face of a polyhedron as a plane") {
         ball, pose_a, cube, pose_b, {0.013, 0.004, -(0.05 + ball_radius - overlap)},
         [&](std::uint32_t, const auto& point) {
           CHECK(point.normal.z == Approx(-1.0));
-          force += point.area * point.overlap;
+          force += point.weight * point.overlap;
         });
     // As above: the spot's radius is r/15.
     CHECK(force == Approx(overlap).epsilon(3e-3));

@@ -141,7 +141,7 @@ template <class Model>
 double spring_energy(const dem::World<Model>& w, const dem::contact::Geometry<double>& g) {
   const auto& p = w.state().materials.table()[0];
   const double d = std::max(0.0, g.overlap);
-  return 1.5 * 0.5 * g.area * Model::Normal::stiffness(p.normal, {d, 0.0, g.effective_radius, 1.0, 0.0}) * d * d;
+  return 1.5 * 0.5 * g.weight * Model::Normal::stiffness(p.normal, {d, 0.0, g.effective_radius, 1.0, 0.0}) * d * d;
 }
 
 /// Watches that a world in which nothing but dampers and friction acts besides springs never gains energy, at any time

@@ -11,7 +11,7 @@
 
 namespace dem::shape {
 
-/// The skin of a convex body: corners, flat faces (as large as they can be), and each edge once.
+/// The boundary of a convex body: corners, flat faces (as large as they can be), and each edge once.
 struct ConvexMesh {
   struct Edge {
     int tail, head;   ///< corners

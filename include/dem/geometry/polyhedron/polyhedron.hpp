@@ -17,9 +17,9 @@ namespace dem::shape {
 /// them. A grain adds its rotation. The contact code uses it to put one body into the frame of the other, where faces
 /// do not move.
 ///
-/// Contacts are patches of points with shares (FacePatch): contact::ContactPoint::area is the share of a point, without
-/// unit. A face on a face has the normal stiffness K of the law, however many points there are, an edge K/2 and a
-/// corner K/3. The effective radius is r_i r_j/(r_i + r_j) of the spheres of the same volumes.
+/// Contacts are patches of points with shares (FacePatch): contact::ContactPoint::weight is the share of a point,
+/// without unit. A face on a face has the normal stiffness K of the law, however many points there are, an edge K/2 and
+/// a corner K/3. The effective radius is r_i r_j/(r_i + r_j) of the spheres of the same volumes.
 class Polyhedron {
  public:
   static constexpr int pose_size = 9;

@@ -6,10 +6,10 @@
 
 namespace dem::shape {
 
-/// The point of a polyhedron's skin that is nearest to a point, in the polyhedron's frame.
+/// The point of a polyhedron's boundary that is nearest to a point, in the polyhedron's frame.
 struct NearestPoint {
-  Vector3<double> outward;  ///< unit vector from the skin towards the outside, through the point asked for
-  double height;            ///< m, of the point asked for above the skin; negative inside
+  Vector3<double> outward;  ///< unit vector from the boundary towards the outside, through the point asked for
+  double height;            ///< m, of the point asked for above the boundary; negative inside
 };
 
 /// Nearest point of a polygon (one face), for points above its plane: inside its sides, else on the nearest side. The
@@ -40,7 +40,7 @@ inline Vector3<double> way_from_face(const PolyhedronTables& t, int face, double
   return best;
 }
 
-/// Nearest point of the whole skin. False if p is at least `reach` away from it.
+/// Nearest point of the whole boundary. False if p is at least `reach` away from it.
 inline bool nearest_point(const PolyhedronTables& t, const Vector3<double>& p, double reach, NearestPoint& result) {
   double best2 = reach * reach, highest = -1e300;
   int highest_face = 0;

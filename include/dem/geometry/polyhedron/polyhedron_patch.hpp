@@ -9,7 +9,7 @@ namespace dem::shape {
 /// A point of contact of two polyhedra, in some frame. `of_first` and `of_second` are the elements (face, edge or
 /// corner) of the two bodies that meet there.
 struct PatchPoint {
-  Vector3<double> point;  ///< m, halfway between the two skins
+  Vector3<double> point;  ///< m, halfway between the two boundaries
   double depth;           ///< m
   double share;           ///< of the contact's stiffness
   std::uint32_t of_first, of_second;

@@ -8,10 +8,10 @@ namespace dem::shape {
 /// A superquadric grain, one contact a pair: where the two surfaces share a normal (the "common normal" of Podlozhnyuk
 /// et al. 2017, doi:10.1007/s40571-016-0131-6, found directly instead of through a midpoint). The overlap is the least
 /// distance by which one grain must move to part from the other, so without dampers and friction the normal force has a
-/// potential, K overlap^2 / 2. Surfaces of machine parts are felt with the point of the skin that meets them first and
-/// with fixed points spread over it, which share one contact. Laws that ask for a radius (Hertz, Mindlin, JKR, bridges)
-/// get that of the sphere of the same volume, not the curvature at the contact: on the tip of an ellipsoid with radii
-/// 2:1:1 Hertz comes out 1.6 times too stiff.
+/// potential, K overlap^2 / 2. Surfaces of machine parts are felt with the point of the boundary that meets them first
+/// and with fixed points spread over it, which share one contact. Laws that ask for a radius (Hertz, Mindlin, JKR,
+/// bridges) get that of the sphere of the same volume, not the curvature at the contact: on the tip of an ellipsoid
+/// with radii 2:1:1 Hertz comes out 1.6 times too stiff.
 class Superquadric : public SuperquadricGrain {
  public:
   static constexpr std::size_t most_contacts = 1;

@@ -3,9 +3,9 @@
 #include <dem/core/aligned.hpp>
 #include <dem/geometry/contact_shares.hpp>
 #include <dem/geometry/shape.hpp>
+#include <dem/geometry/superquadric/superquadric_boundary.hpp>
 #include <dem/geometry/superquadric/superquadric_integrals.hpp>
 #include <dem/geometry/superquadric/superquadric_search.hpp>
-#include <dem/geometry/superquadric/superquadric_skin.hpp>
 
 #include <numbers>
 
@@ -22,7 +22,7 @@ enum class PointArea {
 
 /// Points of a grain's surface in whole packs; the last ones are padded with points that nothing contains.
 struct PointTable {
-  AlignedVector<double> x, y, z, area;
+  AlignedVector<double> x, y, z, weight;  // m; the weight as contact::Geometry's
   int count = 0;
 
   Vector3<double> operator[](int k) const {
@@ -60,7 +60,7 @@ class SuperquadricGrain {
   /// Whether contacts are whole ones, of which points have shares.
   bool has_shares() const { return area_ == PointArea::share; }
   static constexpr contact::Fit shares_fit = contact::Fit::always;
-  /// The most points that may lie on a surface at once (of area 1 where they share it). On each of the three sides
+  /// The most points that may lie on a surface at once (of weight 1 where they share it). On each of the three sides
   /// these are the points no deeper behind the tangent plane than a tenth of the mean radius, the default overlap
   /// limit. They are weighted by the square of the cosine of their normals. The largest of the three counts.
   contact::Patch surface_patch() const { return patch_; }
@@ -80,7 +80,7 @@ class SuperquadricGrain {
     const Matrix3<double> r = rotation(pose);
     for (int k = 0; k < points_.count; ++k) {
       callback(static_cast<std::uint32_t>(k),
-               contact::SamplePoint{r * points_[k], 0.0, mean_radius_, points_.area[static_cast<std::size_t>(k)]});
+               contact::SamplePoint{r * points_[k], 0.0, mean_radius_, points_.weight[static_cast<std::size_t>(k)]});
     }
   }
   /// The point of the surface that lies farthest along a direction (global axes): where a plane touches first.
@@ -143,31 +143,31 @@ class SuperquadricGrain {
     mass_ = superquadric_mass_properties(radii, exponents);
     bounding_radius_ = superquadric_bounding_radius(radii, exponents);
     mean_radius_ = std::cbrt(mass_.volume * 0.75 / std::numbers::pi);
-    const SuperquadricSkin skin = superquadric_skin(solid_, divisions);
+    const SuperquadricBoundary boundary = superquadric_boundary(solid_, divisions);
     double total = 0.0;
-    for (const double a : skin.areas) total += a;
-    const double unit = area == PointArea::physical ? 1.0 : total / static_cast<double>(skin.areas.size());
+    for (const double a : boundary.areas) total += a;
+    const double unit = area == PointArea::physical ? 1.0 : total / static_cast<double>(boundary.areas.size());
 
-    points_.count = static_cast<int>(skin.points.size());
+    points_.count = static_cast<int>(boundary.points.size());
     const auto padded = static_cast<std::size_t>(round_up_to_pack(points_.count));
     for (auto* column : {&points_.x, &points_.y, &points_.z}) column->assign(padded, 1e30);
-    points_.area.assign(padded, 0.0);
-    Vec3 area_across = Vec3::Zero(), points_across = Vec3::Zero();
-    for (std::size_t k = 0; k < skin.points.size(); ++k) {
-      const SurfacePoint& point = skin.points[k];
+    points_.weight.assign(padded, 0.0);
+    Vec3 weight_across = Vec3::Zero(), points_across = Vec3::Zero();
+    for (std::size_t k = 0; k < boundary.points.size(); ++k) {
+      const SurfacePoint& point = boundary.points[k];
       points_.x[k] = point.position.x;
       points_.y[k] = point.position.y;
       points_.z[k] = point.position.z;
-      points_.area[k] = skin.areas[k] / unit;
+      points_.weight[k] = boundary.areas[k] / unit;
       for (int axis = 0; axis < 3; ++axis) {
         if (to_eigen(point.position)[axis] < radii[axis] - 0.1 * mean_radius_) continue;
         const double cosine = to_eigen(point.normal)[axis];
-        area_across[axis] += points_.area[k] * cosine * cosine;
+        weight_across[axis] += points_.weight[k] * cosine * cosine;
         points_across[axis] += cosine * cosine;
       }
     }
-    patch_ = {std::max(1.0, points_across.maxCoeff()), area_across.maxCoeff()};
-    if (area == PointArea::share) patch_.area = 1.0;
+    patch_ = {std::max(1.0, points_across.maxCoeff()), weight_across.maxCoeff()};
+    if (area == PointArea::share) patch_.weight = 1.0;
   }
 
  private:

@@ -57,7 +57,7 @@ struct PairContact<SuperquadricPoints, Balls> {
             const Vector3<double> normal = (1.0 / distance) * link;
             found(static_cast<std::uint32_t>(m * 4096 + point),
                   contact::ContactPoint<double>{normal, depth, arm - (0.5 * depth) * normal, radius,
-                                                points.area[static_cast<std::size_t>(point)]});
+                                                points.weight[static_cast<std::size_t>(point)]});
           }
         }
       };
@@ -70,18 +70,18 @@ struct PairContact<SuperquadricPoints, Balls> {
   }
 };
 
-/// Superquadrics of either policy: the points of both skins, as among SuperquadricPoints. Where these weigh by area a
-/// Superquadric, whose points have shares, shows none of its own.
+/// Superquadrics of either policy: the points of both boundaries, as among SuperquadricPoints. Where these weigh by
+/// area a Superquadric, whose points have shares, shows none of its own.
 template <>
 struct PairContact<SuperquadricPoints, Superquadric> {
   template <class Callback>
   static DEM_HOT void collide(const SuperquadricPoints& a, const double* pose_a, const Superquadric& b,
                               const double* pose_b, const Vector3<double>& separation, Callback&& callback) {
-    SuperquadricPoints::collide_skins(a, pose_a, b, pose_b, separation,
-                                      [&](std::uint32_t feature, const contact::ContactPoint<double>& point) {
-                                        if (a.has_shares() || (feature & SuperquadricPoints::other_way) == 0)
-                                          callback(feature, point);
-                                      });
+    SuperquadricPoints::collide_by_points(a, pose_a, b, pose_b, separation,
+                                          [&](std::uint32_t feature, const contact::ContactPoint<double>& point) {
+                                            if (a.has_shares() || (feature & SuperquadricPoints::other_way) == 0)
+                                              callback(feature, point);
+                                          });
   }
 };
 

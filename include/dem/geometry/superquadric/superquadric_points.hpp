@@ -25,7 +25,7 @@ class SuperquadricPoints : public SuperquadricGrain {
   /// The most points that a pair of such grains may have in contact at once: a face of each in the other.
   contact::Patch patch() const {
     const contact::Patch one_side = surface_patch();
-    return {2.0 * one_side.points, has_shares() ? 1.0 : 2.0 * one_side.area};
+    return {2.0 * one_side.points, has_shares() ? 1.0 : 2.0 * one_side.weight};
   }
 
   /// Feature k: point k of a in b. Feature other_way + k: point k of b in a.
@@ -34,14 +34,14 @@ class SuperquadricPoints : public SuperquadricGrain {
   template <class Callback>
   static DEM_HOT void collide(const SuperquadricPoints& a, const double* pose_a, const SuperquadricPoints& b,
                               const double* pose_b, const Vector3<double>& separation, Callback&& callback) {
-    collide_skins(a, pose_a, b, pose_b, separation, callback);
+    collide_by_points(a, pose_a, b, pose_b, separation, callback);
   }
   static std::uint32_t mirrored(std::uint32_t feature) { return feature ^ other_way; }
 
-  /// The same for any two superquadrics by the points of their skins.
+  /// The same for any two superquadrics by the points of their boundaries.
   template <class Callback>
-  static DEM_HOT void collide_skins(const SuperquadricGrain& a, const double* pose_a, const SuperquadricGrain& b,
-                                    const double* pose_b, const Vector3<double>& separation, Callback&& callback) {
+  static DEM_HOT void collide_by_points(const SuperquadricGrain& a, const double* pose_a, const SuperquadricGrain& b,
+                                        const double* pose_b, const Vector3<double>& separation, Callback&& callback) {
     const Matrix3<double> ra = rotation(pose_a), rb = rotation(pose_b);
     const Matrix3<double> turn = transposed(ra) * rb;
     const Vector3<double> centre = transpose_times(ra, separation);
@@ -65,13 +65,13 @@ class SuperquadricPoints : public SuperquadricGrain {
                     const Vector3<double> normal = rb * out;
                     callback(static_cast<std::uint32_t>(k),
                              PairContactPoint<double>{-normal, depth, ra * a.points()[k] + (0.5 * depth) * normal,
-                                                      radius, a.points().area[static_cast<std::size_t>(k)]});
+                                                      radius, a.points().weight[static_cast<std::size_t>(k)]});
                   });
     points_inside(b.points(), turn, centre, a.solid(), [&](int k, double depth, const Vector3<double>& out) {
       const Vector3<double> normal = ra * out;
       callback(other_way + static_cast<std::uint32_t>(k),
                PairContactPoint<double>{normal, depth, separation + rb * b.points()[k] + (0.5 * depth) * normal, radius,
-                                        b.points().area[static_cast<std::size_t>(k)]});
+                                        b.points().weight[static_cast<std::size_t>(k)]});
     });
   }
 

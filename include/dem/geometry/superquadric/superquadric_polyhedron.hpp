@@ -38,9 +38,9 @@ struct PairContact<Rounded, Polyhedron> {
                           const Vector3<double>& separation, Callback&& callback) {
     const Matrix3<double> ra = Rounded::rotation(pose_a), rb = Polyhedron::rotation(pose_b);
     const double radius = a.mean_radius() * b.radius() / (a.mean_radius() + b.radius());
-    double depth, areas = 0.0;
+    double depth, weights = 0.0;
     Vector3<double> out;
-    // The point that meets the nearest face first, which lies between those of the skin.
+    // The point that meets the nearest face first, which lies between those of the boundary.
     Vector3<double> support{}, way{};
     double support_depth = 0.0;
     Vector3<double> support_out{};
@@ -53,25 +53,25 @@ struct PairContact<Rounded, Polyhedron> {
       supported = b.penetration(pose_b, support - separation, support_depth, support_out);
     }
     for (int k = 0; k < a.points().count; ++k) {
-      const double area = a.points().area[static_cast<std::size_t>(k)];
-      areas += area;
+      const double own = a.points().weight[static_cast<std::size_t>(k)];
+      weights += own;
       const Vector3<double> point = ra * a.points()[k];
       if (!b.penetration(pose_b, point - separation, depth, out)) continue;
       const double weight = supported ? a.beside_support(point, support, way) : 1.0;
       callback(static_cast<std::uint32_t>(k),
-               contact::ContactPoint<double>{-out, depth, point + (0.5 * depth) * out, radius, weight * area});
+               contact::ContactPoint<double>{-out, depth, point + (0.5 * depth) * out, radius, weight * own});
     }
     if (supported) {
       callback(support_feature,
                contact::ContactPoint<double>{-support_out, support_depth, support + (0.5 * support_depth) * support_out,
                                              radius, 1.0});
     }
-    const double mean_area = areas / a.points().count;
+    const double mean_weight = weights / a.points().count;
     const auto try_point = [&](std::uint32_t feature, const Vector3<double>& in_b, double weight) {
       const Vector3<double> point = separation + rb * in_b;
       if (!a.penetration(pose_a, point, depth, out)) return;
       callback(feature,
-               contact::ContactPoint<double>{out, depth, point + (0.5 * depth) * out, radius, weight * mean_area});
+               contact::ContactPoint<double>{out, depth, point + (0.5 * depth) * out, radius, weight * mean_weight});
     };
     const PolyhedronTables& t = b.tables();
     for (int k = 0; k < t.corners; ++k) try_point(corners + static_cast<std::uint32_t>(k), t.corner(k), 1.0);

@@ -12,7 +12,7 @@ namespace dem::surface {
 /// A superquadric (thesis eq. 31) |x/r1|^p1 + |y/r2|^p2 + |z/r3|^p3 = 1 about its own axes, solid or a cavity. A grain
 /// touches it once, at the nearest place. In a cavity that holds for grains that are rounder than the wall anywhere:
 /// one that is stuck in a corner narrower than itself gets one of the contacts only. Behind the wall of a cavity grains
-/// are found up to half its size deep. To other bodies and to sharp grains it shows the skin of the grain of that
+/// are found up to half its size deep. To other bodies and to sharp grains it shows the boundary of the grain of that
 /// shape: fixed points, and the one that lies deepest in another body.
 ///
 /// A model names it, as the default set of surfaces does not have it:
@@ -60,7 +60,8 @@ class Superquadric {
     if (gap < radius) callback(0u, side_ == Side::inside ? place.normal : -place.normal, gap);
   }
 
-  /// Points spread over the skin, for contact with other bodies: callback(number, point, radius), numbers ascending.
+  /// Points spread over the boundary, for contact with other bodies: callback(number, point, radius), numbers
+  /// ascending.
   template <class Callback>
   void points(const Aabb& box, Callback&& callback) const {
     const Vector3<double> low = from_eigen(box.low), high = from_eigen(box.high);

@@ -78,7 +78,7 @@ void grain_fields(Fields& v, Particles& p) {
   v.rows("species", ColumnKind::natural32, 1, p.species.data(), count);
   columns("position", p.position, "m");
   columns("velocity", p.velocity, "m/s");
-  columns("spin_in_body_frame", p.spin, "rad/s");
+  columns("spin_in_body_frame", p.local_angular_velocity, "rad/s");
   columns("rotation_row0", p.row0, "");
   columns("rotation_row1", p.row1, "");
   columns("rotation_row2", p.row2, "");

@@ -26,7 +26,7 @@ struct JointFrictionState {
 namespace detail {
 
 /// The degrees of freedom that rub in a bearing; a bend stands for rotations about any axis.
-constexpr Dofs rubbing_dofs(Bearing bearing) {
+constexpr Dofs friction_dofs(Bearing bearing) {
   switch (bearing) {
     case Bearing::journal: return {Dof::turn};
     case Bearing::guide: return {Dof::slide};

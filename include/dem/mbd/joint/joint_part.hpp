@@ -84,9 +84,11 @@ inline constexpr PartKind joint_kind = {
         [](Parts& m, const Evaluation& now) {
           for (Joint& j : m.joints) {
             if (j.on && !j.rigid) [[likely]] {
-              traits_of(j.kind).force(j, m.bodies[j.a], m.bodies[j.b], m.spin[j.a], m.spin[j.b], now.followed());
+              traits_of(j.kind).force(j, m.bodies[j.a], m.bodies[j.b], m.global_angular_velocity[j.a],
+                                      m.global_angular_velocity[j.b], now.followed());
             } else if (j.turns) {
-              follow_turns(j, m.bodies[j.a], m.bodies[j.b], m.spin[j.a], m.spin[j.b], now.followed());
+              follow_turns(j, m.bodies[j.a], m.bodies[j.b], m.global_angular_velocity[j.a],
+                           m.global_angular_velocity[j.b], now.followed());
             }
           }
         },

@@ -91,7 +91,7 @@ inline std::pair<double, double> inverse_mass_along(const Joint& j, const Body& 
 /// rotations times the square of the bearing's radius, which turns sliding into rotation.
 inline std::pair<double, double> inverse_mass_of_friction(const Joint& j, const Body& a, const Body& b, double radius) {
   std::pair<double, double> most = {0.0, 0.0};
-  for (const Dof dof : rubbing_dofs(traits_of(j.kind).bearing)) {
+  for (const Dof dof : friction_dofs(traits_of(j.kind).bearing)) {
     const double share = is_rotation(dof) ? radius * radius : 1.0;
     const auto [wa, wb] = inverse_mass_along(j, a, b, dof);
     most = {std::max(most.first, share * wa), std::max(most.second, share * wb)};

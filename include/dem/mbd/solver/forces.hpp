@@ -13,7 +13,7 @@ inline void clear_forces(Parts& m) {
 inline void add_forces(Parts& m, double time, double dt, bool is_last_stage, bool is_trial = false) {
   for (std::size_t i = 0; i < m.bodies.size(); ++i) {
     const Body& b = m.bodies[i];
-    m.spin[i] = b.motion.rotation * b.motion.angular_velocity;
+    m.global_angular_velocity[i] = b.motion.rotation * b.motion.angular_velocity;
     m.outside[i] = {b.force, b.torque};
   }
   for (const detail::PartKind* kind : m.kinds) {

@@ -81,12 +81,12 @@ struct Parts {
         v.list("springs", springs, "spring"), v.list("loads", loads, "load");
     v.list("motions", motions, "prescribed motion"), v.list("sensors", sensors, "sensor");
     if (!terrains.empty()) v.list("terrains", terrains, "terrain");
-    v("revision", revision), v("spin", spin, "rad/s"), v("outside", outside);
+    v("revision", revision), v("spin", global_angular_velocity, "rad/s"), v("outside", outside);
   }
 
   // Scratch of a force evaluation, one entry per body.
-  std::vector<Vector3<double>> spin;  ///< rad/s, global
-  std::vector<Wrench> outside;        ///< contact forces that the world added, about the centre of mass
+  std::vector<Vector3<double>> global_angular_velocity;  ///< rad/s, of the bodies
+  std::vector<Wrench> outside;  ///< contact forces that the world added, about the centre of mass
 
   // Scratch of the prescribed motions.
   std::vector<JacobianRow> rows;

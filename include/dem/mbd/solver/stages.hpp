@@ -29,7 +29,7 @@ class Stages {
   void begin(Parts& m, double time) {
     time_ = time;
     motion_.read(m.bodies);
-    m.spin.assign(m.bodies.size(), {0, 0, 0});
+    m.global_angular_velocity.assign(m.bodies.size(), {0, 0, 0});
     m.outside.assign(m.bodies.size(), {});
   }
   void hold_joints(Parts& m) { held_joints_.start(m); }

@@ -9,7 +9,7 @@ namespace dem::shape {
 
 /// Points spread over the surface of a superquadric, with the share of the surface that belongs to each, and the quads
 /// between them.
-struct SuperquadricSkin {
+struct SuperquadricBoundary {
   std::vector<SurfacePoint> points;
   std::vector<double> areas;                       ///< m^2 for each point; they sum to the surface area
   std::vector<std::array<std::int32_t, 4>> quads;  ///< indices of points, counter-clockwise from outside
@@ -20,7 +20,7 @@ struct SuperquadricSkin {
 /// around it; a surface element that is drawn out from the element dS of a plane at the distance h is
 /// dA = h dS / (gauge^3 x . n), integrated with 3 x 3 Gauss points a quarter. Throws Error unless 1 <= divisions <= 26,
 /// which is below 4096 points.
-inline SuperquadricSkin superquadric_skin(const SuperquadricSolid& solid, int divisions) {
+inline SuperquadricBoundary superquadric_boundary(const SuperquadricSolid& solid, int divisions) {
   if (divisions < 1 || divisions > 26) {
     fail("a superquadric was given {} divisions of its edges, but takes 1 to 26 (6 n^2 + 2 points)", divisions);
   }
@@ -31,7 +31,7 @@ inline SuperquadricSkin superquadric_skin(const SuperquadricSolid& solid, int di
                            radius[2] * (2.0 * node[2] / n - 1.0)};
   };
 
-  SuperquadricSkin skin;
+  SuperquadricBoundary boundary;
   std::vector<std::int32_t> number(static_cast<std::size_t>(row * row * row), -1);
   const auto number_of = [&](const std::array<int, 3>& k) -> std::int32_t& {
     return number[static_cast<std::size_t>((k[0] * row + k[1]) * row + k[2])];
@@ -40,13 +40,13 @@ inline SuperquadricSkin superquadric_skin(const SuperquadricSolid& solid, int di
     for (int j = 0; j <= n; ++j) {
       for (int k = 0; k <= n; ++k) {
         if (i % n != 0 && j % n != 0 && k % n != 0) continue;
-        number_of({i, j, k}) = static_cast<std::int32_t>(skin.points.size());
-        skin.points.push_back(solid.radial(at({double(i), double(j), double(k)})));
+        number_of({i, j, k}) = static_cast<std::int32_t>(boundary.points.size());
+        boundary.points.push_back(solid.radial(at({double(i), double(j), double(k)})));
       }
     }
   }
 
-  skin.areas.assign(skin.points.size(), 0.0);
+  boundary.areas.assign(boundary.points.size(), 0.0);
   const double gauss[3] = {0.5 - std::sqrt(0.15), 0.5, 0.5 + std::sqrt(0.15)},
                weight[3] = {5.0 / 18, 8.0 / 18, 5.0 / 18};
   for (int side = 0; side < 6; ++side) {
@@ -61,8 +61,8 @@ inline SuperquadricSkin superquadric_skin(const SuperquadricSolid& solid, int di
           k[static_cast<std::size_t>(v)] = j + dv;
           return number_of(k);
         };
-        skin.quads.push_back(level == n ? std::array{node(0, 0), node(1, 0), node(1, 1), node(0, 1)}
-                                        : std::array{node(0, 0), node(0, 1), node(1, 1), node(1, 0)});
+        boundary.quads.push_back(level == n ? std::array{node(0, 0), node(1, 0), node(1, 1), node(0, 1)}
+                                            : std::array{node(0, 0), node(0, 1), node(1, 1), node(1, 0)});
         for (int quarter = 0; quarter < 4; ++quarter) {
           const int du = quarter & 1, dv = quarter >> 1;
           double sum = 0.0;
@@ -78,12 +78,12 @@ inline SuperquadricSkin superquadric_skin(const SuperquadricSolid& solid, int di
               sum += 0.25 * weight[a] * weight[b] * plane / (gauge * gauge * gauge * dot(out.position, out.normal));
             }
           }
-          skin.areas[static_cast<std::size_t>(node(du, dv))] += sum;
+          boundary.areas[static_cast<std::size_t>(node(du, dv))] += sum;
         }
       }
     }
   }
-  return skin;
+  return boundary;
 }
 
 }  // namespace dem::shape
