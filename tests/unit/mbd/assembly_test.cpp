@@ -303,3 +303,18 @@ TEST_CASE("an id of another machine is refused by every accessor") {
   check_refused([&] { m.sensor(SensorId(0)); }, "sensor 0");
   check_refused([&] { m.connection_position(ConnectionId(0)); }, "connection point 0");
 }
+
+TEST_CASE("references to bodies outlast the ground, which is made when it is first asked for") {
+  for (const int count : {1, 2, 3, 4, 5, 8, 9}) {
+    Mechanism m;
+    for (int k = 0; k < count; ++k) m.add_body(brick(dem::text("brick {}", k), {2.0 * k, 0, 0}));
+    const Mechanism copy_of = m;
+    Mechanism copied = m, assigned;
+    assigned = copy_of;
+    for (Mechanism* one : {&m, &copied, &assigned}) {
+      const Body& first = one->body(BodyId(0));
+      CHECK(one->ground() == BodyId(static_cast<std::size_t>(count)));
+      CHECK(&first == &one->body(BodyId(0)));
+    }
+  }
+}

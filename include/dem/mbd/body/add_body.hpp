@@ -7,7 +7,7 @@ namespace dem::mbd::detail {
 
 DEM_COLD inline BodyId add_body(Parts& parts, BuiltBody built) {
   settle_name(built.body.name, parts.bodies, "body", "bodies", [](const Body& b) { return b.name; });
-  parts.bodies.push_back(built.body);
+  parts.bodies.add(built.body);
   return keep<BodyId>(parts, parts.built, std::move(built));
 }
 

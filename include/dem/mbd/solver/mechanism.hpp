@@ -46,7 +46,7 @@ class Mechanism {
   DEM_COLD BodyId add_fixed_body(std::string name, const Vec3& position = Vec3::Zero()) {
     return add_body(fixed_body(std::move(name), position));
   }
-  /// The fixed body "ground" at the origin; made when first asked for, which adds a body.
+  /// The fixed body "ground" at the origin, made when first asked for. References to other bodies stay good.
   DEM_COLD BodyId ground() {
     if (!ground_.valid()) ground_ = add_fixed_body("ground");
     return ground_;
@@ -74,7 +74,7 @@ class Mechanism {
   // ----------------------------------------------------------------------------------------------------- looked at
 
   /// All bodies, in the order of their ids. Mass, inertia and `fixed` are read when a run starts; later, set_fixed
-  /// changes the latter. References to bodies are good until the next one is added, as ground() may do.
+  /// changes the latter.
   std::vector<Body>& bodies() { return parts_.bodies; }
   const std::vector<Body>& bodies() const { return parts_.bodies; }
   Body& body(BodyId id) { return known(parts_.bodies, id, "body"); }

@@ -45,9 +45,29 @@ struct Connection {
   }
 };
 
+/// The bodies of a machine, side by side in memory. There is always room for one more, so that the ground can be added
+/// (Mechanism::ground) while references to bodies are held.
+class BodyList : public std::vector<Body> {
+ public:
+  BodyList() = default;
+  BodyList(const BodyList& o) : std::vector<Body>() {
+    reserve(o.size() + 1);
+    insert(end(), o.begin(), o.end());
+  }
+  BodyList(BodyList&&) noexcept = default;
+  BodyList& operator=(const BodyList& o) { return *this = BodyList(o); }
+  BodyList& operator=(BodyList&&) noexcept = default;
+  ~BodyList() = default;
+
+  void add(const Body& body) {
+    push_back(body);
+    if (size() == capacity()) reserve(2 * size());
+  }
+};
+
 /// All that a machine is made of, as plain arrays; an Id is an index into its array.
 struct Parts {
-  std::vector<Body> bodies;
+  BodyList bodies;
   std::vector<BuiltBody> built;  ///< each body as it was added, with its reference frame
   std::vector<Connection> connections;
   std::vector<Joint> joints;                 ///< what a step needs
