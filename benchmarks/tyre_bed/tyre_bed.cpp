@@ -130,7 +130,7 @@ void run(const char* name, const Settings& s) {
     for (const auto& chunk : world.state().chunks) {
       for (int c = 0; c < chunk.surface_contacts.committed(); ++c) {
         const auto key = chunk.surface_contacts.last.key[static_cast<std::size_t>(c)];
-        contacts += dem::grain::SurfaceKey::surface(key) == mesh_surface.index();
+        contacts += dem::grain::SurfaceKey{key}.surface() == mesh_surface.index();
       }
     }
     if (active) load = world.surface_force(mesh_surface).z();

@@ -29,10 +29,13 @@ struct BodyPair {
 /// surface.
 struct BodyKey {
   static constexpr std::size_t pairs_of_a_block = 1u << 12, most_pairs = 1u << 24;
-  static constexpr std::uint64_t make(std::size_t pair, bool back, std::uint32_t point, std::uint32_t feature) {
-    return std::uint64_t{pair % pairs_of_a_block} << 52 | std::uint64_t{back} << 51 | std::uint64_t{point} << 28 |
-           feature;
+  std::uint64_t value = 0;
+
+  static constexpr BodyKey make(std::size_t pair, bool back, std::uint32_t point, std::uint32_t feature) {
+    return {std::uint64_t{pair % pairs_of_a_block} << 52 | std::uint64_t{back} << 51 | std::uint64_t{point} << 28 |
+            feature};
   }
+  constexpr auto operator<=>(const BodyKey&) const = default;
 };
 
 /// Contacts of machine parts with each other and with the ground: their pairs, their histories, and lists for a step.
@@ -105,8 +108,8 @@ void sample_body(const SampledPair& at, bool back, const Surface& from, const Su
           const double reach = shape::widened(point.radius, gap);
           if (!geometry.near(p, reach)) continue;
           geometry.contacts(p, reach, [&](std::uint32_t feature, const Vector3<double>& normal, double distance) {
-            c.hits.push_back({BodyKey::make(at.pair, back, point.number, feature), static_cast<std::uint32_t>(at.pair),
-                              back ? 1u : 0u, at.law});
+            c.hits.push_back({BodyKey::make(at.pair, back, point.number, feature).value,
+                              static_cast<std::uint32_t>(at.pair), back ? 1u : 0u, at.law});
             c.contact_points.push_back(
                 {offset + place, onto.axes * normal, point.radius, distance, at.radius, point.weight});
           });

@@ -36,7 +36,7 @@ struct GrainAtSurface {
 
   void add(SurfaceScratch& s, std::uint32_t sample, std::uint32_t feature,
            const contact::SurfaceContactPoint<double>& point) const {
-    s.hits.push_back({grain::SurfaceKey::make(surface, local, sample, feature), grain, surface, law});
+    s.hits.push_back({grain::SurfaceKey::make(surface, local, sample, feature).value, grain, surface, law});
     s.contact_points.push_back(point);
   }
 };

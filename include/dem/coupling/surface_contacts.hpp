@@ -131,7 +131,7 @@ void find_hits_on(const ChunkAtSurfaces<Model>& at, std::size_t number) {
   }
   if constexpr (history_size < Model >> 0 && surface::NamesDirections<G>) {
     follow_turns(std::span<const grain::Hit>(s.hits).subspan(first), at.chunk.surface_contacts.last,
-                 [](std::uint64_t key) { return grain::SurfaceKey::sample(key) != corner_sample; });
+                 [](std::uint64_t key) { return grain::SurfaceKey{key}.sample() != corner_sample; });
   }
 }
 

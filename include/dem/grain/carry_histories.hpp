@@ -87,20 +87,20 @@ class HistoryCarrier {
       const Histories& of_pairs = chunk.pair_contacts.last;
       std::size_t k = 0;  // owner of the candidate, found by walking along: keys ascend
       for (int c = 0; c < of_pairs.count; ++c) {
-        const std::uint64_t key = of_pairs.key[static_cast<std::size_t>(c)];
-        const std::size_t candidate = PairKey::candidate(key);
+        const PairKey key = {of_pairs.key[static_cast<std::size_t>(c)]};
+        const std::size_t candidate = key.candidate();
         DEM_ASSERT(candidate < chunk.candidate.size(), "what is remembered is of a candidate");
         while (chunk.candidate_first[k + 1] <= candidate) ++k;
         pairs_[pairs_first[index] + static_cast<std::size_t>(c)] = {
-            p.id[index * chunk_size + k], p.id[images.grain_of(chunk.candidate[candidate])], PairKey::feature(key),
+            p.id[index * chunk_size + k], p.id[images.grain_of(chunk.candidate[candidate])], key.feature(),
             history_of<Histories, size>(of_pairs, c)};
       }
       const Histories& of_surfaces = chunk.surface_contacts.last;
       for (int c = 0; c < of_surfaces.count; ++c) {
-        const std::uint64_t key = of_surfaces.key[static_cast<std::size_t>(c)];
-        surfaces_[surfaces_first[index] + static_cast<std::size_t>(c)] = {
-            p.id[index * chunk_size + SurfaceKey::local(key)], SurfaceKey::upper(key), SurfaceKey::lower(key),
-            history_of<Histories, size>(of_surfaces, c)};
+        const SurfaceKey key = {of_surfaces.key[static_cast<std::size_t>(c)]};
+        surfaces_[surfaces_first[index] + static_cast<std::size_t>(c)] = {p.id[index * chunk_size + key.local()],
+                                                                          key.upper(), key.lower(),
+                                                                          history_of<Histories, size>(of_surfaces, c)};
       }
     });
   }
@@ -117,9 +117,8 @@ class HistoryCarrier {
     pairs_.push_back({i, j, feature, history});
   }
   /// The same of grain i on a surface; of the key, the grain's place in its chunk does not count.
-  void add_surface(std::uint32_t i, std::uint64_t key,
-                   const std::array<double, static_cast<std::size_t>(size)>& history) {
-    surfaces_.push_back({i, SurfaceKey::upper(key), SurfaceKey::lower(key), history});
+  void add_surface(std::uint32_t i, SurfaceKey key, const std::array<double, static_cast<std::size_t>(size)>& history) {
+    surfaces_.push_back({i, key.upper(), key.lower(), history});
   }
 
   /// Hands them to the chunks that own the contacts now, with the keys of the new candidate lists. Those of grains that
@@ -159,14 +158,14 @@ class HistoryCarrier {
         const std::uint32_t to = chunk.candidate_first[r.i % chunk_size + 1];
         const std::size_t at = candidate_of(std::span(chunk.candidate).subspan(from, to - from), r.j, images);
         if (at == to - from) continue;  // parted since
-        keys.emplace_back(PairKey::make(from + at, r.feature), of_pairs.entry[k]);
+        keys.emplace_back(PairKey::make(from + at, r.feature).value, of_pairs.entry[k]);
       }
       remember(chunk.pair_contacts.last, keys, pairs_);
       keys.clear();
       for (std::uint32_t k = of_surfaces.first[c]; k < of_surfaces.first[c + 1]; ++k) {
         const Entry& r = surfaces_[of_surfaces.entry[k]];
-        const std::uint64_t old = SurfaceKey::whole(r.j, r.feature);  // with the old place in the chunk
-        keys.emplace_back(SurfaceKey::with_local(old, r.i % chunk_size), of_surfaces.entry[k]);
+        const SurfaceKey old = SurfaceKey::whole(r.j, r.feature);  // with the old place in the chunk
+        keys.emplace_back(old.with_local(r.i % chunk_size).value, of_surfaces.entry[k]);
       }
       remember(chunk.surface_contacts.last, keys, surfaces_);
     });

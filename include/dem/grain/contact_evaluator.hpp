@@ -144,7 +144,7 @@ class ContactEvaluator {
         history_[k][lane] = known ? last.history[k][static_cast<std::size_t>(cursor)] : 0.0;
       }
       if constexpr (shape::PatchShape<Shape>) {
-        if (!known && Shape::is_patch(PairKey::feature(keys[lane]))) {
+        if (!known && Shape::is_patch(PairKey{keys[lane]}.feature())) {
           inherit(last, keys[lane], cursor, lane, overlap_of(lane));
         }
       }
@@ -155,8 +155,8 @@ class ContactEvaluator {
   /// what the points of the patch remember; of the normal law what that law makes of the mean (its `inherited()`).
   template <class Last>
   void inherit(const Last& last, std::uint64_t key, int cursor, int lane, double overlap) {
-    const auto pair_at = [&](int c) { return PairKey::candidate(last.key[static_cast<std::size_t>(c)]); };
-    const std::size_t pair = PairKey::candidate(key);
+    const auto pair_at = [&](int c) { return PairKey{last.key[static_cast<std::size_t>(c)]}.candidate(); };
+    const std::size_t pair = PairKey{key}.candidate();
     int first = cursor, end = cursor;
     while (first > 0 && pair_at(first - 1) == pair) --first;
     while (end < last.count && pair_at(end) == pair) ++end;

@@ -34,8 +34,8 @@ template <class Model>
 inline constexpr int history_size = normal_history_size<Model> + friction_history_size<Model> +
                                     rolling_history_size<Model> + cohesion_history_size<Model>;
 
-/// The histories of the contacts of one chunk, one each, keys ascending. A key says who touches whom, and where:
-/// grain::PairKey or grain::SurfaceKey.
+/// The histories of the contacts of one chunk, one each, keys ascending: the numbers of grain::PairKey or of
+/// grain::SurfaceKey.
 template <int Size>
 struct ContactHistories {
   int count = 0;
@@ -84,11 +84,12 @@ struct HistoriesOfSteps {
     int count = 0, l = 0;
     const auto keep_below = [&](std::uint64_t key) {
       for (; l < last.count && last.key[static_cast<std::size_t>(l)] < key; ++l) {
-        if (renews[grain::PairKey::candidate(last.key[static_cast<std::size_t>(l)])] == 0) spare.take(count++, last, l);
+        if (renews[grain::PairKey{last.key[static_cast<std::size_t>(l)]}.candidate()] == 0)
+          spare.take(count++, last, l);
       }
     };
     for (int k = 0; k < now.count; ++k) {
-      if (renews[grain::PairKey::candidate(now.key[static_cast<std::size_t>(k)])] == 0) continue;
+      if (renews[grain::PairKey{now.key[static_cast<std::size_t>(k)]}.candidate()] == 0) continue;
       keep_below(now.key[static_cast<std::size_t>(k)]);
       spare.take(count++, now, k);
     }
@@ -106,13 +107,13 @@ struct HistoriesOfSteps {
     int l = 0;
     const auto skip_below = [&](std::uint64_t key) {
       for (; l < last.count && last.key[static_cast<std::size_t>(l)] < key; ++l) {
-        if (renews[grain::PairKey::candidate(last.key[static_cast<std::size_t>(l)])] != 0) return false;
+        if (renews[grain::PairKey{last.key[static_cast<std::size_t>(l)]}.candidate()] != 0) return false;
       }
       return true;
     };
     for (int k = 0; k < now.count; ++k) {
       const std::uint64_t key = now.key[static_cast<std::size_t>(k)];
-      if (renews[grain::PairKey::candidate(key)] == 0) continue;
+      if (renews[grain::PairKey{key}.candidate()] == 0) continue;
       if (!skip_below(key) || l == last.count || last.key[static_cast<std::size_t>(l)] != key) return false;
       last.take(l++, now, k);
     }

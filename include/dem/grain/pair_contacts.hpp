@@ -57,7 +57,7 @@ struct ChunkPairs {
   DEM_HOT Hit hit(std::uint32_t candidate, std::uint32_t feature) const {
     const auto a = static_cast<std::uint32_t>(i(candidate)), b = static_cast<std::uint32_t>(j(candidate));
     const std::uint32_t law = materials.table().size() == 1 ? 0 : materials.row(kind(a).material, kind(b).material);
-    return {PairKey::make(candidate, feature), a, b, law};
+    return {PairKey::make(candidate, feature).value, a, b, law};
   }
 };
 
@@ -187,7 +187,7 @@ void share_forces(std::size_t begin, Chunk<Model>& chunk, const PairScratch<Mode
     chunk.partner_loads[foreign] = load;
     const std::uint32_t elsewhere = hit.partner - begin >= chunk_size ? 1 : 0;
     foreign += elsewhere;
-    chunk.partner_load_first[PairKey::candidate(hit.key) + 1] += elsewhere;
+    chunk.partner_load_first[PairKey{hit.key}.candidate() + 1] += elsewhere;
   }
   std::uint32_t total = 0;
   for (std::uint32_t& first : chunk.partner_load_first) first = total += first;
@@ -202,7 +202,7 @@ DEM_HOT typename Model::Shape::template PairContactPoint<double> contact_point_o
   if constexpr (shape::BitShape<Shape>) {
     const std::size_t i = s.hits[c].i, j = s.hits[c].partner;
     return Shape::contact_point(pairs.kind(i).shape, pairs.p.pose_of(i), pairs.kind(j).shape, pairs.p.pose_of(j),
-                                pairs.separation(i, j), PairKey::feature(s.hits[c].key));
+                                pairs.separation(i, j), PairKey{s.hits[c].key}.feature());
   } else {
     return s.contact_points[c];
   }
@@ -263,7 +263,7 @@ void find_pair_contacts(const ChunkPairs<Model, Particles> pairs, double dt, Wak
     s.asleep = {};
     share_forces(pairs.begin, chunk, s, [&](const Hit& hit) -> ForceSums& {
       const bool asleep = sleeps(doing, hit.i, hit.partner);
-      chunk.sleeps[PairKey::candidate(hit.key)] = asleep ? 1 : 0;
+      chunk.sleeps[PairKey{hit.key}.candidate()] = asleep ? 1 : 0;
       return asleep ? s.asleep : sums;
     });
     // One that was the deepest and was left as it is still counts.

@@ -221,7 +221,7 @@ Tile take_tile(const World<Model>& world, const TileOptions& o = {}) {
   for (const auto& c : found) {
     const auto history = detail::numbers_of<Model>(c.last);
     if (c.kind == ContactKind::grain_on_surface) {
-      t.on_surfaces.push_back({p.row_of[c.grain.slot], c.surface.value, grain::SurfaceKey::place(c.point_key)});
+      t.on_surfaces.push_back({p.row_of[c.grain.slot], c.surface.value, grain::SurfaceKey{c.point_key}.place()});
       t.surface_histories.insert(t.surface_histories.end(), history.begin(), history.end());
     }
     if (c.kind != ContactKind::grains) continue;
@@ -231,7 +231,7 @@ Tile take_tile(const World<Model>& world, const TileOptions& o = {}) {
       return of > 0.0 ? static_cast<std::int32_t>(std::lround(along / of)) : 0;
     };
     t.contacts.push_back(
-        {i, j, cells(shift.x(), period[0]), cells(shift.y(), period[1]), grain::PairKey::feature(c.point_key)});
+        {i, j, cells(shift.x(), period[0]), cells(shift.y(), period[1]), grain::PairKey{c.point_key}.feature()});
     t.histories.insert(t.histories.end(), history.begin(), history.end());
     if (c.overlap < 0.0) continue;
     t.fabric += c.normal * c.normal.transpose();

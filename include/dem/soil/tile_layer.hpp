@@ -165,7 +165,7 @@ struct TileLayer {
           const int surface = surface_of[t.surface];
           if (surface < 0 || (ids.is[i] != InWorld::fresh && ids.is[i] != InWorld::held)) continue;
           if (w.species[w.particles.species[w.particles.row_of[ids.id[i]]]].is_held()) continue;  // feels no surface
-          const std::uint64_t key = grain::SurfaceKey::at_place(static_cast<std::size_t>(surface), 0, t.place);
+          const grain::SurfaceKey key = grain::SurfaceKey::at_place(static_cast<std::size_t>(surface), 0, t.place);
           carrier.add_surface(ids.id[i], key, turned(&tile.surface_histories[c * size]));
           ++surface_histories;
         }

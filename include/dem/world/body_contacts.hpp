@@ -48,14 +48,16 @@ BodyContactId add_body_contact(WorldState<Model>& w, SurfaceId a, SurfaceId b) {
 /// pairs were added.
 template <class Model>
 std::size_t add_body_contacts(WorldState<Model>& w) {
-  const auto both = [](std::size_t a, std::size_t b) { return std::uint64_t{std::min(a, b)} << 32 | std::max(a, b); };
-  std::vector<std::uint64_t> joined, known_pairs;
+  const auto both = [](std::size_t a, std::size_t b) { return std::pair(std::min(a, b), std::max(a, b)); };
+  std::vector<std::pair<std::size_t, std::size_t>> joined, known_pairs;
   for (const auto& joint : w.machine.parts().joints) {
     if (joint.kind != mbd::JointKind::free) joined.push_back(both(joint.a, joint.b));
   }
   for (const auto& pair : w.body_contacts.pairs) known_pairs.push_back(both(pair.a.index(), pair.b.index()));
   for (auto* list : {&joined, &known_pairs}) std::sort(list->begin(), list->end());
-  const auto holds = [](const auto& list, std::uint64_t k) { return std::binary_search(list.begin(), list.end(), k); };
+  const auto holds = [](const auto& list, const auto& pair) {
+    return std::binary_search(list.begin(), list.end(), pair);
+  };
   const std::size_t before = w.body_contacts.pairs.size();
   for (std::size_t a = 0; a < w.surfaces.size(); ++a) {
     for (std::size_t b = a + 1; b < w.surfaces.size(); ++b) {

@@ -28,7 +28,7 @@ void append_work(const WorldState<Model>& w, std::size_t c, std::vector<float>& 
   const auto& contacts = chunk.pair_contacts.last;
   const auto& doing = w.sleepers.doing;
   for (int k = 0; k < contacts.count; ++k) {
-    const std::size_t candidate = grain::PairKey::candidate(contacts.key[static_cast<std::size_t>(k)]);
+    const std::size_t candidate = grain::PairKey{contacts.key[static_cast<std::size_t>(k)]}.candidate();
     const std::size_t i = c * chunk_size + chunk.owner[candidate], j = chunk.candidate[candidate];
     if (w.options.sleep && std::max(i, j) < doing.size() && grain::sleeps(doing, i, j)) continue;
     to[first + chunk.owner[candidate]] += contact;

@@ -23,9 +23,10 @@ std::array<double, 3> slips() {
   HistoriesOfSteps<history_size<Model>> histories;
   histories.last.reserve(16);
   histories.last.count = 3;
-  histories.last.key = {5, 9, PairKey::make(1, 2)};
+  histories.last.key = {5, 9, PairKey::make(1, 2).value};
   histories.last.history[0] = {1e-6, 3e-6, 8e-6};
-  const std::vector<Hit> hits = {{7, 0, 1, 0}, {PairKey::make(1, 2), 0, 2, 0}, {PairKey::make(2, 1), 0, 3, 0}};
+  const std::vector<Hit> hits = {
+      {7, 0, 1, 0}, {PairKey::make(1, 2).value, 0, 2, 0}, {PairKey::make(2, 1).value, 0, 3, 0}};
   // Pressed by 1 mm: 1 N, so that 0.5 N limits springs of at most 8e-3 N.
   const contact::ContactPoint<double> point = {{0, 0, 1}, 1e-3, {0, 0, 1e-3}, 1e-3, 1.0};
   const PartnerView still = {{0, 0, 0}, 1e-3, {0, 0, 0}, 1.0, {0, 0, 0}};
