@@ -8,9 +8,12 @@
 
 namespace dem::surface {
 
+/// The weight of a point of an edge, `to_end` (m) from the nearer end, where a grain of that radius is near: it fades
+/// where the edge ends, as its corners take over.
+DEM_HOT double weight_on_edge(double to_end, double radius) { return min(1.0, 4.0 * to_end / radius); }
+
 /// Points that stand for a straight edge where a sharp grain is near it: the one nearest to p and those half a radius
-/// to either side, if they lie within the radius of p, callback(place, point, weight). Where the edge ends they lose
-/// weight, as its corners take over.
+/// to either side, if they lie within the radius of p, callback(place, point, weight).
 template <class Callback>
 void points_of_edge(const Vector3<double>& tail, const Vector3<double>& head, const Vector3<double>& p, double radius,
                     Callback&& callback) {
@@ -21,7 +24,7 @@ void points_of_edge(const Vector3<double>& tail, const Vector3<double>& head, co
     const double at = foot + (0.5 * place - 0.5) * radius, to_end = min(at, length - at);
     if (!(to_end > 0.0)) continue;
     const Vector3<double> point = tail + at * along, d = point - p;
-    if (dot(d, d) <= radius * radius) callback(place, point, min(1.0, 4.0 * to_end / radius));
+    if (dot(d, d) <= radius * radius) callback(place, point, weight_on_edge(to_end, radius));
   }
 }
 

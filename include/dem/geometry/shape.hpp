@@ -37,7 +37,10 @@ struct AnySamplePoint {
 ///   ball_contact(pose, centre, radius, contact)   whether a ball touches, and where (contact::BallContactPoint). Then
 ///                        surfaces that are balls are felt exactly, and lateral surfaces of cylinders through balls;
 ///   even_support(pose, way), beside_support(point, support, way)   of a round grain: the point that meets a plane
-///                        first, and what another point weighs beside it.
+///                        first, and what another point weighs beside it. It then has mean_radius(), too;
+///   is_ball(), mean_radius()   whether it is one ball, and the radius (m) of the sphere of the same volume: as that
+///                        sphere a ball meets surfaces;
+///   kind()               the std::variant of a shape that is one of several (Mixed).
 template <class S>
 concept Shape = requires(const S& shape, const Matrix3<double>& rotation, double* pose,
                          const Vector3<double>& separation) {

@@ -8,7 +8,8 @@
 namespace dem {
 
 /// The implicit function of a superquadric about its own axes (thesis eq. 31): F(x) = sum |x_k/r_k|^p_k - 1, negative
-/// inside, convex for exponents of 1 and more.
+/// inside, convex for exponents of 1 and more. shape::SuperquadricSolid is the same for grains, with faster powers that
+/// round otherwise.
 struct SuperquadricFunction {
   double radius[3];    ///< m, half sizes
   double exponent[3];  ///< 2: round; large: boxy

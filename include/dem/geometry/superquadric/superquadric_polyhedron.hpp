@@ -1,5 +1,6 @@
 #pragma once
 
+#include <dem/geometry/edge_set.hpp>
 #include <dem/geometry/pair_contact.hpp>
 #include <dem/geometry/polyhedron/polyhedron.hpp>
 #include <dem/geometry/shared_points.hpp>
@@ -82,10 +83,10 @@ struct PairContact<Rounded, Polyhedron> {
       const double length = norm(along), nearest = dot(centre - tail, along) / (length * length);
       for (int place = 0; place < 3; ++place) {
         const double share = nearest + (0.5 * place - 0.5) * a.bounding_radius() / length;
-        const double to_end = length * min(share, 1.0 - share);  // m; points fade out there, corners take over
+        const double to_end = length * min(share, 1.0 - share);  // m
         if (to_end <= 0.0) continue;
         try_point(edges + static_cast<std::uint32_t>(3 * e + place), tail + share * along,
-                  min(1.0, 4.0 * to_end / a.bounding_radius()));
+                  surface::weight_on_edge(to_end, a.bounding_radius()));
       }
     }
   }
