@@ -5,8 +5,6 @@
 #include <dem/report/table.hpp>
 #include <dem/report/terminal.hpp>
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cstddef>
 #include <cstdio>

@@ -7,7 +7,6 @@
 
 #include <CLI/CLI.hpp>
 
-#include <filesystem>
 #include <istream>
 #include <iterator>
 #include <memory>

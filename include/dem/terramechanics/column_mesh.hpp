@@ -4,8 +4,6 @@
 #include <dem/geometry/mesh/triangle_mesh.hpp>
 #include <dem/terramechanics/column_shape.hpp>
 
-#include <memory>
-
 namespace dem::terramechanics {
 
 /// A machine part of triangles, in the mesh's own frame: a wheel with grousers, a track shoe, a blade. Rays are cast

@@ -2,7 +2,6 @@
 
 #include <dem/geometry/sphere/sphere_surface.hpp>
 
-#include <algorithm>
 #include <numbers>
 
 namespace dem::surface {

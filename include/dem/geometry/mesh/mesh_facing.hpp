@@ -3,7 +3,6 @@
 #include <dem/geometry/mesh/mesh_topology.hpp>
 
 #include <cmath>
-#include <tuple>
 #include <utility>
 
 namespace dem {

@@ -2,7 +2,6 @@
 
 #include <dem/core/error.hpp>
 
-#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>

@@ -5,7 +5,6 @@
 #include <dem/rig/direct_shear/results.hpp>
 #include <dem/terramechanics/mohr_coulomb.hpp>
 
-#include <algorithm>
 #include <cmath>
 #include <optional>
 #include <span>
