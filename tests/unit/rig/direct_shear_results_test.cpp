@@ -3,7 +3,6 @@
 #include <dem/rig/direct_shear/evaluate.hpp>
 
 #include <cmath>
-#include <numbers>
 
 namespace direct_shear_results_test {
 
@@ -152,21 +151,6 @@ TEST_CASE("lines are fitted to the finished loads, where there are enough") {
   CHECK(fit(c).origin);
   c.loads = {load(10e3, not_known)};
   CHECK_FALSE(fit(c).origin);
-}
-
-TEST_CASE("the thesis's table 3.3 is fitted with the thesis's angle") {
-  Campaign c;
-  for (const Reference& row : thesis) {
-    LoadResult r;
-    r.normal_at_maximum = row.normal_stress;
-    r.maximum = row.maximum;
-    r.finished = true;
-    c.loads.push_back(r);
-  }
-  // Five digits of the angle are printed there, of stresses with three.
-  CHECK(180.0 / std::numbers::pi * fit(c).origin->friction_angle == Approx(thesis_angle_deg).margin(0.05));
-  CHECK(thesis_maximum(16.9e3) == thesis[0].maximum);
-  CHECK(std::isnan(thesis_maximum(17.5e3)));
 }
 
 TEST_CASE("relative density is not known of what is no solid fraction") {

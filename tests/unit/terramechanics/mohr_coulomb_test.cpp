@@ -56,11 +56,6 @@ TEST_CASE("through the origin") {
   CHECK(m.friction_angle_error == Approx(slope_error / (1.0 + std::pow(13.0 / 14.0, 2))));
 }
 
-TEST_CASE("the thesis's table 3.3 gives its angle") {
-  const std::vector<double> sigma = {16895.0, 44145.0, 71395.0}, tau = {13483.02778, 33794.4444, 56128.88889};
-  CHECK(degrees * fit_mohr_coulomb(sigma, tau, Intercept::zero).friction_angle == Approx(38.04).margin(0.05));
-}
-
 TEST_CASE("errors are unknown where there are no points to tell them from") {
   const std::vector<double> one = {2.0}, two = {1.0, 3.0};
   CHECK(std::isnan(fit_mohr_coulomb(one, one, Intercept::zero).friction_angle_error));
