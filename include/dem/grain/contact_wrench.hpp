@@ -93,12 +93,12 @@ DEM_HOT PairWrench<T> contact_wrench(const ContactPoint& point, const RelativeMo
   overlap_ratio = T(0.5) * g.overlap / g.effective_radius;
   PairWrench<T> wrench = {force, cross(g.arm, force), -cross(arm_j, force)};
   if constexpr (!std::is_same_v<typename Model::Rolling, rolling::None>) {
-    const Vector3<T> spin = e.angular_velocity_i - e.angular_velocity_j;
-    const T twisting = dot(spin, g.normal);
+    const Vector3<T> turning = e.angular_velocity_i - e.angular_velocity_j;
+    const T twisting = dot(turning, g.normal);
     Model::Rolling::carry(history.rolling, turn);
     const Vector3<T> torque =
         g.weight * Model::Rolling::torque(parameters.rolling,
-                                          rolling::RollingState<T>{g.normal, spin - twisting * g.normal, twisting,
+                                          rolling::RollingState<T>{g.normal, turning - twisting * g.normal, twisting,
                                                                    normal.pressing, g.effective_radius, mass, dt},
                                           history.rolling);
     wrench.torque_i += torque;

@@ -47,7 +47,7 @@ struct EnergyLedger {
   std::vector<ContactWork> last;                                   ///< the contacts of the step before
   std::vector<Vector3<double>> velocity, global_angular_velocity;  ///< m/s, rad/s, at the end of the step before, by id
   std::vector<double> energy;  ///< J, kinetic and potential, by id; NaN of grains that are not there
-  std::vector<Vector3<double>> body_velocity, body_angular_velocity;
+  std::vector<Vector3<double>> body_velocity, body_angular_velocity;  ///< the same of bodies, in global axes
 
   /// Whether the energy of a grain (id) is counted already: not of one that came since the last step.
   bool knows(std::uint32_t id) const { return id < energy.size() && energy[id] == energy[id]; }

@@ -146,10 +146,10 @@ void count_step(WorldState<Model>& w) {
   ledger.body_angular_velocity.resize(w.machine.bodies().size());
   for (std::size_t b = 0; b < w.machine.bodies().size(); ++b) {
     const auto& m = w.machine.bodies()[b].motion;
-    const Vector3<double> spin = m.rotation * m.angular_velocity;
-    bodies.push_back({0.5 * (ledger.body_velocity[b] + m.velocity), 0.5 * (ledger.body_angular_velocity[b] + spin)});
+    const Vector3<double> turning = m.rotation * m.angular_velocity;
+    bodies.push_back({0.5 * (ledger.body_velocity[b] + m.velocity), 0.5 * (ledger.body_angular_velocity[b] + turning)});
     ledger.body_velocity[b] = m.velocity;
-    ledger.body_angular_velocity[b] = spin;
+    ledger.body_angular_velocity[b] = turning;
   }
 
   const auto is_held = [&](std::uint32_t id) {
