@@ -148,8 +148,15 @@ class Messages {
     MPI_Waitall(number(sent_.size()), sent_.data(), MPI_STATUSES_IGNORE);
     sent_.clear();
   }
-  void receive(int from, Tag tag, void* data, std::size_t bytes) const {
-    MPI_Recv(data, number(bytes), MPI_BYTE, from, static_cast<int>(tag), MPI_COMM_WORLD, MPI_STATUS_IGNORE);
+  /// What comes from there goes to this memory, whenever it comes.
+  void expect(int from, Tag tag, void* data, std::size_t bytes) const {
+    expected_.emplace_back();
+    MPI_Irecv(data, number(bytes), MPI_BYTE, from, static_cast<int>(tag), MPI_COMM_WORLD, &expected_.back());
+  }
+  /// All that was expected is there.
+  void wait_for_expected() const {
+    MPI_Waitall(number(expected_.size()), expected_.data(), MPI_STATUSES_IGNORE);
+    expected_.clear();
   }
   /// A message of unknown length.
   void receive(int from, Tag tag, std::vector<std::byte>& message) const {
@@ -201,7 +208,7 @@ class Messages {
 
   int rank_ = 0, ranks_ = 1;
   mutable Traffic traffic_;
-  mutable std::vector<MPI_Request> sent_;
+  mutable std::vector<MPI_Request> sent_, expected_;
 };
 
 }  // namespace dem::domain

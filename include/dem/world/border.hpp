@@ -117,13 +117,20 @@ void make_borders(WorldState<Model>& w) {
 template <class Model>
 inline constexpr std::size_t motion_width = Model::Shape::pose_size > 0 ? 19 : 10;
 
-/// Tells the other ranks where the grains are that their contacts reach.
+/// Tells the other ranks where the grains are that their contacts reach, and expects the same of them.
 template <class Model>
 void send_motion(WorldState<Model>& w) {
   auto& d = w.domain;
   if (!d.is_shared()) return;
   const auto watch = d.watch_step();
   const auto& p = w.particles;
+  for (std::size_t r = 0; r < d.borders.size(); ++r) {
+    auto& border = d.borders[r];
+    if (border.rows_in.empty()) continue;
+    border.motion_in.resize(border.rows_in.size() * motion_width<Model>);
+    d.expect(static_cast<int>(r), Model::Domain::Tag::motion, border.motion_in.data(),
+             border.motion_in.size() * sizeof(double));
+  }
   for (std::size_t r = 0; r < d.borders.size(); ++r) {
     auto& border = d.borders[r];
     if (border.rows_out.empty()) continue;
@@ -147,13 +154,9 @@ void take_motion(WorldState<Model>& w) {
   auto& d = w.domain;
   if (!d.is_shared()) return;
   const auto watch = d.watch_step();
+  d.wait_for_expected();
   auto& p = w.particles;
-  for (std::size_t r = 0; r < d.borders.size(); ++r) {
-    auto& border = d.borders[r];
-    if (border.rows_in.empty()) continue;
-    border.motion_in.resize(border.rows_in.size() * motion_width<Model>);
-    d.receive(static_cast<int>(r), Model::Domain::Tag::motion, border.motion_in.data(),
-              border.motion_in.size() * sizeof(double));
+  for (const auto& border : d.borders) {
     const double* from = border.motion_in.data();
     const auto next = [&] { return from += 3, Vector3<double>{from[-3], from[-2], from[-1]}; };
     for (const std::uint32_t row : border.rows_in) {
