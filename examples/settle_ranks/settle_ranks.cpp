@@ -104,6 +104,7 @@ void settle(const typename Model::Shape& grain, Arguments& arguments) {
              most_bytes / steps, 100 * most_wait / seconds, 100 * (after.list_seconds - before.list_seconds) / seconds);
   fmt::print("{:.0f} lists, {:.0f} bytes a list and rank at the most, the end of the run included\n", lists,
              most_for_lists / std::max(1.0, lists));
+  fmt::print("counted work of the busiest rank: {:.3f} of the mean\n", after.imbalance);
   fmt::print("state {:016x}\n", io::hash_of(io::columns_of(world)));
 
   io::CsvWriter csv(folder / "settled.csv", {"x_m", "y_m", "z_m", "speed_m_s"});

@@ -2,6 +2,7 @@
 
 // How work is cut into parts along the order of grains. Needs no MPI.
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -24,6 +25,17 @@ inline std::vector<std::uint32_t> cut_by_work(const std::vector<double>& of_chun
     before += of_chunks[c];
   }
   return first;
+}
+
+/// The most work of a part, over the mean of all parts. `first` is what cut_by_work returned.
+inline double imbalance_of(const std::vector<double>& of_chunks, const std::vector<std::uint32_t>& first) {
+  double all = 0.0, most = 0.0;
+  for (std::size_t k = 0; k + 1 < first.size(); ++k) {
+    double of_part = 0.0;
+    for (std::size_t c = first[k]; c < first[k + 1]; ++c) of_part += of_chunks[c];
+    all += of_part, most = std::max(most, of_part);
+  }
+  return all > 0.0 ? most * static_cast<double>(first.size() - 1) / all : 1.0;
 }
 
 }  // namespace dem::domain

@@ -67,7 +67,10 @@ class Ranks : public Messages {
     return domain::sort_rows(*this, keys, all, rows_of_a_chunk);
   }
   /// Cuts the chunks, with the work that each of them is, into ranges of nearly the same work.
-  void cut(const std::vector<double>& of_chunks) { first_ = cut_by_work(of_chunks, ranks_); }
+  void cut(const std::vector<double>& of_chunks) {
+    first_ = cut_by_work(of_chunks, ranks_);
+    traffic_.imbalance = imbalance_of(of_chunks, first_);
+  }
 
   /// What goes over between this rank and another one in a step.
   struct Border {

@@ -64,4 +64,8 @@ TEST_CASE("chunks are cut where the work is halved, and a part may be empty") {
   CHECK(dem::domain::cut_by_work({1, 1, 1, 3}, 2) == Indices{0, 3, 4});
   CHECK(dem::domain::cut_by_work({1}, 2).size() == 3);
   CHECK(dem::domain::cut_by_work({1}, 2).back() == 1);
+  CHECK(dem::domain::imbalance_of({1, 1, 1, 3}, {0, 3, 4}) == 1.0);
+  CHECK(dem::domain::imbalance_of({1, 1, 1, 1}, {0, 3, 4}) == 1.5);
+  CHECK(dem::domain::imbalance_of({1}, {0, 0, 1}) == 2.0);
+  CHECK(dem::domain::imbalance_of({}, {0, 0, 0}) == 1.0);
 }
