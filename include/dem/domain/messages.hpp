@@ -62,11 +62,16 @@ class Messages {
   double total(double x) const { return reduced(x, MPI_DOUBLE, MPI_SUM); }
   int smallest(int x) const { return reduced(x, MPI_INT, MPI_MIN); }
   bool all(bool yes) const { return smallest(yes ? 1 : 0) != 0; }
-  /// Whether all ranks have the same number.
-  bool agree(std::uint64_t x) const {
-    const bool is_largest = reduced(x, MPI_UINT64_T, MPI_MAX) == x,
-               is_smallest = reduced(x, MPI_UINT64_T, MPI_MIN) == x;
-    return all(is_largest && is_smallest);
+  /// Every call that ranks make together begins with it, and with no other message. Throws Error, on every rank, unless
+  /// all are in this one. Returns the first part of which ranks have different hashes; hashes.size() where there is
+  /// none.
+  std::size_t compare(Call call, const CallHashes& hashes) const {
+    if (!is_shared()) return hashes.size();
+    const Watch watch(traffic_.step_seconds);
+    const CallNumbers numbers = detail::compare_calls(call, hashes);
+    traffic_.step_bytes += numbers.size() * sizeof(std::uint64_t);
+    if (const std::string difference = numbers.difference(); !difference.empty()) throw Error(difference);
+    return numbers.differing_part();
   }
   /// Sums of numbers that only one rank has, and that are zero on all others, or of whole numbers: exact.
   void share_sums(std::vector<double>& numbers) const {

@@ -24,14 +24,24 @@ namespace dem::domain {
 ///     struct Sand : dem::Model { using Domain = dem::domain::Ranks; };
 ///     int main(int argc, char** argv) {
 ///       dem::domain::Session mpi(argc, argv);
-///       dem::World<Sand> world;            // the same set-up on every rank
+///       dem::World<Sand> world;                              // the same set-up on every rank
 ///       ...
-///       world.run_for(1.0);                // shared; afterwards every rank knows all grains
+///       const dem::StepReport report = world.run_for(1.0);   // shared; afterwards every rank knows all grains
+///       return report ? 0 : 1;                               // the same on every rank
 ///     }
 ///
-/// Calls that change or run a world are made on every rank, with the same arguments. Queries of grains work on any rank
-/// by itself, but only between runs: at the end of run() and run_for() every rank is told of all grains, which costs as
-/// much as a step or more. So give run() many steps. contacts_of, energy_of and save are made on every rank.
+/// Calls that change or run a world are made on every rank, with the same arguments: prepare, step, run, run_for,
+/// find_rest, assemble, load and io::restore too. So are those that look at contacts or take the state: contacts_of,
+/// energy_of, averages of soil, files of contacts (write_vtk_contacts), replays with forces, save and io::columns_of.
+/// Ranks that make different ones of these calls, end the program, or have set up different worlds are all told so in
+/// words. Queries of single grains work on any rank by itself, but only between runs.
+///
+/// At the end of step(), run() and run_for() every rank is told of all grains, which costs as much as a step or more.
+/// So give run() many steps.
+///
+/// Chunks are cut anew among the ranks, by the work that was counted, at each neighbour list and only there. Rows move
+/// then anyway. A list that was made earlier, because the work is uneven, would depend on the number of ranks, and so
+/// would the bits.
 ///
 /// Within a run a rank works on its own chunks alone. When neighbours are listed it sorts its own grains, sends those
 /// that have another owner now, and hears of the grains of chunks that its own may touch. Where machine parts hold
@@ -98,14 +108,15 @@ class Ranks : public Messages {
     gather_column(column, sizes, width);
   }
 
-  /// f(), whose exceptions end all ranks if there are several: the others would wait for this one.
+  /// f(), whose exceptions end all ranks if there are several: the others would wait for this one. `where` it was, in
+  /// words.
   template <class F>
-  auto guarded(F&& f) const {
+  auto guarded(const char* where, F&& f) const {
     try {
       return f();
     } catch (...) {
       if (is_shared()) {
-        detail::print_exception("in a step");
+        detail::print_exception(where);
         MPI_Abort(MPI_COMM_WORLD, 1);
       }
       throw;

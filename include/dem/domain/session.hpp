@@ -4,11 +4,13 @@
 
 #include <dem/core/error.hpp>
 #include <dem/core/output.hpp>
+#include <dem/domain/call.hpp>
 
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
+#include <string>
 #include <thread>
 
 #include <fcntl.h>
@@ -42,12 +44,24 @@ inline int count_of_ranks_here() {
   MPI_Comm_free(&machine);
   return here;
 }
+/// The reduction with which each call begins that ranks make together.
+inline CallNumbers compare_calls(Call call, const CallHashes& hashes = {}) {
+  CallNumbers numbers(call, rank_of_process(), hashes);
+  MPI_Allreduce(MPI_IN_PLACE, numbers.data(), static_cast<int>(numbers.size()), MPI_UINT64_T, MPI_MAX, MPI_COMM_WORLD);
+  return numbers;
+}
+/// Throws Error, on every rank, unless all are in this call.
+inline void require_same_call(Call call) {
+  if (const std::string difference = compare_calls(call).difference(); !difference.empty()) throw Error(difference);
+}
 inline bool any_rank(bool yes) {
+  require_same_call(Call::decide);
   int mine = yes ? 1 : 0, any = mine;
   MPI_Allreduce(&mine, &any, 1, MPI_INT, MPI_MAX, MPI_COMM_WORLD);
   return any != 0;
 }
 inline int of_first_rank(int value) {
+  require_same_call(Call::decide);
   MPI_Bcast(&value, 1, MPI_INT, 0, MPI_COMM_WORLD);
   return value;
 }
@@ -98,9 +112,9 @@ inline void print_exception(const char* where) {
 /// All ranks run the whole program. What it prints and the files that it writes through this library come from rank 0
 /// alone: standard output of the others goes nowhere. Standard error stays. Without mpirun there is one rank.
 ///
-/// An exception that leaves main() or a step ends all ranks, in words. One that is caught outside the life of the
-/// Session and ends main() does so too. But do not catch one within it and return: this rank would wait at its end for
-/// others that wait for it.
+/// An exception that leaves main() or a step ends all ranks, in words. So does one that is caught and ends main().
+/// Where a rank makes another call than the others, of those that ranks make together (domain/ranks.hpp), all throw
+/// Error.
 class Session {
  public:
   /// Throws Error where there is a Session already.
@@ -136,6 +150,7 @@ class Session {
     // An exception passes. Who catches it has something to say; mpirun ends the others when this process ends.
     if (std::uncaught_exceptions() > unwinding_) return;
     processes = {};
+    if (ranks_ > 1) end_together();
     MPI_Finalize();
   }
 
@@ -145,6 +160,16 @@ class Session {
   bool is_root() const { return rank_ == 0; }
 
  private:
+  /// Others that run on would wait for this rank for ever.
+  void end_together() const {
+    const std::string difference = detail::compare_calls(Call::end).difference();
+    if (difference.empty()) return;
+    std::fflush(stdout);
+    std::fprintf(stderr, "rank %d of %d: %s\n", rank_, ranks_, difference.c_str());
+    std::fflush(stderr);
+    MPI_Abort(MPI_COMM_WORLD, 1);
+  }
+
   int rank_ = 0, ranks_ = 1, unwinding_;
 };
 

@@ -29,7 +29,7 @@ template <class Model, class... Others>
 void save(const World<Model>& world, const std::filesystem::path& path, const Others&... others) {
   const io::StateColumns columns = io::columns_of(world, others...);
   if constexpr (Model::Domain::has_ranks) {
-    world.state().domain.guarded([&] {
+    world.state().domain.guarded("as a state was saved", [&] {
       if (process_writes_files) io::write_columns(path, columns);
       world.state().domain.wait_for_all();
     });
@@ -45,6 +45,8 @@ void save(const World<Model>& world, const std::filesystem::path& path, const Ot
 /// What was steered is in the file too: targets, switches, set_fixed, gravity, and whether grains may sleep. So call
 /// set_sleep after loading a bed that was saved awake, if its grains may sleep from now on. Functions are not in the
 /// file: where a function has taken the place of a number since the set-up, give it before loading.
+///
+/// Where ranks share the grains, all ranks call it at once, and each reads the file.
 ///
 /// Throws Error, and leaves the world as it is, if the file cannot be read, is cut short or damaged, has another
 /// schema, or if the set-up differs; the text names what differs: which option, material, species, body, joint. A file

@@ -40,6 +40,8 @@ inline void write_vtk_force_lines(const std::filesystem::path& path, const std::
 ///
 ///     write_vtk_grains(series.next_path("grains"), world);
 ///     write_vtk_contacts(series.next_path("contacts"), world);
+///
+/// Where ranks share the grains, all ranks call it at once, and rank 0 writes.
 template <class Model>
 void write_vtk_contacts(const std::filesystem::path& path, const World<Model>& world, const VtkOptions& options = {}) {
   write_vtk_force_lines(path, force_lines(contacts_of(world)), options);

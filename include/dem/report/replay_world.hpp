@@ -102,7 +102,8 @@ std::vector<ReplayForce> replay_forces(const World& world, const std::vector<Rep
 /// shapes, coloured by their speeds, the sizes of their net contact forces, or whether they sleep; so are all active
 /// surfaces where their bodies are, and besides `bodies` as meshes, the same ones in the same order each time. The
 /// largest forces at contacts are kept as force chains, ReplayOptions::force_lines of them, which costs what
-/// contacts_of(world) does. Throws dem::Error for a body without a mesh, and as Replay::record and contacts_of do.
+/// contacts_of(world) does: where ranks share the grains, all ranks call it at once. Throws dem::Error for a body
+/// without a mesh, and as Replay::record and contacts_of do.
 template <class World>
 bool record_world(Replay& replay, const World& world, const std::vector<io::DrawnBody>& bodies = {}) {
   const double time = world.time();

@@ -74,7 +74,7 @@ void add_world(AverageSums& sums, const World<Model>& world) {
 
 /// Density, velocity, stress, ... of a world's grains as it stands, at the middle of each cell of a grid; see Average.
 /// Images of a periodic cell count too, one cell on. The world is not changed. Throws Error for a grid that is none,
-/// and as contacts_of does.
+/// and as contacts_of does. Where ranks share the grains, all ranks call it at once.
 ///
 ///     const auto field = soil::averages(world, {{low, high}, {20, 20, 10}}, soil::Kernel::lucy(4 * radius));
 template <class Model>
@@ -97,7 +97,7 @@ class TimeAverages {
   /// Throws Error for a grid that is none.
   explicit TimeAverages(const AverageGrid& grid, const Kernel& kernel = Kernel::cell()) : sums_(grid, kernel) {}
 
-  /// Adds a world as it stands. Throws as contacts_of does.
+  /// Adds a world as it stands. Throws as contacts_of does. Where ranks share the grains, all ranks call it at once.
   template <class Model>
   void add(const World<Model>& world) {
     detail::add_world(sums_, world);

@@ -154,6 +154,7 @@ std::vector<Contact<Model>> contacts_of(const World<Model>& world) {
   if (!copies && world.is_prepared() && !neighbours_outdated(world.state())) {
     return detail::ContactFinder<Model>(world.state()).find();
   }
+  if constexpr (Model::Domain::has_ranks) check_agreement(world.state(), domain::Call::contacts);
   World<Model> copy = world;
   copy.prepare();
   if (neighbours_outdated(copy.state())) rebuild_neighbours(copy.state());

@@ -186,7 +186,8 @@ void count_step(WorldState<Model>& w) {
 
 /// The energies of the grains as they stand, and what was dissipated since count_energy(). Springs count where their
 /// laws tell what they store (`energy`, see tells_energy): the work on others counts as dissipated. Contacts of machine
-/// parts with each other are not the grains'. The world is not changed; it costs what contacts_of() does.
+/// parts with each other are not the grains'. The world is not changed; it costs what contacts_of() does. Where ranks
+/// share the grains, all ranks call it at once.
 template <class Model>
 GrainEnergy energy_of(const World<Model>& world) {
   const WorldState<Model>& w = world.state();

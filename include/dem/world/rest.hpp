@@ -19,17 +19,20 @@ namespace dem {
 ///     #include <dem/world/rest.hpp>
 ///     if (const auto rest = find_rest(world); !rest) fmt::print("{}\n", rest.text);
 ///
-/// Throws Error for a prescribed motion of a body that is not fixed, and what World::run throws.
+/// Where ranks share the grains, all ranks call it at once. Throws Error for a prescribed motion of a body that is not
+/// fixed, and what World::run throws.
 template <class Model>
 mbd::RestReport find_rest(World<Model>& world, const mbd::RestOptions& options = {}) {
   WorldState<Model>& w = world.state();
   mbd::detail::stop_for_rest(w.machine.parts());
   world.prepare();
-  const mbd::RestReport report = mbd::detail::search_rest<typename Model::Joints>(
-      w.machine.parts(), w.options.gravity, w.time, w.time_step / w.machine.substeps, options, [&w] {
-        w.sleepers.all_work = true;
-        evaluate_contacts(w);
-      });
+  const mbd::RestReport report = together(w, domain::Call::rest, "in find_rest", [&] {
+    return mbd::detail::search_rest<typename Model::Joints>(w.machine.parts(), w.options.gravity, w.time,
+                                                            w.time_step / w.machine.substeps, options, [&w] {
+                                                              w.sleepers.all_work = true;
+                                                              evaluate_contacts(w);
+                                                            });
+  });
   if constexpr (Model::Domain::has_ranks) gather_rows(w);
   world.set_gravity(w.options.gravity);  // what integrators remember of forces is out of date, and grains may wake
   return report;
@@ -37,7 +40,7 @@ mbd::RestReport find_rest(World<Model>& world, const mbd::RestOptions& options =
 
 /// Changes the velocities of a world's machine to what its joints allow, as given_velocities says. The first step does
 /// that by itself; velocities that are given later, or after find_rest, need this. What is prescribed moves as it does
-/// at the world's time. Throws what World::run throws.
+/// at the world's time. Where ranks share the grains, all ranks call it at once. Throws what World::run throws.
 template <class Model>
 const mbd::AssemblyReport& assemble(World<Model>& world) {
   WorldState<Model>& w = world.state();

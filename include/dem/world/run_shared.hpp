@@ -1,60 +1,110 @@
 #pragma once
 
-// Runs of a world whose grains several ranks share (domain::Ranks).
+// Calls that ranks make together of a world whose grains they share (domain::Ranks).
 
 #include <dem/core/error.hpp>
+#include <dem/domain/call.hpp>
+#include <dem/world/field_hash.hpp>
 #include <dem/world/gather.hpp>
 #include <dem/world/report.hpp>
 
-#include <bit>
+#include <cstddef>
 #include <cstdint>
-#include <initializer_list>
 
 namespace dem {
 
-/// Throws Error, on every rank, unless all ranks have set up the same world and ask the same of it. Ranks that do not
-/// would wait for each other for ever. `has_changed`: grains too are compared.
+namespace detail {
+
+/// What ranks compare at the start of a call besides what every call compares.
+struct Compared {
+  std::uint64_t asked = 0;  ///< a number of steps, say
+  bool set_up = false;      ///< what was set up too: it was changed
+  bool grains = false;      ///< all grains too: some were added or changed by hand
+};
+
+/// The parts of a world by which ranks tell each other what differs.
+inline constexpr const char* parts_of_a_world[] = {
+    "the time, how many grains or other things there are, what was changed, or what is asked",
+    "options",
+    "materials or contact constants",
+    "species",
+    "surfaces",
+    "the machine, an outlet or an inlet",
+    "grains"};
+
 template <class Model>
-void check_agreement(const WorldState<Model>& w, std::uint64_t asked, bool has_changed) {
-  if (!w.domain.is_shared()) return;
+domain::CallHashes hashes_of(const WorldState<Model>& world, const Compared& compared) {
+  auto& w = const_cast<WorldState<Model>&>(world);  // fields serve both ways; hashing changes nothing
   const auto& p = w.particles;
-  std::uint64_t hash = 0xcbf29ce484222325ULL;
-  const auto mix = [&](std::uint64_t x) { hash = (hash ^ x) * 0x9e3779b97f4a7c15ULL, hash ^= hash >> 29; };
+  Hash size, options, grains;
   for (const std::size_t n : {p.count, p.row_of.size(), w.to_remove.size(), w.species.size(), w.surfaces.size(),
                               w.machine.bodies().size(), w.outlets.size(), w.inlets.size()}) {
-    mix(n);
+    size.mix(std::uint64_t{n});
   }
-  for (const std::uint64_t n : {asked, w.step, std::uint64_t{w.list_valid}, std::uint64_t{has_changed},
-                                std::uint64_t{w.options.sleep.has_value()}}) {
-    mix(n);
+  for (const std::uint64_t n : {compared.asked, w.step, std::uint64_t{w.list_valid}, std::uint64_t{compared.set_up},
+                                std::uint64_t{compared.grains}}) {
+    size.mix(n);
   }
   const Vec3& g = w.options.gravity;
-  for (const double x : {w.options.time_step, w.options.skin, g.x(), g.y(), g.z()})
-    mix(std::bit_cast<std::uint64_t>(x));
+  for (const double x : {w.options.time_step, w.options.skin, g.x(), g.y(), g.z()}) options.mix(x);
+  options.mix(std::uint64_t{w.options.sleep.has_value()});
   if constexpr (Model::Domain::has_images) {
     for (std::size_t k = 0; k < 3; ++k) {
-      for (const double x : {w.domain.low(k), w.domain.period()[k]}) mix(std::bit_cast<std::uint64_t>(x));
+      for (const double x : {w.domain.low(k), w.domain.period()[k]}) options.mix(x);
     }
   }
-  if (has_changed) {
-    for (std::size_t i = 0; i < p.count; ++i) {
-      for (const auto* c : {&p.position, &p.velocity}) {
-        for (const auto* x : {&c->x, &c->y, &c->z}) mix(std::bit_cast<std::uint64_t>((*x)[i]));
+  FieldHash materials, species, surfaces, machine;
+  if (compared.set_up) {
+    materials("", w.materials), species("", w.species), surfaces("", w.surfaces);
+    surfaces("", w.surface_sensors), surfaces("", w.body_contacts.pairs);
+    machine("", w.machine), machine("", w.outlets), machine("", w.inlets);
+  }
+  if (compared.grains) {
+    for (const auto* c : {&p.position, &p.velocity, &p.local_angular_velocity}) {
+      for (const auto* x : {&c->x, &c->y, &c->z}) {
+        for (std::size_t i = 0; i < p.count; ++i) grains.mix((*x)[i]);
       }
     }
+    for (std::size_t i = 0; i < p.count; ++i) grains.mix(std::uint64_t{p.species[i]});
   }
-  if (w.domain.agree(hash)) return;
+  return {size.value(),     options.value(), materials.value(), species.value(),
+          surfaces.value(), machine.value(), grains.value()};
+}
+
+}  // namespace detail
+
+/// Every call that ranks make together of a world begins with it. Throws Error, on every rank, unless all are in this
+/// call, have set up the same world and ask the same of it. Ranks that do not would wait for each other for ever.
+template <class Model>
+void check_agreement(const WorldState<Model>& w, domain::Call call, const detail::Compared& compared = {}) {
+  if (!w.domain.is_shared()) return;
+  const std::size_t part = w.domain.compare(call, detail::hashes_of(w, compared));
+  if (part == std::size(detail::parts_of_a_world)) return;
   fail(
-      "the ranks do not have the same world, or ask different things of it at t = {:g} s: set it up, change and run it "
-      "alike on every rank, with no random numbers or clocks of each rank's own; only look at it on one rank alone",
-      w.time);
+      "the ranks do not have the same world, or ask different things of it: at t = {:g} s they differ in {}; set it "
+      "up, "
+      "change and run it alike on every rank, with no random numbers or clocks of each rank's own. Queries of single "
+      "grains may be made on one rank; contacts_of, energy_of, averages, save, ... on all ranks",
+      w.time, detail::parts_of_a_world[part]);
+}
+
+/// f(), in which ranks that share a world tell each other things: all ranks begin it together, and exceptions end all
+/// of them. `where` they were, in words.
+template <class Model, class F>
+auto together(const WorldState<Model>& w, domain::Call call, const char* where, F&& f) {
+  if constexpr (Model::Domain::has_ranks) {
+    check_agreement(w, call);
+    return w.domain.guarded(where, f);
+  } else {
+    return f();
+  }
 }
 
 /// A run of n steps, as f() does it on this rank. Afterwards every rank knows all grains. Exceptions end all ranks.
 template <class Model, class F>
 StepReport run_shared(WorldState<Model>& w, std::uint64_t n, F&& f) {
-  check_agreement(w, n, false);
-  return w.domain.guarded([&] {
+  check_agreement(w, domain::Call::run, {.asked = n});
+  return w.domain.guarded("in a step", [&] {
     StepReport report = f();
     gather_rows(w);
     return report;

@@ -38,7 +38,11 @@ class World : public WorldSetup<M> {
           "new one",
           time());
     }
-    if constexpr (Model::Domain::has_ranks) check_agreement(state_, checked_, !initialised_ || state_.grains_added);
+    if constexpr (Model::Domain::has_ranks) {
+      check_agreement(
+          state_, domain::Call::prepare,
+          {.set_up = !checked_ || !machine_is_initialised(), .grains = !initialised_ || state_.grains_added});
+    }
     if (!checked_ || !machine_is_initialised()) {
       state_.materials.check_complete();
       state_.materials.check_names(used_materials());
@@ -58,15 +62,17 @@ class World : public WorldSetup<M> {
     // A step that has begun must not be refused: motions that were added or changed are looked at before it.
     state_.machine_solver.check_motions(state_.machine);
     if (!initialised_ || !machine_is_initialised()) {
-      initialise(state_);
+      together(state_, domain::Call::first_forces, "as the first forces were found", [&] { initialise(state_); });
       initialised_ = true;
       state_.grains_added = false;
-    } else {
-      list_added();
+    } else if (state_.grains_added) {
+      together(state_, domain::Call::first_forces, "as grains were added", [&] { list_added(); });
     }
   }
   /// Whether prepare() has nothing left to do: nothing was changed since the last step.
   bool is_prepared() const { return checked_ && initialised_ && !state_.grains_added && machine_is_initialised(); }
+  /// Runs one step. Where ranks share the grains each call tells all ranks all grains, as each run() does: run(n) costs
+  /// less than n calls.
   [[nodiscard]] StepReport step() { return run(1); }
   /// Runs n steps, or fewer if a problem shows. A lost grain is reported once: a run may go on without it. An exception
   /// of a law, a shape or a function of your own arrives here, from whichever thread; the world may then be looked at,

@@ -256,6 +256,7 @@ template <class Model, class... Others>
 StateColumns columns_of(const World<Model>& world, const Others&... others) {
   StateColumns columns;
   Fields v(Fields::Task::collect, columns);
+  if constexpr (Model::Domain::has_ranks) check_agreement(world.state(), domain::Call::state);
   if constexpr (Model::Domain::has_ranks) {  // no rank has all of it: a copy gets it, and what is borrowed of that is
                                              // kept
     if (world.state().domain.is_shared() && !world.state().domain.is_complete) {
@@ -278,7 +279,7 @@ StateColumns columns_of(const World<Model>& world, const Others&... others) {
 /// Puts a world, which the program has set up as it did before, into a state. Grains are those of the state. Throws
 /// Error where the set-up or the model differs, or the state has things of a program that are not given here, in words,
 /// before anything is changed. A state that fits the set-up but lacks something is refused while it is being read: the
-/// world is then good for nothing.
+/// world is then good for nothing. Where ranks share the grains, all ranks call it at once, with the same state.
 template <class Model, class... Others>
 void restore(World<Model>& world, StateColumns& columns, Others&... others) {
   Fields compare(Fields::Task::compare, columns);
@@ -288,6 +289,9 @@ void restore(World<Model>& world, StateColumns& columns, Others&... others) {
   if (const auto next = columns.lower_bound(more); next != columns.end() && next->first.starts_with(more)) {
     fail("the saved state has '{}', but this program gives {} things besides the world to be restored", next->first,
          sizeof...(Others));
+  }
+  if constexpr (Model::Domain::has_ranks) {
+    check_agreement(world.state(), domain::Call::restore, {.asked = hash_of(columns)});
   }
   Fields v(Fields::Task::restore, columns);
   detail::world_fields(v, world, others...);

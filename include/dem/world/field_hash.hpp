@@ -1,0 +1,102 @@
+#pragma once
+
+#include <algorithm>
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <string>
+#include <string_view>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+namespace dem::detail {
+
+/// Mixes numbers into a hash.
+class Hash {
+ public:
+  std::uint64_t value() const { return value_; }
+  void mix(std::uint64_t x) { value_ = (value_ ^ x) * 0x9e3779b97f4a7c15ULL, value_ ^= value_ >> 29; }
+  void mix(double x) { mix(std::bit_cast<std::uint64_t>(x)); }
+
+ private:
+  std::uint64_t value_ = 0xcbf29ce484222325ULL;
+};
+
+/// Goes through the fields of a struct as io::Fields does, those that are set up and those that change, and mixes all
+/// of them into a hash. Changes nothing.
+class FieldHash {
+ public:
+  std::uint64_t value() const { return hash_.value(); }
+
+  template <class T>
+  void operator()(std::string_view, T& x, const char* = "") {
+    visit(x);
+  }
+  template <class T>
+  void given(std::string_view, const T& x, const char* = "") {
+    T copy = x;
+    visit(copy);
+  }
+  template <class Items>
+  void list(std::string_view, Items& items, const char*) {
+    hash_.mix(std::uint64_t{items.size()});
+    for (auto& item : items) visit(item);
+  }
+  template <class Struct>
+  void reals(std::string_view, const Struct& x, const char* = "") {
+    if constexpr (!std::is_empty_v<Struct>) bytes_of(x);
+  }
+  template <class Struct>
+  void given_reals(std::string_view name, const Struct& x) {
+    reals(name, x);
+  }
+  template <class T>
+  void numbers(std::string_view, const std::vector<T>& rows) {
+    hash_.mix(std::uint64_t{rows.size()});
+    for (const T& row : rows) bytes_of(row);
+  }
+  template <class F>
+  void about(const std::string&, F&& f) {
+    f();
+  }
+
+ private:
+  template <class T>
+  void visit(T& x) {
+    if constexpr (requires { x.fields(*this); }) x.fields(*this);
+    else if constexpr (std::is_arithmetic_v<T> || std::is_enum_v<T>) bytes_of(x);
+    else if constexpr (requires { T::RowsAtCompileTime; }) {
+      for (auto k = x.size() * 0; k < x.size(); ++k) hash_.mix(double(x.data()[k]));
+    } else if constexpr (requires { x.has_value(); }) {
+      hash_.mix(std::uint64_t{x.has_value()});
+      if (x) visit(*x);
+    } else if constexpr (requires { x.begin(); }) {  // texts too
+      hash_.mix(std::uint64_t{x.size()});
+      for (auto& item : x) visit(item);
+    } else visit_more(x);
+  }
+  template <class A, class B>
+  void visit_more(std::pair<A, B>& x) {
+    visit(x.first), visit(x.second);
+  }
+  /// Vectors, matrices, ids and wrenches have no gaps.
+  template <class T>
+  void visit_more(T& x) {
+    bytes_of(x);
+  }
+  template <class T>
+  void bytes_of(const T& x) {
+    static_assert(std::is_trivially_copyable_v<T>);
+    for (std::size_t k = 0; k < sizeof(T); k += sizeof(std::uint64_t)) {
+      std::uint64_t word = 0;
+      std::memcpy(&word, reinterpret_cast<const char*>(&x) + k, std::min(sizeof(word), sizeof(T) - k));
+      hash_.mix(word);
+    }
+  }
+
+  Hash hash_;
+};
+
+}  // namespace dem::detail
