@@ -2,11 +2,19 @@
 
 namespace scenes {
 
-bool spheres();   ///< fall into a box, are put in, taken out, added and removed by hand
+bool spheres();   ///< fall into a box, are put in, taken out, added and removed by hand, also beside sleepers
 bool cubes();     ///< of eight spheres, with a machine, a mesh, grains that are held, and sleep
 bool periodic();  ///< cubes in a cell that repeats itself: they flow over its borders, sleep, and a paddle goes across
 bool checkpoint();  ///< a state goes on from ranks to one process and back
+bool reports();     ///< what is reported of lost grains
+bool differ();      ///< ranks with different set-ups are told in what
 void mistake();     ///< an exception on one rank
-void disagree();    ///< ranks that set up different worlds
+void disagree();    ///< ranks that change different things
+
+// Two ranks in different calls.
+bool caught();           ///< an exception on one rank, between steps, which is caught
+void contacts_on_one();  ///< one rank looks at contacts
+void columns_on_one();   ///< one rank takes the state
+void run_on_one();       ///< one rank runs
 
 }  // namespace scenes

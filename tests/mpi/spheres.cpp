@@ -53,10 +53,55 @@ constexpr auto emptied = []<class Model>() {
   return world;
 };
 
+/// Small grains come into the gaps between sleepers and fly into some; neighbours are listed again as they do.
+constexpr auto beside = []<class Model>() {
+  const double pitch = 2.1e-3;
+  auto world = box_of_spheres<Model>(900, 0.0);
+  const auto small = world.add_species(dem::shape::Sphere(0.5e-3), {.density = 2e4});
+  world.set_gravity({0, 0, 0});
+  world.set_sleep(dem::SleepOptions{.balance = 0.2, .change = 0.2, .jolt = 0.2, .motion = 0.01, .window = 20});
+  run(world, 100);
+  const std::size_t asleep = world.asleep_count();
+  require(asleep > 800, "hardly a grain sleeps");
+  for (int k = 0; k < 20; ++k) {
+    world.add_particle({.species = small,
+                        .position = pitch * dem::Vec3(1 + k % 10, 2 + k / 10 * 4, 1 + k % 5),
+                        .velocity = {1, 0.5, 0.5}});
+  }
+  const std::uint64_t lists = world.state().rebuilds;
+  run(world, 300);
+  require(world.state().rebuilds > lists + 1, "neighbours were not listed again");
+  require(world.asleep_count() < asleep - 5, "no sleeper was woken");
+  require(world.asleep_count() > 100, "none sleeps any more");
+  return world;
+};
+
+/// Two grains leave the domain on different sides: what each run reports.
+template <class Model>
+std::string told_of_lost() {
+  auto world = box_of_spheres<Model>(1500);
+  world.add_particle({.species = dem::SpeciesId(0), .position = {0.015, 0.01, 0.9}, .velocity = {0, 0, 50}});
+  world.add_particle({.species = dem::SpeciesId(0), .position = {-0.9, 0.01, 0.01}, .velocity = {-50, 0, 0}});
+  std::string told;
+  for (int k = 0; k < 4; ++k) {
+    const dem::StepReport r = world.run(150);
+    told += dem::text("{}: problem {}, grain {}, {}\n", r.step, int(r.problem), r.particle.value, r.text);
+  }
+  require(told.find("grain 1500 left") != told.npos && told.find("grain 1501 left") != told.npos, told);
+  return told;
+}
+
 }  // namespace
 
+bool reports() {
+  const std::string told = told_of_lost<Shared>();
+  const dem::domain::Messages ranks;
+  const bool same = told == ranks.text_of(0, told) && (ranks.rank() != 0 || told == told_of_lost<Alone>());
+  return ranks.all(same);
+}
+
 bool spheres() {
-  const bool same = same_bits<Shared, Alone>("emptied", emptied);
+  const bool same = same_bits<Shared, Alone>("emptied", emptied) && same_bits<Shared, Alone>("beside", beside);
   return same_bits<Shared, Alone>("spheres", changing) && same;
 }
 
