@@ -11,61 +11,20 @@
 // The skin of the neighbour lists is given: when lists are made anew, grains are sorted in space, and sums go in the
 // order of rows. So whoever changes the rule by which the skin is chosen changes no hash.
 
+#include "state_hash.hpp"
 #include "catch.hpp"
 
 #include <dem/dem.hpp>
 #include <dem/geometry/mesh/mesh_shapes.hpp>
 #include <dem/geometry/superquadric/superquadric.hpp>
 
-#include <bit>
 #include <cstdint>
-#include <cstdio>
-#include <string>
 
 namespace {
 
 constexpr const char* hash_of_spheres = "73bc636f971f6d70";
 constexpr const char* hash_of_cubes = "292d1dde455ec934";
 constexpr const char* hash_of_superquadrics = "6608de9defffe28c";
-
-class Hash {
- public:
-  template <class Numbers>
-  void add(const Numbers& numbers) {
-    for (Eigen::Index k = 0; k < numbers.size(); ++k) {
-      value_ ^= std::bit_cast<std::uint64_t>(numbers.data()[k]);
-      value_ *= 0x100000001b3ULL;
-      value_ ^= value_ >> 29;
-    }
-  }
-  std::string text() const {
-    char text[17];
-    std::snprintf(text, sizeof text, "%016llx", static_cast<unsigned long long>(value_));
-    return text;
-  }
-
- private:
-  std::uint64_t value_ = 0xcbf29ce484222325ULL;
-};
-
-/// Places, velocities and rotations of all grains and bodies.
-template <class World>
-std::string hash_of(const World& w) {
-  Hash hash;
-  for (const dem::ParticleId p : w.particles()) {
-    hash.add(w.position(p));
-    hash.add(w.velocity(p));
-    hash.add(w.angular_velocity(p));
-    hash.add(w.rotation(p));
-  }
-  for (const dem::Body& b : w.machine().bodies()) {
-    hash.add(b.position());
-    hash.add(b.velocity());
-    hash.add(b.angular_velocity());
-    hash.add(b.rotation());
-  }
-  return hash.text();
-}
 
 /// Numbers from 0 to 1 that are the same with every library.
 struct Numbers {
