@@ -5,6 +5,7 @@
 #include <dem/domain/ranks.hpp>
 #else
 #include <dem/domain/open.hpp>
+#include <dem/rig/launcher.hpp>
 #endif
 
 namespace dem::rig {
@@ -14,14 +15,14 @@ namespace dem::rig {
 ///     const dem::rig::MpiSession mpi(argc, argv);
 ///
 /// Compiled with DEM_ON_RANKS (link dem::mpi) the program is run by mpirun, and all processes share each of its worlds.
-/// Results are those of one process, to the last digit.
+/// Results are those of one process, to the last digit. Compiled without, it refuses to be run by mpirun.
 #if defined(DEM_ON_RANKS)
 using Domain = domain::Ranks;
 using MpiSession = domain::Session;
 #else
 using Domain = domain::Open;
 struct MpiSession {
-  MpiSession(int&, char**&) {}
+  MpiSession(int&, char**&) { can_have_ranks = true; }
 };
 #endif
 

@@ -2,6 +2,7 @@
 // The program of a rig. Needs CLI11. Programs that link dem::hdf5 can go on after they were stopped.
 
 #include <dem/rig/command_line.hpp>
+#include <dem/rig/launcher.hpp>
 #include <dem/rig/rig.hpp>
 #if defined(DEM_WITH_HDF5)
 #include <dem/rig/hdf5_checkpoints.hpp>
@@ -125,6 +126,10 @@ inline int fail_with(int code, const std::string& words) {
 inline int run_program(const ProgramText& program, Rig& rig, int argc, const char* const* argv) {
   detail::open_standard_streams();
   std::signal(SIGPIPE, SIG_IGN);  // whoever read the messages is gone: no reason to lose the results
+  if (const std::string why = detail::why_not_launched(argc > 0 ? argv[0] : program.name); !why.empty()) {
+    if (detail::is_first_launched()) tell(stderr, "{}: {}\n", program.name, why);
+    return 2;
+  }
   try {
     Options options;
     rig.declare(options);

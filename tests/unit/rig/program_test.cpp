@@ -4,6 +4,7 @@
 #include <dem/rig/program.hpp>
 
 #include <csignal>
+#include <cstdlib>
 #include <filesystem>
 #include <functional>
 #include <new>
@@ -95,6 +96,28 @@ TEST_CASE("what is refused touches nothing") {
   CHECK(dem::io::read_file(p.path / "rows.csv") == "of the first run");
   CHECK(dem::io::read_file(p.path / "settings.toml").starts_with("load=1\n"));
   CHECK_FALSE(p.has("run.lock"));
+}
+
+TEST_CASE("a program that was built without ranks does not run under mpirun") {
+  for (const bool can : {true, false}) {
+    can_have_ranks = can;
+    for (const auto& [size, rank] :
+         {std::pair("OMPI_COMM_WORLD_SIZE", "OMPI_COMM_WORLD_RANK"), {"PMI_SIZE", "PMI_RANK"}}) {
+      Program p;
+      ::setenv(size, "1", 1);
+      CHECK(p.run() == 0);
+      ::setenv(size, "2", 1);
+      CHECK(p.run() == 2);
+      CHECK_THAT(detail::why_not_launched("build/examples/scripted"),
+                 ContainsSubstring("mpirun started 2 processes") &&
+                     ContainsSubstring(can ? "build and run the target scripted_on_ranks" : "leave out mpirun"));
+      CHECK(detail::is_first_launched());
+      ::setenv(rank, "1", 1);
+      CHECK_FALSE(detail::is_first_launched());
+      ::unsetenv(size), ::unsetenv(rank);
+    }
+  }
+  can_have_ranks = false;
 }
 
 TEST_CASE("a run that never begins is a mistake of the rig's") {
