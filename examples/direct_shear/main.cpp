@@ -19,7 +19,11 @@ int main(int argc, char** argv) {
       .title = "Direct shear test",
       .about = "Direct shear test of cubical sand grains: shear strength at several normal stresses",
       .footer = dem::rig::exit_codes};
-  dem::rig::direct_shear::ShearRig rig(
-      worlds(), "direct_shear_all has them: cmake --build build/release --target direct_shear_all");
+#if defined(DEM_ON_RANKS)
+  const char* others = "direct_shear_all has them: cmake --build build/release --target direct_shear_all_on_ranks";
+#else
+  const char* others = "direct_shear_all has them: cmake --build build/release --target direct_shear_all";
+#endif
+  dem::rig::direct_shear::ShearRig rig(worlds(), others);
   return dem::rig::run_program(text, rig, argc, argv);
 }

@@ -1,5 +1,5 @@
 // The Humvee on columns of semi-empirical soil (dynamic Bekker): the car of chapter 6 of the thesis, without grains, so
-// that it drives about as fast as in real time. See --help.
+// that it drives about as fast as in real time. It runs on one process, drives of a study on its threads. See --help.
 //
 //   humvee_columns                                     25 m of dry sand
 //   humvee_columns --lane hard:8,dry-sand:12           from hard ground into sand
