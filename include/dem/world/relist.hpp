@@ -35,7 +35,10 @@ template <class Model, class Change>
 void relist(WorldState<Model>& w, Change&& change) {
   if constexpr (Model::Domain::has_ranks) {
     if (w.domain.is_shared()) {
-      fail("ranks do not share beds whose grains come or go with their contacts, as tiles do: run this on one rank");
+      fail(
+          "ranks do not share beds whose grains come or go with their contacts, as tiles do: lay tiles on one rank, "
+          "save "
+          "the world and load it on several; a moving patch stays on one");
     }
   }
   list_between_steps(w, [&] { rebuild_neighbours(w, change); });
