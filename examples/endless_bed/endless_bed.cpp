@@ -5,6 +5,7 @@
 //   endless_bed --tiles 10 --output out/endless_bed
 //   endless_bed --load 0.1 --patch 6       load of the wheel (N), tiles of the patch
 //   endless_bed --compare 1 --beds 4       ends with 1 if means differ by more than 2 % and what chance explains
+//   endless_bed --lay 100,83               no wheel: what it costs to lay so many tiles along x and y, and eleven steps
 //
 // The wheel is as wide as the cell, which repeats itself across the way: a plane problem. Writes rut.dat and
 // picture.gp, and draws the picture where gnuplot is installed.
@@ -21,7 +22,10 @@
 
 #include <chrono>
 #include <cstdlib>
+#include <ctime>
 #include <optional>
+
+#include <sys/resource.h>
 
 using namespace dem;
 
@@ -41,12 +45,13 @@ constexpr double ahead = 2.5 * length, first_place = 2.5 * length, interval = 1e
 
 double now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
 
-World<Beads> ground(bool repeats_along) {
-  World<Beads> world(
-      {.time_step_safety = 0.8,
-       .domain = surface::Aabb{{repeats_along ? 0.0 : -1.0, 0, -1}, {repeats_along ? length : 1e3, width, 1}},
-       .periodic = {.x = repeats_along, .y = true},
-       .threads = 1});
+/// A cell of so many tiles; 0 along x: it does not repeat itself there.
+World<Beads> ground(int along_x, int along_y) {
+  const double low = along_x > 0 ? 0.0 : -1.0, high = along_x > 0 ? along_x * length : 1e3;
+  World<Beads> world({.time_step_safety = 0.8,
+                      .domain = surface::Aabb{{low, 0, -1}, {high, along_y * width, 1}},
+                      .periodic = {.x = along_x > 0, .y = true},
+                      .threads = 1});
   world.set_contact({.normal = contact::LinearSpringDashpot::with_restitution(stiffness, 0.3),
                      .friction = {0.6, 2.0 / 7 * stiffness, 0.1}});
   for (const double size : {0.85, 1.0, 1.15}) world.add_species(shape::Sphere(0.5 * size * d), {.density = 2500});
@@ -56,7 +61,7 @@ World<Beads> ground(bool repeats_along) {
 
 /// Beads fall into a cell that repeats itself along x and y, and come to rest.
 soil::Tile settle(std::uint64_t seed) {
-  World<Beads> cell = ground(true);
+  World<Beads> cell = ground(1, 1);
   RandomStream random(seed);
   for (int k = 0; k < 8; ++k) {
     for (int j = 0; j < 5; ++j) {
@@ -69,6 +74,25 @@ soil::Tile settle(std::uint64_t seed) {
   soil::StaysBelow rests(0.01 * soil::rest_speed(d), 0.02);
   while (!rests(cell.time(), soil::rms_speed(cell)) && cell.time() < 2.0) (void)cell.run_for(0.01);
   return soil::take_tile(cell);
+}
+
+/// Lays so many copies of a tile in a cell, takes eleven steps, and prints what that costs.
+void lay(const soil::Tile& tile, int along_x, int along_y) {
+  const auto cpu = [] { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; };
+  const double start = cpu();
+  World<Beads> world = ground(along_x, along_y);
+  soil::lay_tiles(world, tile, {.along_x = along_x, .along_y = along_y});
+  const double laid = cpu();
+  if (const StepReport report = world.run(11); !report) fail("{}", report.text);
+  const double end = cpu(), beads = static_cast<double>(world.particle_count());
+  rusage use{};
+  getrusage(RUSAGE_SELF, &use);
+  const double most = 1024.0 * static_cast<double>(use.ru_maxrss);  // bytes, of the whole program
+  fmt::print("{} x {} tiles, {:.0f} beads: laid in {:.2f} s of processor time, eleven steps in {:.2f} s\n", along_x,
+             along_y, beads, laid - start, end - laid);
+  fmt::print("memory {:.3f} GB at most, {:.0f} bytes a bead\n", 1e-9 * most, most / beads);
+  fmt::print("beads move at {:.2g} m/s; in the tile they counted as at rest below {:.2g}\n", soil::rms_speed(world),
+             0.01 * soil::rest_speed(d));
 }
 
 struct Sample {
@@ -88,7 +112,7 @@ struct Run {
 Run roll(const soil::Tile& tile, double slip, double load, double way, int patch_tiles, bool on_patch,
          double doubles_at) {
   Run run;
-  World<Beads>& world = run.world.emplace(ground(false));
+  World<Beads>& world = run.world.emplace(ground(0, 1));
   const double start = now(), rim = 2.5 * d;
   if (on_patch) {
     run.patch.emplace(world, tile,
@@ -216,8 +240,14 @@ int main(int argc, char** argv) {
   const double doubles_at = length * arguments.number("--double-at", -1.0);     // tiles of the way
   const auto beds = static_cast<int>(arguments.number("--beds", 1.0));          // seeds of the tile
   const bool compares = arguments.number("--compare", 0.0) != 0.0;
+  const std::vector<double> laid = arguments.numbers("--lay", {0.0, 0.0});  // tiles along x and y
   const std::string folder = arguments.take("--output", "endless_bed");
   arguments.check();
+  if (laid.size() != 2) fail("--lay has {} numbers, but must have two: tiles along x and y", laid.size());
+  if (laid[0] != 0.0) {
+    lay(settle(1), static_cast<int>(laid[0]), static_cast<int>(laid[1]));
+    return 0;
+  }
 
   double sums[2][2] = {}, errors[2][2] = {};  // bed; pull, sinkage
   for (int seed = 1; seed <= beds; ++seed) {
