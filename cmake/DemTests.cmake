@@ -284,6 +284,18 @@ function(dem_add_benchmark_compile_test benchmark)
   endforeach()
 endfunction()
 
+# dem_add_ranks_compile_test(<rig> <source>): a source of an example is valid C++ where processes share its world.
+function(dem_add_ranks_compile_test rig source)
+  set(of "TARGET_PROPERTY:${rig}_on_ranks")
+  add_test(
+    NAME ranks_compile.${rig}
+    COMMAND ${DEM_LOOK} "$<$<BOOL:$<${of},COMPILE_DEFINITIONS>>:-D$<JOIN:$<${of},COMPILE_DEFINITIONS>,$<SEMICOLON>-D>>"
+            "-I$<JOIN:$<FILTER:$<${of},INCLUDE_DIRECTORIES>,EXCLUDE,^/usr/include$>,$<SEMICOLON>-I>"
+            "${PROJECT_SOURCE_DIR}/examples/${source}"
+    COMMAND_EXPAND_LISTS)
+  set_tests_properties(ranks_compile.${rig} PROPERTIES LABELS checks)
+endfunction()
+
 # dem_add_cuda_compile_test(<source>): nvcc accepts the source, and no kernel calls a function of the host. Compiling is
 # all: it needs no GPU. Warning 20012 is Eigen's own.
 function(dem_add_cuda_compile_test source)
