@@ -3,6 +3,9 @@
 #include "io/comma_locale.hpp"
 #include "scenes_to_save.hpp"
 
+#include <dem/geometry/mesh/mesh_shapes.hpp>
+#include <dem/geometry/shapes.hpp>
+
 #include <chrono>
 #include <fstream>
 #include <thread>
@@ -29,7 +32,64 @@ void write(const std::filesystem::path& path, const std::string& bytes) {
 }
 bool holds(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
 
+/// What a program with grains of one shape is told of a state with grains of another.
+template <class Shape>
+std::string refusal_of(const Shape& saved, const Shape& ours) {
+  const auto species_of = [](const Shape& shape) { return std::vector{dem::make_species(shape, 2650.0, false)}; };
+  auto theirs = species_of(saved), mine = species_of(ours);
+  dem::io::StateColumns columns;
+  dem::io::Fields collect(dem::io::Fields::Task::collect, columns);
+  collect.list("species", theirs, "species");
+  dem::io::Fields compare(dem::io::Fields::Task::compare, columns);
+  return error_of([&] { compare.list("species", mine, "species"); });
+}
+
+/// A shape of a user's own that tells nothing but what it must.
+struct Pair : Sphere {
+  double apart;
+  Pair(double radius, double apart) : Sphere(radius), apart(apart) {}
+  std::uint64_t fingerprint() const = delete;
+  template <class Callback>
+  void sample_points(const double*, Callback&& callback) const {
+    for (const std::uint32_t k : {0u, 1u}) {
+      callback(k, dem::contact::SamplePoint{{k * apart, 0, 0}, radius(), radius()});
+    }
+  }
+};
+
 }  // namespace
+
+TEST_CASE("another shape with the same mass, moments and radius is named") {
+  const std::string differs = "species 0: its shape in this program differs from that in the saved state";
+  const auto check = [&](const auto& saved, const auto& ours) {
+    CHECK(refusal_of(saved, saved) == "no error");
+    CHECK(holds(refusal_of(saved, ours), differs));
+  };
+  using dem::shape::PointArea;
+  using Points = dem::shape::SuperquadricPoints;
+  const Vec3 radii(1e-3, 0.9e-3, 1.1e-3), exponents(8, 4, 3);
+  check(Points(radii, exponents, 4), Points(radii, exponents, 6));
+  check(Points(radii, exponents, 4), Points(radii, exponents, 4, PointArea::relative));
+  check(dem::shape::Superquadric(radii, exponents, 4), dem::shape::Superquadric(radii, exponents, 5));
+
+  // The same corners and faces under other numbers, which contacts are known by.
+  const auto cube = dem::shape::cube(1e-3);
+  auto renumbered = cube.mesh();
+  std::reverse(renumbered.faces.begin(), renumbered.faces.end());
+  CHECK(refusal_of(cube, dem::shape::cube(1e-3)) == "no error");
+  CHECK(cube.fingerprint() != dem::shape::Polyhedron(renumbered.corners, renumbered.faces).fingerprint());
+
+  // A ball less in the middle of a cluster, whose mass is given.
+  std::vector<dem::Ball> balls;
+  for (const double x : {-1e-3, 1e-3, 0.0}) balls.push_back({{x, 0, 0}, 1e-3});
+  const dem::MassProperties mass = dem::box_mass_properties({4e-3, 2e-3, 2e-3});
+  using Cluster = dem::shape::SphereCluster<3>;
+  check(Cluster(balls, mass), Cluster(std::span(balls).first(2), mass));
+
+  using Mixture = dem::shape::Mixed<Sphere, Points>;
+  check(Mixture(Points(radii, exponents, 4)), Mixture(Points(radii, exponents, 6)));
+  check(Pair(1e-3, 1e-4), Pair(1e-3, 2e-4));
+}
 
 TEST_CASE("a difference of the set-up is named") {
   const Folder folder;
@@ -60,6 +120,16 @@ TEST_CASE("a difference of the set-up is named") {
   CHECK(holds(text, "body 'flap': mass is "));
   text = load_into(scene<Balls>({.spring_stiffness = 30.0}));
   CHECK(holds(text, "spring 'spring': "));
+  text = load_into(scene<Balls>({.hinge_friction = 0.4}));
+  CHECK(holds(text, "joint 'hinge': friction coefficient is 0.3 in the saved state, but 0.4 in this program"));
+  text = load_into(scene<Balls>({.rubber = 90.0}));
+  CHECK(holds(text, "joint 'rubber': "));
+  text = load_into(scene<Balls>({.left_axle = Vec3(1e-4, 0, 0)}));
+  CHECK(holds(text, "joint 'left axle': point on a is (0, -0.03, 0.03) m in the saved state, but (0.0001,"));
+  text = load_into(scene<Balls>({.end_of_arm = Vec3(0, 0, 1e-4)}));
+  CHECK(holds(text, "actuator 'arm': point on b is "));
+  text = load_into(scene<Balls>({.end_of_spring = Vec3(0, 0, 1e-4)}));
+  CHECK(holds(text, "spring 'spring': point on b is "));
   text = load_into(scene<Balls>({.has_block = false}));
   CHECK(holds(text, "('ground', "));
   CHECK(holds(text, "'plate', 'block'), but this program has 5"));
@@ -75,6 +145,37 @@ TEST_CASE("a difference of the set-up is named") {
   text = load_into(scene<Cubes>());
   INFO(text);
   CHECK(holds(text, "shape is 'shape::Sphere' in the saved state, but 'shape::SphereCluster<8>' in this program"));
+}
+
+TEST_CASE("another surface in the same bounding box is named") {
+  namespace surface = dem::surface;
+  const auto scene_with = [](const auto& geometry) {
+    auto s = scene<Balls>();
+    s.world.add_surface(s.world.ground(), geometry, {.name = "extra", .position = {1, 1, 1}});
+    return s;
+  };
+  const auto check = [&](const auto& saved, const auto& ours) {
+    auto first = scene_with(saved);
+    first.run(20);
+    auto columns = dem::io::columns_of(first.world);
+    auto same = scene_with(saved), other = scene_with(ours);
+    // A mesh that the first run makes deeper for points is still the same one.
+    CHECK(error_of([&] { dem::io::restore(same.world, columns); }) == "no error");
+    CHECK(difference(first.world, same.world) == "");
+    CHECK(holds(error_of([&] { dem::io::restore(other.world, columns); }),
+                "surface 'extra': its shape in this program differs from that in the saved state"));
+  };
+  check(surface::Cylinder::tube(5e-3, 1e-2, 2e-2), surface::Cylinder::tube(6e-3, 1e-2, 2e-2));
+  check(surface::Box({1e-2, 1e-2, 1e-2}), surface::Box({1e-2, 1e-2, 1e-2}, 2));
+  const auto drum = [](int pieces) {
+    return surface::TriangleMesh(dem::mesh::box({4e-3, 4e-3, 4e-3}, pieces), {.facing = dem::MeshFacing::inward});
+  };
+  check(drum(4), drum(5));
+  const auto sheet = [](int pieces) {
+    return surface::TriangleMesh(dem::mesh::rectangle(4e-3, 4e-3, pieces, pieces),
+                                 {.side = surface::MeshSide::one_sided});
+  };
+  check(sheet(20), sheet(21));
 }
 
 TEST_CASE("a file that is cut short, damaged, of another schema or none at all is refused in words") {
@@ -110,12 +211,13 @@ TEST_CASE("a file that is cut short, damaged, of another schema or none at all i
     CHECK(holds(refusal(bad), "cannot load '"));
   }
 
-  std::string older = good;
+  std::string another = good;
   const std::string now = std::to_string(dem::io::checkpoint_schema);
-  const auto schema = older.find("schema " + now);
+  const auto schema = another.find("schema " + now);
   REQUIRE(schema != std::string::npos);
-  older[schema + 7] = '1';
-  CHECK(holds(refusal(older), "it is of schema 1, but this version of dem reads schema " + now));
+  another.replace(schema + 7, now.size(), std::string(now.size(), '9'));
+  CHECK(holds(refusal(another),
+              "it is of schema " + std::string(now.size(), '9') + ", but this version of dem reads schema " + now));
 }
 
 TEST_CASE("a file that cannot be written leaves the last one as it is") {

@@ -16,6 +16,10 @@ struct SceneOptions {
   double hinge_stiffness = 0.0;  ///< N/m; 0: derived
   double flap_density = 2650.0;
   double spring_stiffness = 20.0;
+  double hinge_friction = 0.3;
+  double rubber = 100.0;                                         ///< N/m, of the second piece of a bushing's table
+  Vec3 left_axle = Vec3::Zero();                                 ///< m, from the middle of the left disc
+  Vec3 end_of_arm = Vec3::Zero(), end_of_spring = Vec3::Zero();  ///< m, from where they are
   const char* hinge_name = "hinge";
   bool has_block = true;
 };
@@ -32,7 +36,7 @@ void add_machine(World& world, const SceneOptions& o) {
   const auto slide = m.add_joint(prismatic("slide", world.ground(), slider, top, Vec3::UnitX()));
   auto hinge_spec = revolute(o.hinge_name, slider, flap, top, Vec3::UnitY())
                         .with_limits(-0.05, 0.05)
-                        .with_friction({.coefficient = 0.3, .radius = 1e-3});
+                        .with_friction({.coefficient = o.hinge_friction, .radius = 1e-3});
   if (o.hinge_stiffness > 0.0) hinge_spec = hinge_spec.with_stiffness(o.hinge_stiffness, 1e-3 * o.hinge_stiffness);
   const auto hinge = m.add_joint(hinge_spec);
   const auto stirring = m.add_motion(prescribed_joint(
@@ -47,15 +51,16 @@ void add_machine(World& world, const SceneOptions& o) {
   const Vec3 left(0, -0.03, 0.03), right(0.02, -0.03, 0.03);
   const auto a = m.add_body(cylinder_body("left disc", 5e-3, 2e-3, 2650).at(left));
   const auto b = m.add_body(cylinder_body("right disc", 5e-3, 2e-3, 2650).at(right));
-  const auto axle_a = m.add_joint(revolute("left axle", world.ground(), a, left, Vec3::UnitZ()));
+  const auto axle_a = m.add_joint(revolute("left axle", world.ground(), a, left + o.left_axle, Vec3::UnitZ()));
   const auto axle_b = m.add_joint(revolute("right axle", world.ground(), b, right, Vec3::UnitZ()));
   m.add_coupling(gear("gears", axle_a, axle_b, -1.5));
   m.add_actuator(motor("motor", axle_a, Curve{{0.0, 2e-5}, {400.0, 0.0}}, 0.7));
-  const auto arm =
-      m.add_actuator(linear_actuator("arm", world.ground(), left + Vec3(4e-3, 0.01, 0), b, right + Vec3(4e-3, 0, 0),
-                                     2.0, 1e-3, Signal::sine(1e-3, 50.0, 0, 0.02)));
+  const auto arm = m.add_actuator(linear_actuator("arm", world.ground(), left + Vec3(4e-3, 0.01, 0), b,
+                                                  right + Vec3(4e-3, 0, 0) + o.end_of_arm, 2.0, 1e-3,
+                                                  Signal::sine(1e-3, 50.0, 0, 0.02)));
   m.add_sensor(actuator_sensor("of the arm", arm, 1e-3));
-  m.add_spring(spring("spring", a, left + Vec3(4e-3, 0, 0), b, right - Vec3(4e-3, 0, 0), o.spring_stiffness, 1e-3));
+  m.add_spring(spring("spring", a, left + Vec3(4e-3, 0, 0), b, right - Vec3(4e-3, 0, 0) + o.end_of_spring,
+                      o.spring_stiffness, 1e-3));
   m.add_load(applied_force("push", b, right, {1, 0, 0}, Signal::ramp(0.0, 1e-3)));
   m.add_load(custom_load("drag", a, [](double, const dem::Body& body) {
     return dem::Wrench{dem::from_eigen(Vec3(-1e-3 * body.velocity())), {0, 0, 0}};
@@ -67,6 +72,9 @@ void add_machine(World& world, const SceneOptions& o) {
     const auto plate = m.add_body(box_body("plate", {0.01, 0.01, 2e-3}, 2650).at(place));
     m.add_joint(bushing("mount", world.ground(), plate, place, Vec3::UnitZ(), Vec3::Constant(500), Vec3::Constant(0.05),
                         Vec3::Constant(0.1), Vec3::Constant(1e-5)));
+    m.add_joint(bushing("rubber", world.ground(), plate, place, Vec3::UnitZ(),
+                        {.z = {{0.0, 0.0}, {1e-4, 1e-3}, {2e-4, 1e-3 + 1e-4 * o.rubber}}}, Vec3::Constant(0.01),
+                        Vec3::Zero()));
     const auto block = m.add_body(box_body("block", Vec3::Constant(4e-3), 1000).at(place + Vec3(0, 0, 3.01e-3)));
     const auto s1 = world.add_surface(plate, dem::surface::Box({0.01, 0.01, 2e-3}), {.name = "plate"});
     const auto s2 = world.add_surface(block, dem::surface::Box(Vec3::Constant(4e-3)), {.name = "block"});

@@ -1,7 +1,7 @@
 #pragma once
 
 #include <dem/core/ids.hpp>
-#include <dem/geometry/surface.hpp>
+#include <dem/geometry/surface_traits.hpp>
 #include <dem/grain/partner_view.hpp>
 #include <dem/mbd/body/body.hpp>
 
@@ -39,8 +39,7 @@ struct MachineSurface {
   void fields(V& v) {
     v.given("name", name), v.given("body", body), v.given("material", material);
     v.given("kind", geometry.index()), v.given("position", position, "m"), v.given("rotation", rotation);
-    const surface::Aabb own = std::visit([](const auto& kind) { return kind.bounds(); }, geometry);
-    v.given("lowest", own.low, "m"), v.given("highest", own.high, "m");
+    v.fingerprint("shape", std::visit([](const auto& kind) { return surface::fingerprint(kind); }, geometry));
     v("active", active), v("origin", origin, "m"), v("axes", axes), v("low", low, "m"), v("high", high, "m");
     v.reals("view", view), v("force", force, "N"), v("torque", torque, "N m");
   }

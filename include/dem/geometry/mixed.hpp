@@ -66,6 +66,9 @@ class Mixed : public detail::MixedBase<detail::MixedWarmStarts<Kinds...>::any, K
   Vec3 unit_inertia() const {
     return visit([](const auto& s) -> Vec3 { return s.unit_inertia(); });
   }
+  std::uint64_t fingerprint() const {
+    return fingerprint_of(kind_.index(), visit([](const auto& s) { return shape::fingerprint(s); }));
+  }
   contact::Patch patch() const {
     return visit([](const auto& s) { return patch_of(s); });
   }

@@ -3,6 +3,7 @@
 #include <dem/geometry/any_callback.hpp>
 #include <dem/geometry/contact_point.hpp>
 #include <dem/geometry/mass_properties.hpp>
+#include <dem/math/fingerprint.hpp>
 
 #include <concepts>
 #include <cstdint>
@@ -40,7 +41,9 @@ struct AnySamplePoint {
 ///                        first, and what another point weighs beside it. It then has mean_radius(), too;
 ///   is_ball(), mean_radius()   whether it is one ball, and the radius (m) of the sphere of the same volume: as that
 ///                        sphere a ball meets surfaces;
-///   kind()               the std::variant of a shape that is one of several (Mixed).
+///   kind()               the std::variant of a shape that is one of several (Mixed);
+///   fingerprint()        64 bits that tell whether two grains have the same shape (fingerprint_of): a saved state is
+///                        refused where they differ. Without it the sample points are compared.
 template <class S>
 concept Shape = requires(const S& shape, const Matrix3<double>& rotation, double* pose,
                          const Vector3<double>& separation) {
@@ -191,6 +194,24 @@ contact::Patch surface_patch_of(const S& shape) {
     return shape.surface_patch();
   } else {
     return {};
+  }
+}
+
+/// 64 bits that differ where shapes do: those that a shape tells, or those of its sample points.
+template <class S>
+std::uint64_t fingerprint(const S& shape) {
+  if constexpr (requires {
+                  { shape.fingerprint() } -> std::same_as<std::uint64_t>;
+                }) {
+    return shape.fingerprint();
+  } else {
+    alignas(64) double pose[S::pose_size > 0 ? S::pose_size : 1] = {};
+    shape.orient(Matrix3<double>::identity(), pose);
+    std::uint64_t hash = 0;
+    shape.sample_points(pose, [&](std::uint32_t index, const contact::SamplePoint& p) {
+      mix(hash, fingerprint_of(index, p.centre, p.radius, p.effective_radius, p.weight));
+    });
+    return hash;
   }
 }
 

@@ -2,6 +2,7 @@
 
 #include <dem/geometry/direction_code.hpp>
 #include <dem/geometry/surface.hpp>
+#include <dem/math/fingerprint.hpp>
 
 #include <concepts>
 #include <cstdint>
@@ -37,6 +38,10 @@ namespace dem::surface {
 //                         in it; false if nothing is left;
 //   parts_inside(tail, head, callback)   a solid of any form: calls callback(from, to) for each part of that way that
 //                         lies in it, ascending.
+// Saved states ask it for
+//   fingerprint()         64 bits that tell whether two surfaces are the same (fingerprint_of): a saved state is
+//   refused
+//                         where they differ. Without it their bounds are compared.
 
 template <class S>
 concept KnowsClose = requires(const S& s, const Vector3<double>& point) {
@@ -101,6 +106,18 @@ double radius_on(const S& s, double radius) {
     return s.radius_on(radius);
   } else {
     return radius;
+  }
+}
+
+/// 64 bits that differ where surfaces do: those that a surface tells, or those of its bounds.
+template <class S>
+std::uint64_t fingerprint(const S& s) {
+  if constexpr (requires {
+                  { s.fingerprint() } -> std::same_as<std::uint64_t>;
+                }) {
+    return s.fingerprint();
+  } else {
+    return fingerprint_of(s.bounds().low, s.bounds().high);
   }
 }
 

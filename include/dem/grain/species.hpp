@@ -2,6 +2,7 @@
 
 #include <dem/core/error.hpp>
 #include <dem/core/ids.hpp>
+#include <dem/geometry/shape.hpp>
 #include <dem/math/vector.hpp>
 
 #include <vector>
@@ -39,7 +40,7 @@ struct Species {
   void fields(V& v) {
     v.given("material", material), v.given("density", density, "kg/m^3"), v.given("mass", mass, "kg");
     v.given("inertia", inertia, "kg m^2"), v.given("bounding_radius", shape.bounding_radius(), "m");
-    v.given("held", is_held());
+    v.given("held", is_held()), v.fingerprint("shape", shape::fingerprint(shape));
   }
 };
 

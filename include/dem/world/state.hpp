@@ -125,7 +125,9 @@ struct WorldState {
       v.given("domain_low", options.domain->low, "m"), v.given("domain_high", options.domain->high, "m");
     if constexpr (Model::Domain::has_images) v("cell", domain);
     v("gravity", options.gravity, "m/s^2"), v("time", time, "s"), v("time_step", time_step, "s"), v("steps", step);
-    v("materials", materials), v.list("species", species, "species"), v("machine", machine);
+    v("materials", materials);
+    v.list("species", species, "species", [this](const auto& s) { return " of '" + materials.name(s.material) + "'"; });
+    v("machine", machine);
     v.list("surfaces", surfaces, "surface"), v.list("surface_sensors", surface_sensors, "surface sensor");
     v.list("body_contacts", body_contacts.pairs, "body contact"), v("near_pairs", body_contacts.near);
     v("machine_solver", machine_solver), v("list_skin", list_skin, "m"), v("list_valid", list_valid);

@@ -2,6 +2,7 @@
 
 #include <dem/core/error.hpp>
 #include <dem/geometry/edge_set.hpp>
+#include <dem/math/fingerprint.hpp>
 
 #include <cmath>
 
@@ -20,6 +21,7 @@ class Box {
   }
 
   Vec3 edges() const { return 2.0 * to_eigen(half_); }
+  std::uint64_t fingerprint() const { return fingerprint_of(half_, pieces_); }
 
   template <class T>
   DEM_HOT auto near(const Vector3<T>& p, const T& radius) const {

@@ -63,6 +63,11 @@ class SphereCluster {
   double bounding_radius() const { return bounding_radius_; }
   double volume() const { return volume_; }
   const Vec3& unit_inertia() const { return unit_inertia_; }
+  /// Of the balls, in the grain's frame.
+  std::uint64_t fingerprint() const {
+    const auto n = static_cast<std::size_t>(count_);
+    return fingerprint_of(std::span(x_, n), std::span(y_, n), std::span(z_, n), std::span(radius_, n));
+  }
   const Vec3& frame_centre() const { return frame_centre_; }
   const Mat3& frame_rotation() const { return frame_rotation_; }
   /// For the stable time step: clusters with faces, such as cube8, meet with four spheres each way, twice what grains

@@ -45,6 +45,7 @@ class Cylinder {
   double inner_radius() const { return inner_; }
   double length() const { return 2.0 * half_; }
   bool is_drum() const { return is_drum_; }
+  std::uint64_t fingerprint() const { return fingerprint_of(inner_, outer_, half_, is_drum_, rim_points_); }
 
   template <class T>
   DEM_HOT auto near(const Vector3<T>& p, const T& radius) const {

@@ -3,6 +3,7 @@
 #include <dem/core/short_list.hpp>
 #include <dem/geometry/direction_code.hpp>
 #include <dem/geometry/mesh/mesh_parts.hpp>
+#include <dem/math/fingerprint.hpp>
 
 #include <algorithm>
 #include <memory>
@@ -81,6 +82,12 @@ class TriangleMesh {
   const IndexedMesh& mesh() const { return data_->mesh; }
   const MeshData& data() const { return *data_; }
   const MeshOptions& options() const { return options_; }
+  /// Of what it was made from. How deep points are found behind it is none of that: it depends on the grains.
+  std::uint64_t fingerprint() const {
+    const MeshOptions& o = options_;
+    return fingerprint_of(mesh().vertices, mesh().triangles, o.side, o.facing, o.smooth_angle, o.depth,
+                          o.point_spacing);
+  }
 
   template <class T>
   DEM_HOT auto near(const Vector3<T>& p, const T& radius) const {

@@ -60,6 +60,8 @@ class Polyhedron {
   double bounding_radius() const { return bounding_radius_; }
   double volume() const { return volume_; }
   const Vec3& unit_inertia() const { return unit_inertia_; }
+  /// Of the corners, in the grain's frame, and the faces.
+  std::uint64_t fingerprint() const { return fingerprint_of(mesh_->corners, mesh_->faces); }
   const Vec3& frame_centre() const { return frame_centre_; }
   const Mat3& frame_rotation() const { return frame_rotation_; }
   /// Radius of the sphere of the same volume, m.

@@ -19,6 +19,7 @@ class Sphere {
 
   double radius() const { return radius_; }
   double bounding_radius() const { return radius_; }
+  std::uint64_t fingerprint() const { return fingerprint_of(radius_); }
   double volume() const { return sphere_mass_properties(radius_).volume; }
   Vec3 unit_inertia() const { return sphere_mass_properties(radius_).inertia.diagonal(); }
 

@@ -2,6 +2,7 @@
 
 #include <dem/core/error.hpp>
 #include <dem/geometry/surface.hpp>
+#include <dem/math/fingerprint.hpp>
 
 #include <cmath>
 
@@ -23,6 +24,7 @@ class Sphere {
 
   double radius() const { return radius_; }
   Side side() const { return side_; }
+  std::uint64_t fingerprint() const { return fingerprint_of(radius_, side_); }
   /// A body contact needs no points of the other surface: the ball finds all of it.
   bool is_ball() const { return side_ == Side::outside; }
 

@@ -33,6 +33,7 @@ class Superquadric {
   Vec3 radii() const { return {function_.radius[0], function_.radius[1], function_.radius[2]}; }
   Vec3 exponents() const { return {function_.exponent[0], function_.exponent[1], function_.exponent[2]}; }
   Side side() const { return side_; }
+  std::uint64_t fingerprint() const { return fingerprint_of(radii(), exponents(), side_); }
   const SuperquadricFunction& function() const { return function_; }
 
   template <class T>

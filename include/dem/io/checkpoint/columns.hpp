@@ -1,6 +1,7 @@
 #pragma once
 
 #include <dem/core/error.hpp>
+#include <dem/math/fingerprint.hpp>
 
 #include <cstdint>
 #include <cstring>
@@ -48,10 +49,7 @@ using StateColumns = std::map<std::string, Column, std::less<>>;
 
 namespace detail {
 
-inline void mix(std::uint64_t& hash, std::uint64_t word) {
-  hash = (hash ^ word) * 0x9e3779b97f4a7c15ULL;
-  hash ^= hash >> 29;
-}
+using dem::mix;
 inline void mix(std::uint64_t& hash, const void* data, std::size_t bytes) {
   const char* from = static_cast<const char*>(data);
   std::size_t k = 0;

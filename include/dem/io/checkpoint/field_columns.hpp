@@ -93,6 +93,7 @@ class FieldColumns {
   void take(ColumnKind kind, std::size_t width, void* data, std::size_t n);
   void compare(const Column& c, const void* data);
   void compare_count(std::size_t count, const char* one);
+  void compare_fingerprint(std::uint64_t bits);
   void add_count(std::size_t count);
   /// From here on fields are those of item k of a list, in words `one`; `outer` is whose list it is.
   void begin_item(const std::string& outer, const char* one, std::size_t k);
@@ -169,6 +170,14 @@ DEM_COLD inline void FieldColumns::compare(const Column& c, const void* data) {
   fail("{}{} is {} in the saved state, but {} in this program; set it up as the program did that saved it",
        part_.empty() ? "" : part_ + ": ", detail::last_word(path_), detail::in_words(c.kind, c.width, saved, c.unit),
        detail::in_words(c.kind, c.width, data, c.unit));
+}
+
+DEM_COLD inline void FieldColumns::compare_fingerprint(std::uint64_t bits) {
+  std::uint64_t saved = 0;
+  take(ColumnKind::natural, 1, &saved, 1);
+  if (saved == bits) return;
+  fail("{}its {} in this program differs from that in the saved state; set it up as the program did that saved it",
+       part_.empty() ? "" : part_ + ": ", detail::last_word(path_));
 }
 
 DEM_COLD inline void FieldColumns::add_count(std::size_t count) {

@@ -12,6 +12,15 @@
 
 namespace dem::io {
 
+namespace detail {
+struct NoWords {
+  template <class Item>
+  const char* operator()(const Item&) const {
+    return "";
+  }
+};
+}  // namespace detail
+
 /// Goes through the fields of a state, which names them once: to collect them in columns, to compare what a program
 /// sets up with what it set up when the columns were collected, and to restore the state from them.
 ///
@@ -45,16 +54,24 @@ class Fields : public FieldColumns {
     T copy = x;
     visit(copy, unit);
   }
+  /// What tells a part's geometry apart (fingerprint_of): compared, never restored.
+  void fingerprint(std::string_view name, std::uint64_t bits) {
+    if (task_ == Task::restore) return;
+    const Inside inside(*this, name);
+    if (task_ == Task::collect) exchange(ColumnKind::natural, 1, &bits, "");
+    else compare_fingerprint(bits);
+  }
   /// A list of parts that the program sets up: their number is compared. A difference is told of `one` with the name
-  /// that it has as its first field, or its number.
-  template <class Items>
-  void list(std::string_view name, Items& items, const char* one) {
+  /// that it has as its first field, or its number. `more(item)` is what else the text says of it.
+  template <class Items, class More = detail::NoWords>
+  void list(std::string_view name, Items& items, const char* one, More&& more = {}) {
     const Inside inside(*this, name);
     if (task_ == Task::compare) compare_count(items.size(), one);
     if (task_ == Task::collect) add_count(items.size());
     const std::string outer = part_;
     for (std::size_t k = 0; k < items.size(); ++k) {
       begin_item(outer, one, k);
+      if (task_ == Task::compare) part_ += more(items[k]);
       if constexpr (has_given<std::remove_reference_t<decltype(items[k])>>) visit(items[k], "");
       else given("name", items[k]);
     }
@@ -179,7 +196,9 @@ class Fields : public FieldColumns {
   template <class T>
   void visit_more(std::optional<T>& x, const char* unit) {
     bool has = x.has_value();
-    T value = x.value_or(T{});
+    T value{};
+    if constexpr (requires { T::RowsAtCompileTime; }) value.setZero();  // of which T{} leaves the numbers open
+    if (has) value = *x;
     part_of("is_set", has, "");
     part_of("value", value, unit);
     if (has) x = value;

@@ -119,9 +119,11 @@ struct Actuator {
     v.given("dof", spec.dof), v.given("position_gain", spec.position_gain), v.given("speed_gain", spec.speed_gain);
     v.given("max_force", spec.max_force), v("torque_curve", spec.torque_curve), v.given("engine_map", spec.engine_map),
         v.given("idle_speed", spec.idle_speed), v("throttle", spec.throttle);
+    v.given("idle_gain", spec.idle_gain), v.given("point_on_a", spec.at_a, "m"), v.given("point_on_b", spec.at_b, "m");
+    v.given("toward_a", spec.toward_a, "m"), v.given("toward_b", spec.toward_b, "m");
     v.given("has_set_point", spec.set_point.has_value()), v("on", spec.on);
     if (spec.set_point) v("set_point", *spec.set_point);
-    v("point_a", point_a, "m"), v("point_b", point_b, "m"), v("coordinate", coordinate), v("speed", speed);
+    v.given("point_a", point_a, "m"), v.given("point_b", point_b, "m"), v("coordinate", coordinate), v("speed", speed);
     v("force", force), v("target", target.value), v("target_rate", target.rate);
   }
   double power() const { return force * speed; }  ///< W, delivered to the bodies

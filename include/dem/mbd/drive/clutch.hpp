@@ -103,6 +103,7 @@ struct Clutch {
   template <class V>
   void fields(V& v) {
     v.given("name", spec.name), v.list("terms", spec.terms, "term"), v.given("differential", spec.differential);
+    v.given("bias_ratio", spec.bias_ratio), v.given("stiffness", spec.stiffness), v.given("damping", spec.damping);
     v("set_capacity", spec.capacity), v("on", spec.on), v("k", k), v("c", c), v("bias", bias), v("capacity", capacity);
     v("torque", torque), v("speed", speed), v("history", history);
   }

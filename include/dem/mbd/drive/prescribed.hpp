@@ -119,6 +119,7 @@ struct PrescribedMotion {
   void fields(V& v) {
     v.given("name", spec.name), v.given("target", spec.target), v.given("body", spec.body);
     v.given("joint", spec.joint), v.given("dof", spec.dof), v.given("by_speed", spec.by_speed), v("on", spec.on);
+    v.given("axis_given", spec.axis), v.given("frame", spec.frame);
     v("motion", spec.motion), v("axis", axis), v("start", start, "m"), v("has_hold", has_hold);
     v("start_rotation", start_rotation), v("centre", centre, "m"), v("axes", axes), v("value", drive.value);
     v("rate", drive.rate), v("start_of_step", drive.start), v("reached", drive.reached), v("time_of_value", drive.time),

@@ -10,14 +10,6 @@
 
 namespace dem::mbd {
 
-/// What a bushing resists with along and about the axes of its frame: force (N) over displacement (m) and torque (N m)
-/// over angle (rad), positive for a positive displacement of b. Outside a table its last slope goes on, unless the
-/// curve is held_outside(). An empty curve resists nothing.
-struct BushingTables {
-  Curve x = {}, y = {}, z = {};
-  Curve about_x = {}, about_y = {}, about_z = {};
-};
-
 namespace detail {
 
 inline double load_of(const Curve& c, double x) { return c.empty() ? 0.0 : c(x); }

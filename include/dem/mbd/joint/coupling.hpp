@@ -77,6 +77,7 @@ struct Coupling {
   template <class V>
   void fields(V& v) {
     v.given("name", spec.name), v.list("terms", spec.terms, "term"), v("on", spec.on), v("k", k), v("c", c);
+    v.given("stiffness", spec.stiffness), v.given("damping", spec.damping);
     v("offset", offset), v("error", error), v("multiplier", multiplier);
   }
 };

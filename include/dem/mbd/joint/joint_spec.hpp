@@ -3,6 +3,7 @@
 #include <dem/core/error.hpp>
 #include <dem/core/macros.hpp>
 #include <dem/math/vector.hpp>
+#include <dem/mbd/drive/curve.hpp>
 #include <dem/mbd/ids.hpp>
 #include <dem/mbd/joint/joint_kind.hpp>
 
@@ -16,7 +17,6 @@
 namespace dem::mbd {
 
 struct Parts;
-struct BushingTables;
 
 /// A limit at each end of a coordinate of a joint (rad for rotations, m for slides).
 struct JointLimits {
@@ -25,12 +25,20 @@ struct JointLimits {
   std::optional<double> stiffness = {};  ///< N/m or N m/rad; derived if not given
   std::optional<double> damping = {};    ///< N s/m or N m s/rad, while moving into the limit; derived if not given
   Dof dof = Dof::own;                    ///< which coordinate
+  template <class V>
+  void fields(V& v) {
+    v.given("stiffness_of_limit", stiffness), v.given("damping_of_limit", damping);
+  }
 };
 
 /// What a coordinate of a joint is at assembly, rad or m.
 struct JointStart {
   Dof dof = Dof::own;
   double value = 0.0;
+  template <class V>
+  void fields(V& v) {
+    v.given("starting_dof", dof), v.given("starting_at", value);
+  }
 };
 
 /// Asperity friction in a joint (thesis section 2.2.2). The normal force is that which the joint carries, plus a
@@ -47,6 +55,26 @@ struct JointFriction {
   double breaking_factor = 0.975;
   std::optional<double> stiffness = {};           ///< N/m; derived if not given
   std::optional<double> velocity_stiffness = {};  ///< N s/m; derived if not given
+  template <class V>
+  void fields(V& v) {
+    v.given("friction_coefficient", coefficient), v.given("friction_radius", radius, "m");
+    v.given("friction_preload", preload, "N"), v.given("friction_lever", lever, "m");
+    v.given("friction_breaking_factor", breaking_factor), v.given("friction_stiffness", stiffness, "N/m");
+    v.given("friction_velocity_stiffness", velocity_stiffness, "N s/m");
+  }
+};
+
+/// What a bushing resists with along and about the axes of its frame: force (N) over displacement (m) and torque (N m)
+/// over angle (rad), positive for a positive displacement of b. Outside a table its last slope goes on, unless the
+/// curve is held_outside(). An empty curve resists nothing.
+struct BushingTables {
+  Curve x = {}, y = {}, z = {};
+  Curve about_x = {}, about_y = {}, about_z = {};
+  template <class V>
+  void fields(V& v) {
+    v("table_x", x), v("table_y", y), v("table_z", z);
+    v("table_about_x", about_x), v("table_about_y", about_y), v("table_about_z", about_z);
+  }
 };
 
 /// What a joint is made from. Each kind has a function that makes it (kinds.hpp); the `with_...` functions refine it. A
@@ -87,6 +115,11 @@ struct JointSpec {
     v.given("bushing_stiffness", bushing_stiffness, "N/m"), v.given("bushing_damping", bushing_damping, "N s/m");
     v.given("bushing_rotational_stiffness", bushing_rotational_stiffness, "N m/rad");
     v.given("bushing_rotational_damping", bushing_rotational_damping, "N m s/rad");
+    v.given("point_on_a", at_a, "m"), v.given("point_on_b", at_b, "m");
+    v.given("axis_on_a", axis_a), v.given("axis_on_b", axis_b), v.given("x_axis", x_axis);
+    v.given("given_length", length, "m"), v.given("starts", starts), v.given("limits", limits);
+    v.given("friction", friction), v.given("has_tables", bushing_tables != nullptr);
+    if (bushing_tables) v.given("tables", *bushing_tables);
   }
 
   /// x of the joint's frame lies in the plane of z and this direction (global at assembly): the first direction of a

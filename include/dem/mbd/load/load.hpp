@@ -83,6 +83,7 @@ struct Load {
   void fields(V& v) {
     v.given("name", spec.name), v.given("body", spec.body), v.given("is_torque", spec.is_torque);
     v.given("follows_body", spec.follows_body), v.given("has_law", spec.has_law()), v("on", spec.on);
+    v.given("point_given", spec.at, "m"), v.given("direction_given", spec.direction);
     v("signal", spec.size), v("point", point, "m"), v("direction", direction), v("size", size), v("wrench", wrench);
   }
 };

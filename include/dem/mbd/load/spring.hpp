@@ -110,8 +110,10 @@ struct Spring {
   void fields(V& v) {
     v.given("name", spec.name), v("on", spec.on), v.given("a", a), v.given("b", b), v.given("joint", spec.joint),
         v.given("dof", spec.dof);
+    v.given("point_on_a", spec.at_a, "m"), v.given("point_on_b", spec.at_b, "m");
     v("force_over_length", spec.force_over_length), v("force_over_speed", spec.force_over_speed);
-    v("point_a", point_a, "m"), v("point_b", point_b, "m"), v("length", length, "m"), v("speed", speed, "m/s");
+    v.given("point_a", point_a, "m"), v.given("point_b", point_b, "m"), v("length", length, "m"),
+        v("speed", speed, "m/s");
     v("force", force, "N"), v("start", start);
   }
 };

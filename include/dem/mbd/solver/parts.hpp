@@ -41,7 +41,7 @@ struct Connection {
   Vec3 point = Vec3::Zero();  ///< m, body frame
   template <class V>
   void fields(V& v) {
-    v.given("name", name), v.given("body", body), v("point", point, "m");
+    v.given("name", name), v.given("body", body), v.given("point", point, "m");
   }
 };
 
@@ -95,7 +95,11 @@ struct Parts {
   template <class V>
   void fields(V& v) {
     v.list("bodies", bodies, "body"), v.list("connections", connections, "connection point");
-    v.list("joint_specs", joint_specs, "joint"), v.list("joints", joints, "joint"), v.list("limits", limits, "limit");
+    v.list("joint_specs", joint_specs, "joint");
+    v.list("joints", joints, "joint", [this](const Joint& j) {
+      return " '" + joint_specs[static_cast<std::size_t>(&j - joints.data())].name + "'";
+    });
+    v.list("limits", limits, "limit");
     v.list("friction", friction, "joint friction"), v.list("couplings", couplings, "coupling");
     v.list("actuators", actuators, "actuator"), v.list("clutches", clutches, "clutch or brake"),
         v.list("springs", springs, "spring"), v.list("loads", loads, "load");
