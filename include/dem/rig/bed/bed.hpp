@@ -90,9 +90,12 @@ class Bed {
     const double gap = 0.125 * grains_.half_edge, thickness = 0.01;
     const double length = is_endless ? bed_.length + 2.0 * beyond() : bed_.length - 2.0 * gap;
     const Vec3 edges(length, bed_.width - 2.0 * gap, thickness);
-    double highest = 0.0;
-    for (const auto p : world.particles()) highest = std::max(highest, world.position(p).z());
-    const double z = highest + world.species(species_).shape.bounding_radius() + 0.5 * thickness;
+    if (!std::isfinite(lid_at)) {  // in a run that goes on the grains are not where they were
+      double highest = 0.0;
+      for (const auto p : world.particles()) highest = std::max(highest, world.position(p).z());
+      lid_at = highest + world.species(species_).shape.bounding_radius() + 0.5 * thickness;
+    }
+    const double z = lid_at;
     const double weight = lid_weight();
     lid = m.add_body(mbd::box_body("lid", edges, weight / 9.81 / edges.prod()).at(Vec3(0.0, 0.0, z)));
     lid_surface = world.add_surface(lid, surface::Box(edges), {.name = "lid"});
@@ -113,12 +116,13 @@ class Bed {
   /// What of it is not the world's, for a run that goes on after it was stopped.
   template <class V>
   void fields(V& v) {
-    v("surface_level", level, "m");
+    v("surface_level", level, "m"), v("lid_at", lid_at, "m");
   }
 
   World world;
-  double level = std::nan("");  ///< m, mean height of the levelled surface
-  BodyId bottom, top, lid;      ///< a fixed box is both bottom and top
+  double level = std::nan("");   ///< m, mean height of the levelled surface
+  double lid_at = std::nan("");  ///< m, height of the lid's middle where it was put over the grains
+  BodyId bottom, top, lid;       ///< a fixed box is both bottom and top
   JointId lid_slide;
   ActuatorId lid_drive;
   SensorId lid_sensor;
