@@ -1,13 +1,12 @@
 #pragma once
 
-// Worlds with everything in them that a state may hold: grains in a box that is shaken, and a machine with each kind of
-// part, whose flap stirs them.
+// Worlds with everything in them that a state may hold: grains in a box that is shaken, and a machine whose flap stirs
+// them.
 
+#include "checkpoint/folder.hpp"
 #include "world/scenes.hpp"
 
 #include <dem/io/checkpoint.hpp>
-
-#include <filesystem>
 
 /// What a scene is set up with; tests change one thing.
 struct SceneOptions {
@@ -128,33 +127,6 @@ struct Scene {
     }
   }
 };
-
-/// A new empty folder that is gone at the end.
-class Folder {
- public:
-  Folder() {
-    std::string pattern = (std::filesystem::temp_directory_path() / "dem_state_").string() + std::string(6, 'X');
-    REQUIRE(::mkdtemp(pattern.data()) != nullptr);
-    path_ = pattern;
-  }
-  Folder(const Folder&) = delete;
-  Folder& operator=(const Folder&) = delete;
-  ~Folder() { std::filesystem::remove_all(path_); }
-  std::filesystem::path operator/(const char* name) const { return path_ / name; }
-
- private:
-  std::filesystem::path path_;
-};
-
-/// The columns in which two worlds differ, as one text.
-template <class World>
-std::string difference(const World& a, const World& b) {
-  std::string names;
-  for (const std::string& name : dem::io::differences(dem::io::columns_of(a), dem::io::columns_of(b))) {
-    names += (names.empty() ? "" : ", ") + name;
-  }
-  return names;
-}
 
 /// The text of the error that `f` throws, or "no error".
 template <class F>

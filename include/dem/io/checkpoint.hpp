@@ -1,7 +1,8 @@
 #pragma once
 
 // Stop and go on, bit for bit. Needs HDF5: link dem::hdf5. These are free functions, and dem.hpp does not include them,
-// so that programs which save nothing need neither the library nor the seconds that its headers take to compile.
+// so that programs which save nothing need neither the library nor the seconds that its headers take to compile. What
+// the columns of a file mean, for other programs: checkpoint/README.md.
 
 #include <dem/io/checkpoint/hdf5_file.hpp>
 #include <dem/io/checkpoint/world_columns.hpp>
@@ -42,9 +43,24 @@ void save(const World<Model>& world, const std::filesystem::path& path, const Ot
 /// materials, species, surfaces and machine, with the functions (signals, loads) that it gave. Grains come from the
 /// file; those that were added already are dropped.
 ///
-/// What was steered is in the file too: targets, switches, set_fixed, gravity, and whether grains may sleep. So call
-/// set_sleep after loading a bed that was saved awake, if its grains may sleep from now on. Functions are not in the
-/// file: where a function has taken the place of a number since the set-up, give it before loading.
+/// Compared with the file, bit for bit:
+/// - the model's policies; time step, skin, overlap limit and domain of the options;
+/// - materials with all contact constants, species with their shapes, inlets and outlets;
+/// - surfaces with their shapes and their places on bodies; masses and moments of bodies, but not where they stand;
+/// - of joints the points and axes at assembly, stiffness, limits, friction and tables; of springs, actuators and loads
+///   the points and the constants; of couplings and clutches the joints and what was given.
+/// A shape or a surface of your own is compared by its fingerprint(), or else by its sample points or its bounds. What
+/// only functions know is not compared.
+///
+/// Restored, whatever the program set: the state, and what was steered while it ran. These are targets, throttles,
+/// switches, brakes' capacities, preloads of friction, ratios of gears, set_fixed, gravity, sub-steps, and whether
+/// grains may sleep. So call set_sleep after loading a bed that was saved awake, if its grains may sleep from now on.
+///
+/// To be set before loading, because the file has it to compare only or not at all:
+/// - contact constants that set_contact changed during the run, as they were when it was saved;
+/// - a function that has taken the place of a number since the set-up;
+/// - parts, species, materials and surfaces that were added during the run. A joint, spring or actuator has to be given
+///   the same points again, so add it where it is assembled, and switch it on when it is needed.
 ///
 /// Where ranks share the grains, all ranks call it at once, and each reads the file.
 ///

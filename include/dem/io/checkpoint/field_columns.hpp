@@ -94,6 +94,8 @@ class FieldColumns {
   void compare(const Column& c, const void* data);
   void compare_count(std::size_t count, const char* one);
   void compare_fingerprint(std::uint64_t bits);
+  /// A row of numbers of the set-up, which may have names.
+  void compare_reals(std::size_t width, const double* numbers, const char* const* names);
   void add_count(std::size_t count);
   /// From here on fields are those of item k of a list, in words `one`; `outer` is whose list it is.
   void begin_item(const std::string& outer, const char* one, std::size_t k);
@@ -109,8 +111,10 @@ class FieldColumns {
 DEM_COLD inline Column& FieldColumns::column() {
   const auto found = columns_->find(path_);
   if (found == columns_->end()) {
-    fail("the state has no '{}', which this program needs; it was saved by another program or for another model",
-         path_);
+    fail(
+        "the saved state has no '{}', which this program reads; load with the Model of the program that saved it, and "
+        "give load what save was given besides the world",
+        path_);
   }
   return found->second;
 }
@@ -119,8 +123,9 @@ inline void FieldColumns::take(ColumnKind kind, std::size_t width, void* data, s
   Column& c = column();
   if (c.kind != kind || c.width != width || c.at + n > c.rows()) {
     fail(
-        "'{}' of the state has {} rows of {} numbers, but this program needs {} of {}; it was saved by another program "
-        "or for another model",
+        "'{}' of the saved state has {} rows of {} numbers, but this program reads {} of {}; load with the Model of "
+        "the "
+        "program that saved it, and give load what save was given besides the world",
         path_, c.rows(), c.width, c.at + n, width);
   }
   if (kind == ColumnKind::text) {
@@ -154,7 +159,7 @@ inline void FieldColumns::exchange(ColumnKind kind, std::size_t width, void* dat
   Column& c = column();
   const std::size_t at = c.at;
   if (c.kind != kind || c.width != width || at >= c.rows()) {
-    fail("{}{} is another thing in the state; it was saved by another program or for another model",
+    fail("{}{} is of another kind in the saved state; set it up as the program did that saved it",
          part_.empty() ? "" : part_ + ": ", detail::last_word(path_));
   }
   compare(c, data);
@@ -178,6 +183,18 @@ DEM_COLD inline void FieldColumns::compare_fingerprint(std::uint64_t bits) {
   if (saved == bits) return;
   fail("{}its {} in this program differs from that in the saved state; set it up as the program did that saved it",
        part_.empty() ? "" : part_ + ": ", detail::last_word(path_));
+}
+
+DEM_COLD inline void FieldColumns::compare_reals(std::size_t width, const double* numbers, const char* const* names) {
+  std::vector<double> saved(width);
+  take(ColumnKind::real, width, saved.data(), 1);
+  for (std::size_t k = 0; k < width; ++k) {
+    if (std::memcmp(&saved[k], &numbers[k], sizeof(double)) == 0) continue;
+    fail("{}{}{} is {} in the saved state, but {} in this program; set it up as the program did that saved it",
+         part_.empty() ? "" : part_ + ": ", detail::last_word(path_),
+         names ? std::string(".") + names[k] : text(", number {} of {},", k + 1, width),
+         detail::in_words(ColumnKind::real, 1, &saved[k], ""), detail::in_words(ColumnKind::real, 1, &numbers[k], ""));
+  }
 }
 
 DEM_COLD inline void FieldColumns::add_count(std::size_t count) {
@@ -209,11 +226,15 @@ DEM_COLD inline void FieldColumns::begin_item(const std::string& outer, const ch
 
 DEM_COLD inline void FieldColumns::check_all_read(std::string_view group) const {
   for (const auto& [name, column] : *columns_) {
-    if (column.at != column.rows() && name.starts_with(group)) {
-      fail(
-          "'{}' of the saved state is not part of this program's; it was saved by another program or for another model",
-          name);
+    if (column.at == column.rows() || !name.starts_with(group)) continue;
+    if (group == "model/" && !column.texts.empty()) {
+      fail("the model that was saved has {} = {}, and this program's has the default; name the same in its Model",
+           detail::last_word(name), column.texts[0]);
     }
+    fail(
+        "the saved state has '{}', which this program does not read; load with the Model of the program that saved it, "
+        "and give load what save was given besides the world",
+        name);
   }
 }
 

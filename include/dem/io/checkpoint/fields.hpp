@@ -87,13 +87,21 @@ class Fields : public FieldColumns {
       exchange(ColumnKind::real, sizeof(Struct) / sizeof(double), &x, unit);
     }
   }
+  /// The same of the set-up; a difference is told by `Struct::names`, if there are any.
   template <class Struct>
   void given_reals(std::string_view name, const Struct& x) {
     if constexpr (!std::is_empty_v<Struct>) {
       if (task_ == Task::restore) return;
+      constexpr std::size_t width = sizeof(Struct) / sizeof(double);
       const Inside inside(*this, name);
       Struct copy = x;
-      exchange(ColumnKind::real, sizeof(Struct) / sizeof(double), &copy, "");
+      if (task_ == Task::collect) return exchange(ColumnKind::real, width, &copy, "");
+      const char* const* names = nullptr;
+      if constexpr (requires { Struct::names[0]; }) {
+        static_assert(std::size(Struct::names) == width, "names: one for each number of the struct");
+        names = Struct::names;
+      }
+      compare_reals(width, reinterpret_cast<const double*>(&copy), names);
     }
   }
   /// n rows of `width` numbers that stay where they are while the columns are in use; to be restored they must have
@@ -113,7 +121,8 @@ class Fields : public FieldColumns {
   }
   /// Rows of `width` numbers that the columns keep a copy of; to be restored `numbers` take the size that is needed.
   template <class T>
-  void copied(std::string_view name, ColumnKind kind, std::size_t width, std::vector<T>& numbers) {
+  void copied(std::string_view name, ColumnKind kind, std::size_t width, std::vector<T>& numbers,
+              const char* unit = "") {
     if (task_ == Task::compare) return;
     const Inside inside(*this, name);
     if (task_ == Task::restore) {
@@ -122,7 +131,7 @@ class Fields : public FieldColumns {
     }
     const auto* from = reinterpret_cast<const std::byte*>(numbers.data());
     Column& c = columns_->try_emplace(path_).first->second;
-    c = {.kind = kind, .width = width};
+    c = {.kind = kind, .width = width, .unit = unit};
     c.own.assign(from, from + numbers.size() * sizeof(T));
   }
   /// A list of structs of nothing but doubles, as samples are: a row each. Unlike copied(), of a part in a list too.

@@ -105,12 +105,16 @@ inline void check_seal(const std::filesystem::path& path) {
   }
   const Seal now = seal_of(file, path);
   if (now.bytes < seal.bytes) {
-    fail("cannot load '{}': it is cut short, {} bytes are left of {}; take an earlier one", path.string(), now.bytes,
-         seal.bytes);
+    fail(
+        "cannot load '{}': it is cut short, {} bytes are left of {}; copy it again, or load a state that was saved "
+        "under another name",
+        path.string(), now.bytes, seal.bytes);
   }
   if (now.bytes != seal.bytes || now.hash != seal.hash || now.text() != line) {
-    fail("cannot load '{}': it is damaged, as its bytes are not those that were saved; take an earlier one",
-         path.string());
+    fail(
+        "cannot load '{}': it is damaged, as its bytes are not those that were saved; copy it again, or load a "
+        "state that was saved under another name",
+        path.string());
   }
 }
 

@@ -55,11 +55,11 @@ void sleep_fields(Fields& v, WorldState<Model>& w) {
   v.copied("resting", ColumnKind::real, width, rests);
   v("borne", s.borne, "N");
   v.copied("doing", ColumnKind::byte, 1, doing);
-  v.copied("kept_loads", ColumnKind::real, kept_width, kept);
+  v.copied("kept_loads", ColumnKind::real, kept_width, kept, "N, N m");
   v.copied("surface_load_count", ColumnKind::natural32, 1, surface_count);
   v.copied("surface_load_of", ColumnKind::natural32, 1, surfaces);
-  v.copied("surface_loads", ColumnKind::real, load_width, surface_loads);
-  v.copied("deepest", ColumnKind::real, 1, deepest);
+  v.copied("surface_loads", ColumnKind::real, load_width, surface_loads, "N, N m");
+  v.copied("deepest", ColumnKind::real, 1, deepest, "m");
   v.copied("deepest_of", ColumnKind::natural32, 3, deepest_of);
   if (!is_restoring) return;
 

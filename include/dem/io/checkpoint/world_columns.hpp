@@ -220,6 +220,29 @@ void world_fields(Fields& v, World<Model>& world, Others&... others) {
   (v.group("program" + std::to_string(number++), [&] { others.fields(v); }), ...);
 }
 
+/// Whether a state has columns of thing number k that a program keeps besides its world.
+inline bool has_other(const StateColumns& columns, std::size_t k) {
+  const std::string group = "program" + std::to_string(k) + "/";
+  const auto next = columns.lower_bound(group);
+  return next != columns.end() && next->first.starts_with(group);
+}
+
+/// Throws Error where a program gives more or fewer things besides its world than were saved.
+template <class... Others>
+void compare_others(const StateColumns& saved, Others&... others) {
+  std::size_t count = 0, given = 0;
+  while (has_other(saved, count)) ++count;
+  StateColumns ours;
+  Fields collect(Fields::Task::collect, ours);
+  (collect.group("program" + std::to_string(given++), [&] { others.fields(collect); }), ...);
+  bool same = count <= given;
+  for (std::size_t k = 0; k < given; ++k) same &= has_other(saved, k) || !has_other(ours, k);
+  if (same) return;
+  fail(
+      "{} things were saved besides the world, but this program gives load {}; give it the same ones in the same order",
+      count, given);
+}
+
 /// What follows from the state that was restored.
 template <class Model>
 void settle_restored(WorldState<Model>& w, bool is_checked) {
@@ -285,11 +308,7 @@ void restore(World<Model>& world, StateColumns& columns, Others&... others) {
   Fields compare(Fields::Task::compare, columns);
   detail::world_fields(compare, world, others...);
   compare.check_all_read("model/");
-  const std::string more = "program" + std::to_string(sizeof...(Others)) + "/";
-  if (const auto next = columns.lower_bound(more); next != columns.end() && next->first.starts_with(more)) {
-    fail("the saved state has '{}', but this program gives {} things besides the world to be restored", next->first,
-         sizeof...(Others));
-  }
+  detail::compare_others(columns, others...);
   if constexpr (Model::Domain::has_ranks) {
     check_agreement(world.state(), domain::Call::restore, {.asked = hash_of(columns)});
   }

@@ -12,6 +12,7 @@ struct Constant {
   struct Parameters {
     T force;           ///< F, N (Pa if the shape's contact points have areas)
     T depth = T(0.0);  ///< m, overlap from which the pull is whole
+    static constexpr const char* names[] = {"force", "depth"};
   };
   template <class T>
   struct History {};

@@ -16,6 +16,7 @@ struct ContactStress {
   template <class T>
   struct Parameters {
     T stress;  ///< s, Pa
+    static constexpr const char* names[] = {"stress"};
   };
   template <class T>
   struct History {};

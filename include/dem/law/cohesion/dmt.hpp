@@ -13,6 +13,7 @@ struct DMT {
   template <class T>
   struct Parameters {
     T work_of_adhesion;  ///< w, J/m^2, of both surfaces together
+    static constexpr const char* names[] = {"work_of_adhesion"};
   };
   template <class T>
   struct History {};

@@ -25,6 +25,7 @@ struct JKR {
   struct Parameters {
     T work_of_adhesion;  ///< w, J/m^2, of both surfaces together
     T modulus;           ///< E*, Pa: that of the Hertz law
+    static constexpr const char* names[] = {"work_of_adhesion", "modulus"};
   };
   template <class T>
   struct History {

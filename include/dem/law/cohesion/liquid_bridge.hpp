@@ -18,6 +18,7 @@ struct LiquidBridge {
     T wetting_tension;  ///< g, N/m: surface tension times the cosine of the contact angle
     T volume;           ///< V, m^3, of one bridge
     T rupture;          ///< m, the gap at which a bridge breaks
+    static constexpr const char* names[] = {"wetting_tension", "volume", "rupture"};
   };
   template <class T>
   struct History {

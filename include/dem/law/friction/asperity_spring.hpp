@@ -18,6 +18,7 @@ struct AsperitySpring {
     T stiffness;           ///< kt, N/m
     T velocity_stiffness;  ///< cv, N s/m
     T breaking_factor;     ///< in [0, 1]; 0: a broken asperity loses its whole force
+    static constexpr const char* names[] = {"coefficient", "stiffness", "velocity_stiffness", "breaking_factor"};
   };
   template <class T>
   struct History {

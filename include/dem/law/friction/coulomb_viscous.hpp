@@ -12,6 +12,7 @@ struct CoulombViscous {
   struct Parameters {
     T coefficient;  ///< mu
     T damping;      ///< c, N s/m
+    static constexpr const char* names[] = {"coefficient", "damping"};
   };
   template <class T>
   struct History {};

@@ -18,6 +18,7 @@ struct CundallStrack {
     T coefficient;    ///< mu
     T stiffness;      ///< kt, N/m
     T damping_ratio;  ///< of critical damping
+    static constexpr const char* names[] = {"coefficient", "stiffness", "damping_ratio"};
   };
   template <class T>
   struct History {

@@ -20,6 +20,7 @@ struct Mindlin {
     T coefficient;    ///< mu
     T shear_modulus;  ///< G*, Pa (see contact::elastic_pair)
     T damping_ratio;  ///< of critical damping
+    static constexpr const char* names[] = {"coefficient", "shear_modulus", "damping_ratio"};
   };
   template <class T>
   struct History {

@@ -17,6 +17,7 @@ struct Hertz {
     T modulus;            ///< E*, Pa (see elastic_pair)
     T damping_ratio;      ///< b
     T may_pull = T(0.0);  ///< 1: the damper may pull at the end of a contact; 0: never
+    static constexpr const char* names[] = {"modulus", "damping_ratio", "may_pull"};
   };
   template <class T>
   struct History {};

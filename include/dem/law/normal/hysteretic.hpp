@@ -18,6 +18,7 @@ struct Hysteretic {
   struct Parameters {
     T loading_stiffness;    ///< k1, N/m (per unit area if the shape's contact points have areas)
     T unloading_stiffness;  ///< k2 >= k1, N/m
+    static constexpr const char* names[] = {"loading_stiffness", "unloading_stiffness"};
   };
   template <class T>
   struct History {

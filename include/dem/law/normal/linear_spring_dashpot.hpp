@@ -13,6 +13,7 @@ struct LinearSpringDashpot {
     T stiffness;          ///< k, N/m (per unit area if the shape's contact points have areas)
     T damping_ratio;      ///< b, of critical damping
     T may_pull = T(0.0);  ///< 1: the dashpot may pull at the end of a contact; 0: never
+    static constexpr const char* names[] = {"stiffness", "damping_ratio", "may_pull"};
   };
   template <class T>
   struct History {};

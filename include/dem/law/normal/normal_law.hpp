@@ -7,7 +7,8 @@
 namespace dem::contact {
 
 /// A normal law is a struct of static functions and two struct templates of Ts:
-///   Parameters<T>  constants of a pair of materials;
+///   Parameters<T>  constants of a pair of materials. It may have `static constexpr const char* names[]` with the names
+///                  of all of them, by which messages tell them;
 ///   History<T>     what a contact has to remember between steps (empty if nothing): numbers, no vectors, as they
 ///                  are neither turned with the contact nor turned round where two grains change places;
 ///   force(parameters, state, history) -> T   the repulsive force in N (the world cuts off negative values only if the

@@ -13,6 +13,7 @@ struct Penalty {
     T stiffness;          ///< K, N/m (per unit area if the shape's contact points have areas)
     T damping;            ///< C, N s/m (per unit area likewise)
     T separation_factor;  ///< Sp in [0, 1]: the share of the damping that acts while separating
+    static constexpr const char* names[] = {"stiffness", "damping", "separation_factor"};
   };
   template <class T>
   struct History {};

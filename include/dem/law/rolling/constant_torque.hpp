@@ -12,6 +12,7 @@ struct ConstantTorque {
   template <class T>
   struct Parameters {
     T coefficient;  ///< mu_r, the tangent of the slope on which a ball begins to roll
+    static constexpr const char* names[] = {"coefficient"};
   };
   template <class T>
   struct History {};

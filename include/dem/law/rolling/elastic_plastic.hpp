@@ -20,6 +20,7 @@ struct ElasticPlastic {
     T coefficient;    ///< mu_r, the tangent of the slope on which a ball begins to roll
     T stiffness;      ///< k, N/m
     T damping_ratio;  ///< of critical damping; 0.3 is common
+    static constexpr const char* names[] = {"coefficient", "stiffness", "damping_ratio"};
   };
   template <class T>
   struct History {

@@ -17,6 +17,7 @@ struct Torsion {
     T coefficient;    ///< mu_t
     T stiffness;      ///< k, N/m
     T damping_ratio;  ///< of critical damping
+    static constexpr const char* names[] = {"coefficient", "stiffness", "damping_ratio"};
   };
   template <class T>
   struct History {
