@@ -24,7 +24,7 @@ class Picture {
   /// All grains of a world, coloured by `color(grain)`.
   template <class World, class Color>
   void grains(const World& world, Color&& color) {
-    for (const dem::ParticleId p : world.particles()) {
+    for (const dem::GrainId p : world.grains()) {
       grain(world.position(p), world.species(world.species_of(p)).shape.bounding_radius(), color(p));
     }
   }

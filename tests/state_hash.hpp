@@ -33,7 +33,7 @@ class Hash {
 template <class World>
 std::string hash_of(const World& w, const dem::Vec3& origin = dem::Vec3::Zero()) {
   Hash hash;
-  for (const auto p : w.particles()) {
+  for (const auto p : w.grains()) {
     hash.add(dem::Vec3(w.position(p) - origin));
     hash.add(w.velocity(p));
     hash.add(w.angular_velocity(p));

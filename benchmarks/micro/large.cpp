@@ -27,7 +27,7 @@ dem::World<Cubes> cubes(int n) {
   for (int k = 0; k < n; ++k) {
     const dem::Quaternion q(normal(random), normal(random), normal(random), normal(random));
     const dem::Vec3 cell(k % edge, k / edge % edge, k / edge / edge);
-    world.add_particle({cube, 2.2e-3 * cell + some(1e-4), some(0.01), q.normalized().toRotationMatrix(), some(1.0)});
+    world.add_grain({cube, 2.2e-3 * cell + some(1e-4), some(0.01), q.normalized().toRotationMatrix(), some(1.0)});
   }
   return world;
 }
@@ -35,7 +35,7 @@ dem::World<Cubes> cubes(int n) {
 void make_grains(benchmark::State& state) {
   for (auto _ : state) {
     auto world = cubes(static_cast<int>(state.range(0)));
-    benchmark::DoNotOptimize(world.particle_count());
+    benchmark::DoNotOptimize(world.grain_count());
   }
   state.SetItemsProcessed(state.iterations() * state.range(0));
 }

@@ -25,10 +25,10 @@ dem::World<Model> cloud(int n) {
   const int edge = static_cast<int>(std::ceil(std::cbrt(n)));
   for (int k = 0; k < n; ++k) {
     const dem::Quaternion q(normal(random), normal(random), normal(random), normal(random));
-    world.add_particle({cube,
-                        2.2e-3 * dem::Vec3(k % edge, k / edge % edge, k / edge / edge),
-                        {0, 0, 0},
-                        q.normalized().toRotationMatrix()});
+    world.add_grain({cube,
+                     2.2e-3 * dem::Vec3(k % edge, k / edge % edge, k / edge / edge),
+                     {0, 0, 0},
+                     q.normalized().toRotationMatrix()});
   }
   world.prepare();
   return world;
@@ -38,7 +38,7 @@ using Euler = Cloud<dem::integrator::SymplecticEuler>;
 
 void grid_build(benchmark::State& state) {
   auto world = cloud<Euler>(static_cast<int>(state.range(0)));
-  const auto& p = world.state().particles;
+  const auto& p = world.state().grains;
   dem::broadphase::UniformGrid grid;
   for (auto _ : state) {
     grid.build({p.position.x.data(), p.position.y.data(), p.position.z.data(), p.count}, 3e-3);
@@ -64,7 +64,7 @@ void gather_forces(benchmark::State& state) {
   state.counters["loads a grain"] = static_cast<double>(loads) / 10000;
   for (auto _ : state) {
     for (std::size_t c = 0; c < w.chunks.size(); ++c) {
-      dem::grain::gather_forces<Euler>(c, w.chunks, w.particles, w.incoming_first, w.incoming);
+      dem::grain::gather_forces<Euler>(c, w.chunks, w.grains, w.incoming_first, w.incoming);
     }
   }
   state.SetItemsProcessed(state.iterations() * 10000);
@@ -82,9 +82,9 @@ void integrator(benchmark::State& state) {
         const dem::grain::MovingStage<typename Model::Shape> moving = {
             .species = w.species, .inertia = w.inertia, .gravity = w.options.gravity, .stage = stage};
         if constexpr (I::predicts_before_forces) {
-          dem::grain::predict_chunk<Model>(c, w.chunks[c], w.particles, moving);
+          dem::grain::predict_chunk<Model>(c, w.chunks[c], w.grains, moving);
         }
-        dem::grain::move_chunk<Model>(c, w.chunks[c], w.particles, moving);
+        dem::grain::move_chunk<Model>(c, w.chunks[c], w.grains, moving);
       }
     }
   }

@@ -65,12 +65,12 @@ World wheel_in_a_long_bed(const Settings& s) {
   dem::RandomStream random(1);
   for (std::size_t k = 0; k < s.grains; ++k) {
     const Vec3 cell(double(k % along) + 0.5, double(k / along % across) + 0.5, double(k / (along * across)) + 0.5);
-    world.add_particle({bead, 1.1 * d * cell, random.in_ball(0.1)});
+    world.add_grain({bead, 1.1 * d * cell, random.in_ball(0.1)});
   }
   run(world, s.settle);
 
   double top = 0.0;
-  for (const auto p : world.particles()) top = std::max(top, world.position(p).z() + d / 2);
+  for (const auto p : world.grains()) top = std::max(top, world.position(p).z() + d / 2);
   const Vec3 at(0.5 * length, 0.5 * width, top + radius), way = Vec3(3, 0, -1).normalized();  // it sinks as it goes
   dem::Mat3 about_y;  // the wheel's axis, z of its own frame, along y
   about_y << 1, 0, 0, 0, 0, 1, 0, -1, 0;
@@ -227,7 +227,7 @@ void compare(const Settings& s) {
     for (const float x : work) of_chunk += x;
     Vec3 middle = Vec3::Zero();
     for (std::size_t k = 0; k < work.size(); ++k) {
-      middle += dem::to_eigen(w.particles.position[c * dem::chunk_size + k]) / double(work.size());
+      middle += dem::to_eigen(w.grains.position[c * dem::chunk_size + k]) / double(work.size());
     }
     pieces.middles.push_back(middle);
     pieces.work.push_back(of_chunk);

@@ -42,7 +42,7 @@ void run(const char* name, const Settings& settings) {
   double energy = 0.0;
   std::size_t contacts = 0, wall_contacts = 0;
   for (int k = 0; k < Model::grains; ++k) {
-    const dem::ParticleId p{static_cast<std::size_t>(k)};
+    const dem::GrainId p{static_cast<std::size_t>(k)};
     energy += 0.5 * world.species(world.species_of(p)).mass * world.velocity(p).squaredNorm();
   }
   for (const auto& chunk : world.state().chunks) {

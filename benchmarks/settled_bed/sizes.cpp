@@ -45,7 +45,7 @@ template <class Model>
 dem::World<Model> boxes(const dem::World<Model>& one, std::size_t grains, double width, const Settings& settings) {
   dem::World<Model> world = empty_world<Model>(settings);
   if (settings.flow) world.set_gravity(tilted());
-  const std::vector<dem::ParticleId> ids = one.particles();
+  const std::vector<dem::GrainId> ids = one.grains();
   const auto count = static_cast<double>((grains + ids.size() - 1) / ids.size());
   const double nx = std::ceil(std::sqrt(count)), ny = std::ceil(count / nx);
   const double thick = 0.02, high = 0.3, pitch = width + thick;
@@ -58,14 +58,14 @@ dem::World<Model> boxes(const dem::World<Model>& one, std::size_t grains, double
   for (double k = 0; k <= nx; ++k) wall({k * pitch - thick / 2, middle.y(), high / 2}, {thick, ly, high});
   for (double k = 0; k <= ny; ++k) wall({middle.x(), k * pitch - thick / 2, high / 2}, {lx, thick, high});
   for (std::size_t k = 0; k < grains; ++k) {
-    const dem::ParticleId from = ids[k % ids.size()];
+    const dem::GrainId from = ids[k % ids.size()];
     const auto box = static_cast<double>(k / ids.size());
     const dem::Vec3 corner(pitch * std::fmod(box, nx), pitch * std::floor(box / nx), 0);
-    world.add_particle({.species = dem::SpeciesId(0),
-                        .position = one.position(from) + corner,
-                        .velocity = one.velocity(from),
-                        .rotation = one.rotation(from),
-                        .angular_velocity = one.angular_velocity(from)});
+    world.add_grain({.species = dem::SpeciesId(0),
+                     .position = one.position(from) + corner,
+                     .velocity = one.velocity(from),
+                     .rotation = one.rotation(from),
+                     .angular_velocity = one.angular_velocity(from)});
   }
   return world;
 }

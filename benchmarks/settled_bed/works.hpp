@@ -77,10 +77,10 @@ dem::World<Model> loose_bed(const Settings& settings, int grains = Model::grains
     const dem::Vec3 cell(k % n + 0.5, k / n % n + 0.5, k / (n * n) + 0.5);
     const dem::Vec3 jitter = 0.05e-3 * dem::Vec3(uniform(random), uniform(random), uniform(random));
     const dem::Quaternion turn = dem::Quaternion(normal(random), normal(random), normal(random), normal(random));
-    world.add_particle({.species = grain,
-                        .position = Model::pitch * cell + jitter,
-                        .velocity = 0.2 * dem::Vec3(uniform(random), uniform(random), uniform(random)),
-                        .rotation = turn.normalized().toRotationMatrix()});
+    world.add_grain({.species = grain,
+                     .position = Model::pitch * cell + jitter,
+                     .velocity = 0.2 * dem::Vec3(uniform(random), uniform(random), uniform(random)),
+                     .rotation = turn.normalized().toRotationMatrix()});
   }
   return world;
 }
@@ -102,7 +102,7 @@ double contacts_a_grain(const World& world) {
   for (const auto& chunk : world.state().chunks) {
     contacts += static_cast<std::size_t>(chunk.pair_contacts.committed() + chunk.surface_contacts.committed());
   }
-  return static_cast<double>(contacts) / static_cast<double>(world.particle_count());
+  return static_cast<double>(contacts) / static_cast<double>(world.grain_count());
 }
 
 /// Times beds of growing size (sizes.cpp).

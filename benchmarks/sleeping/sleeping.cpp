@@ -71,12 +71,12 @@ struct Bed {
             continue;  // here stands the blade
           }
           const Quaternion q = Quaternion(1, 0.3 * turn(random), 0.3 * turn(random), 0.3 * turn(random)).normalized();
-          world.add_particle({cube, Vec3(gx + shift(random), y + shift(random), z + shift(random)), Vec3::Zero(),
-                              q.toRotationMatrix()});
+          world.add_grain({cube, Vec3(gx + shift(random), y + shift(random), z + shift(random)), Vec3::Zero(),
+                           q.toRotationMatrix()});
         }
       }
     }
-    grains = world.particle_count();
+    grains = world.grain_count();
     settle(s, s.beds.empty() ? s.beds : s.beds / fmt::format("{}_{}_{}.h5", s.shape, grains, seed));
   }
   /// Takes the settled bed from the file if there is one, or else settles it and keeps it there.
@@ -108,7 +108,7 @@ template <class Soil>
 void push_a_little(World<Soil>& world, unsigned seed) {
   std::mt19937 random(seed);
   std::uniform_real_distribution<double> speed(-1e-8, 1e-8);
-  for (const ParticleId p : world.particles()) {
+  for (const GrainId p : world.grains()) {
     world.set_velocity(p, world.velocity(p) + Vec3(speed(random), speed(random), speed(random)));
   }
 }
@@ -123,12 +123,12 @@ Drawn draw(World<Soil> world, SurfaceId blade, const Settings& s, bool sleep) {
   d.at_rest = -seconds();
   if (const StepReport report = world.run_for(s.rest); !report) fail("{}", report.text);
   d.at_rest += seconds();
-  d.asleep_at_rest = static_cast<double>(world.asleep_count()) / static_cast<double>(world.particle_count());
+  d.asleep_at_rest = static_cast<double>(world.asleep_count()) / static_cast<double>(world.grain_count());
   d.seconds = -seconds();
   const int samples = 200;
   for (int k = 0; k < samples; ++k) {
     if (const StepReport report = world.run_for(s.travel / s.speed / samples); !report) fail("{}", report.text);
-    d.asleep += static_cast<double>(world.asleep_count()) / static_cast<double>(world.particle_count()) / samples;
+    d.asleep += static_cast<double>(world.asleep_count()) / static_cast<double>(world.grain_count()) / samples;
     if (k < samples / 2) continue;
     d.force -= world.surface_force(blade).x() / (samples / 2);
     d.lift += world.surface_force(blade).z() / (samples / 2);

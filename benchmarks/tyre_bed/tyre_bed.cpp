@@ -60,10 +60,10 @@ dem::World<Model> loose_bed(const Settings& s) {
   for (int k = 0; k < nx * ny * nz; ++k) {
     const dem::Quaternion turn(normal(random), normal(random), normal(random), normal(random));
     const dem::Vec3 cell(k % nx + 0.5, k / nx % ny + 0.5 - 0.5 * ny, k / (nx * ny) + 0.5);
-    world.add_particle({.species = grain,
-                        .position = pitch * cell,
-                        .velocity = 0.1 * dem::Vec3(normal(random), normal(random), normal(random)),
-                        .rotation = turn.normalized().toRotationMatrix()});
+    world.add_grain({.species = grain,
+                     .position = pitch * cell,
+                     .velocity = 0.1 * dem::Vec3(normal(random), normal(random), normal(random)),
+                     .rotation = turn.normalized().toRotationMatrix()});
   }
   return world;
 }
@@ -71,7 +71,7 @@ dem::World<Model> loose_bed(const Settings& s) {
 /// Height (m) below which a share of the grains lies.
 double height_of(const auto& world, double share) {
   std::vector<double> z;
-  for (const dem::ParticleId p : world.particles()) z.push_back(world.position(p).z());
+  for (const dem::GrainId p : world.grains()) z.push_back(world.position(p).z());
   std::sort(z.begin(), z.end());
   return z[static_cast<std::size_t>(share * static_cast<double>(z.size() - 1))];
 }
@@ -80,7 +80,7 @@ template <class Model>
 void run(const char* name, const Settings& s) {
   dem::World<Model> world = loose_bed<Model>(s);
   const double time = s.settle > 0.0 ? s.settle : Model::settle;
-  fmt::print("{}: settling {} grains for {:g} s\n", name, world.particle_count(), time);
+  fmt::print("{}: settling {} grains for {:g} s\n", name, world.grain_count(), time);
   if (const auto report = world.run_for(time); !report) dem::fail("{}", report.text);
 
   const double top = height_of(world, 1.0), way_down = top - height_of(world, 0.95) + Model::sunk + 0.02;

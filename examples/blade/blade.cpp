@@ -46,7 +46,7 @@ void pour_bed(World<Soil>& world) {
   for (double z = pitch / 2; z < 0.04; z += pitch) {
     for (double x = pitch / 2; x < box.x() - pitch / 2; x += pitch) {
       for (double y = -box.y() / 2 + pitch / 2; y < box.y() / 2 - pitch / 2; y += pitch) {
-        world.add_particle({grain, Vec3(x + jitter(random), y + jitter(random), z + jitter(random))});
+        world.add_grain({grain, Vec3(x + jitter(random), y + jitter(random), z + jitter(random))});
       }
     }
   }
@@ -139,7 +139,7 @@ class Blade : public rig::Rig {
   void run(rig::Session& session) override {
     World<Soil> world({.gravity = {0, 0, -9.81}});
     pour_bed(world);
-    grains = world.particle_count();
+    grains = world.grain_count();
     session.begin_run(3);
     rig::PartOf<Soil> part(session, session, "blade");
     rig::Frames frames(session, vtk ? "blade" : "", frame_time);

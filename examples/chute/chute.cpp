@@ -54,12 +54,11 @@ int main(int argc, char** argv) {
   RandomStream random(1);
   for (int n = 0; n < 2 * 8 * 12; ++n) {
     const int i = n % 12, j = n / 12 % 8, k = n / 96;
-    world.add_particle(
-        {floor, d * Vec3(i + 0.5 * k + 0.25, j + 0.5 * k + 0.25, -0.7 * k + random.between(-0.25, 0.25))});
+    world.add_grain({floor, d * Vec3(i + 0.5 * k + 0.25, j + 0.5 * k + 0.25, -0.7 * k + random.between(-0.25, 0.25))});
   }
   for (int n = 0; n < 15 * 7 * 10; ++n) {
     const Vec3 x = d * Vec3(1.2 * (n % 10) + 0.6, 1.16 * (n / 10 % 7) + 0.5, 1.4 + 1.17 * (n / 70));
-    world.add_particle({.species = beads[random.bits() % 4], .position = x, .velocity = {0.1, 0, 0}});
+    world.add_grain({.species = beads[random.bits() % 4], .position = x, .velocity = {0.1, 0, 0}});
   }
   const auto run = [&](double time) {
     if (const auto report = world.run_for(time); !report) fmt::print("{}\n", report.text), std::exit(1);
@@ -108,7 +107,7 @@ int main(int argc, char** argv) {
   io::render_plot({.x_label = "velocity [m/s]", .y_label = "height [mm]", .series = {measured, bagnold}},
                   folder + "/profile");
   Picture picture({1, 0, 0}, {0, 0, 1});
-  picture.grains(world, [&](ParticleId p) {
+  picture.grains(world, [&](GrainId p) {
     return world.species_of(p) == floor ? 0x808080u : Picture::heat(world.velocity(p).x() / fastest);
   });
   picture.save(folder + "/picture", "Beads flow down a rough incline, from left to right");

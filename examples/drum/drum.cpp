@@ -73,7 +73,7 @@ int main(int argc, char** argv) {
     const double a = 2 * pi * k / around;
     for (int j = 0; j < across; ++j) {
       const double y = (j + 0.5 - 0.5 * across) * d;
-      world.attach(world.add_particle({lining, {radius * std::cos(a), y, radius * std::sin(a)}}), drum);
+      world.attach(world.add_grain({lining, {radius * std::cos(a), y, radius * std::sin(a)}}), drum);
     }
   }
   // Half of it is filled by a rain.
@@ -102,7 +102,7 @@ int main(int argc, char** argv) {
       run(measured / samples);
       Vec3 centre = Vec3::Zero();
       mass = 0.0;
-      for (const ParticleId p : world.particles()) {
+      for (const GrainId p : world.grains()) {
         if (world.species_of(p) == lining) continue;
         centre += world.species(bead).mass * world.position(p), mass += world.species(bead).mass;
       }
@@ -122,7 +122,7 @@ int main(int argc, char** argv) {
     slope.y.push_back(angle), low.y.push_back(angle - deviation), high.y.push_back(angle + deviation);
     if (froude == froude_numbers[froude_numbers.size() / 2]) {
       Picture picture({1, 0, 0}, {0, 0, 1});
-      picture.grains(world, [&](ParticleId p) {
+      picture.grains(world, [&](GrainId p) {
         return world.species_of(p) == lining ? 0x808080u : Picture::heat(world.velocity(p).norm() / 0.5);
       });
       picture.save(folder + "/picture",

@@ -67,7 +67,7 @@ soil::Tile settle(std::uint64_t seed) {
     for (int j = 0; j < 5; ++j) {
       for (int i = 0; i < 6; ++i) {
         const Vec3 x((i + 0.5) * length / 6, (j + 0.5) * width / 5, (k + 0.6) * 1.2 * d);
-        cell.add_particle({SpeciesId(random.bits() % 3), x, random.in_ball(0.2)});
+        cell.add_grain({SpeciesId(random.bits() % 3), x, random.in_ball(0.2)});
       }
     }
   }
@@ -84,7 +84,7 @@ void lay(const soil::Tile& tile, int along_x, int along_y) {
   soil::lay_tiles(world, tile, {.along_x = along_x, .along_y = along_y});
   const double laid = cpu();
   if (const StepReport report = world.run(11); !report) fail("{}", report.text);
-  const double end = cpu(), beads = static_cast<double>(world.particle_count());
+  const double end = cpu(), beads = static_cast<double>(world.grain_count());
   rusage use{};
   getrusage(RUSAGE_SELF, &use);
   const double most = 1024.0 * static_cast<double>(use.ru_maxrss);  // bytes, of the whole program
@@ -122,7 +122,7 @@ Run roll(const soil::Tile& tile, double slip, double load, double way, int patch
     soil::lay_tiles(world, tile, {.along_x = tiles, .rim = rim});
   }
   double top = 0.0;  // under the wheel
-  for (const ParticleId p : world.particles()) {
+  for (const GrainId p : world.grains()) {
     const Vec3 x = world.position(p);
     const double r = world.species(world.species_of(p)).shape.bounding_radius(), apart = x.x() - first_place;
     if (std::abs(apart) > radius) continue;
@@ -164,8 +164,8 @@ Run roll(const soil::Tile& tile, double slip, double load, double way, int patch
     }
     run.samples.push_back({x, world.surface_sensor(sensor).mean().force.x, level - (place().z() - radius)});
   }
-  run.grains = world.particle_count();
-  run.ids = world.state().particles.row_of.size();
+  run.grains = world.grain_count();
+  run.ids = world.state().grains.row_of.size();
   run.bytes = memory_bytes(world.state());
   run.seconds = now() - start;
   return run;
@@ -219,7 +219,7 @@ void draw(const Run& run, const std::string& folder) {
                           1e3 * sum / count);
     }
   }
-  for (const ParticleId p : world.particles()) {
+  for (const GrainId p : world.grains()) {
     const Vec3 x = world.position(p);
     const auto& kind = world.species(world.species_of(p));
     grains += fmt::format("{:.5g} {:.5g} {:.4g} {}\n", 1e3 * x.x(), 1e3 * x.z(), 1e3 * kind.shape.bounding_radius(),

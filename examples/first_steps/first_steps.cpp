@@ -24,7 +24,7 @@ int main() {
   const auto cube = world.add_species(dem::shape::cube8(1e-3), {.density = 2650});  // half an edge in m; kg/m^3
   for (int k = 0; k < 250; ++k) {
     const dem::Mat3 turn = dem::Quaternion(1, 0.3 * (k % 5), 0.2 * (k % 7), 0.1).normalized().toRotationMatrix();
-    world.add_particle({cube, 4e-3 * dem::Vec3(k % 5 - 2, k / 5 % 5 - 2, k / 25 + 0.5), {0, 0, 0}, turn});
+    world.add_grain({cube, 4e-3 * dem::Vec3(k % 5 - 2, k / 5 % 5 - 2, k / 25 + 0.5), {0, 0, 0}, turn});
   }
 
   if (const auto report = world.run_for(0.5); !report) return fmt::print("{}\n", report.text), 1;

@@ -24,7 +24,7 @@ int main() {
       {{{3 * r, 3 * r, 0}, r}, {{-3 * r, 3 * r, 0}, r}, {{3 * r, -3 * r, 0}, r}, {{-3 * r, -3 * r, 0}, r}}};
   const auto stool = world.add_species(dem::shape::SphereCluster<4>(feet));
   world.add_surface(world.ground(), dem::surface::Plane{});
-  const auto block = world.add_particle({stool, {0, 0, r}});
+  const auto block = world.add_grain({stool, {0, 0, r}});
 
   const double degree = M_PI / 180, step = 0.1 * degree;
   double angle = 0;

@@ -22,7 +22,7 @@ int main() {
   const auto pill = world.add_species(Capsule{half, radius});
   world.add_surface(world.ground(), dem::surface::Plane{});
   const auto roller =
-      world.add_particle({.species = pill, .position = {0, 0, radius}, .rotation = turned(dem::Vec3::UnitY())});
+      world.add_grain({.species = pill, .position = {0, 0, radius}, .rotation = turned(dem::Vec3::UnitY())});
   if (const auto report = world.run_for(0.3); !report) return fmt::print("{}\n", report.text), 1;
   const auto& kind = world.species(pill);
   const double expected = g * std::sin(slope) / (1 + kind.inertia.z() / (kind.mass * radius * radius));
@@ -32,10 +32,10 @@ int main() {
   pile.set_contact(sand);
   pile.add_species(Capsule{half, radius});
   const auto floor = pile.add_surface(pile.ground(), dem::surface::Plane{});
-  pile.add_particle({.species = pill, .position = {-2e-3, 0, radius}, .rotation = turned(dem::Vec3::UnitY())});
-  pile.add_particle({.species = pill, .position = {2e-3, 0, radius}, .rotation = turned(dem::Vec3::UnitY())});
+  pile.add_grain({.species = pill, .position = {-2e-3, 0, radius}, .rotation = turned(dem::Vec3::UnitY())});
+  pile.add_grain({.species = pill, .position = {2e-3, 0, radius}, .rotation = turned(dem::Vec3::UnitY())});
   const auto top =
-      pile.add_particle({.species = pill, .position = {0, 0, 3 * radius}, .rotation = turned(dem::Vec3::UnitX())});
+      pile.add_grain({.species = pill, .position = {0, 0, 3 * radius}, .rotation = turned(dem::Vec3::UnitX())});
   if (const auto report = pile.run_for(0.5); !report) return fmt::print("{}\n", report.text), 1;
   fmt::print("a bridge of three weighs {:.6f} of 3 m g, and rests at {:.4f} of 3 r\n",
              -pile.surface_force(floor).z() / (3 * kind.mass * g), pile.position(top).z() / (3 * radius));

@@ -77,15 +77,14 @@ int main(int argc, char** argv) {
   }
   const double speed = third.averages().values[0].velocity.x(), torque = machine.sensor(load).mean().torque.x;
   fmt::print("{} grains fed, {} on the way; fed {:.1f} g/s, carried {:.1f} g/s\n", world.inlet(in).grains(),
-             world.particle_count(), 1e3 * flow, 1e3 * world.outlet(out).mass_flow());
+             world.grain_count(), 1e3 * flow, 1e3 * world.outlet(out).mass_flow());
   fmt::print("grains go at {:.3f} of the blade's advance of {:.0f} mm/s; torque {:.4f} N m, {:.1f} J/kg\n",
              speed / (pitch * turns), 1e3 * pitch * turns, torque, std::abs(torque) * 2 * pi * turns / flow);
 
   io::render_plot({.x_label = "time [s]", .y_label = "mass [g]", .series = {fed, carried}}, folder + "/flow");
   Picture picture({1, 0, 0}, Vec3(0, 0.5, 0.87));
-  picture.grains(world, [&](ParticleId p) {
-    return Picture::heat(world.species(world.species_of(p)).shape.radius() / 1.5e-3 - 1);
-  });
+  picture.grains(
+      world, [&](GrainId p) { return Picture::heat(world.species(world.species_of(p)).shape.radius() / 1.5e-3 - 1); });
   std::vector<Vec3> edge;  // of the blade
   for (int k = 0; k <= 200; ++k) {
     const double x = length * k / 200, a = 2 * pi * x / pitch;

@@ -63,9 +63,9 @@ void settle(const typename Model::Shape& grain, Arguments& arguments) {
   for (int k = 0; k < grains; ++k) {
     const int i = k % along, j = k / along % across, level = k / (along * across);
     const double shake = 0.04 * std::sin(12.9898 * k);
-    world.add_particle({.species = species,
-                        .position = pitch * Vec3(i + 0.5 + shake, j + 0.5 - shake, level + 0.5),
-                        .rotation = Quaternion(1, 20 * shake, 0.3, -10 * shake).normalized().toRotationMatrix()});
+    world.add_grain({.species = species,
+                     .position = pitch * Vec3(i + 0.5 + shake, j + 0.5 - shake, level + 0.5),
+                     .rotation = Quaternion(1, 20 * shake, 0.3, -10 * shake).normalized().toRotationMatrix()});
   }
 
   const auto run = [&](int n) {
@@ -75,9 +75,9 @@ void settle(const typename Model::Shape& grain, Arguments& arguments) {
 #ifdef DEM_WITH_HDF5
   if (processes.of_first(!bed.empty() && exists(bed))) {
     load(world, bed);
-    if (world.particle_count() != static_cast<std::size_t>(grains)) {
-      fail("--bed {} has {} grains, but --grains is {}; give --grains {}", bed.string(), world.particle_count(), grains,
-           world.particle_count());
+    if (world.grain_count() != static_cast<std::size_t>(grains)) {
+      fail("--bed {} has {} grains, but --grains is {}; give --grains {}", bed.string(), world.grain_count(), grains,
+           world.grain_count());
     }
   } else {
     run(settle);
@@ -108,7 +108,7 @@ void settle(const typename Model::Shape& grain, Arguments& arguments) {
   fmt::print("state {:016x}\n", io::hash_of(io::columns_of(world)));
 
   io::CsvWriter csv(folder / "settled.csv", {"x_m", "y_m", "z_m", "speed_m_s"});
-  for (const ParticleId p : world.particles()) {
+  for (const GrainId p : world.grains()) {
     const Vec3 x = world.position(p);
     csv.row(x.x(), x.y(), x.z(), world.velocity(p).norm());
   }

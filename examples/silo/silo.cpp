@@ -60,7 +60,7 @@ int main(int argc, char** argv) {
   while (world.inlet(rain).mass() < 0.999 * mass && world.time() < 5.0) run(0.05);
   run(0.3);
   double low = 0.0;  // kg, of the grains from 2 d to 6 d
-  for (const ParticleId p : world.particles()) {
+  for (const GrainId p : world.grains()) {
     if (const double z = world.position(p).z(); z > 2 * d && z < 6 * d) low += world.species(bead).mass;
   }
   const double bulk = low / (std::numbers::pi * radius * radius * 4 * d);
@@ -80,7 +80,7 @@ int main(int argc, char** argv) {
     const Outlet& o = world.outlet(out);
     flow.x.push_back(world.time() - start), flow.y.push_back(1e3 * o.mass_flow());
     if (o.mass() < 0.1 * mass) first = world.time(), gone = o.mass(), inside = 0.0, looks = 0;
-    for (const ParticleId p : world.particles()) {
+    for (const GrainId p : world.grains()) {
       const Vec3 x = world.position(p);
       if (std::abs(x.z()) < 0.5 * d && std::hypot(x.x(), x.y()) < 0.25 * hole) inside += world.species(bead).mass;
     }
@@ -88,7 +88,7 @@ int main(int argc, char** argv) {
     if (o.mass() > 0.3 * mass && !is_drawn) {
       is_drawn = true;
       Picture picture({1, 0, 0}, {0, 0, 1});
-      for (const ParticleId p : world.particles()) {  // the half behind the axis
+      for (const GrainId p : world.grains()) {  // the half behind the axis
         if (world.position(p).y() > 0)
           picture.grain(world.position(p), 0.5 * d, Picture::heat(world.velocity(p).norm() / 0.4));
       }

@@ -113,10 +113,10 @@ TEST_CASE("a state may be saved between any two steps, and in the middle of what
   // a part of a step that is owed.
   for (auto* s : {&whole, &pieces}) {
     auto& w = s->world;
-    w.remove_particle(ParticleId(5));
-    w.set_position(ParticleId(9), {0.012, 0.010, 0.060});
-    w.add_particle({.species = SpeciesId(0), .position = {0.014, 0.010, 0.065}});
-    w.set_velocity(ParticleId(3), {0, 0, 0.1});
+    w.remove_grain(GrainId(5));
+    w.set_position(GrainId(9), {0.012, 0.010, 0.060});
+    w.add_grain({.species = SpeciesId(0), .position = {0.014, 0.010, 0.065}});
+    w.set_velocity(GrainId(3), {0, 0, 0.1});
     w.machine().set_fixed(w.machine().body_named("left disc"));
     w.machine().set_throttle(dem::ActuatorId(0), -0.2);
     w.machine().switch_on(dem::LoadId(0), false);
@@ -127,8 +127,8 @@ TEST_CASE("a state may be saved between any two steps, and in the middle of what
   for (auto* s : {&whole, &pieces}) REQUIRE(s->world.run_for(50.4 * s->world.time_step()));
   CHECK(whole.world.steps() == pieces.world.steps());
   CHECK(difference(whole.world, pieces.world) == "");
-  CHECK(whole.world.particle_count() == pieces.world.particle_count());
-  CHECK(error_of([&] { (void)pieces.world.position(ParticleId(5)); }).find("was removed") != std::string::npos);
+  CHECK(whole.world.grain_count() == pieces.world.grain_count());
+  CHECK(error_of([&] { (void)pieces.world.position(GrainId(5)); }).find("was removed") != std::string::npos);
 }
 
 TEST_CASE("a bed in which some grains sleep goes on where it was saved, and the same with its energy counted") {
@@ -151,10 +151,10 @@ TEST_CASE("a bed in which some grains sleep goes on where it was saved, and the 
   for (auto* w : {&whole, &pieces, &counted}) {
     const SpeciesId cube = set_up(*w);
     for (int k = 0; k < 576; ++k) {
-      w->add_particle({cube, Vec3(2.2e-3 * (k / 9 % 8), 2.2e-3 * (k / 72), 1e-3 + 2e-3 * (k % 9))});
+      w->add_grain({cube, Vec3(2.2e-3 * (k / 9 % 8), 2.2e-3 * (k / 72), 1e-3 + 2e-3 * (k % 9))});
     }
     REQUIRE(w->run(1500));
-    w->add_particle({cube, Vec3(1e-4, 0, 0.0192), {0.05, 0, -0.3}});
+    w->add_grain({cube, Vec3(1e-4, 0, 0.0192), {0.05, 0, -0.3}});
   }
   const auto go_through_file = [&] {
     dem::save(pieces, folder / "state.h5");
@@ -167,17 +167,17 @@ TEST_CASE("a bed in which some grains sleep goes on where it was saved, and the 
   for (int k = 0; k < 60; ++k) {
     if (k == 20) dem::count_energy(counted);
     for (auto* w : {&whole, &pieces, &counted}) {
-      if (k == 30) w->set_velocity(ParticleId(8), {0.05, 0, 0.1}), w->prepare();
-      if (k == 40) w->remove_particle(ParticleId(300));
+      if (k == 30) w->set_velocity(GrainId(8), {0.05, 0, 0.1}), w->prepare();
+      if (k == 40) w->remove_grain(GrainId(300));
     }
     if (k % 2 == 0) go_through_file();
     for (auto* w : {&whole, &pieces, &counted}) REQUIRE(w->run(13 + k % 5));
-    mixed += whole.asleep_count() > 0 && whole.asleep_count() + 1 < whole.particle_count() ? 1 : 0;
+    mixed += whole.asleep_count() > 0 && whole.asleep_count() + 1 < whole.grain_count() ? 1 : 0;
     REQUIRE(pieces.asleep_count() == whole.asleep_count());
     CHECK(difference(whole, pieces) == "");
   }
   CHECK(mixed > 20);
-  for (const ParticleId p : whole.particles()) CHECK(counted.position(p) == whole.position(p));
+  for (const GrainId p : whole.grains()) CHECK(counted.position(p) == whole.position(p));
 }
 
 TEST_CASE("energy that is counted goes on where it was saved") {

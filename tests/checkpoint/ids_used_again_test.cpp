@@ -14,13 +14,13 @@ TEST_CASE("a world whose ids were used again goes on from its state in every bit
   };
   auto a = build(), b = build();
   REQUIRE(a.run_for(0.1));
-  CHECK(!a.state().particles.number.empty());
+  CHECK(!a.state().grains.number.empty());
   auto columns = dem::io::columns_of(a);
   dem::io::restore(b, columns);
-  CHECK(a.particles() == b.particles());
+  CHECK(a.grains() == b.grains());
   REQUIRE(a.run_for(0.05));
   REQUIRE(b.run_for(0.05));
-  REQUIRE(a.particles() == b.particles());
-  CHECK(a.particles().size() > 10);
-  for (const auto p : a.particles()) REQUIRE(a.position(p) == b.position(p));
+  REQUIRE(a.grains() == b.grains());
+  CHECK(a.grains().size() > 10);
+  for (const auto p : a.grains()) REQUIRE(a.position(p) == b.position(p));
 }

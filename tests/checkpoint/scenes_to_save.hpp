@@ -106,13 +106,13 @@ struct Scene {
     const int n = static_cast<int>((0.020 - 2 * start) / pitch) + 1, nx = n - 2;
     Random random(3);
     for (int k = 0; k < 320; ++k) {
-      dem::NewParticle p;
+      dem::NewGrain p;
       p.species = kinds[static_cast<std::size_t>(k) % kinds.size()];
       p.position = Vec3(8e-3 + start, start, start) + pitch * Vec3(k % nx, k / nx % n, k / (nx * n));
       if (p.position.x() > 0.020 - start) continue;
       p.rotation = random.rotation();
       p.velocity = random.vector(0.5);
-      world.add_particle(p);
+      world.add_grain(p);
     }
   }
 

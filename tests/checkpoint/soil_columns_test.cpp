@@ -50,7 +50,7 @@ struct SledgeWorld {
     const SpeciesId ball = world.add_species(shape::Sphere(0.01), {.density = 2500});
     world.set_contact({.normal = {1e4, 1.0, 1.0}, .friction = {}});
     world.add_surface(sledge, surface::Box({0.2, 0.2, 0.1}));
-    world.add_particle({.species = ball, .position = Vec3(0.25, 0.01, 0.13)});
+    world.add_grain({.species = ball, .position = Vec3(0.25, 0.01, 0.13)});
   }
 };
 

@@ -39,7 +39,7 @@ dem::World<M> stream(const StreamOptions& o) {
   world.add_outlet({Vec3(0.014, -1, -1), Vec3(1, 1, 5e-3)});
   if (o.has_held && o.has_grains) {
     for (int k = 0; k < 6; ++k) {
-      world.attach(world.add_particle({held, {0.01 + 4e-3 * std::cos(k), 0.003 * k, 6e-3 + 4e-3 * std::sin(k)}}), drum);
+      world.attach(world.add_grain({held, {0.01 + 4e-3 * std::cos(k), 0.003 * k, 6e-3 + 4e-3 * std::sin(k)}}), drum);
     }
   }
   return world;
@@ -62,7 +62,7 @@ TEMPLATE_TEST_CASE("a world with inlets and attached grains goes on from a file 
   CHECK(second.inlet(dem::InletId(0)).grains() == first.inlet(dem::InletId(0)).grains());
   REQUIRE(second.run(n));
   CHECK(difference(whole, second) == "");
-  CHECK(whole.particle_count() > 100);
+  CHECK(whole.grain_count() > 100);
   CHECK(whole.outlet(dem::OutletId(0)).grains() > 0);
 }
 

@@ -20,7 +20,7 @@ template <class Model>
 struct OnGround {
   World<Model> world;
   BodyId body;
-  ParticleId grain;
+  GrainId grain;
   BodyContactId contact;
   bool is_body;
 
@@ -37,7 +37,7 @@ struct OnGround {
       contact = world.add_body_contact(world.add_surface(body, surface::Sphere(r)), s);
     } else {
       world.add_species(Sphere(r), {"grain", density});
-      grain = world.add_particle(grain_at(at, velocity));
+      grain = world.add_grain(grain_at(at, velocity));
     }
   }
   Vec3 position() const { return is_body ? world.machine().body(body).position() : world.position(grain); }

@@ -106,16 +106,16 @@ void pour() {
   auto& [w, species, scales] = box;
   Random random(3);
   for (std::size_t k = 0; k < 8; ++k) {
-    NewParticle n;
+    NewGrain n;
     n.species = species[k % species.size()];
     n.position = pitch * Vec3(static_cast<double>(k % 2) + 0.5, 0.5, static_cast<double>(k / 2) + 0.5);
     n.rotation = random.rotation();
     n.velocity = random.vector(0.1);
-    w.add_particle(n);
+    w.add_grain(n);
   }
   const auto energy = [&] {
     double sum = kinetic_energy(w);
-    for_each_grain(w, [&](ParticleId p) { sum += mass_of(w, p) * g * w.position(p).z(); });
+    for_each_grain(w, [&](GrainId p) { sum += mass_of(w, p) * g * w.position(p).z(); });
     return sum;
   };
   const double weight = total_mass(w) * g, start = energy();

@@ -53,8 +53,8 @@ Eigen::Matrix<double, 12, 1> collide(double dt) {
   World<M> w(options({0, 0, 0}, dt));
   w.set_contact(constants<M>());
   w.add_species(Sphere(ball_radius), {"grain", 2500.0});
-  const auto a = w.add_particle(grain_at({-1.0e-3, 0, 0}, {0.4, 0.05, 0}, {100, 50, -80}));
-  const auto b = w.add_particle(grain_at({1.0e-3, 0.7e-3, 0.2e-3}, {-0.4, 0, 0.1}, {-30, 90, 120}));
+  const auto a = w.add_grain(grain_at({-1.0e-3, 0, 0}, {0.4, 0.05, 0}, {100, 50, -80}));
+  const auto b = w.add_grain(grain_at({1.0e-3, 0.7e-3, 0.2e-3}, {-0.4, 0, 0.1}, {-30, 90, 120}));
   REQUIRE(w.run_for(2e-3));
   REQUIRE((w.position(a) - w.position(b)).norm() > 2.4 * ball_radius);
   Eigen::Matrix<double, 12, 1> result;

@@ -19,13 +19,13 @@ void run_a_few(const ContactParameters<Model>& parameters) {
   REQUIRE(w.run(1000));
   CHECK(w.time() == Approx(0.01));
   // The lower ones fell 0.2 mm; none may be in the ground or each other, none may have jumped.
-  for_each_grain(w, [&](ParticleId p) {
+  for_each_grain(w, [&](GrainId p) {
     CHECK(w.position(p).z() > 0.95e-3);
     CHECK(w.position(p).z() < 3.5e-3);
     CHECK(w.velocity(p).norm() < 0.2);
     CHECK(not_a_rotation(w.rotation(p)) < 1e-12);
   });
-  CHECK(w.velocity(ParticleId(0)).norm() > 0.0);
+  CHECK(w.velocity(GrainId(0)).norm() > 0.0);
 }
 
 }  // namespace

@@ -45,7 +45,7 @@ TEST_CASE("the weight of a grain arrives in the sensor through every kind of sur
     const auto body = w.machine().add_fixed_body("scale");
     const auto s = w.add_surface(body, rest.geometry);
     const auto sensor = w.machine().add_sensor(dem::mbd::contact_sensor("weight", body, 0.0));
-    const auto ball = w.add_particle({w.add_species(Sphere(r)), rest.at + Vec3(0, 0, 1e-5)});
+    const auto ball = w.add_grain({w.add_species(Sphere(r)), rest.at + Vec3(0, 0, 1e-5)});
     REQUIRE(w.run_for(0.2));  // damped with exp(-360/s t)
     const double weight = mass_of(w, ball) * g;
     CHECK((w.surface_force(s) + Vec3(0, 0, weight)).norm() < 1e-9 * weight);
@@ -62,7 +62,7 @@ TEST_CASE("a ball inside a drum swings as a pendulum does, sliding and rolling")
     w.set_contact({{2000.0, 1.0, 1.0}, {mu, 2000.0, 0.02, 1.0}});
     w.add_surface(w.ground(), surface::Cylinder(R, 0.1, surface::Side::inside));
     const Vec3 at = (R - r + 7e-6) * Vec3(-std::cos(amplitude), std::sin(amplitude), 0);
-    const auto ball = w.add_particle({w.add_species(Sphere(r)), at});
+    const auto ball = w.add_grain({w.add_species(Sphere(r)), at});
     std::vector<double> crossings;
     for (double last = at.y(); crossings.size() < 5 && w.time() < 3.0;) {
       REQUIRE(w.run(10));
@@ -90,7 +90,7 @@ TEST_CASE("a body that is a ball moves on a mesh as a grain that is a ball does"
   grain.add_surface(grain.ground(), block);
   dem::SpeciesOptions o;
   o.density = density;
-  const auto p = grain.add_particle({grain.add_species(Sphere(r), o), at, velocity});
+  const auto p = grain.add_grain({grain.add_species(Sphere(r), o), at, velocity});
   const auto b = body.machine().add_body(dem::mbd::sphere_body("ball", r, density).at(at).moving(velocity));
   body.add_body_contact(body.add_surface(body.ground(), block), body.add_surface(b, surface::Sphere(r)));
   double apart = 0.0, spin_apart = 0.0;
@@ -126,7 +126,7 @@ TEST_CASE("a ball in a fillet that leaves the floor or the wall remembers the ot
       o.density = 1e12;
       const double leaving = deeper_leaves ? deep : shallow, staying = deeper_leaves ? shallow : deep;
       const Vec3 out = leaves_floor ? Vec3::UnitZ() : Vec3::UnitX(), on = leaves_floor ? Vec3::UnitX() : Vec3::UnitZ();
-      w.add_particle({w.add_species(Sphere(r), o), (r - leaving) * out + (r - staying) * on, v * out + 0.1 * v * on});
+      w.add_grain({w.add_species(Sphere(r), o), (r - leaving) * out + (r - staying) * on, v * out + 0.1 * v * on});
       double last = -1.0;
       for (int step = 0; step < 500; ++step) {
         REQUIRE(w.run(10));
@@ -172,7 +172,7 @@ TEST_CASE("an ellipsoid on a drum's end remembers it as it slides near a wall, a
       const auto body = w.machine().add_body(dem::mbd::sphere_body("egg", 4e-3, o.density).at(at).moving(velocity));
       contact = w.add_body_contact(w.add_surface(body, surface::Superquadric(radii)), drum);
     } else {
-      w.add_particle({w.add_species(dem::shape::Superquadric(radii, {2, 2, 2}), o), at, velocity});
+      w.add_grain({w.add_species(dem::shape::Superquadric(radii, {2, 2, 2}), o), at, velocity});
     }
     Vec3 force;
     for (int step = 0; step < 200; ++step) {

@@ -42,11 +42,11 @@ Vec3 push(const typename OnParts<S>::Surfaces& geometry, const Vec3& at, const M
   w.set_contact({{K, 0.0, 1.0}, {0.0, K, 0.0, 0.0}});
   const auto species = w.add_species(cube<S>());
   const SurfaceId part = w.add_surface(w.ground(), geometry);
-  dem::NewParticle n;
+  dem::NewGrain n;
   n.species = species;
   n.position = at;
   n.rotation = turned;
-  w.add_particle(n);
+  w.add_grain(n);
   w.prepare();
   return -w.surface_force(part) / K;
 }
@@ -73,18 +73,18 @@ TEMPLATE_TEST_CASE("a face is pushed by parts that are smaller than it, where ne
       const Mat3 lying = Eigen::AngleAxisd(std::numbers::pi / 2, Vec3::UnitX()).toRotationMatrix();
       dem::World<OnParts<TestType>> w(options(Vec3::Zero(), 1e-8));
       w.set_contact({{K, 0.0, 1.0}, {0.0, K, 0.0, 0.0}});
-      dem::NewParticle n;
+      dem::NewGrain n;
       n.species = w.add_species(cube<TestType>());
       n.position = Vec3(across, 0, 1.3 * h - depth);
       dem::SurfaceOptions o;
       o.rotation = lying;
       const SurfaceId part = w.add_surface(w.ground(), Cylinder(0.3 * h, 20 * h), o);
-      w.add_particle(n);
+      w.add_grain(n);
       w.prepare();
       CHECK(-w.surface_force(part).z() / K == Approx(depth).epsilon(tolerance));
       // Three points carry it along the lateral surface, so it does not rock: no torque about the grain's centre on
       // axis y.
-      CHECK(std::abs(w.torque(dem::ParticleId(0)).x()) < 0.01 * K * depth * h);
+      CHECK(std::abs(w.torque(dem::GrainId(0)).x()) < 0.01 * K * depth * h);
     }
   }
   SECTION("the edge of a box, or of a mesh, of triangles that are far larger or a little smaller than the cube") {
@@ -96,13 +96,13 @@ TEMPLATE_TEST_CASE("a face is pushed by parts that are smaller than it, where ne
       CAPTURE(blade.index());
       dem::World<OnParts<TestType>> w(options(Vec3::Zero(), 1e-8));
       w.set_contact({{K, 0.0, 1.0}, {0.0, K, 0.0, 0.0}});
-      dem::NewParticle n;
+      dem::NewGrain n;
       n.species = w.add_species(cube<TestType>());
       n.position = Vec3(0.2 * h, 0.3 * h, h + 2 * h * std::sqrt(2.0) - depth);
       dem::SurfaceOptions o;
       o.rotation = Eigen::AngleAxisd(std::numbers::pi / 4, Vec3::UnitY()).toRotationMatrix();
       const SurfaceId part = w.add_surface(w.ground(), blade, o);
-      w.add_particle(n);
+      w.add_grain(n);
       w.prepare();
       const double force = -w.surface_force(part).z() / K;
       // Points of the edge weigh as the cube's own points do: three quarters of a contact with a cube of sharp corners,
@@ -171,7 +171,7 @@ TEMPLATE_TEST_CASE("sharp grains in and around a tube, and over the ends of a cy
   w.set_contact({{K, 0.0, 1.0}, {0.0, K, 0.0, 0.0}});
   const auto plate = w.add_species(dem::shape::box({4 * h, 4 * h, 0.2 * h}));
   const SurfaceId part = w.add_surface(w.ground(), rod);
-  w.add_particle({plate, Vec3(0, 0, 20.1 * h - depth)});
+  w.add_grain({plate, Vec3(0, 0, 20.1 * h - depth)});
   w.prepare();
   CHECK(-w.surface_force(part).z() / K == Approx(depth).epsilon(1e-6));
 }
@@ -209,7 +209,7 @@ TEST_CASE("a cube that slides off the end of a box's edge is let go of steadily"
     dem::SurfaceOptions o;
     o.rotation = Eigen::AngleAxisd(std::numbers::pi / 4, Vec3::UnitY()).toRotationMatrix();
     const SurfaceId part = w.add_surface(w.ground(), Box({4 * h, 4 * h, 4 * h}), o);
-    w.add_particle({species, Vec3(0, 2 * h + y, h + 2 * h * std::sqrt(2.0) - depth)});
+    w.add_grain({species, Vec3(0, 2 * h + y, h + 2 * h * std::sqrt(2.0) - depth)});
     w.prepare();
     const double force = -w.surface_force(part).z() / K;
     if (last >= 0.0 && y < 0.97 * h) CHECK(std::abs(force - last) < 0.1 * depth);

@@ -17,7 +17,7 @@ std::uint64_t state_hash(const World& w) {
       hash ^= hash >> 29;
     }
   };
-  for_each_grain(w, [&](ParticleId p) {
+  for_each_grain(w, [&](GrainId p) {
     for (const Vec3& v : {w.position(p), w.velocity(p), w.angular_velocity(p)}) mix(v);
     mix(w.rotation(p));
   });
@@ -132,8 +132,8 @@ TEST_CASE("the hash sees a difference in the last bit") {
   Poured<dem::integrator::SymplecticEuler> one(1), other(1);
   const std::uint64_t before = state_hash(one.world);
   CHECK(state_hash(other.world) == before);
-  const Vec3 v = other.world.velocity(ParticleId(17));
-  other.world.set_velocity(ParticleId(17), {v.x(), v.y(), std::nextafter(v.z(), 1.0)});
+  const Vec3 v = other.world.velocity(GrainId(17));
+  other.world.set_velocity(GrainId(17), {v.x(), v.y(), std::nextafter(v.z(), 1.0)});
   CHECK(state_hash(other.world) != before);
 }
 

@@ -46,7 +46,7 @@ struct OneGrain {
       : world(options(tilt() * Vec3(1.5, 0.5, -9.6))) {
     world.set_contact(laws_of<M>());
     surface = world.add_surface(world.ground(), geometry, at);
-    NewParticle n;
+    NewGrain n;
     n.species = world.add_species(shape);
     const double height = thrown ? 1.02 * shape.bounding_radius() : grain_half;
     n.position = mesh_place + tilt() * Vec3(-0.11, -0.07, height);
@@ -56,7 +56,7 @@ struct OneGrain {
       n.angular_velocity = tilt() * Vec3(-11.0, 23.0, 5.0);
       n.rotation = tilt() * Eigen::AngleAxisd(0.3, Vec3(1, 1, 0).normalized()).toRotationMatrix();
     }
-    world.add_particle(n);
+    world.add_grain(n);
   }
 };
 
@@ -77,7 +77,7 @@ void compare(const S& shape) {
     OneGrain<M> on_mesh(shape, thrown, tilted_mesh(), {});
     OneGrain<M> on_plane(shape, thrown, surface::Plane{}, {.position = mesh_place, .rotation = tilt()});
     const World<M>&m = on_mesh.world, &p = on_plane.world;
-    const ParticleId it(0);
+    const GrainId it(0);
     double apart = 0.0, spin_apart = 0.0, force_apart = 0.0, spin = 0.0, force = 0.0;
     while (p.time() < 0.08) {
       REQUIRE(on_mesh.world.step());
@@ -110,7 +110,7 @@ double compare_sticky(const ContactParameters<M>& laws, double exponent, double 
   World<M> on_mesh(options({0, 0, 0}, 1e-6)), on_plane(options({0, 0, 0}, 1e-6));
   on_mesh.add_surface(on_mesh.ground(), TriangleMesh(mesh::box(Vec3::Constant(0.02), 4)), {.position = {0, 0, -0.01}});
   on_plane.add_surface(on_plane.ground(), surface::Plane{});
-  NewParticle n;
+  NewGrain n;
   n.rotation = Eigen::AngleAxisd(0.2, Vec3(1, 2, 0).normalized()).toRotationMatrix();
   double pose[shape::Superquadric::pose_size];
   shape.orient(from_eigen(n.rotation), pose);
@@ -120,10 +120,10 @@ double compare_sticky(const ContactParameters<M>& laws, double exponent, double 
   for (auto* w : {&on_mesh, &on_plane}) {
     w->set_contact(laws);
     n.species = w->add_species(shape, {"grain", 2500.0});
-    w->add_particle(n);
+    w->add_grain(n);
   }
   double deepest = 0.0, apart = 0.0, spin_apart = 0.0, spin = 0.0;
-  const ParticleId it(0);
+  const GrainId it(0);
   for (int k = 0; k < 6000; ++k) {
     REQUIRE(on_mesh.step());
     REQUIRE(on_plane.step());

@@ -25,14 +25,14 @@ Outcome run_turned(const typename Model::Shape& shape, const Mat3& turn, const V
   }
   Random random(3);
   for (int k = 0; k < 12; ++k) {
-    dem::NewParticle p;
+    dem::NewGrain p;
     p.species = species;
     p.position =
         shift + turn * (Vec3(3e-3 * (k % 3 - 1), 3e-3 * (k / 3 % 2), 0.0055 + 3e-3 * (k / 6)) + random.vector(2e-4));
     p.velocity = turn * random.vector(0.2);
     p.rotation = turn * random.rotation();
     p.angular_velocity = turn * random.vector(20.0);
-    w.add_particle(p);
+    w.add_grain(p);
   }
   BodyId plate;
   SurfaceId under;
@@ -50,11 +50,11 @@ Outcome run_turned(const typename Model::Shape& shape, const Mat3& turn, const V
     o.on_first_box += turn.transpose() * w.surface_force(first);
     o.load += w.surface_force(first).norm();
     if (has_plate) on_plate += w.surface_force(under).norm();
-    for_each_grain(w, [&](ParticleId p) { touching += w.force(p).norm() > 0.0; });
+    for_each_grain(w, [&](GrainId p) { touching += w.force(p).norm() > 0.0; });
   }
   CHECK(touching > 20);  // looked at every 40th step; a collision takes about 20
   REQUIRE(o.load > 0.0);
-  for_each_grain(w, [&](ParticleId p) {
+  for_each_grain(w, [&](GrainId p) {
     o.positions.push_back(turn.transpose() * (w.position(p) - shift));
     o.spins.push_back(turn.transpose() * w.angular_velocity(p));
   });

@@ -27,21 +27,21 @@ dem::World<M> mixed_balls(int threads, double skin = 0.0) {
   add_block(w, middle, {3e-3, 3e-3, 6e-3}, 5e-3, 4, 4, 1, 0.5, 2);
   add_block(w, small, {0.8e-3, 0.8e-3, 9e-3}, 1.1e-3, 10, 10, 1, 0.5, 3);
   for (const double x : {0.0105, 0.0145}) {
-    w.add_particle({large, Vec3(x, 0.0125, x < 0.012 ? 0.02 : 0.041), Vec3(0, 0, -0.5)});
+    w.add_grain({large, Vec3(x, 0.0125, x < 0.012 ? 0.02 : 0.041), Vec3(0, 0, -0.5)});
   }
   return w;
 }
 
-using PairsInContact = std::set<std::pair<ParticleId, ParticleId>>;
+using PairsInContact = std::set<std::pair<GrainId, GrainId>>;
 
 /// Pairs of grains in contact, each with the lower id first: all are tried.
 template <class World>
 PairsInContact pairs_by_brute_force(const World& w) {
   PairsInContact pairs;
-  const auto grains = w.particles();
+  const auto grains = w.grains();
   std::vector<double> radius;
   std::vector<Vec3> x;
-  for (const ParticleId p : grains) {
+  for (const GrainId p : grains) {
     radius.push_back(w.species(w.species_of(p)).shape.bounding_radius());
     x.push_back(w.position(p));
   }
@@ -87,7 +87,7 @@ TEST_CASE("a mixture of 1 : 20 has the same bits on any number of threads") {
     auto more = mixed_balls<LevelledBalls>(threads);
     REQUIRE(more.run(1000));
     CHECK(one.state().rebuilds == more.state().rebuilds);
-    for_each_grain(one, [&](ParticleId p) {
+    for_each_grain(one, [&](GrainId p) {
       REQUIRE(one.position(p) == more.position(p));
       REQUIRE(one.velocity(p) == more.velocity(p));
     });

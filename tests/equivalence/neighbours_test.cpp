@@ -28,14 +28,14 @@ void pour(dem::World<Model>& w) {
 template <class A, class B>
 double distance(const A& a, const B& b) {
   double worst = 0.0;
-  for_each_grain(a, [&](ParticleId p) { worst = std::max(worst, (a.position(p) - b.position(p)).norm()); });
+  for_each_grain(a, [&](GrainId p) { worst = std::max(worst, (a.position(p) - b.position(p)).norm()); });
   return worst;
 }
 
 template <class World>
 std::size_t in_contact(const World& w) {
   std::size_t n = 0;
-  for_each_grain(w, [&](ParticleId p) { n += w.force(p).norm() > 0.0; });
+  for_each_grain(w, [&](GrainId p) { n += w.force(p).norm() > 0.0; });
   return n;
 }
 
@@ -88,17 +88,17 @@ TEST_CASE("friction remembers across new neighbour lists and re-sorting") {
     w.add_surface(w.ground(), dem::surface::Plane{});
     for (int column = 0; column < 140; ++column) {  // more than a chunk
       for (int k = 0; k < 2; ++k) {
-        dem::NewParticle n;
+        dem::NewGrain n;
         n.species = cube;
         n.position = {4e-3 * (column % 10), 4e-3 * (column / 10), h * (1 + 2 * k) - 1e-8};
-        w.add_particle(n);
+        w.add_grain(n);
       }
     }
-    dem::NewParticle n;
+    dem::NewGrain n;
     n.species = cube;
     n.position = {-0.01, 0.0, 0.02};
     n.velocity = {0, 0.9, 0};
-    return w.add_particle(n);
+    return w.add_grain(n);
   };
   const Vec3 gravity = 9.81 * Vec3(std::sin(slope), 0, -std::cos(slope));
   dem::World<Cubes> often(options(gravity, 1e-5, 2e-6)), seldom(options(gravity, 1e-5, 5e-3));
@@ -106,15 +106,15 @@ TEST_CASE("friction remembers across new neighbour lists and re-sorting") {
   build(seldom);
   REQUIRE(often.run(6000));
   REQUIRE(seldom.run(6000));
-  const auto flier = ParticleId(280);
+  const auto flier = GrainId(280);
   std::vector<Vec3> before;
-  for_each_grain(often, [&](ParticleId p) { before.push_back(often.position(p)); });
+  for_each_grain(often, [&](GrainId p) { before.push_back(often.position(p)); });
   REQUIRE(often.run(6000));
   REQUIRE(seldom.run(6000));
   CHECK(often.state().rebuilds > 5000);
   CHECK(seldom.state().rebuilds < 500);
   double crept = 0.0, differs = 0.0, slid = 0.0;
-  for_each_grain(often, [&](ParticleId p) {
+  for_each_grain(often, [&](GrainId p) {
     if (p == flier) return;
     crept = std::max(crept, (often.position(p) - before[p.index()]).norm());
     differs = std::max(differs, (often.position(p) - seldom.position(p)).norm());
@@ -137,12 +137,12 @@ TEST_CASE("a contact keeps its history when its grains change places in storage"
     const auto ball = w.add_species(Sphere(1e-3));
     // Heavy, so that they move on as they are.
     const auto heavy = w.add_species(Sphere(1e-3), {"grain", 2650e6});
-    dem::NewParticle a, b;
+    dem::NewGrain a, b;
     a.species = b.species = heavy;
     a.position = {0, 0, 0};
     b.position = {1.99e-3, 0, 0};
     b.velocity = {0, 1e-2, 0};
-    const auto pa = w.add_particle(swapped ? b : a), pb = w.add_particle(swapped ? a : b);
+    const auto pa = w.add_grain(swapped ? b : a), pb = w.add_grain(swapped ? a : b);
     const auto still = swapped ? pb : pa, moving = swapped ? pa : pb;
     REQUIRE(w.run(100));  // 1e-6 m of shear
     const auto rebuilds = w.state().rebuilds;
@@ -150,10 +150,10 @@ TEST_CASE("a contact keeps its history when its grains change places in storage"
     CHECK(w.force(still).y() == Approx(1e-3 - 1.005e-5).epsilon(1e-3));
     // Grains below and to the left of the pair get lower places along the curve that storage follows.
     for (int k = 0; k < 100; ++k) {
-      dem::NewParticle n;
+      dem::NewGrain n;
       n.species = ball;
       n.position = {-3e-3 * (1 + k % 10), -3e-3 * (1 + k / 10), k % 2 == 0 ? -3e-3 : 3e-3};
-      w.add_particle(n);
+      w.add_grain(n);
     }
     REQUIRE(w.run(100));
     CHECK(w.state().rebuilds > rebuilds);
@@ -170,7 +170,7 @@ TEST_CASE("a loaded friction spring turns with its pair") {
   w.set_contact({{2000.0, 0.0, 1.0}, {0.9, 1000.0, 0.0, 0.975}});
   const auto heavy = w.add_species(Sphere(1e-3), {"grain", 2650e9});
   const double spin = 100.0, shear = 1e-6;
-  dem::NewParticle a, b;
+  dem::NewGrain a, b;
   a.species = b.species = heavy;
   a.position = {-0.995e-3, 0, 0};
   b.position = {0.995e-3, 0, 0};
@@ -178,7 +178,7 @@ TEST_CASE("a loaded friction spring turns with its pair") {
   a.velocity = {0, -spin * 0.995e-3, -0.5 * shear / 1e-4};
   b.velocity = {0, spin * 0.995e-3, 0.5 * shear / 1e-4};
   a.angular_velocity = b.angular_velocity = {0, 0, spin};
-  const auto pa = w.add_particle(a), pb = w.add_particle(b);
+  const auto pa = w.add_grain(a), pb = w.add_grain(b);
   REQUIRE(w.run(100));
   // The spring, less the share of the normal force, 0.02 N, that points along z: 1e-6 m over 1.99e-3 m.
   const double expected = 1000.0 * shear - 0.02 * shear / 1.99e-3;
@@ -206,13 +206,13 @@ TEST_CASE("a loaded friction spring twists with its pair") {
   w.set_contact({{2000.0, 0.0, 1.0}, {0.9, 1000.0, 0.0, 0.975}});
   const auto heavy = w.add_species(Sphere(1e-3), {"grain", 2650e9});
   const double spin = 200.0, shear = 1e-6;
-  dem::NewParticle a, b;
+  dem::NewGrain a, b;
   a.species = b.species = heavy;
   a.position = {-0.995e-3, 0, 0};
   b.position = {0.995e-3, 0, -shear};  // level when the spring is loaded, so that the spins slide nothing
   a.angular_velocity = b.angular_velocity = {spin, 0, 0};
   b.velocity = {0, 0, shear / 1e-5};
-  const auto pa = w.add_particle(a), pb = w.add_particle(b);
+  const auto pa = w.add_grain(a), pb = w.add_grain(b);
   REQUIRE(w.run(10));  // 2e-3 rad meanwhile
   const Vec3 loaded = w.force(pa);
   CHECK(loaded.tail(2).norm() == Approx(1000.0 * shear).epsilon(0.02));
@@ -228,11 +228,11 @@ TEST_CASE("a grain far away neither crashes nor loses the contacts of others") {
   dem::World<Cubes> plain(o), with(o);
   pour(plain);
   pour(with);
-  dem::NewParticle n;
+  dem::NewGrain n;
   n.species = SpeciesId(0);
   n.position = {9e-3, 9e-3, 1e6};
   n.velocity = {0, 0, 1e5};
-  const auto flier = with.add_particle(n);
+  const auto flier = with.add_grain(n);
   REQUIRE(plain.run(1000));
   REQUIRE(with.run(1000));
   CHECK(with.state().rebuilds > 900);  // the flier is past the skin every step

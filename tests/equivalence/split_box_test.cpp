@@ -65,11 +65,11 @@ TEST_CASE("a box whose halves slide apart holds its grains") {
   const auto report = w.run_for(0.3);  // a grain outside the walls would be reported as lost
   INFO(report.text);
   REQUIRE(report);
-  CHECK(w.particle_count() == 200);
+  CHECK(w.grain_count() == 200);
 
   const double edge = 0.5 * box.width, weight = total_mass(w) * g;
   int on_x = 0, on_y = 0;
-  for_each_grain(w, [&](ParticleId p) {
+  for_each_grain(w, [&](GrainId p) {
     const Vec3 x = w.position(p);
     const bool above = x.z() > box.seam;
     // Centres stay within the opening of their half, and grains on the ledges lie on them.

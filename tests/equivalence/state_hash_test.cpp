@@ -71,7 +71,7 @@ void pour(World& world, dem::SpeciesId grain, int n, int per_row, double pitch, 
     for (int i = 0; i < 3; ++i) x[i] += pitch * (cell[i] + 0.1 * (number() - 0.5));
     const dem::Mat3 r = turn(number);
     const double v = -0.1 * number(), u = 0.2 * number();
-    world.add_particle({.species = grain, .position = x, .velocity = {u, v, 0}, .rotation = r});
+    world.add_grain({.species = grain, .position = x, .velocity = {u, v, 0}, .rotation = r});
   }
 }
 

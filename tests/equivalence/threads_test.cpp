@@ -16,11 +16,11 @@ TEST_CASE("threads share the phases of a step and give the same bits") {
     w.add_surface(plate, dem::surface::Box({0.03, 0.03, 1e-3}));
     Random random(5);
     for (int n = 0; n < 1000; ++n) {  // four chunks
-      dem::NewParticle grain;
+      dem::NewGrain grain;
       grain.species = cube;
       grain.position = 1e-3 * Vec3(1 + 2.6 * (n % 10), 1 + 2.6 * (n / 10 % 10), 1 + 2.1 * (n / 100));
       grain.velocity = random.vector(0.3);
-      w.add_particle(grain);
+      w.add_grain(grain);
     }
     return w;
   };
@@ -28,7 +28,7 @@ TEST_CASE("threads share the phases of a step and give the same bits") {
   REQUIRE(one.run(150));
   REQUIRE(four.run(150));
   CHECK(one.state().rebuilds > 1);
-  for_each_grain(one, [&](ParticleId p) {
+  for_each_grain(one, [&](GrainId p) {
     REQUIRE(one.position(p) == four.position(p));
     REQUIRE(one.angular_velocity(p) == four.angular_velocity(p));
   });

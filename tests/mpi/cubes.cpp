@@ -40,10 +40,10 @@ constexpr auto machine_on_cubes = []<class Model>() {
       dem::mbd::box_body("block", {8e-3, 8e-3, 8e-3}, 2650).at({0.03, depth / 2, 0.0235}).moving({0, 0, -1}));
   world.add_surface(block, dem::surface::TriangleMesh(dem::mesh::box({8e-3, 8e-3, 8e-3})));
   for (const double x : is_glued ? std::vector{0.027, 0.033} : std::vector<double>{})
-    world.attach(world.add_particle({held, {x, depth / 2, 0.0195}}), block);
+    world.attach(world.add_grain({held, {x, depth / 2, 0.0195}}), block);
   run(world, 900);
   require(world.asleep_count() > 0, "no grain sleeps");
-  require(world.asleep_count() < world.particle_count(), "all grains sleep");
+  require(world.asleep_count() < world.grain_count(), "all grains sleep");
   return world;
 };
 

@@ -36,7 +36,7 @@ bool differ() {
   };
   told = told_of("species", with_density(2000)) && told;
   told = told_of("surfaces", [](auto& world) { world.set_active(dem::SurfaceId(4), false); }) && told;
-  told = told_of("grains", [](auto& world) { world.state().particles.position.set(7, {0.01, 0.01, 0.08}); }) && told;
+  told = told_of("grains", [](auto& world) { world.state().grains.position.set(7, {0.01, 0.01, 0.08}); }) && told;
   told = told_of("the machine", [](auto& world) { world.machine().largest_speed = 7.0; }) && told;
   return told;
 }
@@ -57,7 +57,7 @@ void disagree() {
   auto world = box_of_spheres<Shared>(1500);
   run(world, 10);
   if (world.state().domain.rank() == world.state().domain.ranks() - 1) {
-    world.set_velocity(dem::ParticleId(0), {0, 0, 1});
+    world.set_velocity(dem::GrainId(0), {0, 0, 1});
   }
   (void)world.run(10);
 }

@@ -44,11 +44,11 @@ dem::World<Model> cell(int n, const dem::Vec3& gravity, std::optional<dem::Sleep
 constexpr auto flow = []<class Model>() {
   auto world = cell<Model>(1500, {6, 3, -9.81}, {}, 1.0);
   run(world, 400);
-  for (std::uint32_t k = 3; k < 1500; k += 7) world.remove_particle(dem::ParticleId(k));
-  world.add_particle({.species = dem::SpeciesId(0), .position = {0.01, 0.001, 0.08}, .velocity = {2, -1, -1}});
+  for (std::uint32_t k = 3; k < 1500; k += 7) world.remove_grain(dem::GrainId(k));
+  world.add_grain({.species = dem::SpeciesId(0), .position = {0.01, 0.001, 0.08}, .velocity = {2, -1, -1}});
   run(world, 500);
-  const auto ids = world.particles();
-  const auto crossed = std::count_if(ids.begin(), ids.end(), [&](dem::ParticleId p) {
+  const auto ids = world.grains();
+  const auto crossed = std::count_if(ids.begin(), ids.end(), [&](dem::GrainId p) {
     return world.velocity(p).x() > 0.5 && world.position(p).x() < 4e-3;
   });
   require(crossed > 10, "no grain went over the border");
@@ -70,16 +70,16 @@ dem::World<Model> rest(int n, std::uint64_t steps) {
   pour(world, world.add_species(dem::shape::Sphere(1e-3)), n, 20, 4, 2.5e-3, 0.3);
   run(world, steps);
   require(steps == 0 || world.asleep_count() > 0, "no grain sleeps");
-  require(steps == 0 || world.asleep_count() < world.particle_count(), "all grains sleep");
+  require(steps == 0 || world.asleep_count() < world.grain_count(), "all grains sleep");
   return world;
 }
 /// As it is before the next list is made.
 constexpr auto changed = []<class Model>() {
   auto world = rest<Model>(1500, 6000);
   const std::size_t asleep = world.asleep_count();
-  for (std::uint32_t k = 0; k < 600; k += 60) world.remove_particle(dem::ParticleId(k));
+  for (std::uint32_t k = 0; k < 600; k += 60) world.remove_grain(dem::GrainId(k));
   require(world.asleep_count() + 50 < asleep, "grains were taken out, but sleepers beside them did not wake");
-  world.add_particle({.species = dem::SpeciesId(0), .position = {0.01, 0.001, 0.08}, .velocity = {2, -1, -1}});
+  world.add_grain({.species = dem::SpeciesId(0), .position = {0.01, 0.001, 0.08}, .velocity = {2, -1, -1}});
   return world;
 };
 
@@ -90,8 +90,8 @@ constexpr auto allowed_again = []<class Model>() {
   const auto sleep = world.state().options.sleep;
   world.set_sleep({});
   for (int k = 0; k < 600; ++k) {
-    world.add_particle({.species = dem::SpeciesId(0),
-                        .position = {2.5e-3 * (k % 20 + 0.5), 2.5e-3 * (k / 20 % 4 + 0.5), 0.1 + 2.5e-3 * (k / 80)}});
+    world.add_grain({.species = dem::SpeciesId(0),
+                     .position = {2.5e-3 * (k % 20 + 0.5), 2.5e-3 * (k / 20 % 4 + 0.5), 0.1 + 2.5e-3 * (k / 80)}});
   }
   run(world, 100);
   world.set_sleep(sleep);
@@ -110,7 +110,7 @@ constexpr auto paddle = []<class Model>() {
   run(world, 900);
   require(world.machine().body(body).position().x() > length, "the paddle did not go over the border");
   require(world.asleep_count() > 0, "no grain sleeps");
-  require(world.asleep_count() < world.particle_count(), "all grains sleep");
+  require(world.asleep_count() < world.grain_count(), "all grains sleep");
   return world;
 };
 

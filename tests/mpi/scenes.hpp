@@ -57,7 +57,7 @@ void pour(World& world, dem::SpeciesId grain, int n, int nx, int ny, double pitc
     x.z() += height;
     const dem::Mat3 r = dem::Quaternion(1, number(), number(), number()).normalized().toRotationMatrix();
     const double u = number(), v = number();
-    world.add_particle({.species = grain, .position = x, .velocity = {u * speed, v * speed, -speed}, .rotation = r});
+    world.add_grain({.species = grain, .position = x, .velocity = {u * speed, v * speed, -speed}, .rotation = r});
   }
 }
 
@@ -114,7 +114,7 @@ bool same_bits(const char* name, const Scene& scene) {
   const auto differences = dem::io::differences(expected, columns);
   std::printf("%-10s %d ranks: %s, hash %016llx, %zu grains, %llu lists, %.0f bytes a step\n", name, d.ranks(),
               differences.empty() ? "same bits" : "OTHER BITS",
-              static_cast<unsigned long long>(dem::io::hash_of(columns)), shared.particle_count(),
+              static_cast<unsigned long long>(dem::io::hash_of(columns)), shared.grain_count(),
               static_cast<unsigned long long>(shared.state().rebuilds),
               double(d.traffic().step_bytes) / double(shared.steps()));
   for (const std::string& column : differences) std::printf("  %s\n", column.c_str());
@@ -145,8 +145,8 @@ bool goes_on(const char* name, const Make& make) {
   auto shared_again = make.template operator()<Shared>(10);
   dem::io::restore(shared_again, saved);
   // One that lies at the bottom goes: who sleeps beside it wakes, on every rank.
-  alone_again.remove_particle(dem::ParticleId(5)), shared_again.remove_particle(dem::ParticleId(5));
-  shared.remove_particle(dem::ParticleId(5));
+  alone_again.remove_grain(dem::GrainId(5)), shared_again.remove_grain(dem::GrainId(5));
+  shared.remove_grain(dem::GrainId(5));
   run(alone_again, 200), run(shared_again, 200), run(shared, 200);
   const auto last = dem::io::columns_of(shared), a = dem::io::columns_of(alone_again),
              b = dem::io::columns_of(shared_again);

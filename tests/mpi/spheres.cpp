@@ -12,20 +12,20 @@ constexpr auto changing = []<class Model>() {
                   {.grains = dem::SpeciesId(0), .grain_flow = 2e4, .velocity = {0, 0, -0.5}, .velocity_spread = 0.1});
   run(world, 200);
   for (std::uint32_t k = 3; k < 1500; k += 7) {
-    const dem::ParticleId p(k);
-    if (world.state().particles.row_of[k] != world.state().particles.gone) world.remove_particle(p);
+    const dem::GrainId p(k);
+    if (world.state().grains.row_of[k] != world.state().grains.gone) world.remove_grain(p);
   }
-  const auto ids = world.particles();
+  const auto ids = world.grains();
   for (std::size_t k = 0; k < ids.size(); k += 100) world.set_velocity(ids[k], {0, 0, 0.2});
-  world.add_particle({.species = dem::SpeciesId(0), .position = {0.015, 0.01, 0.09}});
+  world.add_grain({.species = dem::SpeciesId(0), .position = {0.015, 0.01, 0.09}});
   run(world, 300);
   require(bool(world.run(1000, [left = 50]() mutable { return --left > 0; })), "the run did not end");
   for (int k = 0; k < 4; ++k) {  // each before a run, which lists it first
-    world.add_particle({.species = dem::SpeciesId(0), .position = {0.006 + 0.005 * k, 0.01, 0.15}});
+    world.add_grain({.species = dem::SpeciesId(0), .position = {0.006 + 0.005 * k, 0.01, 0.15}});
     run(world, 64);
   }
   require(world.outlet(dem::OutletId(0)).grains() > 0, "nothing left through the outlet");
-  require(world.particle_count() > 1300, "nothing came through the inlet");
+  require(world.grain_count() > 1300, "nothing came through the inlet");
   return world;
 };
 
@@ -39,7 +39,7 @@ constexpr auto emptied = []<class Model>() {
   world.set_sleep(dem::SleepOptions{.balance = 0.2, .change = 0.2, .jolt = 0.2, .motion = 0.01, .window = 20});
   run(world, 100);
   require(world.asleep_count() > 1000, "hardly a grain sleeps");
-  for (std::uint32_t k = 5; k < 1500; k += 100) world.set_velocity(dem::ParticleId(k), {2, 1, k < 900 ? 1.0 : -3.0});
+  for (std::uint32_t k = 5; k < 1500; k += 100) world.set_velocity(dem::GrainId(k), {2, 1, k < 900 ? 1.0 : -3.0});
   world.add_outlet({{0.01, 0.005, -1}, {0.02, 0.015, 1}});
   run(world, 450);
   require(world.asleep_count() > 100, "none sleeps any more");
@@ -47,7 +47,7 @@ constexpr auto emptied = []<class Model>() {
   require(left > 20 && left < 1000, "none left, or too many");
   world.add_outlet({{-1, -1, -1}, {1, 1, 0.06}});
   run(world, 150);
-  require(world.particle_count() == 0, "some grains are still there");
+  require(world.grain_count() == 0, "some grains are still there");
   pour(world, small, 600, 14, 9, 2.1e-3, 0.3, 0.07);
   run(world, 10);
   return world;
@@ -64,9 +64,9 @@ constexpr auto beside = []<class Model>() {
   const std::size_t asleep = world.asleep_count();
   require(asleep > 800, "hardly a grain sleeps");
   for (int k = 0; k < 20; ++k) {
-    world.add_particle({.species = small,
-                        .position = pitch * dem::Vec3(1 + k % 10, 2 + k / 10 * 4, 1 + k % 5),
-                        .velocity = {1, 0.5, 0.5}});
+    world.add_grain({.species = small,
+                     .position = pitch * dem::Vec3(1 + k % 10, 2 + k / 10 * 4, 1 + k % 5),
+                     .velocity = {1, 0.5, 0.5}});
   }
   const std::uint64_t lists = world.state().rebuilds;
   run(world, 300);
@@ -80,12 +80,12 @@ constexpr auto beside = []<class Model>() {
 template <class Model>
 std::string told_of_lost() {
   auto world = box_of_spheres<Model>(1500);
-  world.add_particle({.species = dem::SpeciesId(0), .position = {0.015, 0.01, 0.9}, .velocity = {0, 0, 50}});
-  world.add_particle({.species = dem::SpeciesId(0), .position = {-0.9, 0.01, 0.01}, .velocity = {-50, 0, 0}});
+  world.add_grain({.species = dem::SpeciesId(0), .position = {0.015, 0.01, 0.9}, .velocity = {0, 0, 50}});
+  world.add_grain({.species = dem::SpeciesId(0), .position = {-0.9, 0.01, 0.01}, .velocity = {-50, 0, 0}});
   std::string told;
   for (int k = 0; k < 4; ++k) {
     const dem::StepReport r = world.run(150);
-    told += dem::text("{}: problem {}, grain {}, {}\n", r.step, int(r.problem), r.particle.value, r.text);
+    told += dem::text("{}: problem {}, grain {}, {}\n", r.step, int(r.problem), r.grain.value, r.text);
   }
   require(told.find("grain 1500 left") != told.npos && told.find("grain 1501 left") != told.npos, told);
   return told;

@@ -65,7 +65,7 @@ Flow simulated(double nu, double e) {
     for (int j = 0; j < n; ++j) {
       for (int i = 0; i < n; ++i) {
         const Vec3 x = Vec3(i + 0.5, j + 0.5, k + 0.5) * edge / n;
-        w.add_particle({ball, x, Vec3(rate * (x.z() - 0.5 * edge), 0, 0) + random.in_ball(4.0 * d * rate)});
+        w.add_grain({ball, x, Vec3(rate * (x.z() - 0.5 * edge), 0, 0) + random.in_ball(4.0 * d * rate)});
       }
     }
   }
@@ -77,7 +77,7 @@ Flow simulated(double nu, double e) {
     // Contacts by the box, fluctuations about the flow itself.
     const auto a = dem::soil::average_in(w, {{0, 0, 0}, {edge, edge, edge}});
     double squares = 0.0, product = 0.0, mean = 0.0;
-    const auto grains = w.particles();
+    const auto grains = w.grains();
     for (const auto p : grains) mean += w.velocity(p).x() - rate * (w.position(p).z() - 0.5 * edge);
     mean /= static_cast<double>(grains.size());
     for (const auto p : grains) {

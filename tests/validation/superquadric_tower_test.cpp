@@ -26,23 +26,23 @@ void check_tower(const Shape& cube, const typename Resistance::template Paramete
   using Model = Towers<Shape, Resistance>;
   dem::World<Model> w(options({0, 0, -9.81}, 4e-6));
   w.set_contact({{stiffness, 2e-3 * stiffness, 1.0}, {0.5, stiffness, 5e-4 * stiffness, 1.0}, resistance});
-  dem::NewParticle p;
+  dem::NewGrain p;
   p.species = w.add_species(cube);
   w.add_surface(w.ground(), dem::surface::Plane{});
   for (int k = 0; k < 3; ++k) {
     p.position = {0.08 * half * k, -0.06 * half * k, half * (2 * k + 1)};
     p.rotation = Eigen::AngleAxisd(0.2 * k, Vec3::UnitZ()).toRotationMatrix();
-    w.add_particle(p);
+    w.add_grain(p);
   }
   REQUIRE(w.run_for(1.0));
   std::vector<Vec3> positions;
   std::vector<Mat3> rotations;
-  for_each_grain(w, [&](ParticleId id) {
+  for_each_grain(w, [&](GrainId id) {
     positions.push_back(w.position(id));
     rotations.push_back(w.rotation(id));
   });
   // Energies are measured against a cube's fall from its own height.
-  const double drop = mass_of(w, ParticleId(0)) * 9.81 * 2 * half;
+  const double drop = mass_of(w, GrainId(0)) * 9.81 * 2 * half;
   double energy = 0.0;
   for (int k = 0; k < 90; ++k) {
     REQUIRE(w.run_for(0.1));
@@ -51,7 +51,7 @@ void check_tower(const Shape& cube, const typename Resistance::template Paramete
   // Under its own weight a contact yields by m g/K = 2.4e-4 half edges. What the sway of the first second has left is
   // less than a two hundredth of that, and its energy, from (m g)^2/(2 K) = 6e-5 of a fall, falls with the square.
   CHECK(energy < 1e-9 * drop);
-  for_each_grain(w, [&](ParticleId id) {
+  for_each_grain(w, [&](GrainId id) {
     CHECK((w.position(id) - positions[id.index()]).norm() < 1e-6 * half);
     CHECK((w.rotation(id) - rotations[id.index()]).norm() < 1e-6);
   });

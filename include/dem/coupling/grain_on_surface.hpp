@@ -6,7 +6,7 @@
 #include <dem/geometry/surface_traits.hpp>
 #include <dem/grain/contact_evaluator.hpp>
 #include <dem/grain/contact_key.hpp>
-#include <dem/grain/particles.hpp>
+#include <dem/grain/grain_columns.hpp>
 
 #include <vector>
 

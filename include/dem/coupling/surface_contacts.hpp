@@ -22,11 +22,11 @@ template <class Model>
 struct ChunkAtSurfaces {
   using Shape = typename Model::Shape;
   using Surface = MachineSurface<typename Model::Surfaces>;
-  using GrainParticles = Particles<Shape, typename Model::Integrator>;
+  using Columns = GrainColumns<Shape, typename Model::Integrator>;
 
   std::size_t begin, end;  // rows
   Chunk<Model>& chunk;
-  const GrainParticles& particles;
+  const Columns& grains;
   std::span<const Species<Shape>> species;
   const Materials<Model>& materials;
   std::span<const Surface> surfaces;
@@ -67,11 +67,11 @@ Positions positions_for(const ChunkAtSurfaces<Model>& at, const typename ChunkAt
     Columns3& images = at.scratch.images;
     images.for_each_column([](AlignedVector<double>& column) { column.resize(chunk_size, 0.0); });
     for (std::size_t i = at.begin; i < at.end; ++i) {
-      images.set(i - at.begin, at.domain.nearest(at.particles.position[i], surface.low, surface.high, at.reach()));
+      images.set(i - at.begin, at.domain.nearest(at.grains.position[i], surface.low, surface.high, at.reach()));
     }
     return {images, at.begin};
   } else {
-    return {at.particles.position, 0};
+    return {at.grains.position, 0};
   }
 }
 
@@ -94,7 +94,7 @@ void find_hits_on(const ChunkAtSurfaces<Model>& at, std::size_t number) {
     s.law_of[k] = at.materials.row(at.species[k].material, surface.material);
   }
   const std::size_t first = s.hits.size();
-  const auto& p = at.particles;
+  const auto& p = at.grains;
   const Positions positions = positions_for(at, surface);
   const Matrix3<Pack> axes = {{Pack(surface.axes.row0.x), Pack(surface.axes.row0.y), Pack(surface.axes.row0.z)},
                               {Pack(surface.axes.row1.x), Pack(surface.axes.row1.y), Pack(surface.axes.row1.z)},
@@ -148,8 +148,8 @@ struct OnSurface {
 };
 
 /// The grain of a contact, where the surface sees it.
-template <class Model, class GrainParticles>
-const PartnerView& view_of(const SurfaceScratch& s, std::size_t hit, const GrainParticles& p) {
+template <class Model, class Columns>
+const PartnerView& view_of(const SurfaceScratch& s, std::size_t hit, const Columns& p) {
   if constexpr (Model::Domain::has_images) return s.views[hit];
   else return p.view[s.hits[hit].i];
 }
@@ -187,7 +187,7 @@ void find_surface_contacts(const ChunkAtSurfaces<Model>& at, std::span<const Fin
   grain::ContactEvaluator<Model, OnSurface<Shape>::template ContactPoint> evaluator(materials.table(), dt);
   const grain::Deepest deepest = evaluator.run(
       hits, chunk.surface_contacts, scratch.forces, contact_point_of,
-      [&](std::size_t c) -> const PartnerView& { return view_of<Model>(at.scratch, c, at.particles); },
+      [&](std::size_t c) -> const PartnerView& { return view_of<Model>(at.scratch, c, at.grains); },
       [&](std::size_t c) -> const PartnerView& { return at.surfaces[hits[c].partner].view; });
   if (deepest.overlap > chunk.deepest.overlap) {
     chunk.deepest = {deepest.overlap, hits[deepest.hit].i, hits[deepest.hit].partner, true};

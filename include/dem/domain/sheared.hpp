@@ -13,7 +13,7 @@ namespace dem::domain {
 ///     struct Sand : dem::Model { using Domain = dem::domain::Sheared; };
 ///     dem::World<Sand> world({.gravity = Vec3::Zero(), .domain = {{{0, 0, 0}, {0.1, 0.1, 0.1}}},
 ///                             .periodic = {.x = true, .y = true, .z = true}, .shear_rate = 20.0});
-///     ... world.add_particle({.position = x, .velocity = {20.0 * (x.z() - 0.05), 0, 0}});
+///     ... world.add_grain({.position = x, .velocity = {20.0 * (x.z() - 0.05), 0, 0}});
 ///
 /// World::set_shear_rate changes it. Momentum along y and z is kept; along x it changes as grains cross borders, for
 /// which borders a cell has is for the observer to say.

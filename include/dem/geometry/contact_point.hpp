@@ -6,7 +6,7 @@ namespace dem::contact {
 
 // A contact point is what a narrow phase hands to its callback: the raw numbers of one contact, from which `geometry()`
 // computes normal, overlap and lever arm for a whole pack of contacts at once. It is a struct of Ts only. All
-// vectors are in global axes, seen from the centre of particle i.
+// vectors are in global axes, seen from the centre of grain i.
 
 /// The contact as the laws need it.
 template <class T>
@@ -21,7 +21,7 @@ struct Geometry {
   T total_share = T(1);
 };
 
-/// Two free spheres whose centres are the particles' centres.
+/// Two free spheres whose centres are the grains' centres.
 template <class T>
 struct SphereContactPoint {
   Vector3<T> link;  ///< from sphere i to sphere j

@@ -75,8 +75,8 @@ class HistoryCarrier {
 
  public:
   /// Reads the committed histories of all contacts.
-  template <class Executor, class Particles>
-  void collect(Executor& executor, std::span<const Chunk<Model>> chunks, const Particles& p,
+  template <class Executor, class GrainColumns>
+  void collect(Executor& executor, std::span<const Chunk<Model>> chunks, const GrainColumns& p,
                const Images<typename Model::Domain>& images) {
     const auto pairs_first = counts(chunks, [](const Chunk<Model>& c) { return c.pair_contacts.last.count; });
     const auto surfaces_first = counts(chunks, [](const Chunk<Model>& c) { return c.surface_contacts.last.count; });
@@ -106,8 +106,8 @@ class HistoryCarrier {
   }
 
   /// Forgets the contacts of grains that are gone, so that their ids may be given again.
-  template <class Particles>
-  void forget_gone(const Particles& p) {
+  template <class GrainColumns>
+  void forget_gone(const GrainColumns& p) {
     std::erase_if(pairs_, [&](const Entry& r) { return p.row_of[r.i] == p.gone || p.row_of[r.j] == p.gone; });
     std::erase_if(surfaces_, [&](const Entry& r) { return p.row_of[r.i] == p.gone; });
   }
@@ -124,8 +124,8 @@ class HistoryCarrier {
   /// Hands them to the chunks that own the contacts now, with the keys of the new candidate lists. Those of grains that
   /// were removed or have parted are dropped. `send_home(entries)` puts entries, which know their rows, into the
   /// process that has the chunk.
-  template <class Executor, class Particles, class SendHome>
-  void hand_out(Executor& executor, std::span<Chunk<Model>> chunks, const Particles& p,
+  template <class Executor, class GrainColumns, class SendHome>
+  void hand_out(Executor& executor, std::span<Chunk<Model>> chunks, const GrainColumns& p,
                 const Images<typename Model::Domain>& images, SendHome&& send_home) {
     const auto by_chunk = [&](std::vector<Entry>& entries, auto&& rename) {
       exec::for_each_block(executor, entries.size(), [&](std::size_t first, std::size_t last) {

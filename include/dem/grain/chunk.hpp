@@ -4,7 +4,7 @@
 #include <dem/geometry/shape.hpp>
 #include <dem/grain/contact_list.hpp>
 #include <dem/grain/energy_ledger.hpp>
-#include <dem/grain/particles.hpp>
+#include <dem/grain/grain_columns.hpp>
 
 #include <span>
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <dem/grain/particles.hpp>
+#include <dem/grain/grain_columns.hpp>
 
 #include <array>
 
@@ -17,8 +17,8 @@ class ForceSums {
     row.torque += torque;
   }
   /// Hands the sums to the grains of a chunk.
-  template <class Particles>
-  void write(std::size_t chunk_index, Particles& p) const {
+  template <class GrainColumns>
+  void write(std::size_t chunk_index, GrainColumns& p) const {
     for (std::size_t k = 0; k < chunk_size; ++k) {
       p.force.set(chunk_index * chunk_size + k, rows_[k].force);
       p.torque.set(chunk_index * chunk_size + k, rows_[k].torque);

@@ -3,7 +3,7 @@
 // read as they read any partner. Their loads go to the grains that they are images of.
 
 #include <dem/domain/open.hpp>
-#include <dem/grain/particles.hpp>
+#include <dem/grain/grain_columns.hpp>
 
 #include <cstdint>
 #include <type_traits>
@@ -36,8 +36,8 @@ template <class Domain>
 using Images = std::conditional_t<Domain::has_images, ImageRows, NoImages>;
 
 /// Puts the images where their grains are now.
-template <class Particles, class Domain>
-void follow_grain(Particles& p, const ImageRows& images, const Domain& domain, std::size_t image) {
+template <class GrainColumns, class Domain>
+void follow_grain(GrainColumns& p, const ImageRows& images, const Domain& domain, std::size_t image) {
   const std::size_t row = images.first + image, grain = images.grain[image];
   p.view[row] = p.view[grain];
   p.view[row].position += images.shift[image];
@@ -49,8 +49,8 @@ void follow_grain(Particles& p, const ImageRows& images, const Domain& domain, s
 }
 
 /// Makes the rows of images: positions as they are now, and what never changes.
-template <class Particles>
-void make_rows(Particles& p, const ImageRows& images) {
+template <class GrainColumns>
+void make_rows(GrainColumns& p, const ImageRows& images) {
   p.add_rows(images.grain.size());
   for (std::size_t k = 0; k < images.grain.size(); ++k) {
     const std::size_t row = images.first + k, grain = images.grain[k];
@@ -61,8 +61,8 @@ void make_rows(Particles& p, const ImageRows& images) {
 }
 
 /// The same in a sheared cell: along z an image is first shifted with its cell, then it has images along x and y.
-template <class Particles, domain::IsSheared Domain>
-void find_images(ImageRows& images, const Particles& p, const Domain& domain, double reach) {
+template <class GrainColumns, domain::IsSheared Domain>
+void find_images(ImageRows& images, const GrainColumns& p, const Domain& domain, double reach) {
   images = {};
   images.grains = static_cast<std::uint32_t>(p.count);
   images.first = static_cast<std::uint32_t>(p.chunks() * chunk_size);
@@ -92,8 +92,8 @@ void find_images(ImageRows& images, const Particles& p, const Domain& domain, do
 }
 
 /// Lists the images of all grains within `reach` (m) of a border; positions are within the cell.
-template <class Particles, class Domain>
-void find_images(ImageRows& images, const Particles& p, const Domain& domain, double reach) {
+template <class GrainColumns, class Domain>
+void find_images(ImageRows& images, const GrainColumns& p, const Domain& domain, double reach) {
   images.grains = static_cast<std::uint32_t>(p.count);
   images.first = static_cast<std::uint32_t>(p.chunks() * chunk_size);
   images.grain.clear();

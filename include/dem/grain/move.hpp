@@ -35,8 +35,8 @@ DEM_HOT void add_incoming(std::size_t i, std::span<const Chunk<Model>> chunks,
 
 /// Completes the sums of forces on the grains of one chunk with the contacts that other chunks hold, in a fixed order.
 /// Every chunk only reads what others wrote: no locks, and the same bits on any number of threads.
-template <class Model, class Particles>
-void gather_forces(std::size_t chunk_index, std::span<const Chunk<Model>> chunks, Particles& p,
+template <class Model, class GrainColumns>
+void gather_forces(std::size_t chunk_index, std::span<const Chunk<Model>> chunks, GrainColumns& p,
                    std::span<const std::uint32_t> incoming_first, std::span<const Incoming> incoming) {
   const std::size_t begin = chunk_index * chunk_size;
   const std::size_t end = std::min(begin + chunk_size, p.count);
@@ -49,8 +49,8 @@ void gather_forces(std::size_t chunk_index, std::span<const Chunk<Model>> chunks
 }
 
 /// Acceleration of a pack of grains from the gathered forces (eqs. 12 and 13).
-template <class Particles>
-DEM_HOT integrator::Acceleration<Pack> acceleration(std::size_t i, const Particles& p,
+template <class GrainColumns>
+DEM_HOT integrator::Acceleration<Pack> acceleration(std::size_t i, const GrainColumns& p,
                                                     std::span<const SpeciesInertia> inertia, const Vec3& gravity,
                                                     const integrator::Motion<Pack>& m, double lead = 0.0) {
   const auto of = [&](auto&& member) {
@@ -68,14 +68,14 @@ DEM_HOT integrator::Acceleration<Pack> acceleration(std::size_t i, const Particl
                                  value([](const SpeciesInertia& s) { return s.inverse_inertia[2]; })};
   const Vector3<Pack> g = {Pack(gravity.x()), Pack(gravity.y()), Pack(gravity.z())};
   Vector3<Pack> torque = p.torque.pack(i);
-  if constexpr (Particles::has_orientation) torque = transpose_times(m.rotation, torque);
+  if constexpr (GrainColumns::has_orientation) torque = transpose_times(m.rotation, torque);
   return {inverse_mass * p.force.pack(i) + gravity_scale * g,
           integrator::angular_acceleration(torque, m.angular_velocity, moments, inverse, Pack(lead))};
 }
 
 /// What contacts read of the grains of one chunk.
-template <class Particles, class Shape>
-void refresh_views(std::size_t begin, std::size_t end, Particles& p, std::span<const Species<Shape>> species) {
+template <class GrainColumns, class Shape>
+void refresh_views(std::size_t begin, std::size_t end, GrainColumns& p, std::span<const Species<Shape>> species) {
   for (std::size_t i = begin; i < end; ++i) {
     const Species<Shape>& kind = species[p.species[i]];
     p.view[i] = {p.position[i], kind.shape.bounding_radius(), p.velocity[i], kind.inverse_mass, p.angular_velocity(i)};
@@ -84,8 +84,8 @@ void refresh_views(std::size_t begin, std::size_t end, Particles& p, std::span<c
 
 /// Refreshes what depends on where the grains of a chunk are: views, poses, bounds, and how far they moved since the
 /// neighbour list was made. Where grains may sleep (`doing` is not empty), views and poses of those that are awake.
-template <class Model, class Particles>
-void refresh_chunk(std::size_t chunk_index, Chunk<Model>& chunk, Particles& p,
+template <class Model, class GrainColumns>
+void refresh_chunk(std::size_t chunk_index, Chunk<Model>& chunk, GrainColumns& p,
                    std::span<const Species<typename Model::Shape>> species, Wakefulness doing = {}) {
   const std::size_t begin = chunk_index * chunk_size;
   const std::size_t end = std::min(begin + chunk_size, p.count);
@@ -145,8 +145,8 @@ inline std::size_t count_awake(std::size_t i, Wakefulness doing) {
 }
 
 /// Calls advance(i, motion, memory) for each pack of a chunk's grains. Grains that sleep stay as they are.
-template <class Particles, class Advance>
-void advance_chunk(std::size_t begin, Particles& p, Wakefulness doing, const Advance& advance) {
+template <class GrainColumns, class Advance>
+void advance_chunk(std::size_t begin, GrainColumns& p, Wakefulness doing, const Advance& advance) {
   for (std::size_t i = begin; i < begin + chunk_size; i += static_cast<std::size_t>(pack_width)) {
     const std::size_t awake_here = doing.empty() ? pack_width : count_awake(i, doing);
     if (awake_here == 0) continue;
@@ -180,22 +180,22 @@ struct MovingStage {
 };
 
 /// Forces -> accelerations -> motion, for the grains of one chunk.
-template <class Model, class Particles>
-void move_chunk(std::size_t chunk_index, Chunk<Model>& chunk, Particles& p,
+template <class Model, class GrainColumns>
+void move_chunk(std::size_t chunk_index, Chunk<Model>& chunk, GrainColumns& p,
                 const MovingStage<typename Model::Shape>& s) {
   using Integrator = typename Model::Integrator;
   const double lead = integrator::gyroscopic_lead<Integrator>(s.dt);
   advance_chunk(chunk_index * chunk_size, p, s.doing, [&](std::size_t i, integrator::Motion<Pack>& m, auto& memory) {
     Integrator::template after_forces<Pack>(s.stage, Pack(s.dt), m, memory,
                                             acceleration(i, p, s.inertia, s.gravity, m, lead));
-    if (s.cleans_rotations && Particles::has_orientation) m.rotation = orthonormalised(m.rotation);
+    if (s.cleans_rotations && GrainColumns::has_orientation) m.rotation = orthonormalised(m.rotation);
   });
   refresh_chunk<Model>(chunk_index, chunk, p, s.species, s.doing);
 }
 
 /// The integrator's memory from the forces at the initial state.
-template <class Model, class Particles>
-void initialise_chunk(std::size_t chunk_index, Particles& p, std::span<const SpeciesInertia> inertia,
+template <class Model, class GrainColumns>
+void initialise_chunk(std::size_t chunk_index, GrainColumns& p, std::span<const SpeciesInertia> inertia,
                       const Vec3& gravity) {
   const std::size_t begin = chunk_index * chunk_size;
   for (std::size_t i = begin; i < begin + chunk_size; i += static_cast<std::size_t>(pack_width)) {
@@ -206,8 +206,8 @@ void initialise_chunk(std::size_t chunk_index, Particles& p, std::span<const Spe
 }
 
 /// The part of an integration stage that comes before the forces (velocity Verlet's first kick and drift).
-template <class Model, class Particles>
-void predict_chunk(std::size_t chunk_index, Chunk<Model>& chunk, Particles& p,
+template <class Model, class GrainColumns>
+void predict_chunk(std::size_t chunk_index, Chunk<Model>& chunk, GrainColumns& p,
                    const MovingStage<typename Model::Shape>& s) {
   using Integrator = typename Model::Integrator;
   advance_chunk(chunk_index * chunk_size, p, s.doing, [&](std::size_t, integrator::Motion<Pack>& m, auto& memory) {

@@ -42,8 +42,8 @@ struct FoundRows {
 };
 
 /// Appends the rows first to last - 1, in order, whose centres lie within `reach` (m) of x: a pack at a time.
-template <class Particles>
-DEM_HOT void append_within(const Particles& p, std::uint32_t first, std::uint32_t last, const Vector3<double>& x,
+template <class GrainColumns>
+DEM_HOT void append_within(const GrainColumns& p, std::uint32_t first, std::uint32_t last, const Vector3<double>& x,
                            double reach, FoundRows& found) {
   found.make_room(last - first + pack_width);
   std::uint32_t j = first;
@@ -64,8 +64,8 @@ DEM_HOT void append_within(const Particles& p, std::uint32_t first, std::uint32_
 /// Candidates of one chunk, whose rows begin with `begin`: all j > i whose bounding spheres come within the skin,
 /// ascending; grains first, then images. No two that are held. `largest_radius` (m): of a bounding sphere. Of `p` it
 /// reads positions and species, and how many rows are grains.
-template <class Model, class Particles, class BroadPhase>
-void list_candidates(std::size_t begin, Chunk<Model>& chunk, const Particles& p, const BroadPhase& broad_phase,
+template <class Model, class GrainColumns, class BroadPhase>
+void list_candidates(std::size_t begin, Chunk<Model>& chunk, const GrainColumns& p, const BroadPhase& broad_phase,
                      const Images<typename Model::Domain>& images,
                      std::span<const Species<typename Model::Shape>> species, double largest_radius, double skin) {
   const std::size_t end = std::min(begin + chunk_size, p.count);

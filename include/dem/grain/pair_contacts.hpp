@@ -31,11 +31,11 @@ struct PairScratch {
 };
 
 /// The candidates of a chunk as pairs of grains.
-template <class Model, class Particles>
+template <class Model, class GrainColumns>
 struct ChunkPairs {
   using Shape = typename Model::Shape;
   Chunk<Model>& chunk;
-  const Particles& p;
+  const GrainColumns& p;
   std::span<const Species<Shape>> species;
   const Materials<Model>& materials;
   std::size_t begin;  ///< first grain of the chunk
@@ -223,8 +223,8 @@ std::size_t choose_candidates(std::size_t begin, std::size_t end, const Chunk<Mo
 /// Contacts of the grains of one chunk with their candidates: narrow phase, laws, forces. Writes to the chunk and its
 /// own grains' sums only, so chunks may run at the same time. To be called after choose_candidates(); contacts that
 /// were not chosen are left as they are.
-template <class Model, class Particles>
-void find_pair_contacts(const ChunkPairs<Model, Particles> pairs, double dt, Wakefulness doing, ForceSums& sums,
+template <class Model, class GrainColumns>
+void find_pair_contacts(const ChunkPairs<Model, GrainColumns> pairs, double dt, Wakefulness doing, ForceSums& sums,
                         PairScratch<Model>& s) {
   using Shape = typename Model::Shape;
   Chunk<Model>& chunk = pairs.chunk;

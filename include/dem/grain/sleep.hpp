@@ -73,8 +73,8 @@ double borne_by(std::size_t i, std::span<const Chunk<Model>> chunks, std::span<c
 /// Whether the forces on a sleeping grain have changed by too much since it fell asleep: in a running mean, or by a
 /// jolt. When grains that are awake act on it no more, it bears what it will bear, and the mean is not waited for
 /// (`is_final`).
-template <class Particles, class Shape>
-bool is_disturbed(std::size_t i, const Particles& p, const Species<Shape>& kind, double g, bool is_final,
+template <class GrainColumns, class Shape>
+bool is_disturbed(std::size_t i, const GrainColumns& p, const Species<Shape>& kind, double g, bool is_final,
                   const SleepOptions& o, Rest& rest) {
   const double bears = std::max(kind.mass * g, rest.borne), arm = kind.shape.bounding_radius();
   const auto exceed = [&](const Vector3<double>& force, const Vector3<double>& torque, double share) {
@@ -89,18 +89,18 @@ bool is_disturbed(std::size_t i, const Particles& p, const Species<Shape>& kind,
   return exceed(force, torque, is_final ? o.change : o.jolt) || exceed(rest.more_force, rest.more_torque, o.change);
 }
 
-template <class Particles>
-Facing facing(std::size_t i, const Particles& p) {
-  if constexpr (Particles::has_orientation) return {p.row0[i], p.row1[i]};
+template <class GrainColumns>
+Facing facing(std::size_t i, const GrainColumns& p) {
+  if constexpr (GrainColumns::has_orientation) return {p.row0[i], p.row1[i]};
   return {p.local_angular_velocity[i], {0, 0, 0}};
 }
 
 /// By how much (rad) a grain has turned in a window of `seconds`, at the most. Two rows of a rotation move by 1 to 1.4
 /// times the angle. Without orientation, angular velocities at both ends count as far as they agree: one that swings is
 /// not turning.
-template <class Particles>
+template <class GrainColumns>
 double turned(const Facing& before, const Facing& now, double seconds) {
-  if constexpr (Particles::has_orientation) {
+  if constexpr (GrainColumns::has_orientation) {
     const Vector3<double> a = now.first - before.first, b = now.second - before.second;
     return std::sqrt(dot(a, a) + dot(b, b));
   } else {
@@ -118,8 +118,8 @@ struct WindowEnd {
 
 /// Ends a window for a grain that is awake, and returns whether it was quiet for long enough to sleep. One that nothing
 /// touches and that moves flies, however slowly.
-template <class Particles, class Shape>
-bool end_window(std::size_t i, const Particles& p, const Species<Shape>& kind, double borne, Rest& rest,
+template <class GrainColumns, class Shape>
+bool end_window(std::size_t i, const GrainColumns& p, const Species<Shape>& kind, double borne, Rest& rest,
                 const WindowEnd& window) {
   const SleepOptions& o = window.options;
   const double radius = kind.shape.bounding_radius(), bears = std::max(kind.mass * window.gravity.norm(), borne);
@@ -130,7 +130,7 @@ bool end_window(std::size_t i, const Particles& p, const Species<Shape>& kind, d
   const bool flies = borne == 0.0 && (norm(p.velocity[i]) > 0.0 || norm(p.local_angular_velocity[i]) > 0.0);
   const bool is_steady = std::abs(borne - rest.borne) <= o.change * bears;
   const bool is_still = norm(p.position[i] - rest.position) <= o.motion * radius &&
-                        turned<Particles>(rest.facing, faces, window.seconds) <= o.motion;
+                        turned<GrainColumns>(rest.facing, faces, window.seconds) <= o.motion;
   const bool is_quiet = is_balanced && !flies && is_steady && is_still;
   rest.quiet_windows =
       is_quiet ? std::min<std::uint8_t>(rest.quiet_windows + 1, Sleepers::windows_to_sleep) : std::uint8_t{0};
@@ -167,8 +167,8 @@ struct SleeperSums {
 
 /// Completes the sums of a sleeper with the contacts that other chunks hold. Those of contacts between sleepers are
 /// kept, or made anew if the grain is watched.
-template <class Model, class Particles>
-SleeperSums complete_sums(std::size_t i, std::span<const Chunk<Model>> chunks, const Particles& p,
+template <class Model, class GrainColumns>
+SleeperSums complete_sums(std::size_t i, std::span<const Chunk<Model>> chunks, const GrainColumns& p,
                           std::span<const std::uint32_t> incoming_first, std::span<const Incoming> incoming,
                           const Sleepers& s) {
   const bool is_watched = (s.doing[i] & watched) != 0;
@@ -192,8 +192,8 @@ SleeperSums complete_sums(std::size_t i, std::span<const Chunk<Model>> chunks, c
 }
 
 /// Completes the sums of forces on the grains of one chunk where some sleep. Like gather_forces.
-template <class Model, class Particles>
-void gather_forces(std::size_t chunk_index, std::span<const Chunk<Model>> chunks, Particles& p,
+template <class Model, class GrainColumns>
+void gather_forces(std::size_t chunk_index, std::span<const Chunk<Model>> chunks, GrainColumns& p,
                    std::span<const std::uint32_t> incoming_first, std::span<const Incoming> incoming, Sleepers& s) {
   const std::size_t begin = chunk_index * chunk_size, end = std::min(begin + chunk_size, p.count);
   const Chunk<Model>& chunk = chunks[chunk_index];

@@ -19,7 +19,7 @@ void write_vtk_grains(const std::filesystem::path& path, const World& world, int
   std::vector<BodyMesh> grains;
   std::vector<std::int32_t> kinds, asleep;
   std::vector<double> speeds;
-  for (const ParticleId p : world.particles()) {
+  for (const GrainId p : world.grains()) {
     const std::size_t species = world.species_of(p).index();
     grains.push_back({&meshes[species], world.position(p), world.rotation(p)});
     kinds.push_back(static_cast<std::int32_t>(species));

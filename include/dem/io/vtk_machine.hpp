@@ -88,7 +88,7 @@ struct FrameOptions {
 template <class World>
 void add_vtk_frame(VtkSeries& series, const World& world, const FrameOptions& frame = {}) {
   const VtkOptions options{.single_precision = true, .time_s = world.time()};
-  if (world.particle_count() > 0) {
+  if (world.grain_count() > 0) {
     const auto path = series.next_path("grains");
     write_vtk_grains(path, world, frame.divisions, options);
     series.add(world.time(), path, "grains");

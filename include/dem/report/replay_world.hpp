@@ -56,7 +56,7 @@ template <class World>
 void meet_world(Replay& replay, const World& world, const std::vector<io::DrawnBody>& bodies) {
   Replay::OfWorld& known = replay.of_world();
   const auto& state = world.state();
-  const int divisions = world.particle_count() > 5000 ? 4 : 6;  // 192 or 432 triangles for a superquadric
+  const int divisions = world.grain_count() > 5000 ? 4 : 6;  // 192 or 432 triangles for a superquadric
   while (known.species.size() < state.species.size()) {
     known.species.push_back(replay.add_shape(replay_shape(state.species[known.species.size()].shape, divisions)));
   }
@@ -111,8 +111,8 @@ bool record_world(Replay& replay, const World& world, const std::vector<io::Draw
   detail::meet_world(replay, world, bodies);
   const Replay::OfWorld& known = replay.of_world();
   std::vector<ReplayGrain> grains;
-  grains.reserve(world.particle_count());
-  for (const ParticleId p : world.particles()) {
+  grains.reserve(world.grain_count());
+  for (const GrainId p : world.grains()) {
     grains.push_back({p.index(), known.species[world.species_of(p).index()], world.position(p), world.rotation(p),
                       world.velocity(p).norm(), world.force(p).norm(), world.is_asleep(p)});
   }

@@ -24,14 +24,14 @@ namespace dem::rig {
 /// three digits: as much as is seen.
 template <class World>
 void write_grain_points(const std::filesystem::path& path, const World& world, const io::VtkOptions& options) {
-  const std::size_t n = world.particle_count();
+  const std::size_t n = world.grain_count();
   std::vector<Vec3> position(n), velocity(n), spin(n), force(n);
   std::vector<double> quaternion, radius(n);
   quaternion.reserve(4 * n);
   double largest = 1e-300;
-  const auto grains = world.particles();
+  const auto grains = world.grains();
   for (std::size_t i = 0; i < n; ++i) {
-    const ParticleId p = grains[i];
+    const GrainId p = grains[i];
     const Quaternion q(world.rotation(p));
     position[i] = world.position(p);
     velocity[i] = world.velocity(p);
@@ -66,7 +66,7 @@ void write_grain_spheres(const std::filesystem::path& path, const World& world, 
   std::vector<Vec3> centre, velocity;
   std::vector<double> radius;
   std::vector<std::int32_t> grain;
-  for (const ParticleId p : world.particles()) {
+  for (const GrainId p : world.grains()) {
     const auto& shape = world.species(world.species_of(p)).shape;
     for (int k = 0; k < shape.count(); ++k) {
       const Vec3 arm = world.rotation(p) * shape.ball(k).centre;

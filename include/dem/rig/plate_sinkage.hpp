@@ -60,7 +60,7 @@ class PlateSinkage {
     auto& world = bed.world;
     auto& m = world.machine();
     double top = bed.level;  // grains that stand out of the level are not to be in the plate
-    for (const auto p : world.particles()) top = std::max(top, world.position(p).z() + shape_.bounding_radius());
+    for (const auto p : world.grains()) top = std::max(top, world.position(p).z() + shape_.bounding_radius());
     const Vec3 edges(s.length, result.width, s.thickness), at(0.0, 0.0, top + 0.5 * s.thickness);
     const double mass = 7800.0 * edges.prod(), k = 1e7, c = 2.0 * std::sqrt(k * mass);
     const double interval = s.sample_interval();

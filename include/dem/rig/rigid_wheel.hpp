@@ -165,7 +165,7 @@ class RigidWheel {
     auto& world = stand.bed.world;
     auto& m = world.machine();
     double top = stand.bed.level;
-    for (const auto p : world.particles()) top = std::max(top, world.position(p).z() + shape_.bounding_radius());
+    for (const auto p : world.grains()) top = std::max(top, world.position(p).z() + shape_.bounding_radius());
     const Vec3 at(s.start(), 0.0, top + s.outer_radius());
     Mat3 about_y;  // the wheel's axis, z of its own frame, along y
     about_y << 1, 0, 0, 0, 0, 1, 0, -1, 0;

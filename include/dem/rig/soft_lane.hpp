@@ -160,7 +160,7 @@ class SoftLane {
   /// What the car does to the lane before it drives.
   void look_at_rest(const Stand& stand, Campaign& result) const {
     result.has_stood = true;
-    result.grains = stand.world.particle_count();
+    result.grains = stand.world.grain_count();
     result.time_step = stand.world.time_step();
     result.substeps = stand.world.machine().substeps;
     result.weight = vehicle::weight_of(stand.world.machine());

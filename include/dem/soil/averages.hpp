@@ -39,7 +39,7 @@ std::vector<Vec3> shifts_of(const Domain& domain) {
 /// Adds the grains and contacts of a world as it stands.
 template <class Model>
 void add_world(AverageSums& sums, const World<Model>& world) {
-  std::vector<int> touching(world.state().particles.given, 0);
+  std::vector<int> touching(world.state().grains.given, 0);
   const ContactForce* before = nullptr;
   const auto contacts = contacts_of(world);
   const auto shifts = shifts_of(world.state().domain);
@@ -58,7 +58,7 @@ void add_world(AverageSums& sums, const World<Model>& world) {
       before = &c;
     }
   }
-  for (const ParticleId p : world.particles()) {
+  for (const GrainId p : world.grains()) {
     const auto& kind = world.species(world.species_of(p));
     for (const Vec3& shift : shifts) {
       Vec3 velocity = world.velocity(p);

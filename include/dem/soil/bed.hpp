@@ -122,7 +122,7 @@ class Bed {
   void fill(double solid) {
     require_positive(solid, "solid volume of the grains of a bed", "m^3");
     double z = 0.5 * cell_;
-    for (const ParticleId p : world_.particles()) z = std::max(z, world_.position(p).z() + cell_);
+    for (const GrainId p : world_.grains()) z = std::max(z, world_.position(p).z() + cell_);
     const auto half = [this](double length) { return std::floor(0.5 * length / cell_); };
     for (double put = 0.0; put < solid; z += cell_) {
       if (z + 0.5 * cell_ > top_) {
@@ -135,7 +135,7 @@ class Bed {
           if (container_.clearance(x) < 0.5 * cell_) continue;
           const SpeciesId kind = draw_.draw(random_);
           const Vec3 shift = (cell_ - 2.0 * radius_) * random_.in_box(filled(-0.5), filled(0.5));
-          world_.add_particle({.species = kind, .position = x + shift, .rotation = random_.rotation()});
+          world_.add_grain({.species = kind, .position = x + shift, .rotation = random_.rotation()});
           put += world_.species(kind).shape.volume();
         }
       }
@@ -166,7 +166,7 @@ class Bed {
     if (!lid_.valid()) fail("a bed is to be pressed, but has no lid; set BedOptions::lid_pressure");
     auto& m = world_.machine();
     double highest = 0.0;
-    for (const ParticleId p : world_.particles()) highest = std::max(highest, world_.position(p).z());
+    for (const GrainId p : world_.grains()) highest = std::max(highest, world_.position(p).z());
     m.set_target(lid_hold_, highest + 1.1 * radius_ - top_);
     run(0.1);  // the lid comes over the grains
     const double weight = lid_weight();
@@ -191,9 +191,9 @@ class Bed {
 
   /// Takes off what stands above the height.
   void strike_off() {
-    for (const ParticleId p : world_.particles()) {
+    for (const GrainId p : world_.grains()) {
       const double radius = world_.species(world_.species_of(p)).shape.bounding_radius();
-      if (world_.position(p).z() + radius > height()) world_.remove_particle(p);
+      if (world_.position(p).z() + radius > height()) world_.remove_grain(p);
     }
   }
 
@@ -243,7 +243,7 @@ class Bed {
   }
   /// Whether the topmost layer below the height is as full as those below.
   bool reaches_height() const {
-    if (world_.particle_count() == 0) return false;
+    if (world_.grain_count() == 0) return false;
     const double d = 2.0 * radius_, from = std::max(0.0, height() - d);
     return solid_fraction_between(world_, container_, from, height()) >= 0.8 * solid_fraction();
   }

@@ -12,7 +12,7 @@
 
 namespace dem::soil {
 
-/// How each grain (in the order of World::particles) is held by the others.
+/// How each grain (in the order of World::grains) is held by the others.
 struct Coordination {
   std::vector<std::int32_t> neighbours;  ///< grains that touch it
   std::vector<std::int32_t> contacts;    ///< points at which they do
@@ -28,7 +28,7 @@ struct Coordination {
 template <class World>
 Coordination coordination(const World& world) {
   using Shape = typename World::Shape;
-  const std::vector<ParticleId> grains = world.particles();
+  const std::vector<GrainId> grains = world.grains();
   const std::size_t n = grains.size();
   Coordination result{std::vector<std::int32_t>(n, 0), std::vector<std::int32_t>(n, 0)};
   std::vector<double> x(n), y(n), z(n), reach(n);

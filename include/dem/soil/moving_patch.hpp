@@ -153,7 +153,7 @@ class MovingPatch {
     HeightField field = rut_;
     const WorldState<Model>& w = world.state();
     if (options_.rut_cell > 0.0) {
-      for (std::size_t i = 0; i < w.particles.count; ++i) add_to(field, w, i);
+      for (std::size_t i = 0; i < w.grains.count; ++i) add_to(field, w, i);
     }
     return field;
   }
@@ -186,8 +186,8 @@ class MovingPatch {
   }
 
   static void add_to(HeightField& field, const WorldState<Model>& w, std::size_t row) {
-    const double volume = w.species[w.particles.species[row]].shape.volume();
-    field.add(to_eigen(w.particles.position[row]), std::cbrt(0.75 * volume / std::numbers::pi));
+    const double volume = w.species[w.grains.species[row]].shape.volume();
+    field.add(to_eigen(w.grains.position[row]), std::cbrt(0.75 * volume / std::numbers::pi));
   }
 
   /// Ids of grains that machine parts hold, in order.
@@ -200,13 +200,13 @@ class MovingPatch {
     return ids;
   }
   static void take(WorldState<Model>& w, std::size_t row) {
-    w.particles.row_of[w.particles.id[row]] = w.particles.gone;
-    w.to_remove.push_back(w.particles.id[row]);
+    w.grains.row_of[w.grains.id[row]] = w.grains.gone;
+    w.to_remove.push_back(w.grains.id[row]);
   }
 
   /// Whether a grain of the tile at the front is still in the world, and no other has its id.
   bool is_there(const WorldState<Model>& w, std::size_t at) const {
-    const auto& p = w.particles;
+    const auto& p = w.grains;
     return last_.is[at] != InWorld::no && p.row_of[last_.id[at]] != p.gone && p.number_of(last_.id[at]) == numbers_[at];
   }
 
@@ -214,7 +214,7 @@ class MovingPatch {
   void take_away(WorldState<Model>& w, const Layer& layer, int goes) {
     if (goes == 0) return;
     begin_ += goes;
-    auto& p = w.particles;
+    auto& p = w.grains;
     const auto parts = attached(w);
     const double border = back();
     for (std::size_t i = 0; i < p.count; ++i) {
@@ -233,7 +233,7 @@ class MovingPatch {
   /// Takes the grains away that lie where tiles come: all that reach over the border (m), not above the bed, but for
   /// those of the last tile which are where they were laid.
   void take_strays(WorldState<Model>& w, const Layer& layer, double border) {
-    auto& p = w.particles;
+    auto& p = w.grains;
     std::vector<std::uint32_t> stays = attached(w);
     double top = -HUGE_VAL;  // m, of the bed
     for (const TileGrain& g : tile_.grains) top = std::max(top, g.position.z + tile_.species[g.species].radius);
@@ -261,7 +261,7 @@ class MovingPatch {
   /// Lays the last `more` tiles, or all of them (0), and lets the rim go that was at the front.
   void change(World<Model>& world, Layer& layer, int more) {
     WorldState<Model>& w = world.state();
-    auto& p = w.particles;
+    auto& p = w.grains;
     const int first = more == 0 ? begin_ : end_ - more, known = more == 0 ? 0 : 1;
     layer.ground.low[0] = back(), layer.ground.high[0] = front();
     layer.cells[0] = end_ - begin_;
@@ -294,7 +294,7 @@ class MovingPatch {
 
   /// A grain of the tile that was the last one: it is free again if the rim held it.
   void let_go(WorldState<Model>& w, const Layer& layer, detail::TileIds& ids, int a, int b, std::size_t k) {
-    auto& p = w.particles;
+    auto& p = w.grains;
     const std::size_t from = last_.at(a, b, k), to = ids.at(a, b, k);
     if (last_.is[from] == InWorld::no || p.row_of[last_.id[from]] == p.gone) return;
     if (p.number_of(last_.id[from]) != numbers_[from]) return;  // it left, and another grain has its id

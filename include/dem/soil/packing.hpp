@@ -91,7 +91,7 @@ inline void strike_off(std::vector<Placement>& grains, double share) {
 template <class World>
 std::vector<Placement> placements(const World& world) {
   std::vector<Placement> grains;
-  for (const ParticleId p : world.particles()) grains.push_back({world.position(p), world.rotation(p)});
+  for (const GrainId p : world.grains()) grains.push_back({world.position(p), world.rotation(p)});
   return grains;
 }
 

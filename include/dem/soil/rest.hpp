@@ -11,9 +11,9 @@ namespace dem::soil {
 /// Root mean square of the grains' speeds (m/s).
 template <class World>
 double rms_speed(const World& world) {
-  const auto grains = world.particles();
+  const auto grains = world.grains();
   double sum = 0.0;
-  for (const ParticleId p : grains) sum += world.velocity(p).squaredNorm();
+  for (const GrainId p : grains) sum += world.velocity(p).squaredNorm();
   return grains.empty() ? 0.0 : std::sqrt(sum / static_cast<double>(grains.size()));
 }
 

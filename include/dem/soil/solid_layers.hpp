@@ -26,7 +26,7 @@ inline double share_below(double h) {
 template <class World>
 double solid_volume(const World& world) {
   double sum = 0.0;
-  for (const ParticleId p : world.particles()) sum += world.species(world.species_of(p)).shape.volume();
+  for (const GrainId p : world.grains()) sum += world.species(world.species_of(p)).shape.volume();
   return sum;
 }
 
@@ -43,7 +43,7 @@ std::vector<SolidLayer> solid_layers(const World& world, const Container& c, dou
     const double from = static_cast<double>(k) * thickness;
     layers.push_back({from, std::min(from + thickness, top), 0.0});
   }
-  for (const ParticleId p : world.particles()) {
+  for (const GrainId p : world.grains()) {
     const double volume = world.species(world.species_of(p)).shape.volume(), z = world.position(p).z();
     const double radius = std::cbrt(0.75 / std::numbers::pi * volume);
     const auto first = static_cast<std::size_t>(std::clamp((z - radius) / thickness, 0.0, static_cast<double>(count)));
@@ -60,7 +60,7 @@ std::vector<SolidLayer> solid_layers(const World& world, const Container& c, dou
 template <class World>
 double solid_fraction_between(const World& world, const Container& c, double low, double high) {
   double solid = 0.0;
-  for (const ParticleId p : world.particles()) {
+  for (const GrainId p : world.grains()) {
     const double volume = world.species(world.species_of(p)).shape.volume(), z = world.position(p).z();
     const double radius = std::cbrt(0.75 / std::numbers::pi * volume);
     solid += volume * (share_below((high - z) / radius) - share_below((low - z) / radius));

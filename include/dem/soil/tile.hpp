@@ -194,10 +194,10 @@ Tile take_tile(const World<Model>& world, const TileOptions& o = {}) {
   WorldState<Model>& w = copy.state();
   const auto& period = w.domain.period();
   if (period[2] > 0.0) fail("a tile is asked for from a world that repeats itself along z, but a bed has a surface");
-  if (copy.particle_count() == 0) fail("a tile is asked for from a world without grains; add some and let them settle");
+  if (copy.grain_count() == 0) fail("a tile is asked for from a world without grains; add some and let them settle");
   rebuild_neighbours(w);  // puts all grains into the cell
   place_images(w);
-  const auto& p = w.particles;
+  const auto& p = w.grains;
 
   Tile t;
   t.period = {period[0], period[1]};

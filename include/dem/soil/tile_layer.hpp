@@ -86,7 +86,7 @@ struct TileLayer {
 
   /// Lays the cells from `from` to `to` (along x) of the range.
   void lay(TileIds& ids, int from, int to) {
-    auto& p = w.particles;
+    auto& p = w.grains;
     struct New {
       std::uint32_t grain, at, species;
       Vector3<double> x;
@@ -164,7 +164,7 @@ struct TileLayer {
           const std::size_t i = ids.at(a, b, t.grain);
           const int surface = surface_of[t.surface];
           if (surface < 0 || (ids.is[i] != InWorld::fresh && ids.is[i] != InWorld::held)) continue;
-          if (w.species[w.particles.species[w.particles.row_of[ids.id[i]]]].is_held()) continue;  // feels no surface
+          if (w.species[w.grains.species[w.grains.row_of[ids.id[i]]]].is_held()) continue;  // feels no surface
           const grain::SurfaceKey key = grain::SurfaceKey::at_place(static_cast<std::size_t>(surface), 0, t.place);
           carrier.add_surface(ids.id[i], key, turned(&tile.surface_histories[c * size]));
           ++surface_histories;

@@ -123,7 +123,7 @@ void send_motion(WorldState<Model>& w) {
   auto& d = w.domain;
   if (!d.is_shared()) return;
   const auto watch = d.watch_step();
-  const auto& p = w.particles;
+  const auto& p = w.grains;
   for (std::size_t r = 0; r < d.borders.size(); ++r) {
     auto& border = d.borders[r];
     if (border.rows_in.empty()) continue;
@@ -155,7 +155,7 @@ void take_motion(WorldState<Model>& w) {
   if (!d.is_shared()) return;
   const auto watch = d.watch_step();
   d.wait_for_expected();
-  auto& p = w.particles;
+  auto& p = w.grains;
   for (const auto& border : d.borders) {
     const double* from = border.motion_in.data();
     const auto next = [&] { return from += 3, Vector3<double>{from[-3], from[-2], from[-1]}; };

@@ -45,7 +45,7 @@ std::string misfit_in_period(const WorldState<Model>& w, std::size_t number,
 /// look at each chunk; only when something is wrong the grain is searched.
 template <class Model>
 StepReport find_problem_of_grains(WorldState<Model>& w) {
-  const auto& p = w.particles;
+  const auto& p = w.grains;
   const auto problem = [&](StepReport::Problem kind, std::size_t row, std::string text) {
     return StepReport{kind, w.time, w.step, p.name(p.id[row]), std::move(text), {}};
   };
@@ -101,10 +101,10 @@ StepReport first_report(WorldState<Model>& w, StepReport mine) {
   const int first = d.smallest(mine ? d.ranks() : d.rank());
   if (first == d.ranks()) return mine;
   using Problem = StepReport::Problem;
-  if (first != d.rank() && mine.problem == Problem::lost) w.known_lost.erase(mine.particle.slot);  // to be told later
+  if (first != d.rank() && mine.problem == Problem::lost) w.known_lost.erase(mine.grain.slot);  // to be told later
   mine.problem = static_cast<Problem>(std::stoi(d.text_of(first, std::to_string(static_cast<int>(mine.problem)))));
-  const auto grain = static_cast<std::uint32_t>(std::stoul(d.text_of(first, std::to_string(mine.particle.slot))));
-  mine.particle = w.particles.name(grain);
+  const auto grain = static_cast<std::uint32_t>(std::stoul(d.text_of(first, std::to_string(mine.grain.slot))));
+  mine.grain = w.grains.name(grain);
   mine.text = d.text_of(first, std::move(mine.text));
   if (mine.problem == Problem::lost) w.known_lost.insert(grain);
   return mine;

@@ -13,7 +13,7 @@ namespace dem {
 template <class Model>
 std::vector<double> count_species(const WorldState<Model>& w, std::size_t first, std::size_t last) {
   std::vector<double> grains(w.species.size(), 0.0);
-  for (std::size_t i = first; i < last; ++i) grains[w.particles.species[i]] += 1.0;
+  for (std::size_t i = first; i < last; ++i) grains[w.grains.species[i]] += 1.0;
   return grains;
 }
 

@@ -20,12 +20,12 @@ bool surfaces_act_anew(const WorldState<Model>& w, const Chunk<Model>& chunk) {
 template <class Model>
 void add_surface_contacts(WorldState<Model>& w, std::size_t c, coupling::SurfaceScratch& scratch,
                           grain::ForceSums& sums) {
-  const std::size_t begin = c * chunk_size, end = std::min(begin + chunk_size, w.particles.count);
+  const std::size_t begin = c * chunk_size, end = std::min(begin + chunk_size, w.grains.count);
   Chunk<Model>& chunk = w.chunks[c];
   const double start = w.stopwatch.clock();
   const auto find = [&](grain::ForceSums& to) {
     coupling::find_surface_contacts<Model>(
-        {begin, end, chunk, w.particles, w.species, w.materials, w.surfaces, w.largest_radius, w.domain, scratch},
+        {begin, end, chunk, w.grains, w.species, w.materials, w.surfaces, w.largest_radius, w.domain, scratch},
         w.find_hits, w.time_step, to);
   };
   if (!chunk.asleep) {
@@ -45,7 +45,7 @@ void add_surface_contacts(WorldState<Model>& w, std::size_t c, coupling::Surface
 /// gather_forces. In the last stage their histories are committed: the next step starts from them.
 template <class Model>
 void find_chunk_contacts(WorldState<Model>& w, std::size_t c, ContactScratch<Model>& scratch) {
-  const std::size_t begin = c * chunk_size, end = std::min(begin + chunk_size, w.particles.count);
+  const std::size_t begin = c * chunk_size, end = std::min(begin + chunk_size, w.grains.count);
   Chunk<Model>& chunk = w.chunks[c];
   const std::size_t chosen =
       grain::choose_candidates(begin, end, chunk, doing(w), w.sleepers.awake_beside, scratch.pairs);
@@ -55,11 +55,11 @@ void find_chunk_contacts(WorldState<Model>& w, std::size_t c, ContactScratch<Mod
   scratch.lend(chunk);
   const DeepestContact deepest = chunk.deepest;
   grain::ForceSums sums;
-  const grain::ChunkPairs<Model, decltype(w.particles)> pairs{chunk, w.particles, w.species, w.materials, begin};
+  const grain::ChunkPairs<Model, decltype(w.grains)> pairs{chunk, w.grains, w.species, w.materials, begin};
   grain::find_pair_contacts(pairs, w.time_step, doing(w), sums, scratch.pairs);
   add_surface_contacts(w, c, scratch.surfaces, sums);
   if (!with_surfaces && deepest.with_surface && deepest.overlap > chunk.deepest.overlap) chunk.deepest = deepest;
-  sums.write(c, w.particles);
+  sums.write(c, w.grains);
   if (w.options.sleep) grain::keep(begin, end, scratch.pairs.asleep, w.sleepers);
   if (w.sleepers.measuring) {
     const std::span<double> borne(&w.sleepers.borne[begin], chunk_size);

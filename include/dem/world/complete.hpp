@@ -80,8 +80,8 @@ void complete_chunks(WorldState<Model>& w) {
   message = d.gathered(message, false);
   std::size_t at = 0;
   for (auto& chunk : w.chunks) detail::read_chunk(message, at, chunk);
-  for (std::size_t c = 0; c < std::min(w.chunks.size(), w.particles.chunks()); ++c) {
-    if (!d.owns(c)) grain::refresh_chunk<Model>(c, w.chunks[c], w.particles, w.species);
+  for (std::size_t c = 0; c < std::min(w.chunks.size(), w.grains.chunks()); ++c) {
+    if (!d.owns(c)) grain::refresh_chunk<Model>(c, w.chunks[c], w.grains, w.species);
   }
   w.sleepers.working = d.gathered(w.sleepers.working, false);
   if (w.options.sleep) {
@@ -98,7 +98,7 @@ void complete_chunks(WorldState<Model>& w) {
   }
   if (w.list_valid) place_images(w), tell_images(w);  // else the rows of images may be gone
   if (!w.chunks.empty()) {
-    grain::list_incoming<Model>(w.executor, std::span(w.chunks), w.particles.count, w.images, w.incoming_first,
+    grain::list_incoming<Model>(w.executor, std::span(w.chunks), w.grains.count, w.images, w.incoming_first,
                                 w.incoming);
     if (w.options.sleep) grain::list_chunks_around<Model>(w.chunks);
   }

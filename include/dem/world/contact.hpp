@@ -18,8 +18,8 @@ enum class ContactKind {
 /// who feels the opposite. All vectors are in global axes.
 struct ContactForce {
   ContactKind kind = ContactKind::grains;
-  ParticleId grain;         ///< the first partner, unless both are bodies
-  ParticleId other_grain;   ///< the second partner of ContactKind::grains
+  GrainId grain;            ///< the first partner, unless both are bodies
+  GrainId other_grain;      ///< the second partner of ContactKind::grains
   SurfaceId surface;        ///< the second partner of the other kinds
   SurfaceId own_surface;    ///< the first partner of ContactKind::bodies
   BodyContactId pair;       ///< of ContactKind::bodies

@@ -49,8 +49,8 @@ class ContactFinder {
 
   void find_of_chunk(std::size_t c) {
     Chunk<Model> chunk = w_.chunks[c];
-    const std::size_t begin = c * chunk_size, end = std::min(begin + chunk_size, w_.particles.count);
-    const auto& p = w_.particles;
+    const std::size_t begin = c * chunk_size, end = std::min(begin + chunk_size, w_.grains.count);
+    const auto& p = w_.grains;
     grain::ForceSums sums;
     const grain::ChunkPairs<Model, std::remove_cvref_t<decltype(p)>> pairs{chunk, p, w_.species, w_.materials, begin};
     grain::find_pair_contacts(pairs, w_.time_step, {}, sums, scratch_.pairs);

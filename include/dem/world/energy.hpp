@@ -68,7 +68,7 @@ void add_stored(const Contact<Model>& c, const ContactParameters<Model>& p, Grai
 /// holds it.
 template <class Model>
 GrainEnergy energy_of_row(const WorldState<Model>& w, std::size_t row) {
-  const auto& p = w.particles;
+  const auto& p = w.grains;
   const auto& kind = w.species[p.species[row]];
   const Vector3<double> v = p.velocity[row], s = p.local_angular_velocity[row];
   GrainEnergy e;
@@ -83,7 +83,7 @@ GrainEnergy energy_of_row(const WorldState<Model>& w, std::size_t row) {
 template <class Model>
 void record_contacts(WorldState<Model>& w, std::size_t c, ContactScratch<Model>& scratch) {
   Chunk<Model>& chunk = w.chunks[c];
-  const auto& p = w.particles;
+  const auto& p = w.grains;
   chunk.work.clear();
   const auto add = [&](const grain::Hit& hit, std::uint32_t partner, bool on_surface, const PartnerView& own,
                        const PartnerView& other, const contact::Geometry<double>& g, const grain::ContactForces& forces,
@@ -112,7 +112,7 @@ void record_contacts(WorldState<Model>& w, std::size_t c, ContactScratch<Model>&
 template <class Model>
 void count_step(WorldState<Model>& w) {
   grain::EnergyLedger& ledger = w.ledger;
-  const auto& p = w.particles;
+  const auto& p = w.grains;
   struct Mean {
     Vector3<double> velocity, angular_velocity;  // m/s, rad/s, global
   };
@@ -192,8 +192,8 @@ template <class Model>
 GrainEnergy energy_of(const World<Model>& world) {
   const WorldState<Model>& w = world.state();
   GrainEnergy e;
-  for (std::size_t row = 0; row < w.particles.count; ++row) {
-    if (w.particles.row_of[w.particles.id[row]] == w.particles.gone) continue;
+  for (std::size_t row = 0; row < w.grains.count; ++row) {
+    if (w.grains.row_of[w.grains.id[row]] == w.grains.gone) continue;
     const GrainEnergy one = detail::energy_of_row(w, row);
     e.translation += one.translation;
     e.rotation += one.rotation;
@@ -246,7 +246,7 @@ void count_energy(World<Model>& world) {
                            from_eigen(c.normal), from_eigen(c.arm), from_eigen(c.other_arm), from_eigen(c.force),
                            from_eigen(c.rolling_torque())});
   }
-  const auto& p = w.particles;
+  const auto& p = w.grains;
   ledger.velocity.resize(p.row_of.size());
   ledger.global_angular_velocity.resize(p.row_of.size());
   ledger.energy.resize(p.row_of.size(), std::numeric_limits<double>::quiet_NaN());

@@ -12,8 +12,8 @@ namespace dem {
 struct ForceLine {
   Vec3 from;                     ///< m, centre of the grain
   Vec3 to;                       ///< m, centre of the other grain; on a surface the mean point, weighted by forces
-  ParticleId grain;              ///< at `from`
-  ParticleId other_grain;        ///< at `to`, if it is a grain
+  GrainId grain;                 ///< at `from`
+  GrainId other_grain;           ///< at `to`, if it is a grain
   SurfaceId surface;             ///< at `to`, if it is a surface
   double normal_force = 0.0;     ///< N, sum over the points; positive where they push
   Vec3 force = Vec3::Zero();     ///< N, on the grain

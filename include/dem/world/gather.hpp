@@ -18,10 +18,10 @@ template <class Model>
 void append_work(const WorldState<Model>& w, std::size_t c, std::vector<float>& to) {
   constexpr float motion = 10, contact = shape::BitShape<typename Model::Shape> ? 8 : 40, asleep = 1;
   const Chunk<Model>& chunk = w.chunks[c];
-  const std::size_t rows = std::min((c + 1) * chunk_size, w.particles.count) - c * chunk_size, first = to.size();
+  const std::size_t rows = std::min((c + 1) * chunk_size, w.grains.count) - c * chunk_size, first = to.size();
   for (std::size_t k = 0; k < rows; ++k) {
     const auto candidates = static_cast<float>(chunk.candidate_first[k + 1] - chunk.candidate_first[k]);
-    const std::uint32_t id = w.particles.id[c * chunk_size + k];
+    const std::uint32_t id = w.grains.id[c * chunk_size + k];
     to.push_back(is_asleep(w, id) ? asleep : motion + candidates);
   }
   if (chunk.asleep) return;
@@ -39,7 +39,7 @@ void append_work(const WorldState<Model>& w, std::size_t c, std::vector<float>& 
 template <class Model>
 void count_work(WorldState<Model>& w) {
   auto& d = w.domain;
-  const auto& p = w.particles;
+  const auto& p = w.grains;
   d.work.resize(p.row_of.size(), 0.0f);
   if (!d.is_shared() || w.chunks.empty()) return;
   std::vector<float> mine;
@@ -53,7 +53,7 @@ void count_work(WorldState<Model>& w) {
 /// mean.
 template <class Model>
 void cut_chunks(WorldState<Model>& w) {
-  const auto& p = w.particles;
+  const auto& p = w.grains;
   auto& work = w.domain.work;
   work.resize(p.row_of.size(), 0.0f);
   double sum = 0.0, known = 0.0;
@@ -72,7 +72,7 @@ void cut_chunks(WorldState<Model>& w) {
 template <class Model>
 void gather_resting(WorldState<Model>& w) {
   if (!w.options.sleep) return;
-  const auto& p = w.particles;
+  const auto& p = w.grains;
   const auto [begin, end] = w.domain.own();
   auto& resting = w.sleepers.grains;
   std::vector<grain::Rest> rests;
@@ -109,7 +109,7 @@ template <class Model>
 void gather_names(WorldState<Model>& w) {
   auto& d = w.domain;
   if (d.has_names) return;
-  auto& p = w.particles;
+  auto& p = w.grains;
   d.gather_chunks(p.id.data(), chunk_size);
   d.gather_chunks(p.species.data(), chunk_size);
   p.listed_at.for_each_column([&](AlignedVector<double>& column) { d.gather_chunks(column.data(), chunk_size); });
@@ -127,7 +127,7 @@ void gather_rows(WorldState<Model>& w) {
   auto& d = w.domain;
   if (d.is_whole) return;
   gather_names(w);
-  auto& p = w.particles;
+  auto& p = w.grains;
   p.for_each_state_column([&](AlignedVector<double>& column) { d.gather_chunks(column.data(), chunk_size); });
 
   struct Summary {
@@ -167,11 +167,10 @@ void gather_rows(WorldState<Model>& w) {
 template <class Model>
 std::vector<std::uint16_t> gather_positions(WorldState<Model>& w) {
   auto& d = w.domain;
-  const auto& p = w.particles;
+  const auto& p = w.grains;
   if (d.is_whole) return {};
   gather_names(w);
-  w.particles.position.for_each_column(
-      [&](AlignedVector<double>& column) { d.gather_chunks(column.data(), chunk_size); });
+  w.grains.position.for_each_column([&](AlignedVector<double>& column) { d.gather_chunks(column.data(), chunk_size); });
   gather_resting(w);
   std::vector<std::uint16_t> holders(p.row_of.size(), 0);
   for (std::size_t i = 0; i < p.count; ++i) {
@@ -184,7 +183,7 @@ std::vector<std::uint16_t> gather_positions(WorldState<Model>& w) {
 template <class Model>
 void permute_rows(WorldState<Model>& w, const std::vector<std::uint32_t>& order,
                   const std::vector<std::uint16_t>& holders) {
-  auto& p = w.particles;
+  auto& p = w.grains;
   if (holders.empty()) return p.permute(order, w.executor);
   std::vector<std::uint32_t> held;
   for (std::size_t k = 0; k < order.size(); ++k) {
@@ -198,7 +197,7 @@ template <class Model>
 void move_rows(WorldState<Model>& w, const std::vector<std::uint16_t>& holders) {
   if (holders.empty()) return;
   auto& d = w.domain;
-  auto& p = w.particles;
+  auto& p = w.grains;
   std::vector<AlignedVector<double>*> columns;
   p.for_each_state_column([&](AlignedVector<double>& column) { columns.push_back(&column); });
   const auto rows_of = [&](int rank) {
@@ -229,7 +228,7 @@ void send_home(WorldState<Model>& w, std::vector<Entry>& entries) {
   if (!d.is_shared()) return;
   std::vector<std::vector<Entry>> to(static_cast<std::size_t>(d.ranks()));
   for (const Entry& e : entries) {
-    if (e.i != w.particles.gone) to[static_cast<std::size_t>(d.owner(e.i / chunk_size))].push_back(e);
+    if (e.i != w.grains.gone) to[static_cast<std::size_t>(d.owner(e.i / chunk_size))].push_back(e);
   }
   entries = d.exchanged(to).first;
 }

@@ -11,7 +11,7 @@ namespace dem {
 /// before forces are found, and at the end of a step.
 template <class Model>
 void carry_held(WorldState<Model>& w) {
-  auto& p = w.particles;
+  auto& p = w.grains;
   std::vector<std::uint32_t> chunks;  // whose grains moved
   for (grain::HeldGrains& held : w.held) {
     const auto& motion = w.machine.bodies()[held.body.index()].motion;
@@ -28,7 +28,7 @@ void carry_held(WorldState<Model>& w) {
       if constexpr (Model::Domain::has_images) x = w.domain.beside(x, p.position[row]);
       p.position.set(row, x);
       p.velocity.set(row, motion.velocity + cross(turning, arm));
-      p.local_angular_velocity.set(row, Particles<typename Model::Shape, typename Model::Integrator>::has_orientation
+      p.local_angular_velocity.set(row, GrainColumns<typename Model::Shape, typename Model::Integrator>::has_orientation
                                             ? transpose_times(rotation, turning)
                                             : turning);
       if constexpr (Model::Shape::has_orientation) p.set_rotation(row, rotation);
@@ -52,14 +52,14 @@ struct HeldLoad {
 template <class Model>
 HeldLoad load_of_held(const WorldState<Model>& w, std::size_t row) {
   const std::span<const Chunk<Model>> chunks = w.chunks;
-  HeldLoad load = {w.particles.force[row], w.particles.torque[row]};
+  HeldLoad load = {w.grains.force[row], w.grains.torque[row]};
   const auto c = static_cast<std::uint32_t>(row / chunk_size);
   if (!w.options.sleep || (w.sleepers.doing[row] & grain::awake) != 0) {
     grain::add_incoming<Model>(row, chunks, w.incoming_first, w.incoming, load.force, load.torque);
   } else if (std::binary_search(w.sleepers.working.begin(), w.sleepers.working.end(), c)) {
     // One on which nothing new acts keeps the whole sum of the last time.
     if (!w.chunks[c].evaluated && w.sleepers.awake_beside[row] == 0) return load;
-    const auto sums = grain::complete_sums<Model>(row, chunks, w.particles, w.incoming_first, w.incoming, w.sleepers);
+    const auto sums = grain::complete_sums<Model>(row, chunks, w.grains, w.incoming_first, w.incoming, w.sleepers);
     load = {sums.force + sums.kept_force, sums.torque + sums.kept_torque};
   }
   return load;
@@ -73,12 +73,12 @@ std::vector<HeldLoad> loads_of_held(const WorldState<Model>& w) {
   std::vector<HeldLoad> loads;
   for (const grain::HeldGrains& held : w.held) {
     for (const grain::HeldGrain& g : held.grains) {
-      const std::size_t row = w.particles.row_of[g.id];
+      const std::size_t row = w.grains.row_of[g.id];
       HeldLoad load = {{0, 0, 0}, {0, 0, 0}};
       if constexpr (Model::Domain::has_ranks) {
-        if (row != w.particles.gone && w.domain.owns(row / chunk_size)) load = load_of_held(w, row);
+        if (row != w.grains.gone && w.domain.owns(row / chunk_size)) load = load_of_held(w, row);
         for (const auto* v : {&load.force, &load.torque}) numbers.insert(numbers.end(), {v->x, v->y, v->z});
-      } else if (row != w.particles.gone) {
+      } else if (row != w.grains.gone) {
         load = load_of_held(w, row);
       }
       loads.push_back(load);
@@ -105,7 +105,7 @@ void load_by_held(WorldState<Model>& w) {
     Vector3<double> force = {0, 0, 0}, torque = {0, 0, 0};
     for (const grain::HeldGrain& g : held.grains) {
       const HeldLoad& load = loads[next++];
-      if (w.particles.row_of[g.id] == w.particles.gone) continue;
+      if (w.grains.row_of[g.id] == w.grains.gone) continue;
       force += load.force;
       torque += load.torque + cross(body.motion.rotation * g.place, load.force);
     }
@@ -117,7 +117,7 @@ void load_by_held(WorldState<Model>& w) {
 /// Attaches a held grain to a body, where both are now.
 template <class Model>
 void attach_grain(WorldState<Model>& w, std::size_t row, BodyId to) {
-  auto& p = w.particles;
+  auto& p = w.grains;
   const std::uint32_t grain = p.id[row];
   for (grain::HeldGrains& held : w.held) {
     std::erase_if(held.grains, [&](const auto& g) { return g.id == grain; });

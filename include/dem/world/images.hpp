@@ -13,7 +13,7 @@ namespace dem {
 template <class Model>
 void wrap_grains(WorldState<Model>& w) {
   if constexpr (Model::Domain::has_images) {
-    auto& p = w.particles;
+    auto& p = w.grains;
     p.resize(p.count);
     w.images = {};
     for (std::size_t i = 0; i < p.count; ++i) {
@@ -47,8 +47,8 @@ void wrap_grains(WorldState<Model>& w) {
 template <class Model>
 void make_images(WorldState<Model>& w, double reach) {
   if constexpr (Model::Domain::has_images) {
-    grain::find_images(w.images, w.particles, w.domain, reach);
-    grain::make_rows(w.particles, w.images);
+    grain::find_images(w.images, w.grains, w.domain, reach);
+    grain::make_rows(w.grains, w.images);
   }
 }
 
@@ -59,7 +59,7 @@ void place_images(WorldState<Model>& w) {
     const std::size_t count = w.images.grain.size();
     w.executor.for_each((count + chunk_size - 1) / chunk_size, [&](std::size_t block) {
       const std::size_t end = std::min((block + 1) * chunk_size, count);
-      for (std::size_t k = block * chunk_size; k < end; ++k) grain::follow_grain(w.particles, w.images, w.domain, k);
+      for (std::size_t k = block * chunk_size; k < end; ++k) grain::follow_grain(w.grains, w.images, w.domain, k);
     });
   }
 }
@@ -70,7 +70,7 @@ void tell_images(WorldState<Model>& w) {
   if constexpr (Model::Domain::has_images) {
     if (!w.options.sleep) return;
     auto& doing = w.sleepers.doing;
-    doing.resize(w.particles.view.size());
+    doing.resize(w.grains.view.size());
     for (std::size_t k = 0; k < w.images.grain.size(); ++k) doing[w.images.first + k] = doing[w.images.grain[k]];
   }
 }

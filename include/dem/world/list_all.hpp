@@ -12,7 +12,7 @@ namespace dem {
 /// Sorts all grains and lists the neighbours of those of this process's chunks, with the skin that is returned (m).
 template <class Model, class Change>
 double list_all(WorldState<Model>& w, grain::HistoryCarrier<Model>& histories, Change&& change) {
-  auto& p = w.particles;
+  auto& p = w.grains;
   [[maybe_unused]] std::vector<std::uint16_t> holders;
   if constexpr (Model::Domain::has_ranks) {
     count_work(w);

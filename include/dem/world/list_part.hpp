@@ -40,7 +40,7 @@ namespace detail {
 /// Of this process's grains, all but those that are gone: by what they are sorted among all, and in that order.
 template <class Model>
 std::vector<typename Model::Domain::SortKey> sort_keys(WorldState<Model>& w, double reach, bool sleepers_last) {
-  const auto& p = w.particles;
+  const auto& p = w.grains;
   std::vector<typename Model::Domain::SortKey> keys, scratch;
   std::vector<float> work;
   const auto [begin, end] = w.own_chunks();
@@ -62,7 +62,7 @@ std::vector<typename Model::Domain::SortKey> sort_keys(WorldState<Model>& w, dou
 template <class Model>
 void tell_new_rows(WorldState<Model>& w) {
   auto& d = w.domain;
-  auto& p = w.particles;
+  auto& p = w.grains;
   std::vector<std::vector<std::uint32_t>> to;
   for (const auto& border : d.borders) {
     auto& rows = to.emplace_back();
@@ -80,7 +80,7 @@ void tell_new_rows(WorldState<Model>& w) {
 template <class Model, class Keys>
 void move_parts(WorldState<Model>& w, const Keys& keys, const std::vector<std::uint32_t>& to, std::size_t all) {
   auto& d = w.domain;
-  auto& p = w.particles;
+  auto& p = w.grains;
   struct Mover {
     std::uint32_t row, id, species;
   };
@@ -168,7 +168,7 @@ struct ChunkBoxes {
 /// The boxes of this process's chunks; `cell` (m): the reach that grains were sorted by.
 template <class Model>
 std::vector<ChunkBoxes> boxes_of_chunks(const WorldState<Model>& w, double cell) {
-  const auto& p = w.particles;
+  const auto& p = w.grains;
   std::vector<ChunkBoxes> boxes;
   const auto [first, last] = w.own_chunks();
   for (std::size_t c = first; c < last; ++c) {
@@ -209,7 +209,7 @@ std::vector<std::uint32_t> chunks_within_reach(const WorldState<Model>& w, doubl
 template <class Model>
 NearRows find_near_rows(WorldState<Model>& w, double reach, double cell) {
   auto& d = w.domain;
-  auto& p = w.particles;
+  auto& p = w.grains;
   struct Told {
     Vector3<double> position;
     std::uint32_t id, species;
@@ -254,7 +254,7 @@ NearRows find_near_rows(WorldState<Model>& w, double reach, double cell) {
 template <class Model>
 double list_part(WorldState<Model>& w) {
   auto& d = w.domain;
-  auto& p = w.particles;
+  auto& p = w.grains;
   p.note_gone(w.to_remove);
   const std::size_t all = p.count - w.to_remove.size();
   w.to_remove.clear();

@@ -10,7 +10,7 @@ template <class Model>
 std::size_t memory_bytes(const WorldState<Model>& w) {
   const auto bytes = [](const auto& v) { return v.capacity() * sizeof(v[0]); };
   std::size_t sum = 0;
-  auto& p = const_cast<WorldState<Model>&>(w).particles;  // for_each_column has no const form; nothing is changed
+  auto& p = const_cast<WorldState<Model>&>(w).grains;  // for_each_column has no const form; nothing is changed
   p.for_each_column([&](const AlignedVector<double>& column) { sum += bytes(column); });
   sum += bytes(p.view) + bytes(p.pose) + bytes(p.species) + bytes(p.id) + bytes(p.row_of) + bytes(p.number) +
          bytes(p.freed) + bytes(p.free_again);

@@ -9,7 +9,7 @@ namespace dem {
 /// True when some grain moved more than half the skin since the neighbour list was made.
 template <class Model>
 bool neighbours_outdated(const WorldState<Model>& w) {
-  if (!w.list_valid) return w.particles.count > 0;
+  if (!w.list_valid) return w.grains.count > 0;
   if constexpr (domain::IsSheared<typename Model::Domain>) return 2.0 * w.moved() > w.list_skin;
   return 4.0 * w.moved2() > w.list_skin * w.list_skin;
 }
@@ -19,14 +19,14 @@ bool neighbours_outdated(const WorldState<Model>& w) {
 template <class Model, class Change>
 void rebuild_neighbours(WorldState<Model>& w, Change&& change) {
   grain::HistoryCarrier<Model> histories;
-  histories.collect(w.executor, std::span<const Chunk<Model>>(w.chunks), w.particles, w.images);
+  histories.collect(w.executor, std::span<const Chunk<Model>>(w.chunks), w.grains, w.images);
   double skin = 0.0;
   if (has_parts(w)) {
     if constexpr (lists_parts<Model>) skin = list_part(w);
   } else {
     skin = list_all(w, histories, change);
   }
-  const auto& p = w.particles;
+  const auto& p = w.grains;
   w.list_valid = true;
   if (p.count == 0) return;
   grain::list_incoming<Model>(w.executor, std::span(w.chunks), p.count, w.images, w.incoming_first, w.incoming);

@@ -35,7 +35,7 @@ struct WorldOptions {
 };
 
 /// A grain to be added.
-struct NewParticle {
+struct NewGrain {
   SpeciesId species = {};
   Vec3 position = Vec3::Zero();          ///< m
   Vec3 velocity = Vec3::Zero();          ///< m/s

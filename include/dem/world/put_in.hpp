@@ -38,7 +38,7 @@ class SurfaceTrial {
 
  private:
   const WorldState<Model>& w_;
-  Particles<typename Model::Shape, typename Model::Integrator> grain_;  // one
+  GrainColumns<typename Model::Shape, typename Model::Integrator> grain_;  // one
   Chunk<Model> chunk_;
   coupling::SurfaceScratch scratch_;
 };
@@ -49,7 +49,7 @@ template <class Model>
 void fill_from(WorldState<Model>& w, Inlet& inlet, std::size_t listed) {
   constexpr int tries = 40;  // places for each grain: random places that fill a box to a third of its volume
   const auto mass_of = [&](SpeciesId s) { return w.species[s.index()].mass; };
-  auto& p = w.particles;
+  auto& p = w.grains;
   const double gap = w.materials.range();
   FreeRoom room(inlet.region().bounds(), w.largest_radius + 0.5 * gap);
   const auto add_ball = [&](const Vec3& x, double radius) {
@@ -103,11 +103,11 @@ void put_in(WorldState<Model>& w) {
   if (!is_wanted || (w.step < w.put_in_at && !neighbours_outdated(w))) return;
   if constexpr (Model::Domain::has_ranks) gather_rows(w);  // every rank puts the same grains in
   w.put_in_at = w.step + most_steps;
-  const std::size_t before = w.particles.count;
+  const std::size_t before = w.grains.count;
   for (Inlet& inlet : w.inlets) {
     if (inlet.want(w.time, mass_of)) fill_from(w, inlet, before);
   }
-  if (w.particles.count == before) return;
+  if (w.grains.count == before) return;
   list_between_steps(w, [&] { rebuild_neighbours(w); });
 }
 

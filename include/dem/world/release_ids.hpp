@@ -13,9 +13,9 @@ namespace dem {
 /// forgotten. To be called when no contact of them is remembered: at the end of a step, or while neighbours are listed.
 template <class Model>
 void release_ids(WorldState<Model>& w) {
-  if (w.particles.freed.empty()) [[likely]]
+  if (w.grains.freed.empty()) [[likely]]
     return;
-  std::vector<std::uint32_t> sorted(w.particles.freed);
+  std::vector<std::uint32_t> sorted(w.grains.freed);
   std::sort(sorted.begin(), sorted.end());
   const auto is_one = [&](std::uint32_t id) { return std::binary_search(sorted.begin(), sorted.end(), id); };
   std::erase_if(w.known_lost, is_one);
@@ -30,7 +30,7 @@ void release_ids(WorldState<Model>& w) {
     ledger.energy[id] = std::numeric_limits<double>::quiet_NaN();
     ledger.velocity[id] = ledger.global_angular_velocity[id] = {0, 0, 0};
   }
-  w.particles.release_ids();
+  w.grains.release_ids();
 }
 
 }  // namespace dem

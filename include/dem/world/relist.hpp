@@ -23,7 +23,7 @@ void list_between_steps(WorldState<Model>& w, List&& list) {
 /// What an integrator remembers of the grain of a new row: nothing touched it, so weight alone accelerates it.
 template <class Model>
 void begin_to_fall(WorldState<Model>& w, std::size_t row) {
-  auto& p = w.particles;
+  auto& p = w.grains;
   if (w.species[p.species[row]].is_held()) return;
   typename Model::Integrator::template Memory<double> memory{};
   Model::Integrator::template initialise<double>(memory, {from_eigen(w.options.gravity), {0, 0, 0}});
@@ -65,7 +65,7 @@ SpeciesId held_twin(World& world, SpeciesId s) {
 /// on. Its neighbours have to be listed anew after it. Where energy is counted, held grains have none.
 template <class Model>
 void change_species(WorldState<Model>& w, std::size_t row, SpeciesId to) {
-  auto& p = w.particles;
+  auto& p = w.grains;
   const auto& from = w.species[p.species[row]];
   const bool stands = w.species[to.index()].is_held();
   if (w.ledger.on && from.is_held() != stands) {

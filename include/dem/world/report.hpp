@@ -15,7 +15,7 @@ struct StepReport {
   Problem problem = Problem::none;
   double time = 0.0;       ///< s, at which it was found
   std::uint64_t step = 0;  ///< steps done
-  ParticleId particle;     ///< the grain, if it is one
+  GrainId grain;           ///< the grain, if it is one
   std::string text;
   std::string note;  ///< what of what was given was changed, or could not be done, in words; empty if nothing
 

@@ -16,7 +16,7 @@ inline bool sleepers_go_last(std::size_t asleep, std::size_t grains) { return 4 
 template <class Model>
 bool put_sleepers_last(const WorldState<Model>& w, std::vector<std::uint32_t>& order) {
   if (!w.options.sleep) return false;
-  const auto is_awake = [&](std::uint32_t row) { return !is_asleep(w, w.particles.id[row]); };
+  const auto is_awake = [&](std::uint32_t row) { return !is_asleep(w, w.grains.id[row]); };
   const auto awake = static_cast<std::size_t>(std::count_if(order.begin(), order.end(), is_awake));
   if (!sleepers_go_last(order.size() - awake, order.size())) return false;
   std::stable_partition(order.begin(), order.end(), is_awake);
@@ -35,14 +35,14 @@ void look_at_order(WorldState<Model>& w) {
     ++counts[2];
     if (w.chunks[c].asleep) continue;
     ++counts[1];
-    for (std::size_t i = c * chunk_size; i < std::min((c + 1) * chunk_size, w.particles.count); ++i) {
+    for (std::size_t i = c * chunk_size; i < std::min((c + 1) * chunk_size, w.grains.count); ++i) {
       counts[0] += w.sleepers.doing[i] & grain::awake;
     }
   }
   if constexpr (Model::Domain::has_ranks) w.domain.share_sums(counts);
   const double chunks_needed = counts[0] / chunk_size + 1.0;
   const double steps = w.options.sleep->window;  // until the next look
-  if (!sleepers_go_last(w.particles.count - static_cast<std::size_t>(counts[0]), w.particles.count)) return;
+  if (!sleepers_go_last(w.grains.count - static_cast<std::size_t>(counts[0]), w.grains.count)) return;
   if (0.5 * steps * (counts[1] - chunks_needed) > 4.0 * counts[2]) give_up_list(w);
 }
 

@@ -35,7 +35,7 @@ inline constexpr const char* parts_of_a_world[] = {
 template <class Model>
 domain::CallHashes hashes_of(const WorldState<Model>& world, const Compared& compared) {
   auto& w = const_cast<WorldState<Model>&>(world);  // fields serve both ways; hashing changes nothing
-  const auto& p = w.particles;
+  const auto& p = w.grains;
   Hash size, options, grains;
   for (const std::size_t n : {p.count, p.row_of.size(), w.to_remove.size(), w.species.size(), w.surfaces.size(),
                               w.machine.bodies().size(), w.outlets.size(), w.inlets.size()}) {

@@ -22,7 +22,7 @@ void wake_row(WorldState<Model>& w, std::size_t i) {
   auto& s = w.sleepers;
   bool is_known = true;  // which grain it is; else who owns it knows
   if constexpr (Model::Domain::has_ranks) is_known = w.domain.has_names || w.domain.owns(i / chunk_size);
-  if (const std::uint32_t id = w.particles.id[i]; is_known && id < s.grains.size()) s.grains[id] = {};
+  if (const std::uint32_t id = w.grains.id[i]; is_known && id < s.grains.size()) s.grains[id] = {};
   // One that came since neighbours were listed is in no chunk, and awake.
   if (i / chunk_size >= w.chunks.size() || i >= s.doing.size() || (s.doing[i] & grain::awake)) return;
   s.doing[i] |= grain::awake | grain::changed;
@@ -31,13 +31,13 @@ void wake_row(WorldState<Model>& w, std::size_t i) {
 }
 template <class Model>
 void wake_chunk(WorldState<Model>& w, std::size_t c) {
-  const std::size_t end = std::min((c + 1) * chunk_size, w.particles.count);
+  const std::size_t end = std::min((c + 1) * chunk_size, w.grains.count);
   for (std::size_t i = c * chunk_size; i < end; ++i) wake_row(w, i);
 }
 template <class Model>
 void wake_all(WorldState<Model>& w) {
   for (auto& rest : w.sleepers.grains) rest = {};
-  for (std::size_t i = 0; i < std::min(w.particles.count, w.sleepers.doing.size()); ++i) {
+  for (std::size_t i = 0; i < std::min(w.grains.count, w.sleepers.doing.size()); ++i) {
     w.sleepers.doing[i] = grain::awake;
   }
   for (auto& chunk : w.chunks) chunk.asleep = chunk.changed = false;
@@ -55,7 +55,7 @@ void wake_around(WorldState<Model>& w, std::size_t row) {
 /// By row, whether the grain sleeps: of all grains, also of those that other ranks own.
 template <class Model>
 std::vector<std::uint8_t> who_sleeps(const WorldState<Model>& w) {
-  const auto& p = w.particles;
+  const auto& p = w.grains;
   const auto [begin, end] = w.own_chunks();
   std::vector<std::uint8_t> asleep;
   for (std::size_t i = begin * chunk_size; i < std::min(end * chunk_size, p.count); ++i) {
@@ -69,7 +69,7 @@ std::vector<std::uint8_t> who_sleeps(const WorldState<Model>& w) {
 template <class Model>
 void find_sleepers(WorldState<Model>& w) {
   auto& s = w.sleepers;
-  const auto& p = w.particles;
+  const auto& p = w.grains;
   s.all_work = true;
   if (!w.options.sleep) return;
   s.grains.resize(p.row_of.size());
@@ -138,7 +138,7 @@ void count_awake_beside(WorldState<Model>& w) {
       count(i, j);
       if (j / chunk_size == c) count(j, i);
     }
-    for (std::size_t i = row; i < std::min(row + chunk_size, w.particles.count); ++i) {
+    for (std::size_t i = row; i < std::min(row + chunk_size, w.grains.count); ++i) {
       for (std::uint32_t m = w.incoming_first[i]; m < w.incoming_first[i + 1]; ++m) {
         const auto [other, candidate] = w.incoming[m];
         if (other != c) count(i, other * chunk_size + w.chunks[other].owner[candidate]);
@@ -163,7 +163,7 @@ std::vector<std::uint32_t> take_changed(WorldState<Model>& w) {
   const auto [begin, end] = w.own_chunks();
   for (std::size_t c = begin; c < end; ++c) {
     if (!std::exchange(w.chunks[c].changed, false)) continue;
-    for (std::size_t i = c * chunk_size; i < std::min((c + 1) * chunk_size, w.particles.count); ++i) {
+    for (std::size_t i = c * chunk_size; i < std::min((c + 1) * chunk_size, w.grains.count); ++i) {
       if ((s.doing[i] & grain::changed) == 0) continue;
       s.doing[i] &= static_cast<std::uint8_t>(~grain::changed);
       changed.push_back(static_cast<std::uint32_t>(2 * i) | (s.doing[i] & grain::awake));
@@ -255,7 +255,7 @@ template <class Model>
 void wake_and_put_to_sleep(WorldState<Model>& w) {
   if (!w.options.sleep) return;
   auto& s = w.sleepers;
-  auto& p = w.particles;
+  auto& p = w.grains;
   const SleepOptions& o = *w.options.sleep;
   const double g = w.options.gravity.norm();
   const grain::WindowEnd window = {o, w.options.gravity, o.window * w.time_step};

@@ -72,7 +72,7 @@ struct WorldState {
   std::vector<SpeciesInertia> inertia;  ///< of the species
   double largest_radius = 0.0;          ///< m, bounding radius
 
-  Particles<Shape, Integrator> particles;
+  GrainColumns<Shape, Integrator> grains;
   std::vector<Chunk<Model>> chunks;
   typename Model::BroadPhase broad_phase;
   std::optional<surface::Aabb> borders;  ///< WorldOptions::domain, without end where it repeats itself

@@ -12,9 +12,9 @@ namespace dem {
 template <class Model>
 void gather_forces(WorldState<Model>& w, std::size_t c) {
   if (w.options.sleep) {
-    grain::gather_forces<Model>(c, w.chunks, w.particles, w.incoming_first, w.incoming, w.sleepers);
+    grain::gather_forces<Model>(c, w.chunks, w.grains, w.incoming_first, w.incoming, w.sleepers);
   } else {
-    grain::gather_forces<Model>(c, w.chunks, w.particles, w.incoming_first, w.incoming);
+    grain::gather_forces<Model>(c, w.chunks, w.grains, w.incoming_first, w.incoming);
   }
 }
 
@@ -28,7 +28,7 @@ grain::MovingStage<typename Model::Shape> moving_stage(const WorldState<Model>& 
 template <class Model>
 void move_chunk(WorldState<Model>& w, std::size_t c) {
   gather_forces(w, c);
-  if (!w.chunks[c].asleep) grain::move_chunk<Model>(c, w.chunks[c], w.particles, moving_stage(w));
+  if (!w.chunks[c].asleep) grain::move_chunk<Model>(c, w.chunks[c], w.grains, moving_stage(w));
 }
 
 /// All contacts at the present state, and the loads that they put on bodies, whose sums of forces are clear. Chunks are
@@ -92,7 +92,7 @@ void advance(WorldState<Model>& w) {
       const auto [begin, end] = w.own_chunks();
       w.executor.for_each(end - begin, [&, first = begin](std::size_t k) {
         const std::size_t c = first + k;
-        if (!w.chunks[c].asleep) grain::predict_chunk<Model>(c, w.chunks[c], w.particles, moving_stage(w));
+        if (!w.chunks[c].asleep) grain::predict_chunk<Model>(c, w.chunks[c], w.grains, moving_stage(w));
       });
     }
     // The machine's stage clears the bodies' sums, calls for the contacts, adds joints and drives, and moves the
@@ -136,12 +136,12 @@ void initialise(WorldState<Model>& w) {
     w.executor.for_each(end - begin, [&, first = begin](std::size_t k) { f(first + k); });
   };
   if (w.list_valid) {
-    for_each_own_chunk([&](std::size_t c) { grain::refresh_chunk<Model>(c, w.chunks[c], w.particles, w.species); });
+    for_each_own_chunk([&](std::size_t c) { grain::refresh_chunk<Model>(c, w.chunks[c], w.grains, w.species); });
   }
   w.machine_solver.initialise(w.machine, w.time, w.options.gravity, [&] { evaluate_contacts(w); });
   for_each_own_chunk([&](std::size_t c) {
     gather_forces(w, c);
-    grain::initialise_chunk<Model>(c, w.particles, w.inertia, w.options.gravity);
+    grain::initialise_chunk<Model>(c, w.grains, w.inertia, w.options.gravity);
   });
   if constexpr (Model::Domain::has_ranks) gather_rows(w);
 }

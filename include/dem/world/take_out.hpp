@@ -15,7 +15,7 @@ void take_out_row(WorldState<Model>& w, std::size_t row, std::uint32_t id) {
   constexpr std::uint64_t most_steps = 16;
   if (w.to_remove.empty()) w.remove_by = w.step + most_steps;
   wake_around(w, row);
-  w.particles.row_of[id] = w.particles.gone;
+  w.grains.row_of[id] = w.grains.gone;
   w.to_remove.push_back(id);
 }
 
@@ -26,7 +26,7 @@ void take_out(WorldState<Model>& w) {
   const bool ends = w.borders && w.options.beyond_domain == BeyondDomain::remove;
   if (w.outlets.empty() && !ends) [[likely]]
     return;
-  const auto& p = w.particles;
+  const auto& p = w.grains;
   struct Leaver {
     std::uint32_t row, id, species;
   };

@@ -144,59 +144,59 @@ class World : public WorldSetup<M> {
 
   // ---- looking -----------------------------------------------------------------------------------------------------
 
-  std::size_t particle_count() const { return state_.particles.count - state_.to_remove.size(); }
+  std::size_t grain_count() const { return state_.grains.count - state_.to_remove.size(); }
   /// All grains that are there, in the order in which they were added.
-  std::vector<ParticleId> particles() const {
-    std::vector<ParticleId> ids;
-    for (std::size_t k = 0; k < state_.particles.row_of.size(); ++k) {
-      if (state_.particles.row_of[k] == state_.particles.gone) continue;
-      ids.push_back(state_.particles.name(static_cast<std::uint32_t>(k)));
+  std::vector<GrainId> grains() const {
+    std::vector<GrainId> ids;
+    for (std::size_t k = 0; k < state_.grains.row_of.size(); ++k) {
+      if (state_.grains.row_of[k] == state_.grains.gone) continue;
+      ids.push_back(state_.grains.name(static_cast<std::uint32_t>(k)));
     }
-    if (!state_.particles.number.empty()) std::sort(ids.begin(), ids.end());
+    if (!state_.grains.number.empty()) std::sort(ids.begin(), ids.end());
     return ids;
   }
-  Vec3 position(ParticleId p) const { return to_eigen(state_.particles.position[row(p)]); }
-  Vec3 velocity(ParticleId p) const { return to_eigen(state_.particles.velocity[row(p)]); }
-  Vec3 angular_velocity(ParticleId p) const { return to_eigen(state_.particles.angular_velocity(row(p))); }
-  Mat3 rotation(ParticleId p) const { return to_eigen(state_.particles.rotation(row(p))); }
+  Vec3 position(GrainId p) const { return to_eigen(state_.grains.position[row(p)]); }
+  Vec3 velocity(GrainId p) const { return to_eigen(state_.grains.velocity[row(p)]); }
+  Vec3 angular_velocity(GrainId p) const { return to_eigen(state_.grains.angular_velocity(row(p))); }
+  Mat3 rotation(GrainId p) const { return to_eigen(state_.grains.rotation(row(p))); }
   /// Contact force (N) and torque (N m) on a grain in the last force evaluation.
-  Vec3 force(ParticleId p) const { return to_eigen(state_.particles.force[row(p)]); }
-  Vec3 torque(ParticleId p) const { return to_eigen(state_.particles.torque[row(p)]); }
+  Vec3 force(GrainId p) const { return to_eigen(state_.grains.force[row(p)]); }
+  Vec3 torque(GrainId p) const { return to_eigen(state_.grains.torque[row(p)]); }
   /// Whether a grain sleeps (WorldOptions::sleep).
-  bool is_asleep(ParticleId p) const { return dem::is_asleep(state_, state_.particles.id[row(p)]); }
+  bool is_asleep(GrainId p) const { return dem::is_asleep(state_, state_.grains.id[row(p)]); }
   /// How many grains sleep.
   std::size_t asleep_count() const {
     require_between_runs("how many grains sleep");
     if (!state_.options.sleep) return 0;
     const auto& rests = state_.sleepers.grains;
-    const auto& rows = state_.particles.row_of;
+    const auto& rows = state_.grains.row_of;
     std::size_t count = 0;
     for (std::size_t id = 0; id < rests.size(); ++id) {
-      count += rests[id].asleep && rows[id] != state_.particles.gone ? 1 : 0;
+      count += rests[id].asleep && rows[id] != state_.grains.gone ? 1 : 0;
     }
     return count;
   }
-  SpeciesId species_of(ParticleId p) const { return SpeciesId(state_.particles.species[row(p)]); }
+  SpeciesId species_of(GrainId p) const { return SpeciesId(state_.grains.species[row(p)]); }
   const Species<Shape>& species(SpeciesId s) const { return known(state_.species, s, "species"); }
 
-  void set_velocity(ParticleId p, const Vec3& v) {
+  void set_velocity(GrainId p, const Vec3& v) {
     require_finite(v, "velocity of a grain");
     wake_around(state_, row_that_moves(p));
-    state_.particles.velocity.set(row(p), from_eigen(v));
+    state_.grains.velocity.set(row(p), from_eigen(v));
     initialised_ = false;
   }
   /// rad/s, global axes.
-  void set_angular_velocity(ParticleId p, const Vec3& w) {
+  void set_angular_velocity(GrainId p, const Vec3& w) {
     require_finite(w, "angular velocity of a grain");
     wake_around(state_, row_that_moves(p));
-    state_.particles.local_angular_velocity.set(row(p), from_eigen(Vec3(rotation(p).transpose() * w)));
+    state_.grains.local_angular_velocity.set(row(p), from_eigen(Vec3(rotation(p).transpose() * w)));
     initialised_ = false;
   }
   /// Puts a grain elsewhere; its contacts there start without friction, those that it still has go on.
-  void set_position(ParticleId p, const Vec3& x) {
+  void set_position(GrainId p, const Vec3& x) {
     require_finite(x, "position of a grain");
     wake_around(state_, row_that_moves(p));
-    state_.particles.position.set(row(p), from_eigen(x));
+    state_.grains.position.set(row(p), from_eigen(x));
     touched();
   }
 

@@ -77,9 +77,9 @@ class WorldSetup {
   /// Adds a grain. In a world that runs, all others go on as they were; the new one begins with weight alone, so that
   /// what it touches already acts on it from the next evaluation on. Throws Error for an unknown species, a position
   /// that is not finite, or a rotation that is none.
-  ParticleId add_particle(const NewParticle& n) {
+  GrainId add_grain(const NewGrain& n) {
     require_between_runs("a new grain");
-    auto& p = state_.particles;
+    auto& p = state_.grains;
     const std::uint32_t id = p.given;
     if (n.species.index() >= state_.species.size()) {
       fail("a grain was given species {}, but the world has {}; call add_species first", n.species.value,
@@ -109,8 +109,8 @@ class WorldSetup {
   /// the body carries it from here on, and feels the forces on it. Its mass is not added to the body's. Attached to
   /// ground() it stands still, as one that is not attached does, and loads the ground. Throws Error for an unknown
   /// body, and for a species of grains that move.
-  void attach(ParticleId p, BodyId body) {
-    if (!state_.species[state_.particles.species[row(p)]].is_held()) {
+  void attach(GrainId p, BodyId body) {
+    if (!state_.species[state_.grains.species[row(p)]].is_held()) {
       fail("grain {} is to be attached to a body, but moves by itself; make its species with SpeciesOptions::held",
            p.value);
     }
@@ -120,9 +120,9 @@ class WorldSetup {
     initialised_ = false;
   }
   /// Takes a grain out of the world; its number is not given again. The ids of others stay.
-  void remove_particle(ParticleId p) {
+  void remove_grain(GrainId p) {
     const std::size_t at = row(p);
-    take_out_row(state_, at, state_.particles.id[at]);
+    take_out_row(state_, at, state_.grains.id[at]);
     touched();
   }
   /// A box that takes grains out while the world runs, and counts them: an outlet of a silo, the end of a conveyor. It
@@ -246,9 +246,9 @@ class WorldSetup {
     checked_ = false;
     return SurfaceId(state_.surfaces.size() - 1);
   }
-  std::size_t row(ParticleId p) const {
+  std::size_t row(GrainId p) const {
     require_between_runs("a grain");
-    const auto& grains = state_.particles;
+    const auto& grains = state_.grains;
     const std::uint32_t at = grains.find(p), row = at == grains.gone ? grains.gone : grains.row_of[at];
     if (row != grains.gone) [[likely]]
       return row;
@@ -267,9 +267,9 @@ class WorldSetup {
     if (!is_finite(v)) fail("{} is ({:g}, {:g}, {:g}), but must be finite", what, v.x(), v.y(), v.z());
   }
   /// The row of a grain that moves by itself.
-  std::size_t row_that_moves(ParticleId p) const {
+  std::size_t row_that_moves(GrainId p) const {
     const std::size_t r = row(p);
-    if (state_.species[state_.particles.species[r]].is_held()) {
+    if (state_.species[state_.grains.species[r]].is_held()) {
       fail("grain {} is held and cannot be moved by hand; move the body that it is attached to", p.value);
     }
     return r;

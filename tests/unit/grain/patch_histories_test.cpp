@@ -74,16 +74,16 @@ std::array<double, 2> slide_over_edge() {
   World<PressedCubes<Law>> w(options);
   const double k1 = 1e4, k2 = 2e4, half = 1e-3;
   w.set_contact({{k1, k2}, {}});
-  NewParticle n;
+  NewGrain n;
   n.species = w.add_species(shape::cube(half));
-  const ParticleId lower = w.add_particle(n);
+  const GrainId lower = w.add_grain(n);
   n.position = {0, 0, 2 * half};
   n.rotation = Eigen::AngleAxisd(0.3, Vec3::UnitZ()).toRotationMatrix();  // edges cross edges
-  const ParticleId upper = w.add_particle(n);
+  const GrainId upper = w.add_grain(n);
   const auto force = [&](double x, double overlap) {
     w.set_position(lower, {0, 0, 0});
     w.set_position(upper, {x, 0.2 * half, 2 * half - overlap});
-    for (const ParticleId p : {lower, upper}) {
+    for (const GrainId p : {lower, upper}) {
       w.set_velocity(p, {0, 0, 0});
       w.set_angular_velocity(p, {0, 0, 0});
     }

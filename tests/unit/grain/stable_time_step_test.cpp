@@ -146,11 +146,11 @@ TEMPLATE_TEST_CASE("a bed is stable at the stable time step", "", Sphere, Cube8)
     w.add_surface(w.ground(), dem::surface::Plane{}, lid);
     Random random(1);
     for (int n = 0; n < 64; ++n) {
-      dem::NewParticle grain;
+      dem::NewGrain grain;
       grain.species = SpeciesId(0);
       grain.position = Vec3::Constant(r - overlap) + pitch * Vec3(n % 4, n / 4 % 4, n / 16);
       grain.velocity = random.vector(1e-3);
-      w.add_particle(grain);
+      w.add_grain(grain);
     }
     double largest = 0.0;
     for (int n = 0; n < 100; ++n) {

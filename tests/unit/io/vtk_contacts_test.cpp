@@ -17,8 +17,8 @@ TEST_CASE("force chains are written as lines with their forces at both ends") {
   ForceLine pair, wall;
   pair.from = {0, 0, 0};
   pair.to = {0, 0, 2};
-  pair.grain = dem::ParticleId(3);
-  pair.other_grain = dem::ParticleId(4);
+  pair.grain = dem::GrainId(3);
+  pair.other_grain = dem::GrainId(4);
   pair.force = {0, 3, -4};
   pair.normal_force = 4.0;
   pair.friction = {0, 3, 0};

@@ -45,15 +45,15 @@ struct FewGrains {
   std::vector<std::size_t> kinds;
 
   const State& state() const { return all; }
-  std::vector<dem::ParticleId> particles() const {
-    std::vector<dem::ParticleId> ids;
-    for (std::size_t k = 0; k < kinds.size(); ++k) ids.push_back(dem::ParticleId(k));
+  std::vector<dem::GrainId> grains() const {
+    std::vector<dem::GrainId> ids;
+    for (std::size_t k = 0; k < kinds.size(); ++k) ids.push_back(dem::GrainId(k));
     return ids;
   }
-  dem::SpeciesId species_of(dem::ParticleId p) const { return dem::SpeciesId(kinds[p.index()]); }
-  Vec3 position(dem::ParticleId p) const { return {10.0 * static_cast<double>(p.index()), 0, 0}; }
-  Vec3 velocity(dem::ParticleId) const { return {3, 4, 0}; }
-  dem::Mat3 rotation(dem::ParticleId) const { return dem::Mat3::Identity(); }
+  dem::SpeciesId species_of(dem::GrainId p) const { return dem::SpeciesId(kinds[p.index()]); }
+  Vec3 position(dem::GrainId p) const { return {10.0 * static_cast<double>(p.index()), 0, 0}; }
+  Vec3 velocity(dem::GrainId) const { return {3, 4, 0}; }
+  dem::Mat3 rotation(dem::GrainId) const { return dem::Mat3::Identity(); }
 };
 
 }  // namespace

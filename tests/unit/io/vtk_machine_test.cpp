@@ -66,7 +66,7 @@ TEST_CASE("a frame of a world shows its grains, and its surfaces of every kind w
   world.add_surface(lift, dem::surface::Box({0.1, 0.1, 0.01}));
   const auto hidden = world.add_surface(lift, dem::surface::Sphere(0.01));
   world.set_active(hidden, false);
-  world.add_particle({.species = species, .position = {0, 0, 1e-3}});
+  world.add_grain({.species = species, .position = {0, 0, 1e-3}});
   REQUIRE(world.run_for(0.1));
 
   const TempFolder folder;

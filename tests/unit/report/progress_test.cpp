@@ -228,7 +228,7 @@ TEST_CASE("a stage that ends early says so") {
   try {
     Progress progress(bench.options(false));
     progress.begin("settle");
-    throw std::runtime_error("lost a particle");
+    throw std::runtime_error("lost a grain");
   } catch (const std::runtime_error&) {
   }
   CHECK(bench.out.take() == "settle: started\nsettle: stopped after 0.0 s\n");

@@ -52,8 +52,8 @@ TEST_CASE("frames of a world hold its grains, surfaces and bodies where they are
   world.machine().add_motion(
       dem::mbd::prescribed_position("up", lift, Vec3::UnitZ(), dem::mbd::Signal::ramp(0.0, 0.01)));
   const auto plate = world.add_surface(lift, dem::surface::Box({0.1, 0.1, 0.01}));
-  const auto resting = world.add_particle({.species = small, .position = {0, 0, 1e-3}});
-  const auto falling = world.add_particle({.species = small, .position = {0.01, 0, 0.05}});
+  const auto resting = world.add_grain({.species = small, .position = {0, 0, 1e-3}});
+  const auto falling = world.add_grain({.species = small, .position = {0.01, 0, 0.05}});
 
   Replay replay({.frames = 3, .plane_size = 0.2});
   const dem::io::SurfaceMesh mesh = dem::io::box_mesh({1, 1, 1});
@@ -68,9 +68,9 @@ TEST_CASE("frames of a world hold its grains, surfaces and bodies where they are
 
   REQUIRE(world.run_for(0.02));
   world.set_active(plate, false);
-  world.remove_particle(resting);
+  world.remove_grain(resting);
   const auto large = world.add_species(dem::shape::Sphere(2e-3));
-  const auto late = world.add_particle({.species = large, .position = {-0.02, 0, 0.2}, .velocity = {3, 4, 0}});
+  const auto late = world.add_grain({.species = large, .position = {-0.02, 0, 0.2}, .velocity = {3, 4, 0}});
   world.add_surface(world.ground(), dem::surface::Box({0.1, 0.1, 0.1}), {.position = {1, 2, 3}});
   REQUIRE(world.run(1));
   CHECK(replay.record(world, bodies));
@@ -125,10 +125,10 @@ TEST_CASE("frames of a world hold the largest forces at contacts") {
   world.add_surface(world.ground(), dem::surface::Plane{}, {.name = "wall", .position = {0, 0, -1}});
   const auto floor = world.add_surface(world.ground(), dem::surface::Plane{}, {.name = "floor"});
   // Towers of three, whose upper balls came first, and whose steps down are to their bearers.
-  std::vector<dem::ParticleId> top, middle, low;
-  for (int k = 0; k < 4; ++k) top.push_back(world.add_particle({.species = ball, .position = {0.01 * k, 0, 5 * r}}));
-  for (int k = 0; k < 4; ++k) middle.push_back(world.add_particle({.species = ball, .position = {0.01 * k, 0, 3 * r}}));
-  for (int k = 0; k < 4; ++k) low.push_back(world.add_particle({.species = ball, .position = {0.01 * k, 0, r}}));
+  std::vector<dem::GrainId> top, middle, low;
+  for (int k = 0; k < 4; ++k) top.push_back(world.add_grain({.species = ball, .position = {0.01 * k, 0, 5 * r}}));
+  for (int k = 0; k < 4; ++k) middle.push_back(world.add_grain({.species = ball, .position = {0.01 * k, 0, 3 * r}}));
+  for (int k = 0; k < 4; ++k) low.push_back(world.add_grain({.species = ball, .position = {0.01 * k, 0, r}}));
   const double weight = world.species(ball).mass * 9.81;
 
   // They are found of a world that has never moved too: the lowest balls are pressed in by nothing yet.
@@ -145,7 +145,7 @@ TEST_CASE("frames of a world hold the largest forces at contacts") {
     return Vec3(replay.origin() + Vec3(x[0], x[1], x[2]));
   };
   for (std::size_t k = 0; k < 4; ++k) {
-    const auto find = [&](dem::ParticleId grain, std::size_t partner, bool on_surface) {
+    const auto find = [&](dem::GrainId grain, std::size_t partner, bool on_surface) {
       for (const KeptForce& f : all.frames().at(1).forces) {
         if (f.grain == grain.index() && f.partner == partner && (f.on_surface != 0) == on_surface) return f;
       }

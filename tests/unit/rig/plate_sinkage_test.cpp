@@ -149,7 +149,7 @@ TEST_CASE(
   // At rest the box carries the grains: friction holds no part of them but against the box itself.
   double up = 0.0;
   for (std::size_t k = 0; k < 9; ++k) up -= bed.world.surface_force(dem::SurfaceId(k)).z();  // floor and 8 walls
-  const double weight = 9.81 * 2650.0 * bed.grain_volume() * static_cast<double>(bed.world.particle_count());
+  const double weight = 9.81 * 2650.0 * bed.grain_volume() * static_cast<double>(bed.world.grain_count());
   CHECK(up == Approx(weight).epsilon(0.02));  // rest is a speed below 3 mm/s, not a force
 
   auto settings = small();

@@ -56,7 +56,7 @@ dem::World<Balls> balls(double mu, const Vec3& gravity) {
   const auto ball = world.add_species(dem::shape::Sphere(2e-3));
   world.add_surface(world.ground(), dem::surface::Plane{});
   for (int k = 0; k < 8; ++k) {
-    world.add_particle(
+    world.add_grain(
         {.species = ball, .position = Vec3(3e-3 * (k % 2), 3e-3 * (k / 2 % 2) + 1e-4 * k, 3e-3 + 4.2e-3 * (k / 4))});
   }
   return world;
@@ -117,7 +117,7 @@ struct PushedBalls : Rig {
   void go_on(dem::World<Balls>& world, Session& session, Found& to) {
     dem::rig::run(world, 1e-3);
     double height = 0.0, speed = 0.0;
-    for (const auto p : world.particles()) height += world.position(p).z(), speed += world.velocity(p).norm();
+    for (const auto p : world.grains()) height += world.position(p).z(), speed += world.velocity(p).norm();
     to.samples.push_back({world.time(), height, speed});
     ++updates;
     session.update(world.time());

@@ -228,7 +228,7 @@ TEST_CASE("a wheel that spins on the spot on one heavy grain is braked by mu N r
     world.add_surface(world.ground(), surface::Box(Vec3(1, 1, 0.1)), {.position = {0, 0, -half - 0.05}});
     // So heavy that it stays: 8e3 kg. One of its balls, of radius 25 mm, has its top at x = y = 25 mm, z = 50 mm.
     const SpeciesId heavy = world.add_species(shape::cube8(half), {.density = 8e6});
-    world.add_particle({.species = heavy});
+    world.add_grain({.species = heavy});
     auto& m = world.machine();
     const Vec3 at(0.025, 0.025, half + r);
     Mat3 about_y;

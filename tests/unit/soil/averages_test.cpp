@@ -31,9 +31,9 @@ dem::World<Balls> moving_block(int n, double gravity = 0.0) {
   Random random(3);
   for (int k = 0; k < n * n * n; ++k) {
     const Vec3 cell(k % n, k / n % n, k / (n * n));
-    w.add_particle({.species = SpeciesId(static_cast<std::size_t>(k) % 2),
-                    .position = 1.9e-3 * cell + random.vector(5e-5),
-                    .velocity = Vec3(0.3, -0.1, 0.2) + random.vector(0.2)});
+    w.add_grain({.species = SpeciesId(static_cast<std::size_t>(k) % 2),
+                 .position = 1.9e-3 * cell + random.vector(5e-5),
+                 .velocity = Vec3(0.3, -0.1, 0.2) + random.vector(0.2)});
   }
   return w;
 }
@@ -72,7 +72,7 @@ TEST_CASE("the averages of a compressed lattice are those of its cell") {
   w.set_contact(sand<Balls>());
   w.add_species(Sphere(radius));
   for (int k = 0; k < n * n * n; ++k) {
-    w.add_particle({SpeciesId(0), pitch.cwiseProduct(Vec3(k % n, k / n % n, k / (n * n)))});
+    w.add_grain({SpeciesId(0), pitch.cwiseProduct(Vec3(k % n, k / n % n, k / (n * n)))});
   }
   const double cell = pitch.prod(), mass = w.species(SpeciesId(0)).mass, volume = 4.0 / 3 * M_PI * std::pow(radius, 3);
   const auto check = [&](const Average& a, double error) {
@@ -171,7 +171,7 @@ TEST_CASE("the stress in a settled bed is the weight above") {
     const double low = top * k / slices, high = top * (k + 1) / slices;
     double above = 0.0;
     for_each_grain(
-        w, [&](ParticleId p) { above += mass * g * std::clamp((w.position(p).z() - low) / (high - low), 0.0, 1.0); });
+        w, [&](GrainId p) { above += mass * g * std::clamp((w.position(p).z() - low) / (high - low), 0.0, 1.0); });
     // What is left of motion is 1e-4 of the weight of a grain at the most, and there are up to 300 of them.
     CHECK(found[static_cast<std::size_t>(k)].stress()(2, 2) * area == Approx(above).epsilon(1e-3));
     CHECK(found[static_cast<std::size_t>(k)].coordination > 3.0);
@@ -186,7 +186,7 @@ TEST_CASE("the temperature is the scatter of velocities about their mean") {
   const Vec3 mean(0.3, 0.0, -0.2);
   for (int k = 0; k < 6; ++k) {
     const double side = k % 2 == 0 ? 0.1 : -0.1;
-    w.add_particle({SpeciesId(0), {0.01 * k, 0, 0}, mean + side * Vec3::Unit(k / 2)});
+    w.add_grain({SpeciesId(0), {0.01 * k, 0, 0}, mean + side * Vec3::Unit(k / 2)});
   }
   const Average a = average_in(w, {Vec3(-1, -1, -1), Vec3(1, 1, 1)});
   CHECK((a.velocity - mean).norm() < 1e-15);
@@ -219,8 +219,8 @@ TEST_CASE("averages over time are means over moments, and velocities those of th
   w.set_contact(sand<Balls>());
   w.add_species(Sphere(radius));
   // Two balls alone: one is at rest, the other flies out of the box between the moments.
-  w.add_particle({SpeciesId(0), {0.05, 0.05, 0.05}});
-  w.add_particle({SpeciesId(0), {0.05, 0.09, 0.095}, {0, 0, 1}});
+  w.add_grain({SpeciesId(0), {0.05, 0.05, 0.05}});
+  w.add_grain({SpeciesId(0), {0.05, 0.09, 0.095}, {0, 0, 1}});
   const AverageGrid grid{{Vec3(0, 0, 0), Vec3(0.1, 0.1, 0.1)}};
   dem::soil::TimeAverages mean(grid);
   check_refused([&] { (void)mean.averages(); }, "no moments", "add(world)");

@@ -8,7 +8,7 @@
 #include <vector>
 
 using Catch::Approx;
-using dem::ParticleId;
+using dem::GrainId;
 using dem::SpeciesId;
 using dem::Vec3;
 using dem::soil::Container;
@@ -30,7 +30,7 @@ struct SoilOfBalls {
 /// What holds of every bed that is made.
 void check_bed(const dem::World<Balls>& w, const dem::soil::Bed<Balls>& bed) {
   double highest = 0.0, solid = 0.0;
-  for (const ParticleId p : w.particles()) {
+  for (const GrainId p : w.grains()) {
     // A ball bears less than 100 weights of 1.1e-4 N: it is pressed in by less than 6e-6 m.
     REQUIRE(bed.container().clearance(w.position(p)) > 1e-3 - 6e-6);
     highest = std::max(highest, w.position(p).z() + 1e-3);
@@ -123,7 +123,7 @@ TEST_CASE("a lid presses a bed flat by its weight, and leaves it") {
   // Pressed once more, so that it can be looked at: the topmost balls touch one plane, and it stands still afterwards.
   bed.press();
   std::vector<double> tops;
-  for (const ParticleId p : soil.world.particles()) tops.push_back(soil.world.position(p).z() + 1e-3);
+  for (const GrainId p : soil.world.grains()) tops.push_back(soil.world.position(p).z() + 1e-3);
   std::sort(tops.rbegin(), tops.rend());
   // 100 Pa are 23 mN on some five balls: each and those below it spring back by 5 mN/(2,000 N/m), 2 um, and settle a
   // little.

@@ -36,7 +36,7 @@ TEST_CASE("a patch at rest stays at rest as it goes on, with as many grains and 
   MovingPatch<OpenCubes> patch(w, settled_tile(), short_patch);
   REQUIRE(w.run(1));
   REQUIRE(alone.run(1));
-  const std::size_t grains = w.particle_count(), ids = w.state().particles.row_of.size();
+  const std::size_t grains = w.grain_count(), ids = w.state().grains.row_of.size();
   CHECK(grains == 4 * 2 * 120);
   std::size_t bytes = 0, shifts = 0;
   double most = 0.0;
@@ -45,7 +45,7 @@ TEST_CASE("a patch at rest stays at rest as it goes on, with as many grains and 
     shifts += patch.follow(w, x) ? 1 : 0;
     CHECK(patch.front() - x >= short_patch.ahead);
     CHECK(patch.front() - patch.back() == Catch::Approx(4 * tile_length));
-    CHECK(w.particle_count() == grains);
+    CHECK(w.grain_count() == grains);
     REQUIRE(w.run(20));
     REQUIRE(alone.run(20));
     most = std::max(most, kinetic_energy_of_a_grain(w));
@@ -53,7 +53,7 @@ TEST_CASE("a patch at rest stays at rest as it goes on, with as many grains and 
   }
   CHECK(shifts == patch.shifts());
   CHECK(shifts == 11);
-  CHECK(w.state().particles.row_of.size() == ids);  // ids of the tiles that go are given to those that come
+  CHECK(w.state().grains.row_of.size() == ids);  // ids of the tiles that go are given to those that come
   CHECK(10 * dem::memory_bytes(w.state()) < 11 * bytes);
   // A fall through 1e-8 m: far less than the overlap of 6 cubes' weight on a stiffness of 2 kN/m, 6e-7 m.
   const double mass = w.species(SpeciesId(0)).mass;
@@ -67,8 +67,8 @@ TEST_CASE("grains of the patch that stay are moved by no bit when it goes on, an
   dem::World<OpenCubes> w = open_ground();
   MovingPatch<OpenCubes> patch(w, settled_tile(), short_patch);
   REQUIRE(w.run(50));
-  std::vector<std::pair<ParticleId, Vec3>> before;
-  for (const ParticleId p : w.particles()) {
+  std::vector<std::pair<GrainId, Vec3>> before;
+  for (const GrainId p : w.grains()) {
     if (w.position(p).x() > patch.back() + tile_length) before.emplace_back(p, w.position(p));
   }
   CHECK(patch.follow(w, 3.9 * tile_length));
@@ -81,7 +81,7 @@ TEST_CASE("grains of the patch that stay are moved by no bit when it goes on, an
     ++same;
   }
   CHECK(same > 300);
-  for (const ParticleId id : w.particles()) {
+  for (const GrainId id : w.grains()) {
     const double x = w.position(id).x();
     const bool is_held = w.species(w.species_of(id)).is_held();
     const double y = w.position(id).y();
@@ -111,14 +111,14 @@ TEST_CASE("grains that lie where a tile comes make room for it, and no others") 
   const double r = w.species(SpeciesId(0)).shape.bounding_radius(), front = patch.front();
   double high = 0.0;
   for (const auto& grain : settled_tile().grains) high = std::max(high, grain.position.z + 1.99 * r);
-  const ParticleId fallen = w.add_particle({SpeciesId(0), Vec3(front + 5e-3, tile_width, 1e-3)});
-  const ParticleId over = w.add_particle({SpeciesId(0), Vec3(front - 0.5e-3, tile_width, high)});
-  const ParticleId on_top = w.add_particle({SpeciesId(0), Vec3(front - 3e-3, tile_width, high)});
-  const ParticleId above = w.add_particle({SpeciesId(0), Vec3(front, 1.5 * tile_width, high + r)});
+  const GrainId fallen = w.add_grain({SpeciesId(0), Vec3(front + 5e-3, tile_width, 1e-3)});
+  const GrainId over = w.add_grain({SpeciesId(0), Vec3(front - 0.5e-3, tile_width, high)});
+  const GrainId on_top = w.add_grain({SpeciesId(0), Vec3(front - 3e-3, tile_width, high)});
+  const GrainId above = w.add_grain({SpeciesId(0), Vec3(front, 1.5 * tile_width, high + r)});
   REQUIRE(w.run(1));
   REQUIRE(patch.follow(w, 2.9 * tile_length));
   CHECK(patch.strays() == 2);
-  CHECK(w.particle_count() == 4 * 2 * 120 + 2);
+  CHECK(w.grain_count() == 4 * 2 * 120 + 2);
   CHECK(w.position(on_top).z() == Catch::Approx(high).epsilon(1e-6));
   CHECK(w.position(above).z() == Catch::Approx(high + r).epsilon(1e-6));
   check_refused([&] { (void)w.position(fallen); }, "was removed");
@@ -131,9 +131,9 @@ TEST_CASE("ruts stay behind as heights") {
   MovingPatch<OpenCubes> patch(w, settled_tile(), short_patch);
   // A trench: what is above 4 mm in the middle goes.
   const double middle = tile_width, deep = 4e-3;
-  for (const ParticleId p : w.particles()) {
+  for (const GrainId p : w.grains()) {
     const Vec3 x = w.position(p);
-    if (std::abs(x.y() - middle) < 3e-3 && x.z() > deep && !w.species(w.species_of(p)).is_held()) w.remove_particle(p);
+    if (std::abs(x.y() - middle) < 3e-3 && x.z() > deep && !w.species(w.species_of(p)).is_held()) w.remove_grain(p);
   }
   REQUIRE(w.run(1));
   REQUIRE(patch.follow(w, 3.9 * tile_length));
@@ -175,7 +175,7 @@ TEST_CASE("a patch doubles its length once, and says what that changed") {
     patch.follow(w, x += 0.5 * tile_length);
   }
   patch.note(2.5);
-  CHECK(w.particle_count() == 8 * 2 * 120);
+  CHECK(w.grain_count() == 8 * 2 * 120);
   const auto effect = patch.length_effect();
   CHECK(effect.before == 2.0);
   CHECK(effect.after == 2.5);
@@ -185,7 +185,7 @@ TEST_CASE("a patch doubles its length once, and says what that changed") {
   check_refused([&] { patch.double_length(); }, "once");
   for (int k = 0; k < 20; ++k) patch.follow(w, x += 0.5 * tile_length);
   CHECK(patch.tiles() == 8);
-  CHECK(w.particle_count() == 8 * 2 * 120);
+  CHECK(w.grain_count() == 8 * 2 * 120);
   double most = 0.0;
   for (int k = 0; k < 5; ++k) {
     REQUIRE(w.run(10));
@@ -199,9 +199,9 @@ TEST_CASE("on a patch parts keep the grains that they hold, and energy is counte
   const auto glued = w.add_species(dem::shape::cube8(half_edge), {.held = true});
   MovingPatch<OpenCubes> patch(w, settled_tile(), short_patch);
   const auto bob = add_pendulum(w);
-  const ParticleId grain = w.add_particle({glued, Vec3(0, 0.1, 0.3)});  // behind all of the patch, but the bob's
+  const GrainId grain = w.add_grain({glued, Vec3(0, 0.1, 0.3)});  // behind all of the patch, but the bob's
   w.attach(grain, bob);
-  w.remove_particle(ParticleId(3));  // gives its id to another
+  w.remove_grain(GrainId(3));  // gives its id to another
   REQUIRE(w.run(600));
   dem::count_energy(w);
   const auto counted = [&] {
@@ -219,7 +219,7 @@ TEST_CASE("on a patch parts keep the grains that they hold, and energy is counte
   const auto& body = w.machine().bodies()[bob.index()];
   CHECK((w.position(grain) - (body.position() + body.rotation() * Vec3(0, 0.1, 0))).norm() < 1e-12);
   // The id of the grain that went is another's now; the world has no more of them than it needs.
-  CHECK(w.state().particles.row_of.size() == 4 * 240 + 1);
+  CHECK(w.state().grains.row_of.size() == 4 * 240 + 1);
 }
 
 TEST_CASE("threads change no bit of a patch that goes on") {
@@ -236,8 +236,8 @@ TEST_CASE("threads change no bit of a patch that goes on") {
     return w;
   };
   const auto one = run(1), three = run(3);
-  REQUIRE(one.particles() == three.particles());
-  for (const ParticleId p : one.particles()) {
+  REQUIRE(one.grains() == three.grains());
+  for (const GrainId p : one.grains()) {
     CHECK(one.position(p) == three.position(p));
     CHECK(one.velocity(p) == three.velocity(p));
   }
@@ -254,7 +254,7 @@ TEST_CASE("patches that make no sense are refused in words") {
   refused({.tiles = 0, .rim = rim}, "0 x 1 tiles");
   dem::World<TiledCubes> cell = tiled_cell(4, 1);
   check_refused([&] { MovingPatch<TiledCubes>(cell, settled_tile(), {.tiles = 4, .rim = rim}); }, "repeats itself");
-  CHECK(w.particle_count() + cell.particle_count() == 0);
+  CHECK(w.grain_count() + cell.grain_count() == 0);
   MovingPatch<OpenCubes> patch(w, settled_tile(), short_patch);
   check_refused([&] { patch.follow(w, 1.0); }, "run away");
 }

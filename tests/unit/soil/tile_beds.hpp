@@ -55,7 +55,7 @@ inline const dem::soil::Tile& settled_tile() {
 template <class World>
 double kinetic_energy_of_a_grain(const World& w) {
   double sum = 0.0, count = 0.0;
-  for (const ParticleId p : w.particles()) {
+  for (const GrainId p : w.grains()) {
     if (w.species(w.species_of(p)).is_held()) continue;
     sum += 0.5 * mass_of(w, p) * w.velocity(p).squaredNorm();
     count += 1.0;

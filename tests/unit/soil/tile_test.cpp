@@ -28,7 +28,7 @@ double unrest(World& w) {
 /// The same of the cell itself, whose grains were stopped: what is left of its own settling.
 double unrest_of_the_cell() {
   dem::World<TiledCubes> w = settled_cell();
-  for (const ParticleId p : w.particles()) {
+  for (const GrainId p : w.grains()) {
     w.set_velocity(p, Vec3::Zero());
     w.set_angular_velocity(p, Vec3::Zero());
   }
@@ -40,7 +40,7 @@ double unrest_of_the_cell() {
 TEST_CASE("a tile that is laid in a cell of its own size goes on as the bed that it was taken from") {
   dem::World<TiledCubes> from = settled_cell(), to = tiled_cell();
   Random random(7);  // it is not at rest: what it remembers has to do with where it goes
-  for (const ParticleId p : from.particles()) from.set_velocity(p, random.vector(0.02));
+  for (const GrainId p : from.grains()) from.set_velocity(p, random.vector(0.02));
   const Tile moving = take_tile(from, {.stopped = false});
   const auto laid = lay_tiles(to, moving);
   CHECK(laid.grains == 120);
@@ -53,9 +53,9 @@ TEST_CASE("a tile that is laid in a cell of its own size goes on as the bed that
   // Its grains have other ids and rows: each of them is where one of the cell is. They go 20 um in that time. Sums of
   // forces are rounded in another order, places by 1e-18 m a step, which contacts enlarge.
   double farthest = 0.0;
-  for (const ParticleId p : to.particles()) {
+  for (const GrainId p : to.grains()) {
     double nearest = 1.0;
-    for (const ParticleId q : from.particles()) {
+    for (const GrainId q : from.grains()) {
       Vec3 apart = to.position(p) - from.position(q);
       apart.x() -= tile_length * std::round(apart.x() / tile_length);
       apart.y() -= tile_width * std::round(apart.y() / tile_width);
@@ -83,7 +83,7 @@ TEST_CASE("a bed of tiles rests as the tile itself does, with every contact's hi
   // Those that are free have the neighbours that they have in the cell, so that no more moves than there: the share of
   // grains that are held is left out of the mean, and rounding.
   CHECK(unrest(open) < 1.2 * itself);
-  for (const ParticleId p : open.particles()) CHECK(open.position(p).x() > 0.1 - 1e-9);
+  for (const GrainId p : open.grains()) CHECK(open.position(p).x() > 0.1 - 1e-9);
 
   // Without what the contacts remember, friction has to be stretched anew.
   Tile forgetful = tile;
@@ -143,7 +143,7 @@ TEST_CASE("without a rim no grain reaches over the border of the bed") {
   CHECK(laid.left_out > 20);
   CHECK(laid.grains + laid.left_out == 4 * 120);
   const double r = w.species(SpeciesId(0)).shape.bounding_radius();
-  for (const ParticleId p : w.particles()) {
+  for (const GrainId p : w.grains()) {
     CHECK(w.position(p).x() >= r);
     CHECK(w.position(p).x() <= 2 * tile_length - r);
     CHECK(w.position(p).y() >= r);
@@ -164,11 +164,11 @@ TEST_CASE("tiles that are laid between two steps leave the other grains as they 
     return w;
   };
   const auto with = run(1, true), threads = run(3, true), without = run(1, false);
-  for (const ParticleId p : with.particles()) {
+  for (const GrainId p : with.grains()) {
     CHECK(with.position(p) == threads.position(p));
     CHECK(with.velocity(p) == threads.velocity(p));
   }
-  for (const ParticleId p : without.particles()) {
+  for (const GrainId p : without.grains()) {
     CAPTURE(p.value);
     CHECK((with.position(p) - without.position(p)).norm() < 1e-12);  // sums are in the order of rows, which changed
   }
@@ -187,7 +187,7 @@ TEST_CASE("tiles that do not fit are refused in words") {
   check_refused([&] { lay_tiles(other, tile); }, "1 species, but the world 0");
   other.add_species(dem::shape::cube8(2 * half_edge));
   check_refused([&] { lay_tiles(other, tile); }, "species 0 of a tile", "kg");
-  CHECK(open.particle_count() + cell.particle_count() + other.particle_count() == 0);
+  CHECK(open.grain_count() + cell.grain_count() + other.grain_count() == 0);
   check_refused([&] { take_tile(cell); }, "without grains");
   Tile broken = tile;
   broken.contacts[0].j = 120;

@@ -20,8 +20,8 @@ dem::World<Balls> balls(std::size_t n, const std::vector<dem::SpeciesOptions>& k
   const double edge = 2e-3 * std::cbrt(static_cast<double>(n) / 12.0);
   std::uniform_real_distribution<double> place(-edge / 2, edge / 2);
   for (std::size_t k = 0; k < n; ++k) {
-    world.add_particle({.species = dem::SpeciesId(static_cast<std::uint32_t>(k % kinds.size())),
-                        .position = {place(engine), place(engine), place(engine)}});
+    world.add_grain({.species = dem::SpeciesId(static_cast<std::uint32_t>(k % kinds.size())),
+                     .position = {place(engine), place(engine), place(engine)}});
   }
   world.prepare();
   return world;
@@ -44,7 +44,7 @@ Pairs listed(const dem::World<Balls>& world) {
 Pairs expected(const dem::World<Balls>& world) {
   Pairs pairs;
   const auto& w = world.state();
-  const auto& p = w.particles;
+  const auto& p = w.grains;
   for (std::size_t i = 0; i < p.count; ++i) {
     for (std::size_t j = i + 1; j < p.count; ++j) {
       const auto &a = w.species[p.species[i]], &b = w.species[p.species[j]];

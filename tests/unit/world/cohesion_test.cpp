@@ -61,7 +61,7 @@ const double drawn = [] {
 template <class Model>
 struct OnPlane {
   World<Model> world;
-  ParticleId id;
+  GrainId id;
 
   OnPlane(const ContactParameters<Model>& p, double gap, const Vec3& velocity, double dt, bool box = false)
       : world(options({0, 0, 0}, dt)) {
@@ -74,7 +74,7 @@ struct OnPlane {
     } else {
       world.add_surface(world.ground(), surface::Plane{}, o);
     }
-    id = world.add_particle(grain_at({0, 0, r + gap}, velocity));
+    id = world.add_grain(grain_at({0, 0, r + gap}, velocity));
   }
   double gap() const { return world.position(id).z() - r; }
   double speed() const { return world.velocity(id).z(); }
@@ -170,8 +170,8 @@ TEMPLATE_TEST_CASE("grains find partners as far away as bridges reach, whatever 
     w.set_contact(wet<Model>(1.0));
     w.add_species(shape, {"grain", density});
     const double reach = shape.bounding_radius(), start = joined ? -1e-6 : 1e-9;
-    const auto a = w.add_particle(grain_at({0, 0, 0}));
-    const auto b = w.add_particle(grain_at({2 * reach + start, 0, 0}, {0.3, 0, 0}));
+    const auto a = w.add_grain(grain_at({0, 0, 0}));
+    const auto b = w.add_grain(grain_at({2 * reach + start, 0, 0}, {0.3, 0, 0}));
     const Vec3 p = momentum(w);
     const auto gap = [&] { return (w.position(b) - w.position(a)).norm() - 2 * reach; };
     // Spheres of radius r each: R* = r/2.
@@ -206,7 +206,7 @@ TEST_CASE("wet spheres do among wet clusters what they do alone, to the bit") {
     add_block(w, species, Vec3::Constant(1.05e-3), 2.02e-3, 6, 6, 8, 0.3);  // two chunks
     REQUIRE(w.run(1000));
     std::vector<Vec3> places;
-    for_each_grain(w, [&](ParticleId p) { places.push_back(w.position(p)); });
+    for_each_grain(w, [&](GrainId p) { places.push_back(w.position(p)); });
     return places;
   };
   World<WetModel> alone(options({0, 0, -9.81}, 5e-6, 1e-4));
@@ -225,10 +225,10 @@ TEST_CASE("a bridge between a sphere and a ball of a cluster pulls as between tw
                cube = w.add_species(shape::cube8(2 * r), {"grain", density});
     const Vec3 diagonal = Vec3::Ones().normalized();
     const double apart = std::sqrt(3.0) * r + 2 * r;  // of the centres when they touch
-    NewParticle grains[] = {grain_at({0, 0, 0}), grain_at((apart - 1e-6) * diagonal, 0.3 * diagonal)};
+    NewGrain grains[] = {grain_at({0, 0, 0}), grain_at((apart - 1e-6) * diagonal, 0.3 * diagonal)};
     grains[0].species = cube;
     grains[1].species = ball;
-    const auto first = w.add_particle(grains[cube_first ? 0 : 1]), second = w.add_particle(grains[cube_first ? 1 : 0]);
+    const auto first = w.add_grain(grains[cube_first ? 0 : 1]), second = w.add_grain(grains[cube_first ? 1 : 0]);
     const auto a = cube_first ? first : second, b = cube_first ? second : first;
     const Vec3 p = momentum(w);
     int seen = 0;
@@ -254,7 +254,7 @@ TEST_CASE("a bridge between an ellipsoid and a floor is one contact") {
   w.set_contact(wet<Model>(1.0));
   w.add_species(egg, {"grain", density});
   w.add_surface(w.ground(), surface::Plane{});
-  const auto id = w.add_particle(grain_at({0, 0, 0.9 * r - 1e-6}, {0, 0, 0.2}));
+  const auto id = w.add_grain(grain_at({0, 0, 0.9 * r - 1e-6}, {0, 0, 0.2}));
   int seen = 0;
   for (double gap = 0.0; gap < 0.9 * water.rupture; ++seen) {
     REQUIRE(w.run(10));
@@ -279,8 +279,8 @@ TEST_CASE("wet grains go the same way, to the bit, on any number of threads") {
     add_block(w, species, Vec3::Constant(1.05e-3), 2.02e-3, 6, 6, 15, 0.3);  // three chunks
     REQUIRE(w.run(300));
     std::vector<Vec3> all;
-    for_each_grain(w, [&](ParticleId p) { all.push_back(w.position(p)); });
-    for_each_grain(w, [&](ParticleId p) { all.push_back(w.angular_velocity(p)); });
+    for_each_grain(w, [&](GrainId p) { all.push_back(w.position(p)); });
+    for_each_grain(w, [&](GrainId p) { all.push_back(w.angular_velocity(p)); });
     return std::pair(all, w.state().rebuilds);
   };
   const auto [one, rebuilds] = run(1);
@@ -313,8 +313,8 @@ TEST_CASE("two grains that swing in an undamped pull across gaps keep their ener
   const auto check = [](auto& w, double v0, double k) {
     w.add_species(Sphere(r), {"grain", density});
     const double across = 0.7 * r, along = std::sqrt(4 * r * r - across * across);
-    const auto a = w.add_particle(grain_at({0, 0, 0}, {v0, 0, 0}));
-    const auto b = w.add_particle(grain_at({along - 1e-6, across, 0}, {-v0, 0, 0}));
+    const auto a = w.add_grain(grain_at({0, 0, 0}, {v0, 0, 0}));
+    const auto b = w.add_grain(grain_at({along - 1e-6, across, 0}, {-v0, 0, 0}));
     const auto gap = [&] { return (w.position(a) - w.position(b)).norm() - 2 * r; };
     double most[2] = {0, 0};  // kinetic energy in the first tenth and in the last
     int passages = 0;

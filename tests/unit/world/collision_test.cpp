@@ -24,14 +24,14 @@ Impact collide(double damping, double separation_factor, double steps) {
   w.add_species(Sphere(1e-3));
   w.add_species(Sphere(2e-3));
   const Vec3 n = Vec3(1, 2, -2) / 3.0;
-  dem::NewParticle a, b;
+  dem::NewGrain a, b;
   a.species = small;
   b.species = large;
   a.position = -1.01e-3 * n + Vec3(0.01, 0, 0);
   b.position = 2.01e-3 * n + Vec3(0.01, 0, 0);
   a.velocity = 0.3 * n;
   b.velocity = -0.2 * n;
-  const auto pa = w.add_particle(a), pb = w.add_particle(b);
+  const auto pa = w.add_grain(a), pb = w.add_grain(b);
   Impact result = {0, 0, momentum(w), {}, angular_momentum(w), {}};
   for (int step = 0; step < 10 * static_cast<int>(steps); ++step) {
     REQUIRE(w.step());
@@ -104,11 +104,11 @@ TEST_CASE("friction turns a glancing blow into spin") {
     w.set_contact({{2000.0, damping, 1.0}, {mu, 2000.0, cv, 1.0}});
     const auto ball = w.add_species(Sphere(r));
     w.add_surface(w.ground(), dem::surface::Plane{});
-    dem::NewParticle n;
+    dem::NewGrain n;
     n.species = ball;
     n.position = {0, 0, 1.001 * r};
     n.velocity = {vt, 0, -vn};
-    const auto p = w.add_particle(n);
+    const auto p = w.add_grain(n);
     REQUIRE(w.run_for(1e-3));
     REQUIRE(w.force(p).norm() == 0.0);
     const double e = w.velocity(p).z() / vn, change = mu * (1 + e) * vn;

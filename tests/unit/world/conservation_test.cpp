@@ -12,13 +12,13 @@ void add_swarm(World& w) {
   for (int i = 0; i < 6; ++i) {
     for (int j = 0; j < 6; ++j) {
       for (int k = 0; k < 6; ++k) {
-        dem::NewParticle p;
+        dem::NewGrain p;
         p.species = (i + j + k) % 2 == 0 ? large : small;
         p.position = 2.6e-3 * Vec3(i, j, k);
         p.rotation = random.rotation();
         p.velocity = -40.0 * (p.position - Vec3::Constant(6.5e-3)) + random.vector(0.1);
         p.angular_velocity = random.vector(50.0);
-        w.add_particle(p);
+        w.add_grain(p);
       }
     }
   }
@@ -30,21 +30,21 @@ void add_pair(World& w) {
   w.set_contact({{2000.0, 0.0, 1.0}, {0.0, 0.0, 0.0, 0.0}});
   const auto cube = w.add_species(dem::shape::cube8(1.2e-3));
   Random random(2);
-  dem::NewParticle n;
+  dem::NewGrain n;
   n.species = cube;
   for (const double side : {-1.0, 1.0}) {
     n.position = {side * 2.1e-3, side * 3e-4, side * 1e-4};
     n.velocity = {-side * 0.2, 0, 0};
     n.rotation = random.rotation();
     n.angular_velocity = random.vector(20.0);
-    w.add_particle(n);
+    w.add_grain(n);
   }
 }
 
 template <class World>
 std::size_t contacts(const World& w) {
   std::size_t n = 0;
-  for_each_grain(w, [&](ParticleId p) { n += w.force(p).norm() > 0.0; });
+  for_each_grain(w, [&](GrainId p) { n += w.force(p).norm() > 0.0; });
   return n;
 }
 
@@ -57,7 +57,7 @@ void check_conserved(double angular_tolerance) {
   const double e0 = kinetic_energy(w);
   // The sizes that the sums are made of, against which they round.
   double p_size = 0.0, l_size = 0.0;
-  for_each_grain(w, [&](ParticleId p) {
+  for_each_grain(w, [&](GrainId p) {
     p_size += mass_of(w, p) * w.velocity(p).norm();
     l_size += mass_of(w, p) * w.velocity(p).norm() * w.position(p).norm();
   });
@@ -96,7 +96,7 @@ TEST_CASE("the predictor-corrector's error of angular momentum falls with the sq
     add_pair(w);
     const Vec3 before = angular_momentum(w);
     REQUIRE(w.run_for(0.02));
-    REQUIRE(w.force(ParticleId(0)).norm() == 0.0);
+    REQUIRE(w.force(GrainId(0)).norm() == 0.0);
     return (angular_momentum(w) - before).norm();
   };
   const double coarse = error(4e-6), middle = error(2e-6), fine = error(1e-6);
@@ -113,7 +113,7 @@ TEST_CASE("without dampers and friction the energy comes back after a collision"
     REQUIRE(w.run(40));
     least = std::min(least, kinetic_energy(w));
   }
-  REQUIRE(w.force(ParticleId(0)).norm() == 0.0);
+  REQUIRE(w.force(GrainId(0)).norm() == 0.0);
   CHECK(least < 0.9 * e0);  // they did collide
   // (omega dt)^2 = 2e-4 of the energy stored in the springs, for each of a few contacts.
   CHECK(kinetic_energy(w) == Approx(e0).epsilon(1e-3));

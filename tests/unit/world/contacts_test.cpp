@@ -66,7 +66,7 @@ TEST_CASE("listed contacts are what moves the grains") {
   const auto before = w;
   REQUIRE(w.step());
   for (const auto& [id, force] : sum) {
-    const ParticleId p(id);
+    const GrainId p(id);
     if (!p.valid()) continue;  // of two bodies
     const double mass = mass_of(w, p);
     const Vec3 moved = mass * (w.velocity(p) - before.velocity(p)) / 1e-5 - mass * Vec3(0, 0, -g);
@@ -82,11 +82,11 @@ TEST_CASE("a listed contact tells what its laws remember") {
   w.add_species(Sphere(1e-3));
   w.add_surface(w.ground(), dem::surface::Plane{});
   const double mass = w.species(SpeciesId(0)).mass, depth = mass * g / 2000.0;
-  w.add_particle(grain_at({0, 0, 1e-3 - depth}));
+  w.add_grain(grain_at({0, 0, 1e-3 - depth}));
   const auto fresh = contacts_of(w);
   REQUIRE(fresh.size() == 1);
   CHECK(fresh[0].kind == ContactKind::grain_on_surface);
-  CHECK(fresh[0].grain == ParticleId(0));
+  CHECK(fresh[0].grain == GrainId(0));
   CHECK(fresh[0].surface == SurfaceId(0));
   CHECK(fresh[0].overlap == Approx(depth).epsilon(1e-9));
   CHECK(fresh[0].normal_force() == Approx(mass * g).epsilon(1e-9));
@@ -100,8 +100,7 @@ TEST_CASE("a listed contact tells what its laws remember") {
   const double slip = later[0].last.friction.slip.x;
   CHECK(slip > 0.0);
   CHECK(later[0].history.friction.slip.x ==
-        Approx(slip + 1e-5 * (w.velocity(ParticleId(0)).x() - 1e-3 * w.angular_velocity(ParticleId(0)).y()))
-            .epsilon(1e-3));
+        Approx(slip + 1e-5 * (w.velocity(GrainId(0)).x() - 1e-3 * w.angular_velocity(GrainId(0)).y())).epsilon(1e-3));
 }
 
 TEST_CASE("force lines join the contacts of a pair") {
@@ -110,20 +109,20 @@ TEST_CASE("force lines join the contacts of a pair") {
   w.set_contact(sand<models::Cubes>());
   w.add_species(dem::shape::cube8(1e-3));
   w.add_surface(w.ground(), dem::surface::Plane{});
-  w.add_particle(grain_at({0, 0, 0.999e-3}));
-  w.add_particle(grain_at({0, 0, 2.998e-3}));
+  w.add_grain(grain_at({0, 0, 0.999e-3}));
+  w.add_grain(grain_at({0, 0, 2.998e-3}));
   const auto contacts = contacts_of(w);
   CHECK(contacts.size() == 8);
   const auto lines = dem::force_lines(contacts);
   REQUIRE(lines.size() == 2);
   for (const auto& line : lines) {
     CHECK(line.points == 4);
-    CHECK(line.grain == ParticleId(0));
+    CHECK(line.grain == GrainId(0));
     CHECK(line.overlap == Approx(1e-6).epsilon(1e-6));
     CHECK(line.normal_force == Approx(4 * 2000.0 * 1e-6).epsilon(1e-6));
     CHECK((line.from - Vec3(0, 0, 0.999e-3)).norm() < 1e-15);
   }
-  CHECK(lines[0].other_grain == ParticleId(1));
+  CHECK(lines[0].other_grain == GrainId(1));
   CHECK((lines[0].to - Vec3(0, 0, 2.998e-3)).norm() < 1e-15);
   CHECK(lines[1].surface == SurfaceId(0));
   CHECK((lines[1].to - Vec3(0, 0, -0.5e-6)).norm() < 1e-9);

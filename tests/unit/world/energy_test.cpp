@@ -100,7 +100,7 @@ TEST_CASE("a ball's energy goes into the spring and comes back") {
   w.set_contact({contact::Hertz::with_restitution(pair, 1.0), friction::Mindlin::with(pair, 0.0)});
   w.add_species(Sphere(ball_radius));
   w.add_surface(w.ground(), surface::Plane{});
-  const ParticleId ball = w.add_particle(grain_at({0, 0, 1.001 * ball_radius}, {0, 0, -0.5}));
+  const GrainId ball = w.add_grain(grain_at({0, 0, 1.001 * ball_radius}, {0, 0, -0.5}));
   count_energy(w);
   const double start = energy_of(w).kinetic();
   CHECK(start == Approx(0.5 * mass_of(w, ball) * 0.25));
@@ -124,7 +124,7 @@ TEST_CASE("what a damper takes is 1 - e^2 of an impact") {
   w.set_contact({Linear::with_restitution(2000.0, restitution), {0.0, 2000.0, 0.0}});
   w.add_species(Sphere(ball_radius));
   w.add_surface(w.ground(), surface::Plane{});
-  const ParticleId ball = w.add_particle(grain_at({0, 0, 1.001 * ball_radius}, {0, 0, -0.5}));
+  const GrainId ball = w.add_grain(grain_at({0, 0, 1.001 * ball_radius}, {0, 0, -0.5}));
   count_energy(w);
   const double start = energy_of(w).kinetic();
   REQUIRE(w.run(1000));
@@ -144,7 +144,7 @@ TEST_CASE("what friction takes from a sliding ball is what the slide costs") {
   w.add_species(Sphere(ball_radius));
   w.add_surface(w.ground(), surface::Plane{});
   const double mass = w.species(SpeciesId(0)).mass;
-  const ParticleId ball = w.add_particle(grain_at({0, 0, ball_radius - mass * g / 2000.0}, {0.2, 0, 0}));
+  const GrainId ball = w.add_grain(grain_at({0, 0, ball_radius - mass * g / 2000.0}, {0.2, 0, 0}));
   count_energy(w);
   const GrainEnergy start = energy_of(w);
   REQUIRE(w.run_for(0.04));  // it rolls after 2/7 v/(mu g) = 19 ms
@@ -163,7 +163,7 @@ TEST_CASE("the work of a moving wall is what the grain gains") {
   auto& m = w.machine();
   const auto wall = m.add_body(mbd::box_body("wall", {0.01, 0.01, 0.01}, 1e6).at({0, 0, -0.005}).moving({0, 0, 0.1}));
   w.add_surface(wall, surface::Box({0.01, 0.01, 0.01}));
-  const ParticleId ball = w.add_particle(grain_at({0, 0, 1.001 * ball_radius}));
+  const GrainId ball = w.add_grain(grain_at({0, 0, 1.001 * ball_radius}));
   count_energy(w);
   REQUIRE(w.run(1500));
   REQUIRE(w.force(ball).norm() == 0.0);
@@ -220,7 +220,7 @@ TEST_CASE("counting energy changes no bit of a run, and grains that come and go 
     if (counts) count_energy(w);
     REQUIRE(w.run(2000));
     Vec3 sum = Vec3::Zero();
-    for (const ParticleId p : w.particles()) sum += w.position(p);
+    for (const GrainId p : w.grains()) sum += w.position(p);
     return sum;
   };
   CHECK(run(true) == run(false));
@@ -228,14 +228,14 @@ TEST_CASE("counting energy changes no bit of a run, and grains that come and go 
   World<Balls> w(options({0, 0, -g}, 5e-6));
   w.set_contact(sand<Balls>());
   w.add_species(Sphere(ball_radius));
-  w.add_particle(grain_at({0, 0, 0.0}, {0, 0, 1.0}));
-  w.add_particle(grain_at({0, 0, 0.1}, {0, 0, -1.0}));
+  w.add_grain(grain_at({0, 0, 0.0}, {0, 0, 1.0}));
+  w.add_grain(grain_at({0, 0, 0.1}, {0, 0, -1.0}));
   count_energy(w);
   const GrainEnergy start = energy_of(w);
-  w.remove_particle(ParticleId(0));
-  w.add_particle(grain_at({0.1, 0, 0.0}, {0, 0, 2.0}));
+  w.remove_grain(GrainId(0));
+  w.add_grain(grain_at({0.1, 0, 0.0}, {0, 0, 2.0}));
   REQUIRE(w.run(100));
-  const double mass = mass_of(w, ParticleId(1));
+  const double mass = mass_of(w, GrainId(1));
   CHECK(energy_of(w).came == Approx(0.5 * mass * (4.0 - 1.0)).epsilon(1e-8));
   CHECK(energy_of(w).balance() == Approx(start.balance()).epsilon(1e-6));  // a step of Euler loses (g dt)^2/2
 }
@@ -252,10 +252,10 @@ TEST_CASE("what an attached grain does to others is the work of its part") {
   const BodyId plunger = w.machine().add_fixed_body("plunger", top);
   w.machine().add_motion(
       mbd::prescribed_position("plunge", plunger, Vec3::UnitZ(), mbd::Signal::sine(6e-3, 20.0, 3.14159265358979)));
-  NewParticle head;
+  NewGrain head;
   head.species = held;
   head.position = top;
-  w.attach(w.add_particle(head), plunger);
+  w.attach(w.add_grain(head), plunger);
   const GrainEnergy e = run_counted(w, 20, 3000, 5e-3, 1e-3);
   CHECK(e.by_surfaces > 0.1 * e.dissipated());
 }

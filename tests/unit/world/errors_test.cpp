@@ -54,14 +54,14 @@ TEST_CASE("a species needs a density and a shape") {
 TEST_CASE("a grain that cannot be is refused") {
   dem::World<Balls> w;
   const auto ball = w.add_species(Sphere(1e-3));
-  dem::NewParticle good;
+  dem::NewGrain good;
   good.species = ball;
   const auto refused = [&](auto&& change) {
-    dem::NewParticle n = good;
+    dem::NewGrain n = good;
     change(n);
-    return message_of([&] { w.add_particle(n); });
+    return message_of([&] { w.add_grain(n); });
   };
-  w.add_particle(good);
+  w.add_grain(good);
   check_says(refused([](auto& n) { n.species = SpeciesId(3); }), {"species 3", "the world has 1", "add_species"});
   check_says(refused([](auto& n) { n.species = SpeciesId(); }), {"species", "add_species"});
   check_says(refused([](auto& n) { n.position.x() = not_a_number; }), {"grain 1", "position", "not finite"});
@@ -70,7 +70,7 @@ TEST_CASE("a grain that cannot be is refused") {
   check_says(refused([](auto& n) { n.rotation *= 1.01; }), {"grain 1", "rotation", "normalise"});
   check_says(refused([](auto& n) { n.rotation.col(0) *= -1.0; }), {"grain 1", "rotation"});
   check_says(refused([](auto& n) { n.rotation(0, 0) = not_a_number; }), {"grain 1", "rotation"});
-  CHECK(w.particle_count() == 1);  // those that were refused left nothing behind
+  CHECK(w.grain_count() == 1);  // those that were refused left nothing behind
 }
 
 TEST_CASE("a surface needs its body") {
@@ -181,13 +181,13 @@ TEST_CASE("domains, gravity and velocities that make no sense are refused") {
   check_refused([&] { w.set_gravity({0, NAN, 0}); }, "gravity is (0, nan, 0)");
   w.add_species(Sphere(1e-3));
   w.set_contact(sand<Balls>());
-  const auto grain = w.add_particle({SpeciesId(0)});
+  const auto grain = w.add_grain({SpeciesId(0)});
   check_refused([&] { w.set_velocity(grain, {INFINITY, 0, 0}); }, "velocity of a grain is (inf, 0, 0)");
 }
 
 TEST_CASE("ids that are not there are refused") {
   dem::World<Balls> w(options({0, 0, 0}, 1e-3));
-  check_refused([&] { (void)w.position(ParticleId(0)); }, "grain 0 is asked for", "added so far: 0");
+  check_refused([&] { (void)w.position(GrainId(0)); }, "grain 0 is asked for", "added so far: 0");
   check_refused([&] { (void)w.surface_force(SurfaceId()); },
                 "the surface that is asked for has an id that was never set");
   check_refused([&] { w.set_active(SurfaceId(2), false); }, "surface 2");

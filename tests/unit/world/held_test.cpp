@@ -34,7 +34,7 @@ dem::BodyId add_rough_cube(World& w) {
   Random random(2);
   for (int axis = 0; axis < 3; ++axis) {
     for (const double side : {-out, out}) {
-      w.attach(w.add_particle({.species = held, .position = side * Vec3::Unit(axis), .rotation = random.rotation()}),
+      w.attach(w.add_grain({.species = held, .position = side * Vec3::Unit(axis), .rotation = random.rotation()}),
                cube);
     }
   }
@@ -46,17 +46,17 @@ dem::BodyId add_rough_cube(World& w) {
 TEMPLATE_TEST_CASE("a rough base stands still and bears what lies on it", "", Balls, models::CorrectedBalls, Cubes) {
   auto w = held_and_free<TestType>(options({0, 0, -g}, 1e-5));
   // Four in a square, so near that they overlap: they feel nothing of each other. One more lies in their middle.
-  std::vector<ParticleId> base;
+  std::vector<GrainId> base;
   const double half = 0.8 * radius_of_held;
   for (int k = 0; k < 4; ++k) {
-    base.push_back(w.add_particle({held, {k % 2 == 0 ? half : -half, k / 2 == 0 ? half : -half, 0}}));
+    base.push_back(w.add_grain({held, {k % 2 == 0 ? half : -half, k / 2 == 0 ? half : -half, 0}}));
   }
-  const ParticleId top = w.add_particle({free_one, {0, 0, radius_of_held + 1.2 * radius_of_free}});
-  for (const ParticleId p : base) CHECK(w.force(p).norm() == 0.0);
+  const GrainId top = w.add_grain({free_one, {0, 0, radius_of_held + 1.2 * radius_of_free}});
+  for (const GrainId p : base) CHECK(w.force(p).norm() == 0.0);
   REQUIRE(w.run_for(0.2));
   Vec3 borne = Vec3::Zero();
   for (int k = 0; k < 4; ++k) {
-    const ParticleId p = base[static_cast<std::size_t>(k)];
+    const GrainId p = base[static_cast<std::size_t>(k)];
     CHECK(w.position(p) == Vec3(k % 2 == 0 ? half : -half, k / 2 == 0 ? half : -half, 0));
     CHECK(w.velocity(p).norm() == 0.0);
     CHECK(w.rotation(p) == Mat3::Identity());
@@ -79,11 +79,11 @@ TEST_CASE("a ball that is attached to a part is to grains what a ball as its sur
     m.add_motion(dem::mbd::prescribed_rotation("turn", arm, Vec3::UnitY(), dem::mbd::Signal::ramp(0, 40.0)));
     const Vec3 at(0.02, 0, 0);
     const auto sensor = m.add_sensor(dem::mbd::contact_sensor("arm", arm, 0.0));
-    ParticleId ball;
-    if (attached) w.attach(ball = w.add_particle({.species = held, .position = at}), arm);
+    GrainId ball;
+    if (attached) w.attach(ball = w.add_grain({.species = held, .position = at}), arm);
     else w.add_surface(arm, dem::surface::Sphere(radius_of_held), {.position = at});
-    std::vector<ParticleId> row;
-    for (int k = 0; k < 5; ++k) row.push_back(w.add_particle({free_one, {0.02 - 1e-3 * k, 0, -3.5e-3 - 2.2e-3 * k}}));
+    std::vector<GrainId> row;
+    for (int k = 0; k < 5; ++k) row.push_back(w.add_grain({free_one, {0.02 - 1e-3 * k, 0, -3.5e-3 - 2.2e-3 * k}}));
     double hardest = 0.0, torque = 0.0;
     for (int k = 0; k < 80; ++k) {
       REQUIRE(w.run(100));
@@ -92,7 +92,7 @@ TEST_CASE("a ball that is attached to a part is to grains what a ball as its sur
     }
     if (attached) CHECK((w.position(ball) - m.body(arm).point(at)).norm() < 1e-15);
     std::vector<double> all = {hardest, torque};
-    for (const ParticleId p : row) {
+    for (const GrainId p : row) {
       for (const Vec3& v : {w.position(p), w.velocity(p)}) all.insert(all.end(), v.data(), v.data() + 3);
     }
     return all;
@@ -109,11 +109,11 @@ TEMPLATE_TEST_CASE("grains that hit a part's attached grains hand it their momen
   // No joint and no weight. The part is a cube, whose spin is kept to rounding by integrators of one stage.
   auto w = held_and_free<TestType>(options({0, 0, 0}, 2e-6));
   const dem::BodyId cube = add_rough_cube(w);
-  const std::size_t attached = w.particle_count();
+  const std::size_t attached = w.grain_count();
   Random random(5);
   for (int k = 0; k < 60; ++k) {
     const Vec3 from = 0.02 * random.direction() * (1.0 + 0.1 * k);
-    w.add_particle({.species = free_one, .position = from, .velocity = random.vector(0.1) - 25.0 * from});
+    w.add_grain({.species = free_one, .position = from, .velocity = random.vector(0.1) - 25.0 * from});
   }
   const auto& body = w.machine().body(cube);
   const auto sums = [&] {
@@ -121,7 +121,7 @@ TEMPLATE_TEST_CASE("grains that hit a part's attached grains hand it their momen
     const Mat3 r = body.rotation();
     const Vec3 spin = r.transpose() * body.angular_velocity();
     l = body.mass * body.position().cross(body.velocity()) + r * body.inertia.cwiseProduct(spin);
-    for (const ParticleId k : w.particles()) {
+    for (const GrainId k : w.grains()) {
       if (k.index() < attached) continue;
       const double m = mass_of(w, k);
       const Mat3 turn = w.rotation(k);
@@ -133,7 +133,7 @@ TEMPLATE_TEST_CASE("grains that hit a part's attached grains hand it their momen
   };
   const auto [p0, l0] = sums();
   double sum = 0.0;  // of the magnitudes of momentum, to which rounding is relative
-  for (const ParticleId k : w.particles()) sum += mass_of(w, k) * w.velocity(k).norm();
+  for (const GrainId k : w.grains()) sum += mass_of(w, k) * w.velocity(k).norm();
   REQUIRE(w.run(40000));
   const auto [p1, l1] = sums();
   CHECK(body.velocity().norm() > 1e-3);
@@ -143,9 +143,9 @@ TEMPLATE_TEST_CASE("grains that hit a part's attached grains hand it their momen
   // They are where the part is, and move as it does.
   for (std::size_t k = 0; k < attached; ++k) {
     const Vec3 place = (k % 2 == 0 ? -4e-3 : 4e-3) * Vec3::Unit(static_cast<int>(k / 2));
-    CHECK((w.position(ParticleId(k)) - body.point(place)).norm() < 1e-15);
-    CHECK((w.velocity(ParticleId(k)) - body.point_velocity(place)).norm() < 1e-15);
-    CHECK((w.angular_velocity(ParticleId(k)) - body.angular_velocity()).norm() < 1e-12);
+    CHECK((w.position(GrainId(k)) - body.point(place)).norm() < 1e-15);
+    CHECK((w.velocity(GrainId(k)) - body.point_velocity(place)).norm() < 1e-15);
+    CHECK((w.angular_velocity(GrainId(k)) - body.angular_velocity()).norm() < 1e-12);
   }
 }
 
@@ -163,13 +163,13 @@ TEST_CASE("attached grains do the same on every number of threads, many in a bed
       const double a = 2 * 3.14159265358979 * k / 12;
       for (int j = 0; j < 5; ++j) {
         const Vec3 x(0.02 + 6e-3 * std::cos(a), 0.008 + 6e-3 * j, 5e-3 + 6e-3 * std::sin(a));
-        w.attach(w.add_particle({held, x}), drum);
+        w.attach(w.add_grain({held, x}), drum);
       }
     }
     add_block(w, free_one, {2e-3, 2e-3, 0.016}, 3e-3, 12, 12, 4, 0.1);
     REQUIRE(w.run(3000));
     Vec3 sum = Vec3::Zero();
-    for (const ParticleId p : w.particles()) sum += w.position(p) + 1e-3 * w.velocity(p);
+    for (const GrainId p : w.grains()) sum += w.position(p) + 1e-3 * w.velocity(p);
     const dem::Wrench on_drum = m.sensor(sensor).mean();
     return std::tuple(sum.x(), sum.y(), sum.z(), on_drum.torque.y, on_drum.force.z);
   };
@@ -183,24 +183,24 @@ TEST_CASE("a bed on a rough base falls asleep") {
   o.sleep = dem::SleepOptions{};
   auto w = held_and_free<Cubes>(o);
   for (int i = 0; i < 6; ++i) {
-    for (int j = 0; j < 6; ++j) w.add_particle({held, 4e-3 * Vec3(i, j, 0)});
+    for (int j = 0; j < 6; ++j) w.add_grain({held, 4e-3 * Vec3(i, j, 0)});
   }
   for (int i = 0; i < 5; ++i) {
-    for (int j = 0; j < 5; ++j) w.add_particle({free_one, 4e-3 * Vec3(i, j, 0) + Vec3(0, 0, 3.05e-3)});
+    for (int j = 0; j < 5; ++j) w.add_grain({free_one, 4e-3 * Vec3(i, j, 0) + Vec3(0, 0, 3.05e-3)});
   }
   REQUIRE(w.run_for(0.3));
-  CHECK(w.asleep_count() == w.particle_count());
+  CHECK(w.asleep_count() == w.grain_count());
 }
 
 TEST_CASE("what cannot be held or moved is refused") {
   auto w = held_and_free<Balls>(options({0, 0, 0}, 1e-5));
-  const ParticleId a = w.add_particle({held, {0, 0, 0}}), b = w.add_particle({free_one, {1, 0, 0}});
+  const GrainId a = w.add_grain({held, {0, 0, 0}}), b = w.add_grain({free_one, {1, 0, 0}});
   check_refused([&] { w.attach(b, w.ground()); }, "grain 1 is to be attached to a body, but moves by itself");
   check_refused([&] { w.attach(a, dem::BodyId(7)); }, "body 7 is asked for");
   check_refused([&] { w.set_velocity(a, {1, 0, 0}); }, "grain 0 is held and cannot be moved by hand");
   check_refused([&] { w.set_angular_velocity(a, {1, 0, 0}); }, "grain 0 is held");
   check_refused([&] { w.set_position(a, {1, 0, 0}); }, "grain 0 is held");
-  check_refused([&] { w.add_particle({held, {0, 1, 0}, {1, 0, 0}}); }, "grain 2 is of a species that is held");
+  check_refused([&] { w.add_grain({held, {0, 1, 0}, {1, 0, 0}}); }, "grain 2 is of a species that is held");
   check_refused(
       [&] {
         w.add_inlet(dem::InletRegion::box({0, 0, 0}, {1, 1, 1}), {.name = "in", .grains = held, .mass_flow = 1});
@@ -210,7 +210,7 @@ TEST_CASE("what cannot be held or moved is refused") {
   const dem::BodyId body = w.machine().add_body(dem::mbd::box_body("box", Vec3::Constant(1e-2), 1000));
   w.attach(a, body);
   REQUIRE(w.run(10));
-  w.remove_particle(a);
+  w.remove_grain(a);
   REQUIRE(w.run(100));
-  CHECK(w.particle_count() == 1);
+  CHECK(w.grain_count() == 1);
 }

@@ -55,7 +55,7 @@ dem::World<Sand> pairs(int count, int threads = 1) {
   w.set_contact({{2000.0}, {0.0, 0.0, 0.0, 1.0}});
   const SpeciesId ball = w.add_species(Sphere(1e-3));
   for (int k = 0; k < count; ++k) {
-    for (const double x : {0.0, 1.998e-3}) w.add_particle({ball, Vec3(x + 0.01 * (k % 20), 0.01 * (k / 20), 0)});
+    for (const double x : {0.0, 1.998e-3}) w.add_grain({ball, Vec3(x + 0.01 * (k % 20), 0.01 * (k / 20), 0)});
   }
   return w;
 }
@@ -111,10 +111,10 @@ TEST_CASE("a force that is not a number is found in its step, on every number of
 TEST_CASE("numbers whose sum is infinite are found, whichever grain has them") {
   auto w = pairs(1);
   w.set_contact({{0.0}, {0.0, 0.0, 0.0, 1.0}});
-  w.set_velocity(ParticleId(1), Vec3(1e308, 0, 1e308));
+  w.set_velocity(GrainId(1), Vec3(1e308, 0, 1e308));
   const dem::StepReport report = w.step();
   CHECK(report.problem == Problem::not_finite);
-  CHECK(report.particle == ParticleId(1));
+  CHECK(report.grain == GrainId(1));
 }
 
 TEST_CASE("an exception of a law arrives from every number of threads, and the world is not run on") {
@@ -126,7 +126,7 @@ TEST_CASE("an exception of a law arrives from every number of threads, and the w
     CHECK_THROWS_WITH(w.step(), "no such spring");
     Faulty::throws = false;
     CHECK(w.steps() == 1);
-    CHECK(w.position(ParticleId(0)).allFinite());  // it may be looked at
+    CHECK(w.position(GrainId(0)).allFinite());  // it may be looked at
     check_refused([&] { (void)w.step(); }, "broken off by an exception", "make a new one");
   }
 }

@@ -21,27 +21,27 @@ TEST_CASE("the tables of a stream hold as many grains as there are at a time") {
   REQUIRE(w.run_for(0.01));
   count_energy(w);
   const double balance = energy_of(w).balance();
-  const ParticleId early = w.particles().front();
-  std::set<ParticleId> seen;
+  const GrainId early = w.grains().front();
+  std::set<GrainId> seen;
   for (int k = 0; k < 20; ++k) {
     REQUIRE(w.run_for(0.01));
-    const auto now = w.particles();
-    CHECK(now.size() == w.particle_count());
+    const auto now = w.grains();
+    CHECK(now.size() == w.grain_count());
     CHECK(now.size() == w.inlet(in).grains() - w.outlet(out).grains());
     seen.insert(now.begin(), now.end());
-    for (const ParticleId p : now) {
+    for (const GrainId p : now) {
       REQUIRE(w.position(p).z() > 0.0);
-      REQUIRE(w.position(ParticleId(p.index())) == w.position(p));  // an id that is made from a number
+      REQUIRE(w.position(GrainId(p.index())) == w.position(p));  // an id that is made from a number
     }
     CHECK(std::is_sorted(now.begin(), now.end()));
   }
   CHECK(w.outlet(out).grains() > 350);
-  CHECK(seen.size() > 380);                        // every grain has a name of its own,
-  CHECK(w.state().particles.row_of.size() < 100);  // in tables that do not grow
+  CHECK(seen.size() > 380);                     // every grain has a name of its own,
+  CHECK(w.state().grains.row_of.size() < 100);  // in tables that do not grow
   check_refused([&] { w.velocity(early); }, "was removed");
-  check_refused([&] { w.velocity(ParticleId(early.index())); }, "was removed");
-  check_refused([&] { w.velocity(ParticleId(w.inlet(in).grains())); }, "but is not known (added so far: ");
-  CHECK(w.particles().size() == w.particle_count());
+  check_refused([&] { w.velocity(GrainId(early.index())); }, "was removed");
+  check_refused([&] { w.velocity(GrainId(w.inlet(in).grains())); }, "but is not known (added so far: ");
+  CHECK(w.grains().size() == w.grain_count());
   // Grains come and go with their energies: 0.02 mJ each, 400 of them. Without weight no integrator errs, and the rest
   // is rounding: none is left out or counted as another's.
   const auto e = energy_of(w);
@@ -54,13 +54,13 @@ TEST_CASE("a part does not carry the grain that has the place of one that was at
   const auto held = w.add_species(Sphere(1e-3), {.held = true}), moving = w.add_species(Sphere(1e-3));
   const auto body = w.machine().add_body(
       dem::mbd::box_body("block", Vec3::Constant(5e-3), 2000).at(Vec3(0, 0, 0.1)).moving(Vec3(1, 0, 0)));
-  const auto glued = w.add_particle({held, Vec3(0, 0, 0)});
+  const auto glued = w.add_grain({held, Vec3(0, 0, 0)});
   w.attach(glued, body);
   REQUIRE(w.run(10));
   CHECK(w.position(glued).x() > 5e-5);
-  w.remove_particle(glued);
+  w.remove_grain(glued);
   REQUIRE(w.run(10));
-  const auto other = w.add_particle({moving, Vec3(0.05, 0, 0)});
+  const auto other = w.add_grain({moving, Vec3(0.05, 0, 0)});
   REQUIRE(other.slot == glued.slot);
   CHECK(other != glued);
   CHECK(other.index() == 1);
@@ -75,16 +75,16 @@ TEST_CASE("a grain in the place of one that was lost is reported when it is lost
   dem::World<Balls> w(o);
   w.set_contact(sand<Balls>());
   const auto ball = w.add_species(Sphere(1e-3));
-  std::set<ParticleId> lost;
+  std::set<GrainId> lost;
   for (int k = 0; k < 3; ++k) {
-    const auto p = w.add_particle({ball, Vec3(0.9999, 0, 0), Vec3(10, 0, 0)});
+    const auto p = w.add_grain({ball, Vec3(0.9999, 0, 0), Vec3(10, 0, 0)});
     CHECK(p.slot == 0);
     CHECK(p.index() == static_cast<std::size_t>(k));
     const auto report = w.run(100);
     REQUIRE(report.problem == dem::StepReport::Problem::lost);
-    CHECK(report.particle == p);
-    lost.insert(report.particle);
-    w.remove_particle(p);
+    CHECK(report.grain == p);
+    lost.insert(report.grain);
+    w.remove_grain(p);
     REQUIRE(w.run(1));
   }
   CHECK(lost.size() == 3);
@@ -95,14 +95,14 @@ TEST_CASE("the place of a grain is used again only after a step") {
   dem::World<Balls> w(options(Vec3::Zero(), 1e-5));
   w.set_contact(sand<Balls>());
   const auto ball = w.add_species(Sphere(1e-3));
-  const auto a = w.add_particle({ball, Vec3(0, 0, 0)});
-  w.add_particle({ball, Vec3(0.1, 0, 0)});
+  const auto a = w.add_grain({ball, Vec3(0, 0, 0)});
+  w.add_grain({ball, Vec3(0.1, 0, 0)});
   count_energy(w);
-  w.remove_particle(a);
+  w.remove_grain(a);
   w.prepare();  // lists neighbours anew
-  CHECK(w.add_particle({ball, Vec3(0.2, 0, 0)}).slot == 2);
+  CHECK(w.add_grain({ball, Vec3(0.2, 0, 0)}).slot == 2);
   REQUIRE(w.run(1));
-  const auto again = w.add_particle({ball, Vec3(0.3, 0, 0), Vec3(1, 0, 0)});
+  const auto again = w.add_grain({ball, Vec3(0.3, 0, 0), Vec3(1, 0, 0)});
   CHECK(again.slot == a.slot);
   CHECK(again.index() == 3);
   REQUIRE(w.run(10));

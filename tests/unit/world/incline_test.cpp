@@ -10,7 +10,7 @@ constexpr double mu = 0.4, half_edge = 1.2e-3;
 template <class Integrator>
 struct Incline {
   dem::World<Grains<Cube8, Integrator>> world;
-  ParticleId block;
+  GrainId block;
   SurfaceId plate;
   double angle;
 
@@ -26,12 +26,12 @@ struct Incline {
     } else {
       plate = world.add_surface(world.ground(), dem::surface::Plane{});
     }
-    dem::NewParticle n;
+    dem::NewGrain n;
     n.species = cube;
     // Pressed in as far as four springs of 2000 N/m carry its weight, so that it does not bounce.
     const double weight = world.species(cube).mass * g * std::cos(angle);
     n.position = {0, 0, half_edge - weight / (4 * 2000.0)};
-    block = world.add_particle(n);
+    block = world.add_grain(n);
   }
   double mass() const { return world.species(SpeciesId(0)).mass; }
 };
@@ -118,11 +118,11 @@ TEST_CASE("a ball that is pushed goes from sliding to rolling at five sevenths o
   const double r = 1e-3, u0 = 0.2;
   const auto ball = w.add_species(Sphere(r));
   w.add_surface(w.ground(), dem::surface::Plane{});
-  dem::NewParticle n;
+  dem::NewGrain n;
   n.species = ball;
   n.position = {0, 0, r - w.species(ball).mass * g / 2000.0};
   n.velocity = {u0, 0, 0};
-  const auto p = w.add_particle(n);
+  const auto p = w.add_grain(n);
   // While sliding: u = u0 - mu g t, until t = 2 u0/(7 mu g) = 0.0146 s.
   REQUIRE(w.run_for(0.01));
   CHECK(w.velocity(p).x() == Approx(u0 - mu * g * 0.01).epsilon(1e-3));

@@ -26,7 +26,7 @@ const InletRegion above = InletRegion::box({0, 0, 0.10}, {0.02, 0.02, 0.12});
 template <class World>
 double nearest(const World& w) {
   double least = 1e300;
-  const auto all = w.particles();
+  const auto all = w.grains();
   for (std::size_t a = 0; a < all.size(); ++a) {
     for (std::size_t b = 0; b < a; ++b) least = std::min(least, (w.position(all[a]) - w.position(all[b])).norm());
   }
@@ -47,10 +47,10 @@ TEST_CASE("an inlet gives its mass flow, to half a grain at any time, and no gra
     CHECK(w.inlet(in).mass() >= flow * (w.time() - 66e-5) - 0.5 * mass);
     CHECK(w.inlet(in).due() == Approx(flow * w.time()).epsilon(2e-3));
   }
-  CHECK(w.inlet(in).grains() == w.particle_count());
-  CHECK(w.inlet(in).mass() == Approx(static_cast<double>(w.particle_count()) * mass));
+  CHECK(w.inlet(in).grains() == w.grain_count());
+  CHECK(w.inlet(in).mass() == Approx(static_cast<double>(w.grain_count()) * mass));
   CHECK(nearest(w) > 2e-3);
-  for (const ParticleId p : w.particles()) CHECK(w.velocity(p) == Vec3(0, 0, -1));
+  for (const GrainId p : w.grains()) CHECK(w.velocity(p) == Vec3(0, 0, -1));
 }
 
 TEST_CASE("an inlet starts and ends when it should, and gives its total") {
@@ -85,9 +85,9 @@ TEST_CASE("a disc gives grains on it, a box in it, evenly, with velocities in a 
   w.add_inlet(InletRegion::disc(middle, normal, 0.1),
               {.grains = SpeciesId(0), .grain_flow = 1e9, .total_grains = 1000, .velocity = v, .velocity_spread = 0.3});
   REQUIRE(w.run(2));  // nothing is due before the first step
-  REQUIRE(w.particle_count() == 1000);
+  REQUIRE(w.grain_count() == 1000);
   double second = 0.0, across = 0.0, spread = 0.0;
-  for (const ParticleId p : w.particles()) {
+  for (const GrainId p : w.grains()) {
     const Vec3 r = w.position(p) - w.velocity(p) * 1e-5 - middle;
     across = std::max(across, std::abs(r.dot(normal)));
     second += r.squaredNorm() / 1000;
@@ -108,19 +108,19 @@ TEST_CASE("grains keep clear of grains and of surfaces that are there; what does
   w.add_surface(w.ground(), dem::surface::Box({0.02, 0.02, 0.01}), {.position = {0.01, 0.01, 0.105}});
   add_block(w, SpeciesId(0), {2e-3, 2e-3, 0.113}, pitch, 6, 6, 2, 0.0);
   REQUIRE(w.run(1));
-  const std::size_t before = w.particle_count();
+  const std::size_t before = w.grain_count();
   const auto in = w.add_inlet(above, {.name = "full", .grains = SpeciesId(0), .grain_flow = 1e6});
   dem::StepReport report = w.run(200);
   INFO(report.text);
   REQUIRE(report);
-  CHECK(w.inlet(in).grains() == w.particle_count() - before);
+  CHECK(w.inlet(in).grains() == w.grain_count() - before);
   CHECK(w.inlet(in).grains() > 0);
   CHECK(w.inlet(in).owed() == Approx(w.inlet(in).due() - static_cast<double>(w.inlet(in).grains())));
   CHECK(w.inlet(in).is_short());
   CHECK(report.note.find("inlet 'full' has put in ") != std::string::npos);
   CHECK(report.note.find("enlarge the region") != std::string::npos);
   // Nothing touches anything: without weight all that were put in stand still.
-  for (const ParticleId p : w.particles()) {
+  for (const GrainId p : w.grains()) {
     CHECK(w.velocity(p).norm() == 0.0);
     CHECK(w.force(p).norm() == 0.0);
   }
@@ -136,7 +136,7 @@ TEST_CASE("a mixture by mass comes out by mass, and one by number by number") {
     REQUIRE(w.run(2));
     REQUIRE(w.inlet(in).grains() == 4000);
     double number = 0.0;
-    for (const ParticleId p : w.particles()) number += w.species_of(p) == small ? 1.0 : 0.0;
+    for (const GrainId p : w.grains()) number += w.species_of(p) == small ? 1.0 : 0.0;
     const double ratio = 1.0 / (0.7 * 0.7 * 0.7), share = by == dem::ShareOf::mass ? ratio / (3 + ratio) : 0.25;
     CHECK(number == Approx(4000 * share).margin(3.0 * std::sqrt(4000 * share * (1 - share))));
   }
@@ -147,22 +147,22 @@ TEMPLATE_TEST_CASE("a grain that comes falls as one that was there from the star
   // Grains fall past the place where one is put in after 200 steps. From then on it falls like one that is added by
   // hand to a world that starts there.
   auto w = fed<TestType>({0, 0, -g});
-  for (int k = 0; k < 300; ++k) w.add_particle({SpeciesId(0), {0.1 + 3e-3 * (k % 20), 3e-3 * (k / 20), 0.1}});
+  for (int k = 0; k < 300; ++k) w.add_grain({SpeciesId(0), {0.1 + 3e-3 * (k % 20), 3e-3 * (k / 20), 0.1}});
   REQUIRE(w.run(200));
   w.add_inlet(InletRegion::box({0, 0, 0.2}, {0, 0, 0.2}),
               {.grains = SpeciesId(0), .grain_flow = 1e6, .total_grains = 1, .velocity = {0, 0, -0.5}});
   REQUIRE(w.run(500));
   auto alone = fed<TestType>({0, 0, -g});
-  const ParticleId one = alone.add_particle({SpeciesId(0), {0, 0, 0.2}, {0, 0, -0.5}});
+  const GrainId one = alone.add_grain({SpeciesId(0), {0, 0, 0.2}, {0, 0, -0.5}});
   REQUIRE(alone.run(500));
-  const ParticleId last = w.particles().back();
+  const GrainId last = w.grains().back();
   REQUIRE(last.index() == 300);
   // Its due begins with the flow: half a grain is due before the second step.
   REQUIRE(alone.position(one).z() < 0.2);
   CHECK(std::min(std::abs(w.position(last).z() - alone.position(one).z()),
                  std::abs(w.position(last).z() - alone.position(one).z() + alone.velocity(one).z() * 1e-5)) < 2e-9);
   // Those that were there feel nothing of it: free fall to rounding.
-  CHECK(w.velocity(ParticleId(0)).z() == Approx(-g * 700e-5).epsilon(1e-12));
+  CHECK(w.velocity(GrainId(0)).z() == Approx(-g * 700e-5).epsilon(1e-12));
   CHECK(w.velocity(last).z() == Approx(alone.velocity(one).z()).epsilon(3e-4));
 }
 
@@ -179,8 +179,8 @@ TEST_CASE("inlets put in the same grains on every number of threads, between out
     w.add_outlet({Vec3(0.012, -1, -1), Vec3(1, 1, 4e-3)});
     REQUIRE(w.run(6000));
     Vec3 sum = Vec3::Zero();
-    for (const ParticleId p : w.particles()) sum += w.position(p) + 1e-3 * w.velocity(p);
-    return std::tuple(w.particles(), sum.x(), sum.y(), sum.z(), w.outlet(dem::OutletId(0)).grains());
+    for (const GrainId p : w.grains()) sum += w.position(p) + 1e-3 * w.velocity(p);
+    return std::tuple(w.grains(), sum.x(), sum.y(), sum.z(), w.outlet(dem::OutletId(0)).grains());
   };
   const auto one = run(1);
   CHECK(std::get<0>(one).size() > 150);
@@ -193,7 +193,7 @@ TEST_CASE("inlets ask for few new neighbour lists") {
   auto w = fed();
   w.add_inlet(InletRegion::box({0, 0, 0}, {0.1, 0.1, 0.1}), {.grains = SpeciesId(0), .grain_flow = 5000});
   REQUIRE(w.run(6400));
-  CHECK(w.particle_count() >= 316);
+  CHECK(w.grain_count() >= 316);
   CHECK(w.state().rebuilds <= 101);
 }
 

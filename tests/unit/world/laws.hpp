@@ -25,8 +25,8 @@ using models::LinearModel;
 using PlasticModel = Laws<contact::Hysteretic, friction::CoulombViscous>;
 
 /// A grain at a place with a motion.
-inline NewParticle grain_at(const Vec3& position, const Vec3& velocity = {0, 0, 0}, const Vec3& spin = {0, 0, 0}) {
-  NewParticle n;
+inline NewGrain grain_at(const Vec3& position, const Vec3& velocity = {0, 0, 0}, const Vec3& spin = {0, 0, 0}) {
+  NewGrain n;
   n.species = SpeciesId(0);
   n.position = position;
   n.velocity = velocity;
@@ -69,9 +69,9 @@ double run_box(World<Model>& w, const Sphere& shape, double radius, double speed
       if (overlap < 0.0) held += attracted.stretched(-overlap, effective_radius);
       if (overlap > 0.0) fallen += attracted.well;
     };
-    for_each_grain(w, [&](ParticleId a) {
+    for_each_grain(w, [&](GrainId a) {
       const Vec3 x = w.position(a);
-      for_each_grain(w, [&](ParticleId b) {
+      for_each_grain(w, [&](GrainId b) {
         if (a < b) look(2 * radius - (w.position(b) - x).norm(), 0.5 * radius);
       });
       for (int axis = 0; axis < 3; ++axis) {

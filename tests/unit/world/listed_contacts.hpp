@@ -59,7 +59,7 @@ std::array<int, 3> check_listed(dem::World<Model>& w) {
     CHECK((sum.force - force).norm() <= 1e-14 * sum.force_size);
     CHECK((sum.torque - torque).norm() <= 1e-14 * sum.torque_size);
   };
-  for (const ParticleId p : w.particles()) check(grains[p.value], evaluated.force(p), evaluated.torque(p));
+  for (const GrainId p : w.grains()) check(grains[p.value], evaluated.force(p), evaluated.torque(p));
   for (std::size_t s = 0; s < w.state().surfaces.size(); ++s) {
     check(surfaces[static_cast<std::uint32_t>(s)], evaluated.surface_force(SurfaceId(s)),
           evaluated.surface_torque(SurfaceId(s)));
@@ -71,7 +71,7 @@ std::array<int, 3> check_listed(dem::World<Model>& w) {
   REQUIRE(w.run(50));
   REQUIRE(untouched.run(50));
   int differ = 0;
-  for (const ParticleId p : w.particles()) {
+  for (const GrainId p : w.grains()) {
     differ += w.position(p) != untouched.position(p) || w.rotation(p) != untouched.rotation(p) ||
               w.angular_velocity(p) != untouched.angular_velocity(p);
   }
@@ -85,12 +85,12 @@ void add_bed_and_plate(dem::World<Model>& w, double pitch, int per_edge) {
   const double edge = per_edge * pitch;
   add_open_box(w, {edge, edge, 0});
   for (int k = 0; k < per_edge * per_edge * per_edge; ++k) {
-    dem::NewParticle n =
+    dem::NewGrain n =
         grain_at(pitch * (Vec3(k % per_edge, k / per_edge % per_edge, k / (per_edge * per_edge)) + Vec3::Constant(0.5)),
                  {0.05 * (k % 3 - 1), 0.04 * (k % 5 - 2), -0.2}, {3.0 * (k % 7 - 3), 5, 0});
     n.species = SpeciesId(static_cast<std::size_t>(k) % w.state().species.size());
     n.rotation = Random(static_cast<unsigned>(k)).rotation();
-    w.add_particle(n);
+    w.add_grain(n);
   }
   auto& m = w.machine();
   const Vec3 edges(0.9 * edge, 0.9 * edge, pitch);

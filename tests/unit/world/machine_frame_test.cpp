@@ -110,7 +110,7 @@ TEST_CASE("a grain rests on a body that is drawn off its centre of mass as high 
   const BodyId tray = m.add_body(spec.at({0, 0, 0.02}));
   m.add_joint(dem::mbd::fixed("weld", m.ground(), tray, {0, 0, 0}));
   const auto floor = world.add_surface(tray, dem::surface::Box({0.1, 0.1, 0.01}), {.position = {0, 0, -0.005}});
-  const auto ball = world.add_particle({.species = species, .position = {0, 0, 0.021}});
+  const auto ball = world.add_grain({.species = species, .position = {0, 0, 0.021}});
   REQUIRE(world.run_for(0.1));
   const double weight = 9.81 * world.species(species).mass;
   CHECK(world.surface_force(floor).z() == Catch::Approx(-weight).epsilon(1e-3));

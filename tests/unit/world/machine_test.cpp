@@ -40,7 +40,7 @@ TEMPLATE_TEST_CASE("a machine that is first asked for while a world runs goes on
     world.set_contact({.normal = {2000, 0.01, 1}, .friction = {0.4, 500, 0.01, 0.9}});
     const auto species = world.add_species(dem::shape::Sphere(1e-3));
     world.add_surface(world.ground(), dem::surface::Plane{});
-    world.add_particle({.species = species, .position = {0, 0, 1.01e-3}, .velocity = {0.1, 0, -0.1}});
+    world.add_grain({.species = species, .position = {0, 0, 1.01e-3}, .velocity = {0.1, 0, -0.1}});
     return world;
   };
   dem::World<TestType> early = make(), late = make();
@@ -50,7 +50,7 @@ TEMPLATE_TEST_CASE("a machine that is first asked for while a world runs goes on
   late.machine();
   REQUIRE(early.run(300));
   REQUIRE(late.run(300));
-  const dem::ParticleId ball(0);
+  const dem::GrainId ball(0);
   CHECK(late.position(ball) == early.position(ball));
   CHECK(late.angular_velocity(ball) == early.angular_velocity(ball));
   CHECK(early.velocity(ball).x() < 0.09);  // it did touch
@@ -87,7 +87,7 @@ TEMPLATE_TEST_CASE("a ball that bounces off a sprung plate leaves the energy in 
   const auto slide = machine.add_joint(dem::mbd::prismatic("slide", world.ground(), plate, {0, 0, 0}, {0, 0, 1}));
   machine.add_spring(dem::mbd::spring("spring", world.ground(), {0, 0, -0.1}, plate, {0, 0, 0}, stiffness));
   world.add_surface(plate, dem::surface::Box(edges));
-  const auto ball = world.add_particle({.species = species, .position = {0, 0, 1.6e-3}, .velocity = {0, 0, -speed}});
+  const auto ball = world.add_grain({.species = species, .position = {0, 0, 1.6e-3}, .velocity = {0, 0, -speed}});
 
   REQUIRE(world.run(4000));
   REQUIRE(world.velocity(ball).z() > 0.0);  // it did bounce, and has left
@@ -114,7 +114,7 @@ TEST_CASE("sensors tell the walls of one body apart, and average each over its w
   const auto wall = world.add_surface(tray, dem::surface::Box({0.01, 0.1, 0.1}), {.position = {-0.055, 0, 0.05}});
   const double window = 0.05;
   const auto on_floor = world.add_surface_sensor(floor, window), on_wall = world.add_surface_sensor(wall, window);
-  world.add_particle({.species = species, .position = {-0.05 + radius, 0, radius}});
+  world.add_grain({.species = species, .position = {-0.05 + radius, 0, radius}});
   REQUIRE(world.run_for(0.3));
   // At rest: what the damper has left after 0.25 s is nothing.
   const dem::Vec3 f = dem::to_eigen(world.surface_sensor(on_floor).mean().force);
@@ -124,7 +124,7 @@ TEST_CASE("sensors tell the walls of one body apart, and average each over its w
   CHECK(world.surface_sensor(on_floor).latest().force.z == world.surface_force(floor).z());
   CHECK_THROWS_AS(world.add_surface_sensor(dem::SurfaceId(7), window), dem::Error);
   // A grain that flies away leaves half a window without force.
-  const auto ball = dem::ParticleId(0);
+  const auto ball = dem::GrainId(0);
   world.set_velocity(ball, {1.0, 0, 1.0});
   REQUIRE(world.run_for(0.5 * window));
   // The window's oldest edge is one of 64 bins coarse.
@@ -142,7 +142,7 @@ TEST_CASE("what a machine derived stays while grains come and go, and follows wh
   const auto hinge = machine.add_joint(dem::mbd::revolute("elbow", rod, second, {1, 0, 0}, {0, 1, 0}));
   REQUIRE(world.run(3000));
   const double k = machine.joint(hinge).k;
-  world.add_particle({.species = species, .position = {0, 0, 10}});
+  world.add_grain({.species = species, .position = {0, 0, 10}});
   world.set_gravity({0, 0, -9.0});
   REQUIRE(world.run(1));
   CHECK(machine.joint(hinge).k == k);
@@ -184,7 +184,7 @@ TEST_CASE("surface sensors feel other machine parts, too") {
   const auto ball = world.add_surface(body, dem::surface::Sphere(5e-3));
   world.add_body_contact(ball, table);
   const auto grain = world.add_species(dem::shape::Sphere(1e-3));
-  world.add_particle({.species = grain, .position = {0, 0, 1e-3}});
+  world.add_grain({.species = grain, .position = {0, 0, 1e-3}});
   const auto on_table = world.add_surface_sensor(table, 0.01), on_ball = world.add_surface_sensor(ball, 0.01);
   REQUIRE(world.run_for(0.5));
   const double weight = 9.81 * world.machine().body(body).mass, grains = 9.81 * world.species(grain).mass;

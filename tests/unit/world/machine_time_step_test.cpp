@@ -36,7 +36,7 @@ TEMPLATE_TEST_CASE("an automatic time step stays, whatever is changed that does 
   dem::World<TestType> world;
   set_sand(world, 0.4);
   const auto species = world.add_species(dem::shape::Sphere(1e-3));
-  world.add_particle({.species = species, .position = {0, 0, 10}});
+  world.add_grain({.species = species, .position = {0, 0, 10}});
   const BodyId rod = add_rod(world.machine());
   const BodyId post = world.machine().add_body(dem::mbd::box_body("post", {0.1, 0.1, 0.1}, 1000.0).at({5, 0, 0}));
   REQUIRE(world.run(3));
@@ -48,7 +48,7 @@ TEMPLATE_TEST_CASE("an automatic time step stays, whatever is changed that does 
   CHECK(dt == 0.5 * grains.stable_time_step().dt);
   set_sand(world, 0.3);
   REQUIRE(world.run(1));
-  world.add_particle({.species = species, .position = {0, 0, 11}});
+  world.add_grain({.species = species, .position = {0, 0, 11}});
   REQUIRE(world.run(1));
   for (int k = 0; k < 10; ++k) {
     world.machine().set_fixed(k % 4 < 2 ? rod : post, k % 2 == 0);
@@ -142,7 +142,7 @@ TEMPLATE_TEST_CASE("a world survives a refused motion unchanged", "", CorrectedB
   const auto build = [&](dem::World<TestType>& world) {
     set_sand(world, 0.4);
     const auto species = world.add_species(dem::shape::Sphere(1e-3));
-    world.add_particle({.species = species, .position = {0, 0, 1}, .velocity = {0.1, 0, 0}});
+    world.add_grain({.species = species, .position = {0, 0, 1}, .velocity = {0.1, 0, 0}});
     auto& m = world.machine();
     m.substeps = substeps;
     const BodyId rod = add_rod(m);
@@ -154,10 +154,10 @@ TEMPLATE_TEST_CASE("a world survives a refused motion unchanged", "", CorrectedB
   build(other);
   auto& m = world.machine();
   const auto motion = m.add_motion(dem::mbd::prescribed_joint("jump", dem::JointId(0), 0.3));
-  const Vec3 grain = world.position(dem::ParticleId(0)), rod = m.body(BodyId(0)).position();
+  const Vec3 grain = world.position(dem::GrainId(0)), rod = m.body(BodyId(0)).position();
   for (int again = 0; again < 2; ++again) {
     check_refused([&] { (void)world.run(5); }, "motion 'jump' is 0.3", "let its signal start there");
-    CHECK(world.position(dem::ParticleId(0)) == grain);
+    CHECK(world.position(dem::GrainId(0)) == grain);
     CHECK(m.body(BodyId(0)).position() == rod);
     CHECK(m.parts().sensors.size() == 1);
   }
@@ -166,7 +166,7 @@ TEMPLATE_TEST_CASE("a world survives a refused motion unchanged", "", CorrectedB
   REQUIRE(world.run(5));
   REQUIRE(other.run(5));
   CHECK(world.time() == other.time());
-  CHECK(world.position(dem::ParticleId(0)) == other.position(dem::ParticleId(0)));
+  CHECK(world.position(dem::GrainId(0)) == other.position(dem::GrainId(0)));
   CHECK(m.body(BodyId(0)).position() == other.machine().body(BodyId(0)).position());
   CHECK(m.sensor(dem::SensorId(0)).latest().force.z == other.machine().sensor(dem::SensorId(0)).latest().force.z);
 }

@@ -60,8 +60,8 @@ TEST_CASE("a settled cube of eight spheres takes less than 2000 bytes") {
   const auto w = settled_bed(10);
   std::size_t contacts = 0;
   for (const auto& chunk : w->state().chunks) contacts += static_cast<std::size_t>(chunk.pair_contacts.committed());
-  CHECK(contacts > 3 * w->particle_count());
-  const std::size_t bytes = dem::memory_bytes(w->state()) / w->particle_count();
+  CHECK(contacts > 3 * w->grain_count());
+  const std::size_t bytes = dem::memory_bytes(w->state()) / w->grain_count();
   CAPTURE(bytes);
   CHECK(bytes < 2000);
 }

@@ -12,7 +12,7 @@ namespace {
 /// A single ball of 5 mm on a surface of the ground.
 struct OneBall {
   dem::World<Balls> world;
-  ParticleId ball;
+  GrainId ball;
   SurfaceId surface;
 
   OneBall(const Balls::Surfaces& geometry, const Vec3& gravity, const Vec3& at, const Vec3& velocity, double dt,
@@ -21,7 +21,7 @@ struct OneBall {
     world.set_contact(constants);
     const auto species = world.add_species(Sphere(5e-3));
     surface = world.add_surface(world.ground(), geometry);
-    ball = world.add_particle({species, at, velocity});
+    ball = world.add_grain({species, at, velocity});
   }
   double energy() const {
     const double stretch = world.surface_force(surface).norm();  // energy of the contact: F^2/(2 k)
@@ -157,7 +157,7 @@ TEST_CASE("a corner of a surface holds a grain that none of the grain's own poin
     o.rotation = dem::rotation_between(Vec3(1, 1, 1), Vec3::UnitZ());
     const auto s = w.add_surface(w.ground(), geometry, o);
     const double tip = 0.01 * std::sqrt(3.0);
-    const auto ball = w.add_particle({species, Vec3(0, 0, tip + 5e-3)});
+    const auto ball = w.add_grain({species, Vec3(0, 0, tip + 5e-3)});
     REQUIRE(w.run_for(0.1));
     const double weight = mass_of(w, ball) * g;
     CHECK(w.position(ball).z() == Approx(tip + 5e-3 - weight / 2000.0).epsilon(1e-6));

@@ -20,8 +20,8 @@ dem::World<Balls> balls(dem::WorldOptions o = options({0, 0, 0}, 1e-5)) {
   w.add_species(Sphere(1e-3));
   return w;
 }
-ParticleId add(dem::World<Balls>& w, const Vec3& x, const Vec3& v = Vec3::Zero()) {
-  return w.add_particle({SpeciesId(0), x, v});
+GrainId add(dem::World<Balls>& w, const Vec3& x, const Vec3& v = Vec3::Zero()) {
+  return w.add_grain({SpeciesId(0), x, v});
 }
 
 }  // namespace
@@ -30,18 +30,18 @@ TEST_CASE("a grain that is removed is gone at once for who looks") {
   auto w = balls();
   for (int k = 0; k < 5; ++k) add(w, {0.01 * k, 0, 0});
   REQUIRE(w.step());
-  w.remove_particle(ParticleId(3));
-  CHECK(w.particle_count() == 4);
-  CHECK(w.particles() == std::vector{ParticleId(0), ParticleId(1), ParticleId(2), ParticleId(4)});
-  check_refused([&] { w.position(ParticleId(3)); }, "grain 3 is asked for, but it was removed");
-  check_refused([&] { w.remove_particle(ParticleId(3)); }, "it was removed");
-  const ParticleId fresh = add(w, {0.1, 0, 0});
-  CHECK(fresh == ParticleId(5));
-  CHECK(w.particle_count() == 5);
+  w.remove_grain(GrainId(3));
+  CHECK(w.grain_count() == 4);
+  CHECK(w.grains() == std::vector{GrainId(0), GrainId(1), GrainId(2), GrainId(4)});
+  check_refused([&] { w.position(GrainId(3)); }, "grain 3 is asked for, but it was removed");
+  check_refused([&] { w.remove_grain(GrainId(3)); }, "it was removed");
+  const GrainId fresh = add(w, {0.1, 0, 0});
+  CHECK(fresh == GrainId(5));
+  CHECK(w.grain_count() == 5);
   REQUIRE(w.step());
-  CHECK(w.particle_count() == 5);
+  CHECK(w.grain_count() == 5);
   CHECK(w.position(fresh).x() == 0.1);
-  CHECK(w.position(ParticleId(4)).x() == 0.04);
+  CHECK(w.position(GrainId(4)).x() == 0.04);
 }
 
 TEST_CASE("an outlet counts a stream: grains, mass and mass flow, and the run goes on") {
@@ -58,13 +58,13 @@ TEST_CASE("an outlet counts a stream: grains, mass and mass flow, and the run go
   CHECK(w.outlet(hole).grains() == 50);
   CHECK(w.outlet(hole).mass() == Approx(50 * mass));
   CHECK(w.outlet(hole).mass_flow() == Approx(250 * mass).epsilon(0.06));  // of 20 balls in the window, one more or less
-  CHECK(w.particle_count() == 50);
-  check_refused([&] { w.velocity(ParticleId(49)); }, "it was removed");
-  CHECK(w.velocity(ParticleId(50)).z() == -1.0);
+  CHECK(w.grain_count() == 50);
+  check_refused([&] { w.velocity(GrainId(49)); }, "it was removed");
+  CHECK(w.velocity(GrainId(50)).z() == -1.0);
   REQUIRE(w.run_for(0.3));
   CHECK(w.outlet(hole).grains() == 100);
   CHECK(w.outlet(hole).mass_flow() == 0.0);  // nothing came for longer than the window
-  CHECK(w.particle_count() == 0);
+  CHECK(w.grain_count() == 0);
 }
 
 TEST_CASE("of several outlets each takes what is in it, also a box within the world") {
@@ -75,20 +75,20 @@ TEST_CASE("of several outlets each takes what is in it, also a box within the wo
   REQUIRE(w.run(100));
   CHECK(w.outlet(left).grains() == 1);
   CHECK(w.outlet(right).grains() == 1);
-  CHECK(w.particles() == std::vector{ParticleId(1)});
+  CHECK(w.grains() == std::vector{GrainId(1)});
 }
 
 TEST_CASE("who leaned on a grain that was taken feels it for 16 steps at the most") {
   // Two balls that press each other. The outlet holds the left one from the start.
   auto w = balls();
   add(w, {0, 0, 0});
-  const ParticleId other = add(w, {1.999e-3, 0, 0});
+  const GrainId other = add(w, {1.999e-3, 0, 0});
   w.set_contact({{2000.0, 0.0, 1.0}, {0.0, 0.0, 0.0, 1.0}});
   w.add_outlet({Vec3(-1e-3, -1e-3, -1e-3), Vec3(1e-3, 1e-3, 1e-3)});
   REQUIRE(w.step());
-  CHECK(w.particle_count() == 1);
+  CHECK(w.grain_count() == 1);
   REQUIRE(w.run(17));
-  CHECK(w.state().particles.count == 1);
+  CHECK(w.state().grains.count == 1);
   CHECK(w.force(other).norm() == 0.0);
   // Steps of an undamped push of K d: v = K d t/m for the steps that it lasts, less the little that they part.
   const double mass = w.species(SpeciesId(0)).mass, steps = w.velocity(other).x() * mass / (2000.0 * 1e-6 * 1e-5);
@@ -105,13 +105,13 @@ TEST_CASE("a domain reports, removes, or lets go on") {
     for (int k = 0; k < 300; ++k) add(w, {3e-3 * (k % 20), 3e-3 * (k / 20), 1e-3 * (k % 7)});
     const dem::StepReport report = w.run_for(0.1);  // 49 mm
     CHECK(report.problem == (what == BeyondDomain::report ? Problem::lost : Problem::none));
-    CHECK(w.particle_count() == (what == BeyondDomain::remove ? 0U : 300U));
+    CHECK(w.grain_count() == (what == BeyondDomain::remove ? 0U : 300U));
     CHECK(w.beyond_domain().grains() == (what == BeyondDomain::remove ? 300U : 0U));
     CHECK(w.beyond_domain().mass() ==
           Approx(static_cast<double>(w.beyond_domain().grains()) * w.species(SpeciesId(0)).mass));
     if (what == BeyondDomain::report) continue;
     CHECK(w.time() == Approx(0.1));
-    if (what == BeyondDomain::go_on) CHECK(w.position(ParticleId(0)).z() == Approx(-0.5 * g * 0.01).epsilon(1e-3));
+    if (what == BeyondDomain::go_on) CHECK(w.position(GrainId(0)).z() == Approx(-0.5 * g * 0.01).epsilon(1e-3));
   }
 }
 
@@ -123,7 +123,7 @@ TEST_CASE("grains that are not finite are reported, not counted as gone") {
   add(w, {0, 0, 0});
   w.add_outlet(below_the_floor);
   REQUIRE(w.step());
-  w.state().particles.position.x[0] = std::nan("");
+  w.state().grains.position.x[0] = std::nan("");
   CHECK(w.step().problem == Problem::not_finite);
   CHECK(w.beyond_domain().grains() == 0);
 }
@@ -138,7 +138,7 @@ TEST_CASE("outlets take the same grains on every number of threads, with few new
     REQUIRE(w.run(4000));
     const auto& taken = w.outlet(hole);
     double sum = 0.0;
-    for (const ParticleId p : w.particles()) sum += w.position(p).z();
+    for (const GrainId p : w.grains()) sum += w.position(p).z();
     return std::tuple(taken.grains(), taken.mass(), taken.mass_flow(), sum, w.state().rebuilds);
   };
   const auto one = run(1);

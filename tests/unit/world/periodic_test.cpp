@@ -60,7 +60,7 @@ TEST_CASE("grains that meet across the corner of a cell move as grains that meet
     set_up(w);
     add_block(w, SpeciesId(0), Vec3(-2e-3, -2e-3, 0), 2.6e-3, 3, 3, 3, 0.2);
     const Vec3 middle(0.6e-3, 0.6e-3, 2.6e-3);
-    for (const ParticleId p : w.particles()) {
+    for (const GrainId p : w.grains()) {
       w.set_velocity(p, w.velocity(p) + drift - 30.0 * (w.position(p) - middle));
     }
   };
@@ -72,10 +72,10 @@ TEST_CASE("grains that meet across the corner of a cell move as grains that meet
   for (int k = 0; k < 50; ++k) {
     REQUIRE(repeated.run(20));
     REQUIRE(open.run(20));
-    for (const ParticleId p : open.particles()) touching += open.force(p).norm() > 0.0 ? 1.0 : 0.0;
+    for (const GrainId p : open.grains()) touching += open.force(p).norm() > 0.0 ? 1.0 : 0.0;
   }
   CHECK(touching > 50.0);  // forces were seen, a few grains at each look
-  for (const ParticleId p : open.particles()) {
+  for (const GrainId p : open.grains()) {
     CAPTURE(p.value);
     // Each step rounds positions of 0.03 m by 1e-18 m; contacts enlarge it, by 1e5 at the most in so few.
     CHECK(apart(repeated.position(p), open.position(p)) < 1e-11);
@@ -96,7 +96,7 @@ TEST_CASE("a bed is the same wherever its cell is said to begin") {
   REQUIRE(here.run(1500));
   REQUIRE(there.run(1500));
   double weight = 0.0;
-  for (const ParticleId p : here.particles()) {
+  for (const GrainId p : here.grains()) {
     CAPTURE(p.value);
     CHECK(apart(there.position(p) - shift, here.position(p)) < 1e-9);  // rounding, which collisions enlarge
     weight += here.position(p).z() > 0.0 ? 1.0 : 0.0;
@@ -113,16 +113,16 @@ TEST_CASE("what goes on in a cell that repeats in all directions keeps its momen
   add_block(w, SpeciesId(0), Vec3(1e-3, 1e-3, 1e-3), 3e-3, 10, 8, 6, 1.0);
   const auto momentum = [&] {
     Vec3 sum = Vec3::Zero();
-    for (const ParticleId p : w.particles()) sum += w.velocity(p);
+    for (const GrainId p : w.grains()) sum += w.velocity(p);
     return sum;
   };
   const Vec3 before = momentum();
-  const Vec3 first = w.velocity(ParticleId(0));
+  const Vec3 first = w.velocity(GrainId(0));
   REQUIRE(w.run(2000));
-  CHECK((w.velocity(ParticleId(0)) - first).norm() > 0.01);  // it met others
+  CHECK((w.velocity(GrainId(0)) - first).norm() > 0.01);  // it met others
   // 480 velocities of 1 m/s, each changed 2,000 times by amounts that are rounded to 1e-16 of it.
   CHECK((momentum() - before).norm() < 1e-10);
-  for (const ParticleId p : w.particles()) {
+  for (const GrainId p : w.grains()) {
     CHECK(w.position(p).z() > -2e-4);
     CHECK(w.position(p).z() < 0.02 + 2e-4);
   }
@@ -134,12 +134,12 @@ TEST_CASE("the number of threads changes no bit of a periodic bed") {
   for (auto* w : {&one, &three}) {
     add_bed(*w, Vec3::Zero(), 5);
     REQUIRE(w->run(600));
-    w->remove_particle(ParticleId(17));
-    w->add_particle({.species = SpeciesId(0), .position = {length + 1e-3, 0.01, 0.04}});  // it is put into the cell
+    w->remove_grain(GrainId(17));
+    w->add_grain({.species = SpeciesId(0), .position = {length + 1e-3, 0.01, 0.04}});  // it is put into the cell
     REQUIRE(w->run(900));
   }
-  CHECK(one.position(ParticleId(400)).x() < length);
-  for (const ParticleId p : one.particles()) {
+  CHECK(one.position(GrainId(400)).x() < length);
+  for (const GrainId p : one.grains()) {
     CAPTURE(p.value);
     CHECK(one.position(p) == three.position(p));
     CHECK(one.velocity(p) == three.velocity(p));
@@ -151,10 +151,10 @@ TEST_CASE("a machine part meets grains across a border, in whichever cell it is"
   const auto force_on_blade = [](double start, std::vector<Vec3>& forces) {
     dem::World<PeriodicCubes> w(cell({0, 0, -g}, {.x = true, .y = true}));
     add_bed(w, Vec3::Zero(), 3);
-    for (const ParticleId p : w.particles()) {
+    for (const GrainId p : w.grains()) {
       const Vec3 from_blade = w.position(p) - Vec3(0.026, 0, 0);
       const double y = from_blade.y() - width * std::round(from_blade.y() / width);
-      if (std::abs(from_blade.x()) < 3e-3 && std::abs(y) < 6e-3) w.remove_particle(p);
+      if (std::abs(from_blade.x()) < 3e-3 && std::abs(y) < 6e-3) w.remove_grain(p);
     }
     auto& m = w.machine();
     const Vec3 edges(2e-3, 8e-3, 0.02);
@@ -199,9 +199,9 @@ TEST_CASE("contacts across borders are listed with the rest, and inlets see grai
   o.velocity = {0, 0, -0.3};
   w.add_inlet(dem::InletRegion::box({0, 0, 0.012}, {length, width, 0.016}), o);
   REQUIRE(w.run(9000));
-  REQUIRE(w.particle_count() > 200);
+  REQUIRE(w.grain_count() > 200);
   double deepest = 0.0;
-  std::vector<Vec3> forces(w.particles().back().index() + 1, Vec3::Zero());
+  std::vector<Vec3> forces(w.grains().back().index() + 1, Vec3::Zero());
   int across = 0;
   for (const auto& c : dem::contacts_of(w)) {
     deepest = std::max(deepest, c.overlap);
@@ -212,9 +212,9 @@ TEST_CASE("contacts across borders are listed with the rest, and inlets see grai
   }
   CHECK(across > 5);
   CHECK(deepest < 0.3e-3);  // m: no grain was put into another
-  const auto grains = w.particles();
+  const auto grains = w.grains();
   REQUIRE(w.run(1));  // evaluates the forces of that state, with which it moves the grains
-  for (const ParticleId p : grains) {
+  for (const GrainId p : grains) {
     CAPTURE(p.value);
     CHECK((forces[p.index()] - w.force(p)).norm() < 1e-12);  // rounding of sums of some 0.01 N
   }
@@ -230,12 +230,12 @@ TEST_CASE("a grain that comes to a part wakes nothing in a cell where all others
   const auto glued = w.add_species(dem::shape::cube8(1e-3), {.held = true});
   w.add_surface(w.ground(), dem::surface::Plane{});
   for (int k = 0; k < 256; ++k) {
-    w.add_particle({SpeciesId(0), Vec3(length / 8 * (k % 8), width / 8 * (k / 8 % 8), 1e-3 + 2e-3 * (k / 64))});
+    w.add_grain({SpeciesId(0), Vec3(length / 8 * (k % 8), width / 8 * (k / 8 % 8), 1e-3 + 2e-3 * (k / 64))});
   }
   REQUIRE(w.run_for(0.1));
   REQUIRE(w.asleep_count() == 256);
   const auto part = w.machine().add_fixed_body("part", Vec3(0, 0, 0.02));
-  const ParticleId grain = w.add_particle({glued, Vec3(0, 0, 0.02)});
+  const GrainId grain = w.add_grain({glued, Vec3(0, 0, 0.02)});
   w.attach(grain, part);
   REQUIRE(w.run(1));
   CHECK(w.asleep_count() == 256);
@@ -249,18 +249,18 @@ TEST_CASE("a cell may run empty and be filled again") {
   add_block(w, SpeciesId(0), Vec3(1e-3, 1e-3, 0), 3e-3, 4, 4, 1, 0.1);
   w.add_outlet({{-1, -1, -1}, {1, 1, -1e-3}});
   REQUIRE(w.run(4000));
-  CHECK(w.particle_count() == 0);
+  CHECK(w.grain_count() == 0);
   REQUIRE(w.run(20));
   CHECK(dem::contacts_of(w).empty());
-  w.add_particle({.species = SpeciesId(0), .position = {0, 0, 0.01}});
+  w.add_grain({.species = SpeciesId(0), .position = {0, 0, 0.01}});
   REQUIRE(w.run(20));
-  CHECK(w.particle_count() == 1);
+  CHECK(w.grain_count() == 1);
 }
 
 TEST_CASE("a part that turns until it neither fits the cell nor fills it is reported") {
   dem::World<PeriodicCubes> w(cell({0, 0, 0}, {.x = true, .y = true}));
   set_up(w);
-  w.add_particle({.species = SpeciesId(0), .position = {0.01, 0.01, 0.1}});
+  w.add_grain({.species = SpeciesId(0), .position = {0.01, 0.01, 0.1}});
   const Vec3 edges(0.004, 0.004, 0.04);  // upright it fits
   const auto bar =
       w.machine().add_body(dem::mbd::box_body("bar", edges, 2650).at({0.01, 0.01, 0}).moving({0, 0, 0}, {0, 100, 0}));
@@ -283,7 +283,7 @@ TEST_CASE("a cell that cannot be is refused in words") {
   o.domain->high.x() = 5e-3;
   dem::World<PeriodicCubes> small(o);
   set_up(small);
-  small.add_particle({.species = SpeciesId(0)});
+  small.add_grain({.species = SpeciesId(0)});
   check_refused([&] { small.prepare(); }, "period in x is 0.005 m, but must be above");
   dem::World<PeriodicCubes> short_floor(cell({0, 0, -g}, {.x = true}));
   set_up(short_floor);
@@ -309,7 +309,7 @@ TEST_CASE("contacts across a border count in lists, stresses and energies") {
   w.set_contact(sand<PeriodicCubes>(0.4));
   w.add_species(dem::shape::cube8(0.5 * (pitch + depth)));
   for (int k = 0; k < 80; ++k) {
-    w.add_particle({SpeciesId(0), {0.7e-3 + pitch * (k % 10), 1e-3 + pitch * (k / 10), 0}});
+    w.add_grain({SpeciesId(0), {0.7e-3 + pitch * (k % 10), 1e-3 + pitch * (k / 10), 0}});
   }
   CHECK(dem::contacts_of(w).size() == 80 * 2 * 4);
   const dem::surface::Aabb box = {{0, 0, -0.5 * high}, {length, width, 0.5 * high}};
@@ -325,7 +325,7 @@ TEST_CASE("contacts across a border count in lists, stresses and energies") {
   CHECK(whole.density == Catch::Approx(total_mass(w) / (length * width * high)));
 
   Random random(4);
-  for (const ParticleId p : w.particles()) w.set_velocity(p, Vec3(0.5, 0.3, 0) + random.vector(0.2));
+  for (const GrainId p : w.grains()) w.set_velocity(p, Vec3(0.5, 0.3, 0) + random.vector(0.2));
   dem::count_energy(w);
   const auto start = dem::energy_of(w);
   REQUIRE(w.run(800));  // 4 mm along x: some cubes are put back into the cell
@@ -342,7 +342,7 @@ TEST_CASE("contacts across a border count in lists, stresses and energies") {
   }
   w.set_gravity(Vec3::Zero());  // forces at the present state are due
   w.prepare();
-  for (const ParticleId p : w.particles()) CHECK((w.force(p) - sum[p.index()]).norm() < 1e-13 * size);
+  for (const GrainId p : w.grains()) CHECK((w.force(p) - sum[p.index()]).norm() < 1e-13 * size);
 }
 
 TEST_CASE("an inlet keeps clear of grains across a border") {
@@ -351,10 +351,10 @@ TEST_CASE("an inlet keeps clear of grains across a border") {
   set_up(w);
   w.add_inlet(dem::InletRegion::box({0, 0, 0}, {length, width, 1e-3}), {.grains = SpeciesId(0), .grain_flow = 1e8});
   REQUIRE(w.run(400));
-  CHECK(w.particle_count() > 50);
+  CHECK(w.grain_count() > 50);
   double least = 1.0;
-  for (const ParticleId a : w.particles()) {
-    for (const ParticleId b : w.particles()) {
+  for (const GrainId a : w.grains()) {
+    for (const GrainId b : w.grains()) {
       if (a.index() < b.index()) least = std::min(least, apart(w.position(a), w.position(b)));
     }
     CHECK(w.force(a).norm() == 0.0);
@@ -373,9 +373,9 @@ TEST_CASE("grains that are attached to a part stay in the cell, and load their p
         w.machine().add_joint(dem::mbd::prismatic("rail", w.ground(), cart, {0.012, 0.01, 0}, Vec3::UnitX()));
     w.machine().add_motion(dem::mbd::prescribed_joint("drive", rail, dem::mbd::Signal::ramp(0, 2.0)));
     const auto sensor = w.machine().add_sensor(dem::mbd::contact_sensor("cart", cart, 0.05));
-    const ParticleId bow = w.add_particle({SpeciesId(1), {0.016, 0.01, 5e-4}});
+    const GrainId bow = w.add_grain({SpeciesId(1), {0.016, 0.01, 5e-4}});
     w.attach(bow, cart);
-    const ParticleId other = w.add_particle({SpeciesId(0), {0.02, 0.01, 0}});
+    const GrainId other = w.add_grain({SpeciesId(0), {0.02, 0.01, 0}});
     REQUIRE(w.run(5000));
     const dem::Wrench& load = w.machine().sensor(sensor).mean();
     CHECK(apart(w.position(bow), w.machine().body(cart).position() + Vec3(4e-3, 0, 5e-4)) < 1e-12);
@@ -390,7 +390,7 @@ TEST_CASE("grains that are attached to a part stay in the cell, and load their p
   CHECK(force == Catch::Approx(open_force).epsilon(1e-8));
   CHECK(torque == Catch::Approx(open_torque).epsilon(1e-6).margin(1e-12));
   CHECK(force < 0.0);
-  for (const ParticleId p : periodic.particles()) {
+  for (const GrainId p : periodic.grains()) {
     CHECK(periodic.position(p).x() > -1e-3);
     CHECK(periodic.position(p).x() < length + 1e-3);
   }
@@ -424,7 +424,7 @@ TEST_CASE("a compressed packing bears the same stress in its cell as two copies 
       for (int k = 0; k < 125; ++k) {
         const Vec3 at = pitch * Vec3(k % 5, k / 5 % 5, k / 25) + random.vector(0.02 * pitch);
         const Mat3 turn = Eigen::AngleAxisd(random.between(0, 0.2), random.vector().normalized()).toRotationMatrix();
-        w.add_particle({SpeciesId(0), at + Vec3(copy * edge, 0, 0), Vec3::Zero(), turn});
+        w.add_grain({SpeciesId(0), at + Vec3(copy * edge, 0, 0), Vec3::Zero(), turn});
       }
     }
     return w;
@@ -461,7 +461,7 @@ TEST_CASE(
     w.set_contact({.normal = {2000, 0, 1}, .friction = {0.4, 2000, 0.015, 0.975}});
     const auto cube = w.add_species(dem::shape::cube8(half_edge));
     const auto place = [&](int k) { return 0.7e-3 + k * pitch; };  // the borders cut through a cube
-    for (int k = 0; k < n; ++k) w.add_particle({cube, {place(k) + swing * std::cos(phase * k), 0, 0}});
+    for (int k = 0; k < n; ++k) w.add_grain({cube, {place(k) + swing * std::cos(phase * k), 0, 0}});
     const double omega = 2 * std::sqrt(4 * 2000.0 / w.species(cube).mass) * std::sin(phase / 2);
     // Steps of symplectic Euler are those of a swing of a little more than omega, seen half a step later.
     const double a_step = 2 * std::asin(omega * dt / 2);
@@ -470,7 +470,7 @@ TEST_CASE(
       REQUIRE(w.run(1));
       double amplitude = 0.0;
       for (int k = 0; k < n; ++k) {
-        double moved = w.position(ParticleId(static_cast<std::uint32_t>(k))).x() - place(k);
+        double moved = w.position(GrainId(static_cast<std::uint32_t>(k))).x() - place(k);
         moved -= n * pitch * std::round(moved / (n * pitch));
         amplitude += 2.0 / n * moved * std::cos(phase * k);
       }
@@ -507,7 +507,7 @@ TEST_CASE("a bed has the same bits in a cell somewhere else, and if its grains a
     for (int k = 0; k < 400; ++k) {
       const Vec3 at(1.0625 + 3e-3 * (k % 10) + 1e-3, 1.0625 + 3e-3 * (k / 10 % 10) + 1e-3, 3e-3 * (k / 100) + 2e-3);
       const Mat3 turn = random.rotation();
-      w.add_particle({species, at + shift + period * periods * Vec3(k % 3 - 1, k % 2, 0), random.vector(0.3), turn});
+      w.add_grain({species, at + shift + period * periods * Vec3(k % 3 - 1, k % 2, 0), random.vector(0.3), turn});
     }
     REQUIRE(w.run(3000));
     return w;

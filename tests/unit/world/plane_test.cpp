@@ -38,7 +38,7 @@ TEMPLATE_TEST_CASE("a grain rests on a plane wherever that is, whichever way it 
     const auto plane = w.add_surface(w.ground(), dem::surface::Plane{}, {.position = place.origin, .rotation = turn});
     // It falls a millimetre, to a place a little off the plane's origin.
     const Vec3 along = turn * Vec3(2e-3, -3e-3, 0);
-    const auto p = w.add_particle({species, place.origin + along + 2 * half_size * place.normal, Vec3::Zero(), turn});
+    const auto p = w.add_grain({species, place.origin + along + 2 * half_size * place.normal, Vec3::Zero(), turn});
     REQUIRE(w.run_for(0.15));
     // A ball stands on one spring, a cube on four. A millimetre is fallen in 14 ms, and the bounces, each to a third of
     // the speed, last 20 ms; then the swing dies as exp(-4500/s t). A rounding of 1e-16 m is 2e-9 of the overlap.
@@ -60,7 +60,7 @@ TEST_CASE("a plane on a body that rises lifts a ball") {
       "rise", lift, Vec3::UnitZ(),
       dem::mbd::Signal::function([=](double t) { return 0.5 * rise * t * t; }, [=](double t) { return rise * t; })));
   const auto plane = w.add_surface(lift, dem::surface::Plane{}, {.position = {0, 0, above_body}});
-  const auto ball = w.add_particle({species, Vec3(0.01, 0.02, start + half_size)});
+  const auto ball = w.add_grain({species, Vec3(0.01, 0.02, start + half_size)});
   REQUIRE(w.run_for(time));
   const double m = mass_of(w, ball), load = m * (g + rise), top = start + 0.5 * rise * time * time;
   REQUIRE(top > 0.05);

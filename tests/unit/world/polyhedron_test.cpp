@@ -29,7 +29,7 @@ Mat3 about(const Vec3& axis, double angle) {
 struct Incline {
   dem::World<Sharp> world;
   SurfaceId plate;
-  ParticleId block;
+  GrainId block;
   double angle;
 
   explicit Incline(double slope, double breaking_factor = 0.975)
@@ -38,10 +38,10 @@ struct Incline {
     world.set_contact(sand<Sharp>(mu, breaking_factor));
     const auto cube = world.add_species(dem::shape::cube(half_edge));
     plate = world.add_surface(world.ground(), dem::surface::Plane{});
-    dem::NewParticle n;
+    dem::NewGrain n;
     n.species = cube;
     n.position = {0, 0, half_edge - world.species(cube).mass * g * std::cos(angle) / 2000.0};
-    block = world.add_particle(n);
+    block = world.add_grain(n);
   }
   double weight() const { return world.species(SpeciesId(0)).mass * g; }
 };
@@ -49,7 +49,7 @@ struct Incline {
 template <class World>
 double energy(const World& w) {  // of motion and height
   double sum = kinetic_energy(w);
-  for_each_grain(w, [&](ParticleId p) { sum += mass_of(w, p) * g * w.position(p).z(); });
+  for_each_grain(w, [&](GrainId p) { sum += mass_of(w, p) * g * w.position(p).z(); });
   return sum;
 }
 
@@ -78,11 +78,11 @@ TEST_CASE("a cube that falls flat rebounds with the restitution that was asked f
   w.set_contact({dem::contact::LinearSpringDashpot::with_restitution(2000.0, e), {mu, 2000.0, 0.0, 1.0}});
   const auto cube = w.add_species(dem::shape::cube(half_edge));
   w.add_surface(w.ground(), dem::surface::Plane{});
-  dem::NewParticle n;
+  dem::NewGrain n;
   n.species = cube;
   n.position = {0, 0, half_edge + 1e-7};
   n.velocity = {0, 0, -v};
-  const auto block = w.add_particle(n);
+  const auto block = w.add_grain(n);
   REQUIRE(w.run_for(0.01));
   CHECK(w.velocity(block).z() == Approx(e * v).epsilon(1e-3));
   CHECK(w.angular_velocity(block).norm() < 1e-9);
@@ -114,18 +114,18 @@ TEMPLATE_TEST_CASE("cubes rebound as asked, whichever of their faces, edges and 
       return w;
     };
     const auto add = [&](dem::World<Elastic>& w, const Mat3& turn, double side, double way) {
-      dem::NewParticle n;
+      dem::NewGrain n;
       n.species = SpeciesId(0);
       n.rotation = turn;
       const double low = half_edge * turn.row(2).cwiseAbs().sum();  // from the centre to the lowest corner
       n.position = {0, 0, side * (low + 1e-9)};
       n.velocity = {0, 0, way * v};
-      return w.add_particle(n);
+      return w.add_grain(n);
     };
     for (const Mat3& turn : {flat, on_edge, on_corner}) {
       auto w = world();
       w.add_surface(w.ground(), dem::surface::Plane{});
-      const ParticleId cube = add(w, turn, 1.0, -1.0);
+      const GrainId cube = add(w, turn, 1.0, -1.0);
       REQUIRE(w.run_for(8e-5));
       REQUIRE(w.force(cube).norm() == 0.0);
       CHECK(w.velocity(cube).z() == Approx(e * v).epsilon(2e-3));
@@ -134,7 +134,7 @@ TEMPLATE_TEST_CASE("cubes rebound as asked, whichever of their faces, edges and 
          {std::pair(flat, flat), std::pair(flat, on_edge), std::pair(flat, on_corner), std::pair(across, on_edge)}) {
       auto w = world();
       add(w, lower, -1.0, 0.5);
-      const ParticleId cube = add(w, upper, 1.0, -0.5);
+      const GrainId cube = add(w, upper, 1.0, -0.5);
       REQUIRE(w.run_for(8e-5));
       REQUIRE(w.force(cube).norm() == 0.0);
       CHECK(w.velocity(cube).z() == Approx(0.5 * e * v).epsilon(2e-3));
@@ -167,15 +167,15 @@ TEST_CASE("a cube sticks to a cube below the angle of friction, and slides above
     dem::World<Sharp> w(options({0, 0, -g}, 1e-5));
     w.set_contact(sand<Sharp>(mu));
     w.set_contact("grain", "wall", sand<Sharp>(2.0));  // the lower one stays
-    dem::NewParticle n;
+    dem::NewGrain n;
     n.species = w.add_species(dem::shape::cube(half_edge));
     w.add_surface(w.ground(), dem::surface::Plane{});
     const double sink = w.species(n.species).mass * g / 2000.0;
     n.position = {0, 0, half_edge - 2.0 * sink};
-    const auto lower = w.add_particle(n);
+    const auto lower = w.add_grain(n);
     n.position += Vec3(1e-4, 0.7e-4, 2.0 * half_edge - sink);
     n.rotation = about(Vec3::UnitZ(), 0.15);  // edges cross edges
-    const auto upper = w.add_particle(n);
+    const auto upper = w.add_grain(n);
     // Tilted in 0.2 s: all at once, the stack would bounce.
     for (int k = 1; k <= 40; ++k) {
       const double angle = std::atan(slope) * k / 40.0;
@@ -200,18 +200,18 @@ TEST_CASE("a cube that stands on its edge falls on the face that it leans to") {
   w.set_contact(sand<Sharp>());
   const auto cube = w.add_species(dem::shape::cube(half_edge));
   const auto plate = w.add_surface(w.ground(), dem::surface::Plane{});
-  dem::NewParticle n;
+  dem::NewGrain n;
   n.species = cube;
-  std::vector<ParticleId> cubes;
+  std::vector<GrainId> cubes;
   for (const double lean : {-0.01, 0.01}) {
     n.rotation = about(Vec3::UnitX(), 0.25 * std::numbers::pi + lean);
     n.position = {lean, 0, std::sqrt(2.0) * half_edge};
-    cubes.push_back(w.add_particle(n));
+    cubes.push_back(w.add_grain(n));
   }
   REQUIRE(w.run_for(0.6));
   CHECK(w.rotation(cubes[0])(2, 2) == Approx(1.0).epsilon(1e-6));  // back to where it was at 0
   CHECK(w.rotation(cubes[1])(2, 1) == Approx(1.0).epsilon(1e-6));  // on to 90 degrees
-  for (const ParticleId p : cubes) CHECK(w.position(p).z() == Approx(half_edge).epsilon(1e-3));
+  for (const GrainId p : cubes) CHECK(w.position(p).z() == Approx(half_edge).epsilon(1e-3));
   CHECK(w.surface_force(plate).z() == Approx(-2.0 * w.species(cube).mass * g).epsilon(1e-4));
 }
 
@@ -223,21 +223,21 @@ TEST_CASE("a stack of five cubes carries its weight and stays") {
   const double weight = w.species(cube).mass * g, k = 2000.0;
   // Each contact is pressed in by what it carries. Aligned: corners on corners, the hardest case for features; the
   // upper ones are turned.
-  dem::NewParticle n;
+  dem::NewGrain n;
   n.species = cube;
   n.position.z() = half_edge - 5.0 * weight / k;
   std::vector<Vec3> start;
   for (int level = 0; level < 5; ++level) {
     if (level > 2) n.rotation = about(Vec3::UnitZ(), 0.2 * level);
-    w.add_particle(n);
+    w.add_grain(n);
     start.push_back(n.position);
     n.position.z() += 2.0 * half_edge - (4.0 - level) * weight / k;
   }
   REQUIRE(w.run_for(0.2));
   for (std::size_t level = 0; level < 5; ++level) {
     // Rounding of overlaps, 1e-18 m, and of forces, over 20,000 steps.
-    CHECK((w.position(ParticleId(level)) - start[level]).norm() < 1e-9 * half_edge);
-    CHECK(w.force(ParticleId(level)).z() == Approx(weight).epsilon(1e-6));
+    CHECK((w.position(GrainId(level)) - start[level]).norm() < 1e-9 * half_edge);
+    CHECK(w.force(GrainId(level)).z() == Approx(weight).epsilon(1e-6));
   }
   CHECK(w.surface_force(plate).z() == Approx(-5.0 * weight).epsilon(1e-6));
 }
@@ -251,10 +251,10 @@ TEST_CASE("a column of cubes between plates slides or leans, whichever resists l
   const double k = 80e3, load = 0.45, speed = 2e-3;  // N/m, N: 45 kPa on 3.2 mm squares, m/s
   dem::World<Sharp> w(options({0, 0, -g}));
   w.set_contact({{k, 0.06, 1.0}, {mu, k, 0.06, 1.0}});
-  dem::NewParticle n;
+  dem::NewGrain n;
   n.species = w.add_species(dem::shape::cube(1.6e-3));
   n.position.z() = 1.6e-3;
-  for (int level = 0; level < cubes; ++level, n.position.z() += 3.2e-3) w.add_particle(n);
+  for (int level = 0; level < cubes; ++level, n.position.z() += 3.2e-3) w.add_grain(n);
   const dem::BodyId table = w.machine().add_fixed_body("table");
   w.add_surface(table, dem::surface::Plane{});
   w.machine().add_motion(
@@ -280,7 +280,7 @@ TEST_CASE("a column of cubes between plates slides or leans, whichever resists l
   // As the column leans by its tilt the arm is w - h * tilt: some 0.004 until the edges alone carry the load of which
   // each contact is pressed in by 6e-6 m, and 0.01 in the end; one that slides leans by 0.003.
   const bool leans = 1.0 / cubes < mu;
-  const double tilt = std::abs(w.rotation(ParticleId(0))(0, 2));
+  const double tilt = std::abs(w.rotation(GrainId(0))(0, 2));
   CHECK(most == Approx(std::min(mu, 1.0 / cubes)).margin(0.005));
   CHECK(last == Approx(leans ? 1.0 / cubes - tilt : mu).margin(0.003));
   CHECK((tilt > 0.006) == leans);
@@ -293,18 +293,18 @@ TEST_CASE("polyhedra keep momentum and angular momentum to rounding") {
                              w.add_species(dem::shape::octahedron(1.6e-3))};
   Random random(5);
   for (int k = 0; k < 64; ++k) {
-    dem::NewParticle p;
+    dem::NewGrain p;
     p.species = kinds[k % 3];
     p.position = 4.2e-3 * Vec3(k % 4, k / 4 % 4, k / 16);
     p.rotation = random.rotation();
     p.velocity = -40.0 * (p.position - Vec3::Constant(6.3e-3)) + random.vector(0.1);
     p.angular_velocity = random.vector(50.0);
-    w.add_particle(p);
+    w.add_grain(p);
   }
   const Vec3 p0 = momentum(w), l0 = angular_momentum(w);
   const double e0 = kinetic_energy(w);
   double p_size = 0.0, l_size = 0.0;
-  for_each_grain(w, [&](ParticleId p) {
+  for_each_grain(w, [&](GrainId p) {
     p_size += mass_of(w, p) * w.velocity(p).norm();
     l_size += mass_of(w, p) * w.velocity(p).norm() * w.position(p).norm();
   });
@@ -325,14 +325,14 @@ TEST_CASE("without dampers a collision of polyhedra gives back its energy within
   for (int trial = 0; trial < 20; ++trial) {
     dem::World<Sharp> w(options({0, 0, 0}, 2e-6));
     w.set_contact({{2000.0, 0.0, 1.0}, {0.0, 0.0, 0.0, 0.0}});
-    dem::NewParticle p;
+    dem::NewGrain p;
     p.species = w.add_species(dem::shape::cube(half_edge));
     for (const double side : {-1.0, 1.0}) {
       p.position = {side * 2.1e-3, side * 3e-4 * random.between(-1.0, 1.0), side * 1e-4};
       p.velocity = {-side * 0.2, 0, 0};
       p.rotation = random.rotation();
       p.angular_velocity = random.vector(20.0);
-      w.add_particle(p);
+      w.add_grain(p);
     }
     const double e0 = kinetic_energy(w);
     double least = e0;
@@ -340,7 +340,7 @@ TEST_CASE("without dampers a collision of polyhedra gives back its energy within
       REQUIRE(w.run(100));
       least = std::min(least, kinetic_energy(w));
     }
-    if (w.force(ParticleId(0)).norm() > 0.0 || least > 0.9 * e0) continue;  // did not hit, or still does
+    if (w.force(GrainId(0)).norm() > 0.0 || least > 0.9 * e0) continue;  // did not hit, or still does
     const double change = kinetic_energy(w) / e0 - 1.0;
     sum += change;
     worst = std::max(worst, std::abs(change));
@@ -382,7 +382,7 @@ TEST_CASE("polyhedra do among other kinds what they do alone") {
     add_block(w, w.add_species(dem::shape::cube(half_edge)), {2.2e-3, 2.2e-3, 2.2e-3}, 3.6e-3, 2, 2, 5, 0.2);
     REQUIRE(w.run(8000));
     std::vector<Vec3> places;
-    for_each_grain(w, [&](ParticleId p) { places.push_back(w.position(p)); });
+    for_each_grain(w, [&](GrainId p) { places.push_back(w.position(p)); });
     return places;
   };
   using Any = dem::shape::Mixed<Sphere, Polyhedron>;

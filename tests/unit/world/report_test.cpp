@@ -15,12 +15,12 @@ dem::World<Model> make(dem::WorldOptions o, const dem::ContactParameters<Model>&
   return w;
 }
 template <class World>
-ParticleId add(World& w, const Vec3& position, const Vec3& velocity = Vec3::Zero()) {
-  dem::NewParticle n;
+GrainId add(World& w, const Vec3& position, const Vec3& velocity = Vec3::Zero()) {
+  dem::NewGrain n;
   n.species = SpeciesId(0);
   n.position = position;
   n.velocity = velocity;
-  return w.add_particle(n);
+  return w.add_grain(n);
 }
 
 }  // namespace
@@ -49,7 +49,7 @@ TEST_CASE("a grain that leaves the domain is named") {
     const dem::StepReport report = w.run(1000);
     REQUIRE(!report);
     CHECK(report.problem == Problem::lost);
-    CHECK(report.particle == flier);
+    CHECK(report.grain == flier);
     CHECK(report.step == w.steps());
     CHECK(report.time == Approx(w.time()));
     // It has 0.5 to 1.5 m to go at 100 m/s.
@@ -83,7 +83,7 @@ TEST_CASE("a grain that is pressed too deep is named") {
   const dem::StepReport report = w.run(10);
   REQUIRE(!report);
   CHECK(report.problem == Problem::overlap);
-  CHECK((report.particle == deep || report.particle == ParticleId(2)));
+  CHECK((report.grain == deep || report.grain == GrainId(2)));
   CHECK(report.step == 1);
   CHECK_THAT(report.text, ContainsSubstring("overlaps grain"));
   CHECK_THAT(report.text, ContainsSubstring("0.25"));
@@ -111,13 +111,13 @@ TEST_CASE("the report names the two that overlap, not a grain that is pushed har
   add(w, {0, 0, 0.5});
   const auto middle = add(w, {x, 0, 0.5});
   add(w, {2 * x, 0, 0.5});
-  dem::NewParticle hard;
+  dem::NewGrain hard;
   hard.species = SpeciesId(1);
   hard.position = {0.1, 0, 0.99e-3};
-  w.add_particle(hard);
+  w.add_grain(hard);
   const dem::StepReport report = w.run(1);
   CHECK(report.problem == Problem::overlap);
-  CHECK((report.particle == ParticleId(0) || report.particle == middle));
+  CHECK((report.grain == GrainId(0) || report.grain == middle));
   CHECK_THAT(report.text, ContainsSubstring("grain 1"));
   CHECK_THAT(report.text, ContainsSubstring("grain 0") || ContainsSubstring("grain 2"));
 }
@@ -131,7 +131,7 @@ TEST_CASE("an overlap with a surface is reported too") {
   const dem::StepReport report = w.run(10);
   REQUIRE(!report);
   CHECK(report.problem == Problem::overlap);
-  CHECK(report.particle == deep);
+  CHECK(report.grain == deep);
   CHECK_THAT(report.text, ContainsSubstring("0.15"));
   CHECK_THAT(report.text, ContainsSubstring("overlaps surface 0 of body 'ground'"));
 }
@@ -146,9 +146,9 @@ TEST_CASE("a run that blows up is stopped and says where, when and what to chang
   const dem::StepReport report = w.run(100);
   REQUIRE(!report);
   CHECK(report.problem == Problem::not_finite);
-  CHECK((report.particle == first || report.particle == second));
+  CHECK((report.grain == first || report.grain == second));
   CHECK_THAT(report.text, ContainsSubstring("not a number"));
-  CHECK_THAT(report.text, ContainsSubstring(fmt::format("grain {}", report.particle.value)));
+  CHECK_THAT(report.text, ContainsSubstring(fmt::format("grain {}", report.grain.value)));
   CHECK_THAT(report.text, ContainsSubstring("time_step (now 1e+10 s)"));
   CHECK_THAT(report.text, ContainsSubstring(fmt::format("step {}", report.step)));
 }
@@ -157,10 +157,10 @@ TEST_CASE("a velocity that becomes no number is found in the next step") {
   auto w = make(options({0, 0, 0}, 1e-5));
   for (int k = 0; k < 100; ++k) add(w, {0.01 * k, 0, 0});
   REQUIRE(w.step());
-  auto& grains = w.state().particles;
+  auto& grains = w.state().grains;
   grains.velocity.set(grains.row_of[57], {0, std::nan(""), 0});
   const dem::StepReport report = w.step();
   CHECK(report.problem == Problem::not_finite);
-  CHECK(report.particle == ParticleId(57));
+  CHECK(report.grain == GrainId(57));
   CHECK(report.step == 2);
 }

@@ -25,7 +25,7 @@ TEMPLATE_TEST_CASE("a plate on a spring comes to rest under its weight and a gra
   const auto slide = machine.add_joint(dem::mbd::prismatic("slide", world.ground(), plate, {0, 0, 0}, {0, 0, 1}));
   const auto spring = machine.add_spring(dem::mbd::spring("spring", world.ground(), {0, 0, -0.1}, plate, {0, 0, 0}, k));
   world.add_surface(plate, dem::surface::Box(edges));
-  const auto grain = world.add_particle({.species = species, .position = {0, 0, 0.5e-3 + radius - d}});
+  const auto grain = world.add_grain({.species = species, .position = {0, 0, 0.5e-3 + radius - d}});
 
   const dem::mbd::RestReport before = find_rest(world);
   INFO(before.text);
@@ -44,7 +44,7 @@ TEMPLATE_TEST_CASE("a plate on a spring comes to rest under its weight and a gra
   const auto guide = m.add_joint(dem::mbd::prismatic("guide", stiff.ground(), table, {0, 0, 0}, {0, 0, 1}));
   m.add_spring(dem::mbd::spring("leg", stiff.ground(), {0, 0, -0.1}, table, {0, 0, 0}, 10 * k));
   stiff.add_surface(table, dem::surface::Box(edges));
-  (void)stiff.add_particle({.species = same, .position = {0, 0, 0.5e-3 + radius - d}});
+  (void)stiff.add_grain({.species = same, .position = {0, 0, 0.5e-3 + radius - d}});
   const dem::mbd::RestReport rest = find_rest(stiff);
   INFO(rest.text);
   REQUIRE(rest);

@@ -27,7 +27,7 @@ ContactParameters<Model> constants(double mu) {
 template <class Model>
 struct OnPlane {
   World<Model> world;
-  ParticleId id;
+  GrainId id;
   double angle;
 
   OnPlane(double slope, double mu, const Vec3& velocity = {0, 0, 0}, const Vec3& spin = {0, 0, 0})
@@ -37,7 +37,7 @@ struct OnPlane {
     const auto species = world.add_species(Sphere(r), {"grain", 2500.0});
     world.add_surface(world.ground(), surface::Plane{});
     const double depth = world.species(species).mass * g * std::cos(angle) / stiffness;
-    id = world.add_particle(grain_at({0, 0, r - depth}, velocity, spin));
+    id = world.add_grain(grain_at({0, 0, r - depth}, velocity, spin));
   }
   double speed() const { return world.velocity(id).x(); }
   Vec3 spin() const { return world.angular_velocity(id); }
@@ -124,7 +124,7 @@ TEMPLATE_TEST_CASE("a ball that cannot roll sticks below atan(mu) and slides abo
       depth = std::pow(0.75 * weight / (soft.modulus * std::sqrt(r)), 2.0 / 3.0);
     }
     w.add_surface(w.ground(), surface::Plane{});
-    const auto ball = w.add_particle(grain_at({0, 0, r - depth}));
+    const auto ball = w.add_grain(grain_at({0, 0, r - depth}));
     for (int k = 1; k <= 100; ++k) {  // tilted slowly, so that nothing swings
       w.set_gravity({g * std::sin(angle * k / 100), 0, -g * std::cos(angle * k / 100)});
       REQUIRE(w.run(50));
@@ -150,14 +150,14 @@ TEST_CASE("torques of rolling and torsion are equal and opposite") {
   w.set_contact(constants<SpringModel>(0.4));
   w.add_species(Sphere(r));
   w.add_species(Sphere(0.6 * r));
-  w.add_particle(grain_at({0, 0, 0}, {0.1, 0.02, 0}, {5, -20, 30}));
-  NewParticle other = grain_at({1.59 * r, 0.1 * r, 0}, {-0.2, 0, 0.05}, {-40, 10, 20});
+  w.add_grain(grain_at({0, 0, 0}, {0.1, 0.02, 0}, {5, -20, 30}));
+  NewGrain other = grain_at({1.59 * r, 0.1 * r, 0}, {-0.2, 0, 0.05}, {-40, 10, 20});
   other.species = SpeciesId(1);
-  w.add_particle(other);
-  const Vec3 p = momentum(w), l = angular_momentum(w), spin = w.angular_velocity(ParticleId(0));
+  w.add_grain(other);
+  const Vec3 p = momentum(w), l = angular_momentum(w), spin = w.angular_velocity(GrainId(0));
   REQUIRE(w.run_for(0.02));
-  CHECK((w.angular_velocity(ParticleId(0)) - spin).norm() > 1.0);
-  CHECK(w.force(ParticleId(0)).norm() == 0.0);
+  CHECK((w.angular_velocity(GrainId(0)) - spin).norm() > 1.0);
+  CHECK(w.force(GrainId(0)).norm() == 0.0);
   // Rounding of 1e4 steps.
   CHECK((momentum(w) - p).norm() < 1e-12 * p.norm());
   CHECK((angular_momentum(w) - l).norm() < 1e-11 * l.norm());
@@ -178,7 +178,7 @@ TEST_CASE("rolling histories survive new neighbour lists") {
     w.set_contact(constants<SpringModel>(0.4));
     run_box(w, Sphere(r), r, 0.3, 2000);
     std::vector<Vec3> all;
-    for_each_grain(w, [&](ParticleId p) { all.push_back(w.position(p)); });
+    for_each_grain(w, [&](GrainId p) { all.push_back(w.position(p)); });
     return std::pair(all, w.state().rebuilds);
   };
   const auto [often, many] = run(0.02);

@@ -38,18 +38,18 @@ std::vector<Floor> floors() {
 template <class Shape>
 struct OnFloor {
   dem::World<Grains<Shape, dem::integrator::VelocityVerlet>> world;
-  ParticleId grain;
+  GrainId grain;
 
   OnFloor(const Floor& floor, const Vec3& gravity, double k) : world(options(gravity, 1e-5)) {
     world.set_contact({{k, 0.05, 1.0}, {0.5, k, 0.05, 0.975}});
     dem::SurfaceOptions o;
     o.position = floor.place;
     world.add_surface(world.ground(), floor.geometry, o);
-    dem::NewParticle n;
+    dem::NewGrain n;
     n.species = world.add_species(ball<Shape>());
     n.position = {0.003, 0.001, ball_radius};
     n.rotation = Random(3).rotation();
-    grain = world.add_particle(n);
+    grain = world.add_grain(n);
   }
 };
 
@@ -107,11 +107,11 @@ TEMPLATE_TEST_CASE("an exact superquadric ball and a cluster of one ball go the 
       dem::SurfaceOptions o;
       o.position = p.place;
       w.add_surface(w.ground(), p.geometry, o);
-      dem::NewParticle n;
+      dem::NewGrain n;
       n.species = w.add_species(shape);
       n.position = {0, 0, ball_radius};
       n.velocity = {0.05, 0, 0};
-      const auto grain = w.add_particle(n);
+      const auto grain = w.add_grain(n);
       REQUIRE(w.run_for(0.2));
       result.push_back(w.position(grain));
       result.push_back(w.velocity(grain));

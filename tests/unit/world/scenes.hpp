@@ -10,8 +10,8 @@
 
 #include <vector>
 
+using dem::GrainId;
 using dem::Mat3;
-using dem::ParticleId;
 using dem::SpeciesId;
 using dem::SurfaceId;
 using dem::Vec3;
@@ -65,42 +65,42 @@ void add_block(World& world, SpeciesId species, const Vec3& corner, double dista
   for (int k = 0; k < nz; ++k) {
     for (int j = 0; j < ny; ++j) {
       for (int i = 0; i < nx; ++i) {
-        dem::NewParticle p;
+        dem::NewGrain p;
         p.species = species;
         p.position = corner + distance * Vec3(i, j, k);
         p.rotation = random.rotation();
         p.velocity = random.vector(speed);
-        world.add_particle(p);
+        world.add_grain(p);
       }
     }
   }
 }
 
 template <class World>
-double mass_of(const World& w, ParticleId p) {
+double mass_of(const World& w, GrainId p) {
   return w.species(w.species_of(p)).mass;
 }
 template <class World, class F>
 void for_each_grain(const World& w, F&& f) {
-  for (std::size_t k = 0; k < w.particle_count(); ++k) f(ParticleId(k));
+  for (std::size_t k = 0; k < w.grain_count(); ++k) f(GrainId(k));
 }
 template <class World>
 double total_mass(const World& w) {
   double m = 0.0;
-  for_each_grain(w, [&](ParticleId p) { m += mass_of(w, p); });
+  for_each_grain(w, [&](GrainId p) { m += mass_of(w, p); });
   return m;
 }
 template <class World>
 Vec3 momentum(const World& w) {
   Vec3 sum = Vec3::Zero();
-  for_each_grain(w, [&](ParticleId p) { sum += mass_of(w, p) * w.velocity(p); });
+  for_each_grain(w, [&](GrainId p) { sum += mass_of(w, p) * w.velocity(p); });
   return sum;
 }
 /// About the origin.
 template <class World>
 Vec3 angular_momentum(const World& w) {
   Vec3 sum = Vec3::Zero();
-  for_each_grain(w, [&](ParticleId p) {
+  for_each_grain(w, [&](GrainId p) {
     const Mat3 r = w.rotation(p);
     const Vec3 spin = r.transpose() * w.angular_velocity(p);
     sum +=
@@ -111,7 +111,7 @@ Vec3 angular_momentum(const World& w) {
 template <class World>
 double kinetic_energy(const World& w) {
   double sum = 0.0;
-  for_each_grain(w, [&](ParticleId p) {
+  for_each_grain(w, [&](GrainId p) {
     const Vec3 spin = w.rotation(p).transpose() * w.angular_velocity(p);
     sum += 0.5 * mass_of(w, p) * w.velocity(p).squaredNorm() +
            0.5 * spin.dot(w.species(w.species_of(p)).inertia.cwiseProduct(spin));
@@ -121,7 +121,7 @@ double kinetic_energy(const World& w) {
 /// Calls f(geometry) for every contact of two grains, which it finds by asking all pairs.
 template <class Model, class F>
 void for_each_pair_contact(const dem::World<Model>& w, F&& f) {
-  const auto& p = w.state().particles;
+  const auto& p = w.state().grains;
   for (std::size_t i = 0; i < p.count; ++i) {
     const auto& a = w.state().species[p.species[i]].shape;
     for (std::size_t j = i + 1; j < p.count; ++j) {

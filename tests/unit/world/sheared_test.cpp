@@ -41,7 +41,7 @@ void fill(World& w, double low_z) {
       for (int i = 0; i < 7; ++i) {
         Vec3 x(2.8e-3 * i + 1.5e-3, 2.8e-3 * j + 1.5e-3, 2.8e-3 * k + 1.5e-3);
         if (x.z() < low_z) x.z() += edge;
-        w.add_particle({SpeciesId(0), x, Vec3(rate * x.z(), 0, 0) + random.in_ball(0.3)});
+        w.add_grain({SpeciesId(0), x, Vec3(rate * x.z(), 0, 0) + random.in_ball(0.3)});
       }
     }
   }
@@ -60,7 +60,7 @@ void check_beginnings() {
   CHECK(one.state().rebuilds < 90);  // not at each crossing of a border
   const double slip = rate * edge, offset = std::remainder(slip * one.time(), edge);
   double largest = 0.0, fastest = 0.0, crossed = 0.0;
-  for (const ParticleId p : one.particles()) {
+  for (const GrainId p : one.grains()) {
     Vec3 d = other.position(p) - one.position(p), v = other.velocity(p) - one.velocity(p);
     const double levels = std::round(d.z() / edge);
     d -= levels * Vec3(offset, 0, edge);
@@ -89,7 +89,7 @@ TEST_CASE("momentum across a sheared flow is kept, and along it changes by whole
   fill(w, 0.0);
   const auto momentum = [&] {
     Vec3 sum = Vec3::Zero();
-    for (const ParticleId p : w.particles()) sum += w.velocity(p);
+    for (const GrainId p : w.grains()) sum += w.velocity(p);
     return sum;
   };
   const Vec3 before = momentum();
@@ -113,13 +113,13 @@ TEST_CASE("layers that rise through a border in shear flow on, and averages see 
     for (int j = 0; j < 10; ++j) {
       for (int i = 0; i < 10; ++i) {
         const Vec3 x(2e-3 * (i + 0.5), 2e-3 * (j + 0.5), 2e-3 * (k + 0.5));
-        w.add_particle({SpeciesId(0), x, Vec3(rate * x.z(), 0, rise)});
+        w.add_grain({SpeciesId(0), x, Vec3(rate * x.z(), 0, rise)});
       }
     }
   }
   REQUIRE(w.run(3000));
   const double risen = rise * w.time();
-  for (const ParticleId p : w.particles()) {
+  for (const GrainId p : w.grains()) {
     CHECK(w.velocity(p).x() == Catch::Approx(rate * (w.position(p).z() - risen)).margin(1e-9));
   }
   // Cells of 4 mm that reach over both borders: those half outside hold images, which flow on beyond.

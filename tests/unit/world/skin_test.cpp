@@ -27,7 +27,7 @@ dem::World<Balls> falling_bed(double skin, int threads, int n = 9) {
   const auto ball = w.add_species(Sphere(1e-3));
   add_open_box(w, {2.1e-3 * n, 2.1e-3 * n, 0});
   add_block(w, ball, Vec3(1.05e-3, 1.05e-3, 0.02), 2.1e-3, n, n, n, 0.1);
-  for (const ParticleId p : w.particles()) w.set_velocity(p, w.velocity(p) - Vec3(0, 0, 1.0));
+  for (const GrainId p : w.grains()) w.set_velocity(p, w.velocity(p) - Vec3(0, 0, 1.0));
   return w;
 }
 
@@ -89,7 +89,7 @@ TEST_CASE("a falling bed makes fewer lists, and a bed at rest goes back to the n
   CHECK(chosen.state().list_skin > 2e-4);
   CHECK(chosen.state().rebuilds < fixed.state().rebuilds / 3);
   // The same grains, but for the order of sums.
-  for (const ParticleId p : chosen.particles()) {
+  for (const GrainId p : chosen.grains()) {
     CHECK((chosen.position(p) - fixed.position(p)).norm() < 1e-9);
   }
   CHECK(fixed.state().list_skin == 1e-4);
@@ -113,7 +113,7 @@ TEST_CASE("a chosen skin is the same for any number of threads") {
     auto w = falling_bed(0.0, threads);
     REQUIRE(w.run(3000));  // it meets the floor
     std::vector<double> all = {w.state().list_skin, static_cast<double>(w.state().rebuilds)};
-    for (const ParticleId p : w.particles()) {
+    for (const GrainId p : w.grains()) {
       const Vec3 x = w.position(p), v = w.velocity(p);
       all.insert(all.end(), {x.x(), x.y(), x.z(), v.x(), v.y(), v.z()});
     }

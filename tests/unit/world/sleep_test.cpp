@@ -20,7 +20,7 @@ struct Towers {
   static constexpr int across = 8, high = 9;
   dem::World<models::VerletCubes> w;
   SurfaceId floor;
-  std::vector<ParticleId> grains;
+  std::vector<GrainId> grains;
   double weight = 0.0;  // N, of all grains
 
   explicit Towers(bool sleep, int threads = 1) : w(with(sleep, threads)) {
@@ -31,7 +31,7 @@ struct Towers {
     for (int i = 0; i < across; ++i) {
       for (int j = 0; j < across; ++j) {
         for (int k = 0; k < high; ++k) {
-          grains.push_back(w.add_particle({cube, Vec3(pitch * i, pitch * j, half + 2 * half * k)}));
+          grains.push_back(w.add_grain({cube, Vec3(pitch * i, pitch * j, half + 2 * half * k)}));
         }
       }
     }
@@ -49,7 +49,7 @@ struct Towers {
 /// Towers of 6 cubes on a table that goes up by `height(t)` (m): 384 in all, which sleep after 0.06 s.
 struct TowersOnTable {
   dem::World<models::VerletCubes> w;
-  std::vector<ParticleId> grains;
+  std::vector<GrainId> grains;
   SurfaceId table;
 
   explicit TowersOnTable(const std::function<double(double)>& height,
@@ -61,7 +61,7 @@ struct TowersOnTable {
     table = w.add_surface(body, dem::surface::Plane{});
     w.machine().add_motion(
         dem::mbd::prescribed_position("lift", body, Vec3::UnitZ(), dem::mbd::Signal::function(height)));
-    for (int k = 0; k < 384; ++k) grains.push_back(w.add_particle({cube, place(k)}));
+    for (int k = 0; k < 384; ++k) grains.push_back(w.add_grain({cube, place(k)}));
   }
   /// Where cube k stands on a table at height 0.
   static Vec3 place(int k) { return {2.2e-3 * (k % 8), 2.2e-3 * (k / 8 % 8), 1e-3 + 2e-3 * (k / 64)}; }
@@ -71,9 +71,9 @@ struct TowersOnTable {
 /// agree to rounding. Beside one that is awake dampers differ, as contacts_of takes speeds after the forces and the
 /// step those before: by c a dt/2 = 0.025 N s/m times 3e-5 s times a few g, a few hundredths of a grain's weight; more
 /// where it is hit.
-void check_sums(const dem::World<models::VerletCubes>& w, const std::vector<ParticleId>& grains, double weight) {
+void check_sums(const dem::World<models::VerletCubes>& w, const std::vector<GrainId>& grains, double weight) {
   const double one = w.species(SpeciesId(0)).mass * g;
-  std::vector<Vec3> sum(w.particle_count(), Vec3::Zero()), turn = sum;
+  std::vector<Vec3> sum(w.grain_count(), Vec3::Zero()), turn = sum;
   std::set<std::uint32_t> beside_awake;
   for (const auto& c : dem::contacts_of(w)) {
     if (c.kind == dem::ContactKind::grains && !w.is_asleep(c.grain)) beside_awake.insert(c.other_grain.value);
@@ -84,7 +84,7 @@ void check_sums(const dem::World<models::VerletCubes>& w, const std::vector<Part
     sum[c.other_grain.value] -= c.force;
     turn[c.other_grain.value] += c.other_torque;
   }
-  for (const ParticleId p : grains) {
+  for (const GrainId p : grains) {
     if (!w.is_asleep(p)) continue;
     INFO("grain " << p.value << " after " << w.steps() << " steps");
     const bool is_kept = beside_awake.count(p.value) == 0;
@@ -107,7 +107,7 @@ TEST_CASE("a bed falls asleep, weighs what it weighs, and its grains stay where 
   // that swing in step fall asleep in step, so nothing but the swing's place makes the sum smaller: 0.003 was seen.
   CHECK(bed.on_floor() == Approx(bed.weight).epsilon(0.01));
   // The contacts of a tower are off by 0.01 (2 k - 1) m g/(4 K) in layer k from the top: 9e-8 m in all.
-  for (const ParticleId p : bed.grains) CHECK((bed.w.position(p) - awake.w.position(p)).norm() < 9e-8);
+  for (const GrainId p : bed.grains) CHECK((bed.w.position(p) - awake.w.position(p)).norm() < 9e-8);
   CHECK(bed.w.velocity(bed.grains[0]).norm() == 0.0);
 }
 
@@ -120,10 +120,10 @@ TEST_CASE("no grain hangs in the air when what it stands on is taken away") {
     bed.w.set_active(bed.floor, false);
     REQUIRE(bed.w.run_for(time));
     // All of them fall freely.
-    for (const ParticleId p : bed.grains) CHECK(bed.w.velocity(p).z() < -0.9 * g * time);
+    for (const GrainId p : bed.grains) CHECK(bed.w.velocity(p).z() < -0.9 * g * time);
   }
   SECTION("the lowest grain of each tower") {
-    for (std::size_t k = 0; k < bed.grains.size(); k += Towers::high) bed.w.remove_particle(bed.grains[k]);
+    for (std::size_t k = 0; k < bed.grains.size(); k += Towers::high) bed.w.remove_grain(bed.grains[k]);
     REQUIRE(bed.w.run_for(time));
     for (std::size_t k = 0; k < bed.grains.size(); ++k) {
       if (k % Towers::high != 0) CHECK(bed.w.velocity(bed.grains[k]).z() < -0.9 * g * time);
@@ -132,7 +132,7 @@ TEST_CASE("no grain hangs in the air when what it stands on is taken away") {
   SECTION("gravity that points elsewhere") {
     bed.w.set_gravity({0, 0, g});
     REQUIRE(bed.w.run_for(time));
-    for (const ParticleId p : bed.grains) CHECK(bed.w.velocity(p).z() > 0.9 * g * time);
+    for (const GrainId p : bed.grains) CHECK(bed.w.velocity(p).z() > 0.9 * g * time);
   }
 }
 
@@ -153,7 +153,7 @@ TEST_CASE("no grain hangs in the air when the floor is far away after one step")
   REQUIRE(bed.w.run_for(0.069));
   REQUIRE(bed.w.asleep_count() == bed.grains.size());
   REQUIRE(bed.w.run_for(0.011));
-  for (const ParticleId p : bed.grains) CHECK(bed.w.velocity(p).z() < -0.9 * g * 0.01);
+  for (const GrainId p : bed.grains) CHECK(bed.w.velocity(p).z() < -0.9 * g * 0.01);
   CHECK(bed.w.surface_force(bed.table).norm() == 0.0);
 }
 
@@ -175,18 +175,18 @@ TEST_CASE("a grain that turns in its place, or flies slowly, does not sleep") {
     const auto kind = w.add_species(shape);
     w.add_surface(w.ground(), dem::surface::Plane{}, {.material = "ice"});
     const double radius = 1e-3, turning = 5.0, drift = 1e-7;  // m, rad/s, m/s
-    const auto top = w.add_particle({.species = kind, .position = {0, 0, radius}, .angular_velocity = {0, 0, turning}});
-    const auto rests = w.add_particle({.species = kind, .position = {0.01, 0, radius}});
+    const auto top = w.add_grain({.species = kind, .position = {0, 0, radius}, .angular_velocity = {0, 0, turning}});
+    const auto rests = w.add_grain({.species = kind, .position = {0.01, 0, radius}});
     REQUIRE(w.run_for(0.2));
     CHECK(w.is_asleep(rests));
     CHECK(!w.is_asleep(top));
     CHECK(w.angular_velocity(top).z() == Approx(turning).epsilon(1e-9));
     // Without gravity one that moves goes on; one that does not may sleep.
-    w.remove_particle(top);
-    w.remove_particle(rests);
+    w.remove_grain(top);
+    w.remove_grain(rests);
     w.set_gravity({0, 0, 0});
-    const auto flier = w.add_particle({kind, Vec3(0, 0, 0.05), {drift, 0, 0}}),
-               stays = w.add_particle({kind, Vec3(0.01, 0, 0.05)});
+    const auto flier = w.add_grain({kind, Vec3(0, 0, 0.05), {drift, 0, 0}}),
+               stays = w.add_grain({kind, Vec3(0.01, 0, 0.05)});
     REQUIRE(w.run_for(0.1));
     CHECK(w.velocity(flier).x() == drift);
     CHECK(!w.is_asleep(flier));
@@ -208,7 +208,7 @@ TEST_CASE("what grains that fall asleep lose of their motion is counted") {
   const bool sleeps = GENERATE(false, true);
   Towers bed(false);
   if (sleeps) bed.w.set_sleep(dem::SleepOptions{.balance = 0.3, .change = 0.3, .jolt = 0.3, .motion = 0.01});
-  bed.grains.push_back(bed.w.add_particle({SpeciesId(0), Vec3(0, 0, 2e-3 * Towers::high + 2e-3), {0, 0, -0.2}}));
+  bed.grains.push_back(bed.w.add_grain({SpeciesId(0), Vec3(0, 0, 2e-3 * Towers::high + 2e-3), {0, 0, -0.2}}));
   dem::count_energy(bed.w);
   const double before = dem::energy_of(bed.w).balance();
   REQUIRE(bed.w.run_for(0.08));
@@ -239,7 +239,7 @@ TEST_CASE("neighbours are listed anew where a few grains that are awake lie in m
     CHECK(!s.list_valid);
     REQUIRE(bed.w.run(1));
     // They come first now.
-    for (std::size_t row = 0; row < 3; ++row) CHECK(!bed.w.is_asleep(s.particles.name(s.particles.id[row])));
+    for (std::size_t row = 0; row < 3; ++row) CHECK(!bed.w.is_asleep(s.grains.name(s.grains.id[row])));
   }
 }
 
@@ -257,8 +257,8 @@ TEST_CASE("a part that holds grains finds its rest under grains that sleep on th
   m.add_spring(dem::mbd::spring("spring", w.ground(), middle - Vec3(0, 0, 0.05), table, middle, stiffness, 1.0));
   std::size_t grains = 0;
   for (int k = 0; k < 384; ++k) {
-    const ParticleId p =
-        w.add_particle({k < 64 ? glued : cube, Vec3(2.2e-3 * (k % 8), 2.2e-3 * (k / 8 % 8), 2e-3 * (k / 64))});
+    const GrainId p =
+        w.add_grain({k < 64 ? glued : cube, Vec3(2.2e-3 * (k % 8), 2.2e-3 * (k / 8 % 8), 2e-3 * (k / 64))});
     if (k < 64) w.attach(p, table);
     grains += k < 64 ? 0 : 1;
   }
@@ -286,27 +286,27 @@ TEST_CASE("grains that a part holds wake as it moves, and so do those that stand
   w.machine().add_motion(dem::mbd::prescribed_position(
       "sink", table, Vec3::UnitZ(),
       dem::mbd::Signal::function([=](double t) { return -std::clamp(speed * (t - begins), 0.0, way); })));
-  std::vector<ParticleId> on_table, grains;
+  std::vector<GrainId> on_table, grains;
   for (int k = 0; k < 384; ++k) {
-    const ParticleId p =
-        w.add_particle({k < 64 ? glued : cube, Vec3(2.2e-3 * (k % 8), 2.2e-3 * (k / 8 % 8), 2e-3 * (k / 64))});
+    const GrainId p =
+        w.add_grain({k < 64 ? glued : cube, Vec3(2.2e-3 * (k % 8), 2.2e-3 * (k / 8 % 8), 2e-3 * (k / 64))});
     if (k < 64) w.attach(p, table);
     (k < 64 ? on_table : grains).push_back(p);
   }
   const double weight = static_cast<double>(grains.size()) * w.species(cube).mass * g;
   REQUIRE(w.run_for(begins - 0.01));
   REQUIRE(w.asleep_count() == 384);
-  grains.push_back(w.add_particle({cube, Vec3(0, 0, 2e-3 * 6 + 5e-4), {0, 0, -0.1}}));
+  grains.push_back(w.add_grain({cube, Vec3(0, 0, 2e-3 * 6 + 5e-4), {0, 0, -0.1}}));
   REQUIRE(w.run_for(0.01 - 1e-4));
   REQUIRE(!w.state().sleepers.working.empty());
-  REQUIRE(std::any_of(on_table.begin(), on_table.end(), [&](ParticleId p) { return w.is_asleep(p); }));
+  REQUIRE(std::any_of(on_table.begin(), on_table.end(), [&](GrainId p) { return w.is_asleep(p); }));
   bool has_moved = false;
   while (w.time() < begins + 2 * way / speed) {
     REQUIRE(w.run(1));
     const bool moves = w.machine().body(table).velocity().norm() > 0.0;
     if (moves && !has_moved) {
       has_moved = true;
-      for (const ParticleId p : on_table) CHECK(!w.is_asleep(p));
+      for (const GrainId p : on_table) CHECK(!w.is_asleep(p));
     }
     check_sums(w, grains, weight);
   }
@@ -322,7 +322,7 @@ TEST_CASE("a grain that lands wakes its surroundings, and is held") {
   Towers bed(true);
   REQUIRE(bed.w.run_for(0.07));
   const double top = 2e-3 * Towers::high;
-  const auto visitor = bed.w.add_particle({SpeciesId(0), Vec3(0, 0, top + 2e-3), {0, 0, -0.2}});
+  const auto visitor = bed.w.add_grain({SpeciesId(0), Vec3(0, 0, top + 2e-3), {0, 0, -0.2}});
   std::size_t least_asleep = bed.grains.size();
   for (int k = 0; k < 20; ++k) {
     REQUIRE(bed.w.run_for(0.005));
@@ -343,7 +343,7 @@ TEST_CASE("the force on each grain is that of all of its contacts, evaluated in 
   bed.w.set_gravity({0.03 * g, 0.01 * g, -g});
   bed.w.set_sleep(lax);
   REQUIRE(bed.w.run_for(0.1));
-  bed.grains.push_back(bed.w.add_particle({SpeciesId(0), Vec3(0, 0, 2e-3 * Towers::high + 2e-3), {0, 0, -0.2}}));
+  bed.grains.push_back(bed.w.add_grain({SpeciesId(0), Vec3(0, 0, 2e-3 * Towers::high + 2e-3), {0, 0, -0.2}}));
   int mixed = 0;
   for (int k = 0; k < 40; ++k) {
     const auto into = static_cast<int>(bed.w.steps() % static_cast<std::uint64_t>(lax.window));
@@ -360,7 +360,7 @@ TEST_CASE("each grain knows how many are awake beside it, while some wake and ot
   for (std::size_t k = 0; k < bed.grains.size(); ++k) {  // towers that fall asleep at different times
     bed.w.set_position(bed.grains[k], bed.w.position(bed.grains[k]) + Vec3(0, 0, 1e-5 * double(k / 30)));
   }
-  bed.w.add_particle({SpeciesId(0), Vec3(0, 0, 2e-3 * Towers::high + 4e-3), {0, 0, -0.2}});
+  bed.w.add_grain({SpeciesId(0), Vec3(0, 0, 2e-3 * Towers::high + 4e-3), {0, 0, -0.2}});
   std::size_t mixed = 0;
   for (int k = 0; k < 150; ++k) {
     REQUIRE(bed.w.run(40));
@@ -423,13 +423,13 @@ TEST_CASE("a grain that flies past wakes nobody, however often lists are made an
   REQUIRE(bed.w.run_for(0.15));
   REQUIRE(bed.w.asleep_count() == bed.grains.size());
   const double high = 2e-3 * Towers::high, beside = Towers::pitch * (Towers::across - 1) + 6e-3, speed = 4.0;
-  const auto flier = bed.w.add_particle({SpeciesId(0), Vec3(beside, 7e-3, 1e-3), {0, 0, speed}});
+  const auto flier = bed.w.add_grain({SpeciesId(0), Vec3(beside, 7e-3, 1e-3), {0, 0, speed}});
   const auto lists = bed.w.state().rebuilds, steps = bed.w.steps();
   std::size_t least = bed.grains.size();
   while (bed.w.position(flier).z() < high) {
     REQUIRE(bed.w.run(5));
     least = std::min(least, bed.w.asleep_count());
-    CHECK(bed.w.state().particles.row_of[flier.value] == 0);
+    CHECK(bed.w.state().grains.row_of[flier.value] == 0);
   }
   CHECK(bed.w.state().rebuilds - lists > 5);
   CHECK(bed.w.steps() - steps < 2 * 600);
@@ -439,7 +439,7 @@ TEST_CASE("a grain that flies past wakes nobody, however often lists are made an
 TEST_CASE("a bed falls asleep although neighbours are listed anew again and again") {
   // A grain far away is so fast that there is a new list in each of the windows that grains must be at rest for.
   Towers bed(true);
-  const auto flier = bed.w.add_particle({SpeciesId(0), Vec3(0.5, 0.5, 0.5), {3.0, 0, 0}});
+  const auto flier = bed.w.add_grain({SpeciesId(0), Vec3(0.5, 0.5, 0.5), {3.0, 0, 0}});
   REQUIRE(bed.w.run_for(0.08));
   const auto lists = bed.w.state().rebuilds, steps = bed.w.steps();
   CHECK(bed.w.asleep_count() + dem::chunk_size > bed.grains.size());
@@ -461,7 +461,7 @@ TEST_CASE("sleeping worlds are the same bits on any number of threads") {
     REQUIRE(bed.w.run_for(0.05));
     asleep.push_back(bed.w.asleep_count());
     positions.emplace_back();
-    for (const ParticleId p : bed.grains) positions.back().push_back(bed.w.position(p));
+    for (const GrainId p : bed.grains) positions.back().push_back(bed.w.position(p));
   }
   CHECK(asleep[0] == asleep[1]);
   CHECK(asleep[0] == asleep[2]);
@@ -533,7 +533,7 @@ TEST_CASE("a change of load below SleepOptions::change leaves a bed asleep, one 
         "rise", table, Vec3::UnitZ(),
         dem::mbd::Signal::function([way](double t) { return way * std::clamp((t - 0.07) / 0.01, 0.0, 1.0); })));
     for (int k = 0; k < 384; ++k) {
-      w.add_particle({cube, Vec3(2.2e-3 * (k % 8), 2.2e-3 * (k / 8 % 8), 1e-3 + 2e-3 * (k / 64))});
+      w.add_grain({cube, Vec3(2.2e-3 * (k % 8), 2.2e-3 * (k / 8 % 8), 1e-3 + 2e-3 * (k / 64))});
     }
     REQUIRE(w.run_for(0.065));
     REQUIRE(w.asleep_count() == 384);

@@ -18,10 +18,10 @@ TEST_CASE("grains of different size, shape and material share a world") {
   const auto plate = w.add_surface(w.ground(), dem::surface::Plane{});
   double weight = 0.0;
   for (int k = 0; k < 9; ++k) {
-    dem::NewParticle n;
+    dem::NewGrain n;
     n.species = species[static_cast<std::size_t>(k % 3)];
     n.position = {6e-3 * k, 0, 2.1e-3};
-    const auto p = w.add_particle(n);
+    const auto p = w.add_grain(n);
     CHECK(w.species_of(p) == n.species);
     weight += 9.81 * mass_of(w, p);
   }
@@ -31,7 +31,7 @@ TEST_CASE("grains of different size, shape and material share a world") {
   REQUIRE(w.run_for(0.6));
   // Each lies at its own height, less an overlap of micrometres at the most, and all their weight is on the plate.
   const double height[] = {1.5e-3, 1e-3, 2e-3};
-  for_each_grain(w, [&](ParticleId p) { CHECK(w.position(p).z() == Approx(height[p.index() % 3]).margin(2e-6)); });
+  for_each_grain(w, [&](GrainId p) { CHECK(w.position(p).z() == Approx(height[p.index() % 3]).margin(2e-6)); });
   CHECK(-w.surface_force(plate).z() == Approx(weight).epsilon(1e-6));
 }
 
@@ -52,13 +52,13 @@ TEST_CASE("each pair of materials has its own friction") {
   o.material = "steel";
   w.add_surface(w.ground(), dem::surface::Plane{}, o);
   const double rest = 1e-3 - w.species(ice).mass * 9.81 / 2000.0;
-  std::vector<ParticleId> grains;
+  std::vector<GrainId> grains;
   for (const auto s : {ice, rubber}) {
-    dem::NewParticle n;
+    dem::NewGrain n;
     n.species = s;
     n.position = {0, s == ice ? 0.0 : 0.01, rest};
     n.velocity = {0.5, 0, 0};
-    grains.push_back(w.add_particle(n));
+    grains.push_back(w.add_grain(n));
   }
   REQUIRE(w.run_for(0.01));
   // Sliding: v0 - mu g t. Both still slide: rolling begins at 2 v0/(7 mu g) = 0.018 s for rubber.
@@ -74,12 +74,12 @@ TEST_CASE("a pair of grains of two materials answers the same whichever came fir
     w.set_contact("a", "a", {{1e5, 0.0, 1.0}, {0.0, 0.0, 0.0, 0.0}});
     w.set_contact("b", "b", {{1e6, 0.0, 1.0}, {0.0, 0.0, 0.0, 0.0}});
     const auto sa = w.add_species(Sphere(1e-3), {"a", 1000.0}), sb = w.add_species(Sphere(2e-3), {"b", 1000.0});
-    dem::NewParticle left, right;
+    dem::NewGrain left, right;
     left.species = swapped ? sb : sa;
     right.species = swapped ? sa : sb;
     right.position = {2.9e-3, 0, 0};
-    w.add_particle(left);
-    const auto p = w.add_particle(right);
+    w.add_grain(left);
+    const auto p = w.add_grain(right);
     REQUIRE(w.step());
     CHECK(w.force(p).x() == Approx(1000.0 * 1e-4).epsilon(1e-9));
   }
@@ -89,16 +89,16 @@ TEST_CASE("many pairs of materials at once fill the same packs of contacts") {
   // Sixteen pairs of balls side by side, all with the same overlap, each pair of another stiffness.
   dem::World<Balls> w(options({0, 0, 0}, 1e-6));
   w.set_contact({{1.0, 0.0, 1.0}, {0.0, 0.0, 0.0, 0.0}});
-  std::vector<ParticleId> second;
+  std::vector<GrainId> second;
   for (int k = 0; k < 16; ++k) {
     const std::string name = fmt::format("m{}", k);
     w.set_contact(name, name, {{1000.0 + k, 0.0, 1.0}, {0.0, 0.0, 0.0, 0.0}});
-    dem::NewParticle n;
+    dem::NewGrain n;
     n.species = w.add_species(Sphere(1e-3), {name, 1000.0});
     n.position = {0, 5e-3 * k, 0};
-    w.add_particle(n);
+    w.add_grain(n);
     n.position.x() = 1.99e-3;
-    second.push_back(w.add_particle(n));
+    second.push_back(w.add_grain(n));
   }
   REQUIRE(w.step());
   for (int k = 0; k < 16; ++k) {
@@ -109,12 +109,12 @@ TEST_CASE("many pairs of materials at once fill the same packs of contacts") {
 TEST_CASE("a ball that is put in turned keeps the spin it was given") {
   dem::World<Balls> w(options({0, 0, 0}, 1e-5));
   w.set_contact(sand<Balls>());
-  dem::NewParticle n;
+  dem::NewGrain n;
   n.species = w.add_species(Sphere(1e-3));
   n.rotation = Random(4).rotation();
   n.angular_velocity = {1, 2, 3};
   n.velocity = {3, 2, 1};
-  const auto p = w.add_particle(n);
+  const auto p = w.add_grain(n);
   REQUIRE(w.run(100));
   CHECK((w.angular_velocity(p) - n.angular_velocity).norm() < 1e-13);  // 100 products of rotations
   CHECK((w.velocity(p) - n.velocity).norm() == 0.0);
@@ -135,8 +135,8 @@ dem::World<Model> grains_on_a_plate(const typename Model::Shape& shape, double w
 /// Whether the grains of two worlds are where they are, and move as they move, to the last bit.
 template <class World>
 bool same_bits(const World& a, const World& b) {
-  bool same = a.particle_count() == b.particle_count();
-  for_each_grain(a, [&](ParticleId p) {
+  bool same = a.grain_count() == b.grain_count();
+  for_each_grain(a, [&](GrainId p) {
     same = same && a.position(p) == b.position(p) && a.rotation(p) == b.rotation(p) && a.velocity(p) == b.velocity(p) &&
            a.angular_velocity(p) == b.angular_velocity(p) && a.force(p) == b.force(p) && a.torque(p) == b.torque(p);
   });
@@ -158,7 +158,7 @@ TEST_CASE("two worlds in one program do not know of each other") {
     REQUIRE(earth.step());
     REQUIRE(balls.step());
     REQUIRE(moon.step());
-    for_each_grain(earth, [&](ParticleId p) { touched += earth.torque(p).norm() > 0.0; });
+    for_each_grain(earth, [&](GrainId p) { touched += earth.torque(p).norm() > 0.0; });
   }
   REQUIRE(earth_alone.run(steps));
   REQUIRE(balls_alone.run(steps));
@@ -176,15 +176,15 @@ TEST_CASE("grains may be added during a run") {
   const auto cube = w.add_species(dem::shape::cube8(1e-3));
   const auto plate = w.add_surface(w.ground(), dem::surface::Plane{});
   for (int k = 0; k < 300; ++k) {  // across the size of a chunk
-    dem::NewParticle n;
+    dem::NewGrain n;
     n.species = cube;
     n.position = {2.5e-3 * (k % 10), 2.5e-3 * (k / 10), 1e-3};
-    CHECK(w.add_particle(n).index() == static_cast<std::size_t>(k));
+    CHECK(w.add_grain(n).index() == static_cast<std::size_t>(k));
     REQUIRE(w.run(3));
   }
-  CHECK(w.particle_count() == 300);
+  CHECK(w.grain_count() == 300);
   REQUIRE(w.run_for(0.1));
-  for_each_grain(w, [&](ParticleId p) {
+  for_each_grain(w, [&](GrainId p) {
     CHECK(w.position(p).x() == Approx(2.5e-3 * static_cast<double>(p.index() % 10)).margin(1e-7));
   });
   CHECK(-w.surface_force(plate).z() == Approx(total_mass(w) * 9.81).epsilon(1e-3));
@@ -198,17 +198,17 @@ TEST_CASE("a grain that is added leaves the others as they were, to the bit, and
     w.set_contact(sand<Model>());
     const auto ball = w.add_species(Sphere(1e-3));
     w.add_surface(w.ground(), dem::surface::Plane{});
-    for (int k = 0; k < 3; ++k) w.add_particle({ball, {0.1e-3 * k, 0, 1e-3 + 1.998e-3 * k}, {0.05, 0, 0}});
+    for (int k = 0; k < 3; ++k) w.add_grain({ball, {0.1e-3 * k, 0, 1e-3 + 1.998e-3 * k}, {0.05, 0, 0}});
     REQUIRE(w.run(501));
     if (how == added_within) {
-      ParticleId added;
+      GrainId added;
       REQUIRE(w.run(400, [&, k = 0]() mutable {
-        if (++k == 200) added = w.add_particle({ball, {0.02, 0, 0.05}});
+        if (++k == 200) added = w.add_grain({ball, {0.02, 0, 0.05}});
         return true;
       }));
       CHECK(w.velocity(added).z() == Approx(-g * 200e-5).epsilon(1e-12));
     } else if (how == added_between) {
-      const ParticleId added = w.add_particle({ball, {0.02, 0, 0.05}});
+      const GrainId added = w.add_grain({ball, {0.02, 0, 0.05}});
       REQUIRE(w.run(400));
       CHECK(w.velocity(added).z() == Approx(-g * 400e-5).epsilon(1e-12));
       // The schemes differ by a step's fall, which is g dt^2 a step.
@@ -217,7 +217,7 @@ TEST_CASE("a grain that is added leaves the others as they were, to the bit, and
       REQUIRE(w.run(400));
     }
     std::vector<Vec3> motion;
-    for (const ParticleId p : w.particles()) motion.insert(motion.end(), {w.position(p), w.velocity(p), w.force(p)});
+    for (const GrainId p : w.grains()) motion.insert(motion.end(), {w.position(p), w.velocity(p), w.force(p)});
     motion.resize(9);
     return motion;
   };

@@ -22,13 +22,13 @@ void add_swarm(World& w, const std::vector<SpeciesId>& species, int n, double pi
   Random random(5);
   const Vec3 middle = 0.5 * pitch * (n - 1) * Vec3::Ones();
   for (int k = 0; k < n * n * n; ++k) {
-    dem::NewParticle p;
+    dem::NewGrain p;
     p.species = species[static_cast<std::size_t>(k) % species.size()];
     p.position = pitch * Vec3(k % n, k / n % n, k / (n * n));
     p.rotation = random.rotation();
     p.velocity = -60.0 * (p.position - middle) + random.vector(0.1);
     p.angular_velocity = random.vector(50.0);
-    w.add_particle(p);
+    w.add_grain(p);
   }
 }
 
@@ -39,7 +39,7 @@ void check_swarm(World& w) {
   const double e0 = kinetic_energy(w);
   double p_size = 0.0, l_size = 0.0;
   EnergyWatch watch;
-  for_each_grain(w, [&](ParticleId p) {
+  for_each_grain(w, [&](GrainId p) {
     p_size += mass_of(w, p) * w.velocity(p).norm();
     l_size += mass_of(w, p) * w.velocity(p).norm() * w.position(p).norm();
   });
@@ -47,13 +47,13 @@ void check_swarm(World& w) {
   for (int k = 0; k < 60; ++k) {
     REQUIRE(w.run_for(2.5e-4));
     std::size_t touching = 0;
-    for_each_grain(w, [&](ParticleId p) { touching += w.force(p).norm() > 0.0; });
+    for_each_grain(w, [&](GrainId p) { touching += w.force(p).norm() > 0.0; });
     most = std::max(most, touching);
     double held = 0.0;
     for_each_pair_contact(w, [&](const auto& geometry) { held += spring_energy(w, geometry); });
     watch.look(kinetic_energy(w), held);
   }
-  CHECK(most > w.particle_count() / 4);
+  CHECK(most > w.grain_count() / 4);
   CHECK(watch.gains() == 0);
   CHECK(kinetic_energy(w) < 0.8 * e0);
   // Each of up to 3,000 steps rounds by 1e-16 of each of the grains' own share.
@@ -72,11 +72,11 @@ dem::World<Model> tower(const typename Model::Shape& cube, double half, double s
   const auto species = w.add_species(cube);
   w.add_surface(w.ground(), dem::surface::Plane{});
   for (int k = 0; k < 3; ++k) {
-    dem::NewParticle p;
+    dem::NewGrain p;
     p.species = species;
     p.position = {0.08 * half * k, -0.06 * half * k, half * (2 * k + 1)};
     p.rotation = Eigen::AngleAxisd(0.2 * k, Vec3::UnitZ()).toRotationMatrix();
-    w.add_particle(p);
+    w.add_grain(p);
   }
   return w;
 }
@@ -86,9 +86,9 @@ void check_stands(World& w, double half, double stiffness) {
   // At rest the middle of the tower sinks by weight over stiffness; three contacts in line, each of one contact at
   // least, and points that rest on slopes sink a little deeper.
   REQUIRE(w.run_for(0.4));
-  const double sink = 6 * mass_of(w, ParticleId(0)) * 9.81 / stiffness, energy = kinetic_energy(w);
-  CHECK(energy < 1e-3 * mass_of(w, ParticleId(0)) * 9.81 * sink);
-  for_each_grain(w, [&](ParticleId p) {
+  const double sink = 6 * mass_of(w, GrainId(0)) * 9.81 / stiffness, energy = kinetic_energy(w);
+  CHECK(energy < 1e-3 * mass_of(w, GrainId(0)) * 9.81 * sink);
+  for_each_grain(w, [&](GrainId p) {
     const double k = static_cast<double>(p.index());
     CHECK((w.position(p) - Vec3(0.08 * half * k, -0.06 * half * k, half * (2 * k + 1))).norm() <
           2 * sink + 0.01 * half);
@@ -104,13 +104,13 @@ TEST_CASE("the contact of superquadrics has a potential: without dampers and fri
   const auto species = w.add_species(Superquadric({1.2e-3, 1e-3, 0.8e-3}, {4, 6, 3}, 1));
   Random random(2);
   for (const double side : {-1.0, 1.0}) {
-    dem::NewParticle n;
+    dem::NewGrain n;
     n.species = species;
     n.position = {side * 1.7e-3, side * 3e-4, side * 1e-4};
     n.velocity = {-side * 0.2, 0, 0};
     n.rotation = random.rotation();
     n.angular_velocity = random.vector(20.0);
-    w.add_particle(n);
+    w.add_grain(n);
   }
   const double e0 = kinetic_energy(w);
   double least = e0;
@@ -118,7 +118,7 @@ TEST_CASE("the contact of superquadrics has a potential: without dampers and fri
     REQUIRE(w.run(40));
     least = std::min(least, kinetic_energy(w));
   }
-  REQUIRE(w.force(ParticleId(0)).norm() == 0.0);
+  REQUIRE(w.force(GrainId(0)).norm() == 0.0);
   CHECK(least < 0.9 * e0);  // they did collide
   // (omega dt)^2 = k/m dt^2 is 1e-4 for a point contact with lever arms, over a smooth bounce.
   CHECK(kinetic_energy(w) == Approx(e0).epsilon(1e-4));
@@ -128,10 +128,10 @@ TEST_CASE("a superquadric tumbles with the inertia of its own shape") {
   dem::World<Smooth> w(options({0, 0, 0}, 2e-5));
   w.set_contact(sand<Smooth>());
   const Superquadric shape({2e-3, 1.2e-3, 0.7e-3}, {2, 4, 7}, 1);
-  dem::NewParticle n;
+  dem::NewGrain n;
   n.species = w.add_species(shape);
   n.angular_velocity = {0.5, 100.0, 0.3};  // about the middle axis: it turns over again and again
-  const ParticleId p = w.add_particle(n);
+  const GrainId p = w.add_grain(n);
   const Vec3 moments = w.species(n.species).inertia, l0 = angular_momentum(w);
   CHECK(moments.x() < moments.y());
   CHECK(moments.y() < moments.z());
@@ -192,7 +192,7 @@ TEST_CASE("a mixed world of one kind is that kind's own world, bit by bit") {
     add_block(w, w.add_species(shape), Vec3::Constant(2.1e-3), 3.8e-3, 3, 3, 30, 0.4);  // two chunks
     REQUIRE(w.run(600));
     std::vector<Vec3> positions;
-    for_each_grain(w, [&](ParticleId p) { positions.push_back(w.position(p)); });
+    for_each_grain(w, [&](GrainId p) { positions.push_back(w.position(p)); });
     return positions;
   };
   dem::World<Smooth> plain(options({0, 0, -9.81}, 1e-5)), again(options({0, 0, -9.81}, 1e-5));

@@ -26,7 +26,7 @@ dem::World<Grains<S>> on_surface(const S& shape, const dem::Model::Surfaces& sur
   dem::World<Grains<S>> w(options({0, 0, -g}, 1e-5));
   w.set_contact(sand<Grains<S>>());
   w.add_surface(w.ground(), surface, {.name = "chute"});
-  w.add_particle({w.add_species(shape), Vec3(1e-3, 2e-3, top + sheet_half_edge)});
+  w.add_grain({w.add_species(shape), Vec3(1e-3, 2e-3, top + sheet_half_edge)});
   return w;
 }
 
@@ -41,7 +41,7 @@ TEST_CASE("grains with points are refused on two-sided sheets, and held on what 
       auto w = plate ? on_surface(shape, TriangleMesh(dem::mesh::box({0.1, 0.1, 2 * top}, 3)), top)
                      : on_surface(shape, sheet(MeshSide::one_sided));
       REQUIRE(w.run_for(0.02));  // free fall: 2 mm
-      CHECK(std::abs(w.position(ParticleId(0)).z() - (plate ? top : 0.0) - sheet_half_edge) < 0.01 * sheet_half_edge);
+      CHECK(std::abs(w.position(GrainId(0)).z() - (plate ? top : 0.0) - sheet_half_edge) < 0.01 * sheet_half_edge);
     }
   };
   check(dem::shape::cube(sheet_half_edge));
@@ -54,7 +54,7 @@ TEST_CASE("balls of any kind lie on two-sided sheets") {
   const auto check = [](const auto& shape) {
     auto w = on_surface(shape, sheet(MeshSide::two_sided));
     REQUIRE(w.run_for(0.02));
-    CHECK(std::abs(w.position(ParticleId(0)).z() - sheet_half_edge) < 0.01 * sheet_half_edge);
+    CHECK(std::abs(w.position(GrainId(0)).z() - sheet_half_edge) < 0.01 * sheet_half_edge);
   };
   check(Sphere(sheet_half_edge));
   check(dem::shape::cube8(sheet_half_edge));

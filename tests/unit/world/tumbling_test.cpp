@@ -12,18 +12,18 @@ using Cluster = dem::shape::SphereCluster<2>;
 template <class Integrator>
 struct Tumbler {
   dem::World<Grains<Cluster, Integrator>> world;
-  ParticleId grain;
+  GrainId grain;
 
   explicit Tumbler(double dt) : world(options({0, 0, 0}, dt)) {
     const std::array<dem::Ball, 2> balls = {{{{-0.1, 0, 0}, 0.1}, {{0.1, 0, 0}, 0.1}}};
     const auto species =
         world.add_species(Cluster(balls, dem::MassProperties{1.0, Vec3::Zero(), Vec3(1.0, 2.0, 2.5).asDiagonal()}));
     world.set_contact({{1e-6, 0, 1}, {0, 0, 0, 0}});  // nothing touches; so soft that it allows any step
-    dem::NewParticle n;
+    dem::NewGrain n;
     n.species = species;
     n.velocity = {1, 2, 3};
     n.angular_velocity = {1.0, 0.8, -0.6};
-    grain = world.add_particle(n);
+    grain = world.add_grain(n);
   }
   /// Of this grain alone, whatever else is in the world.
   double energy() const {
@@ -89,11 +89,11 @@ TEST_CASE("a body that spins about its middle axis flips over and over") {
   Tumbler<dem::integrator::PredictorCorrector> t(1e-3);
   const double energy = t.energy();
   dem::World<Grains<Cluster, dem::integrator::PredictorCorrector>>& w = t.world;
-  dem::NewParticle n;
+  dem::NewGrain n;
   n.species = SpeciesId(0);
   n.position = {10, 0, 0};
   n.angular_velocity = {1e-6, 1.0, 0};
-  const auto p = w.add_particle(n);
+  const auto p = w.add_grain(n);
   int flips = 0;
   double last = 1.0;
   for (int k = 0; k < 500; ++k) {

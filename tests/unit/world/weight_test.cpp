@@ -15,10 +15,10 @@ TEMPLATE_TEST_CASE("a cube that came to rest weighs m g", "", dem::integrator::P
   const auto plate = w.add_surface(scale, dem::surface::Box({0.02, 0.02, 0.01}));
   const auto sensor = w.machine().add_sensor(dem::mbd::contact_sensor("weight", scale, 0.0));
   const double weight = w.species(cube).mass * g;
-  dem::NewParticle n;
+  dem::NewGrain n;
   n.species = cube;
   n.position = {1e-3, 2e-3, 1.5 * half_edge};
-  const auto p = w.add_particle(n);
+  const auto p = w.add_grain(n);
   // It bounces for 0.25 s (each time to 0.9 of the speed), and then the dampers take the swing away with exp(-430/s t).
   // What is left is the rounding of the position, 2e-19 m of an overlap of 4.5e-8 m. All tolerances are relative to the
   // weight of 3.6e-4 N, which is stricter than the same number of newtons.
@@ -38,11 +38,11 @@ TEST_CASE("a cube that fell on its corner weighs m g when it lies") {
   w.set_contact(sand<Cubes>());
   const auto cube = w.add_species(dem::shape::cube8(half_edge));
   const auto plate = w.add_surface(w.ground(), dem::surface::Plane{});
-  dem::NewParticle n;
+  dem::NewGrain n;
   n.species = cube;
   n.position = {0, 0, 2 * half_edge};
   n.rotation = Random(3).rotation();
-  const auto p = w.add_particle(n);
+  const auto p = w.add_grain(n);
   REQUIRE(w.run_for(1.0));  // it rocks for 0.3 s, and settles with exp(-60/s t)
   const double weight = w.species(cube).mass * g;
   CHECK(w.position(p).z() == Approx(half_edge).epsilon(1e-3));  // it lies on a face
@@ -62,7 +62,7 @@ TEST_CASE("every force of a pile arrives in the walls") {
     for (const SurfaceId s : walls) sum += w.surface_force(s);
     return sum;
   };
-  REQUIRE(w.particle_count() > 200);
+  REQUIRE(w.grain_count() > 200);
 
   // While they pour: gravity less what the walls take is the rate of the momentum, step by step and to rounding, as the
   // forces between grains cancel. A contact force may be 100 weights, and its rounding counts.

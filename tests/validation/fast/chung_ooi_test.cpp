@@ -14,7 +14,7 @@ struct Peaks {
 
 /// Runs until the contact of grain `a`, which has begun or is about to, is over.
 template <class World, class Overlap>
-Peaks pass_contact(World& w, ParticleId a, Overlap&& overlap) {
+Peaks pass_contact(World& w, GrainId a, Overlap&& overlap) {
   Peaks peaks;
   bool begun = false;
   while (!begun || w.force(a).norm() > 0.0) {
@@ -32,7 +32,7 @@ Peaks pass_contact(World& w, ParticleId a, Overlap&& overlap) {
 template <class Model>
 struct Drop {
   World<Model> world;
-  ParticleId ball;
+  GrainId ball;
 
   Drop(const ContactParameters<Model>& p, double r, double density, const Vec3& velocity, const Vec3& spin, double dt,
        double gap = 0.0, const Vec3& gravity = {0, 0, 0})
@@ -40,7 +40,7 @@ struct Drop {
     world.set_contact(p);
     world.add_species(Sphere(r), {"grain", density});
     world.add_surface(world.ground(), surface::Plane{});
-    ball = world.add_particle(grain_at({0, 0, r + gap}, velocity, spin));
+    ball = world.add_grain(grain_at({0, 0, r + gap}, velocity, spin));
   }
   Peaks pass() {
     const double r = world.species(SpeciesId(0)).shape.bounding_radius();
@@ -74,8 +74,8 @@ TEST_CASE("Chung and Ooi 1: two spheres collide head on") {
     World<HertzModel> w(options({0, 0, 0}, 1e-8));
     w.set_contact(hertz(contact::elastic_pair(c.solid), 1.0));
     w.add_species(Sphere(0.01), {"grain", c.density});
-    const auto a = w.add_particle(grain_at({-0.01, 0, 0}, {10, 0, 0}));
-    const auto b = w.add_particle(grain_at({0.01, 0, 0}, {-10, 0, 0}));
+    const auto a = w.add_grain(grain_at({-0.01, 0, 0}, {10, 0, 0}));
+    const auto b = w.add_grain(grain_at({0.01, 0, 0}, {-10, 0, 0}));
     const Peaks peaks = pass_contact(w, a, [&] { return 0.02 - (w.position(b) - w.position(a)).norm(); });
     // Published to five, five and four digits; time to two steps of 4,000.
     CHECK(peaks.force == Approx(c.force).epsilon(1e-4));
@@ -153,8 +153,8 @@ TEST_CASE("Chung and Ooi 7: two spheres with opposite spins meet head on") {
     World<HertzModel> w(options({0, 0, 0}, 4e-7));
     w.set_contact(hertz(contact::elastic_pair({70e9, 0.33}), 0.5, 0.4));
     w.add_species(Sphere(r), {"grain", 2700.0});
-    const auto a = w.add_particle(grain_at({-r, 0, 0}, {0.2, 0, 0}, {0, spin, 0}));
-    const auto b = w.add_particle(grain_at({r, 0, 0}, {-0.2, 0, 0}, {0, -spin, 0}));
+    const auto a = w.add_grain(grain_at({-r, 0, 0}, {0.2, 0, 0}, {0, spin, 0}));
+    const auto b = w.add_grain(grain_at({r, 0, 0}, {-0.2, 0, 0}, {0, -spin, 0}));
     pass_contact(w, a, [] { return 0.0; });
     // The points in contact move alike, so there is no friction: only rounding.
     CHECK(w.angular_velocity(a).y() == Approx(spin).epsilon(1e-12));

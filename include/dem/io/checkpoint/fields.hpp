@@ -201,7 +201,7 @@ class Fields : public FieldColumns {
   void visit_more(Id<Tag>& x, const char* unit) {
     exchange(ColumnKind::natural32, 1, &x.value, unit);
   }
-  void visit_more(ParticleId& x, const char* unit) { exchange(ColumnKind::natural32, 2, &x.value, unit); }
+  void visit_more(GrainId& x, const char* unit) { exchange(ColumnKind::natural32, 2, &x.value, unit); }
   template <class T>
   void visit_more(std::optional<T>& x, const char* unit) {
     bool has = x.has_value();

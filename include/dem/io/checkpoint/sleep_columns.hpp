@@ -92,7 +92,7 @@ void sleep_fields(Fields& v, WorldState<Model>& w) {
   for (std::size_t c = 0; c < w.chunks.size(); ++c) {
     Chunk<Model>& chunk = w.chunks[c];
     std::uint8_t some = 0;
-    for (std::size_t i = c * chunk_size; i < std::min({(c + 1) * chunk_size, w.particles.count, s.doing.size()}); ++i)
+    for (std::size_t i = c * chunk_size; i < std::min({(c + 1) * chunk_size, w.grains.count, s.doing.size()}); ++i)
       some |= s.doing[i];
     chunk.asleep = (some & grain::awake) == 0;
     chunk.changed = (some & grain::changed) != 0;

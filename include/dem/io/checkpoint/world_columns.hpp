@@ -60,8 +60,8 @@ void contact_fields(Fields& v, const char* name, Blocks& blocks, Last&& last) {
 }
 
 /// The grains: what they are, where they are, how they move, and what the integrator remembers of them.
-template <class Particles>
-void grain_fields(Fields& v, Particles& p) {
+template <class GrainColumns>
+void grain_fields(Fields& v, GrainColumns& p) {
   std::uint64_t count = p.count, ids = p.row_of.size();
   v("count", count);
   v("ids_given", ids);
@@ -198,9 +198,9 @@ void world_fields(Fields& v, World<Model>& world, Others&... others) {
   auto& w = world.state();
   v.group("model", [&] { model_fields<Model>(v); });
   v.group("world", [&] { world.fields(v); });
-  v.group("grains", [&] { grain_fields(v, w.particles); });
+  v.group("grains", [&] { grain_fields(v, w.grains); });
   if (v.task() == Fields::Task::restore) {
-    for (const std::uint32_t id : w.to_remove) w.particles.row_of.at(id) = w.particles.gone;
+    for (const std::uint32_t id : w.to_remove) w.grains.row_of.at(id) = w.grains.gone;
   }
   v.group("contacts", [&] { chunk_fields(v, w); });
   v.group("sleep", [&] { sleep_fields(v, w); });
@@ -256,17 +256,16 @@ void settle_restored(WorldState<Model>& w, bool is_checked) {
   }
   // Also where the list is due: inlets look for room by the bounds of chunks. There may be more chunks of grains by
   // now.
-  for (std::size_t c = 0; c < std::min(w.chunks.size(), w.particles.chunks()); ++c) {
-    grain::refresh_chunk<Model>(c, w.chunks[c], w.particles, w.species);
+  for (std::size_t c = 0; c < std::min(w.chunks.size(), w.grains.chunks()); ++c) {
+    grain::refresh_chunk<Model>(c, w.chunks[c], w.grains, w.species);
   }
   if constexpr (Model::Domain::has_ranks) share_chunks(w);
   if (!w.list_valid || w.chunks.empty()) return;
   if constexpr (Model::Domain::has_images) {
-    grain::make_rows(w.particles, w.images);
+    grain::make_rows(w.grains, w.images);
     place_images(w), tell_images(w);
   }
-  grain::list_incoming<Model>(w.executor, std::span(w.chunks), w.particles.count, w.images, w.incoming_first,
-                              w.incoming);
+  grain::list_incoming<Model>(w.executor, std::span(w.chunks), w.grains.count, w.images, w.incoming_first, w.incoming);
   if (w.options.sleep) count_awake_beside(w);
 }
 

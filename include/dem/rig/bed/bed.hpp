@@ -52,7 +52,7 @@ class Bed {
     set_friction(1.0);
     build_box(box);
     for (const auto& p : places) {
-      world.add_particle({.species = species_, .position = p.position, .rotation = p.rotation});
+      world.add_grain({.species = species_, .position = p.position, .rotation = p.rotation});
     }
   }
 
@@ -92,7 +92,7 @@ class Bed {
     const Vec3 edges(length, bed_.width - 2.0 * gap, thickness);
     if (!std::isfinite(lid_at)) {  // in a run that goes on the grains are not where they were
       double highest = 0.0;
-      for (const auto p : world.particles()) highest = std::max(highest, world.position(p).z());
+      for (const auto p : world.grains()) highest = std::max(highest, world.position(p).z());
       lid_at = highest + world.species(species_).shape.bounding_radius() + 0.5 * thickness;
     }
     const double z = lid_at;

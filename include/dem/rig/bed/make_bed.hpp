@@ -64,11 +64,11 @@ void level(Bed<Model>& bed, double strike_off, Stages& stages) {
   stages.begin("level", 1.0);
   NoNumbers none;
   if (const auto stage = stages.enter(world, none)) {
-    std::vector<ParticleId> by_height = world.particles();
+    std::vector<GrainId> by_height = world.grains();
     std::stable_sort(by_height.begin(), by_height.end(),
-                     [&](ParticleId a, ParticleId b) { return world.position(a).z() > world.position(b).z(); });
+                     [&](GrainId a, GrainId b) { return world.position(a).z() > world.position(b).z(); });
     by_height.resize(static_cast<std::size_t>(strike_off * static_cast<double>(by_height.size())));
-    for (const ParticleId p : by_height) world.remove_particle(p);
+    for (const GrainId p : by_height) world.remove_grain(p);
     if (!by_height.empty()) run(world, 1e-6);  // they go with the next step
   }
   const double weight = bed.lid_weight();

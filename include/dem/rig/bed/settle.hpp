@@ -33,8 +33,8 @@ void settle(World& world, double size, double limit, const char* option, Stages&
 template <class World>
 double mean_height(const World& world) {
   double sum = 0.0;
-  for (const auto p : world.particles()) sum += world.position(p).z();
-  return sum / static_cast<double>(world.particle_count());
+  for (const auto p : world.grains()) sum += world.position(p).z();
+  return sum / static_cast<double>(world.grain_count());
 }
 
 }  // namespace dem::rig

@@ -48,7 +48,7 @@ class Apparatus {
     build_boxes();
     build_lid();
     for (const auto& g : grains) {
-      world.add_particle({.species = species_, .position = g.position, .rotation = g.rotation});
+      world.add_grain({.species = species_, .position = g.position, .rotation = g.rotation});
     }
   }
 

@@ -55,7 +55,7 @@ void shear(Apparatus<Model>& rig, const Settings& s, LoadResult& result, Stages&
   if (!stage) return;
   if (stage.begins()) {
     // Weight of the grains in the bottom box: they hang on it, but not on the plane of shear.
-    for (const ParticleId p : rig.world.particles()) {
+    for (const GrainId p : rig.world.grains()) {
       n.below += rig.world.position(p).z() < rig.height().seam ? 1.0 : 0.0;
     }
     n.below *= 9.81 * s.density * rig.grain_volume();

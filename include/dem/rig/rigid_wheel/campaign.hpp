@@ -101,7 +101,7 @@ void run_campaign(const Settings& settings, ShapeOf&& shape_of, Campaign& campai
     }
     result.level = bed->level;
     result.solid_fraction = bed->solid_fraction(bed->level);
-    result.grains = bed->world.particle_count();
+    result.grains = bed->world.grain_count();
     result.time_step = bed->world.time_step();
     if (needs_bed(k))
       session.finish(text("{:.1f} mm deep, solid fraction {:.3f}", 1e3 * result.level, result.solid_fraction));

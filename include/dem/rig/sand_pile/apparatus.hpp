@@ -39,7 +39,7 @@ class Apparatus {
     world.set_contact("grain", "container", kind.on_container);
     double top = 0.0;
     for (const auto& g : grains) {
-      world.add_particle({.species = species, .position = g.position, .rotation = g.rotation});
+      world.add_grain({.species = species, .position = g.position, .rotation = g.rotation});
       top = std::max(top, g.position.z() + kind.shape.bounding_radius());
     }
     if (s.method == "drain") build_box(top);
@@ -59,9 +59,9 @@ class Apparatus {
   /// Takes away the grains that have fallen far below the plate; returns how many.
   std::size_t remove_fallen() {
     std::size_t count = 0;
-    for (const ParticleId p : world.particles()) {
+    for (const GrainId p : world.grains()) {
       if (world.position(p).z() > -12.0 * settings_.half_edge) continue;
-      world.remove_particle(p);
+      world.remove_grain(p);
       ++count;
     }
     return count;

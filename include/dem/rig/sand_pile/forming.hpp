@@ -99,7 +99,7 @@ class Forming {
     const auto wake = [this] { rig_.world.set_sleep(std::nullopt); };  // grains that sleep would not creep
     if (const auto stage = stages_.enter(rig_.world, n, wake)) {
       result_.at_rest = rest(n, s_.rest_limit);
-      ids_ = rig_.world.particles();
+      ids_ = rig_.world.grains();
       result_.pile = soil::placements(rig_.world);
       result_.flank = flank_of(result_.pile, s_, radius_);
     }
@@ -137,7 +137,7 @@ class Forming {
     result_.angle_after = flank_of(soil::placements(rig_.world), s_, radius_).angle;
     std::vector<double> ways;
     double square = 0.0;
-    const std::vector<ParticleId> left = rig_.world.particles();
+    const std::vector<GrainId> left = rig_.world.grains();
     for (std::size_t k = 0, next = 0; k < ids_.size(); ++k) {
       while (next < left.size() && left[next].index() < ids_[k].index()) ++next;
       if (next == left.size() || left[next] != ids_[k]) continue;  // it fell off
@@ -154,7 +154,7 @@ class Forming {
   void go_on() {
     run(rig_.world, interval);
     result_.lost += rig_.remove_fallen();
-    if (rig_.world.particle_count() == 0) throw Stopped("no grain is left");
+    if (rig_.world.grain_count() == 0) throw Stopped("no grain is left");
     const auto grains = soil::placements(rig_.world);
     const soil::Flank flank = flank_of(grains, s_, radius_);
     result_.samples.push_back({rig_.world.time(), flank.angle * 180.0 / std::numbers::pi, flank.height,
@@ -177,9 +177,9 @@ class Forming {
   }
   /// Grains that are in the funnel, or that are in the box at all.
   std::size_t flowing() const {
-    if (s_.method == "drain") return rig_.world.particle_count();
+    if (s_.method == "drain") return rig_.world.grain_count();
     std::size_t count = 0;
-    for (const ParticleId p : rig_.world.particles()) {
+    for (const GrainId p : rig_.world.grains()) {
       count += rig_.world.position(p).z() > s_.orifice_height - s_.half_edge;
     }
     return count;
@@ -192,7 +192,7 @@ class Forming {
   Stages& stages_;
   Look& look_;
   double lift_start_ = 0.0, lift_way_ = 0.0;  // s, m
-  std::vector<ParticleId> ids_;               // of the pile as it was measured
+  std::vector<GrainId> ids_;                  // of the pile as it was measured
 };
 
 }  // namespace dem::rig::sand_pile

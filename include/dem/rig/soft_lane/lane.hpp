@@ -119,7 +119,7 @@ World<Model> make_lane(const Settings& s, const typename Model::Shape& shape, st
     // Evenly spread over the second soil, by the golden ratio.
     const double draw = std::fmod(0.6180339887498949 * static_cast<double>(k), 1.0);
     const bool is_second = s.scene == "soils" && g.position.x() > s.border_at() && draw < s.second_share;
-    world.add_particle({.species = soils[is_second ? 1 : 0], .position = g.position, .rotation = g.rotation});
+    world.add_grain({.species = soils[is_second ? 1 : 0], .position = g.position, .rotation = g.rotation});
   }
   return world;
 }

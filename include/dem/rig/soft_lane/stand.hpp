@@ -214,7 +214,7 @@ Sample sample_of(const Stand<Model>& stand, const vehicle::Controls& controls, d
   }
   x.hitch = stand.hitch ? stand.hitch->force : 0.0;
   x.overlap = deepest_overlap(stand.world);
-  x.asleep = static_cast<double>(stand.world.asleep_count()) / static_cast<double>(stand.world.particle_count());
+  x.asleep = static_cast<double>(stand.world.asleep_count()) / static_cast<double>(stand.world.grain_count());
   for (std::size_t k = 0; k < 4; ++k) {
     const double deflection = stand.rings[k] ? vehicle::deflection_of(m, *stand.rings[k]) : 0.0;
     x.wheels[k] = vehicle::wheel_sample_of(m, stand.car, k, ground_on(stand, k), stand.level, radius, deflection);
@@ -257,9 +257,9 @@ std::vector<double> overlaps_under_tyres(const Stand<Model>& stand, const Settin
   const auto& world = stand.world;
   std::vector<double> overlaps;
   for (const Vec3& wheel : wheels_of(stand)) {
-    std::vector<ParticleId> near;
+    std::vector<GrainId> near;
     AlignedVector<double> pose;
-    for (const ParticleId p : world.particles()) {
+    for (const GrainId p : world.grains()) {
       const Vec3 x = world.position(p) - wheel;
       if (std::abs(x.x()) > 0.15 || std::abs(x.y()) > 0.5 * s.car.tyre.width) continue;
       near.push_back(p);

@@ -48,7 +48,7 @@ struct Columns3 {
 /// The grains as structure of arrays. Rows are re-sorted in space now and then; `id` tells which grain a row holds and
 /// `row_of` where a grain is. The columns are padded to whole chunks: see pad().
 template <class Shape, class Integrator>
-struct Particles {
+struct GrainColumns {
   using Motion = integrator::Motion<Pack>;
   static constexpr bool has_orientation = Shape::has_orientation;
   static constexpr std::size_t pose_size = Shape::pose_size;
@@ -76,13 +76,13 @@ struct Particles {
 
   std::uint32_t number_of(std::uint32_t of) const { return number.empty() ? of : number[of]; }
   /// What the grain of an id is called outside.
-  ParticleId name(std::uint32_t of) const { return ParticleId(number_of(of), of); }
+  GrainId name(std::uint32_t of) const { return GrainId(number_of(of), of); }
   /// The id of a grain, which may be gone; `gone` if its id has another grain now, or it never was.
-  std::uint32_t find(ParticleId p) const {
+  std::uint32_t find(GrainId p) const {
     const auto holds = [&](std::uint32_t at) { return at < row_of.size() && number_of(at) == p.value; };
     if (holds(p.slot)) return p.slot;
     if (holds(p.value)) return p.value;
-    if (p.slot != ParticleId::anywhere) return gone;
+    if (p.slot != GrainId::anywhere) return gone;
     const auto at = std::find(number.begin(), number.end(), p.value);
     return at == number.end() ? gone : static_cast<std::uint32_t>(at - number.begin());
   }
