@@ -16,7 +16,7 @@ DEM_COLD inline ConnectionId add_connection(Parts& parts, std::string name, Body
   const Body& b = known_body(parts, body, who);
   settle_name(name, parts.connections, "connection point", "connection points",
               [](const Connection& c) { return c.name; });
-  Connection c{std::move(name), body, to_eigen(to_body(b, finite_point(at, who)))};
+  Connection c{std::move(name), body, to_eigen(to_body(b, finite_point(at, who))), at};
   return keep<ConnectionId>(parts, parts.connections, std::move(c), false);
 }
 

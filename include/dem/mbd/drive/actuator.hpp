@@ -123,7 +123,7 @@ struct Actuator {
     v.given("toward_a", spec.toward_a, "m"), v.given("toward_b", spec.toward_b, "m");
     v.given("has_set_point", spec.set_point.has_value()), v("on", spec.on);
     if (spec.set_point) v("set_point", *spec.set_point);
-    v.given("point_a", point_a, "m"), v.given("point_b", point_b, "m"), v("coordinate", coordinate), v("speed", speed);
+    v("point_a", point_a, "m"), v("point_b", point_b, "m"), v("coordinate", coordinate), v("speed", speed);
     v("force", force), v("target", target.value), v("target_rate", target.rate);
   }
   double power() const { return force * speed; }  ///< W, delivered to the bodies

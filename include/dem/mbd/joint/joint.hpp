@@ -40,7 +40,7 @@ struct Joint {
   Vector3<double> torque = {0, 0, 0};  ///< N m, on b about the joint's point, global
   template <class V>
   void fields(V& v) {
-    v.given("a", a), v.given("b", b), v("on", on), v.given("point_a", point_a, "m"), v("point_b", point_b, "m");
+    v.given("a", a), v.given("b", b), v("on", on), v("point_a", point_a, "m"), v("point_b", point_b, "m");
     v("axes_a", axes_a), v("axes_b", axes_b), v("k", k, "N/m"), v("c", c, "N s/m");
     v("kr", kr, "N m/rad"), v("cr", cr, "N m s/rad"), v("k3", k3, "N/m"), v("c3", c3, "N s/m");
     v("kr3", kr3, "N m/rad"), v("cr3", cr3, "N m s/rad"), v("length", length, "m");

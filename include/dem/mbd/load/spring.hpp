@@ -112,8 +112,7 @@ struct Spring {
         v.given("dof", spec.dof);
     v.given("point_on_a", spec.at_a, "m"), v.given("point_on_b", spec.at_b, "m");
     v("force_over_length", spec.force_over_length), v("force_over_speed", spec.force_over_speed);
-    v.given("point_a", point_a, "m"), v.given("point_b", point_b, "m"), v("length", length, "m"),
-        v("speed", speed, "m/s");
+    v("point_a", point_a, "m"), v("point_b", point_b, "m"), v("length", length, "m"), v("speed", speed, "m/s");
     v("force", force, "N"), v("start", start);
   }
 };

@@ -39,9 +39,10 @@ struct Connection {
   std::string name;
   BodyId body;
   Vec3 point = Vec3::Zero();  ///< m, body frame
+  Vec3 at = Vec3::Zero();     ///< m, global, where it was added
   template <class V>
   void fields(V& v) {
-    v.given("name", name), v.given("body", body), v.given("point", point, "m");
+    v.given("name", name), v.given("body", body), v.given("at", at, "m"), v("point", point, "m");
   }
 };
 
