@@ -9,3 +9,10 @@ TEMPLATE_TEST_CASE("grains come to rest under every law and weigh what they weig
                    combinations::ElasticGrains<combinations::Polyhedron>) {
   combinations::pour<TestType>();
 }
+
+TEMPLATE_TEST_CASE("a bed of grains of any kind goes on from a file on other threads in every bit", "",
+                   combinations::ElasticGrains<combinations::Superquadric>,
+                   combinations::PlasticGrains<combinations::SuperquadricPoints>,
+                   combinations::ElasticGrains<combinations::Polyhedron>) {
+  combinations::check_threads<TestType>();
+}

@@ -129,10 +129,41 @@ TEST_CASE("no grain hangs in the air when what it stands on is taken away") {
       if (k % Towers::high != 0) CHECK(bed.w.velocity(bed.grains[k]).z() < -0.9 * g * time);
     }
   }
+  SECTION("the lowest grain of each tower, which is put elsewhere") {
+    for (std::size_t k = 0; k < bed.grains.size(); k += Towers::high)
+      bed.w.set_position(bed.grains[k], bed.w.position(bed.grains[k]) + Vec3(0.1, 0, 0.1));
+    REQUIRE(bed.w.run_for(time));
+    for (const GrainId p : bed.grains) CHECK(bed.w.velocity(p).z() < -0.9 * g * time);
+  }
   SECTION("gravity that points elsewhere") {
     bed.w.set_gravity({0, 0, g});
     REQUIRE(bed.w.run_for(time));
     for (const GrainId p : bed.grains) CHECK(bed.w.velocity(p).z() > 0.9 * g * time);
+  }
+}
+
+TEST_CASE("a sleeper wakes where its neighbour is given a velocity, and a whole bed where constants are") {
+  Towers bed(true);
+  REQUIRE(bed.w.run_for(0.07));
+  REQUIRE(bed.w.asleep_count() == bed.grains.size());
+  SECTION("a velocity") {
+    bed.w.set_velocity(bed.grains[4], {0, 0, 0.1});
+    CHECK(!bed.w.is_asleep(bed.grains[5]));  // it stands on the one that jumps
+    double fastest = 0.0;
+    for (int k = 0; k < 40; ++k) {
+      REQUIRE(bed.w.run(1));
+      fastest = std::max(fastest, bed.w.velocity(bed.grains[5]).z());
+    }
+    CHECK(fastest > 0.02);
+  }
+  SECTION("constants") {
+    const double top = bed.w.position(bed.grains[8]).z();
+    bed.w.set_contact({{250.0, 0.06, 1.0}, {0.4, 500.0, 0.05, 0.975}});
+    CHECK(bed.w.asleep_count() == 0);
+    REQUIRE(bed.w.run_for(0.06));
+    // Springs half as stiff give twice as much: m g (1 + 2 + ... + 9) over those of four contacts, once more.
+    const double one = bed.weight / static_cast<double>(bed.grains.size());
+    CHECK(top - bed.w.position(bed.grains[8]).z() == Approx(45 * one / (4 * 500.0)).epsilon(0.1));
   }
 }
 
