@@ -39,8 +39,10 @@ class FieldHash {
     T copy = x;
     visit(copy);
   }
-  template <class Items>
-  void list(std::string_view, Items& items, const char*) {
+  void fingerprint(std::string_view, std::uint64_t bits) { hash_.mix(bits); }
+  /// `more` words of an item are for messages.
+  template <class Items, class More = int>
+  void list(std::string_view, Items& items, const char*, More&& = {}) {
     hash_.mix(std::uint64_t{items.size()});
     for (auto& item : items) visit(item);
   }
