@@ -5,9 +5,9 @@
 
 namespace dem::mbd::detail {
 
-DEM_COLD inline BodyId add_body(Parts& parts, BuiltBody built) {
+DEM_COLD inline BodyId add_body(Parts& parts, BuiltBody built, bool is_ground = false) {
   settle_name(built.body.name, parts.bodies, "body", "bodies", [](const Body& b) { return b.name; });
-  parts.bodies.add(built.body);
+  is_ground ? parts.bodies.add_ground(built.body) : parts.bodies.add(built.body);
   return keep<BodyId>(parts, parts.built, std::move(built));
 }
 

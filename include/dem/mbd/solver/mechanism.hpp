@@ -48,7 +48,7 @@ class Mechanism {
   }
   /// The fixed body "ground" at the origin, made when first asked for. References to other bodies stay good.
   DEM_COLD BodyId ground() {
-    if (!ground_.valid()) ground_ = add_fixed_body("ground");
+    if (!ground_.valid()) ground_ = detail::add_body(parts_, build_body(fixed_body("ground", Vec3::Zero())), true);
     return ground_;
   }
   /// A connection point (section 2.3) at a global point.
@@ -74,7 +74,7 @@ class Mechanism {
   // ----------------------------------------------------------------------------------------------------- looked at
 
   /// All bodies, in the order of their ids. Mass, inertia and `fixed` are read when a run starts; later, set_fixed
-  /// changes the latter.
+  /// changes the latter. References are good until the next body is added; the ground does not count.
   std::vector<Body>& bodies() { return parts_.bodies; }
   const std::vector<Body>& bodies() const { return parts_.bodies; }
   Body& body(BodyId id) { return known(parts_.bodies, id, "body"); }

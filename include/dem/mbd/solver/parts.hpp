@@ -61,9 +61,10 @@ class BodyList : public std::vector<Body> {
   ~BodyList() = default;
 
   void add(const Body& body) {
+    if (capacity() < size() + 2) reserve(2 * size() + 2);
     push_back(body);
-    if (size() == capacity()) reserve(2 * size());
   }
+  void add_ground(const Body& body) { push_back(body); }  ///< moves no other body
 };
 
 /// All that a machine is made of, as plain arrays; an Id is an index into its array.
