@@ -257,7 +257,11 @@ int main(int argc, char** argv) {
   const std::string folder = arguments.take("--output", "endless_bed");
   arguments.check();
   if (laid.size() != 2) fail("--lay has {} numbers, but must have two: tiles along x and y", laid.size());
-  if (laid[0] != 0.0) {
+  const bool lays = laid != std::vector<double>{0.0, 0.0};
+  for (const double n : laid) {
+    if (lays && !(n >= 1.0 && n == std::floor(n))) fail("--lay has {:g}, but must have two whole numbers from 1 on", n);
+  }
+  if (lays) {
     lay(settle(1), static_cast<int>(laid[0]), static_cast<int>(laid[1]));
     return 0;
   }

@@ -24,7 +24,8 @@ void mix_numbers(std::uint64_t& hash, const T& x) {
   } else if constexpr (std::is_integral_v<T> || std::is_enum_v<T>) {
     mix(hash, static_cast<std::uint64_t>(x));
   } else if constexpr (requires { T::RowsAtCompileTime; }) {
-    for (int k = 0; k < T::RowsAtCompileTime * T::ColsAtCompileTime; ++k) mix_numbers(hash, x.data()[k]);
+    mix(hash, static_cast<std::uint64_t>(x.size()));
+    for (auto k = x.size() * 0; k < x.size(); ++k) mix_numbers(hash, x.data()[k]);
   } else if constexpr (std::is_same_v<T, Vector3<double>>) {
     for (const double number : {x.x, x.y, x.z}) mix_numbers(hash, number);
   } else {

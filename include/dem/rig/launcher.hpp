@@ -15,7 +15,7 @@ inline bool can_have_ranks = false;
 
 namespace detail {
 
-/// A whole number that a launcher of MPI (mpirun, mpiexec, srun) leaves in the environment; `otherwise` without one.
+/// A whole number that a launcher of MPI (mpirun, mpiexec) leaves in the environment; `otherwise` without one.
 inline int left_by_launcher(const char* of_open_mpi, const char* of_others, int otherwise) {
   for (const char* name : {of_open_mpi, of_others}) {
     if (const char* value = std::getenv(name)) return std::atoi(value);

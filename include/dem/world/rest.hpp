@@ -19,8 +19,8 @@ namespace dem {
 ///     #include <dem/world/rest.hpp>
 ///     if (const auto rest = find_rest(world); !rest) fmt::print("{}\n", rest.text);
 ///
-/// Where ranks share the grains, all ranks call it at once. Throws Error for a prescribed motion of a body that is not
-/// fixed, and what World::run throws.
+/// Throws Error for a prescribed motion of a body that is not fixed, and what World::run throws. Where ranks share the
+/// grains, all ranks call it at once, and an exception of the search ends all of them.
 template <class Model>
 mbd::RestReport find_rest(World<Model>& world, const mbd::RestOptions& options = {}) {
   WorldState<Model>& w = world.state();

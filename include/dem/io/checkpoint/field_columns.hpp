@@ -3,6 +3,7 @@
 #include <dem/core/macros.hpp>
 #include <dem/io/checkpoint/columns.hpp>
 
+#include <charconv>
 #include <cstdlib>
 #include <string>
 #include <string_view>
@@ -26,7 +27,9 @@ DEM_COLD inline std::string in_words(ColumnKind kind, std::size_t width, const v
       case ColumnKind::real: {
         const double x = number(0.0);
         const std::string few = text("{:g}", x);
-        words += std::stod(few) == x ? few : text("{:.17g}", x);
+        double same = 0.0;
+        std::from_chars(few.data(), few.data() + few.size(), same);
+        words += same == x ? few : text("{:.17g}", x);
         break;
       }
       case ColumnKind::integer: words += std::to_string(number(std::int64_t{})); break;

@@ -99,8 +99,8 @@ World<Model> make_lane(const Settings& s, const typename Model::Shape& shape, st
   const auto wall = [&](const std::string& name, const Vec3& edges, const Vec3& at) {
     world.add_surface(ground, surface::Box(edges), {.name = name, .position = at});
   };
-  // As high as a grain's edge above the level: what a tyre pushes over it is lost.
-  const double high = level + s.grains.edge(), middle = 0.5 * high;
+  // Two edges above the mean surface, one above the highest grains: what a tyre pushes over it is lost.
+  const double high = level + 2.0 * s.grains.edge(), middle = 0.5 * high;
   for (int k = 0; k < s.troughs(); ++k) {
     const double y = k == 0 ? 0.5 * track : -0.5 * track;
     const std::string name = s.is_bed() ? "bed" : k == 0 ? "left trough" : "right trough";
