@@ -198,15 +198,16 @@ TEST_CASE("the wheel stands beside Bekker, Reece and dynamic Bekker in the table
   const auto table = bevameter::circle_table(predictions, w);
   dem::io::check_table(table);
   CHECK(table.rows.size() == 6);
-  CHECK(table.header[8] == "dynamic Bekker");
-  CHECK(table.rows[0][8] == dem::text("{:.1f}", pull));
-  CHECK(table.rows[0][9] == dem::text("{:.1f}", pull - 10.0));
-  CHECK(table.rows[3][8] == "-");
+  CHECK(table.rows[0][1] == "no");  // steady
+  CHECK(table.header[9] == "dynamic Bekker");
+  CHECK(table.rows[0][9] == dem::text("{:.1f}", pull));
+  CHECK(table.rows[0][10] == dem::text("{:.1f}", pull - 10.0));
+  CHECK(table.rows[3][9] == "-");
 
   const auto folder = std::filesystem::temp_directory_path() / ("dem_circle_" + std::to_string(::getpid()));
   bevameter::write_predicted(folder / "predicted.csv", predictions, w);
   const std::string file = dem::io::read_file(folder / "predicted.csv");
-  CHECK(file.find("bekker,reece,dynamic_bekker\n0.3,pull [N],10,1,") != std::string::npos);
+  CHECK(file.find("steady,bekker,reece,dynamic_bekker\n0.3,pull [N],10,1,0,") != std::string::npos);
   CHECK(file.find(dem::text(",{}\n0.3,torque", pull)) != std::string::npos);
   CHECK(file.find("nan\n0.99,torque") != std::string::npos);
   std::filesystem::remove_all(folder);
