@@ -8,6 +8,8 @@
 #include <dem/io/checkpoint.hpp>
 #include <dem/world/contacts.hpp>
 
+namespace law_files_test {
+
 namespace {
 
 struct WetBalls
@@ -90,3 +92,5 @@ TEMPLATE_TEST_CASE("contacts across gaps go on from a file on other threads in e
   CHECK(difference(whole, second) == "");
   CHECK(io::columns_of(first).at("contacts/pairs/key").rows() > 20);
 }
+
+}  // namespace law_files_test
