@@ -27,7 +27,7 @@ void mix_numbers(std::uint64_t& hash, const T& x) {
     mix(hash, static_cast<std::uint64_t>(x.size()));
     for (auto k = x.size() * 0; k < x.size(); ++k) mix_numbers(hash, x.data()[k]);
   } else if constexpr (std::is_same_v<T, Vector3<double>>) {
-    for (const double number : {x.x, x.y, x.z}) mix_numbers(hash, number);
+    mix_numbers(hash, x.x), mix_numbers(hash, x.y), mix_numbers(hash, x.z);
   } else {
     mix(hash, std::size(x));
     for (const auto& item : x) mix_numbers(hash, item);

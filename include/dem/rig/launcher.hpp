@@ -5,7 +5,6 @@
 #include <dem/core/text.hpp>
 
 #include <cstdlib>
-#include <filesystem>
 #include <string>
 
 namespace dem::rig {
@@ -31,7 +30,7 @@ inline std::string why_not_launched([[maybe_unused]] const std::string& path) {
 #if defined(DEM_ON_RANKS)
   const std::string what = "does not know of the others: it was linked with another MPI than that of mpirun";
 #else
-  const std::string target = std::filesystem::path(path).filename().string() + "_on_ranks";
+  const std::string target = path.substr(path.rfind('/') + 1) + "_on_ranks";
   const std::string what = can_have_ranks
                                ? "was built without ranks; build and run the target " + target
                                : "runs on one process, as its processes would not share their work; leave out mpirun";
