@@ -1,5 +1,7 @@
 #pragma once
 
+#include <dem/math/fingerprint.hpp>
+
 #include <algorithm>
 #include <bit>
 #include <cstddef>
@@ -17,7 +19,7 @@ namespace dem::detail {
 class Hash {
  public:
   std::uint64_t value() const { return value_; }
-  void mix(std::uint64_t x) { value_ = (value_ ^ x) * 0x9e3779b97f4a7c15ULL, value_ ^= value_ >> 29; }
+  void mix(std::uint64_t x) { dem::mix(value_, x); }
   void mix(double x) { mix(std::bit_cast<std::uint64_t>(x)); }
 
  private:
