@@ -137,8 +137,8 @@ TEST_CASE(
   CHECK(m.parts().joints.size() == 3);
   CHECK(m.parts().actuators.size() == 3);
 
-  // Sinkage is measured from the mean surface: grains in a layer as high as that, and as dense, weigh what they do, and
-  // an untouched bed has no rut. The lid, which stands on the highest grains, would be 4 mm higher.
+  // Sinkage is measured from the mean surface, so an untouched bed has no rut, and not from the lid, which stood on the
+  // highest grains.
   const auto places = dem::soil::placements(bed.world);
   const auto surface = surface_profile(places, 5e-3, -0.03, 0.03, -0.03, 0.03);
   CHECK(bed.level == Approx(mean_surface(std::span(&surface, 1))));
