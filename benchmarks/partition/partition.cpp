@@ -97,7 +97,7 @@ struct Cost {
   double mean_neighbours, most_neighbours;  ///< ranks that a rank sends to
 };
 
-/// The work and the messages of a step (world/border.hpp) if the ranks have these chunks.
+/// The work and the messages of a step (world/border_step.hpp) if the ranks have these chunks.
 Cost cost_of(const World& world, const std::vector<double>& work, const std::vector<int>& owner, int ranks) {
   const auto& w = world.state();
   const auto n = static_cast<std::size_t>(ranks);

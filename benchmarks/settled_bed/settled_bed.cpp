@@ -57,7 +57,7 @@ void run(const char* name, const Settings& settings) {
   table.header = {"threads", "million grain-steps/s", "lowest", "highest", "ratio", "per CPU second", "lists made"};
   for (const char* phase : dem::phase_names) table.header.push_back(fmt::format("{}, us/step", phase));
   double one_thread = 0.0;
-  for (int threads = 1; threads <= most_threads; ++threads) {
+  for (const int threads : thread_counts(most_threads)) {
     world.set_threads(threads);
     run_or_fail(world, 200);
     std::vector<double> rates, per_cpu_second;  // the latter is steadier where other programs run too
@@ -108,13 +108,15 @@ int main(int argc, char** argv) {
   app.add_option("--settle", settings.settle, "steps to settle first")->check(CLI::NonNegativeNumber);
   app.add_option("--repeats", settings.repeats, "how often the steps are timed; the median counts")
       ->check(CLI::PositiveNumber);
-  app.add_option("--threads", settings.threads, "most threads (0: all)")->check(CLI::NonNegativeNumber);
+  app.add_option("--threads", settings.threads, "most threads (0: all); 1, 2, 4 ... are timed too")
+      ->check(CLI::NonNegativeNumber);
   app.add_option("--skin", settings.skin, "reach of the neighbour list in m (0: automatic)")
       ->check(CLI::NonNegativeNumber);
   app.add_option(
          "--sizes", settings.sizes,
          "grains of beds of cubes and of spheres: boxes of 4,000 beside each other, so that only their number differs. "
-         "--settle is of the first box, --steps of the first size: larger ones are timed for fewer, at least 100")
+         "--settle is of the first box, --steps of the first size: larger ones are timed for fewer, at least 100 if "
+         "--steps is no less")
       ->delimiter(',')
       ->default_str("4000,40000,300000,2000000")
       ->excludes("--one")

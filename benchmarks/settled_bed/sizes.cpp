@@ -89,7 +89,7 @@ void run(const char* name, const Settings& settings) {
                  "of the first size", "contacts and motion, ns a grain", "lists made", "s a list",
                  "lists, % of the time", "contacts a grain", "bytes a grain"},
       .digits = 3};
-  std::vector<double> of_first;  // by threads
+  std::vector<double> of_first;  // by numbers of threads
   for (const std::size_t grains : settings.sizes) {
     check_memory(grains, bytes_a_grain);
     dem::World<Model> world = boxes(one, grains, width, settings);
@@ -97,9 +97,10 @@ void run(const char* name, const Settings& settings) {
     run_or_fail(world, 200);  // friction springs are loaded anew
     // As much work as --steps of the first size.
     const double share = double(settings.sizes.front()) / double(grains);
-    const int steps = std::max(100, static_cast<int>(settings.steps * share));
+    const int steps = std::max(std::min(100, settings.steps), static_cast<int>(settings.steps * share));
     double one_thread = 0.0;
-    for (int threads = 1; threads <= most_threads; ++threads) {
+    std::size_t count = 0;
+    for (const int threads : thread_counts(most_threads)) {
       world.set_threads(threads);
       run_or_fail(world, 20);
       std::vector<double> rates, per_cpu_second;
@@ -118,17 +119,18 @@ void run(const char* name, const Settings& settings) {
       }
       const double rate = median(rates), cpu_rate = median(per_cpu_second);
       if (threads == 1) one_thread = rate;
-      if (of_first.size() < static_cast<std::size_t>(threads)) of_first.push_back(rate);
+      if (of_first.size() == count) of_first.push_back(rate);
       const std::uint64_t made = world.state().rebuilds - lists;
       const double lists_took = world.state().stopwatch.seconds(dem::Phase::neighbours);
       const double list = lists_took / double(std::max(made, 1ul));
       const double step =
           1e9 * world.state().stopwatch.seconds(dem::Phase::grains) / (double(grains) * steps * settings.repeats);
       table.row(grains, threads, rate, *std::min_element(rates.begin(), rates.end()),
-                *std::max_element(rates.begin(), rates.end()), rate / one_thread, cpu_rate,
-                rate / of_first[static_cast<std::size_t>(threads - 1)], step, made, list, 100.0 * lists_took / took,
-                contacts_a_grain(world), std::to_string(dem::memory_bytes(world.state()) / grains));
+                *std::max_element(rates.begin(), rates.end()), rate / one_thread, cpu_rate, rate / of_first[count],
+                step, made, list, 100.0 * lists_took / took, contacts_a_grain(world),
+                std::to_string(dem::memory_bytes(world.state()) / grains));
       world.state().stopwatch.switch_on(false);
+      ++count;
     }
     print(table);  // as far as it is: the next size may take long
   }

@@ -90,6 +90,14 @@ void run_or_fail(World& world, int steps) {
   if (const auto report = world.run(static_cast<std::uint64_t>(steps)); !report) dem::fail("{}", report.text);
 }
 
+/// 1, 2, 4 ... and the most itself.
+inline std::vector<int> thread_counts(int most) {
+  std::vector<int> counts;
+  for (int n = 1; n < most; n *= 2) counts.push_back(n);
+  counts.push_back(most);
+  return counts;
+}
+
 inline double median(std::vector<double> values) {
   std::sort(values.begin(), values.end());
   return values[values.size() / 2];

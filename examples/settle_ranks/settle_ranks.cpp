@@ -97,11 +97,16 @@ void settle(const typename Model::Shape& grain, Arguments& arguments) {
   const double most_bytes = d.largest(static_cast<double>(after.step_bytes - before.step_bytes));
   const double most_for_lists = d.largest(static_cast<double>(after.list_bytes - before.list_bytes));
   const auto lists = static_cast<double>(world.state().rebuilds - lists_before);
-  const double most_wait = d.largest(after.step_seconds - before.step_seconds);
+  const double wait = after.step_seconds - before.step_seconds;
+  const double most_wait = d.largest(wait), least_wait = -d.largest(-wait), mean_wait = d.total(wait) / d.ranks();
   fmt::print("{} grains, {} ranks of {} threads, {} steps in {:.2f} s: {:.3g} grain steps a second\n", grains,
              d.ranks(), world.threads(), steps, seconds, grains * double(steps) / seconds);
-  fmt::print("exchange: {:.0f} bytes a step and rank at the most, {:.1f} % of the time in steps, {:.1f} % for lists\n",
-             most_bytes / steps, 100 * most_wait / seconds, 100 * (after.list_seconds - before.list_seconds) / seconds);
+  fmt::print(
+      "exchange: {:.0f} bytes a step and rank at the most, {:.1f} % of the time in steps (mean of the ranks {:.1f}, "
+      "least "
+      "{:.1f}), {:.1f} % for lists\n",
+      most_bytes / steps, 100 * most_wait / seconds, 100 * mean_wait / seconds, 100 * least_wait / seconds,
+      100 * (after.list_seconds - before.list_seconds) / seconds);
   fmt::print("{:.0f} lists, {:.0f} bytes a list and rank at the most, the end of the run included\n", lists,
              most_for_lists / std::max(1.0, lists));
   fmt::print("counted work of the busiest rank: {:.3f} of the mean\n", after.imbalance);

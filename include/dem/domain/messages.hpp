@@ -164,6 +164,17 @@ class Messages {
     MPI_Waitall(number(expected_.size()), expected_.data(), MPI_STATUSES_IGNORE);
     expected_.clear();
   }
+  /// Whether it is, without waiting.
+  bool all_expected_came() const {
+    int came = 0;
+    MPI_Testall(number(expected_.size()), expected_.data(), &came, MPI_STATUSES_IGNORE);
+    return came != 0;
+  }
+  /// Lets MPI hand over what other ranks wait for: without threads of its own it does so within its calls only.
+  void attend() const {
+    int gone = 0;
+    MPI_Testall(number(sent_.size()), sent_.data(), &gone, MPI_STATUSES_IGNORE);
+  }
   /// A message of unknown length.
   void receive(int from, Tag tag, std::vector<std::byte>& message) const {
     MPI_Message which;

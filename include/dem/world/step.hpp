@@ -1,7 +1,7 @@
 #pragma once
 
 #include <dem/grain/move.hpp>
-#include <dem/world/border.hpp>
+#include <dem/world/border_step.hpp>
 #include <dem/world/chunk_contacts.hpp>
 #include <dem/world/neighbours.hpp>
 #include <dem/world/sleep.hpp>
@@ -50,7 +50,7 @@ void evaluate_contacts(WorldState<Model>& w) {
   choose_working_chunks(w);
   const auto move = [&](std::size_t c) { move_chunk(w, c); };
   if (w.move.at_once) w.turns.begin(w.sleepers.working, w.chunks);
-  const auto find_contacts = [&](const std::vector<std::uint32_t>& working) {
+  const auto find_contacts = [&](std::span<const std::uint32_t> working) {
     w.executor.for_each(working.size(), [&](std::size_t k, int thread) {
       find_chunk_contacts(w, working[k], w.scratch[static_cast<std::size_t>(thread)]);
       if (w.move.at_once) w.turns.found(working[k], w.chunks, move);
