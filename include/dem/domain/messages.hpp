@@ -2,8 +2,11 @@
 
 #include <dem/domain/session.hpp>
 
+#include <algorithm>
+#include <array>
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <string>
 #include <type_traits>
 #include <utility>
@@ -58,6 +61,15 @@ class Messages {
   // ---- what all ranks say together; every rank calls them ----
 
   double largest(double x) const { return reduced(x, MPI_DOUBLE, MPI_MAX); }
+  /// Of each number.
+  template <std::size_t N>
+  std::array<double, N> largest(std::array<double, N> x) const {
+    if (!is_shared()) return x;
+    const Watch watch(traffic_.step_seconds);
+    MPI_Allreduce(MPI_IN_PLACE, x.data(), static_cast<int>(N), MPI_DOUBLE, MPI_MAX, MPI_COMM_WORLD);
+    traffic_.step_bytes += N * sizeof(double);
+    return x;
+  }
   /// Exact for whole numbers, whatever the order.
   double total(double x) const { return reduced(x, MPI_DOUBLE, MPI_SUM); }
   int smallest(int x) const { return reduced(x, MPI_INT, MPI_MIN); }
@@ -106,6 +118,43 @@ class Messages {
     MPI_Allgatherv(mine.data(), size, type.mpi, all.data(), sizes.data(), first.data(), type.mpi, MPI_COMM_WORLD);
     (in_step ? traffic_.step_bytes : traffic_.list_bytes) += mine.size() * sizeof(T);
     return all;
+  }
+  /// The same of lists that hardly grow from step to step, in one message: with room for a quarter more items than the
+  /// longest list had. `room`: how many that is now; the same number on all ranks, and zero at first.
+  template <class T>
+  std::vector<T> gathered(const std::vector<T>& mine, std::size_t& room) const {
+    static_assert(std::is_trivially_copyable_v<T>);
+    if (!is_shared()) return mine;
+    const std::uint64_t size = mine.size();
+    const std::size_t block = sizeof size + room * sizeof(T), ranks = static_cast<std::size_t>(ranks_);
+    block_out_.resize(block), blocks_in_.resize(block * ranks);
+    std::memcpy(block_out_.data(), &size, sizeof size);
+    const std::size_t told = std::min(mine.size(), room);
+    if (told > 0) std::memcpy(block_out_.data() + sizeof size, mine.data(), told * sizeof(T));
+    {
+      const Watch watch(traffic_.step_seconds);
+      MPI_Allgather(block_out_.data(), number(block), MPI_BYTE, blocks_in_.data(), number(block), MPI_BYTE,
+                    MPI_COMM_WORLD);
+      traffic_.step_bytes += block;
+    }
+    std::vector<std::size_t> sizes(ranks);
+    std::size_t all = 0, longest = 0;
+    for (std::size_t r = 0; r < ranks; ++r) {
+      std::uint64_t there = 0;
+      std::memcpy(&there, blocks_in_.data() + r * block, sizeof there);
+      sizes[r] = there;
+      all += there, longest = std::max(longest, sizes[r]);
+    }
+    if (longest > room) {
+      room = longest + longest / 4 + 1;
+      return gathered(mine);
+    }
+    std::vector<T> result(all);
+    T* to = result.data();
+    for (std::size_t r = 0; r < ranks; to += sizes[r++]) {
+      if (sizes[r] > 0) std::memcpy(to, blocks_in_.data() + r * block + sizeof size, sizes[r] * sizeof(T));
+    }
+    return result;
   }
   /// Of a column whose parts have so many pieces each, of `width` numbers a piece, every rank's own part goes to all.
   template <class T>
@@ -226,6 +275,7 @@ class Messages {
   int rank_ = 0, ranks_ = 1;
   mutable Traffic traffic_;
   mutable std::vector<MPI_Request> sent_, expected_;
+  mutable std::vector<std::byte> block_out_, blocks_in_;
 };
 
 }  // namespace dem::domain

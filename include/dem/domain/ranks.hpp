@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <thread>
 #include <type_traits>
@@ -100,6 +101,8 @@ class Ranks : public Messages {
   bool has_names = true;                   ///< it knows which grain each row holds, also of those that are not near
   std::uint64_t lists_of_parts = 0;        ///< neighbour lists for which no rank looked at all grains
   bool is_complete = false;                ///< so are the contacts of all chunks
+  std::size_t room_for_loads = 0;          ///< on surfaces, of a rank in a step: see gathered()
+  std::optional<double> moved2_of_all;     ///< m^2, as of the end of the last step, until grains move again
 
   /// Of a column with `width` numbers a chunk, every rank's own chunks go to all.
   template <class T>

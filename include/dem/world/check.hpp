@@ -3,6 +3,7 @@
 #include <dem/world/report.hpp>
 #include <dem/world/state.hpp>
 
+#include <array>
 #include <string>
 #include <utility>
 
@@ -94,11 +95,15 @@ StepReport find_problem_of_grains(WorldState<Model>& w) {
   return {StepReport::Problem::none, w.time, w.step, {}, {}, {}};
 }
 
-/// The report of the lowest rank that has one, on every rank: that of the first chunk.
+/// The report of the lowest rank that has one, on every rank: that of the first chunk. The same message tells how far
+/// grains went, which the next step asks for first.
 template <class Model>
 StepReport first_report(WorldState<Model>& w, StepReport mine) {
   auto& d = w.domain;
-  const int first = d.smallest(mine ? d.ranks() : d.rank());
+  const double before_last = mine ? 0.0 : d.ranks() - d.rank();  // of the lowest rank it is largest
+  const auto [moved2, largest] = d.largest(std::array<double, 2>{w.own_moved2(), before_last});
+  d.moved2_of_all = moved2;
+  const int first = d.ranks() - static_cast<int>(largest);
   if (first == d.ranks()) return mine;
   using Problem = StepReport::Problem;
   if (first != d.rank() && mine.problem == Problem::lost) w.known_lost.erase(mine.grain.slot);  // to be told later

@@ -18,6 +18,7 @@ bool neighbours_outdated(const WorldState<Model>& w) {
 /// put grains in, with their histories, when those that left are out.
 template <class Model, class Change>
 void rebuild_neighbours(WorldState<Model>& w, Change&& change) {
+  w.forget_moved2();
   grain::HistoryCarrier<Model> histories;
   histories.collect(w.executor, std::span<const Chunk<Model>>(w.chunks), w.grains, w.images);
   double skin = 0.0;

@@ -105,6 +105,7 @@ auto together(const WorldState<Model>& w, domain::Call call, const char* where, 
 template <class Model, class F>
 StepReport run_shared(WorldState<Model>& w, std::uint64_t n, F&& f) {
   check_agreement(w, domain::Call::run, {.asked = n});
+  w.domain.moved2_of_all.reset();  // grains may have been moved by hand
   return w.domain.guarded("in a step", [&] {
     StepReport report = f();
     gather_rows(w);

@@ -143,13 +143,23 @@ struct WorldState {
     if constexpr (Model::Domain::has_ranks) return domain.own();
     return {0, chunks.size()};
   }
-  /// m^2, of the farthest that a grain went since the neighbour list was made.
-  double moved2() const {
+  /// m^2, of the farthest that a grain of this process went since the neighbour list was made.
+  double own_moved2() const {
     double moved2 = 0.0;
     const auto [begin, end] = own_chunks();
     for (std::size_t c = begin; c < end; ++c) moved2 = std::max(moved2, chunks[c].moved2);
-    if constexpr (Model::Domain::has_ranks) return domain.largest(moved2);
     return moved2;
+  }
+  /// m^2, of all.
+  double moved2() const {
+    if constexpr (Model::Domain::has_ranks) {
+      return domain.moved2_of_all ? *domain.moved2_of_all : domain.largest(own_moved2());
+    }
+    return own_moved2();
+  }
+  /// Grains are about to move, or the list is another one.
+  void forget_moved2() {
+    if constexpr (Model::Domain::has_ranks) domain.moved2_of_all.reset();
   }
   /// m, the same; and half of how far the cells of a sheared domain went by each other.
   double moved() const {
@@ -227,7 +237,7 @@ void load_bodies(WorldState<Model>& w) {
       const auto& of_chunk = w.chunks[c].surface_loads;
       loads.insert(loads.end(), of_chunk.begin(), of_chunk.end());
     }
-    if (!w.surfaces.empty()) loads = w.domain.gathered(loads);
+    if (!w.surfaces.empty()) loads = w.domain.gathered(loads, w.domain.room_for_loads);
     for (const SurfaceLoad& load : loads) add(load);
   } else {
     for (const auto& chunk : w.chunks) {

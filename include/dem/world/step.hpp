@@ -36,11 +36,12 @@ void move_chunk(WorldState<Model>& w, std::size_t c) {
 template <class Model>
 void evaluate_contacts(WorldState<Model>& w) {
   w.stopwatch.start();
-  if (w.carry_held) w.carry_held(w);
+  if (w.carry_held) w.carry_held(w), w.forget_moved2();
   if (neighbours_outdated(w)) {
     rebuild_neighbours(w);
     find_sleepers(w);
   }
+  w.forget_moved2();
   place_images(w);
   w.stopwatch.stop(Phase::neighbours);
 
@@ -87,6 +88,7 @@ void advance(WorldState<Model>& w) {
       w.domain.move_to(w.time + (Integrator::predicts_before_forces || stage > 0 ? w.time_step : 0.0));
     }
     if constexpr (Integrator::predicts_before_forces) {
+      w.forget_moved2();
       if constexpr (Model::Domain::has_ranks)
         w.domain.is_whole = !w.domain.is_shared();  // a list made now is of grains that each rank has moved alone
       const auto [begin, end] = w.own_chunks();
@@ -131,6 +133,7 @@ template <class Model>
 void initialise(WorldState<Model>& w) {
   w.sleepers.all_work = true;
   w.move = {};
+  w.forget_moved2();
   const auto for_each_own_chunk = [&](auto&& f) {
     const auto [begin, end] = w.own_chunks();
     w.executor.for_each(end - begin, [&, first = begin](std::size_t k) { f(first + k); });
