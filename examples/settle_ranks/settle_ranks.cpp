@@ -4,8 +4,8 @@
 //   mpirun -np 4 settle_ranks --shape cubes --grains 20000 --settle 3000 --steps 300 --threads 1 --output out
 //
 // Writes settled.csv: positions and speeds of the grains, once, whatever the number of processes. With --bed bed.h5 the
-// settled bed is kept in that file (needs HDF5). If it is there the bed is taken from it and does not settle, with as
-// many processes as you like. All must see the file.
+// settled bed is kept in that file (needs HDF5). --settle-gravity 98.1 (m/s^2) makes grains settle in fewer steps. If
+// it is there the bed is taken from it and does not settle, with as many processes as you like. All must see the file.
 
 #include "arguments.hpp"
 
@@ -41,6 +41,7 @@ void settle(const typename Model::Shape& grain, Arguments& arguments) {
   const int settle = static_cast<int>(arguments.number("--settle", 3000));
   const int steps = static_cast<int>(arguments.number("--steps", 300));
   const int threads = static_cast<int>(arguments.number("--threads", 0));
+  const double settle_gravity = arguments.number("--settle-gravity", 9.81);
   const std::filesystem::path bed = arguments.take("--bed", ""), folder = arguments.take("--output", "settle_ranks");
   arguments.check();
 
@@ -72,6 +73,13 @@ void settle(const typename Model::Shape& grain, Arguments& arguments) {
     const StepReport report = world.run(static_cast<std::uint64_t>(n));
     if (!report) fail("{}", report.text);
   };
+  // More than the Earth's gravity saves steps; a fifth of them are done under that.
+  const auto come_to_rest = [&] {
+    world.set_gravity({0, 0, -settle_gravity});
+    run(settle - settle / 5);
+    world.set_gravity({0, 0, -9.81});
+    run(settle / 5);
+  };
 #ifdef DEM_WITH_HDF5
   if (processes.of_first(!bed.empty() && exists(bed))) {
     load(world, bed);
@@ -80,12 +88,12 @@ void settle(const typename Model::Shape& grain, Arguments& arguments) {
            world.grain_count());
     }
   } else {
-    run(settle);
+    come_to_rest();
     if (!bed.empty()) save(world, bed);
   }
 #else
   if (!bed.empty()) fail("--bed: this program was built without HDF5, which it needs to keep a bed");
-  run(settle);
+  come_to_rest();
 #endif
   const domain::Traffic before = world.state().domain.traffic();
   const std::uint64_t lists_before = world.state().rebuilds;
@@ -99,8 +107,15 @@ void settle(const typename Model::Shape& grain, Arguments& arguments) {
   const auto lists = static_cast<double>(world.state().rebuilds - lists_before);
   const double wait = after.step_seconds - before.step_seconds;
   const double most_wait = d.largest(wait), least_wait = -d.largest(-wait), mean_wait = d.total(wait) / d.ranks();
-  fmt::print("{} grains, {} ranks of {} threads, {} steps in {:.2f} s: {:.3g} grain steps a second\n", grains,
-             d.ranks(), world.threads(), steps, seconds, grains * double(steps) / seconds);
+  double contacts = 0.0;
+  for (std::size_t c = d.own().first; c < d.own().second; ++c) {
+    const auto& chunk = world.state().chunks[c];
+    contacts += chunk.pair_contacts.committed() + chunk.surface_contacts.committed();
+  }
+  contacts = d.total(contacts);
+  fmt::print(
+      "{} grains, {} ranks of {} threads, {} steps in {:.2f} s: {:.3g} grain steps a second, {:.2f} contacts a grain\n",
+      grains, d.ranks(), world.threads(), steps, seconds, grains * double(steps) / seconds, contacts / grains);
   fmt::print(
       "exchange: {:.0f} bytes a step and rank at the most, {:.1f} % of the time in steps (mean of the ranks {:.1f}, "
       "least "
