@@ -32,6 +32,7 @@ struct SkinChoice {
   std::uint64_t made = 0;         ///< steps before the present list
   std::uint64_t look_at = never;  ///< the number of steps after which the present list is looked at
   bool looked_at = false;         ///< and a new one was found better
+  double list_weight = 1.0;       ///< how many times as dear a list is, beside a candidate, where the executor says so
 
   template <class V>
   void fields(V& v) {
@@ -45,7 +46,7 @@ struct SkinChoice {
     const double ratio = (diameter + s) / (diameter + skin);
     return candidates * ratio * ratio * ratio;
   }
-  double list_cost(double s) const { return new_list + per_candidate * candidates_at(s); }
+  double list_cost(double s) const { return list_weight * (new_list + per_candidate * candidates_at(s)); }
 
   /// The best skin (m) for grains of which the fastest goes half of `speed` (m) in a step. `evaluations`: of forces, a
   /// step; `lists`: new lists a step that are made whatever the skin is.

@@ -36,6 +36,7 @@ template <class Model>
 double choose_skin(WorldState<Model>& w, const std::vector<double>& grains) {
   if (w.options.skin > 0.0) return w.options.skin;
   w.skin_choice.radius = mean_radius(w, grains);
+  if constexpr (requires { Model::Executor::list_weight; }) w.skin_choice.list_weight = Model::Executor::list_weight;
   double skin = w.skin_choice.choose(w.step, Model::Integrator::stages);
   if constexpr (Model::Domain::has_images) {
     for (const double period : w.domain.period()) {
