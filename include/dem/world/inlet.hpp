@@ -119,7 +119,8 @@ class Inlet {
     v.given("velocity", o.velocity, "m/s"), v.given("velocity_spread", o.velocity_spread, "m/s");
     v.given("random_orientation", o.random_orientation), v.given("seed", o.seed);
     v("random", random_), v("start", start_, "s"), v("grains", grains_), v("mass", mass_, "kg"), v("due", due_);
-    v("next", next_), v("is_blocked", is_blocked_);
+    v("next", next_), v("is_blocked", is_blocked_), v("is_open", is_open_), v("closed_at", closed_at_, "s");
+    v("closed_for", closed_for_, "s");
   }
 
   const std::string& name() const { return options_.name; }
@@ -131,8 +132,10 @@ class Inlet {
   double due() const { return due_; }
   /// What of it did not fit yet, in the same unit; less than one grain is always owed.
   double owed() const { return std::max(0.0, due_ - given()); }
-  /// More than a twentieth of what was due is owed, as there was no room.
-  bool is_short() const { return is_blocked_ && owed() > 0.05 * due_; }
+  /// Whether it gives anything: see World::set_open.
+  bool is_open() const { return is_open_; }
+  /// It is open, and more than a twentieth of what was due is owed, as there was no room.
+  bool is_short() const { return is_open_ && is_blocked_ && owed() > 0.05 * due_; }
   /// What is short, in words; empty if nothing is.
   std::string note() const {
     if (!is_short()) return {};
@@ -143,14 +146,24 @@ class Inlet {
         options_.name, given(), due_, unit);
   }
 
+  /// Opens or closes it at a time (s): World::set_open.
+  void set_open(bool open, double now) {
+    if (open == is_open_) return;
+    is_open_ = open;
+    const double counts = std::clamp(now, start_, options_.end);
+    if (open) closed_for_ += counts - closed_at_;
+    else closed_at_ = counts;
+  }
+
   // What follows is for the step.
 
   /// The flow until `time` (s) is due. Returns whether a grain is wanted; `mass_of(species)` is in kg.
   template <class MassOf>
   bool want(double time, MassOf&& mass_of) {
+    if (!is_open_) return false;
     const double flow = by_mass() ? options_.mass_flow : options_.grain_flow;
     const double most = by_mass() ? options_.total_mass : options_.total_grains;
-    due_ = std::min(most, flow * std::max(0.0, std::min(time, options_.end) - start_));
+    due_ = std::min(most, flow * std::max(0.0, std::min(time, options_.end) - start_ - closed_for_));
     if (!next_.valid()) next_ = grains_drawn_.draw(random_);
     const double mass = mass_of(next_);
     return given() + 0.5 * (by_mass() ? mass : 1.0) <= due_ && mass_ + 0.5 * mass <= options_.total_mass &&
@@ -180,6 +193,8 @@ class Inlet {
   double due_ = 0.0;          // kg or grains
   SpeciesId next_;            // kept until it fits: small grains would else be preferred
   bool is_blocked_ = false;   // the last grain that was wanted did not fit
+  bool is_open_ = true;
+  double closed_at_ = 0.0, closed_for_ = 0.0;  // s, between its start and its end: since when, and how long before
 };
 
 }  // namespace dem

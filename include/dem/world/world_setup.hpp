@@ -150,6 +150,9 @@ class WorldSetup {
     state_.put_in = &dem::put_in<Model>;
     return InletId(state_.inlets.size() - 1);
   }
+  /// Opens or closes an inlet, as a valve does. A new one is open. While it is closed it puts nothing in, and nothing
+  /// falls due. Throws Error for an unknown inlet.
+  void set_open(InletId i, bool open) { known(state_.inlets, i, "inlet").set_open(open, state_.time); }
 
   /// Bodies, joints, actuators, sensors. The world moves them. Only programs that call this compile what does.
   mbd::Mechanism& machine() {

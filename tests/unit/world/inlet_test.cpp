@@ -79,6 +79,37 @@ TEST_CASE("an inlet starts and ends when it should, and gives its total") {
   CHECK(w.inlet(late).grains() >= 9);
 }
 
+TEST_CASE("nothing comes of an inlet that is closed, nor falls due") {
+  auto w = fed();
+  const dem::Mixture balls = SpeciesId(0);
+  const auto in = w.add_inlet(above, {.grains = balls, .grain_flow = 1000, .end = 0.05, .velocity = {0, 0, -1}});
+  REQUIRE(w.run_for(0.01));
+  const std::uint64_t before = w.inlet(in).grains();
+  w.set_open(in, false);
+  CHECK_FALSE(w.inlet(in).is_open());
+  w.set_open(in, false);
+  REQUIRE(w.run_for(0.02));
+  CHECK(w.inlet(in).grains() == before);
+  w.set_open(in, true);
+  REQUIRE(w.run_for(0.01));
+  CHECK(w.inlet(in).due() == Approx(20.0).epsilon(0.01));
+  w.set_open(in, false);
+  REQUIRE(w.run_for(0.02));  // over its end
+  w.set_open(in, true);
+  REQUIRE(w.run_for(0.02));
+  CHECK(w.inlet(in).due() == Approx(20.0).epsilon(0.01));
+  // One that is closed before it starts loses no time by that.
+  const auto later =
+      w.add_inlet(InletRegion::disc({0.2, 0, 0.1}, {0, 0, 1}, 0.02),
+                  {.grains = balls, .grain_flow = 1000, .start = w.time() + 0.01, .velocity = {0, 0, -1}});
+  w.set_open(later, false);
+  REQUIRE(w.run_for(5e-3));
+  w.set_open(later, true);
+  REQUIRE(w.run_for(0.015));
+  CHECK(w.inlet(later).due() == Approx(10.0).epsilon(0.01));
+  check_refused([&] { w.set_open(dem::InletId(7), true); }, "inlet 7 is asked for");
+}
+
 TEST_CASE("a disc gives grains on it, a box in it, evenly, with velocities in a ball") {
   auto w = fed();
   const Vec3 middle(0.3, 0.1, 0.2), normal = Vec3(1, 0, 1).normalized(), v(0, 0, -2.0);
