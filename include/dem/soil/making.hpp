@@ -1,10 +1,11 @@
 #pragma once
-// What a bed is made by: grains come to rest, get denser, and are pressed by a lid. Each is a struct that is gone on
-// with a little at a time, so that the caller may report, stop, save and go on in between: one that is made again with
-// the same arguments and gets its fields() back goes on. `run(seconds)` runs the world.
+// What a bed is made by: grains rain, come to rest, get denser, and are pressed by a lid. Each is a struct that is gone
+// on with a little at a time, so that the caller may report, stop, save and go on in between: one that is made again
+// with the same arguments and gets its fields() back goes on. `run(seconds)` runs the world.
 
 #include <dem/math/vector.hpp>
 #include <dem/soil/rest.hpp>
+#include <dem/soil/solid_layers.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -13,6 +14,25 @@
 #include <numbers>
 
 namespace dem::soil {
+
+/// Grains fall out of an inlet, which is open meanwhile, until there are enough of them.
+struct Raining {
+  double start = 0.0;   ///< s
+  double wanted = 0.0;  ///< m^3, solid volume of all grains at the end
+  double solid = 0.0;   ///< m^3, of those that are there
+
+  /// Whether there are enough.
+  [[nodiscard]] bool is_done() const { return solid >= wanted; }
+  template <class World, std::invocable<double> Run>
+  void go_on(const World& world, Run&& run) {
+    run(2e-3);
+    solid = solid_volume(world);
+  }
+  template <class V>
+  void fields(V& v) {
+    v("start", start, "s"), v("wanted", wanted, "m^3"), v("solid", solid, "m^3");
+  }
+};
 
 /// Grains come to rest: their r.m.s. speed stays below that of rest for 20 ms.
 struct Settling {
@@ -82,6 +102,10 @@ struct Densifying {
     before = fraction;
     looked = now;
     return true;
+  }
+  /// From 0 to 1, how near its end is: of the two ways for it to end, `wanted` or no friction, the one that is nearer.
+  [[nodiscard]] double progress(double wanted) const {
+    return std::clamp(std::max(1.0 - share, (fraction - first) / (wanted - first)), 0.0, 1.0);
   }
   template <class V>
   void fields(V& v) {

@@ -88,6 +88,42 @@ TEST_CASE("a bed fills a box, a trough and a cylinder to its height, level and a
   }
 }
 
+TEST_CASE("a bed that is rained is filled at its flow from its height, level and at rest") {
+  for (const Container& container :
+       {Container::box(0.018, 0.014), Container::trough(0.018, 0.008, 0.4), Container::cylinder(0.0085)}) {
+    SoilOfBalls soil;
+    const double flow = 0.02, height = 0.012, from = 0.02;  // kg/s, m
+    dem::soil::Bed<Balls> bed(soil.world, container, soil.ball,
+                              {.height = height, .rain_flow = flow, .rain_height = from, .time_limit = 2.0, .seed = 3});
+    CHECK_FALSE(soil.world.inlet(bed.inlet()).is_open());
+    double rained = 0.0, fastest = 0.0, at = 0.0;  // kg, m/s, s
+    bed.make([](double) {},
+             [&] {
+               if (!soil.world.inlet(bed.inlet()).is_open()) return;
+               rained = soil.world.inlet(bed.inlet()).mass(), at = soil.world.time();
+               for (const GrainId p : soil.world.grains()) fastest = std::max(fastest, -soil.world.velocity(p).z());
+             });
+    check_bed(soil.world, bed);
+    CHECK(bed.is_made());
+    CHECK_FALSE(soil.world.inlet(bed.inlet()).is_open());
+    CHECK(soil.world.inlet(bed.inlet()).mass() == rained);
+    // Batches come within a millisecond, at which the flow is 2 grains.
+    CHECK(rained == Approx(flow * at).margin(4 * soil.world.species(soil.ball).mass));
+    // Those at first fall from there to the floor, from at most two cells and a layer higher.
+    const double least = from + 1.1 * height, cell = 2.1e-3;
+    CHECK(fastest > 0.9 * std::sqrt(2.0 * 9.81 * least));
+    CHECK(fastest < 1.02 * std::sqrt(2.0 * 9.81 * (least + 4.0 * cell)));
+    CHECK(bed.solid_fraction() > 0.45);
+    CHECK(bed.solid_fraction() < 0.64);
+    // Filled once more by hand, from the same inlet.
+    const std::size_t before = soil.world.grain_count();
+    bed.fill(10 * soil.world.species(soil.ball).shape.volume());
+    CHECK(soil.world.grain_count() >= before + 10);
+    CHECK(soil.world.grain_count() <= before + 17);
+    CHECK_FALSE(soil.world.inlet(bed.inlet()).is_open());
+  }
+}
+
 TEST_CASE("a bed is as dense as it was asked for, with all of its friction in the end") {
   SoilOfBalls loose;
   dem::soil::Bed<Balls> as_settled(loose.world, Container::box(0.018, 0.014), loose.ball, {.height = 0.012});
@@ -153,4 +189,17 @@ TEST_CASE("a bed that makes no sense is refused in words") {
   SoilOfBalls other;
   dem::soil::Bed<Balls> narrow(other.world, Container::box(0.001, 0.02), other.ball, {.height = 0.01});
   check_refused([&] { narrow.make(); }, "has no place for a grain");
+  check_refused([&] { bed_of({.height = 0.01, .rain_flow = -1.0}); }, "flow of the rain");
+  check_refused([&] { bed_of({.height = 0.01, .rain_flow = 1.0, .rain_height = 0.0}); }, "height from which it rains");
+  check_refused(
+      [&] {
+        dem::soil::Bed<Balls>(other.world, Container::box(0.001, 0.02), other.ball, {.height = 0.01, .rain_flow = 1.0});
+      },
+      "has no place for a grain");
+  // More grains than there is room for below the inlet.
+  SoilOfBalls full;
+  dem::soil::Bed<Balls> heaped(
+      full.world, Container::box(0.012, 0.012), full.ball,
+      {.height = 0.006, .expected_fraction = 1.0, .rain_flow = 0.1, .rain_height = 1e-4, .time_limit = 0.05});
+  check_refused([&] { heaped.make(); }, "as there is no room where it comes from; lower BedOptions::rain_flow");
 }
