@@ -1,5 +1,7 @@
 #include "catch.hpp"
 #include "files.hpp"
+#include "sleeping_bed.hpp"
+#include "vtk_reader.hpp"
 #include "xml.hpp"
 
 #include <dem/io/vtk_grains.hpp>
@@ -83,4 +85,27 @@ TEST_CASE("grains of several kinds go into one file") {
   CHECK_THAT(text.str(), Catch::Matchers::ContainsSubstring("NumberOfPolys=\"" + std::to_string(24 * 11) + "\""));
   CHECK_THAT(text.str(), Catch::Matchers::ContainsSubstring("Name=\"species\""));
   CHECK_THAT(text.str(), Catch::Matchers::ContainsSubstring("Name=\"speed\""));
+}
+
+TEST_CASE("a frame of a bed in which grains sleep says which of them do") {
+  const TempFolder folder;
+  const SleepingBed bed;
+  dem::io::write_vtk_grains(folder / "grains.vtp", bed.world, 1);
+  const VtkContent file = read_vtk(folder / "grains.vtp");
+  const auto body = file.values<std::int32_t>("body"), asleep = file.values<std::int32_t>("asleep");
+  REQUIRE(asleep.size() == body.size());
+  CHECK(file.array("asleep").at("type") == "Int32");
+  const auto grains = bed.world.grains();
+  std::vector<std::size_t> faces(grains.size(), 0);
+  for (std::size_t k = 0; k < body.size(); ++k) {
+    const auto row = static_cast<std::size_t>(body[k]);
+    REQUIRE(row < grains.size());
+    ++faces[row];
+    CHECK(asleep[k] == (grains[row] == bed.flier ? 0 : 1));
+  }
+  for (const std::size_t count : faces) CHECK(count == body.size() / grains.size());
+  // Where none may sleep the column is not there.
+  const SleepingBed awake(false);
+  dem::io::write_vtk_grains(folder / "awake.vtp", awake.world, 1);
+  CHECK(read_vtk(folder / "awake.vtp").bytes.count("asleep") == 0);
 }
