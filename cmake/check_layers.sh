@@ -3,7 +3,7 @@
 # headers never include each other in a circle. Usage: check_layers.sh [folder that holds dem/]
 set -euo pipefail
 
-layers="core math parallel geometry domain law integrator grain mbd coupling world io report soil terramechanics vehicle rig"
+layers="core math parallel geometry domain law integrator grain mbd coupling world flat io report soil terramechanics vehicle rig"
 
 cd "${1:-$(dirname "$0")/../include}"
 

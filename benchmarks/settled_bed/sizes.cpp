@@ -1,19 +1,17 @@
 // Beds of 4,000 grains and of many more. A box of 4,000 grains is settled once, and put beside itself as often as the
 // size asks for, with its velocities. So a grain of the largest bed has the surroundings of one of the smallest.
 
-#include "works.hpp"
+#include "boxes.hpp"
 
+#include <dem/dem.hpp>
 #include <dem/report/ascii_table.hpp>
 
-#include <cmath>
 #include <cstdio>
 #include <ctime>
 
 namespace bench {
 
 namespace {
-
-constexpr int grains_a_box = 4000, per_row = 10;
 
 /// Bytes that this machine can still give, as Linux counts them; 0 where nobody knows.
 double free_bytes() {
@@ -35,39 +33,6 @@ void check_memory(std::size_t grains, double bytes_a_grain) {
     dem::fail("a bed of {} grains needs {:.3g} GB of memory, but only {:.3g} GB are free; give smaller --sizes", grains,
               1e-9 * needed, 1e-9 * there);
   }
-}
-
-/// Gravity that makes a bed slide to a corner of its box.
-dem::Vec3 tilted() { return 9.81 * dem::Vec3(0.5, 0.5, -std::sqrt(0.5)); }
-
-/// Boxes that share their walls, filled one after the other until there are so many grains.
-template <class Model>
-dem::World<Model> boxes(const dem::World<Model>& one, std::size_t grains, double width, const Settings& settings) {
-  dem::World<Model> world = empty_world<Model>(settings);
-  if (settings.flow) world.set_gravity(tilted());
-  const std::vector<dem::GrainId> ids = one.grains();
-  const auto count = static_cast<double>((grains + ids.size() - 1) / ids.size());
-  const double nx = std::ceil(std::sqrt(count)), ny = std::ceil(count / nx);
-  const double thick = 0.02, high = 0.3, pitch = width + thick;
-  const auto wall = [&](const dem::Vec3& middle, const dem::Vec3& edges) {
-    world.add_surface(world.ground(), dem::surface::Box(edges), {.position = middle});
-  };
-  const double lx = nx * pitch + thick, ly = ny * pitch + thick;  // walls included; the first box begins at 0
-  const dem::Vec3 middle(lx / 2 - thick, ly / 2 - thick, 0);
-  wall(middle - dem::Vec3(0, 0, thick / 2), {lx, ly, thick});
-  for (double k = 0; k <= nx; ++k) wall({k * pitch - thick / 2, middle.y(), high / 2}, {thick, ly, high});
-  for (double k = 0; k <= ny; ++k) wall({middle.x(), k * pitch - thick / 2, high / 2}, {lx, thick, high});
-  for (std::size_t k = 0; k < grains; ++k) {
-    const dem::GrainId from = ids[k % ids.size()];
-    const auto box = static_cast<double>(k / ids.size());
-    const dem::Vec3 corner(pitch * std::fmod(box, nx), pitch * std::floor(box / nx), 0);
-    world.add_grain({.species = dem::SpeciesId(0),
-                     .position = one.position(from) + corner,
-                     .velocity = one.velocity(from),
-                     .rotation = one.rotation(from),
-                     .angular_velocity = one.angular_velocity(from)});
-  }
-  return world;
 }
 
 template <class Model>
@@ -98,9 +63,9 @@ void run(const char* name, const Settings& settings) {
     // As much work as --steps of the first size.
     const double share = double(settings.sizes.front()) / double(grains);
     const int steps = std::max(std::min(100, settings.steps), static_cast<int>(settings.steps * share));
-    double one_thread = 0.0;
+    double fewest_threads = 0.0;
     std::size_t count = 0;
-    for (const int threads : thread_counts(most_threads)) {
+    for (const int threads : thread_counts(settings.least_threads, most_threads)) {
       world.set_threads(threads);
       run_or_fail(world, 20);
       std::vector<double> rates, per_cpu_second;
@@ -118,7 +83,7 @@ void run(const char* name, const Settings& settings) {
         per_cpu_second.push_back(done * CLOCKS_PER_SEC / double(std::clock() - cpu));
       }
       const double rate = median(rates), cpu_rate = median(per_cpu_second);
-      if (threads == 1) one_thread = rate;
+      if (count == 0) fewest_threads = rate;
       if (of_first.size() == count) of_first.push_back(rate);
       const std::uint64_t made = world.state().rebuilds - lists;
       const double lists_took = world.state().stopwatch.seconds(dem::Phase::neighbours);
@@ -126,7 +91,7 @@ void run(const char* name, const Settings& settings) {
       const double step =
           1e9 * world.state().stopwatch.seconds(dem::Phase::grains) / (double(grains) * steps * settings.repeats);
       table.row(grains, threads, rate, *std::min_element(rates.begin(), rates.end()),
-                *std::max_element(rates.begin(), rates.end()), rate / one_thread, cpu_rate, rate / of_first[count],
+                *std::max_element(rates.begin(), rates.end()), rate / fewest_threads, cpu_rate, rate / of_first[count],
                 step, made, list, 100.0 * lists_took / took, contacts_a_grain(world),
                 std::to_string(dem::memory_bytes(world.state()) / grains));
       world.state().stopwatch.switch_on(false);

@@ -2,8 +2,9 @@
 
 // The works that are timed: cubes and spheres in open boxes, and the laws that they share.
 
-#include <dem/dem.hpp>
-#include <dem/geometry/shapes.hpp>
+#include <dem/geometry/cluster/sphere_cluster.hpp>
+#include <dem/integrator/symplectic_euler.hpp>
+#include <dem/world/world.hpp>
 
 #include <algorithm>
 #include <chrono>
@@ -31,7 +32,7 @@ struct Spheres : dem::Model {
 
 struct Settings {
   std::string work = "both", shape = "cube8";
-  int steps = 5000, settle = 60000, repeats = 3, threads = 0;
+  int steps = 5000, settle = 60000, repeats = 3, threads = 0, least_threads = 1;
   double skin = 0.0;
   bool flow = false;                                                ///< beds of `sizes` flow
   std::vector<std::size_t> sizes = {4000, 40000, 300000, 2000000};  ///< of beds made of boxes (sizes.cpp)
@@ -90,10 +91,10 @@ void run_or_fail(World& world, int steps) {
   if (const auto report = world.run(static_cast<std::uint64_t>(steps)); !report) dem::fail("{}", report.text);
 }
 
-/// 1, 2, 4 ... and the most itself.
-inline std::vector<int> thread_counts(int most) {
+/// The fewest, twice as many, and so on, and the most itself.
+inline std::vector<int> thread_counts(int fewest, int most) {
   std::vector<int> counts;
-  for (int n = 1; n < most; n *= 2) counts.push_back(n);
+  for (int n = fewest; n < most; n *= 2) counts.push_back(n);
   counts.push_back(most);
   return counts;
 }

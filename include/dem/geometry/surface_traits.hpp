@@ -1,5 +1,6 @@
 #pragma once
 
+#include <dem/core/function_like.hpp>
 #include <dem/geometry/direction_code.hpp>
 #include <dem/geometry/surface.hpp>
 #include <dem/math/fingerprint.hpp>
@@ -43,17 +44,22 @@ namespace dem::surface {
 //   refused
 //                         where they differ. Without it their bounds are compared.
 
+/// What a surface's corners are shown to, in the checks of concepts.
+struct AnyCorner {
+  void operator()(std::uint32_t, const Vector3<double>&, double = 1.0) const {}
+};
+
 template <class S>
 concept KnowsClose = requires(const S& s, const Vector3<double>& point) {
   { s.close(point, 1.0, true) } -> std::same_as<bool>;
 };
 template <class S>
 concept HasCorners = requires(const S& s, const Vector3<double>& point) {
-  s.corners(point, 1.0, [](std::uint32_t, const Vector3<double>&, double = 1.0) {});
+  s.corners(point, 1.0, AnyCorner{});
 };
 template <class S>
 concept HasBalls = requires(const S& s, const Vector3<double>& point) {
-  s.balls(point, 1.0, [](std::uint32_t, const Vector3<double>&, double) {});
+  s.balls(point, 1.0, FunctionLike<void(std::uint32_t, const Vector3<double>&, double)>{});
   { s.is_on_ball(point) } -> std::same_as<bool>;
 };
 template <class S>
@@ -66,7 +72,7 @@ concept MayLetPointsThrough = requires(const S& s) {
 };
 template <class S>
 concept HasPoints = requires(const S& s, const Aabb& box) {
-  s.points(box, [](std::uint32_t, const Vector3<double>&, double) {});
+  s.points(box, FunctionLike<void(std::uint32_t, const Vector3<double>&, double)>{});
   { s.has_points() } -> std::same_as<bool>;
 };
 template <class S>
@@ -75,11 +81,11 @@ concept MayBeBall = requires(const S& s) {
 };
 template <class S>
 concept HasEdges = requires(const S& s, const Aabb& box) {
-  s.edges(box, [](std::uint32_t, const Vector3<double>&, const Vector3<double>&) {});
+  s.edges(box, FunctionLike<void(std::uint32_t, const Vector3<double>&, const Vector3<double>&)>{});
 };
 template <class S>
 concept HasRims = requires(const S& s) {
-  s.rims([](std::uint32_t, const Vector3<double>&, double) {});
+  s.rims(FunctionLike<void(std::uint32_t, const Vector3<double>&, double)>{});
 };
 template <class S>
 concept HasLateralSurface = requires(const S& s, Vector3<double>& p) {
@@ -96,12 +102,12 @@ concept ClipsLines = requires(const S& s, const Vector3<double>& p, double& shar
 };
 template <class S>
 concept PartsLines = requires(const S& s, const Vector3<double>& p) {
-  s.parts_inside(p, p, [](double, double) {});
+  s.parts_inside(p, p, FunctionLike<void(double, double)>{});
 };
 
 /// m, the effective radius of a boundary of a radius on a surface; one without radius_on() counts as flat.
 template <class S>
-double radius_on(const S& s, double radius) {
+DEM_HOT double radius_on(const S& s, double radius) {
   if constexpr (requires { s.radius_on(radius); }) {
     return s.radius_on(radius);
   } else {

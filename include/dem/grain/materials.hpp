@@ -8,6 +8,7 @@
 #include <dem/law/rolling/rolling_law.hpp>
 
 #include <algorithm>
+#include <initializer_list>
 #include <span>
 #include <string>
 #include <string_view>
@@ -110,7 +111,7 @@ class Materials {
       return name(m) == "grain" || name(m) == "wall" || std::find(used.begin(), used.end(), m) != used.end();
     };
     for (const Pair& pair : pairs_) {
-      for (const MaterialId m : {pair.a, pair.b}) {
+      for (const MaterialId m : std::initializer_list<MaterialId>{pair.a, pair.b}) {  // named for nvcc
         if (is_used(m)) continue;
         std::string known;
         for (const MaterialId u : used) {

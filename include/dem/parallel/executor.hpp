@@ -1,5 +1,7 @@
 #pragma once
 
+#include <dem/core/function_like.hpp>
+
 #include <concepts>
 #include <cstddef>
 
@@ -11,14 +13,23 @@ namespace dem::exec {
 /// called it.
 template <class E>
 concept Executor = requires(E& executor) {
-  executor.for_each(std::size_t{1}, [](std::size_t) {});
-  executor.for_each(std::size_t{1}, [](std::size_t, int) {});
+  executor.for_each(std::size_t{1}, FunctionLike<void(std::size_t)>{});
+  executor.for_each(std::size_t{1}, FunctionLike<void(std::size_t, int)>{});
   { executor.threads() } -> std::convertible_to<int>;
   executor.set_threads(1);
 };
 
+/// An executor with memory of its own, in which a world keeps its grains while it runs: a GPU (exec::Cuda), or this
+/// processor by the same code (exec::Flat, which says what such an executor has).
+template <class E>
+concept FlatExecutor = Executor<E> && requires {
+  typename E::template Array<double>;
+};
+
 template <class E>
 constexpr void check_executor() {
+  static_assert(
+      !requires { E::needs_nvcc; }, "exec::Cuda: compile this source with nvcc, the compiler of CUDA");
   static_assert(Executor<E>,
                 "Executor: needs for_each(n, f) for f(piece) and f(piece, thread), threads() and set_threads(n)");
 }

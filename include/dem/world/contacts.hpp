@@ -150,6 +150,7 @@ class ContactFinder {
 /// lists are due, or where it has a periodic cell or is shared by ranks. Throws Error as World::prepare does.
 template <class Model>
 std::vector<Contact<Model>> contacts_of(const World<Model>& world) {
+  require_grains_here(world.state(), "what touches what");
   constexpr bool copies = Model::Domain::has_images || Model::Domain::has_ranks;
   if (!copies && world.is_prepared() && !neighbours_outdated(world.state())) {
     return detail::ContactFinder<Model>(world.state()).find();

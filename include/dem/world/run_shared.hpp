@@ -10,6 +10,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <initializer_list>
 #include <iterator>
 
 namespace dem {
@@ -38,8 +39,10 @@ domain::CallHashes hashes_of(const WorldState<Model>& world, const Compared& com
   auto& w = const_cast<WorldState<Model>&>(world);  // fields serve both ways; hashing changes nothing
   const auto& p = w.grains;
   Hash size, options, grains;
-  for (const std::size_t n : {p.count, p.row_of.size(), w.to_remove.size(), w.species.size(), w.surfaces.size(),
-                              w.machine.bodies().size(), w.outlets.size(), w.inlets.size()}) {
+  // Lists have a type, as nvcc does not find it by itself.
+  for (const std::size_t n : std::initializer_list<std::size_t>{
+           p.count, p.row_of.size(), w.to_remove.size(), w.species.size(), w.surfaces.size(), w.machine.bodies().size(),
+           w.outlets.size(), w.inlets.size()}) {
     size.mix(std::uint64_t{n});
   }
   for (const std::uint64_t n : {compared.asked, w.step, std::uint64_t{w.list_valid}, std::uint64_t{compared.set_up},
@@ -47,7 +50,8 @@ domain::CallHashes hashes_of(const WorldState<Model>& world, const Compared& com
     size.mix(n);
   }
   const Vec3& g = w.options.gravity;
-  for (const double x : {w.options.time_step, w.options.skin, g.x(), g.y(), g.z()}) options.mix(x);
+  for (const double x : std::initializer_list<double>{w.options.time_step, w.options.skin, g.x(), g.y(), g.z()})
+    options.mix(x);
   options.mix(std::uint64_t{w.options.sleep.has_value()});
   if constexpr (Model::Domain::has_images) {
     for (std::size_t k = 0; k < 3; ++k) {

@@ -169,6 +169,16 @@ struct WorldState {
   }
 };
 
+/// Throws Error while the grains are in the memory of the executor, and those here are old.
+template <class Model>
+void require_grains_here([[maybe_unused]] const WorldState<Model>& w, [[maybe_unused]] const char* what) {
+  if constexpr (exec::FlatExecutor<typename Model::Executor>) {
+    if (w.executor.holds_grains()) {
+      fail("{} is asked for within a run, while the grains are in the executor's memory; end the run first", what);
+    }
+  }
+}
+
 /// Whether the grain of this id sleeps, as far as this process knows.
 template <class Model>
 bool is_asleep(const WorldState<Model>& w, std::uint32_t id) {
@@ -222,6 +232,16 @@ void sample_surface_sensors(WorldState<Model>& w) {
   }
 }
 
+/// Hands the loads that grains put on surfaces to their bodies.
+template <class Model>
+void pass_on_loads(WorldState<Model>& w) {
+  for (const auto& s : w.surfaces) {
+    Body& body = w.machine.body(s.body);
+    body.force += s.force;
+    body.torque += s.torque;
+  }
+}
+
 /// Sums the chunks' loads on each surface, in the order of the chunks, and hands them to the bodies.
 template <class Model>
 void load_bodies(WorldState<Model>& w) {
@@ -244,11 +264,7 @@ void load_bodies(WorldState<Model>& w) {
       for (const SurfaceLoad& load : chunk.surface_loads) add(load);
     }
   }
-  for (const auto& s : w.surfaces) {
-    Body& body = w.machine.body(s.body);
-    body.force += s.force;
-    body.torque += s.torque;
-  }
+  pass_on_loads(w);
 }
 
 }  // namespace dem

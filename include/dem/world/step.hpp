@@ -3,6 +3,7 @@
 #include <dem/grain/move.hpp>
 #include <dem/world/border_step.hpp>
 #include <dem/world/chunk_contacts.hpp>
+#include <dem/world/flat_step.hpp>
 #include <dem/world/neighbours.hpp>
 #include <dem/world/sleep.hpp>
 
@@ -125,6 +126,16 @@ void advance(WorldState<Model>& w) {
   w.time += w.time_step;
   ++w.step;
   look_at_skin(w);
+}
+
+/// One time step where the grains are: here, or in the memory of the executor.
+template <class Model>
+void take_step(WorldState<Model>& w) {
+  if constexpr (is_flat<Model>()) {
+    flat::Step<Model>::advance(w);
+  } else {
+    advance(w);
+  }
 }
 
 /// Before the first step, and after anything but grains that were added was changed by hand: forces at the present

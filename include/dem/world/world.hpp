@@ -84,6 +84,8 @@ class World : public WorldSetup<M> {
     prepare();
     if constexpr (Model::Domain::has_ranks) {
       return run_shared(state_, n, [&] { return run_steps(n, goes_on); });
+    } else if constexpr (is_flat<Model>()) {
+      return flat::Step<Model>::run(state_, n, [&] { return run_steps(n, goes_on); });
     } else {
       return run_steps(n, goes_on);
     }
@@ -226,6 +228,7 @@ class World : public WorldSetup<M> {
   void fields(V& v) {
     if (unfinished_)
       fail("a world whose last step was broken off by an exception has no state to be saved or restored");
+    this->require_grains_here("a state");
     v("", state_), v("owed_steps", owed_steps_), v("checked", checked_), v("initialised", initialised_);
   }
 
@@ -242,7 +245,7 @@ class World : public WorldSetup<M> {
       unfinished_ = true;
       list_added();  // goes_on() may have added some
       if (state_.put_in) state_.put_in(state_);
-      advance(state_);
+      take_step(state_);
       release_ids(state_);
       take_out(state_);
       unfinished_ = false;

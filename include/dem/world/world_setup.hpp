@@ -63,12 +63,14 @@ class WorldSetup {
 
   /// Contact constants for every pair of materials that has none of its own. Throws Error if one makes no sense.
   void set_contact(const Parameters& p) {
+    require_grains_here("a change of contact constants");
     state_.materials.set_default(p);
     wake_all(state_);
     checked_ = false;
   }
   /// Contact constants for one pair of materials.
   void set_contact(std::string_view a, std::string_view b, const Parameters& p) {
+    require_grains_here("a change of contact constants");
     state_.materials.set(a, b, p);
     wake_all(state_);
     checked_ = false;
@@ -130,6 +132,7 @@ class WorldSetup {
   /// is gone at once for who looks; others feel it for up to 16 steps more, until the next neighbour list. Throws Error
   /// for a box that is none.
   OutletId add_outlet(const surface::Aabb& region, const OutletOptions& o = {}) {
+    require_grains_here("a new outlet");
     state_.outlets.emplace_back(region, o);
     return OutletId(state_.outlets.size() - 1);
   }
@@ -140,6 +143,7 @@ class WorldSetup {
   ///
   ///     world.add_inlet(InletRegion::disc({0, 0, 0.3}, {0, 0, -1}, 0.02), {.grains = sand, .mass_flow = 0.1});
   InletId add_inlet(const InletRegion& region, const InletOptions& o) {
+    require_grains_here("a new inlet");
     const auto mass_of = [&](SpeciesId s) {
       const auto& kind = known(state_.species, s, "species");
       if (kind.is_held()) fail("inlet '{}' is to give grains of species {}, which is held", o.name, s.value);
@@ -258,14 +262,17 @@ class WorldSetup {
     if (p.value >= grains.given) fail_unknown(p, grains.given, "grain");
     fail("grain {} is asked for, but it was removed", p.value);
   }
-  /// Throws Error within a run that ranks share, when no rank knows all grains.
+  /// Throws Error within a run that ranks share, when no rank knows all grains, or of an executor with memory of its
+  /// own, which has them then.
   void require_between_runs([[maybe_unused]] const char* what) const {
     if constexpr (Model::Domain::has_ranks) {
       if (!state_.domain.is_whole) {
         fail("{} is asked for within a run, when no rank knows all grains; end the run first", what);
       }
     }
+    require_grains_here(what);
   }
+  void require_grains_here(const char* what) const { dem::require_grains_here(state_, what); }
   static void require_finite(const Vec3& v, const char* what) {
     if (!is_finite(v)) fail("{} is ({:g}, {:g}, {:g}), but must be finite", what, v.x(), v.y(), v.z());
   }

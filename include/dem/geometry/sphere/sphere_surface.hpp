@@ -53,7 +53,7 @@ class Sphere {
   bool has_points() const { return side_ == Side::outside; }
 
   /// m, effective radius of a grain's boundary of that radius on the ball: 1/(1/r + 1/R). A cavity counts as flat.
-  double radius_on(double radius) const {
+  DEM_HOT double radius_on(double radius) const {
     return side_ == Side::inside ? radius : 1.0 / (1.0 / radius + 1.0 / radius_);
   }
   /// For grains that offer ball_contact(): callback(number, centre, radius of the ball).

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <dem/core/function_like.hpp>
 #include <dem/math/vector.hpp>
 
 #include <concepts>
@@ -41,7 +42,7 @@ struct Sizes {
 template <class B>
 concept BroadPhase = requires(B& b, const B& built, const Positions& positions, double reach) {
   b.build(positions, reach);
-  built.finder().for_each_candidate(std::size_t{0}, [](std::uint32_t) {});
+  built.finder().for_each_candidate(std::size_t{0}, FunctionLike<void(std::uint32_t)>{});
   { built.memory_bytes() } -> std::convertible_to<std::size_t>;
   { built.order() } -> std::convertible_to<std::span<const std::uint32_t>>;
 };
@@ -64,7 +65,7 @@ concept SortsByPlace = !KnowsSizes<B> && requires(B & b, const Positions& all, c
 template <class Finder>
 concept FindsRuns = requires(Finder& f) {
   { f.has_runs() } -> std::convertible_to<bool>;
-  f.for_each_run(std::size_t{0}, [](std::uint32_t, std::uint32_t) {});
+  f.for_each_run(std::size_t{0}, FunctionLike<void(std::uint32_t, std::uint32_t)>{});
 };
 
 template <class B>

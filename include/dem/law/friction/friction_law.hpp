@@ -1,5 +1,6 @@
 #pragma once
 
+#include <dem/core/function_like.hpp>
 #include <dem/law/normal/normal_law.hpp>
 
 #include <concepts>
@@ -31,7 +32,7 @@ concept FrictionLaw = HasStiffness<L> &&
              typename L::template History<double>& history) {
   { L::force(p, state, history) } -> std::same_as<Vector3<double>>;
   L::check(p);
-  L::carry(history, [](const Vector3<double>& v) { return v; });
+  L::carry(history, FunctionLike<Vector3<double>(const Vector3<double>&)>{});
 };
 
 /// A friction law's stiffness, in N/m.

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <dem/core/function_like.hpp>
 #include <dem/law/normal/normal_law.hpp>
 
 #include <concepts>
@@ -37,7 +38,7 @@ concept RollingLaw = requires(const typename L::template Parameters<double>& p, 
   { L::torque(p, state, history) } -> std::same_as<Vector3<double>>;
   { L::stiffness(p, contact) } -> std::convertible_to<double>;
   L::check(p);
-  L::carry(history, [](const Vector3<double>& v) { return v; });
+  L::carry(history, FunctionLike<Vector3<double>(const Vector3<double>&)>{});
 };
 
 template <class L>
