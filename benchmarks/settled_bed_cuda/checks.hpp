@@ -53,6 +53,20 @@ Difference difference(const dem::World<Model>& a, const dem::World<Model>& b) {
   return d;
 }
 
+/// The grain whose forces differ most.
+template <class Model>
+void print_worst(const dem::World<Model>& a, const dem::World<Model>& b) {
+  dem::GrainId worst(0);
+  double most = -1.0;
+  for (const dem::GrainId p : a.grains()) {
+    const double difference = (a.force(p) - b.force(p)).norm();
+    if (difference > most) most = difference, worst = p;
+  }
+  const dem::Vec3 f = a.force(worst), g = b.force(worst), x = b.position(worst);
+  std::printf("    grain %u at (%g, %g, %g) m: (%g, %g, %g) N on the GPU, (%g, %g, %g) N here\n", worst.value, x.x(),
+              x.y(), x.z(), f.x(), f.y(), f.z(), g.x(), g.y(), g.z());
+}
+
 /// Whether two worlds are the same bits.
 template <class World>
 bool same_bits(const World& a, const World& b) {
@@ -86,6 +100,7 @@ bool check(const char* name, int grains, int steps) {
         name, static_cast<unsigned long long>(world.steps()), d.contacts, d.contacts_that_differ, d.force, d.torque,
         d.history, d.position, static_cast<unsigned long long>(world.state().rebuilds),
         is_same ? "ok" : "NOT THE SAME");
+    if (!is_same) print_worst(world, here);
     good = good && is_same;
   }
   dem::World<Model> again = world;

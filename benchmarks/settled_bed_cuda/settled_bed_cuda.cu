@@ -2,8 +2,9 @@
 // moves in a second. The works are those of settled_bed, which times the same beds on a processor.
 //
 //     settled_bed_cuda [--check] [--grains n] [--steps n] [--settle n] [--sizes n,n,...] [--work cubes|spheres]
+//                      [--seconds s]
 //
-// Without a GPU it says so and returns 77.
+// After so many seconds no larger bed is begun. Without a GPU it says so and returns 77.
 
 #include "checks.hpp"
 #include "traffic.hpp"
@@ -12,6 +13,7 @@
 
 #include <cstdlib>
 #include <cstring>
+#include <optional>
 #include <string>
 
 namespace {
@@ -27,6 +29,7 @@ struct Arguments {
   bool only_checks = false;
   int grains = 4000, steps = 2000;  // of the checks; of the smallest bed
   int settle = 30000;
+  double seconds = 1e9;
   std::vector<std::size_t> sizes = {4000, 40000, 300000, 1000000, 2000000};
   std::string work = "both";
 };
@@ -69,32 +72,39 @@ void print_profile(dem::World<Model>& world, int steps) {
   profile.switch_on(false);
 }
 
+/// Times beds of one kind of grain, all made of one box that settles first.
 template <class Model>
-void time_beds(const char* name, const Arguments& arguments, double bandwidth) {
-  const bench::Settings settings;
-  const double width = Model::width * bench::per_row / Model::per_row;
-  dem::World<Model> one = bench::loose_bed<Model>(settings, bench::grains_a_box, bench::per_row, width);
-  const auto settling = std::chrono::steady_clock::now();
-  bench::run_or_fail(one, arguments.settle);
-  std::printf("%s: a box of %d grains settled for %d steps in %.2f s, %llu lists\n", name, bench::grains_a_box,
-              arguments.settle, bench::Seconds(std::chrono::steady_clock::now() - settling).count(),
-              static_cast<unsigned long long>(one.state().rebuilds));
-  for (const std::size_t grains : arguments.sizes) {
-    const auto making = std::chrono::steady_clock::now();
-    dem::World<Model> world = bench::boxes(one, grains, width, settings);
+class Beds {
+ public:
+  Beds(const char* name, const Arguments& arguments, double bandwidth)
+      : name_(name),
+        arguments_(arguments),
+        bandwidth_(bandwidth),
+        one_(bench::loose_bed<Model>(settings_, bench::grains_a_box, bench::per_row, width())) {
+    const auto start = Clock::now();
+    bench::run_or_fail(one_, arguments.settle);
+    std::printf("%s: a box of %d grains settled for %d steps in %.2f s, %llu lists\n", name, bench::grains_a_box,
+                arguments.settle, bench::Seconds(Clock::now() - start).count(),
+                static_cast<unsigned long long>(one_.state().rebuilds));
+  }
+
+  void time(std::size_t grains) {
+    const auto making = Clock::now();
+    dem::World<Model> world = bench::boxes(one_, grains, width(), settings_);
     bench::run_or_fail(world, 200);  // friction springs are loaded anew
-    const double made = bench::Seconds(std::chrono::steady_clock::now() - making).count();
-    const double share = double(arguments.sizes.front()) / double(grains);
-    const int steps = std::max(100, static_cast<int>(arguments.steps * share));
-    std::vector<double> rates;
+    const double made = bench::Seconds(Clock::now() - making).count();
+    const double share = double(arguments_.sizes.front()) / double(grains);
+    const int steps = std::max(100, static_cast<int>(arguments_.steps * share));
+    std::vector<double> rates, there_and_back;
     const std::uint64_t lists = world.state().rebuilds;
     for (int k = 0; k < 3; ++k) {
       // The difference of a long and a short run: what takes the grains to the GPU and back is in both.
-      const auto start = std::chrono::steady_clock::now();
+      const auto start = Clock::now();
       bench::run_or_fail(world, 1);
-      const auto between = std::chrono::steady_clock::now();
+      const auto between = Clock::now();
       bench::run_or_fail(world, 1 + steps);
-      const auto end = std::chrono::steady_clock::now();
+      const auto end = Clock::now();
+      there_and_back.push_back(bench::Seconds(between - start).count());
       rates.push_back(double(grains) * steps / bench::Seconds((end - between) - (between - start)).count());
     }
     const std::uint64_t lists_made = world.state().rebuilds - lists;
@@ -103,14 +113,24 @@ void time_beds(const char* name, const Arguments& arguments, double bandwidth) {
     std::printf(
         "%s: %9zu grains: %7.1f million grain-steps/s (%.1f to %.1f), %.1f us a step, %.2f contacts and %.2f "
         "candidates a grain, at least %.0f bytes a grain and step, %.0f %% of the bandwidth of a copy; %llu lists in "
-        "%d steps; made in %.1f s\n",
-        name, grains, 1e-6 * rate, 1e-6 * *std::min_element(rates.begin(), rates.end()),
+        "%d steps; made in %.1f s, a run of one step %.3f s\n",
+        name_, grains, 1e-6 * rate, 1e-6 * *std::min_element(rates.begin(), rates.end()),
         1e-6 * *std::max_element(rates.begin(), rates.end()), 1e6 * step, bench::contacts_a_grain(world),
-        double(bench::candidates(world)) / double(grains), bytes / double(grains), 100.0 * bytes / step / bandwidth,
-        static_cast<unsigned long long>(lists_made), 3 * (steps + 2), made);
+        double(bench::candidates(world)) / double(grains), bytes / double(grains), 100.0 * bytes / step / bandwidth_,
+        static_cast<unsigned long long>(lists_made), 3 * (steps + 2), made, bench::median(there_and_back));
     print_profile(world, std::max(20, steps / 20));
   }
-}
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  static double width() { return Model::width * bench::per_row / Model::per_row; }
+
+  const char* name_;
+  const Arguments& arguments_;
+  double bandwidth_;
+  bench::Settings settings_;
+  dem::World<Model> one_;
+};
 
 std::vector<std::size_t> numbers(const char* text) {
   std::vector<std::size_t> result;
@@ -131,12 +151,16 @@ Arguments read(int argc, char** argv) {
     else if (is("--settle") && has_value) a.settle = std::atoi(argv[++k]);
     else if (is("--sizes") && has_value) a.sizes = numbers(argv[++k]);
     else if (is("--work") && has_value) a.work = argv[++k];
-    else dem::fail("'{}' is no option; there are --check, --grains, --steps, --settle, --sizes and --work", argv[k]);
+    else if (is("--seconds") && has_value) a.seconds = std::atof(argv[++k]);
+    else
+      dem::fail("'{}' is no option; there are --check, --grains, --steps, --settle, --sizes, --work and --seconds",
+                argv[k]);
   }
   return a;
 }
 
 int run(const Arguments& a) {
+  const auto start = std::chrono::steady_clock::now();
   cudaDeviceProp properties;
   dem::cuda::check(cudaGetDeviceProperties(&properties, 0), "the GPU is asked");
   std::printf("%s, %.1f GiB, %d multiprocessors\n", properties.name, double(properties.totalGlobalMem) / (1 << 30),
@@ -148,8 +172,15 @@ int run(const Arguments& a) {
   if (a.only_checks) return good ? 0 : 1;
   const double bandwidth = copy_bandwidth();
   std::printf("a copy within the GPU's memory reads and writes %.0f GB/s\n", 1e-9 * bandwidth);
-  if (spheres) time_beds<SpheresOnGpu>("spheres", a, bandwidth);
-  if (cubes) time_beds<CubesOnGpu>("cubes", a, bandwidth);
+  std::optional<Beds<SpheresOnGpu>> of_spheres;
+  std::optional<Beds<CubesOnGpu>> of_cubes;
+  if (spheres) of_spheres.emplace("spheres", a, bandwidth);
+  if (cubes) of_cubes.emplace("cubes", a, bandwidth);
+  for (const std::size_t grains : a.sizes) {
+    if (bench::Seconds(std::chrono::steady_clock::now() - start).count() > a.seconds) break;
+    if (spheres) of_spheres->time(grains);
+    if (cubes) of_cubes->time(grains);
+  }
   return good ? 0 : 1;
 }
 

@@ -35,6 +35,14 @@
 #define DEM_FLATTEN
 #endif
 
+/// DEM_UNROLL before a loop of few turns: on devices, whose registers have no numbers that a loop could count, it is
+/// written out.
+#if defined(__CUDA_ARCH__)
+#define DEM_UNROLL _Pragma("unroll")
+#else
+#define DEM_UNROLL
+#endif
+
 /// DEM_LAZY makes a function that is no template one, without a choice: only programs that call it compile what stands
 /// in it. For long work at set-up that few programs need, such as the repair of meshes.
 #define DEM_LAZY template <class DemLazy = void>

@@ -25,7 +25,7 @@ class GrainStore {
         p, [&](std::size_t k, AlignedVector<double>& column) { columns_.upload_to(k * rows_, column.data(), count_); });
     species_.upload(p.species.data(), count_);
     views_.make_room(count_);
-    poses_.make_room(count_ * Shape::pose_size);
+    if constexpr (Shape::pose_size > 0) poses_.make_room(count_);
     bring_up_species(w);
     bring_up_known_lost(w);
   }
@@ -89,7 +89,8 @@ class GrainStore {
   }
 
   std::size_t count_ = 0, rows_ = 0;
-  Array<double> columns_, poses_;
+  Array<double> columns_;
+  Array<Pose<Shape>> poses_;
   Array<PartnerView> views_;
   Array<std::uint32_t> species_;
   Array<std::byte> shapes_;

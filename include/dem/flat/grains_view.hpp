@@ -1,5 +1,6 @@
 #pragma once
 
+#include <dem/flat/wide.hpp>
 #include <dem/grain/grain_columns.hpp>
 #include <dem/grain/partner_view.hpp>
 #include <dem/grain/species.hpp>
@@ -26,6 +27,12 @@ struct ColumnNumbers {
   static constexpr std::size_t position = 0, velocity = 3, spin = 6, rotation = 9, force = 18, torque = 21, memory = 24;
 };
 
+/// What a shape caches of a grain. Packs load from it where there are any.
+template <class Shape>
+struct alignas(64) Pose {
+  double number[Shape::pose_size > 0 ? Shape::pose_size : 1];
+};
+
 /// The grains in flat memory: columns one behind the other, and what contacts read.
 template <class Model>
 struct GrainsView {
@@ -40,7 +47,7 @@ struct GrainsView {
   std::size_t rows;   ///< of a column
   double* column;     ///< the first one
   PartnerView* view;
-  double* pose;  ///< Shape::pose_size a grain
+  Pose<Shape>* pose;  ///< none where shapes have none
   const std::uint32_t* species;
   const Shape* shapes;  ///< of the species
   const Kind* kinds;    ///< the same
@@ -52,7 +59,15 @@ struct GrainsView {
     at(c + 1, i) = v.y;
     at(c + 2, i) = v.z;
   }
-  DEM_FN double* pose_of(std::size_t i) const { return pose + i * Shape::pose_size; }
+  DEM_FN Pose<Shape> pose_of(std::size_t i) const {
+    if constexpr (Shape::pose_size > 0) return load_wide(pose + i);
+    else return {};
+  }
+  /// The same where it is, for those who read little of it.
+  DEM_FN const double* pose_at(std::size_t i) const {
+    if constexpr (Shape::pose_size > 0) return pose[i].number;
+    else return nullptr;
+  }
   DEM_FN const Shape& shape_of(std::size_t i) const { return shapes[species[i]]; }
   DEM_FN const Kind& kind_of(std::size_t i) const { return kinds[species[i]]; }
 

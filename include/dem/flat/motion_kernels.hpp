@@ -36,9 +36,11 @@ DEM_FN Summary refresh_grain(const GrainsView<Model>& grains, const DomainView& 
   PartnerView view{m.position, kind.radius, m.velocity, kind.inertia.inverse_mass, m.angular_velocity};
   if constexpr (Model::Shape::has_orientation) {
     view.angular_velocity = m.rotation * m.angular_velocity;
-    grains.shape_of(i).orient(m.rotation, grains.pose_of(i));
+    Pose<typename Model::Shape> pose{};
+    grains.shape_of(i).orient(m.rotation, pose.number);
+    store_wide(grains.pose + i, pose);
   }
-  grains.view[i] = view;
+  store_wide(grains.view + i, view);
   const Vector3<double>&x = m.position, &v = m.velocity, &w = m.angular_velocity;
   const Vector3<double> moved = x - grains.vector(GrainsView<Model>::listed_at, i);
   Summary summary;
@@ -107,12 +109,13 @@ struct MoveGrains {
       overlap = max(overlap, r.overlap);
     };
     const std::uint32_t end = first_contact[first_candidate[i + 1]];
-    for (std::uint32_t c = first_contact[first_candidate[i]]; c < end; ++c) add_own(of_pairs[c]);
+    for (std::uint32_t c = first_contact[first_candidate[i]]; c < end; ++c) add_own(load_wide(of_pairs + c));
     for (std::uint32_t m = incoming.first[i]; m < incoming.first[i + 1]; ++m) {
       const std::uint32_t k = incoming.candidate[m];
       for (std::uint32_t c = first_contact[k]; c < first_contact[k + 1]; ++c) {
-        force -= of_pairs[c].force;
-        torque += of_pairs[c].torque_j;
+        const ContactResult r = load_wide(of_pairs + c);
+        force -= r.force;
+        torque += r.torque_j;
       }
     }
     for (std::uint32_t c = first_at_surfaces[i]; c < first_at_surfaces[i + 1]; ++c) add_own(of_surfaces[c]);

@@ -43,22 +43,33 @@ struct FindContactBits {
 
   DEM_FN void operator()(std::size_t k) const {
     const std::size_t i = candidates.owner[k], j = candidates.partner[k];
-    const PartnerView &a = grains.view[i], &b = grains.view[j];
+    const SpherePlace a = sphere(i), b = sphere(j);
     const Vector3<double> separation = b.position - a.position;
     const double reach = shape::widened(a.radius + b.radius, gap);
     std::uint64_t found = 0;
     if (dot(separation, separation) < reach * reach) found = bits_of_close(i, j, separation);
     bits[k] = static_cast<ContactBits<Shape>>(found);
   }
+
+ private:
+  /// The first row of a PartnerView.
+  struct alignas(16) SpherePlace {
+    Vector3<double> position;
+    double radius;
+  };
+  DEM_FN SpherePlace sphere(std::size_t i) const {
+    return load_wide(reinterpret_cast<const SpherePlace*>(grains.view + i));
+  }
   DEM_FN std::uint64_t bits_of_close(std::size_t i, std::size_t j, const Vector3<double>& separation) const {
     if constexpr (!Shape::has_orientation) {  // a sphere is its own bounding sphere
       return 1;
-    } else if constexpr (std::is_same_v<Gap<Model>, shape::NoGap>) {
-      return Shape::contact_bits(grains.shape_of(i), grains.pose_of(i), grains.shape_of(j), grains.pose_of(j),
-                                 separation);
     } else {
-      return Shape::contact_bits(grains.shape_of(i), grains.pose_of(i), grains.shape_of(j), grains.pose_of(j),
-                                 separation, gap);
+      const Pose<Shape> a = grains.pose_of(i), b = grains.pose_of(j);
+      if constexpr (std::is_same_v<Gap<Model>, shape::NoGap>) {
+        return Shape::contact_bits(grains.shape_of(i), a.number, grains.shape_of(j), b.number, separation);
+      } else {
+        return Shape::contact_bits(grains.shape_of(i), a.number, grains.shape_of(j), b.number, separation, gap);
+      }
     }
   }
 };
@@ -113,11 +124,11 @@ struct EvaluatePairContacts {
         load_histories<Model>(last.histories, last.first[k] + count_bits(before & below(bit)), history);
       }
     }
-    const PartnerView &a = grains.view[i], &b = grains.view[j];
-    const auto point = Shape::contact_point(grains.shape_of(i), grains.pose_of(i), grains.shape_of(j),
-                                            grains.pose_of(j), b.position - a.position, Shape::feature_of(bit));
-    results[c] =
-        evaluate_contact<Model>(point, a, b, laws.of(grains.species[i], grains.species[j]), laws.time_step, history);
+    const PartnerView a = load_wide(grains.view + i), b = load_wide(grains.view + j);
+    const auto point = Shape::contact_point(grains.shape_of(i), grains.pose_at(i), grains.shape_of(j),
+                                            grains.pose_at(j), b.position - a.position, Shape::feature_of(bit));
+    store_wide(results + c, evaluate_contact<Model>(point, a, b, laws.of(grains.species[i], grains.species[j]),
+                                                    laws.time_step, history));
     store_histories<Model>(now.histories, c, history);
   }
 };

@@ -48,7 +48,7 @@ DEM_FN void for_each_surface_contact(const GrainsView<Model>& grains, const Surf
     const Vector3<double> centre = transpose_times(surface.axes, x - surface.origin);
     const auto feel = [&](const auto& geometry) {
       if (!geometry.near(centre, reach)) return;
-      grains.shape_of(i).sample_points(grains.pose_of(i), [&](std::uint32_t index, const contact::SamplePoint& sample) {
+      grains.shape_of(i).sample_points(grains.pose_at(i), [&](std::uint32_t index, const contact::SamplePoint& sample) {
         const Vector3<double> seen = centre + transpose_times(surface.axes, sample.centre);
         geometry.contacts(seen, shape::widened(sample.radius, gap),
                           [&](std::uint32_t feature, const Vector3<double>& normal, double distance) {

@@ -76,7 +76,7 @@ class SphereCluster {
   contact::Patch surface_patch() const { return at_once(1.0); }
 
   DEM_HOT void orient(const Matrix3<double>& r, double* pose) const {
-    for (int k = 0; k < stride; k += pack_width) {
+    DEM_UNROLL for (int k = 0; k < stride; k += pack_width) {
       const Pack x = load(x_ + k), y = load(y_ + k), z = load(z_ + k);
       store(Pack(r.row0.x) * x + Pack(r.row0.y) * y + Pack(r.row0.z) * z, pose + k);
       store(Pack(r.row1.x) * x + Pack(r.row1.y) * y + Pack(r.row1.z) * z, pose + stride + k);
@@ -147,12 +147,12 @@ class SphereCluster {
                                                      const SphereCluster& b, const double* pose_b, int lane,
                                                      const Vector3<double>& separation, Gap gap) {
     std::uint64_t found = 0;
-    for (int m = lane; m < lane + lanes_per_word && m < stride; m += pack_width) {
+    DEM_UNROLL for (int m = lane; m < lane + lanes_per_word && m < stride; m += pack_width) {
       const Pack x = load(pose_b + m) + Pack(separation.x);
       const Pack y = load(pose_b + stride + m) + Pack(separation.y);
       const Pack z = load(pose_b + 2 * stride + m) + Pack(separation.z);
       const Pack radius = load(b.radius_ + m);
-      for (int k = row; k < row + rows_per_word && k < N; ++k) {
+      DEM_UNROLL for (int k = row; k < row + rows_per_word && k < N; ++k) {
         const Pack dx = x - Pack(pose_a[k]), dy = y - Pack(pose_a[stride + k]), dz = z - Pack(pose_a[2 * stride + k]);
         const Pack reach = widened(radius + Pack(a.radius_[k]), gap);
         const auto hits = std::uint64_t{bits(dx * dx + dy * dy + dz * dz < reach * reach)};
