@@ -35,6 +35,13 @@
 #define DEM_FLATTEN
 #endif
 
+/// DEM_HOT_HOST: the same of what the host alone calls, as it makes room in lists.
+#if defined(__CUDACC__)
+#define DEM_HOT_HOST inline
+#else
+#define DEM_HOT_HOST DEM_HOT
+#endif
+
 /// DEM_UNROLL before a loop of few turns: on devices, whose registers have no numbers that a loop could count, it is
 /// written out.
 #if defined(__CUDA_ARCH__)

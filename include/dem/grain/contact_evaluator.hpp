@@ -33,7 +33,7 @@ struct ContactForces {
       for (auto& column : *columns) column.resize(2 * n + pack_width);
     }
   }
-  static DEM_HOT Vector3<double> at(const std::array<AlignedVector<double>, 3>& columns, std::size_t c) {
+  static DEM_HOT_HOST Vector3<double> at(const std::array<AlignedVector<double>, 3>& columns, std::size_t c) {
     return {columns[0][c], columns[1][c], columns[2][c]};
   }
 };
@@ -102,14 +102,14 @@ class ContactEvaluator {
 
   /// Field k of `value` goes to lane `lane` of row k.
   template <class Value>
-  static DEM_HOT void scatter(const Value& value, double* rows, int lane) {
+  static DEM_HOT_HOST void scatter(const Value& value, double* rows, int lane) {
     constexpr auto size = static_cast<std::size_t>(contact::field_count<Value>);
     const auto fields = std::bit_cast<std::array<double, size>>(value);
     for (std::size_t k = 0; k < size; ++k) rows[k * pack_width + static_cast<std::size_t>(lane)] = fields[k];
   }
   /// A struct of packs from consecutive rows.
   template <class Value>
-  static DEM_HOT Value packed(const double* rows) {
+  static DEM_HOT_HOST Value packed(const double* rows) {
     Value result{};
     if constexpr (!std::is_empty_v<Value>) {
       std::array<Pack, sizeof(Value) / sizeof(Pack)> packs;
@@ -122,7 +122,7 @@ class ContactEvaluator {
   /// The histories of the contacts from `at` on go to the lanes; zero where a contact is new. Mostly the contacts of
   /// last step are there again, in the same order: then whole packs are copied.
   template <class OverlapOf>
-  DEM_HOT void recall(const Histories& histories, int at, int lanes, int& cursor, const OverlapOf& overlap_of) {
+  DEM_HOT_HOST void recall(const Histories& histories, int at, int lanes, int& cursor, const OverlapOf& overlap_of) {
     const auto& last = histories.last;
     const std::uint64_t* keys = histories.now.key.data() + at;
     if (lanes == pack_width && cursor + pack_width <= last.count) {
@@ -206,8 +206,8 @@ class ContactEvaluator {
     uniform_law_ = law;
   }
 
-  DEM_HOT Pack evaluate(const RelativeMotion<Pack>& relative, Histories& histories, ContactForces& forces,
-                        std::size_t at) {
+  DEM_HOT_HOST Pack evaluate(const RelativeMotion<Pack>& relative, Histories& histories, ContactForces& forces,
+                             std::size_t at) {
     bool same = true;
     for (int lane = 0; lane < pack_width; ++lane) same &= law_[lane] == law_[0];
     if (same && law_[0] != uniform_law_) [[unlikely]]
@@ -230,7 +230,7 @@ class ContactEvaluator {
 
   /// Calls f(history, row) for each law's history, where its fields begin at that row of the histories.
   template <class F>
-  static DEM_HOT void for_each_history(ContactHistory<Model, Pack>& h, F&& f) {
+  static DEM_HOT_HOST void for_each_history(ContactHistory<Model, Pack>& h, F&& f) {
     constexpr int friction = normal_history_size<Model>, rolling = friction + friction_history_size<Model>;
     f(h.normal, 0);
     f(h.friction, friction);
@@ -238,13 +238,14 @@ class ContactEvaluator {
     f(h.cohesion, rolling + rolling_history_size<Model>);
   }
   template <class History>
-  static DEM_HOT void store_history(const History& h, Histories& histories, std::size_t offset, std::size_t at) {
+  static DEM_HOT_HOST void store_history(const History& h, Histories& histories, std::size_t offset, std::size_t at) {
     if constexpr (!std::is_empty_v<History>) {
       const auto packs = std::bit_cast<std::array<Pack, sizeof(History) / sizeof(Pack)>>(h);
       for (std::size_t k = 0; k < packs.size(); ++k) store(packs[k], &histories.now.history[k + offset][at]);
     }
   }
-  static DEM_HOT void store3(const Vector3<Pack>& v, std::array<AlignedVector<double>, 3>& columns, std::size_t at) {
+  static DEM_HOT_HOST void store3(const Vector3<Pack>& v, std::array<AlignedVector<double>, 3>& columns,
+                                  std::size_t at) {
     store(v.x, &columns[0][at]);
     store(v.y, &columns[1][at]);
     store(v.z, &columns[2][at]);

@@ -11,7 +11,7 @@ namespace dem::grain {
 class ForceSums {
  public:
   /// `local`: row of the grain minus the first row of the chunk; chunk_size or more (also after wrapping) is elsewhere.
-  DEM_HOT void add(std::size_t local, const Vector3<double>& force, const Vector3<double>& torque) {
+  DEM_HOT_HOST void add(std::size_t local, const Vector3<double>& force, const Vector3<double>& torque) {
     Row& row = rows_[local < chunk_size ? local : chunk_size];
     row.force += force;
     row.torque += torque;

@@ -20,9 +20,9 @@ struct Incoming {
 
 /// Adds to a grain's force and torque those of the contacts that other chunks hold.
 template <class Model>
-DEM_HOT void add_incoming(std::size_t i, std::span<const Chunk<Model>> chunks,
-                          std::span<const std::uint32_t> incoming_first, std::span<const Incoming> incoming,
-                          Vector3<double>& force, Vector3<double>& torque) {
+DEM_HOT_HOST void add_incoming(std::size_t i, std::span<const Chunk<Model>> chunks,
+                               std::span<const std::uint32_t> incoming_first, std::span<const Incoming> incoming,
+                               Vector3<double>& force, Vector3<double>& torque) {
   for (std::uint32_t m = incoming_first[i]; m < incoming_first[i + 1]; ++m) {
     const Chunk<Model>& other = chunks[incoming[m].chunk];
     const std::uint32_t stop = other.partner_load_first[incoming[m].candidate + 1];
@@ -50,9 +50,9 @@ void gather_forces(std::size_t chunk_index, std::span<const Chunk<Model>> chunks
 
 /// Acceleration of a pack of grains from the gathered forces (eqs. 12 and 13).
 template <class GrainColumns>
-DEM_HOT integrator::Acceleration<Pack> acceleration(std::size_t i, const GrainColumns& p,
-                                                    std::span<const SpeciesInertia> inertia, const Vec3& gravity,
-                                                    const integrator::Motion<Pack>& m, double lead = 0.0) {
+DEM_HOT_HOST integrator::Acceleration<Pack> acceleration(std::size_t i, const GrainColumns& p,
+                                                         std::span<const SpeciesInertia> inertia, const Vec3& gravity,
+                                                         const integrator::Motion<Pack>& m, double lead = 0.0) {
   const auto of = [&](auto&& member) {
     return generate([&](int lane) { return member(inertia[p.species[i + static_cast<std::size_t>(lane)]]); });
   };

@@ -43,8 +43,8 @@ struct FoundRows {
 
 /// Appends the rows first to last - 1, in order, whose centres lie within `reach` (m) of x: a pack at a time.
 template <class GrainColumns>
-DEM_HOT void append_within(const GrainColumns& p, std::uint32_t first, std::uint32_t last, const Vector3<double>& x,
-                           double reach, FoundRows& found) {
+DEM_HOT_HOST void append_within(const GrainColumns& p, std::uint32_t first, std::uint32_t last,
+                                const Vector3<double>& x, double reach, FoundRows& found) {
   found.make_room(last - first + pack_width);
   std::uint32_t j = first;
   // Padding rows are not read: another thread may be putting them in their place.

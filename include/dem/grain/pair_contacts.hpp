@@ -41,20 +41,20 @@ struct ChunkPairs {
   std::size_t begin;  ///< first grain of the chunk
 
   /// How far apart grains may be and still be a contact.
-  DEM_HOT auto gap() const {
+  DEM_HOT_HOST auto gap() const {
     if constexpr (cohesion::reaches<typename Model::Cohesion>) {
       return materials.range();
     } else {
       return shape::NoGap{};
     }
   }
-  DEM_HOT std::size_t i(std::uint32_t candidate) const { return begin + chunk.owner[candidate]; }
-  DEM_HOT std::size_t j(std::uint32_t candidate) const { return chunk.candidate[candidate]; }
-  DEM_HOT const Species<Shape>& kind(std::size_t grain) const { return species[p.species[grain]]; }
-  DEM_HOT Vector3<double> separation(std::size_t i, std::size_t j) const {
+  DEM_HOT_HOST std::size_t i(std::uint32_t candidate) const { return begin + chunk.owner[candidate]; }
+  DEM_HOT_HOST std::size_t j(std::uint32_t candidate) const { return chunk.candidate[candidate]; }
+  DEM_HOT_HOST const Species<Shape>& kind(std::size_t grain) const { return species[p.species[grain]]; }
+  DEM_HOT_HOST Vector3<double> separation(std::size_t i, std::size_t j) const {
     return p.view[j].position - p.view[i].position;
   }
-  DEM_HOT Hit hit(std::uint32_t candidate, std::uint32_t feature) const {
+  DEM_HOT_HOST Hit hit(std::uint32_t candidate, std::uint32_t feature) const {
     const auto a = static_cast<std::uint32_t>(i(candidate)), b = static_cast<std::uint32_t>(j(candidate));
     const std::uint32_t law = materials.table().size() == 1 ? 0 : materials.row(kind(a).material, kind(b).material);
     return {PairKey::make(candidate, feature).value, a, b, law};
@@ -92,7 +92,7 @@ std::size_t list_close(const Pairs& pairs, std::uint32_t candidates, const Candi
 
 /// Which points of grain i touch which of grain j, or come within the reach of cohesion, as bits.
 template <class Model, class Pairs>
-DEM_HOT std::uint64_t contact_bits(const Pairs& pairs, std::size_t i, std::size_t j) {
+DEM_HOT_HOST std::uint64_t contact_bits(const Pairs& pairs, std::size_t i, std::size_t j) {
   using Shape = typename Model::Shape;
   const auto& a = pairs.kind(i).shape;
   const auto& b = pairs.kind(j).shape;
@@ -195,9 +195,9 @@ void share_forces(std::size_t begin, Chunk<Model>& chunk, const PairScratch<Mode
 
 /// The contact point of hit c of a chunk.
 template <class Model, class Pairs>
-DEM_HOT typename Model::Shape::template PairContactPoint<double> contact_point_of_hit(const Pairs& pairs,
-                                                                                      const PairScratch<Model>& s,
-                                                                                      std::size_t c) {
+DEM_HOT_HOST typename Model::Shape::template PairContactPoint<double> contact_point_of_hit(const Pairs& pairs,
+                                                                                           const PairScratch<Model>& s,
+                                                                                           std::size_t c) {
   using Shape = typename Model::Shape;
   if constexpr (shape::BitShape<Shape>) {
     const std::size_t i = s.hits[c].i, j = s.hits[c].partner;

@@ -17,12 +17,12 @@ struct PartnerLanes {
 };
 
 /// From i to j, and in the last place the sum of the radii.
-DEM_HOT std::array<Pack, 4> separations(const PartnerLanes& p) {
+DEM_HOT_HOST std::array<Pack, 4> separations(const PartnerLanes& p) {
   return packs(difference_and_sum(load_quads([&](int lane) { return p.j[lane]->row(0); }),
                                   load_quads([&](int lane) { return p.i[lane]->row(0); })));
 }
 
-DEM_HOT RelativeMotion<Pack> relative_motions(const PartnerLanes& p) {
+DEM_HOT_HOST RelativeMotion<Pack> relative_motions(const PartnerLanes& p) {
   const auto x = separations(p);
   const auto v = packs(difference_and_sum(load_quads([&](int lane) { return p.j[lane]->row(1); }),
                                           load_quads([&](int lane) { return p.i[lane]->row(1); })));
