@@ -254,6 +254,7 @@ void settle_restored(WorldState<Model>& w, bool is_checked) {
     w.carry_held = &carry_held<Model>;
     w.load_by_held = &load_by_held<Model>;
   }
+  w.forget_moved2();
   // Also where the list is due: inlets look for room by the bounds of chunks. There may be more chunks of grains by
   // now.
   for (std::size_t c = 0; c < std::min(w.chunks.size(), w.grains.chunks()); ++c) {
