@@ -154,10 +154,12 @@ struct Step {
              EvaluatePairContacts<Model>{grains, kept.list.view(), kept.laws.of_pairs(w.time_step), kept.pairs.places(),
                                          pairs, kept.pairs.last(), kept.pairs.results()});
     if (kept.total(1) == 0) return;
-    e.launch(
-        "laws at surfaces", kept.grains.count(),
-        EvaluateSurfaceContacts<Model>{grains, surfaces, kept.laws.at_surfaces(w.time_step), gap(w),
-                                       kept.at_surfaces.now(), kept.at_surfaces.last(), kept.at_surfaces.results()});
+    e.launch("list contacts at surfaces", kept.grains.count(),
+             ListSurfaceContacts{kept.at_surfaces.now().first, kept.at_surfaces.grain_of()});
+    e.launch("laws at surfaces", kept.total(1),
+             EvaluateSurfaceContacts<Model>{grains, surfaces, kept.laws.at_surfaces(w.time_step), gap(w),
+                                            kept.at_surfaces.grain_of(), kept.at_surfaces.now(),
+                                            kept.at_surfaces.last(), kept.at_surfaces.results()});
   }
 
   static void move_grains(World& w, Kept& kept) {

@@ -75,18 +75,21 @@ class SurfaceContactStore {
   /// Room for the contacts of this step.
   void make_room(std::size_t contacts) {
     make_room(now_, contacts);
+    grain_.make_room(contacts);
     results_.make_room(contacts);
   }
   void commit() { std::swap(now_, last_); }
 
   /// Of the last step.
   std::size_t contacts() const { return last_.contacts; }
+  /// How many each grain has, and whose each is, in this step.
   std::uint32_t* count() { return count_.data(); }
+  std::uint32_t* grain_of() { return grain_.data(); }
   SurfaceContactsView<Model> now() { return view(now_); }
   SurfaceContactsView<Model> last() { return view(last_); }
   ContactResult* results() { return results_.data(); }
   std::size_t bytes() const {
-    std::size_t sum = count_.bytes() + results_.bytes();
+    std::size_t sum = count_.bytes() + grain_.bytes() + results_.bytes();
     for (const Step* s : {&now_, &last_}) sum += s->first.bytes() + s->key.bytes() + s->values.bytes();
     return sum;
   }
@@ -115,7 +118,7 @@ class SurfaceContactStore {
 
   std::size_t grains_ = 0;
   Step now_, last_;
-  Array<std::uint32_t> count_;
+  Array<std::uint32_t> count_, grain_;
   Array<ContactResult> results_;
 };
 

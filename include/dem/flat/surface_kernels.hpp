@@ -85,21 +85,37 @@ struct CountedBefore {
   DEM_FN std::uint32_t operator()(std::size_t i) const { return count[i]; }
 };
 
-/// One thread a grain: the laws of its contacts with surfaces. Those of the last step are few, and looked through.
+/// One thread a grain: writes down whose its contacts are.
+struct ListSurfaceContacts {
+  const std::uint32_t* first;
+  std::uint32_t* grain;  ///< of each contact
+
+  DEM_FN void operator()(std::size_t i) const {
+    for (std::uint32_t c = first[i]; c < first[i + 1]; ++c) grain[c] = static_cast<std::uint32_t>(i);
+  }
+};
+
+/// One thread a contact: the first one of a grain evaluates the laws of all of that grain's contacts with surfaces, as
+/// they are found together. Few grains have any, so a thread a grain would leave most of them idle. The contacts of the
+/// last step are few, and looked through.
 template <class Model>
 struct EvaluateSurfaceContacts {
   GrainsView<Model> grains;
   SurfacesView<Model> surfaces;
   LawsView<Model> laws;  ///< partners are surfaces
   Gap<Model> gap;
+  const std::uint32_t* grain_of;  ///< each contact
   SurfaceContactsView<Model> now, last;
   ContactResult* results;
 
-  DEM_FN void operator()(std::size_t i) const {
+  DEM_FN void operator()(std::size_t first) const {
+    const std::size_t i = grain_of[first];
     std::uint32_t c = now.first[i];
-    if (now.first[i + 1] == c) return;
-    const PartnerView& view = grains.view[i];
+    if (c != first) return;
+    const std::uint32_t end = now.first[i + 1];
+    const PartnerView view = load_wide(grains.view + i);
     auto evaluate = [&](std::size_t s, std::uint64_t key, const contact::SurfaceContactPoint<double>& point) {
+      if (c == end) return;  // rounded otherwise than when it was counted: it only just touches
       ContactHistory<Model, double> history{};
       if constexpr (history_size < Model >> 0) {
         for (std::uint32_t k = last.first[i]; k < last.first[i + 1]; ++k) {
@@ -107,12 +123,22 @@ struct EvaluateSurfaceContacts {
         }
       }
       now.key[c] = key;
-      results[c] = evaluate_contact<Model>(point, view, surfaces.surface[s].view, laws.of(s, grains.species[i]),
-                                           laws.time_step, history);
+      store_wide(results + c, evaluate_contact<Model>(point, view, surfaces.surface[s].view,
+                                                      laws.of(s, grains.species[i]), laws.time_step, history));
       store_histories<Model>(now.histories, c, history);
       ++c;
     };
     for_each_surface_contact(grains, surfaces, i, gap, evaluate);
+    for (; c < end; ++c) forget(c);  // the same the other way
+  }
+
+ private:
+  /// A contact that is none: nobody asks for its key.
+  DEM_FN void forget(std::uint32_t c) const {
+    constexpr std::uint32_t no_sample = 0xfef;
+    now.key[c] = grain::SurfaceKey::make(surfaces.count - 1, 0, no_sample, c & 0xffffu).value;
+    results[c] = {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}, 0.0};
+    store_histories<Model>(now.histories, c, ContactHistory<Model, double>{});
   }
 };
 
@@ -124,7 +150,7 @@ struct LoadOfGrains {
 /// One thread a surface and a stretch of contacts: the load of these contacts. Surface s of stretch b stands at
 /// b * surfaces + s.
 struct SumStretches {
-  static constexpr std::size_t stretch = 64;
+  static constexpr std::size_t stretch = 16;
   const std::uint64_t* key;
   const ContactResult* results;
   std::size_t contacts, surfaces;
@@ -145,7 +171,7 @@ struct SumStretches {
 
 /// One thread a surface and `fan` sums: their sum. So sums become fewer, in an order that does not depend on threads.
 struct SumLoads {
-  static constexpr std::size_t fan = 32;
+  static constexpr std::size_t fan = 16;
   const LoadOfGrains* from;
   std::size_t sums, surfaces;
   LoadOfGrains* loads;
