@@ -5,6 +5,7 @@
 //   calibrate --known 0.35                              a target of known friction is made, and found again
 //   calibrate --phi 38.04 --loads 6.2,16.2,26.2         friction for table 3.3 of the thesis
 //   calibrate --phi 32 --repose 25 --find friction,rolling
+//   calibrate --phi 32 --checkpoint-every 60            --resume goes on after it was stopped
 //   calibrate --config calibrate_output/settings.toml --go-on --trials 20
 //
 // Ends with 0 when all was done; 1 when the run ended early or a part of the report could not be made; 2 when the

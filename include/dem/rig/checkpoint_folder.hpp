@@ -64,6 +64,7 @@ class CheckpointFolder final : public PartStore {
           "--resume to begin it anew",
           output_);
     }
+    const std::lock_guard lock(mutex_);
     for (const auto& file : files) {
       try {
         options_.files.check(file);
@@ -127,7 +128,7 @@ class CheckpointFolder final : public PartStore {
 
   std::string write(const std::string& part, io::StateColumns& columns) override {
     if (!writes() || !process_writes_files) return "";  // nothing is to be kept of a run that just goes on
-    const std::lock_guard lock(mutex_);                 // HDF5 as Debian has it is not for several threads
+    const std::lock_guard lock(mutex_);
     io::StateColumns own;
     io::Fields v(io::Fields::Task::collect, own);
     std::string version = DEM_VERSION_STRING;
@@ -158,7 +159,7 @@ class CheckpointFolder final : public PartStore {
   std::string settings_;
   CheckpointOptions options_;
   double start_ = io::steady_seconds(), earlier_ = 0.0;
-  std::mutex mutex_;
+  static inline std::mutex mutex_;  // of all folders: HDF5 as Debian has it is not for several threads
 };
 
 }  // namespace dem::rig

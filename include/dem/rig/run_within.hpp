@@ -5,8 +5,10 @@
 #include <dem/rig/rig.hpp>
 
 #include <exception>
+#include <filesystem>
 #include <string>
 #include <utility>
+#include <vector>
 
 namespace dem::rig {
 
@@ -23,6 +25,24 @@ class PartWithoutWorld final : public Part {
   }
 };
 
+/// Keeps such a part of a run that has begun, under a name: from now on there is something to go on with.
+inline void keep_begun(Session& session, const std::string& name) {
+  PartWithoutWorld begun(session.parts(), name);
+  session.set_part(&begun);
+  session.complete();
+  session.set_part(nullptr);
+}
+
+/// The options by which a run within another one is kept: as that one is. It goes on where it was stopped, if it had
+/// kept something; else it begins anew. `free_settings` are its own.
+inline CheckpointOptions checkpoints_within(CheckpointOptions other, const std::string& program,
+                                            const std::filesystem::path& output, const std::string& settings,
+                                            std::vector<std::string> free_settings = {}) {
+  other.free_settings = std::move(free_settings);
+  other.resume = other.resume && !CheckpointFolder(program, output, settings, other).parts().empty();
+  return other;
+}
+
 /// The text of a settings file that repeats a rig's run with the values that it has now.
 inline std::string settings_as_they_are(Rig& rig) {
   Options options;
@@ -37,16 +57,15 @@ inline std::string settings_as_they_are(Rig& rig) {
 /// there. `session` has begun that stage with the total 1. What ends the run early is thrown here, after the report.
 /// It is kept and gone on with as the other run is; the files that it goes on from stay until forget_run_within().
 inline void run_within(Session& session, Rig& rig, const char* program, const char* title) {
-  CheckpointOptions checkpoints = session.checkpoints();
-  checkpoints.free_settings.clear();
+  std::vector<std::string> free_settings;
   Options options;
   rig.declare(options);
   for (const Option& option : options.all()) {
-    if (!option.changes_results) checkpoints.free_settings.push_back(option.key());
+    if (!option.changes_results) free_settings.push_back(option.key());
   }
   const std::string config = settings_as_they_are(rig);
-  const CheckpointFolder kept(program, rig.output(), config, checkpoints);
-  checkpoints.resume = checkpoints.resume && !kept.parts().empty();
+  CheckpointOptions checkpoints =
+      checkpoints_within(session.checkpoints(), program, rig.output(), config, std::move(free_settings));
   Session own({program, rig.output(), config, rig.results(), rig.words(), std::move(checkpoints),
                static_cast<Stages*>(&session)});
   std::exception_ptr thrown;
@@ -74,6 +93,7 @@ inline void run_within(Session& session, Rig& rig, const char* program, const ch
 }
 
 /// Removes what a run within another one was to go on from: that other one is done.
-inline void forget_run_within(const Rig& rig) { CheckpointFolder("", rig.output(), "", {}).clear(); }
+inline void forget_run_within(const std::filesystem::path& output) { CheckpointFolder("", output, "", {}).clear(); }
+inline void forget_run_within(const Rig& rig) { forget_run_within(std::filesystem::path(rig.output())); }
 
 }  // namespace dem::rig

@@ -41,12 +41,7 @@ class BevameterRig : public Rig {
     const Settings& s = settings;
     plates_.settings = plates_of(s);
     session.begin_run(s.has_wheel() ? 3 : 2);
-    {
-      PartWithoutWorld begun(session.parts(), "bevameter");
-      session.set_part(&begun);
-      session.complete();
-      session.set_part(nullptr);
-    }
+    keep_begun(session, "bevameter");
     session.begin("plates", 1.0);
     run_within(session, plates_, "plate_sinkage", "Plates of the bevameter");
     session.begin("shear", 1.0);

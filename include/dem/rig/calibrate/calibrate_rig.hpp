@@ -17,7 +17,8 @@
 namespace dem::rig::calibrate {
 
 /// The search for constants of grains as a program. Points are chosen in batches, each from all that was found before
-/// it, so that what is found does not depend on the number of threads; the runs of a batch go side by side.
+/// it, so that what is found does not depend on the number of threads; the runs of a batch go side by side. A search
+/// that was stopped goes on with its table of tried points, and with each run where that was kept last.
 class CalibrateRig : public Rig {
  public:
   CalibrateRig(const Worlds& worlds, Minimise* minimise) : worlds_(worlds), minimise_(minimise) {}
@@ -32,13 +33,16 @@ class CalibrateRig : public Rig {
     if (!settings.go_on) names.files.push_back("tried.csv");
     return names;
   }
+  [[nodiscard]] bool can_resume() const override { return true; }
 
   void run(Session& session) override {
     const Settings& s = settings;
     const std::size_t d = constants_of(s).size(), batch = s.batch;
     table_ = session.folder() / "tried.csv";
+    const bool resumes = session.checkpoints().resume;
     if (s.go_on) {
       const auto earlier = session.folder() / "settings.toml";
+      if (resumes) fail("--resume and --go-on both go on with a search; give --resume for one that was stopped");
       if (!std::filesystem::exists(earlier) || !std::filesystem::exists(table_)) {
         fail("there is no search in '{}' to go on with; leave out --go-on to begin one", s.output);
       }
@@ -47,6 +51,13 @@ class CalibrateRig : public Rig {
     }
     const std::size_t batches = (s.trials + batch - 1) / batch;
     session.begin_run(static_cast<int>(batches) + (s.known.empty() ? 0 : 1));
+    if (!resumes) {
+      forget_trials(session.folder() / "runs");
+    } else if (std::filesystem::exists(table_)) {
+      tried = load_tried(table_, s);
+      session.message(text("Going on with the {} run{} in tried.csv.", tried.size(), tried.size() == 1 ? "" : "s"));
+    }
+    keep_begun(session, "calibrate");
     if (!s.known.empty()) {
       std::vector<Trial> making;
       for (std::uint64_t k = 0; k < 2 * s.repeats; ++k) making.push_back({0, s.seed + 1000 + k, s.known, {}});
@@ -69,6 +80,7 @@ class CalibrateRig : public Rig {
       session.finish(found ? found_text(s, *found) : "");
     }
     if (!found) found = find_constants(measurements(s.trials), goals, minimise_);
+    forget_trials(session.folder() / "runs");  // a kill may have come before those of its trial were removed
   }
 
   bool report(Report& report) const override {
@@ -119,13 +131,14 @@ class CalibrateRig : public Rig {
     const int workers = settings.threads > 0 ? settings.threads : std::max(1, omp_get_max_threads());
     side_by_side(trials.size(), workers, session, [&](std::size_t k, SharedStages& shared) {
       StagesOfOne own(shared, k);
-      run_trial(settings, trials[k], worlds_, session.folder() / "runs", own);
+      run_trial(settings, trials[k], worlds_, session.folder() / "runs", session.checkpoints(), own);
       shared.alone([&] {
         tried.push_back(trials[k]);
         std::sort(tried.begin(), tried.end(), [](const Trial& a, const Trial& b) {
           return a.point != b.point ? a.point < b.point : a.seed < b.seed;
         });
         save_tried(table_, settings, tried);
+        forget_trial(settings, trials[k], session.folder() / "runs");
       });
     });
   }

@@ -134,11 +134,15 @@ inline void declare(Options& options, Settings& s) {
   add("--plate", s.plates, "width of the plate [m]; empty: by size");
   add("--pile-kind", s.kind, "grains of the pile").one_of({"sphere-rolling", "cube8"});
   options.group("Search");
-  add("--trials", s.trials, "points that are tried; more may be asked for by --go-on; 0: by size").changes_no_result();
+  add("--trials", s.trials, "points that are tried; more may be asked for by --go-on, or --resume; 0: by size")
+      .changes_no_result();
   add("--repeats", s.repeats, "runs at each point, with other seeds");
   add("--batch", s.batch, "points that are chosen at once, from all that was found before");
   add("--seed", s.seed, "the first");
-  options.flag("--go-on", s.go_on, "go on with the table of tried points in the output folder").of_this_run();
+  options
+      .flag("--go-on", s.go_on,
+            "begin again with the table of tried points in the output folder, as of a search that has ended")
+      .of_this_run();
   add("--threads", s.threads, "runs side by side; 0: as many as there are cores").changes_no_result();
   options.group("Output");
   add("--output", s.output, "folder").changes_no_result();

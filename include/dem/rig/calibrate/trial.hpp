@@ -5,6 +5,7 @@
 #include <dem/rig/direct_shear/evaluate.hpp>
 #include <dem/rig/direct_shear/resolve.hpp>
 #include <dem/rig/plate_sinkage/tables.hpp>
+#include <dem/rig/run_within.hpp>
 #include <dem/rig/sand_pile/resolve.hpp>
 #include <dem/rig/sand_pile/results.hpp>
 #include <dem/rig/session.hpp>
@@ -128,19 +129,27 @@ inline std::string values_text(const Settings& s, const Trial& t) {
   return lines;
 }
 
+/// The folder of one run of a trial.
+inline std::filesystem::path folder_of(const std::filesystem::path& folder, const Trial& t, Quantity q) {
+  return folder / text("{}_{}_{}", t.point, t.seed, names_of_quantities[static_cast<int>(q)]);
+}
+
 }  // namespace detail
 
 /// Runs the rigs of a trial one after the other, each on one thread and in a folder of its own, and fills in its
-/// results. A run that the simulation stops leaves NaN, and a message says why.
+/// results. They are kept as `checkpoints` says; the files that they go on from stay until forget_trial(). A run that
+/// the simulation stops leaves NaN, and a message says why. Throws Error where such a file is damaged.
 inline void run_trial(const Settings& s, Trial& t, const Worlds& worlds, const std::filesystem::path& folder,
-                      Stages& stages) {
+                      const CheckpointOptions& checkpoints, Stages& stages) {
   const auto quantities = quantities_of(s);
   t.results.assign(quantities.size(), std::nan(""));
   for (std::size_t q = 0; q < quantities.size(); ++q) {
     ShareOf share(stages, q, quantities.size());
-    const std::string name = text("{}_{}_{}", t.point, t.seed, names_of_quantities[static_cast<int>(quantities[q])]);
+    const auto own = detail::folder_of(folder, t, quantities[q]);
+    const std::string config = detail::values_text(s, t);
+    const CheckpointOptions kept = checkpoints_within(checkpoints, "calibrate", own, config);
+    Session session({"calibrate", own.string(), config, {}, {}, kept, &share});
     try {
-      Session session({"calibrate", (folder / name).string(), detail::values_text(s, t), {}, {}, {}, &share});
       t.results[q] = quantities[q] == Quantity::phi      ? detail::measure_phi(s, t, worlds, session)
                      : quantities[q] == Quantity::repose ? detail::measure_repose(s, t, worlds, session)
                                                          : detail::measure_pressure(s, t, worlds, session);
@@ -148,9 +157,20 @@ inline void run_trial(const Settings& s, Trial& t, const Worlds& worlds, const s
     } catch (const Interrupted&) {
       throw;
     } catch (const std::exception& problem) {
-      stages.message(text("warning: run {} found nothing: {}", name, problem.what()));
+      if (kept.resume && !session.has_begun()) throw;  // what it was to go on from is damaged
+      stages.message(text("warning: run {} found nothing: {}", own.filename().string(), problem.what()));
     }
   }
+}
+
+/// Removes what the runs of a trial were to go on from: its results are in the table.
+inline void forget_trial(const Settings& s, const Trial& t, const std::filesystem::path& folder) {
+  for (const Quantity q : quantities_of(s)) forget_run_within(detail::folder_of(folder, t, q));
+}
+/// The same of all runs in the folder.
+inline void forget_trials(const std::filesystem::path& folder) {
+  if (!std::filesystem::is_directory(folder)) return;
+  for (const auto& entry : std::filesystem::directory_iterator(folder)) forget_run_within(entry.path());
 }
 
 }  // namespace dem::rig::calibrate
