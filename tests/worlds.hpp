@@ -50,8 +50,12 @@ using Cubes = Grains<Cube8>;
 using VerletCubes = Grains<Cube8, dem::integrator::VelocityVerlet>;
 
 using Linear = dem::contact::LinearSpringDashpot;
-using LinearModel = Laws<Linear, dem::friction::CundallStrack>;
-using HertzModel = Laws<dem::contact::Hertz, dem::friction::Mindlin>;
+struct LinearModel : Laws<Linear, dem::friction::CundallStrack> {
+  using Executor = dem::exec::Threads;
+};
+struct HertzModel : Laws<dem::contact::Hertz, dem::friction::Mindlin> {
+  using Executor = dem::exec::Threads;
+};
 
 }  // namespace models
 
