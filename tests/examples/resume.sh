@@ -1,8 +1,11 @@
 #!/usr/bin/env bash
 # A rig that is killed at random moments, again and again, and goes on each time, ends with the same bytes in all its CSV
-# files as a run that was never stopped, and with the same numbers in what it prints.
+# files as a run that was never stopped, and with the same numbers in what it prints. Only kills that hit a running
+# program count. A run that comes to its end before there were enough of them is compared, and the next one is begun.
 #
 #   resume.sh <rig> <output folder> <kills> <options>...
+#
+# Lines that match TOLD_ONCE, if it is set, are those that a run which goes on does not tell again.
 set -euo pipefail
 
 rig=$1 output=$2 kills=$3
@@ -33,36 +36,62 @@ whole=$(($(milliseconds) - start))
 # Often enough to go on from within each stage, and seldom enough for most of the time to go into the run.
 every=$(awk -v w="$whole" 'BEGIN { e = 2e-5 * w; print (e > 0.05 ? e : 0.05) }')
 
-# Each kill comes after up to a tenth of the run: so it dies in all its stages, at times before anything is kept anew.
-done=0 gone_on=0 resume=()
-for ((kill = 1; kill <= kills && done == 0; ++kill)); do
+# All but what a second of the run took, which is another each time: a column of its own, the last of a table.
+timeless() { awk -F, -v OFS=, 'NR == 1 { for (i = 1; i <= NF; ++i) if ($i ~ /^computing/) at = i } { if (at) $at = ""; print }' "$1"; }
+numbers() {
+  sed -n '/^Report/!{/wall time/!p}' "$1" | grep -v -e ': started' -e ' %, ' -e ': done in' -e 'Going on' -e anew -e "^Replacing${TOLD_ONCE:+\|$TOLD_ONCE}" |
+    awk '/ computing *$/ { cut = 1 } /^ *$/ { cut = 0 } { if (cut) sub(/ +[^ ]+ *$/, ""); print }' || true
+}
+# The killed run, which is at its end, is as the whole one.
+compare() {
+  for file in "$output"/whole/*.csv "$output"/whole/*.pvd "$output"/whole/*.txt; do
+    [ -e "$file" ] || continue
+    cmp <(timeless "$file") <(timeless "$output/killed/$(basename "$file")") || refuse "$(basename "$file") is not what it is without a stop"
+  done
+  diff -rq "$output/whole" "$output/killed" | grep -v -e report.html -e settings.toml -e '\.png' || true
+  diff <(numbers "$output/whole.txt") <(numbers "$output/killed.txt") || refuse "the printed report differs"
+  [ ! -e "$output/killed/checkpoint" ] || refuse "files to go on from are left"
+}
+
+# A kill may hit a run that has just removed what it could go on from, as its last act.
+has_ended() { grep -q 'has ended, or kept nothing' "$output/killed.txt"; }
+
+# Each kill comes after up to a fifth of the run, so that it dies in all its stages, at times before anything is kept anew.
+killed=0 gone_on=0 ends=0 resume=()
+while ((killed < kills && ends <= kills)); do
   "$rig" "$@" --output "$output/killed" --checkpoint-every "$every" "${resume[@]}" > "$output/killed.txt" 2>&1 & run=$!
-  wait_s=$(awk -v w="$whole" -v r="$RANDOM" -v k="$kill" -v n="$kills" 'BEGIN { print 0.02 + 1e-3 * w * (3 / n + 0.1 * r / 32768) }')
+  wait_s=$(awk -v w="$whole" -v r="$RANDOM" -v n="$kills" 'BEGIN { print 0.02 + 1e-3 * w * (0.6 / n + 0.2 * r / 32768) }')
   sleep "$wait_s"
-  if kill -KILL "$run" 2> /dev/null; then
-    wait "$run" 2> /dev/null || true
-  else
-    wait "$run" || refuse "run $kill ended with $? by itself"
-    done=1
-  fi
+  kill -KILL "$run" 2> /dev/null || true
+  status=0
+  wait "$run" 2> /dev/null || status=$?
   ! grep -q '^Going on' "$output/killed.txt" || gone_on=$((gone_on + 1))
+  case $status in
+    137) killed=$((killed + 1)) ;;
+    0)
+      compare
+      ends=$((ends + 1))
+      rm -rf "$output/killed"
+      ;;
+    *)
+      has_ended || refuse "run $((killed + ends + 1)) ended with $status by itself"
+      rm -rf "$output/killed"
+      ;;
+  esac
+  resume=()
   [ ! -s "$output/killed/settings.toml" ] || resume=(--resume)
 done
-killed=$((kill - 1))
-if ((done == 0)); then
-  "$rig" "$@" --output "$output/killed" --resume > "$output/killed.txt" 2>&1 & run=$!
-  wait "$run" || refuse "the last run ended with $?"
-fi
-((gone_on > 0)) || refuse "no run went on from where it was kept"
-
-# All but what a second of the run took, which is another each time.
-timeless() { awk -F, -v OFS=, 'NR == 1 { for (i = 1; i <= NF; ++i) if ($i ~ /^computing/) at = i } { if (at) $at = ""; print }' "$1"; }
-for file in "$output"/whole/*.csv "$output"/whole/*.pvd "$output"/whole/*.txt; do
-  [ -e "$file" ] || continue
-  cmp <(timeless "$file") <(timeless "$output/killed/$(basename "$file")") || refuse "$(basename "$file") is not what it is without a stop"
+((killed == kills)) || refuse "only $killed of $kills kills hit a running program, which came to its end $ends times"
+for ((end = 0; end < 2; ++end)); do
+  "$rig" "$@" --output "$output/killed" "${resume[@]}" > "$output/killed.txt" 2>&1 & run=$!
+  status=0
+  wait "$run" || status=$?
+  ((status != 0)) || break
+  has_ended || refuse "the last run ended with $status"
+  rm -rf "$output/killed"
+  resume=()
 done
-diff -rq "$output/whole" "$output/killed" | grep -v -e report.html -e settings.toml -e '\.png' || true
-numbers() { sed -n '/^Report/!{/wall time/!p}' "$1" | grep -v -e ': started' -e ' %, ' -e ': done in' -e 'Going on' -e anew -e '^Replacing' || true; }
-diff <(numbers "$output/whole.txt") <(numbers "$output/killed.txt") || refuse "the printed report differs"
-[ ! -e "$output/killed/checkpoint" ] || refuse "files to go on from are left"
-echo "The same after $killed kills, $gone_on of which it went on after"
+! grep -q '^Going on' "$output/killed.txt" || gone_on=$((gone_on + 1))
+compare
+((gone_on > 0)) || refuse "no run went on from where it was kept"
+echo "The same after $killed kills that hit a running program, $gone_on of which it went on after"
