@@ -58,4 +58,13 @@ inline Region inner_region(std::span<const Placement> grains, double length_x, d
           Vec3(0.5 * length_x - margin, 0.5 * length_y - margin, top - margin)};
 }
 
+/// Solid fraction of that inside, of grains of `volume` (m^3) that about fill cubes of half-edge h (m); NaN where there
+/// is no inside. Where the border cuts a grain, its solid is taken as spread evenly over the cube.
+inline double inner_fraction(std::span<const Placement> grains, double half_edge, double volume, double length_x,
+                             double length_y, double margin, double lid_height = -1.0) {
+  const Region region = inner_region(grains, length_x, length_y, margin, lid_height);
+  if (region.is_empty()) return std::nan("");
+  return solid_fraction(grains, half_edge, region) * volume / cube_volume(half_edge);
+}
+
 }  // namespace dem::soil

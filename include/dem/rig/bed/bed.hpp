@@ -73,11 +73,8 @@ class Bed {
   /// Solid fraction of the inside of the bed; NaN of one that has no inside. `surface` (m) is the height of
   /// the level, if there is one.
   [[nodiscard]] double solid_fraction(double surface = -1.0) const {
-    const auto places = soil::placements(world);
-    const auto region = soil::inner_region(places, bed_.length, bed_.width, margin(), surface);
-    if (region.is_empty()) return std::nan("");
-    return soil::solid_fraction(places, grains_.half_edge, region) * grain_volume_ /
-           soil::cube_volume(grains_.half_edge);
+    return soil::inner_fraction(soil::placements(world), grains_.half_edge, grain_volume_, bed_.length, bed_.width,
+                                margin(), surface);
   }
   [[nodiscard]] static double relative_density(double solid_fraction) {
     return std::isfinite(solid_fraction) ? soil::relative_density(solid_fraction, soil::cube8_limits) : solid_fraction;

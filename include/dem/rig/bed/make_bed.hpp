@@ -1,5 +1,10 @@
 #pragma once
 // The stages of a bed: grains are rained, made dense, levelled by the lid, and come to rest.
+//
+// They are made of what soil::Bed is made of (soil/making.hpp): how grains come to rest, are shaken, get denser and
+// carry a lid stands there. The whole of soil::Bed does not fit. Walls are solid boxes, of which two rigs move a half
+// and one has none along x; the grains are counted, so that those of a file are the same; and the stages tell how far
+// they are, and are kept with the run.
 
 #include <dem/rig/bed/bed.hpp>
 #include <dem/rig/bed/settle.hpp>
@@ -47,8 +52,7 @@ void densify(Bed<Model>& bed, Stages& stages) {
         [&] { return bed.solid_fraction(); },
         [&] { shaking.run(world, n.start, [&](double seconds) { run(world, seconds); }); });
     if (!gains) break;
-    stages.update(std::clamp(std::max(1.0 - n.share, (n.fraction - n.first) / (wanted - n.first)), 0.0, 1.0),
-                  text("solid {:.3f} of {:.3f}", n.fraction, wanted));
+    stages.update(n.progress(wanted), text("solid {:.3f} of {:.3f}", n.fraction, wanted));
   }
   world.set_gravity(gravity);
   bed.set_friction(1.0);
@@ -107,9 +111,8 @@ Bed<Model> make_bed(const BedSettings& s, const GrainSettings& grains, const typ
   const auto kept = stages.keep("bed", bed);
   stages.begin(made ? "rain" : "settle", 1.0);
   const double high = mean_height(bed.world), low = 0.5 * s.depth;
-  settle(bed.world, grains.edge(), s.stage_limit, "--stage-limit", stages, [&] {
-    return made ? 0.9 * std::clamp((high - mean_height(bed.world)) / std::max(high - low, 1e-9), 0.0, 1.0) : 0.0;
-  });
+  settle(bed.world, grains.edge(), s.stage_limit, "--stage-limit", stages,
+         [&] { return made ? fallen_share(bed.world, high, low) : 0.0; });
   if (made && s.relative_density > 0.0) {
     densify(bed, stages);
     stages.begin("settle");

@@ -3,6 +3,8 @@
 #include <dem/rig/stages.hpp>
 #include <dem/soil/making.hpp>
 
+#include <algorithm>
+
 namespace dem::rig {
 
 /// Enters a stage in which the grains of a world come to rest: soil::Settling of their size (m). `done()` is what of
@@ -35,6 +37,13 @@ double mean_height(const World& world) {
   double sum = 0.0;
   for (const auto p : world.grains()) sum += world.position(p).z();
   return sum / static_cast<double>(world.grain_count());
+}
+
+/// How much of it is done that grains fall: how far their mean height has come down from `high` towards `low` (m). The
+/// last tenth is for coming to rest.
+template <class World>
+double fallen_share(const World& world, double high, double low) {
+  return 0.9 * std::clamp((high - mean_height(world)) / std::max(high - low, 1e-9), 0.0, 1.0);
 }
 
 }  // namespace dem::rig

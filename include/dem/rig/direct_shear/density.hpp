@@ -12,13 +12,10 @@ namespace dem::rig::direct_shear {
 /// m, from walls, floor, and top or lid: so far away from them density is measured. One and a half edges.
 inline double measuring_margin(const Settings& s) { return 3.0 * s.half_edge; }
 
-/// Solid fraction of the inside of a specimen of grains of `volume` (m^3); not known of one that has no inside. Where
-/// the border cuts a grain, its solid is taken as spread evenly over the cube.
+/// Solid fraction of the inside of a specimen of grains of `volume` (m^3); not known of one that has no inside.
 inline double inner_fraction(std::span<const soil::Placement> grains, double volume, const Settings& s,
                              double lid_low = -1.0) {
-  const auto region = soil::inner_region(grains, s.box_length, s.box_width, measuring_margin(s), lid_low);
-  if (region.is_empty()) return not_known;
-  return soil::solid_fraction(grains, s.half_edge, region) * volume / soil::cube_volume(s.half_edge);
+  return soil::inner_fraction(grains, s.half_edge, volume, s.box_length, s.box_width, measuring_margin(s), lid_low);
 }
 template <class Model>
 double inner_fraction(const Apparatus<Model>& rig, const Settings& s, double lid_low = -1.0) {

@@ -12,6 +12,11 @@
 #include <span>
 
 // The stages of a packing: grains are poured, shaken, and come to rest.
+//
+// They are made of what soil::Bed is made of (soil/making.hpp): how grains come to rest and get denser stands there.
+// The whole of soil::Bed does not fit. The walls of a packing are the two halves of the box, bodies that their drives
+// shake, and not a container on the ground; it has a given number of grains, and is levelled by a share of them, and
+// not to a height; and its stages tell how far they are, and are kept with the run.
 
 namespace dem::rig::direct_shear {
 
@@ -29,8 +34,7 @@ void pour(Apparatus<Model>& rig, const Settings& s, double solid_height, Stages&
   const double high = mean_height(rig.world),
                low = 0.5 * solid_height / soil::solid_fraction_at(0.0, density_limits(s));
   stages.begin("pour", 1.0);
-  settle(rig, s, stages,
-         [&] { return 0.9 * std::clamp((high - mean_height(rig.world)) / std::max(high - low, 1e-9), 0.0, 1.0); });
+  settle(rig, s, stages, [&] { return fallen_share(rig.world, high, low); });
 }
 
 /// Shakes both halves alike along x; `strength` blends in over two periods from t0 (s), or out over one.
@@ -81,9 +85,7 @@ void densify(Apparatus<Model>& rig, const Settings& s, Stages& stages) {
         world.time(), s.densify_time, [&](double share) { rig.set_friction(share); }, measure,
         [&] { run(world, 5e-3); });
     if (!gains) break;
-    // Of the two ways for it to end, the one that is nearer.
-    stages.update(std::clamp(std::max(1.0 - n.share, (n.fraction - n.first) / (wanted - n.first)), 0.0, 1.0),
-                  text("solid {:.3f} of {:.3f}, mu {:.2f}", n.fraction, wanted, rig.friction()));
+    stages.update(n.progress(wanted), text("solid {:.3f} of {:.3f}, mu {:.2f}", n.fraction, wanted, rig.friction()));
   }
   rig.set_friction(1.0);
   end_shaking(rig, s, n.start);
