@@ -78,8 +78,8 @@ __global__ void copy_one(const T* from, T* to) {
 /// depends on the order in which threads come, so a run gives the same bits twice. See exec::Flat for what it has.
 class Cuda : public Threads, public Kept {
  public:
-  /// On an H100 with 300,000 grains a list took as long as looks at 4,700 candidates a grain (cubes) or 8,500 (spheres),
-  /// which the choice of skins counts as 150 and 130.
+  /// On an H100 with 300,000 grains a list took as long as looks at 4,700 candidates a grain (cubes) or 8,500
+  /// (spheres), which the choice of skins counts as 150 and 130.
   static constexpr double list_weight = 40.0;
   template <class T>
   using Array = cuda::Array<T>;
