@@ -130,6 +130,10 @@ int main(int argc, char** argv) {
       ->excludes("--shape");
   CLI11_PARSE(app, argc, argv);
   try {
+    if (settings.threads > 0 && settings.least_threads > settings.threads) {
+      dem::fail("--least-threads is {}, but --threads is {}; give no more than that", settings.least_threads,
+                settings.threads);
+    }
     if (!one && shape->empty()) {
       time_sizes(settings);
       return 0;

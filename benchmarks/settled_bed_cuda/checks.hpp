@@ -18,6 +18,9 @@ struct Difference {
   double force = 0.0, torque = 0.0, history = 0.0, position = 0.0;  ///< position in m
 };
 
+/// The larger one; infinite if one is not a number.
+inline double larger(double a, double b) { return a == a && b == b ? std::max(a, b) : HUGE_VAL; }
+
 template <class Model>
 Difference difference(const dem::World<Model>& a, const dem::World<Model>& b) {
   Difference d;
@@ -25,9 +28,9 @@ Difference difference(const dem::World<Model>& a, const dem::World<Model>& b) {
   for (const dem::GrainId p : a.grains()) {
     force = std::max(force, b.force(p).norm());
     torque = std::max(torque, b.torque(p).norm());
-    d.force = std::max(d.force, (a.force(p) - b.force(p)).norm());
-    d.torque = std::max(d.torque, (a.torque(p) - b.torque(p)).norm());
-    d.position = std::max(d.position, (a.position(p) - b.position(p)).norm());
+    d.force = larger(d.force, (a.force(p) - b.force(p)).norm());
+    d.torque = larger(d.torque, (a.torque(p) - b.torque(p)).norm());
+    d.position = larger(d.position, (a.position(p) - b.position(p)).norm());
   }
   const auto compare = [&](const auto& x, const auto& y) {
     d.contacts += static_cast<std::size_t>(y.count);
@@ -39,7 +42,7 @@ Difference difference(const dem::World<Model>& a, const dem::World<Model>& b) {
       d.contacts_that_differ += x.key[k] != y.key[k] ? 1 : 0;
       for (std::size_t h = 0; h < x.history.size(); ++h) {
         history = std::max(history, std::abs(y.history[h][k]));
-        d.history = std::max(d.history, std::abs(x.history[h][k] - y.history[h][k]));
+        d.history = larger(d.history, std::abs(x.history[h][k] - y.history[h][k]));
       }
     }
   };

@@ -136,12 +136,22 @@ class Beds {
   dem::World<Model> one_;
 };
 
+/// Whole numbers with commas between them, from 1 on.
 std::vector<std::size_t> numbers(const char* text) {
   std::vector<std::size_t> result;
-  for (char* end = nullptr;; text = end + 1) {
-    result.push_back(std::strtoull(text, &end, 10));
-    if (*end != ',') return result;
+  const char* at = text;
+  for (char* end = nullptr;; at = end + 1) {
+    result.push_back(std::strtoull(at, &end, 10));
+    if (end == at || *at == '-' || result.back() == 0 || (*end != ',' && *end != '\0')) {
+      dem::fail("'{}' must be whole numbers from 1 on, with commas between them", text);
+    }
+    if (*end == '\0') return result;
   }
+}
+int number(const char* text) {
+  const auto all = numbers(text);
+  if (all.size() != 1 || all[0] > 1'000'000'000) dem::fail("'{}' must be a whole number from 1 to 1e9", text);
+  return static_cast<int>(all[0]);
 }
 
 Arguments read(int argc, char** argv) {
@@ -150,15 +160,18 @@ Arguments read(int argc, char** argv) {
     const auto is = [&](const char* name) { return std::strcmp(argv[k], name) == 0; };
     const bool has_value = k + 1 < argc;
     if (is("--check")) a.only_checks = true;
-    else if (is("--grains") && has_value) a.grains = std::atoi(argv[++k]);
-    else if (is("--steps") && has_value) a.steps = std::atoi(argv[++k]);
-    else if (is("--settle") && has_value) a.settle = std::atoi(argv[++k]);
+    else if (is("--grains") && has_value) a.grains = number(argv[++k]);
+    else if (is("--steps") && has_value) a.steps = number(argv[++k]);
+    else if (is("--settle") && has_value) a.settle = number(argv[++k]);
     else if (is("--sizes") && has_value) a.sizes = numbers(argv[++k]);
     else if (is("--work") && has_value) a.work = argv[++k];
     else if (is("--seconds") && has_value) a.seconds = std::atof(argv[++k]);
     else
       dem::fail("'{}' is no option; there are --check, --grains, --steps, --settle, --sizes, --work and --seconds",
                 argv[k]);
+  }
+  if (a.work != "both" && a.work != "cubes" && a.work != "spheres") {
+    dem::fail("--work is '{}', but must be cubes, spheres or both", a.work);
   }
   return a;
 }

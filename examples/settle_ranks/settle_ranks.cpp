@@ -4,8 +4,8 @@
 //   mpirun -np 4 settle_ranks --shape cubes --grains 20000 --settle 3000 --steps 300 --threads 1 --output out
 //
 // Writes settled.csv: positions and speeds of the grains, once, whatever the number of processes. With --bed bed.h5 the
-// settled bed is kept in that file (needs HDF5). --settle-gravity 98.1 (m/s^2) makes grains settle in fewer steps. If
-// it is there the bed is taken from it and does not settle, with as many processes as you like. All must see the file.
+// settled bed is kept in that file (needs HDF5). If it is there the bed is taken from it and does not settle, with as
+// many processes as you like. All must see the file. --settle-gravity 98.1 (m/s^2) makes grains settle in fewer steps.
 
 #include "arguments.hpp"
 

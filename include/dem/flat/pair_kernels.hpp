@@ -11,9 +11,9 @@
 
 namespace dem::flat {
 
-/// Which of the possible contacts of a pair there are, a bit each.
+/// Which of the possible contacts of a pair there are, a bit each. A shape may leave bits out between them.
 template <class Shape>
-using ContactBits = std::conditional_t<Shape::most_contacts <= 8, std::uint8_t, std::uint64_t>;
+using ContactBits = std::conditional_t<Shape::most_contacts == 1, std::uint8_t, std::uint64_t>;
 
 /// The contacts of all candidates in one step: in the order of the candidates, and those of a pair ascending.
 template <class Model>

@@ -3,6 +3,7 @@
 #include <dem/flat/surface_view.hpp>
 #include <dem/world/check.hpp>
 
+#include <algorithm>
 #include <type_traits>
 
 namespace dem::flat {
@@ -38,7 +39,9 @@ void check_flat(const WorldState<Model>& w) {
   if (w.carry_held) {
     fail("grains cannot be attached to machine parts where the executor is exec::Cuda or exec::Flat{}", instead);
   }
-  if (w.put_in) fail("there can be no inlets where the executor is exec::Cuda or exec::Flat{}", instead);
+  if (std::any_of(w.inlets.begin(), w.inlets.end(), [](const Inlet& inlet) { return inlet.is_open(); })) {
+    fail("no inlet can be open where the executor is exec::Cuda or exec::Flat; close it (World::set_open){}", instead);
+  }
   if (!w.outlets.empty()) fail("there can be no outlets where the executor is exec::Cuda or exec::Flat{}", instead);
   if (w.borders && w.options.beyond_domain == BeyondDomain::remove) {
     fail("grains that leave the domain cannot be removed where the executor is exec::Cuda or exec::Flat{}", instead);

@@ -89,7 +89,9 @@ class Cuda : public Threads, public Kept {
   /// How many GPUs there are; 0 without a driver, too.
   static int devices() {
     int count = 0;
-    return cudaGetDeviceCount(&count) == cudaSuccess ? count : 0;
+    if (cudaGetDeviceCount(&count) == cudaSuccess) return count;
+    static_cast<void>(cudaGetLastError());
+    return 0;
   }
 
   template <class F>

@@ -16,6 +16,7 @@ namespace dem::cuda {
 /// Throws Error unless all is well; `what`: what was done, in a few words.
 inline void check(cudaError_t error, const char* what) {
   if (error == cudaSuccess) return;
+  static_cast<void>(cudaGetLastError());  // it is told now, and not by the next call as well
   if (error == cudaErrorNoDevice || error == cudaErrorInsufficientDriver) {
     fail("exec::Cuda found no GPU that it could use ({}); choose exec::Threads in the model, or run where one is",
          cudaGetErrorString(error));
@@ -59,7 +60,7 @@ class Array {
   }
   /// To the place `at` on, in room that is there. `from` may be changed when it returns.
   void upload_to(std::size_t at, const T* from, std::size_t n) {
-    if (n > 0) check(cudaMemcpyAsync(values_ + at, from, n * sizeof(T), cudaMemcpyHostToDevice), "copied to the GPU");
+    if (n > 0) check(cudaMemcpy(values_ + at, from, n * sizeof(T), cudaMemcpyHostToDevice), "copied to the GPU");
   }
   void download(T* to, std::size_t n, std::size_t at = 0) const {
     if (n > 0) check(cudaMemcpy(to, values_ + at, n * sizeof(T), cudaMemcpyDeviceToHost), "copied from the GPU");

@@ -9,6 +9,7 @@
 #include <cstddef>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace dem::cuda {
@@ -26,8 +27,11 @@ class Profile {
   Profile() = default;
   Profile(const Profile&) {}
   Profile& operator=(const Profile&) { return *this; }
-  Profile(Profile&&) = default;
-  Profile& operator=(Profile&&) = default;
+  Profile(Profile&& other) noexcept { swap(other); }
+  Profile& operator=(Profile&& other) noexcept {
+    swap(other);
+    return *this;
+  }
   ~Profile() {
     for (const Span& s : spans_) cudaEventDestroy(s.begin), cudaEventDestroy(s.end);
   }
@@ -76,6 +80,12 @@ class Profile {
     const char* name = "";
     cudaEvent_t begin = nullptr, end = nullptr;
   };
+  void swap(Profile& other) noexcept {
+    std::swap(on_, other.on_);
+    std::swap(spans_, other.spans_);
+    std::swap(used_, other.used_);
+    std::swap(entries_, other.entries_);
+  }
   Entry& entry(std::string_view name) {
     for (Entry& e : entries_) {
       if (e.name == name) return e;

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <dem/core/aligned.hpp>
-#include <dem/parallel/blocks.hpp>
 #include <dem/parallel/kept.hpp>
 #include <dem/parallel/threads.hpp>
 
@@ -68,17 +67,17 @@ class Flat : public Threads, public Kept {
 
   template <class F>
   void launch(const char*, std::size_t n, const F& kernel) {
-    for_each_block(*this, n, [&](std::size_t first, std::size_t last) {
+    for_each_piece(n, [&](std::size_t, std::size_t first, std::size_t last) {
       for (std::size_t k = first; k < last; ++k) kernel(k);
     });
   }
   template <class F, class R>
   void reduce(const char*, std::size_t n, const F& kernel, R* result) {
-    std::vector<R> partial((n + block_size - 1) / block_size);
-    for_each_block(*this, n, [&](std::size_t first, std::size_t last) {
+    std::vector<R> partial(pieces(n));
+    for_each_piece(n, [&](std::size_t piece, std::size_t first, std::size_t last) {
       R merged{};
       for (std::size_t k = first; k < last; ++k) merged = merge(merged, kernel(k));
-      partial[first / block_size] = merged;
+      partial[piece] = merged;
     });
     *result = R{};
     for (const R& r : partial) *result = merge(*result, r);
@@ -93,6 +92,15 @@ class Flat : public Threads, public Kept {
     first[n] = *total = sum;
   }
   void wait() {}
+
+ private:
+  static constexpr std::size_t piece_size = 64;  // small, so that small tests have several
+
+  static std::size_t pieces(std::size_t n) { return (n + piece_size - 1) / piece_size; }
+  template <class F>
+  void for_each_piece(std::size_t n, F&& f) {
+    for_each(pieces(n), [&](std::size_t k) { f(k, k * piece_size, std::min((k + 1) * piece_size, n)); });
+  }
 };
 
 }  // namespace dem::exec

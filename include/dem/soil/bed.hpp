@@ -64,7 +64,8 @@ class Bed {
   /// Fills the container, lets the grains come to rest, makes them as dense as asked for, presses them, and levels
   /// them. `set_friction(share)` is called while a bed is made denser, with shares from 1 to 0 and at last 1 again: it
   /// sets this share of the grains' friction, by World::set_contact. `look()` is called every few milliseconds: there
-  /// the bed may be saved, or left by throwing. All of the friction is there while it is called. A bed that was left,
+  /// the bed may be saved, or left by throwing. All of the friction is there while it is called; gravity is the shaken
+  /// one while a bed is made denser. A bed that was left,
   /// or loaded on its way, goes on from there; one that is made stays as it is. Throws Error if the grains do not come
   /// to rest in time, if they blow up, for a rain that finds no room, and for a density that shaking without friction
   /// does not reach.
@@ -215,6 +216,8 @@ class Bed {
           world_.time(), options_.densify_time, set_friction, [this] { return solid_fraction(); },
           [&] { shaking.run(world_, densifying_.start, running()); });
       if (!gains && densifying_.fraction < wanted) {
+        world_.set_gravity(gravity_);
+        set_friction(1.0);
         fail(
             "a bed is to have the solid fraction {:g}, but shaken without friction it comes to {:g}; lower "
             "BedOptions::relative_density, or measure the limits of this soil",

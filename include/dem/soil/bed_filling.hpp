@@ -91,9 +91,10 @@ class BedFilling {
     const double limit = options_.time_limit + 2.0 * raining_.wanted * density_ / options_.rain_flow;
     while (!raining_.is_done()) {
       if (world_.time() - raining_.start > limit) {
+        world_.set_open(inlet_, false);
         fail(
             "the rain on a bed has brought {:g} m^3 of {:g} m^3 of grains after {:g} s, as there is no room where it "
-            "comes from; lower BedOptions::rain_flow or raise BedOptions::rain_height",
+            "comes from; lower BedOptions::rain_flow, or raise BedOptions::rain_height if the grains reach up to it",
             raining_.solid, raining_.wanted, limit);
       }
       raining_.go_on(world_, run);

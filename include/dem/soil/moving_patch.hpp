@@ -95,6 +95,7 @@ class MovingPatch {
   /// bed lies before `x` (m). To be called between steps, at least once a tile. Returns whether it did. Throws Error if
   /// the machine has run away from the patch.
   bool follow(World<Model>& world, double x) {
+    require_grains_here(world.state(), "a bed whose grains come or go");
     const double length = tile_.period[0];
     if (!(x < front()))
       fail(

@@ -33,6 +33,7 @@ void begin_to_fall(WorldState<Model>& w, std::size_t row) {
 /// Lists neighbours anew between two steps, with grains that `change(histories)` puts in.
 template <class Model, class Change>
 void relist(WorldState<Model>& w, Change&& change) {
+  require_grains_here(w, "a bed whose grains come or go");
   if constexpr (Model::Domain::has_ranks) {
     if (w.domain.is_shared()) {
       fail(

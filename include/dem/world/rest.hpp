@@ -24,6 +24,7 @@ namespace dem {
 template <class Model>
 mbd::RestReport find_rest(World<Model>& world, const mbd::RestOptions& options = {}) {
   WorldState<Model>& w = world.state();
+  require_grains_here(w, "the machine's rest");
   mbd::detail::stop_for_rest(w.machine.parts());
   world.prepare();
   const mbd::RestReport report = together(w, domain::Call::rest, "in find_rest", [&] {

@@ -26,7 +26,7 @@ struct Compared {
 
 /// The parts of a world by which ranks tell each other what differs.
 inline constexpr const char* parts_of_a_world[] = {
-    "the time, how many grains or other things there are, what was changed, or what is asked",
+    "the time, how many grains or other things there are, which inlets are open, what was changed, or what is asked",
     "options",
     "materials or contact constants",
     "species",
@@ -49,6 +49,7 @@ domain::CallHashes hashes_of(const WorldState<Model>& world, const Compared& com
                                 std::uint64_t{compared.grains}}) {
     size.mix(n);
   }
+  for (const auto& inlet : w.inlets) size.mix(std::uint64_t{inlet.is_open()});
   const Vec3& g = w.options.gravity;
   for (const double x : std::initializer_list<double>{w.options.time_step, w.options.skin, g.x(), g.y(), g.z()})
     options.mix(x);

@@ -38,6 +38,7 @@ class World : public WorldSetup<M> {
           "new one",
           time());
     }
+    this->require_grains_here("a world's preparation");
     if constexpr (Model::Domain::has_ranks) {
       check_agreement(
           state_, domain::Call::prepare,

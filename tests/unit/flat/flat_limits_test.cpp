@@ -35,8 +35,12 @@ TEST_CASE("what the flat path cannot do is refused in words") {
     CHECK_THAT(refused(), ContainsSubstring("attached to machine parts"));
   }
   SECTION("inlets") {
-    w.add_inlet(dem::InletRegion::disc({0, 0, 0.3}, {0, 0, -1}, 0.02), {.grains = SpeciesId(0), .mass_flow = 0.1});
-    CHECK_THAT(refused(), ContainsSubstring("no inlets"));
+    const auto inlet =
+        w.add_inlet(dem::InletRegion::disc({0, 0, 0.3}, {0, 0, -1}, 0.02), {.grains = SpeciesId(0), .mass_flow = 0.1});
+    w.set_open(inlet, false);
+    CHECK(w.run(2));  // a bed that was rained keeps its inlet
+    w.set_open(inlet, true);
+    CHECK_THAT(refused(), ContainsSubstring("no inlet can be open"));
   }
   SECTION("outlets") {
     w.add_outlet({{-1, -1, -2}, {1, 1, -1}});
