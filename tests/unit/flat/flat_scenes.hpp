@@ -35,9 +35,9 @@ struct WetPairs : models::Laws<models::Linear, dem::friction::CundallStrack, dem
     return Shape(balls);
   }
   static dem::ContactParameters<WetPairs> contact() {
-    return {models::Linear::with_restitution(2000.0, 0.4),
-            {0.4, 600.0, 0.3},
-            {0.1, 600.0, 0.3},
+    return {models::Linear::with_restitution(200.0, 0.4),
+            {0.4, 60.0, 0.03},
+            {0.1, 60.0, 0.03},
             dem::cohesion::LiquidBridge::of(0.072, 0.0, 2e-12)};
   }
 };
