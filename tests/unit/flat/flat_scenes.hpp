@@ -23,21 +23,16 @@ struct Cubes : Grains<Cube8, dem::integrator::PredictorCorrector, Uniform, dem::
   static Cube8 shape(double size) { return dem::shape::cube8(size); }
   static dem::ContactParameters<Cubes> contact() { return sand<Cubes>(); }
 };
-/// Bridges act at a distance and remember, and so does rolling resistance. With wide packs, rows of two spheres are
-/// longer than two: the bits of a pair's contacts are not the lowest ones.
-struct WetPairs : models::Laws<models::Linear, dem::friction::CundallStrack, dem::rolling::ElasticPlastic,
+/// Bridges act at a distance and remember, and so does rolling resistance.
+struct WetBalls : models::Laws<models::Linear, dem::friction::CundallStrack, dem::rolling::ElasticPlastic,
                                dem::cohesion::LiquidBridge> {
   using Integrator = dem::integrator::SymplecticEuler;
   using Executor = dem::exec::Flat;
-  using Shape = dem::shape::SphereCluster<2>;
-  static Shape shape(double size) {
-    const dem::Ball balls[] = {{Vec3(-0.4 * size, 0, 0), 0.6 * size}, {Vec3(0.4 * size, 0, 0), 0.6 * size}};
-    return Shape(balls);
-  }
-  static dem::ContactParameters<WetPairs> contact() {
-    return {models::Linear::with_restitution(200.0, 0.4),
-            {0.4, 60.0, 0.03},
-            {0.1, 60.0, 0.03},
+  static Sphere shape(double size) { return Sphere(size); }
+  static dem::ContactParameters<WetBalls> contact() {
+    return {models::Linear::with_restitution(2000.0, 0.4),
+            {0.4, 600.0, 0.3},
+            {0.1, 600.0, 0.3},
             dem::cohesion::LiquidBridge::of(0.072, 0.0, 2e-12)};
   }
 };
