@@ -1,12 +1,12 @@
 #pragma once
 
-#include <dem/grain/stable_time_step.hpp>
 #include <dem/world/check.hpp>
 #include <dem/world/period.hpp>
 #include <dem/world/report.hpp>
 #include <dem/world/run_shared.hpp>
 #include <dem/world/step.hpp>
 #include <dem/world/thin_sheets.hpp>
+#include <dem/world/time_step.hpp>
 #include <dem/world/world_setup.hpp>
 
 #include <concepts>
@@ -57,7 +57,7 @@ class World : public WorldSetup<M> {
         state_.materials.check_pair(state_.surfaces[pair.a.index()].material, state_.surfaces[pair.b.index()].material);
       }
       coupling::list_pairs(state_.body_contacts, std::span(std::as_const(state_.surfaces)), state_.materials);
-      choose_time_step();
+      choose_time_step(state_, initialised_);
       checked_ = true;
     }
     // A step that has begun must not be refused: motions that were added or changed are looked at before it.
@@ -113,11 +113,7 @@ class World : public WorldSetup<M> {
   std::uint64_t steps() const { return state_.step; }
   double time_step() const { return state_.time_step; }
   /// Largest stable time step of grains and machine, and what limits it.
-  StableTimeStep stable_time_step() const {
-    auto limit = stable_time_step_of_contacts();
-    const StableTimeStep machine = stable_time_step_of_machine();
-    return machine.dt < limit.dt ? machine : limit;
-  }
+  StableTimeStep stable_time_step() const { return dem::stable_time_step(state_); }
   void set_threads(int n) { state_.executor.set_threads(n); }
   int threads() const { return state_.executor.threads(); }
   void set_gravity(const Vec3& g) {
@@ -277,7 +273,6 @@ class World : public WorldSetup<M> {
     return used;
   }
   bool machine_is_initialised() const { return state_.machine_solver.is_initialised(state_.machine); }
-  StableTimeStep stable_time_step_of_machine() const { return state_.machine_solver.stable_time_step(state_.machine); }
   StepReport ok() const {
     StepReport r{
         StepReport::Problem::none, state_.time, state_.step, {}, {}, state_.machine_solver.note(state_.machine)};
@@ -285,65 +280,6 @@ class World : public WorldSetup<M> {
       if (inlet.is_short()) r.note += (r.note.empty() ? "" : "; ") + inlet.note();
     }
     return r;
-  }
-
-  /// Of grains with each other and with surfaces, and of bodies with each other.
-  StableTimeStep stable_time_step_of_contacts() const {
-    std::vector<grain::SurfaceMatter> of_surfaces;
-    for (const auto& s : state_.surfaces) {
-      of_surfaces.push_back(
-          {s.material, coupling::inverse_effective_mass_of(s, state_.machine.bodies()[s.body.index()], 0.0)});
-    }
-    auto limit =
-        grain::stable_time_step<Model>(state_.species, state_.materials, of_surfaces, state_.options.overlap_limit);
-    const auto bodies = coupling::stable_time_step_of_bodies<Model>(
-        state_.body_contacts.pairs, std::span(state_.surfaces), std::span(state_.machine.bodies()), state_.materials,
-        state_.options.overlap_limit);
-    if (bodies.dt < limit.dt) limit = bodies;
-    return limit;
-  }
-
-  /// Chooses or checks the time step. What the machine's user left open is derived for this step.
-  void choose_time_step() {
-    const WorldOptions& o = state_.options;
-    o.time_step == 0.0 ? choose_time_step_automatically() : check_time_step(o.time_step);
-  }
-  void choose_time_step_automatically() {
-    // A machine's derived stiffness suits whatever step is chosen, so only given stiffness limits the step.
-    const double of_given = state_.machine_solver.stable_time_step_of_given(state_.machine).dt;
-    const double limit = std::min(stable_time_step_of_contacts().dt, of_given);
-    if (limit >= 1e300) fail("nothing in the world limits the time step; set time_step");
-    // A step that was chosen before is kept while it is as safe: a change of friction must not change it.
-    const double safe = state_.options.time_step_safety * limit;
-    if (state_.time_step == 0.0 || state_.time_step > (1.0 + 1e-12) * safe) state_.time_step = safe;
-    design_machine(state_.time_step);
-    // Given and derived parts of the same bodies add up, which a safety factor near 1 leaves no room for.
-    while (stable_time_step_of_machine().dt < state_.time_step) design_machine(state_.time_step *= 0.9);
-  }
-  void check_time_step(double dt) {
-    design_machine(dt);
-    StableTimeStep limit = stable_time_step();
-    if (dt > limit.dt && !state_.options.allow_unstable_time_step) {
-      // What is derived is derived anew for a smaller step: the one that is named is accepted when it is taken.
-      const StableTimeStep machine = state_.machine_solver.accepted_time_step(state_.machine, dt);
-      const bool by_machine = stable_time_step_of_machine().dt < dt && machine.dt <= stable_time_step_of_contacts().dt;
-      if (by_machine) limit = machine;
-      fail(
-          "time step {:g} s is above the largest stable one, {:g} s ({}); lower time_step or the stiffness, {}or set "
-          "allow_unstable_time_step",
-          dt, rounded_down(limit.dt), limit.limited_by,
-          by_machine ? dem::text("raise machine().substeps (now {}), ", state_.machine.substeps) : "");
-    }
-    state_.time_step = dt;
-  }
-  /// What is derived depends on the pose. It changes with the machine or the time step, not with the grains, and where
-  /// another pose has made it too stiff.
-  void design_machine(double dt) {
-    const bool is_designed = state_.machine_solver.is_designed_for(state_.machine, dt);
-    if (is_designed && stable_time_step_of_machine().dt >= dt) return;
-    state_.machine_solver.design_for(state_.machine, dt);
-    state_.machine_solver.carry_weight(state_.machine, state_.options.gravity);
-    initialised_ = false;
   }
 
   double owed_steps_ = 0.0;  // by run_for: less than one
