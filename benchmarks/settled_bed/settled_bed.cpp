@@ -3,6 +3,7 @@
 // --shape one of other cubes. The laws are theirs: linear spring and dashpot, restitution 0.3, friction 0.4 with
 // history.
 
+#include "timing.hpp"
 #include "works.hpp"
 
 #include <dem/dem.hpp>
@@ -11,8 +12,6 @@
 #include <dem/report/ascii_table.hpp>
 
 #include <CLI/CLI.hpp>
-
-#include <ctime>
 
 namespace {
 
@@ -58,36 +57,19 @@ void run(const char* name, const Settings& settings) {
   dem::io::Table table;
   table.header = {"threads", "million grain-steps/s", "lowest", "highest", "ratio", "per CPU second", "lists made"};
   for (const char* phase : dem::phase_names) table.header.push_back(fmt::format("{}, us/step", phase));
-  double fewest_threads = 0.0;
-  for (const int threads : thread_counts(settings.least_threads, most_threads)) {
-    world.set_threads(threads);
-    run_or_fail(world, 200);
-    std::vector<double> rates, per_cpu_second;  // the latter is steadier where other programs run too
-    const std::uint64_t lists = world.state().rebuilds;
-    world.state().stopwatch.switch_on(true);
-    for (int k = 0; k < settings.repeats; ++k) {
-      const auto start = std::chrono::steady_clock::now();
-      const std::clock_t cpu = std::clock();
-      run_or_fail(world, settings.steps);
-      const double seconds = Seconds(std::chrono::steady_clock::now() - start).count();
-      rates.push_back(1e-6 * Model::grains * settings.steps / seconds);
-      per_cpu_second.push_back(1e-6 * Model::grains * settings.steps * CLOCKS_PER_SEC / double(std::clock() - cpu));
-    }
-    const double rate = median(rates);
-    if (fewest_threads == 0.0) fewest_threads = rate;
-    std::vector<std::string> row = {fmt::format("{}", threads),
-                                    fmt::format("{:.2f}", rate),
-                                    fmt::format("{:.2f}", *std::min_element(rates.begin(), rates.end())),
-                                    fmt::format("{:.2f}", *std::max_element(rates.begin(), rates.end())),
-                                    fmt::format("{:.2f}", rate / fewest_threads),
-                                    fmt::format("{:.2f}", median(per_cpu_second)),
-                                    fmt::format("{}", world.state().rebuilds - lists)};
-    for (std::size_t k = 0; k < dem::phase_names.size(); ++k) {
-      const double seconds = world.state().stopwatch.seconds(static_cast<dem::Phase>(k));
+  const std::vector<Timing> timings = time_in_turn(world, settings, most_threads, settings.steps);
+  for (const Timing& t : timings) {
+    std::vector<std::string> row = {fmt::format("{}", t.threads),
+                                    fmt::format("{:.2f}", t.rate()),
+                                    fmt::format("{:.2f}", *std::min_element(t.rates.begin(), t.rates.end())),
+                                    fmt::format("{:.2f}", *std::max_element(t.rates.begin(), t.rates.end())),
+                                    fmt::format("{:.2f}", t.rate() / timings.front().rate()),
+                                    fmt::format("{:.2f}", median(t.per_cpu_second)),
+                                    fmt::format("{}", t.lists)};
+    for (const double seconds : t.phases) {
       row.push_back(fmt::format("{:.1f}", 1e6 * seconds / settings.repeats / settings.steps));
     }
     table.rows.push_back(row);
-    world.state().stopwatch.switch_on(false);
   }
   print(table);
 }
@@ -108,7 +90,8 @@ int main(int argc, char** argv) {
           ->check(CLI::IsMember({"cube8", "polyhedron", "superquadric", "points"}));
   app.add_option("--steps", settings.steps, "steps that are timed")->check(CLI::PositiveNumber);
   app.add_option("--settle", settings.settle, "steps to settle first")->check(CLI::NonNegativeNumber);
-  app.add_option("--repeats", settings.repeats, "how often the steps are timed; the median counts")
+  app.add_option("--repeats", settings.repeats,
+                 "how often the steps are timed with each number of threads, in turn; the median counts")
       ->check(CLI::PositiveNumber);
   app.add_option("--threads", settings.threads, "most threads (0: all); 1, 2, 4 ... are timed too")
       ->check(CLI::NonNegativeNumber);

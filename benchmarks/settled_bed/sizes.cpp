@@ -2,12 +2,12 @@
 // size asks for, with its velocities. So a grain of the largest bed has the surroundings of one of the smallest.
 
 #include "boxes.hpp"
+#include "timing.hpp"
 
 #include <dem/dem.hpp>
 #include <dem/report/ascii_table.hpp>
 
 #include <cstdio>
-#include <ctime>
 
 namespace bench {
 
@@ -63,39 +63,17 @@ void run(const char* name, const Settings& settings) {
     // As much work as --steps of the first size.
     const double share = double(settings.sizes.front()) / double(grains);
     const int steps = std::max(std::min(100, settings.steps), static_cast<int>(settings.steps * share));
-    double fewest_threads = 0.0;
-    std::size_t count = 0;
-    for (const int threads : thread_counts(settings.least_threads, most_threads)) {
-      world.set_threads(threads);
-      run_or_fail(world, 20);
-      std::vector<double> rates, per_cpu_second;
-      double took = 0.0;  // s
-      const std::uint64_t lists = world.state().rebuilds;
-      world.state().stopwatch.switch_on(true);
-      for (int k = 0; k < settings.repeats; ++k) {
-        const auto start = std::chrono::steady_clock::now();
-        const std::clock_t cpu = std::clock();
-        run_or_fail(world, steps);
-        const double done = 1e-6 * double(grains) * steps;
-        const double seconds = Seconds(std::chrono::steady_clock::now() - start).count();
-        took += seconds;
-        rates.push_back(done / seconds);
-        per_cpu_second.push_back(done * CLOCKS_PER_SEC / double(std::clock() - cpu));
-      }
-      const double rate = median(rates), cpu_rate = median(per_cpu_second);
-      if (count == 0) fewest_threads = rate;
-      if (of_first.size() == count) of_first.push_back(rate);
-      const std::uint64_t made = world.state().rebuilds - lists;
-      const double lists_took = world.state().stopwatch.seconds(dem::Phase::neighbours);
-      const double list = lists_took / double(std::max(made, 1ul));
-      const double step =
-          1e9 * world.state().stopwatch.seconds(dem::Phase::grains) / (double(grains) * steps * settings.repeats);
-      table.row(grains, threads, rate, *std::min_element(rates.begin(), rates.end()),
-                *std::max_element(rates.begin(), rates.end()), rate / fewest_threads, cpu_rate, rate / of_first[count],
-                step, made, list, 100.0 * lists_took / took, contacts_a_grain(world),
-                std::to_string(dem::memory_bytes(world.state()) / grains));
-      world.state().stopwatch.switch_on(false);
-      ++count;
+    const std::vector<Timing> timings = time_in_turn(world, settings, most_threads, steps);
+    for (std::size_t k = 0; k < timings.size(); ++k) {
+      const Timing& t = timings[k];
+      if (of_first.size() == k) of_first.push_back(t.rate());
+      const double lists_took = t.phases[std::size_t(dem::Phase::neighbours)];
+      const double list = lists_took / double(std::max(t.lists, std::uint64_t{1}));
+      const double step = 1e9 * t.phases[std::size_t(dem::Phase::grains)] / (double(grains) * steps * settings.repeats);
+      table.row(grains, t.threads, t.rate(), *std::min_element(t.rates.begin(), t.rates.end()),
+                *std::max_element(t.rates.begin(), t.rates.end()), t.rate() / timings.front().rate(),
+                median(t.per_cpu_second), t.rate() / of_first[k], step, t.lists, list, 100.0 * lists_took / t.took,
+                t.contacts, std::to_string(dem::memory_bytes(world.state()) / grains));
     }
     print(table);  // as far as it is: the next size may take long
   }
