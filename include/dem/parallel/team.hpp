@@ -1,5 +1,7 @@
 #pragma once
 
+#include <dem/parallel/help.hpp>
+
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
@@ -15,8 +17,8 @@ namespace dem::exec {
 ///
 /// Each member has a range of the pieces, so that it meets the same memory in each phase of a step; who is done with
 /// its own range helps with the others'. Nobody waits for a member that has not begun: where another program has its
-/// processor, the rest do its share. Members busy-wait for a tenth of a millisecond for the next work, and sleep after
-/// that.
+/// processor, the rest do its share. Where members cost more than they save, the caller works alone for a while (Help).
+/// Members busy-wait for a tenth of a millisecond for the next work, and sleep after that.
 class Team {
  public:
   using Piece = void (*)(void* work, std::size_t piece, int thread);
@@ -48,6 +50,11 @@ class Team {
 
   /// Calls `piece` for 0 ... n-1; `piece` must not throw. Returns when all are done.
   void run(std::size_t n, Piece piece, void* work) {
+    const Help::Time called = Help::Clock::now();
+    if (!help_.is_worth_it(called)) {
+      for (std::size_t k = 0; k < n; ++k) piece(work, k, 0);
+      return;
+    }
     const auto m = static_cast<std::size_t>(members_);
     for (std::size_t k = 0; k < m; ++k) {
       ranges_[k].next.store(n * k / m, std::memory_order_relaxed);
@@ -56,7 +63,9 @@ class Team {
     piece_ = piece;
     work_ = work;
     call();
-    take_part(0);
+    const Help::Time began = Help::Clock::now();
+    const std::size_t own = take_part(0);
+    const Help::Time ended = Help::Clock::now();
     // All pieces are taken. Who has not begun need not, and the others end theirs.
     std::uint32_t inside = gate_.fetch_and(~open) & ~open;
     for (int waited = 0; inside != 0; inside = gate_.load()) {
@@ -66,6 +75,7 @@ class Team {
         gate_.wait(inside);
       }
     }
+    if (busy_waits_ > 0) help_.account(n, own, called, began, ended, Help::Clock::now());
   }
 
  private:
@@ -87,15 +97,18 @@ class Team {
     call_.fetch_add(1);
     call_.notify_all();
   }
-  void take_part(int member) {
+  /// How many pieces the member did.
+  std::size_t take_part(int member) {
+    std::size_t done = 0;
     for (int k = 0; k < members_; ++k) {
       Range& range = ranges_[static_cast<std::size_t>((member + k) % members_)];
       // Looked at first: adding to what is used up already would only take it from others' caches.
       while (range.next.load(std::memory_order_relaxed) < range.end) {
         const std::size_t piece = range.next.fetch_add(1, std::memory_order_relaxed);
-        if (piece < range.end) piece_(work_, piece, member);
+        if (piece < range.end) piece_(work_, piece, member), ++done;
       }
     }
+    return done;
   }
   void serve(int member) {
     for (std::uint32_t seen = 0;;) {
@@ -122,6 +135,7 @@ class Team {
   std::unique_ptr<Range[]> ranges_;
   int members_;
   int busy_waits_;  // looks before a member sleeps; none where there are more members than processors
+  Help help_;       // not asked there either: who wants more members than processors gets them
   Piece piece_ = nullptr;
   void* work_ = nullptr;
   std::atomic<bool> stop_ = false;

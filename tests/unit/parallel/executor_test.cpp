@@ -8,9 +8,12 @@
 #include <unistd.h>
 
 #include <atomic>
+#include <chrono>
 #include <concepts>
 #include <stdexcept>
 #include <string>
+#include <thread>
+#include <utility>
 #include <vector>
 
 TEMPLATE_TEST_CASE("every index is called once, on any number of threads", "", dem::exec::Threads, dem::exec::OpenMP) {
@@ -109,6 +112,43 @@ TEST_CASE("threads share the work as it comes: one long piece does not keep the 
     }
   });
   CHECK(done == 63);
+}
+
+// As if another program had the second processor again and again: each piece that the helper does takes as long as a
+// time slice.
+TEST_CASE("a helper that costs more than it saves is left out, and tried again") {
+  if (std::thread::hardware_concurrency() < 2) return;  // more threads than processors are what the user asked for
+  using Clock = std::chrono::steady_clock;
+  using std::chrono::milliseconds;
+  dem::exec::Threads executor;
+  executor.set_threads(2);
+  const auto work_for = [&](milliseconds whole, bool held_up) {
+    int calls = 0, helped = 0;
+    for (const auto end = Clock::now() + whole; Clock::now() < end; ++calls) {
+      std::atomic<bool> by_helper = false;
+      executor.for_each(8, [&](std::size_t, int thread) {
+        if (thread == 1) by_helper = true;
+        if (thread == 1 && held_up) {
+          std::this_thread::sleep_for(milliseconds(4));
+        } else {
+          for (const auto done = Clock::now() + std::chrono::microseconds(50); Clock::now() < done;) {
+          }
+        }
+      });
+      helped += by_helper ? 1 : 0;
+    }
+    return std::pair(calls, helped);
+  };
+  // Alone a call takes 0.4 ms, with the helper at least 4 ms. It is tried for some 20 ms, then left out for 100, 200
+  // and 400.
+  const auto [calls, helped] = work_for(milliseconds(700), true);
+  CAPTURE(calls, helped);
+  CHECK(helped > 0);
+  CHECK(helped < calls / 10);
+  // It is in time again: it is tried within a second.
+  int tried = 0;
+  for (int k = 0; k < 100 && tried == 0; ++k) tried = work_for(milliseconds(50), false).second;
+  CHECK(tried > 0);
 }
 
 TEST_CASE("threads within threads: the inner work is done by the one that asks for it") {
