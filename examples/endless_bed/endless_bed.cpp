@@ -5,6 +5,7 @@
 //   endless_bed --tiles 10 --output out/endless_bed
 //   endless_bed --load 0.1 --patch 6       load of the wheel (N), tiles of the patch
 //   endless_bed --compare 1 --beds 24      ends with 1 if means differ by more than 2 % and two standard errors
+//   endless_bed --beds 12 --seed 25        the first seed of the tiles
 //   endless_bed --lay 100,83               no wheel: what it costs to lay so many tiles along x and y, and eleven steps
 //
 // The wheel is as wide as the cell, which repeats itself across the way: a plane problem. Writes rut.dat and
@@ -252,6 +253,7 @@ int main(int argc, char** argv) {
   const auto patch_tiles = static_cast<int>(arguments.number("--patch", 6.0));  // long
   const double doubles_at = length * arguments.number("--double-at", -1.0);     // tiles of the way
   const auto beds = static_cast<int>(arguments.number("--beds", 1.0));          // seeds of the tile
+  const auto first_seed = static_cast<int>(arguments.number("--seed", 1.0));    // of them
   const bool compares = arguments.number("--compare", 0.0) != 0.0;
   const std::vector<double> laid = arguments.numbers("--lay", {0.0, 0.0});  // tiles along x and y
   const std::string folder = arguments.take("--output", "endless_bed");
@@ -267,7 +269,7 @@ int main(int argc, char** argv) {
   }
 
   std::vector<Mean> found[2][2];  // patch, long bed; pull, sinkage: of each tile
-  for (int seed = 1; seed <= beds; ++seed) {
+  for (int seed = first_seed; seed < first_seed + beds; ++seed) {
     const soil::Tile tile = settle(static_cast<std::uint64_t>(seed));
     fmt::print("tile {}: {}\n", seed, tile.in_words());
     for (const bool on_patch : {true, false}) {
@@ -286,7 +288,7 @@ int main(int argc, char** argv) {
         fmt::print("doubled: pull {:.4f} N before, {:.4f} N after, a shift of {:.1f} %\n", effect.before, effect.after,
                    100 * effect.shift());
       }
-      if (on_patch && seed == 1) draw(run, folder);
+      if (on_patch && seed == first_seed) draw(run, folder);
     }
   }
   if (!compares) return 0;
