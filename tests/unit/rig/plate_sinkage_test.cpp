@@ -3,6 +3,7 @@
 
 #include <dem/rig/bed/small_bed.hpp>
 #include <dem/rig/plate_sinkage.hpp>
+#include <dem/rig/plate_sinkage/study.hpp>
 
 #include <cmath>
 
@@ -114,18 +115,96 @@ TEST_CASE("a bed that is narrower than five widths of its widest plate, or shall
   CHECK_FALSE(small_bed_note(0.07, 0.34, std::nan("")).empty());
 }
 
-TEST_CASE("a study changes what it says, and nothing else") {
-  auto s = small();
-  s.study = "box";
+TEST_CASE("a study of plates changes what it says, and nothing else, in beds of three seeds") {
+  const auto resolved = [](const char* study) {
+    auto s = small();
+    s.study = study;
+    plate_sinkage::resolve(s);
+    return s;
+  };
+  auto s = resolved("box");
   const auto box = plate_sinkage::variants(s);
-  REQUIRE(box.size() == 3);
+  REQUIRE(box.size() == 9);
   CHECK(box[1].settings.bed.width == Approx(2.0 * s.bed.width));
   CHECK(box[1].settings.bed.depth == s.bed.depth);
   CHECK(box[2].settings.bed.depth == Approx(2.0 * s.bed.depth));
-  s.study = "speed";
+  CHECK(box[4].settings.bed.width == Approx(2.0 * s.bed.width));
+  CHECK(box[4].settings.bed.seed == s.bed.seed + 1);
+  s = resolved("speed");
   CHECK(plate_sinkage::variants(s).at(1).settings.speed == Approx(0.5 * s.speed));
-  s.study = "none";
-  CHECK(plate_sinkage::variants(s).size() == 1);
+  CHECK(plate_sinkage::variants(resolved("none")).size() == 1);
+  s = small();
+  s.study = "speed";
+  s.bed.file = "bed.txt";
+  plate_sinkage::resolve(s);  // half the speed on the bed of a file: that is one seed
+  CHECK(plate_sinkage::variants(s).size() == 2);
+  s.study_seeds = 2;
+  CHECK_THROWS_WITH(plate_sinkage::resolve(s), Catch::Contains("--study-seeds 2 needs other beds"));
+  s = small();
+  s.study = "seeds";
+  s.study_seeds = 1;
+  CHECK_THROWS_WITH(plate_sinkage::resolve(s), Catch::Contains("--study-seeds"));
+}
+
+TEST_CASE("the study of plates has the spread of the seeds, and changes paired by seed with a verdict") {
+  auto s = small();
+  s.widths = {0.03, 0.04};
+  s.study = "box";
+  plate_sinkage::resolve(s);
+  plate_sinkage::Campaign c;
+  // Pressures (kPa) under the two plates: as set, twice as wide, twice as deep; beds of three seeds.
+  const double kPa[9][2] = {{20, 30}, {18, 27}, {20.2, 30.3},  {22, 30},      {20.24, 27},
+                            {22, 30}, {24, 33}, {21.12, 29.7}, {23.76, 32.67}};
+  const auto all = plate_sinkage::variants(s);
+  for (std::size_t v = 0; v < all.size(); ++v) {
+    auto& of = c.variants.emplace_back(plate_sinkage::VariantResult{.variant = all[v], .solid_fraction = 0.78});
+    for (std::size_t k = 0; k < 2; ++k) {
+      const double p = 1e3 * kPa[v][k], z = s.sinkage;
+      of.plates.push_back(
+          {.width = s.widths[k],
+           .finished = true,
+           .curve = {.width = s.widths[k], .sinkage = {0.1 * z, 0.6 * z, 0.9 * z}, .pressure = {0, p, p}}});
+    }
+  }
+  auto rows = plate_sinkage::study_rows(c);
+  REQUIRE(rows.size() == 9);  // two plates and their mean, thrice
+  CHECK(rows[0].pressure.beds == 3);
+  CHECK(rows[0].pressure.mean == Approx(22e3));
+  CHECK(rows[0].pressure.deviation == Approx(2e3));
+  CHECK(rows[0].from_as_set.pairs == 0);
+  CHECK(rows[2].pressure.mean == Approx(26.5e3));
+  CHECK(std::isnan(rows[2].width));
+  CHECK(rows[3].from_as_set.percent.value == Approx(-10.0));
+  CHECK(rows[3].from_as_set.percent.error == Approx(2.0 / std::sqrt(3.0)));
+  CHECK(rows[4].from_as_set.percent.error == Approx(0.0).margin(1e-9));
+  CHECK(rows[6].from_as_set.is_within(plate_sinkage::box_limit) == std::string("yes"));
+
+  const auto table = plate_sinkage::study_table(c);
+  dem::io::check_table(table);
+  CHECK(table.rows[0][0] == "as set");
+  CHECK(table.rows[0][5] == "9.1");  // 2 of 22 kPa
+  CHECK(table.rows[0][8].empty());
+  CHECK(table.rows[3][8] == "-10.0");
+  CHECK(table.rows[3][11] == "5 %: no");
+  CHECK(table.rows[5][1] == "mean");
+  CHECK(table.rows[8][10] == "no");
+  const auto words = plate_sinkage::study_findings(c);
+  REQUIRE(words.size() == 3);
+  CHECK_THAT(words[0], Catch::Contains("Beds of 3 seeds in the box as set deviate by 6.8 % in the mean pressure of the "
+                                       "plates, 26.50 ± 1.04 kPa"));
+  CHECK_THAT(words[1],
+             Catch::StartsWith("A bed twice as wide changes the mean pressure of the plates by -10.0 ± 0.5 %"));
+  CHECK_THAT(words[1], Catch::EndsWith("told from none, and more than the 5 %."));
+  CHECK_THAT(words[2], Catch::EndsWith("not told from none, and within the 5 %."));
+
+  // A run that ended early has no pressure; its seed drops out of the pair.
+  c.variants[4].plates.back().finished = false;
+  rows = plate_sinkage::study_rows(c);
+  CHECK(rows[3].from_as_set.pairs == 3);
+  CHECK(rows[4].from_as_set.pairs == 2);
+  CHECK(rows[5].from_as_set.pairs == 2);
+  c.variants.resize(1);
+  CHECK(plate_sinkage::study_rows(c).empty());
 }
 
 TEST_CASE(

@@ -123,6 +123,7 @@ TEST_CASE("a study of a wheel changes the box, the speed or the seed, and nothin
   CHECK(box[2].settings.bed.depth == Approx(2.0 * s.bed.depth));
   CHECK(box[2].prefix() == "deep_");
   CHECK(box[3].settings.bed.seed == s.bed.seed + 1);
+  CHECK(box[3].prefix() == "second_");
   CHECK(box[4].settings.bed.width == s.bed.width);
   s.study = "speed";
   const auto speed = rigid_wheel::variants(s);
@@ -145,33 +146,34 @@ TEST_CASE("the change of a pull in a study has an error, and is called small or 
     rigid_wheel::Campaign c;
     c.variant.settings.study = "box";
     c.slips = {at(-20.0, 0.3)};
-    c.study.push_back({.variant = {.name = name, .text = "other"}, .slips = {of_it}});
+    c.study.push_back({.variant = {.change = name, .text = "other"}, .slips = {of_it}});
     return c;
   };
-  const auto change = [](const rigid_wheel::Campaign& c) { return rigid_wheel::PullChange(c, c.study[0], 0); };
+  const auto change = [](const rigid_wheel::Campaign& c) { return rigid_wheel::pull_change(c, c.study[0], 0); };
   // In the same bed: errors of means in time.
   const auto slow = study("slow", at(-26.0, 0.4));
-  CHECK(change(slow).newtons.value == Approx(-6.0));
-  CHECK(change(slow).newtons.error == Approx(0.5));
+  CHECK(change(slow).value.value == Approx(-6.0));
+  CHECK(change(slow).value.error == Approx(0.5));
   CHECK(change(slow).percent.value == Approx(-30.0));
   CHECK(change(slow).percent.error == Approx(100.0 * std::hypot(0.4, 1.3 * 0.3) / 20.0));
-  CHECK(change(slow).is_small() == std::string("no"));                                 // 30 +- 2.8 %
-  CHECK(change(study("slow", at(-20.2, 0.1))).is_small() == std::string("yes"));       // 1 +- 1.6 %
-  CHECK(change(study("slow", at(-19.0, 0.4))).is_small() == std::string("not told"));  // 5 +- 2.5 %
-  CHECK(change(study("slow", at(-19.0, 0.4, false))).is_small() == std::string("-"));
+  CHECK(change(slow).is_within(5.0) == std::string("no"));                                 // 30 +- 2.8 %
+  CHECK(change(study("slow", at(-20.2, 0.1))).is_within(5.0) == std::string("yes"));       // 1 +- 1.6 %
+  CHECK(change(study("slow", at(-19.0, 0.4))).is_within(5.0) == std::string("not told"));  // 5 +- 2.5 %
+  CHECK(change(study("slow", at(-19.0, 0.4, false))).is_within(5.0) == std::string("-"));
+  CHECK(change(study("slow", at(-20.2, std::nan("")))).is_within(5.0) == std::string("-"));
   // With other grains: three beds of -20, -20.2 and -23 N deviate by 1.677 N, which counts for both runs.
   auto wide = study("wide", at(-26.0, 0.4));
-  wide.study.push_back({.variant = {.name = "second"}, .slips = {at(-20.2, 0.3)}});
-  wide.study.push_back({.variant = {.name = "third"}, .slips = {at(-23.0, 0.3)}});
+  wide.study.push_back({.variant = {.seed = "second"}, .slips = {at(-20.2, 0.3)}});
+  wide.study.push_back({.variant = {.seed = "third"}, .slips = {at(-23.0, 0.3)}});
   const auto beds = rigid_wheel::scatter_of_beds(wide, 0);
   CHECK(beds.beds == 3);
   CHECK(beds.mean == Approx(-21.0667).epsilon(1e-5));
   CHECK(beds.deviation == Approx(1.6773).epsilon(1e-4));
   CHECK(beds.error() == Approx(1.6773 / std::sqrt(3.0)).epsilon(1e-4));
-  CHECK(change(wide).newtons.error == Approx(std::sqrt(2.0) * 1.6773).epsilon(1e-4));
+  CHECK(change(wide).value.error == Approx(std::sqrt(2.0) * 1.6773).epsilon(1e-4));
   CHECK(change(wide).percent.error == Approx(100.0 * 1.6773 * std::hypot(1.0, 1.3) / 20.0).epsilon(1e-4));
-  CHECK(change(wide).is_small() == std::string("not told"));               // 30 +- 13.8 %
-  CHECK(std::isnan(change(study("wide", at(-26.0, 0.4))).newtons.error));  // what a bed deviates by is not known
+  CHECK(change(wide).is_within(5.0) == std::string("not told"));         // 30 +- 13.8 %
+  CHECK(std::isnan(change(study("wide", at(-26.0, 0.4))).value.error));  // what a bed deviates by is not known
 
   const auto tables = rigid_wheel::study_tables(wide);
   REQUIRE(tables.size() == 2);

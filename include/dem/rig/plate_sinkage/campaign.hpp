@@ -29,7 +29,7 @@ void press(const PlateSinkage<Model>& test, const Bed<Model>& bed, int threads, 
   work_and_save(
       [&] {
         PartOf<Model> part(session, stages, file);
-        Frames frames(session, stages, s.vtk && variant.name.empty() ? plate : "", s.sinkage / 20.0, "this plate");
+        Frames frames(session, stages, s.vtk && variant.is_run_itself() ? plate : "", s.sinkage / 20.0, "this plate");
         const auto kept = stages.keep("plate", r), series = stages.keep("frames", frames);
         const auto pictures = stages.keep("replay", replay);
         if (part.is_done()) {
@@ -60,15 +60,15 @@ void press_all(const PlateSinkage<Model>& test, const Bed<Model>& bed, VariantRe
   auto& plates = result.plates;
   for (const double width : s.widths) plates.push_back({.width = width});
   const std::size_t shown = plates.size() / 2;
-  if (s.replay && v.name.empty())
+  if (s.replay && v.is_run_itself())
     replay.emplace(
         report::ReplayOptions{.frames = 80, .interval = s.sinkage / s.speed / 60.0, .force_lines = s.replay_forces});
   const SharedThreads threads = share_threads(plates.size(), s.bed.threads);
   const int each = std::min(threads.each, bed.world.threads());
-  session.begin(v.name.empty() ? "press" : "press, " + v.text, static_cast<double>(plates.size()));
+  session.begin(v.is_run_itself() ? "press" : "press, " + v.text, static_cast<double>(plates.size()));
   const auto press_one = [&](std::size_t k, SharedStages& stages) {
     StagesOfOne own(stages, k, s.unload ? 2 : 1);
-    report::Replay* const own_replay = v.name.empty() && k == shown && replay ? &*replay : nullptr;
+    report::Replay* const own_replay = v.is_run_itself() && k == shown && replay ? &*replay : nullptr;
     press(test, bed, each, v, plates[k], own_replay, session, own);
   };
   work_and_save([&] { side_by_side(plates.size(), threads.runs, session, press_one); },
@@ -93,10 +93,7 @@ void run_campaign(const Settings& settings, ShapeOf&& shape_of, Campaign& campai
   };
   const auto all = variants(test.settings());
   int stages = 0;
-  for (const Variant& v : all) {
-    check_study(v.settings.study, v.settings.bed);
-    stages += 1 + (v.name == "slow" ? 0 : bed_stages(v.settings.bed));
-  }
+  for (const Variant& v : all) stages += 1 + (v.shares_bed() ? 0 : bed_stages(v.settings.bed));
   soil::Packing start = start_of(test.settings());
   BedStore store(session, test.settings().bed, test.settings().grains, BedStore::halves);
   session.begin_run(stages);
@@ -105,8 +102,8 @@ void run_campaign(const Settings& settings, ShapeOf&& shape_of, Campaign& campai
   for (const Variant& v : all) {
     VariantResult& result = campaign.variants.emplace_back(VariantResult{.variant = v});
     const PlateSinkage<Model> variant(v.settings, shape_of);
-    if (v.name != "slow") {
-      const bool is_first = v.name.empty();
+    if (!v.shares_bed()) {
+      const bool is_first = v.is_run_itself();
       bed.emplace(make_kept_bed(variant, is_first ? start : start_of(v.settings), session,
                                 is_first ? static_cast<PartStore&>(store) : session.parts(), v.prefix() + "bed"));
       if (is_first) store.save_places(*bed);

@@ -3,6 +3,7 @@
 #include <dem/io/csv.hpp>
 #include <dem/report/replay_page.hpp>
 #include <dem/rig/bed/small_bed.hpp>
+#include <dem/rig/plate_sinkage/study.hpp>
 #include <dem/rig/plate_sinkage/tables.hpp>
 #include <dem/rig/rig.hpp>
 
@@ -19,12 +20,13 @@ class PlateRig : public Rig {
   void resolve() override { plate_sinkage::resolve(settings); }
   [[nodiscard]] std::string output() const override { return settings.output; }
   [[nodiscard]] ResultNames results() const override {
-    ResultNames names{.files = {"results.csv", "plate_#+mm.pvd", "plate_#+mm.csv", "plate_#+mm_unloading.csv"},
-                      .plots = {"pressure", "fits"},
-                      .frames = {"grains", "surfaces"}};
-    for (const char* variant : variant_names) {
-      names.files.push_back(std::string(variant) + "_plate_#+mm.csv");
-      names.files.push_back(std::string(variant) + "_plate_#+mm_unloading.csv");
+    ResultNames names{
+        .files = {"results.csv", "study.csv", "plate_#+mm.pvd", "plate_#+mm.csv", "plate_#+mm_unloading.csv"},
+        .plots = {"pressure", "fits"},
+        .frames = {"grains", "surfaces"}};
+    for (const std::string& variant : variant_prefixes()) {
+      names.files.push_back(variant + "plate_#+mm.csv");
+      names.files.push_back(variant + "plate_#+mm_unloading.csv");
     }
     return names;
   }
@@ -41,10 +43,17 @@ class PlateRig : public Rig {
       return false;
     }
     const VariantResult& v = campaign.variants.front();
+    std::vector<std::string> words{bed_text(v), finding_text(v)};
+    if (!small_bed().empty()) words.push_back(small_bed());
+    if (campaign.variants.size() > 1) {
+      for (auto& line : study_findings(campaign)) words.push_back(std::move(line));
+      words.emplace_back(study_text);
+      report.part("study.csv", [&] { write_study(report.folder() / "study.csv", campaign); });
+    }
     report.part("results.csv", [&] { write_results(report.folder() / "results.csv"); });
     report.part("the printed report", [&] {
-      fmt::print("\n{}\n{}\n", bed_text(v), finding_text(v));
-      if (!small_bed().empty()) fmt::print("{}\n", small_bed());
+      fmt::print("\n");
+      for (const auto& line : words) fmt::print("{}\n", line);
       fmt::print("\n");
       for (const auto& table : tables()) {
         io::print(table);
@@ -53,8 +62,7 @@ class PlateRig : public Rig {
       fmt::print("{} of wall time.\n", io::format_duration(report.outcome().wall_time));
     });
     report.page(list_settings(settings), [&](io::HtmlReport& page) {
-      page.paragraph(bed_text(v)).paragraph(finding_text(v));
-      if (!small_bed().empty()) page.paragraph(small_bed());
+      for (const auto& line : words) page.paragraph(line);
       for (const auto& table : tables()) page.table(table);
       page.heading("Plots");
       report.plot(page, pressure_plot(v), "pressure",
@@ -82,7 +90,8 @@ class PlateRig : public Rig {
     const VariantResult& v = campaign.variants.front();
     std::vector<io::Table> list{pressure_table(v), fit_table(v)};
     if (auto constants = constants_table(v); !constants.rows.empty()) list.push_back(std::move(constants));
-    list.push_back(study_table(campaign));
+    list.push_back(runs_table(campaign));
+    if (campaign.variants.size() > 1) list.push_back(study_table(campaign));
     return list;
   }
 

@@ -28,7 +28,8 @@ struct Settings {
 
   bool unload = false;  ///< draw the plate up again, for the slope of unloading
 
-  std::string study = "none";  ///< none, box, speed or seeds
+  std::string study = "none";     ///< none, box, speed or seeds
+  std::uint64_t study_seeds = 0;  ///< of each run of the study; 0: three, but one with a bed from a file
   std::string output = "plate_sinkage_output";
   bool replay = true;
   std::uint64_t replay_forces = 2000;  ///< force chains of a frame of the replay, the largest; 0: none
@@ -56,6 +57,9 @@ inline void declare(Options& options, Settings& s) {
   add("--fit-from", s.fit_from, "share of the sinkage from which points are fitted");
   options.flag("--unload", s.unload, "then draw the plate up again, a tenth as fast: the slope of unloading");
   add_study_option(options, s.study);
+  add("--study-seeds", s.study_seeds,
+      "seeds of each run of the study, for its errors (0: three; with --bed-file one): a change is that of two runs of "
+      "one seed");
   add_grain_options(options, s.grains);
   add_bed_options(options, s.bed);
   add_output_options(options, s, "a plate");
@@ -65,6 +69,7 @@ inline void find_idle(IdleOptions& idle, const Settings& s) {
   rig::find_idle(idle, s.grains);
   rig::find_idle(idle, s.bed);
   find_idle_replay(idle, s);
+  idle.unless(s.study != "none", "with a --study", {"--study-seeds"});
 }
 
 /// Fills in what depends on the size, and checks every option against its range. Throws Error.
@@ -102,11 +107,18 @@ inline void resolve(Settings& s) {
   require_positive(s.threshold, "--threshold", "Pa");
   require_within(s.smoothing, 0.0, 0.5, "--smoothing");
   require_within(s.fit_from, 1e-3, 0.9, "--fit-from");
+  check_study(s.study, s.bed);
+  if (s.study_seeds == 0) s.study_seeds = s.bed.file.empty() ? 3 : 1;
+  require_within(static_cast<double>(s.study_seeds), s.study == "seeds" ? 2.0 : 1.0, 9.0, "--study-seeds");
+  if (s.study == "speed" && s.study_seeds > 1 && !s.bed.file.empty()) {
+    fail("--study-seeds {} needs other beds than the one of --bed-file; leave one of them out", s.study_seeds);
+  }
 }
 
 /// The run itself, and those of the study.
 inline std::vector<Variant> variants(const Settings& s) {
-  return variants_of(s, [](Settings& x) { x.speed *= 0.5; });
+  const std::uint64_t seeds = s.study == "none" ? 1 : s.study_seeds;
+  return variants_of(s, {.as_set = seeds, .changed = seeds}, [](Settings& x) { x.speed *= 0.5; });
 }
 
 /// Names and values for the report.
@@ -122,7 +134,7 @@ inline NamesAndValues list_settings(const Settings& s) {
        {"friction, grain on plate", text("{:g}", s.plate_friction)},
        {"speed", text("{:g} mm/s", 1e3 * s.speed)},
        {"sinkage", text("{:g} mm, from where the pressure first is {:g} kPa", 1e3 * s.sinkage, 1e-3 * s.threshold)},
-       {"study", s.study}});
+       {"study", s.study == "none" ? s.study : text("{}, {} seeds", s.study, s.study_seeds)}});
   return list;
 }
 

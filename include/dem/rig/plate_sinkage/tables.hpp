@@ -92,19 +92,16 @@ inline double mean_pressure(const PlateResult& r, const Settings& s) {
   return r.finished && count > 0.0 ? sum / count : not_known;
 }
 
-/// The run and those of its study, side by side.
-inline io::Table study_table(const Campaign& c) {
-  io::Table t{
-      .caption = "Mean pressure over the second half of the sinkage",
-      .header = {"run", "grains", "solid fraction", "rel. density", "plate [mm]", "pressure [kPa]", "change [%]"}};
+/// The run and those of its study, below each other.
+inline io::Table runs_table(const Campaign& c) {
+  io::Table t{.caption = "Mean pressure over the second half of the sinkage",
+              .header = {"run", "grains", "solid fraction", "rel. density", "plate [mm]", "pressure [kPa]"}};
   for (const VariantResult& v : c.variants) {
-    for (std::size_t k = 0; k < v.plates.size(); ++k) {
-      const double p = mean_pressure(v.plates[k], v.variant.settings);
-      const double base = mean_pressure(c.variants.front().plates[k], c.variants.front().variant.settings);
-      const double density =
-          std::isfinite(v.solid_fraction) ? soil::relative_density(v.solid_fraction, soil::cube8_limits) : not_known;
+    const double density =
+        std::isfinite(v.solid_fraction) ? soil::relative_density(v.solid_fraction, soil::cube8_limits) : not_known;
+    for (const PlateResult& r : v.plates) {
       t.row(v.variant.text, v.grains, number(v.solid_fraction, "{:.3f}"), number(density),
-            number(1e3 * v.plates[k].width, "{:.0f}"), number(1e-3 * p), number(100.0 * (p / base - 1.0), "{:+.1f}"));
+            number(1e3 * r.width, "{:.0f}"), number(1e-3 * mean_pressure(r, v.variant.settings)));
     }
   }
   return t;

@@ -30,7 +30,7 @@ template <class Model>
 void roll(const RigidWheel<Model>& test, const typename RigidWheel<Model>::Stand& stand, VariantResult& result,
           std::optional<report::Replay>& replay, Session& session) {
   const Settings& s = test.settings();
-  const bool is_run = result.variant.name.empty();
+  const bool is_run = result.variant.is_run_itself();
   for (const double slip : s.slips) result.slips.push_back({.slip = slip});
   const std::size_t shown = is_run ? shown_slip(s.slips) : s.slips.size();
   if (s.replay && is_run)
@@ -79,7 +79,7 @@ void run_campaign(const Settings& settings, ShapeOf&& shape_of, Campaign& campai
     return start_of_bed(s.bed, s.grains, test.shape().volume(), test.shape().bounding_radius());
   };
   const auto all = variants(test.settings());
-  const auto needs_bed = [&](std::size_t k) { return k < all.size() && all[k].name != "slow"; };
+  const auto needs_bed = [&](std::size_t k) { return k < all.size() && !all[k].shares_bed(); };
   int stages = 0;
   for (std::size_t k = 0; k < all.size(); ++k) stages += (needs_bed(k) ? bed_stages(all[k].settings.bed) : 0) + 2;
   const soil::Packing start = start_of(test.settings());

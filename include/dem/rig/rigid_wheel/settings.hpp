@@ -78,7 +78,7 @@ inline void declare(Options& options, Settings& s) {
   add("--set-down-speed", s.set_down_speed, "of the load servo [m/s]");
   add("--soil", s.soil,
       "file of a soil as the bevameter writes it: Bekker-Wong and dynamic Bekker with it are drawn too");
-  add_study_option(options, s.study, " (box also makes these, for the error)");
+  add_study_option(options, s.study, " (two; box also makes these, for the error)");
   add_grain_options(options, s.grains);
   add_bed_options(options, s.bed);
   add_output_options(options, s, "a slip");
@@ -145,9 +145,8 @@ inline void resolve(Settings& s) {
 /// The run itself, and those of the study. With other boxes come other seeds: what a box changes is to be seen beside
 /// how far beds of one box differ.
 inline std::vector<Variant> variants(const Settings& s) {
-  auto list = variants_of(s, [](Settings& x) { x.spin_deg *= 0.5; });
-  if (s.study == "box") add_seeds(list);
-  return list;
+  const StudySeeds seeds = {.as_set = s.study == "box" || s.study == "seeds" ? 3u : 1u};
+  return variants_of(s, seeds, [](Settings& x) { x.spin_deg *= 0.5; });
 }
 
 /// Names and values for the report.

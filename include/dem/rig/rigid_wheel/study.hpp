@@ -2,6 +2,7 @@
 // How far the pull depends on the box, the speed and the seed of the bed, with errors.
 
 #include <dem/io/csv.hpp>
+#include <dem/rig/bed/study_change.hpp>
 #include <dem/rig/rigid_wheel/tables.hpp>
 
 #include <cmath>
@@ -11,11 +12,6 @@
 
 namespace dem::rig::rigid_wheel {
 
-/// A value with its standard error; NaN: not known.
-struct ValueAndError {
-  double value = not_known, error = not_known;
-};
-
 /// The run itself and those of its study.
 inline std::vector<const VariantResult*> all_runs(const Campaign& c) {
   std::vector<const VariantResult*> list{&c};
@@ -23,46 +19,28 @@ inline std::vector<const VariantResult*> all_runs(const Campaign& c) {
   return list;
 }
 
-/// Mean pull of the beds in the box as set at a slip, and how they scatter.
-struct BedScatter {
-  std::size_t beds = 0;          ///< whose run at this slip was finished
-  double mean = not_known;       ///< N
-  double deviation = not_known;  ///< N, standard deviation between the beds; NaN of one
-  double error() const { return deviation / std::sqrt(static_cast<double>(beds)); }  ///< N, of the mean
-};
+/// Mean pull (N) of the beds in the box as set at a slip, whose run was finished, and how they scatter.
 inline BedScatter scatter_of_beds(const Campaign& c, std::size_t slip) {
   std::vector<double> pulls;
   for (const VariantResult* v : all_runs(c)) {
     if (!v->variant.is_of_seed()) continue;
     if (slip < v->slips.size() && v->slips[slip].finished) pulls.push_back(v->slips[slip].pull.mean);
   }
-  const MeanAndDeviation all = mean_of(pulls);
-  const double n = static_cast<double>(pulls.size());
-  return {pulls.size(), all.mean, n > 1.0 ? all.deviation * std::sqrt(n / (n - 1.0)) : not_known};
+  return scatter_of(pulls);
 }
 
-/// What a run of a study changes in the pull at a slip.
-struct PullChange {
-  ValueAndError newtons = {}, percent = {};  ///< the latter of the pull of the run itself
-
-  PullChange(const Campaign& c, const VariantResult& v, std::size_t slip) {
-    const SlipResult &base = c.slips[slip], &other = v.slips[slip];
-    if (&v == &c || !base.finished || !other.finished) return;
-    // In the same bed the errors are those of means in time, else at least what a bed deviates by.
-    const double bed = v.variant.name == "slow" ? 0.0 : scatter_of_beds(c, slip).deviation;
-    const double e = std::fmax(base.pull_error, bed), f = std::fmax(other.pull_error, bed);
-    const double a = base.pull.mean, b = other.pull.mean;
-    newtons = {b - a, std::hypot(e, f)};
-    percent = {100.0 * (b - a) / std::abs(a), 100.0 * std::hypot(f, b / a * e) / std::abs(a)};
-    if (std::isnan(bed)) newtons.error = percent.error = not_known;
-  }
-  /// Whether the pull changes by less than 5 %: what two standard errors say.
-  [[nodiscard]] const char* is_small() const {
-    const double size = std::abs(percent.value), spread = 2.0 * percent.error;
-    if (!std::isfinite(size + spread)) return "-";
-    return size + spread < 5.0 ? "yes" : size - spread > 5.0 ? "no" : "not told";
-  }
-};
+/// What a run of a study changes in the pull (N) at a slip.
+inline Change pull_change(const Campaign& c, const VariantResult& v, std::size_t slip) {
+  const SlipResult &base = c.slips[slip], &other = v.slips[slip];
+  if (&v == &c || !base.finished || !other.finished) return {};
+  // In the same bed the errors are those of means in time, else at least what a bed deviates by.
+  const double bed = scatter_of_beds(c, slip).deviation;
+  const auto with_error = [&](const SlipResult& r) -> ValueAndError {
+    if (v.variant.shares_bed()) return {r.pull.mean, r.pull_error};
+    return {r.pull.mean, std::isnan(bed) ? bed : std::fmax(r.pull_error, bed)};
+  };
+  return change_of(with_error(base), with_error(other));
+}
 
 inline io::Table study_table(const Campaign& c) {
   io::Table t{
@@ -77,13 +55,13 @@ inline io::Table study_table(const Campaign& c) {
       std::vector<std::string> row{v->variant.text,     text("{}", v->grains), number(v->solid_fraction, "{:.3f}"),
                                    number(density),     number(r.slip),        number(r.pull.mean),
                                    number(r.pull_error)};
-      const PullChange change(c, *v, k);
+      const Change change = pull_change(c, *v, k);
       if (v == &c) {
         row.resize(t.header.size());
       } else {
-        row.insert(row.end(), {number(change.newtons.value, "{:+.2f}"), number(change.newtons.error),
+        row.insert(row.end(), {number(change.value.value, "{:+.2f}"), number(change.value.error),
                                number(change.percent.value, "{:+.1f}"), number(change.percent.error, "{:.1f}"),
-                               change.is_small()});
+                               change.is_within(5.0)});
       }
       t.rows.push_back(std::move(row));
     }
@@ -126,9 +104,9 @@ inline void write_study(const std::filesystem::path& path, const Campaign& c) {
   for (const VariantResult* v : all_runs(c)) {
     for (std::size_t k = 0; k < v->slips.size(); ++k) {
       const SlipResult& r = v->slips[k];
-      const PullChange change(c, *v, k);
+      const Change change = pull_change(c, *v, k);
       csv.row(v->variant.text, r.slip, v->grains, cell(v->solid_fraction), cell(r.pull.mean), cell(r.pull_error),
-              cell(r.torque.mean), cell(r.sinkage.mean), cell(change.newtons.value), cell(change.newtons.error),
+              cell(r.torque.mean), cell(r.sinkage.mean), cell(change.value.value), cell(change.value.error),
               cell(change.percent.value), cell(change.percent.error), r.finished);
     }
   }

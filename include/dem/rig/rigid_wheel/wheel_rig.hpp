@@ -30,9 +30,9 @@ class WheelRig : public Rig {
                   "slip_#+.pvd", "slip_m#+.pvd"},
         .plots = {"pull", "torque", "sinkage", "pull_over_time", "sinkage_over_time", "rut", "stress", "print"},
         .frames = {"grains", "surfaces"}};
-    for (const char* variant : variant_names) {
-      names.files.push_back(std::string(variant) + "_slip_#+.csv");
-      names.files.push_back(std::string(variant) + "_slip_m#+.csv");
+    for (const std::string& variant : variant_prefixes()) {
+      names.files.push_back(variant + "slip_#+.csv");
+      names.files.push_back(variant + "slip_m#+.csv");
     }
     return names;
   }
