@@ -62,9 +62,9 @@ class PlateSinkage {
     double top = bed.level;  // grains that stand out of the level are not to be in the plate
     for (const auto p : world.grains()) top = std::max(top, world.position(p).z() + shape_.bounding_radius());
     const Vec3 edges(s.length, result.width, s.thickness), at(0.0, 0.0, top + 0.5 * s.thickness);
-    const double mass = 7800.0 * edges.prod(), k = 1e7, c = 2.0 * std::sqrt(k * mass);
+    const double mass = s.plate_density * edges.prod(), k = s.drive_stiffness, c = 2.0 * std::sqrt(k * mass);
     const double interval = s.sample_interval();
-    const BodyId plate = m.add_body(mbd::box_body("plate", edges, 7800.0).at(at));
+    const BodyId plate = m.add_body(mbd::box_body("plate", edges, s.plate_density).at(at));
     world.set_contact("grain", "plate", grain_contact<Model>(s.grains, s.plate_friction));
     world.add_surface(plate, surface::Box(edges), {.material = "plate", .name = "plate"});
     const JointId slide = m.add_joint(mbd::prismatic("plate slide", bed.top, plate, at, Vec3::UnitZ()));
@@ -99,16 +99,16 @@ class PlateSinkage {
   }
 
  private:
-  /// Draws the plate up again, a tenth as fast, until the grains push with a twentieth of what they did.
+  /// Draws the plate up again until the grains push with a twentieth of what they did.
   void draw_up(typename Bed<Model>::World& world, JointId slide, ActuatorId drive, SensorId grains, double area,
                plate_sinkage::PlateResult& result, Stages& stages) const {
     const Settings& s = settings_;
     auto& m = world.machine();
     stages.begin(text("draw up {:.0f} mm", 1e3 * result.width), 1.0);
     plate_sinkage::Pressing n{.start = world.time(), .zero = -m.coordinate(slide)};
-    const double first = result.samples.back().pressure, speed = 0.1 * s.speed;
-    const auto stage =
-        stages.enter(world, n, [&] { m.set_target(drive, smooth_start(speed, s.ramp_time, n.start, -n.zero)); });
+    const double first = result.samples.back().pressure;
+    const auto stage = stages.enter(
+        world, n, [&] { m.set_target(drive, smooth_start(s.unload_speed, s.ramp_time, n.start, -n.zero)); });
     if (!stage) return;
     for (double pressure = first; pressure > 0.05 * first && n.travel > -0.25 * s.sinkage;) {
       run(world, s.sample_interval());

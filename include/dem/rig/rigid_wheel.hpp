@@ -169,13 +169,13 @@ class RigidWheel {
     const Vec3 at(s.start(), 0.0, top + s.outer_radius());
     Mat3 about_y;  // the wheel's axis, z of its own frame, along y
     about_y << 1, 0, 0, 0, 0, 1, 0, -1, 0;
-    const double mass = s.load / 9.81, wheel_mass = 0.6 * mass, carriage_mass = 5.0;
+    const double mass = s.load / 9.81, wheel_mass = s.wheel_share * mass;
     const double volume = std::numbers::pi * s.radius * s.radius * s.width;
     const auto box = [&](const char* name, double kg) {
       const Vec3 edges(0.05, 0.05, 0.05);
       return m.add_body(mbd::box_body(name, edges, kg / edges.prod()).at(at));
     };
-    stand.carriage = box("carriage", carriage_mass);
+    stand.carriage = box("carriage", s.carriage_mass);
     stand.shaft = box("shaft", mass - wheel_mass);
     stand.wheel = m.add_body(mbd::cylinder_body("wheel", s.radius, s.width, wheel_mass / volume).at(at, about_y));
     world.set_contact("grain", "wheel", grain_contact<Model>(s.grains, s.wheel_friction));
@@ -193,10 +193,9 @@ class RigidWheel {
     stand.rail = m.add_joint(mbd::prismatic("rail", m.ground(), stand.carriage, at, Vec3::UnitX()));
     stand.guide = m.add_joint(mbd::prismatic("guide", stand.carriage, stand.shaft, at, Vec3::UnitZ()));
     stand.axle = m.add_joint(mbd::revolute("axle", stand.shaft, stand.wheel, at, Vec3::UnitY()));
-    // Stiff against pulls and torques of some 100 N and 20 N m: 0.1 mm and 0.2 mrad. Damped critically.
-    const double k = 1e6, turn = 1e5, inertia = 0.5 * wheel_mass * s.radius * s.radius;
+    const double k = s.drive_stiffness, turn = s.motor_stiffness, inertia = 0.5 * wheel_mass * s.radius * s.radius;
     stand.drive =
-        m.add_actuator(mbd::joint_actuator("drive", stand.rail, k, 2.0 * std::sqrt(k * (mass + carriage_mass))));
+        m.add_actuator(mbd::joint_actuator("drive", stand.rail, k, 2.0 * std::sqrt(k * (mass + s.carriage_mass))));
     stand.motor = m.add_actuator(mbd::joint_actuator("motor", stand.axle, turn, 2.0 * std::sqrt(turn * inertia)));
     stand.servo = m.add_actuator(mbd::joint_actuator("load servo", stand.guide, 0.0, s.load / s.set_down_speed));
     const double window = s.sample_interval();

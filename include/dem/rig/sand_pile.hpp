@@ -51,7 +51,7 @@ class SandPile {
     return result;
   }
 
-  /// The same with stages that are told, and a look at the world every hundredth of a second. `result` says which seed,
+  /// The same with stages that are told, and a look at the world at each sample. `result` says which seed,
   /// and is filled as the pile is made, so that a run that is stopped leaves its samples.
   template <class Look>
   void make(sand_pile::PileResult& result, Stages& stages, Look&& look) const {

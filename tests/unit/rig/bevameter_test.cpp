@@ -166,6 +166,7 @@ TEST_CASE(
   refuses([](auto& x) { x.normal_stresses = {1e4, -1.0}; }, "--normal-stresses");
   refuses([](auto& x) { x.confidence = 1.0; }, "--confidence");
   refuses([](auto& x) { x.pieces = 1.0; }, "--pieces");
+  refuses([](auto& x) { x.shear_smoothing = 0.7; }, "--shear-smoothing");
   refuses([](auto& x) { x.grains.half_edge = -1.0; }, "--half-edge");
 }
 

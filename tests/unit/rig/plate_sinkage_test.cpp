@@ -86,6 +86,9 @@ TEST_CASE("settings of plates that make no sense are refused by the names of the
   refuses([](auto& s) { s.widths = {0.07}; }, "--plates");
   refuses([](auto& s) { s.widths = {0.03, 0.0301}; }, "--plates");
   refuses([](auto& s) { s.length = 0.07; }, "--plate-length");
+  refuses([](auto& s) { s.plate_density = 0.0; }, "--plate-density");
+  refuses([](auto& s) { s.drive_stiffness = -1e7; }, "--drive-stiffness");
+  refuses([](auto& s) { s.unload_speed = 2.0; }, "--unload-speed");
   refuses([](auto& s) { s.bed.relative_density = 1.5; }, "--relative-density");
   refuses([](auto& s) { s.grains.half_edge = -1.0; }, "--half-edge");
 }
@@ -258,6 +261,23 @@ TEST_CASE(
   }
   CHECK(off == Approx(0.0).margin(0.15));
   CHECK(first.samples.back().time > 0.05);
+
+  // A plate of another mass, on another drive: the settings reach the machine.
+  settings = small();
+  settings.plate_density = 2700.0;
+  settings.drive_stiffness = 2e6;
+  settings.sinkage = 2e-4;
+  settings.ramp_time = 1e-3;
+  const PlateSinkage<models::VerletCubes> light(settings, [](double h) { return dem::shape::cube8(h); });
+  plate_sinkage::PlateResult result{.width = 0.03};
+  double mass = 0.0, stiffness = 0.0;
+  Stages quiet;
+  light.press(bed, result, quiet, [&](const auto& world, double) {
+    mass = world.machine().bodies().back().mass;
+    stiffness = world.machine().parts().actuators.back().spec.position_gain;
+  });
+  CHECK(mass == Approx(2700.0 * 9e-6));
+  CHECK(stiffness == 2e6);
 }
 
 }  // namespace plate_sinkage_test

@@ -107,6 +107,10 @@ TEST_CASE("settings of wheels that make no sense are refused by the names of the
   refuses([](auto& s) { s.slips = {1.5}; }, "--slips");
   refuses([](auto& s) { s.width = 0.06; }, "--width");
   refuses([](auto& s) { s.load = 0.0; }, "--load");
+  refuses([](auto& s) { s.wheel_share = 1.0; }, "--wheel-share");
+  refuses([](auto& s) { s.carriage_mass = 0.0; }, "--carriage-mass");
+  refuses([](auto& s) { s.drive_stiffness = 0.0; }, "--drive-stiffness");
+  refuses([](auto& s) { s.motor_stiffness = -1.0; }, "--motor-stiffness");
   CHECK(rigid_wheel::slip_name(-0.3) == "slip_m30");
   CHECK(rigid_wheel::slip_name(0.3) == "slip_30");
 }
@@ -188,7 +192,10 @@ TEST_CASE("a wheel is set down gently, carries its load, and keeps its slip") {
   const RigidWheel<models::VerletCubes> test(small(), [](double h) { return dem::shape::cube8(h); });
   const auto stand = test.set_down(test.make_bed());
   const auto& m = stand.bed.world.machine();
-  CHECK(m.bodies().size() == 6);                                              // ground and the five of table 5.2
+  CHECK(m.bodies().size() == 6);  // ground and the five of table 5.2
+  CHECK(m.body(stand.carriage).mass == Approx(5.0));
+  CHECK(m.body(stand.wheel).mass == Approx(0.6 * 5.0 / 9.81));
+  CHECK(m.body(stand.shaft).mass == Approx(0.4 * 5.0 / 9.81));
   CHECK(m.parts().joints.size() == 4);                                        // three slides and an axle
   CHECK(m.parts().actuators.size() == 4);                                     // those of the table, and the load servo
   CHECK(m.sensor(stand.grains).mean().force.z == Approx(5.0).epsilon(0.03));  // the servo ends within 2 %

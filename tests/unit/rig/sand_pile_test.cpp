@@ -62,6 +62,8 @@ TEST_CASE("settings of a sand pile that make no sense are refused") {
   CHECK_THROWS_WITH(refused([](Settings& s) { s.plate_radius = 1e-3; }), ContainsSubstring("--plate-radius"));
   CHECK_THROWS_WITH(refused([](Settings& s) { s.friction = -1.0; }), ContainsSubstring("--friction"));
   CHECK_THROWS_WITH(refused([](Settings& s) { s.flank_low = 0.9; }), ContainsSubstring("--flank-low"));
+  CHECK_THROWS_WITH(refused([](Settings& s) { s.sample_time = 0.1; }), ContainsSubstring("--sample-time"));
+  CHECK_THROWS_WITH(refused([](Settings& s) { s.rolling_damping = -0.1; }), ContainsSubstring("--rolling-damping"));
   CHECK_THROWS_WITH(refused([](Settings& s) { s.lift_speed = std::nan(""); }), ContainsSubstring("--lift-speed"));
 }
 
@@ -82,6 +84,12 @@ TEST_CASE("options of a sand pile that change nothing are named") {
   IdleOptions idle;
   sand_pile::find_idle(idle, s);
   CHECK(idle.contains("--rolling-length"));
+  CHECK(idle.contains("--rolling-damping"));
+  s.kinds = "sphere-braked";
+  idle = {};
+  sand_pile::find_idle(idle, s);
+  CHECK_FALSE(idle.contains("--rolling-length"));
+  CHECK(idle.contains("--rolling-damping"));  // a constant torque has no springs
 }
 
 TEST_CASE("piles of a kind are one row of the table") {

@@ -146,7 +146,7 @@ class Bed {
     auto& m = world.machine();
     const double t = bed_.wall_thickness, seam = box.halves ? 0.5 * bed_.depth : box.wall_top;
     const Vec3 outer(bed_.length + 2.0 * beyond(), bed_.width + 2.0 * t, t);
-    constexpr double mass = 2.0;  // kg, of a half; it does not move
+    const double mass = bed_.half_mass;
     const auto half = [&](const char* name, double height) {
       return m.add_body(mbd::box_body(name, outer, mass / outer.prod()).at(Vec3(0.0, 0.0, height)));
     };
@@ -157,7 +157,7 @@ class Bed {
     if (!box.halves) return;
     top = half("top box", seam);
     add_walls(top, "top wall ", seam, box.wall_top, seam);
-    const double k = 1e7, c = 2.0 * std::sqrt(k * mass);
+    const double k = bed_.half_stiffness, c = 2.0 * std::sqrt(k * mass);
     for (const BodyId body : {bottom, top}) {
       const std::string name = m.body(body).name;
       const JointId slide = m.add_joint(

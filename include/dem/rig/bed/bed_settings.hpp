@@ -23,6 +23,8 @@ struct BedSettings {
   double lid_speed = 0.05;        ///< m/s, at which the lid comes down
   double stage_limit = 3.0;       ///< s; a stage that has not come to rest by then ends the run
   double wall_thickness = 0.01;   ///< m
+  double half_mass = 2.0;         ///< kg, of either half of a box on slides
+  double half_stiffness = 1e7;    ///< N/m, of the actuators that hold the halves, which are damped critically
   double stable_share = 0.8;      ///< time step, in largest stable ones
   std::uint64_t seed = 1;         ///< of the rain
   int threads = 0;                ///< 0: all, at least 1000 grains for each

@@ -33,6 +33,7 @@ struct Settings {
   std::vector<double> normal_stresses;  ///< Pa; empty: by size
   double shear_speed = 0.0;             ///< m/s; 0: by size
   double shear_travel = 0.0;            ///< m; 0: by size
+  double shear_smoothing = 0.0375;      ///< of the travel, over which stresses are averaged
 
   // Wheel, in a bed of its own of the same soil
   std::string wheel;          ///< none, smooth, rough or grousers; empty: by size
@@ -72,6 +73,7 @@ inline void declare(Options& options, Settings& s) {
   add("--normal-stresses", s.normal_stresses, "[Pa], at least two, for a cohesion three; empty: by size");
   add("--shear-speed", s.shear_speed, "[m/s]; 0: by size");
   add("--shear-travel", s.shear_travel, "[m]; 0: by size");
+  add("--shear-smoothing", s.shear_smoothing, "share of the travel over which stresses are averaged");
   options.group("Wheel");
   add("--wheel", s.wheel, "that the constants are tried on: none, smooth, rough or grousers; empty: by size")
       .one_of({"", "none", "smooth", "rough", "grousers"});
@@ -148,7 +150,7 @@ inline direct_shear::Settings shear_of(const Settings& s, double relative_densit
   d.relative_density = std::clamp(relative_density, 0.0, 1.0);
   d.shear_speed = s.shear_speed;
   d.travel = s.shear_travel;
-  d.smoothing = 0.0375 * s.shear_travel;
+  d.smoothing = s.shear_smoothing * s.shear_travel;
   for (const double sigma : s.normal_stresses) d.loads.push_back(sigma * d.area() / 9.81);
   d.seed = s.seed;
   d.threads = s.threads;
@@ -259,6 +261,7 @@ inline void resolve(Settings& s) {
   if (s.slips.empty()) s.slips = by_size.slips;
   require_within(s.confidence, 0.5, 0.999, "--confidence");
   require_within(s.pieces, 2.0, 50.0, "--pieces");
+  require_within(s.shear_smoothing, 0.0, 0.5, "--shear-smoothing");
   if (s.widths.size() < 2) {
     fail("--plates has {} width, but k_c and k_phi need plates of at least two; three are usual", s.widths.size());
   }

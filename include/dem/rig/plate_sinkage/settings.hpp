@@ -14,19 +14,24 @@ struct Settings {
   GrainSettings grains{.constants_for = 1.86e-3};  ///< of thesis table 4.2
   BedSettings bed;
 
-  // Plates (thesis section 4.2: 130 mm x 30, 50, 70 mm x 10 mm, of aluminium, at 10 mm/s)
-  std::vector<double> widths;   ///< m, the smaller sides; empty: by size
-  double length = 0.0;          ///< m; 0: by size
-  double thickness = 0.01;      ///< m
-  double plate_friction = 0.0;  ///< mu, grain on plate
-  double speed = 0.0;           ///< m/s; 0: by size
-  double ramp_time = 0.01;      ///< s, of the smooth start
-  double sinkage = 0.0;         ///< m, from where the pressure first is `threshold`; 0: by size
-  double threshold = 1000.0;    ///< Pa, at which sinkage begins
-  double smoothing = 0.02;      ///< of the sinkage, over which pressures are averaged
-  double fit_from = 0.1;        ///< of the sinkage: points before are not fitted
+  // Plates (thesis section 4.2: 130 mm x 30, 50, 70 mm x 10 mm, at 10 mm/s). Those of its experiment are of aluminium,
+  // so that sand hardly rubs on them. It gives no mass of the simulated ones: here they have the density of steel,
+  // three times that of aluminium. The drive carries their weight, and the sensor feels the grains alone.
+  std::vector<double> widths;     ///< m, the smaller sides; empty: by size
+  double length = 0.0;            ///< m; 0: by size
+  double thickness = 0.01;        ///< m
+  double plate_density = 7800.0;  ///< kg/m^3
+  double plate_friction = 0.0;    ///< mu, grain on plate
+  double drive_stiffness = 1e7;   ///< N/m, of the plate's actuator, which is damped critically
+  double speed = 0.0;             ///< m/s; 0: by size
+  double ramp_time = 0.01;        ///< s, of the smooth start
+  double sinkage = 0.0;           ///< m, from where the pressure first is `threshold`; 0: by size
+  double threshold = 1000.0;      ///< Pa, at which sinkage begins
+  double smoothing = 0.02;        ///< of the sinkage, over which pressures are averaged
+  double fit_from = 0.1;          ///< of the sinkage: points before are not fitted
 
-  bool unload = false;  ///< draw the plate up again, for the slope of unloading
+  bool unload = false;        ///< draw the plate up again, for the slope of unloading
+  double unload_speed = 0.0;  ///< m/s; 0: a tenth of the speed
 
   std::string study = "none";     ///< none, box, speed or seeds
   std::uint64_t study_seeds = 0;  ///< of each run of the study; 0: three, but one with a bed from a file
@@ -48,14 +53,17 @@ inline void declare(Options& options, Settings& s) {
   add("--plates", s.widths, "widths of the plates [m], e.g. 0.03,0.05,0.07");
   add("--plate-length", s.length, "[m]; 0: by size");
   add("--plate-thickness", s.thickness, "[m]");
+  add("--plate-density", s.plate_density, "[kg/m^3]");
   add("--plate-friction", s.plate_friction, "mu, grain on plate");
+  add("--drive-stiffness", s.drive_stiffness, "of the actuator that presses a plate [N/m]");
   add("--speed", s.speed, "[m/s]; 0: by size");
   add("--ramp-time", s.ramp_time, "smooth start of a plate [s]");
   add("--sinkage", s.sinkage, "[m], from where it begins; 0: by size");
   add("--threshold", s.threshold, "pressure at which sinkage begins [Pa]");
   add("--smoothing", s.smoothing, "share of the sinkage over which pressures are averaged");
   add("--fit-from", s.fit_from, "share of the sinkage from which points are fitted");
-  options.flag("--unload", s.unload, "then draw the plate up again, a tenth as fast: the slope of unloading");
+  options.flag("--unload", s.unload, "then draw the plate up again: the slope of unloading");
+  add("--unload-speed", s.unload_speed, "at which it is drawn up [m/s]; 0: a tenth of the speed");
   add_study_option(options, s.study);
   add("--study-seeds", s.study_seeds,
       "seeds of each run of the study, for its errors (0: three; with --bed-file one): a change is that of two runs of "
@@ -70,6 +78,7 @@ inline void find_idle(IdleOptions& idle, const Settings& s) {
   rig::find_idle(idle, s.bed);
   find_idle_replay(idle, s);
   idle.unless(s.study != "none", "with a --study", {"--study-seeds"});
+  idle.unless(s.unload, "with --unload", {"--unload-speed"});
 }
 
 /// Fills in what depends on the size, and checks every option against its range. Throws Error.
@@ -90,6 +99,7 @@ inline void resolve(Settings& s) {
   fill(s.length, by_size.length);
   fill(s.speed, by_size.speed);
   fill(s.sinkage, by_size.sinkage);
+  fill(s.unload_speed, 0.1 * s.speed);
   if (s.widths.empty()) s.widths = by_size.widths;
   require_within(s.length, 1e-3, s.bed.length, "--plate-length (m, within the bed)");
   std::sort(s.widths.begin(), s.widths.end());
@@ -100,8 +110,11 @@ inline void resolve(Settings& s) {
          s.widths[k]);
   }
   require_within(s.thickness, 1e-3, 1.0, "--plate-thickness (m)");
+  require_within(s.plate_density, 1.0, 1e5, "--plate-density (kg/m^3)");
   require_non_negative(s.plate_friction, "--plate-friction", "(no unit)");
+  require_within(s.drive_stiffness, 1e3, 1e12, "--drive-stiffness (N/m)");
   require_within(s.speed, 1e-4, 1.0, "--speed (m/s)");
+  require_within(s.unload_speed, 1e-5, 1.0, "--unload-speed (m/s)");
   require_within(s.sinkage, 1e-4, 0.5 * s.bed.depth, "--sinkage (m, at most half the bed's depth)");
   require_within(s.ramp_time, 0.0, s.sinkage / s.speed, "--ramp-time (s, at most what the sinkage takes)");
   require_positive(s.threshold, "--threshold", "Pa");
@@ -118,7 +131,8 @@ inline void resolve(Settings& s) {
 /// The run itself, and those of the study.
 inline std::vector<Variant> variants(const Settings& s) {
   const std::uint64_t seeds = s.study == "none" ? 1 : s.study_seeds;
-  return variants_of(s, {.as_set = seeds, .changed = seeds}, [](Settings& x) { x.speed *= 0.5; });
+  return variants_of(s, {.as_set = seeds, .changed = seeds},
+                     [](Settings& x) { x.speed *= 0.5, x.unload_speed *= 0.5; });
 }
 
 /// Names and values for the report.
@@ -130,7 +144,9 @@ inline NamesAndValues list_settings(const Settings& s) {
   rig::list_settings(list, s.bed);
   list.insert(
       list.end(),
-      {{"plates", text("{:g} mm x {} mm x {:g} mm", 1e3 * s.length, widths, 1e3 * s.thickness)},
+      {{"plates",
+        text("{:g} mm x {} mm x {:g} mm, {:g} kg/m³", 1e3 * s.length, widths, 1e3 * s.thickness, s.plate_density)},
+       {"stiffness of a plate's drive", text("{:g} N/m", s.drive_stiffness)},
        {"friction, grain on plate", text("{:g}", s.plate_friction)},
        {"speed", text("{:g} mm/s", 1e3 * s.speed)},
        {"sinkage", text("{:g} mm, from where the pressure first is {:g} kPa", 1e3 * s.sinkage, 1e-3 * s.threshold)},

@@ -43,8 +43,9 @@ inline io::Table fit_table(const VariantResult& v) {
   for (const PlateResult& r : v.plates) {
     double driven = 0.0, felt = 0.0;
     for (const Sample& x : r.samples) driven += x.drive, felt += x.force;
-    const double weight = 9.81 * 7800.0 * v.variant.settings.length * r.width * v.variant.settings.thickness *
-                          static_cast<double>(r.samples.size());
+    const Settings& s = v.variant.settings;
+    const double weight =
+        9.81 * s.plate_density * s.length * r.width * s.thickness * static_cast<double>(r.samples.size());
     const double mismatch = felt > 0.0 ? 100.0 * std::abs((driven + weight) / felt - 1.0) : not_known;
     const auto& f = r.fit;
     t.row(number(1e3 * r.width, "{:.0f}"), number(f ? 1e-3 * f->curve.modulus : not_known, "{:.4g}"),

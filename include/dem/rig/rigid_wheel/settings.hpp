@@ -25,11 +25,15 @@ struct Settings {
   double grouser_height = 0.01;      ///< m
   double grouser_thickness = 0.004;  ///< m
   double load = 130.0;               ///< N, the weight of wheel and shaft
-  double spin_deg = 0.0;             ///< deg/s; 0: by size
-  std::vector<double> slips;         ///< empty: by size
-  double path = 0.0;                 ///< m, that the rim turns in a run; 0: by size
-  double ramp_time = 0.05;           ///< s, of the smooth start
-  double set_down_speed = 0.05;      ///< m/s
+  double wheel_share = 0.6;          ///< of their mass that is the wheel's, a solid cylinder; the thesis tells none
+  double carriage_mass = 5.0;        ///< kg, of the carriage on its rail, which its drive moves
+  double drive_stiffness = 1e6;  ///< N/m, of the carriage's actuator: gives by 0.1 mm under 100 N. Damped critically
+  double motor_stiffness = 1e5;  ///< N m/rad, of the wheel's: gives by 0.2 mrad under 20 N m. Damped critically
+  double spin_deg = 0.0;         ///< deg/s; 0: by size
+  std::vector<double> slips;     ///< empty: by size
+  double path = 0.0;             ///< m, that the rim turns in a run; 0: by size
+  double ramp_time = 0.05;       ///< s, of the smooth start
+  double set_down_speed = 0.05;  ///< m/s
 
   std::string study = "none";  ///< none, box, speed or seeds
   std::string soil;            ///< file of a soil, which the grains stand beside too
@@ -71,6 +75,10 @@ inline void declare(Options& options, Settings& s) {
   add("--grouser-height", s.grouser_height, "[m]");
   add("--grouser-thickness", s.grouser_thickness, "[m]");
   add("--load", s.load, "weight of wheel and shaft [N]");
+  add("--wheel-share", s.wheel_share, "of their mass that is the wheel's");
+  add("--carriage-mass", s.carriage_mass, "[kg]");
+  add("--drive-stiffness", s.drive_stiffness, "of the actuator that moves the carriage [N/m]");
+  add("--motor-stiffness", s.motor_stiffness, "of the actuator that turns the wheel [N m/rad]");
   add("--spin", s.spin_deg, "[deg/s]; 0: by size");
   add("--slips", s.slips, "s = 1 - v/(omega r), e.g. -0.3,0,0.1,0.3; table 5.3 of the thesis has -0.7 to 0.7");
   add("--path", s.path, "that the rim turns in a run [m]; 0: by size");
@@ -129,6 +137,10 @@ inline void resolve(Settings& s) {
   require_within(s.grouser_height, 1e-3, 0.5 * s.radius, "--grouser-height (m)");
   require_within(s.grouser_thickness, 1e-3, 0.5 * s.radius, "--grouser-thickness (m)");
   require_within(s.load, 0.1, 1e6, "--load (N)");
+  require_within(s.wheel_share, 0.01, 0.99, "--wheel-share");
+  require_within(s.carriage_mass, 1e-3, 1e6, "--carriage-mass (kg)");
+  require_within(s.drive_stiffness, 1e3, 1e12, "--drive-stiffness (N/m)");
+  require_within(s.motor_stiffness, 1.0, 1e12, "--motor-stiffness (N m/rad)");
   require_within(s.spin_deg, 0.1, 3600.0, "--spin (deg/s)");
   require_within(s.path, 1e-3, 100.0, "--path (m)");
   require_within(s.ramp_time, 0.0, s.path / s.rim_speed(), "--ramp-time (s, at most what the path takes)");
@@ -160,7 +172,9 @@ inline NamesAndValues list_settings(const Settings& s) {
                                                            1e3 * s.grouser_height, 1e3 * s.grouser_thickness)
                                                     : "")},
                {"friction, grain on wheel", text("{:g}", s.wheel_friction)},
-               {"load", text("{:g} N", s.load)},
+               {"load", text("{:g} N, of whose mass the wheel has {:g}", s.load, s.wheel_share)},
+               {"carriage", text("{:g} kg", s.carriage_mass)},
+               {"stiffness of drive and motor", text("{:g} N/m, {:g} N m/rad", s.drive_stiffness, s.motor_stiffness)},
                {"spin", text("{:g} deg/s: the rim at {:g} mm/s", s.spin_deg, 1e3 * s.rim_speed())},
                {"slip is", "s = 1 - v/(omega r), as in table 5.3"},
                {"path of the rim", text("{:g} mm", 1e3 * s.path)},

@@ -113,8 +113,6 @@ class Forming {
   }
 
  private:
-  static constexpr double interval = 0.01;  ///< s, of samples
-
   void lift() {
     NoNumbers none;
     const auto stage = stages_.enter(rig_.world, none, [&] {
@@ -152,7 +150,7 @@ class Forming {
 
   /// Goes on for a sampling interval.
   void go_on() {
-    run(rig_.world, interval);
+    run(rig_.world, s_.sample_time);
     result_.lost += rig_.remove_fallen();
     if (rig_.world.grain_count() == 0) throw Stopped("no grain is left");
     const auto grains = soil::placements(rig_.world);

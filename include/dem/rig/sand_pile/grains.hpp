@@ -40,9 +40,6 @@ double equal_radius(const Shape& shape) {
   return std::cbrt(0.75 * shape.volume() / std::numbers::pi);
 }
 
-/// m, of the sphere with the volume of a cube of that half-edge: the spheres that are piled up beside cubes.
-inline double sphere_radius(double half_edge) { return half_edge * std::cbrt(6.0 / std::numbers::pi); }
-
 /// Grains with the thesis's laws and the constants of the settings, for one kind. A viscous kind has asperities without
 /// a spring, which is Coulomb-viscous friction: min(cv |vt|, mu Fn).
 template <class Model>
@@ -55,7 +52,7 @@ Grains<Model> grains_of(const Settings& s, const Kind& kind, const typename Mode
                                {mu, spring, c * s.velocity_stiffness, s.breaking_factor}};
     const double resistance = kind.rolling ? rolling_length / effective_radius : 0.0;
     if constexpr (std::is_same_v<typename Model::Rolling, rolling::ElasticPlastic>) {
-      p.rolling = {resistance, k * s.stiffness, 0.3};
+      p.rolling = {resistance, k * s.stiffness, s.rolling_damping};
     } else if constexpr (std::is_same_v<typename Model::Rolling, rolling::ConstantTorque>) {
       p.rolling = {resistance};
     }

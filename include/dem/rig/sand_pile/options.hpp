@@ -47,11 +47,13 @@ inline void declare(Options& options, Settings& s) {
       "of sphere-rolling and sphere-braked: rolling resists by this times the normal force [m]; 0: a fifth of the "
       "half-edge");
   add("--plate-rolling-length", s.plate_rolling_length, "the same on plate, floor and walls; negative: the same");
+  add("--rolling-damping", s.rolling_damping, "of sphere-rolling: damping ratio of the springs that resist rolling");
   options.group("Stages");
   add("--settle-limit", s.settle_limit, "grains must be at rest in their container by then [s]");
   add("--flow-limit", s.flow_limit, "funnel and box must have emptied by then [s]");
   add("--rest-limit", s.rest_limit, "a pile that still moves is measured then [s]; 0: by size");
   add("--creep-time", s.creep_time, "for which the pile is watched [s]; 0: by size");
+  add("--sample-time", s.sample_time, "between two samples [s]");
   options.group("Fit");
   add("--flank-low", s.flank_low, "share of the height at which the flank ends");
   add("--flank-high", s.flank_high, "share of the height at which the flank begins");
@@ -76,6 +78,7 @@ inline void find_idle(IdleOptions& idle, const Settings& s) {
   const auto piles = [&](const char* kind) { return s.kinds.find(kind) != std::string::npos; };
   idle.unless(s.kinds.empty() || piles("sphere-rolling") || piles("sphere-braked"),
               "with --kinds sphere-rolling or sphere-braked", {"--rolling-length", "--plate-rolling-length"});
+  idle.unless(s.kinds.empty() || piles("sphere-rolling"), "with --kinds sphere-rolling", {"--rolling-damping"});
   find_idle_replay(idle, s);
   idle.unless(s.scale_contacts, "with --scale-contacts true", {"--constants-for"});
   idle.unless(s.vtk, "with files for ParaView, without --no-vtk", {"--frame-time"});

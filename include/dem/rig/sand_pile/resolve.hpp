@@ -50,10 +50,12 @@ inline void check(const Settings& s) {
   require_non_negative(s.container_friction, "--container-friction", "(no unit)");
   require_non_negative(s.plate_rolling_length, "--plate-rolling-length", "m");
   require_non_negative(s.rolling_length, "--rolling-length", "m");
+  require_non_negative(s.rolling_damping, "--rolling-damping", "(no unit)");
   require_positive(s.settle_limit, "--settle-limit", "s");
   require_positive(s.rest_limit, "--rest-limit", "s (0: by size)");
   require_positive(s.flow_limit, "--flow-limit", "s");
   require_positive(s.creep_time, "--creep-time", "s (0: by size)");
+  require_within(s.sample_time, 1e-4, 0.05, "--sample-time (s, at most the 50 ms for which grains must rest)");
   require_within(s.flank_high, 0.1, 1.0, "--flank-high");
   require_within(s.flank_low, 0.0, s.flank_high - 0.05, "--flank-low (below --flank-high)");
   require_within(static_cast<double>(s.directions), 3.0, 360.0, "--directions");

@@ -3,8 +3,10 @@
 #include <dem/core/error.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <numbers>
 #include <string>
 #include <vector>
 
@@ -50,6 +52,7 @@ struct Settings {
   double velocity_stiffness = -1.0;  ///< cv, N s/m; negative: as C
   double breaking_factor = 0.975;    ///< share of the friction that a broken asperity keeps
   double rolling_length = 0.0;       ///< m: rolling resists by this times the normal force; 0: a tenth of a diameter
+  double rolling_damping = 0.3;      ///< of sphere-rolling: damping ratio of the springs that resist rolling
   double constants_for = 0.9e-3;     ///< m
   bool scale_contacts = true;        ///< K, kt ~ half-edge and C, cv ~ its square
 
@@ -58,6 +61,7 @@ struct Settings {
   double rest_limit = 0.0;    ///< s; after which a pile that still moves is measured as it is; 0: by size
   double flow_limit = 10.0;   ///< s; funnel and box must be empty by then
   double creep_time = 0.0;    ///< s; 0: by size
+  double sample_time = 0.01;  ///< s, between two samples, at which it is also seen whether grains rest
 
   // Fit
   double flank_low = 0.2, flank_high = 0.8;  ///< shares of the height: see soil::FlankOptions
@@ -75,6 +79,9 @@ struct Settings {
   bool vtk = true;
   double frame_time = 0.05;  ///< s, between two frames
 };
+
+/// m, of the sphere with the volume of a cube of that half-edge: the spheres that are piled up beside cubes.
+inline double sphere_radius(double half_edge) { return half_edge * std::cbrt(6.0 / std::numbers::pi); }
 
 /// A kind of grain: a shape, and which of the laws act.
 struct Kind {
