@@ -64,7 +64,8 @@ class Car {
     start_ = stored();
     dem::vehicle::add_columns(columns, dem::vehicle::CarSample{});
     for (const char* corner : dem::vehicle::corner_letters) {
-      for (const char* what : {"load_N", "pull_N", "side_N", "slip", "slip_angle_rad", "travel_m", "brake_torque_Nm"}) {
+      for (const char* what :
+           {"load_N", "pull_N", "side_N", dem::vehicle::slip_column, "slip_angle_rad", "travel_m", "brake_torque_Nm"}) {
         columns.push_back(std::string(corner) + "_" + what);
       }
       dem::vehicle::add_columns(columns, dem::vehicle::SuspensionSample{}, std::string(corner) + "_");

@@ -65,7 +65,7 @@ for density in $densities; do
       function cell(name, scale, digits) { return $at[name] == "" ? "-" : sprintf("%.*f", digits, scale * $at[name]) }
       NR == 1 { for (k = 1; k <= NF; ++k) at[$k] = k }
       NR == 2 { printf "%-7s  %-9s  %-10s  %7s  %11s  %5s  %13s  %13s\n", d, s, $at["ended"], cell("way_m", 1, 2),
-                       cell("speed_m_per_s", 1, 2), cell("slip", 1, 2), cell("resistance_N", 1 / $at["weight_N"], 3),
+                       cell("speed_m_per_s", 1, 2), cell("slip_(omega*r-v)/max", 1, 2), cell("resistance_N", 1 / $at["weight_N"], 3),
                        cell("energy_per_metre_J_per_m", 1e-3, 1) }' "$csv"
   done
 done

@@ -16,7 +16,7 @@ while [ $# -gt 0 ]; do [ "$1" != --output ] || out=$2; shift; done
 mkdir -p "$out"
 echo grains > "$out/bed.txt"
 [ ! -e ../fail ] || [ "$out" != density_0.5_slope_20 ] || { mkdir -p "$out/checkpoint" && touch "$out/checkpoint/drive.h5" && exit 1; }
-printf 'ended,way_m,speed_m_per_s,slip,resistance_N,weight_N,energy_per_metre_J_per_m\n' > "$out/results.csv"
+printf 'ended,way_m,speed_m_per_s,slip_(omega*r-v)/max,resistance_N,weight_N,energy_per_metre_J_per_m\n' > "$out/results.csv"
 printf 'arrived,3,1.5,0.1,4000,48000,\n' >> "$out/results.csv"
 CAR
 chmod +x "$output/car"

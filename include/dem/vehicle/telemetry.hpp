@@ -20,6 +20,8 @@ inline double slip_of(double rim, double way) {
   const double fastest = std::max(std::abs(rim), std::abs(way));
   return fastest > 1e-3 ? (rim - way) / fastest : 0.0;
 }
+/// What columns of it are called in files: other slips are 1 - v/(omega r).
+inline constexpr const char* slip_column = "slip_(omega*r-v)/max";
 
 /// Roll, pitch and yaw of the chassis, rad: turned by yaw about z, then pitch about y, then roll about x. A positive
 /// pitch lowers the nose.
@@ -110,7 +112,7 @@ struct WheelSample {
 
   template <class F>
   void each(F&& f) const {
-    f("slip", slip), f("slip_angle_rad", slip_angle), f("load_N", load), f("pull_N", pull), f("side_N", side);
+    f(slip_column, slip), f("slip_angle_rad", slip_angle), f("load_N", load), f("pull_N", pull), f("side_N", side);
     f("torque_Nm", torque), f("sinkage_m", sinkage), f("deflection_m", deflection), f("travel_m", travel),
         f("brake_torque_Nm", brake_torque);
     f("spin_rad_per_s", spin);

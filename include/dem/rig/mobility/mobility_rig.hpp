@@ -182,7 +182,7 @@ class MobilityRig : public Rig {
                              "way_m",
                              "time_s",
                              "speed_m_per_s",
-                             "slip",
+                             vehicle::slip_column,
                              "sinkage_m",
                              "pull_N",
                              "torque_Nm",

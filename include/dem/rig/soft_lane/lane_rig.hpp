@@ -116,7 +116,7 @@ class LaneRig : public Rig {
                              "way_m",
                              "time_s",
                              "speed_m_per_s",
-                             "slip",
+                             vehicle::slip_column,
                              "sinkage_m",
                              "load_N",
                              "pull_N",
@@ -151,7 +151,7 @@ class LaneRig : public Rig {
   static std::string cell(double value) { return std::isfinite(value) ? text("{}", value) : std::string(); }
 
   void write_pulls(const std::filesystem::path& path) const {
-    io::CsvWriter csv(path, {"slip", "pull_N", "torque_Nm", "sinkage_m", "efficiency"});
+    io::CsvWriter csv(path, {vehicle::slip_column, "pull_N", "torque_Nm", "sinkage_m", "efficiency"});
     for (const PullPoint& p : campaign.pulls) csv.row(p.slip, p.pull, p.torque, p.sinkage, cell(p.efficiency));
     csv.flush();
   }
