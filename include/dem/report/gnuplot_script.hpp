@@ -12,6 +12,7 @@
 #include <cstddef>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace dem::io {
 
@@ -64,6 +65,14 @@ inline constexpr std::array<int, 6> kPlotPoints = {7, 5, 9, 13, 11, 6};  // fill
   return fmt::format("set {}range [{}:{}]\n", axis, side(range.min), side(range.max));
 }
 
+[[nodiscard]] inline std::string gnuplot_ticks(const std::vector<Tick>& ticks) {
+  std::string list;
+  for (const Tick& t : ticks) {
+    list += fmt::format("{}{} {}", list.empty() ? "set xtics (" : ", ", gnuplot_quote(to_utf8(t.text)), t.at);
+  }
+  return list.empty() ? list : list + ")\n";
+}
+
 [[nodiscard]] inline std::string_view gnuplot_key(Legend legend) {
   switch (legend) {
     case Legend::TopLeft: return "set key inside top left Left reverse opaque\n";
@@ -109,7 +118,7 @@ inline void check_range(const Plot& plot, std::string_view axis, const Range& ra
 }  // namespace detail
 
 /// Throws dem::Error when a series has not as many y as x, a range is empty or (on a logarithmic axis) not positive,
-/// an annotation's place is not finite, or the size lies outside 100 to 10000 px.
+/// the place of an annotation or a tick is not finite, or the size lies outside 100 to 10000 px.
 inline void check_plot(const Plot& plot) {
   for (const Series& s : plot.series) {
     if (s.x.size() != s.y.size()) {
@@ -121,6 +130,9 @@ inline void check_plot(const Plot& plot) {
     if (!std::isfinite(a.x) || !std::isfinite(a.y)) {
       fail("plot '{}': annotation '{}' stands at ({}, {}); give finite values", plot.title, a.text, a.x, a.y);
     }
+  }
+  for (const Tick& t : plot.x_ticks) {
+    if (!std::isfinite(t.at)) fail("plot '{}': tick '{}' stands at {}; give a finite value", plot.title, t.text, t.at);
   }
   for (const int size : {plot.width, plot.height}) {
     if (size < 100 || size > 10000) {
@@ -151,6 +163,7 @@ inline void check_plot(const Plot& plot) {
                         gnuplot_quote(to_utf8(plot.x_label)), gnuplot_quote(to_utf8(plot.y_label)));
   if (plot.log_x) script += "set logscale x\n";
   if (plot.log_y) script += "set logscale y\n";
+  script += detail::gnuplot_ticks(plot.x_ticks);
   script += detail::gnuplot_range("x", plot.x_range) + detail::gnuplot_range("y", plot.y_range);
   script += detail::gnuplot_key(plot.legend);
   for (const Annotation& a : plot.annotations) {

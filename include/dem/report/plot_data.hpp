@@ -32,6 +32,12 @@ struct Annotation {
   bool point = false;  ///< also marks the place with a dot
 };
 
+/// A text in place of a number below an axis.
+struct Tick {
+  double at = 0;
+  std::string text = {};
+};
+
 enum class Legend { Below, TopLeft, TopRight, BottomLeft, BottomRight, Right, None };
 
 /// A line plot. Texts are literal UTF-8 (no markup is interpreted; write "m²", "σ"); '\n' breaks a line.
@@ -48,6 +54,7 @@ struct Plot {
   Legend legend = Legend::Below;
   int width = 800;  ///< [px] of the SVG; the PNG has twice as many
   int height = 500;
+  std::vector<Tick> x_ticks = {};  ///< in place of all numbers below the x axis; empty: numbers
 };
 
 }  // namespace dem::io

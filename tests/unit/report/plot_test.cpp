@@ -45,7 +45,10 @@ TEST_CASE("a gnuplot script holds data, styles and output names") {
   plot.x_range = {0, 2.5};
   plot.y_range = {.max = 4};
   plot.annotations = {{1, 3, "peak", true}};
+  CHECK_THAT(gnuplot_script(plot, "shear"), !ContainsSubstring("set xtics"));
+  plot.x_ticks = {{1, "one's"}, {2, "two"}};
   const std::string script = gnuplot_script(plot, "shear");
+  CHECK_THAT(script, ContainsSubstring("set xtics ('one'.\"'\".'s' 1, 'two' 2)\n"));
   CHECK_THAT(script, ContainsSubstring("$data0 << END\n0 0\n1 3\n2 2.5\nEND\n"));
   CHECK_THAT(script, ContainsSubstring("$data1 << END\n1 1\nNaN NaN\n3 0.1\nEND\n"));
   CHECK_THAT(script, !ContainsSubstring("$data2"));

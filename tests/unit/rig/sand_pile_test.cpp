@@ -1,12 +1,15 @@
 #include "catch.hpp"
+#include "io/files.hpp"
 
-#include <dem/rig/sand_pile/options.hpp>
-#include <dem/rig/sand_pile/report.hpp>
-#include <dem/rig/sand_pile/resolve.hpp>
+#include <dem/io/file.hpp>
+#include <dem/rig/program.hpp>
+#include <dem/rig/sand_pile/pile_rig.hpp>
 #include <dem/rig/settings_file.hpp>
 
 #include <cmath>
+#include <iterator>
 #include <string>
+#include <utility>
 
 namespace sand_pile_test {
 
@@ -111,6 +114,94 @@ TEST_CASE("piles of a kind are one row of the table") {
   CHECK(t.rows[0][9] == "5.0");
   CHECK(t.rows[1][2] == "-");  // a run that ended early
   CHECK(spread_of({}).mean != spread_of({}).mean);
+}
+
+namespace {
+
+/// Piles with angles (deg) that were made up: two of spheres that roll hardly, one of cubes.
+Campaign made_up() {
+  Campaign c;
+  for (const auto& [kind, angle] : {std::pair{"cube8", 30.0}, {"sphere-braked", 20.0}, {"sphere-braked", 24.0}}) {
+    PileResult& r = c.piles.emplace_back();
+    r.kind = kind_named(kind);
+    r.seed = c.piles.size();
+    r.poured = 10;
+    r.finished = true;
+    r.pile.push_back({});
+    r.flank.angle = angle / degrees;
+    r.flank.scatter = 3.0 / degrees;
+  }
+  return c;
+}
+
+}  // namespace
+
+TEST_CASE("spheres with rolling resistance have the angle of Zhou et al., and no others do") {
+  Settings s;
+  s.half_edge = 4.02998e-3;  // a diameter of 10 mm
+  s.friction = 0.4;
+  s.plate_friction = 0.5;
+  s.rolling_length = 0.05e-3;
+  s.plate_rolling_length = 0.1e-3;
+  CHECK(angle_by_zhou(s, kind_named("sphere-braked")) == Approx(18.4).margin(0.05));
+  s.half_edge = 2.01499e-3;
+  CHECK(angle_by_zhou(s, kind_named("sphere-rolling")) == Approx(21.1).margin(0.05));
+  CHECK(std::isnan(angle_by_zhou(s, kind_named("sphere"))));
+  CHECK(std::isnan(angle_by_zhou(s, kind_named("cube8"))));
+  s.plate_friction = 0.0;
+  CHECK(std::isnan(angle_by_zhou(s, kind_named("sphere-braked"))));
+}
+
+TEST_CASE(
+    "the angles of all kinds are drawn with their scatter, those of several piles each, and the fit beside them") {
+  Settings s;
+  sand_pile::resolve(s);
+  Campaign c = made_up();
+  c.piles.emplace_back().kind = kind_named("sphere-viscous");  // nothing is known of it
+  const io::Plot plot = repose_plot(s, c);
+  REQUIRE(plot.x_ticks.size() == 2);
+  CHECK((plot.x_ticks[0].text == "cube8" && plot.x_ticks[1].text == "sphere-braked" && plot.x_ticks[1].at == 2.0));
+  REQUIRE(plot.series.size() == 5);
+  CHECK(plot.series[0].y[0] == Approx(30.0));
+  CHECK(plot.series[0].y[1] == Approx(22.0));
+  const auto &seeds = plot.series[1], &directions = plot.series[2], &each = plot.series[3], &zhou = plot.series[4];
+  REQUIRE(seeds.y.size() == 3);  // a bar, and a gap after it
+  CHECK(seeds.y[0] == Approx(22.0 - std::sqrt(8.0)));
+  CHECK(seeds.y[1] == Approx(22.0 + std::sqrt(8.0)));
+  REQUIRE(directions.y.size() == 3);
+  CHECK((directions.x[0] == 1.0 && directions.y[1] == Approx(33.0)));
+  CHECK(each.y.size() == 2);
+  CHECK((std::isnan(zhou.y[0]) && zhou.y[1] == Approx(angle_by_zhou(s, kind_named("sphere-braked")))));
+  CHECK_THAT(zhou_text(s, c), ContainsSubstring("by the fit of Zhou et al. (2002)") &&
+                                  ContainsSubstring("these piles are made otherwise"));
+  s.method = "drain";
+  CHECK_THAT(zhou_text(s, c), !ContainsSubstring("otherwise"));
+  c.piles.erase(c.piles.begin() + 1, c.piles.end());
+  CHECK(zhou_text(s, c).empty());
+  CHECK(repose_plot(s, {}).x_ticks.empty());
+}
+
+TEST_CASE("the report of a sand pile has the plot of its angles") {
+  const auto make = [](const Settings&, PileResult& r, report::Replay*, Session&, Stages& stages) {
+    for (const char* stage : {": fill", ": let go", ": rest", ": creep"}) stages.begin(r.kind.name + stage, 1.0);
+    const Campaign c = made_up();
+    const auto seed = r.seed;
+    r = c.piles[r.kind.name == "cube8" ? 0 : seed];
+    r.seed = seed;
+  };
+  const PileWorld worlds[] = {{"cube8", make}, {"sphere-braked", make}};
+  PileRig rig(worlds);
+  const TempFolder folder;
+  const std::string output = (folder / "piles").string();
+  const char* const words[] = {"sand_pile", "--output", output.c_str(), "--kinds",    "cube8,sphere-braked",
+                               "--seeds",   "2",        "--no-vtk",     "--no-replay"};
+  REQUIRE(run_program({.name = "sand_pile", .title = "Piles"}, rig, static_cast<int>(std::size(words)), words) == 0);
+  const std::string page = io::read_file(folder / "piles/report.html");
+  CHECK_THAT(page, ContainsSubstring("Angle of repose of each kind of grain"));
+  CHECK_THAT(page, ContainsSubstring("by the fit of Zhou et al. (2002)"));
+  const std::string script = io::read_file(folder / "piles/repose.gp");
+  CHECK_THAT(script, ContainsSubstring("set xtics ('cube8' 1, 'sphere-braked' 2)"));
+  CHECK_THAT(script, ContainsSubstring("'Zhou et al. 2002, a drained box'"));
 }
 
 }  // namespace sand_pile_test

@@ -34,7 +34,7 @@ class PileRig : public Rig {
   std::string output() const override { return settings.output; }
   ResultNames results() const override {
     ResultNames names = {.files = {"results.csv"},
-                         .plots = {"profiles", "angles", "angle_over_time"},
+                         .plots = {"repose", "profiles", "angles", "angle_over_time"},
                          .frames = {"grains", "apparatus", "spheres", "superquadrics", "polyhedra"}};
     for (const char* shape : {"cube8", "polyhedron", "superquadric", "sphere"}) {
       for (const char* law : {"", "-viscous", "-rolling", "-braked"}) {

@@ -5,10 +5,9 @@
 #include <dem/report/replay_page.hpp>
 #include <dem/report/table.hpp>
 #include <dem/rig/report.hpp>
-#include <dem/rig/sand_pile/results.hpp>
+#include <dem/rig/sand_pile/repose.hpp>
 
 #include <cmath>
-#include <numbers>
 #include <string>
 #include <utility>
 #include <vector>
@@ -17,36 +16,8 @@
 
 namespace dem::rig::sand_pile {
 
-inline constexpr double degrees = 180.0 / std::numbers::pi;
-
 inline std::string number(double value, const char* format = "{:.1f}") {
   return std::isfinite(value) ? dem::text_of(format, {value}) : "-";
-}
-
-/// Mean and standard deviation of what is known; the latter of two at the least.
-struct Spread {
-  double mean = not_known, deviation = not_known;
-};
-inline Spread spread_of(const std::vector<double>& values) {
-  double sum = 0.0, square = 0.0, n = 0.0;
-  for (const double v : values) {
-    if (std::isfinite(v)) sum += v, n += 1.0;
-  }
-  if (n == 0.0) return {};
-  for (const double v : values) {
-    if (std::isfinite(v)) square += (v - sum / n) * (v - sum / n);
-  }
-  return {sum / n, n > 1.0 ? std::sqrt(square / (n - 1.0)) : not_known};
-}
-
-/// The piles of one kind, in the order in which they were made.
-inline std::vector<std::vector<const PileResult*>> by_kind(const Campaign& c) {
-  std::vector<std::vector<const PileResult*>> kinds;
-  for (const PileResult& r : c.piles) {
-    if (kinds.empty() || kinds.back().front()->kind.name != r.kind.name) kinds.emplace_back();
-    kinds.back().push_back(&r);
-  }
-  return kinds;
 }
 
 /// What is measured of a pile, in words.
@@ -180,16 +151,20 @@ inline std::vector<std::pair<std::string, std::string>> list_settings(const Sett
 /// Writes results.csv, prints the results, and makes the plots and report.html with all settings. Shows what there is
 /// when the run ended early. Returns whether there are files for ParaView.
 inline bool report(Report& report, const Settings& s, const Campaign& c) {
+  const std::string zhou = zhou_text(s, c);
   report.part("results.csv", [&] { detail::write_results_csv(report.folder() / "results.csv", c); });
   report.part("the printed report", [&] {
     fmt::print("\n");
     io::print(angle_table(c));
     fmt::print("{}\n", fit_text(s));
+    if (!zhou.empty()) fmt::print("{}\n", zhou);
   });
   report.page(detail::list_settings(s), [&](io::HtmlReport& page) {
     page.table(angle_table(c)).paragraph(fit_text(s));
+    if (!zhou.empty()) page.paragraph(zhou);
     if (!c.piles.empty() && !c.piles.front().pile.empty()) {
       page.heading("Plots");
+      report.plot(page, repose_plot(s, c), "repose", "Angle of repose of each kind of grain.");
       report.plot(page, detail::profiles_plot(c), "profiles", "Mean profile of the first pile of each kind.");
       report.plot(page, detail::time_plot(c), "angle_over_time", "Angle of the flank while the pile is made.");
       report.plot(page, detail::angles_plot(c), "angles", "Angle of the flank in each direction.");
