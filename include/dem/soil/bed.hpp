@@ -2,6 +2,7 @@
 
 #include <dem/soil/bed_filling.hpp>
 #include <dem/soil/bed_options.hpp>
+#include <dem/soil/bed_report.hpp>
 #include <dem/soil/container.hpp>
 #include <dem/soil/lid.hpp>
 #include <dem/soil/making.hpp>
@@ -22,7 +23,7 @@ namespace dem::soil {
 /// with species and contact constants, and has no other grains.
 ///
 ///     soil::Bed bed(world, soil::Container::cylinder(0.05), sand, {.height = 0.04});
-///     bed.make();
+///     const soil::BedReport made = bed.make();                      // how dense it is
 ///     for (const soil::SolidLayer& layer : bed.layers(0.005)) ...   // solid fraction by depth
 ///     save(world, "bed.h5");                                        // of <dem/io/checkpoint.hpp>
 ///
@@ -66,11 +67,12 @@ class Bed {
   /// sets this share of the grains' friction, by World::set_contact. `look()` is called every few milliseconds: there
   /// the bed may be saved, or left by throwing. All of the friction is there while it is called; gravity is the shaken
   /// one while a bed is made denser. A bed that was left,
-  /// or loaded on its way, goes on from there; one that is made stays as it is. Throws Error if the grains do not come
-  /// to rest in time, if they blow up, for a rain that finds no room, and for a density that shaking without friction
-  /// does not reach.
+  /// or loaded on its way, goes on from there; one that is made stays as it is. Returns how dense it is, and says so in
+  /// words where that is not as asked for. Throws Error if the grains do not come to rest in time, if they blow up, for
+  /// a rain that finds no room, for a bed that settles denser than asked for, and for a density that shaking without
+  /// friction does not reach.
   template <std::invocable<double> SetFriction, std::invocable Look>
-  void make(SetFriction&& set_friction, Look&& look) {
+  BedReport make(SetFriction&& set_friction, Look&& look) {
     const Stage after_density = lid_.is_there() ? Stage::pressing : Stage::filling;
     while (stage_ != Stage::made) {
       switch (stage_) {
@@ -80,7 +82,13 @@ class Bed {
           break;
         case Stage::raining: filling_.go_on_raining(running(), look), begin(Stage::fallen); break;
         case Stage::fallen:
-          settle_on(look), begin(options_.relative_density > 0.0 ? Stage::densifying : after_density);
+          settle_on(look);
+          if (options_.relative_density > 0.0) {
+            if (fillings_ == 1) refuse_denser(solid_fraction(), options_);  // later ones lie on what is dense already
+            begin(Stage::densifying);
+          } else {
+            begin(after_density);
+          }
           break;
         case Stage::densifying: densify_on(set_friction, look), begin(Stage::dense); break;
         case Stage::dense: settle_on(look), begin(after_density); break;
@@ -90,19 +98,22 @@ class Bed {
         case Stage::made: break;
       }
     }
+    return report();
   }
   template <std::invocable<double> SetFriction>
-  void make(SetFriction&& set_friction) {
-    make(set_friction, [] {});
+  BedReport make(SetFriction&& set_friction) {
+    return make(set_friction, [] {});
   }
   /// The same of a bed that is as dense as it settles.
-  void make() {
+  BedReport make() {
     if (options_.relative_density > 0.0) {
       fail("a bed of the relative density {:g} is made with less friction; give make() a function that sets it",
            options_.relative_density);
     }
-    make([](double) {});
+    return make([](double) {});
   }
+  /// How dense it is now, and in what that is not as asked for.
+  BedReport report() const { return report_of_bed(solid_fraction(), options_); }
   bool is_made() const { return stage_ == Stage::made; }
 
   // The same step by step, by hand.
@@ -148,10 +159,7 @@ class Bed {
     return solid_fraction_between(world_, container_, d, height() - d);
   }
   /// As of the limits that were given; NaN without.
-  double relative_density() const {
-    if (!(options_.limits.loosest > 0.0)) return std::nan("");
-    return soil::relative_density(solid_fraction(), options_.limits);
-  }
+  double relative_density() const { return report().relative_density; }
 
   /// What of it is not the world's, for a bed that is saved on its way.
   template <class V>

@@ -13,6 +13,7 @@ struct BedOptions {
   double height = 0.0;             ///< m, of the levelled surface
   double relative_density = 0.0;   ///< 0: as it settles; above 0, `limits` are needed
   DensityLimits limits = {0, 0};   ///< of this soil
+  double density_tolerance = 0.1;  ///< by which the relative density may differ from that, before something is said
   double expected_fraction = 0.6;  ///< solid fraction as it settles, by which grains are counted
   double room = 0.05;              ///< between grains as they are placed, in largest diameters
   double rain_flow = 0.0;          ///< kg/s, of grains that rain; 0: they are placed in a lattice, and fall together
@@ -31,6 +32,7 @@ struct BedOptions {
   void check() const {
     require_positive(height, "height of a bed", "m");
     require_within(relative_density, 0.0, 1.0, "relative density of a bed");
+    require_within(density_tolerance, 0.0, 10.0, "tolerance of the relative density of a bed");
     require_within(expected_fraction, 0.01, 1.0, "solid fraction that a bed is expected to have");
     require_within(room, 0.0, 10.0, "room between grains as they are placed");
     require_non_negative(rain_flow, "flow of the rain on a bed", "kg/s");

@@ -136,16 +136,46 @@ TEST_CASE("a bed is as dense as it was asked for, with all of its friction in th
   const dem::soil::DensityLimits limits = {settled, settled + 0.05};
   dem::soil::Bed<Balls> bed(dense.world, Container::box(0.018, 0.014), dense.ball,
                             {.height = 0.012, .relative_density = 0.4, .limits = limits, .densify_time = 0.2});
-  bed.make([&](double s) {
+  const auto made = bed.make([&](double s) {
     dense.set_friction(share = s);
     least = std::min(least, s);
   });
   check_bed(dense.world, bed);
   CHECK(share == 1.0);
   CHECK(least < 0.9);
-  // Struck off and settled again: a small bed is not as exact as the sample before.
-  CHECK(bed.solid_fraction() > settled + 0.01);
-  CHECK(bed.relative_density() > 0.2);
+  // It is looked at after each 5 ms of shaking, in which such a bed gains up to 0.07 in relative density, as its limits
+  // are only 0.05 apart. When the shaking ends, and what stands out is struck off, it settles by some hundredths more.
+  // Beds of four seeds came out at 0.43 to 0.49.
+  CHECK(bed.relative_density() > 0.39);
+  CHECK(bed.relative_density() < 0.55);
+  CHECK(made.relative_density == bed.relative_density());
+  CHECK(made.solid_fraction == bed.solid_fraction());
+}
+
+TEST_CASE("a bed that settles denser than asked for is refused, and one that comes out denser is told of") {
+  const auto make = [](const dem::soil::BedOptions& o) {
+    SoilOfBalls soil;
+    dem::soil::Bed<Balls> bed(soil.world, Container::box(0.018, 0.014), soil.ball, o);
+    return bed.make([&](double share) { soil.set_friction(share); });
+  };
+  dem::soil::BedOptions o = {.height = 0.012};
+  const double settled = make(o).solid_fraction;
+  CHECK(make(o).text.empty());
+  // Limits that are too loose for this soil: it settles at 0.7, as small beds do within 0.2.
+  o.relative_density = 0.2, o.limits = {settled - 0.035, settled + 0.015}, o.densify_time = 0.2;
+  check_refused([&] { make(o); }, "but settles with 0.", "shaking does not loosen it");
+  check_refused([&] { make(o); }, "raise BedOptions::relative_density, leave it at 0");
+  // No bed is as dense as asked for to six digits.
+  o.limits = {settled, settled + 0.05}, o.relative_density = 0.4;
+  o.density_tolerance = 1e-6;
+  const auto told = make(o).text;
+  CHECK_THAT(told, Catch::Contains("denser than 0.4, which was asked for"));
+  CHECK_THAT(told, Catch::Contains("raise BedOptions::densify_time"));
+  CHECK_THAT(dem::soil::report_of_bed(settled + 0.001, o).text, Catch::Contains("looser than 0.4"));
+  CHECK(dem::soil::report_of_bed(settled + 0.02, {}).text.empty());
+  CHECK(std::isnan(dem::soil::report_of_bed(settled, {}).relative_density));
+  o.density_tolerance = -1.0;
+  check_refused([&] { make(o); }, "tolerance of the relative density");
 }
 
 TEST_CASE("a lid presses a bed flat by its weight, and leaves it") {
