@@ -18,12 +18,14 @@ int main(int argc, char** argv) {
     else if (scene == "checkpoint") same = scenes::checkpoint() && same;
     else if (scene == "reports") same = scenes::reports() && same;
     else if (scene == "differ") same = scenes::differ() && same;
+    else if (scene == "differ_later") same = scenes::differ_later() && same;
     else if (scene == "caught") same = scenes::caught() && same;
     else if (scene == "contacts_on_one") scenes::contacts_on_one();
     else if (scene == "columns_on_one") scenes::columns_on_one();
     else if (scene == "run_on_one") scenes::run_on_one();
     else if (scene == "mistake") scenes::mistake();
     else if (scene == "disagree") scenes::disagree();
+    else if (scene == "steered") scenes::steered();
     else dem::fail("there is no scene '{}'", scene);
   }
   return same ? 0 : 1;

@@ -6,10 +6,9 @@ namespace {
 
 bool is_last(const dem::World<Shared>& world) { return dem::processes.rank == world.state().domain.ranks() - 1; }
 
-/// Ranks set up a world, which `change(world)` makes another one on the last rank: all are told in which part.
+/// A world, which `change(world)` makes another one on the last rank: all are told in which part.
 template <class Change>
-bool told_of(const std::string& part, Change&& change) {
-  auto world = box_of_spheres<Shared>(300);
+bool told_of(const std::string& part, dem::World<Shared>& world, Change&& change) {
   if (is_last(world)) change(world);
   std::string told;
   try {
@@ -22,8 +21,81 @@ bool told_of(const std::string& part, Change&& change) {
   std::printf("%s on one rank: all were to be told, but rank %d was told '%s'\n", part.c_str(), d.rank(), told.c_str());
   return false;
 }
+/// The same of a world that was just set up.
+template <class Change>
+bool told_of(const std::string& part, Change&& change) {
+  auto world = box_of_spheres<Shared>(300);
+  return told_of(part, world, change);
+}
+
+/// A shaft that turns above the spheres, by a motor that holds its speed, and by a throttle.
+struct Drives {
+  dem::BodyId shaft;
+  dem::JointId hinge;
+  dem::ActuatorId motor, engine;
+  dem::InletId inlet;
+};
+Drives add_drives(dem::World<Shared>& world) {
+  using namespace dem::mbd;
+  auto& m = world.machine();
+  const auto shaft = m.add_body(box_body("shaft", dem::Vec3::Constant(4e-3), 2650).at({0, 0, 0.3}));
+  const auto hinge = m.add_joint(revolute("hinge", m.ground(), shaft, {0, 0, 0.3}, {0, 0, 1}));
+  const auto motor = m.add_actuator(joint_actuator("motor", hinge, 0.0, 1e-6, Signal::held(0.0, 2.0)));
+  const auto engine = m.add_actuator(dem::mbd::motor("engine", hinge, {{{-10, 1e-6}, {10, 1e-6}}}));
+  const auto beads = world.add_species(dem::shape::Sphere(1e-3));
+  const auto inlet = world.add_inlet(dem::InletRegion::disc({0.015, 0.01, 0.09}, {0, 0, -1}, 5e-3),
+                                     {.grains = beads, .grain_flow = 1e4});
+  return {shaft, hinge, motor, engine, inlet};
+}
+/// The same of a world with drives that has taken steps.
+template <class Change>
+bool told_later(const std::string& part, Change&& change) {
+  auto world = box_of_spheres<Shared>(300);
+  const Drives drives = add_drives(world);
+  run(world, 10);
+  return told_of(part, world, [&](auto& w) { change(w, drives); });
+}
 
 }  // namespace
+
+bool differ_later() {
+  bool told = told_later("the time, how many", [](auto& w, const Drives& d) { w.set_open(d.inlet, false); });
+  const auto steer = [&](void (*change)(dem::mbd::Mechanism&, const Drives&)) {
+    told = told_later("the machine", [&](auto& w, const Drives& d) { change(w.machine(), d); }) && told;
+  };
+  steer([](auto& m, const Drives& d) { m.set_target(d.motor, 0.0, 2.5); });
+  steer([](auto& m, const Drives& d) { m.switch_on(d.motor, false); });
+  steer([](auto& m, const Drives& d) { m.switch_on(d.hinge, false); });
+  steer([](auto& m, const Drives& d) { m.set_throttle(d.engine, 0.1); });
+  steer([](auto& m, const Drives& d) { m.body(d.shaft).motion.velocity.x = 1e-9; });
+  // Functions cannot be compared; what they did to the machine is.
+  auto turning = box_of_spheres<Shared>(300);
+  const Drives drives = add_drives(turning);
+  run(turning, 10);
+  turning.machine().set_target(drives.motor, dem::mbd::Signal::function([last = is_last(turning)](double t) {
+                                 return last ? 2.5 * t : 2.0 * t;
+                               }));
+  (void)turning.run(10);
+  told = told_of("the machine", turning, [](auto&) {}) && told;
+  // As many as the others have, but another one.
+  auto world = box_of_spheres<Shared>(300);
+  const auto beads = world.add_species(dem::shape::Sphere(1e-3));
+  run(world, 10);
+  const double flow = is_last(world) ? 2e4 : 1e4;
+  world.add_inlet(dem::InletRegion::disc({0.015, 0.01, 0.09}, {0, 0, -1}, 5e-3), {.grains = beads, .grain_flow = flow});
+  told = told_of("the machine (its parts, set points, switches, or how it moves), an outlet or an inlet", world,
+                 [](auto&) {}) &&
+         told;
+  return told;
+}
+
+void steered() {
+  auto world = box_of_spheres<Shared>(300);
+  const Drives drives = add_drives(world);
+  run(world, 10);
+  if (is_last(world)) world.machine().set_target(drives.motor, 0.0, 2.5);
+  run(world, 10);
+}
 
 bool differ() {
   bool told = told_of("materials or contact constants", [](auto& world) {

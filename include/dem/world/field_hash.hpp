@@ -1,6 +1,7 @@
 #pragma once
 
 #include <dem/math/fingerprint.hpp>
+#include <dem/mbd/sensor/sensor.hpp>
 
 #include <algorithm>
 #include <bit>
@@ -26,9 +27,17 @@ class Hash {
   std::uint64_t value_ = 0xcbf29ce484222325ULL;
 };
 
-/// Goes through the fields of a struct as io::Fields does, those that are set up and those that change, and mixes all
-/// of them into a hash. Changes nothing.
-class FieldHash {
+/// Which fields are hashed.
+enum class Hashed {
+  all,   ///< those that are set up and those that change
+  state  ///< those that change, but no averages, which follow from the rest
+};
+
+/// Goes through the fields of a struct as io::Fields does, and mixes them into a hash. Changes nothing.
+template <Hashed hashed>
+class HashOf {
+  static constexpr bool has_given = hashed == Hashed::all;
+
  public:
   std::uint64_t value() const { return hash_.value(); }
 
@@ -38,10 +47,16 @@ class FieldHash {
   }
   template <class T>
   void given(std::string_view, const T& x, const char* = "") {
-    T copy = x;
-    visit(copy);
+    if constexpr (has_given) {
+      T copy = x;
+      visit(copy);
+    } else if constexpr (std::is_same_v<T, bool>) {  // whether a set point is a function, say
+      hash_.mix(std::uint64_t{x});
+    }
   }
-  void fingerprint(std::string_view, std::uint64_t bits) { hash_.mix(bits); }
+  void fingerprint(std::string_view, std::uint64_t bits) {
+    if (has_given) hash_.mix(bits);
+  }
   /// `more` words of an item are for messages.
   template <class Items, class More = int>
   void list(std::string_view, Items& items, const char*, More&& = {}) {
@@ -54,7 +69,7 @@ class FieldHash {
   }
   template <class Struct>
   void given_reals(std::string_view name, const Struct& x) {
-    reals(name, x);
+    if constexpr (has_given) reals(name, x);
   }
   template <class T>
   void numbers(std::string_view, const std::vector<T>& rows) {
@@ -69,7 +84,8 @@ class FieldHash {
  private:
   template <class T>
   void visit(T& x) {
-    if constexpr (requires { x.fields(*this); }) x.fields(*this);
+    if constexpr (std::is_same_v<T, mbd::WindowAverage> && !has_given) return;
+    else if constexpr (requires { x.fields(*this); }) x.fields(*this);
     else if constexpr (std::is_arithmetic_v<T> || std::is_enum_v<T>) bytes_of(x);
     else if constexpr (requires { T::RowsAtCompileTime; }) {
       for (auto k = x.size() * 0; k < x.size(); ++k) hash_.mix(double(x.data()[k]));
@@ -93,14 +109,19 @@ class FieldHash {
   template <class T>
   void bytes_of(const T& x) {
     static_assert(std::is_trivially_copyable_v<T>);
+    Hash hash = hash_;  // in a register
     for (std::size_t k = 0; k < sizeof(T); k += sizeof(std::uint64_t)) {
       std::uint64_t word = 0;
       std::memcpy(&word, reinterpret_cast<const char*>(&x) + k, std::min(sizeof(word), sizeof(T) - k));
-      hash_.mix(word);
+      hash.mix(word);
     }
+    hash_ = hash;
   }
 
   Hash hash_;
 };
+
+using FieldHash = HashOf<Hashed::all>;
+using StateHash = HashOf<Hashed::state>;
 
 }  // namespace dem::detail

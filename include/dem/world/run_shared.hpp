@@ -22,6 +22,7 @@ struct Compared {
   std::uint64_t asked = 0;  ///< a number of steps, say
   bool set_up = false;      ///< what was set up too: it was changed
   bool grains = false;      ///< all grains too: some were added or changed by hand
+  bool steered = false;     ///< inlets, outlets and the state of the machine too: a run begins
 };
 
 /// The parts of a world by which ranks tell each other what differs.
@@ -31,7 +32,7 @@ inline constexpr const char* parts_of_a_world[] = {
     "materials or contact constants",
     "species",
     "surfaces",
-    "the machine, an outlet or an inlet",
+    "the machine (its parts, set points, switches, or how it moves), an outlet or an inlet",
     "grains"};
 
 template <class Model>
@@ -63,7 +64,13 @@ domain::CallHashes hashes_of(const WorldState<Model>& world, const Compared& com
   if (compared.set_up) {
     materials("", w.materials), species("", w.species), surfaces("", w.surfaces);
     surfaces("", w.surface_sensors), surfaces("", w.body_contacts.pairs);
-    machine("", w.machine), machine("", w.outlets), machine("", w.inlets);
+    machine("", w.machine);
+  }
+  if (compared.steered) {
+    StateHash state;
+    state("", w.machine);
+    machine.fingerprint("", state.value());
+    machine("", w.outlets), machine("", w.inlets);
   }
   if (compared.grains) {
     for (const auto* c : {&p.position, &p.velocity, &p.local_angular_velocity}) {

@@ -40,9 +40,10 @@ class World : public WorldSetup<M> {
     }
     this->require_grains_here("a world's preparation");
     if constexpr (Model::Domain::has_ranks) {
-      check_agreement(
-          state_, domain::Call::prepare,
-          {.set_up = !checked_ || !machine_is_initialised(), .grains = !initialised_ || state_.grains_added});
+      check_agreement(state_, domain::Call::prepare,
+                      {.set_up = !checked_ || !machine_is_initialised(),
+                       .grains = !initialised_ || state_.grains_added,
+                       .steered = true});
     }
     if (!checked_ || !machine_is_initialised()) {
       state_.materials.check_complete();
