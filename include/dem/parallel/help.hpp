@@ -6,11 +6,17 @@
 
 namespace dem::exec {
 
-/// Whether it is worth calling others to help: an account, in seconds, of the work that they save the caller and of
-/// what they cost it. A helper may lose its processor to another program in the middle of a piece. The caller then
-/// waits for some milliseconds, in which it could have done many pieces. Where helpers cost more than they save, they
-/// are not called for a tenth of a second, then tried again; each time that they fail, they are left out twice as long,
-/// at most a second.
+/// What a member of a team did in one call.
+struct Share {
+  std::size_t pieces = 0;
+  double seconds = 0.0;
+};
+
+/// Whether it is worth calling others to help: an account, in seconds, of the work that they save the caller and of what
+/// they cost it. A helper may lose its processor to another program in the middle of a piece. The caller then waits for
+/// some milliseconds, in which it could have done many pieces. Where helpers cost more than they save, they are not
+/// called for a tenth of a second, then tried again; each time that they fail, they are left out twice as long, at most
+/// a second.
 class Help {
  public:
   using Clock = std::chrono::steady_clock;
@@ -18,15 +24,21 @@ class Help {
 
   bool is_worth_it(Time now) const { return now >= alone_until_; }
 
-  /// Work of n pieces, of which the caller did `own` itself from `began` to `ended`. It was called at `called`, and all
-  /// was done at `done`.
-  void account(std::size_t n, std::size_t own, Time called, Time began, Time ended, Time done) {
-    if (own > 0) piece_ = seconds(ended - began) / static_cast<double>(own);
-    saved_ += static_cast<double>(n - own) * piece_;
-    cost_ += seconds(began - called) + seconds(done - ended);
+  /// The time (s) in which the caller would have done what a helper did. Some pieces are more work than others, but a
+  /// helper whose pieces take more than three times as long as the caller's is held up.
+  static double saved_by(const Share& helper, const Share& caller) {
+    if (helper.pieces == 0) return 0.0;
+    const double alike = static_cast<double>(helper.pieces) * caller.seconds / static_cast<double>(caller.pieces);
+    return std::min(helper.seconds, 3.0 * alike);
+  }
+
+  /// A call is over: what helpers saved, and what calling them and waiting for them took (s).
+  void account(double saved, double cost, Time now) {
+    saved_ += saved;
+    cost_ += cost;
     if (saved_ + cost_ < window) return;
     if (cost_ > saved_) {
-      alone_until_ = done + std::chrono::duration_cast<Clock::duration>(pause_);
+      alone_until_ = now + std::chrono::duration_cast<Clock::duration>(pause_);
       pause_ = std::min(2.0 * pause_, longest_pause);
     } else {
       pause_ = shortest_pause;
@@ -36,13 +48,11 @@ class Help {
 
  private:
   using Seconds = std::chrono::duration<double>;
-  static double seconds(Clock::duration d) { return Seconds(d).count(); }
 
   // Several time slices of an operating system, so that one that was lost by chance does not decide.
   static constexpr double window = 0.02;  // s
   static constexpr Seconds shortest_pause{0.1}, longest_pause{1.0};
 
-  double piece_ = 0.0;               // s, of the latest pieces that the caller did itself
   double saved_ = 0.0, cost_ = 0.0;  // s, since the last verdict
   Seconds pause_ = shortest_pause;
   Time alone_until_{};

@@ -59,13 +59,13 @@ class Team {
     for (std::size_t k = 0; k < m; ++k) {
       ranges_[k].next.store(n * k / m, std::memory_order_relaxed);
       ranges_[k].end = n * (k + 1) / m;
+      ranges_[k].share = {};
     }
     piece_ = piece;
     work_ = work;
     call();
-    const Help::Time began = Help::Clock::now();
-    const std::size_t own = take_part(0);
-    const Help::Time ended = Help::Clock::now();
+    const double calling = seconds_since(called);
+    take_part(0);
     // All pieces are taken. Who has not begun need not, and the others end theirs.
     std::uint32_t inside = gate_.fetch_and(~open) & ~open;
     for (int waited = 0; inside != 0; inside = gate_.load()) {
@@ -75,7 +75,7 @@ class Team {
         gate_.wait(inside);
       }
     }
-    if (busy_waits_ > 0) help_.account(n, own, called, began, ended, Help::Clock::now());
+    if (busy_waits_ > 0) keep_account(called, calling);
   }
 
  private:
@@ -85,7 +85,22 @@ class Team {
   struct alignas(128) Range {
     std::atomic<std::size_t> next = 0;
     std::size_t end = 0;
+    Share share;  // of the member whose range it is, in the call
   };
+
+  static double seconds_since(Help::Time t) {
+    return std::chrono::duration<double>(Help::Clock::now() - t).count();
+  }
+  /// Of a call that took `calling` (s) to call.
+  void keep_account(Help::Time called, double calling) {
+    const Share& own = ranges_[0].share;
+    if (own.pieces == 0) return;  // it is not known how long one takes
+    double saved = 0.0;
+    for (int k = 1; k < members_; ++k) saved += Help::saved_by(ranges_[static_cast<std::size_t>(k)].share, own);
+    const Help::Time now = Help::Clock::now();
+    const double waiting = std::chrono::duration<double>(now - called).count() - calling - own.seconds;
+    help_.account(saved, calling + waiting, now);
+  }
 
   static void pause() {
 #if defined(__x86_64__) || defined(__i386__)
@@ -97,8 +112,8 @@ class Team {
     call_.fetch_add(1);
     call_.notify_all();
   }
-  /// How many pieces the member did.
-  std::size_t take_part(int member) {
+  void take_part(int member) {
+    const Help::Time began = Help::Clock::now();
     std::size_t done = 0;
     for (int k = 0; k < members_; ++k) {
       Range& range = ranges_[static_cast<std::size_t>((member + k) % members_)];
@@ -108,7 +123,7 @@ class Team {
         if (piece < range.end) piece_(work_, piece, member), ++done;
       }
     }
-    return done;
+    ranges_[static_cast<std::size_t>(member)].share = {done, seconds_since(began)};
   }
   void serve(int member) {
     for (std::uint32_t seen = 0;;) {
@@ -135,7 +150,7 @@ class Team {
   std::unique_ptr<Range[]> ranges_;
   int members_;
   int busy_waits_;  // looks before a member sleeps; none where there are more members than processors
-  Help help_;       // not asked there either: who wants more members than processors gets them
+  Help help_;       // has no account there: who wants more members than processors gets them
   Piece piece_ = nullptr;
   void* work_ = nullptr;
   std::atomic<bool> stop_ = false;

@@ -90,13 +90,15 @@ TEMPLATE_TEST_CASE("an exception of a piece of work arrives, that of the lowest 
 
 // Ten thousand calls with little in them meet threads that are just coming, waiting, or falling asleep.
 TEST_CASE("threads lose no piece and call none twice, however short the work is") {
+  // More threads than processors, which are always called, however little they save.
+  const int threads = static_cast<int>(std::thread::hardware_concurrency()) + 3;
   dem::exec::Threads executor;
-  executor.set_threads(5);
-  std::vector<int> calls(16);
+  executor.set_threads(threads);
+  std::vector<int> calls(static_cast<std::size_t>(3 * threads));
   for (int repeat = 0; repeat < 10000; ++repeat) {
     executor.for_each(calls.size(), [&](std::size_t k) { ++calls[k]; });
   }
-  CHECK(calls == std::vector<int>(16, 10000));
+  CHECK(calls == std::vector<int>(calls.size(), 10000));
 }
 
 TEST_CASE("threads share the work as it comes: one long piece does not keep the others") {
@@ -114,9 +116,43 @@ TEST_CASE("threads share the work as it comes: one long piece does not keep the 
   CHECK(done == 63);
 }
 
+TEST_CASE("helpers that cost more than they save are left out, longer each time, and tried again") {
+  using dem::exec::Help;
+  using std::chrono::milliseconds;
+  const Help::Time start{};
+  Help help;
+  CHECK(help.is_worth_it(start));
+  // Less than the 20 ms that a verdict takes.
+  help.account(1e-3, 15e-3, start);
+  CHECK(help.is_worth_it(start));
+  // Each pause is twice as long as the one before, up to a second.
+  Help::Time now = start;
+  for (const int pause : {100, 200, 400, 800, 1000, 1000}) {
+    help.account(1e-3, 30e-3, now);
+    CHECK_FALSE(help.is_worth_it(now + milliseconds(pause - 1)));
+    now += milliseconds(pause + 1);
+    CHECK(help.is_worth_it(now));
+  }
+  // One good verdict, and the next pause is short.
+  help.account(30e-3, 1e-3, now);
+  CHECK(help.is_worth_it(now));
+  help.account(1e-3, 30e-3, now);
+  CHECK_FALSE(help.is_worth_it(now + milliseconds(99)));
+  CHECK(help.is_worth_it(now + milliseconds(101)));
+}
+
+TEST_CASE("a helper saves the time of its pieces, but not that in which it is held up") {
+  using dem::exec::Help;
+  const dem::exec::Share caller{10, 1e-3};
+  CHECK(Help::saved_by({0, 0.0}, caller) == 0.0);
+  CHECK(Help::saved_by({10, 1.1e-3}, caller) == 1.1e-3);
+  CHECK(Help::saved_by({2, 0.5e-3}, caller) == 0.5e-3);  // pieces of more work
+  CHECK(Help::saved_by({1, 4e-3}, caller) == Approx(0.3e-3));
+}
+
 // As if another program had the second processor again and again: each piece that the helper does takes as long as a
 // time slice.
-TEST_CASE("a helper that costs more than it saves is left out, and tried again") {
+TEST_CASE("a helper that is held up is hardly called for, and tried again") {
   if (std::thread::hardware_concurrency() < 2) return;  // more threads than processors are what the user asked for
   using Clock = std::chrono::steady_clock;
   using std::chrono::milliseconds;
@@ -139,12 +175,11 @@ TEST_CASE("a helper that costs more than it saves is left out, and tried again")
     }
     return std::pair(calls, helped);
   };
-  // Alone a call takes 0.4 ms, with the helper at least 4 ms. It is tried for some 20 ms, then left out for 100, 200
-  // and 400.
+  // Alone a call takes 0.4 ms, with the helper at least 4 ms. It is tried for some 20 ms, then left out for 100, 200 and
+  // 400: 1 in 100 calls, and more on a busy machine, where a piece of the caller takes longer.
   const auto [calls, helped] = work_for(milliseconds(700), true);
   CAPTURE(calls, helped);
-  CHECK(helped > 0);
-  CHECK(helped < calls / 10);
+  CHECK(helped < calls / 2);
   // It is in time again: it is tried within a second.
   int tried = 0;
   for (int k = 0; k < 100 && tried == 0; ++k) tried = work_for(milliseconds(50), false).second;
