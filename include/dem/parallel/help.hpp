@@ -12,11 +12,11 @@ struct Share {
   double seconds = 0.0;
 };
 
-/// Whether it is worth calling others to help: an account, in seconds, of the work that they save the caller and of what
-/// they cost it. A helper may lose its processor to another program in the middle of a piece. The caller then waits for
-/// some milliseconds, in which it could have done many pieces. Where helpers cost more than they save, they are not
-/// called for a tenth of a second, then tried again; each time that they fail, they are left out twice as long, at most
-/// a second.
+/// Whether it is worth calling others to help: an account, in seconds, of the work that they save the caller and of
+/// what they cost it. A helper may lose its processor to another program in the middle of a piece. The caller then
+/// waits for some milliseconds, in which it could have done many pieces. Where helpers cost more than they save, they
+/// are not called for a tenth of a second, then tried again; each time that they fail, they are left out twice as long,
+/// at most a second.
 class Help {
  public:
   using Clock = std::chrono::steady_clock;

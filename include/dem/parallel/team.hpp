@@ -88,9 +88,7 @@ class Team {
     Share share;  // of the member whose range it is, in the call
   };
 
-  static double seconds_since(Help::Time t) {
-    return std::chrono::duration<double>(Help::Clock::now() - t).count();
-  }
+  static double seconds_since(Help::Time t) { return std::chrono::duration<double>(Help::Clock::now() - t).count(); }
   /// Of a call that took `calling` (s) to call.
   void keep_account(Help::Time called, double calling) {
     const Share& own = ranges_[0].share;

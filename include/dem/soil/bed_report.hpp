@@ -28,8 +28,10 @@ inline BedReport report_of_bed(double solid_fraction, const BedOptions& o) {
       "raise "
       "BedOptions::density_tolerance",
       report.relative_density, solid_fraction, more > 0.0 ? "denser" : "looser", o.relative_density,
-      more > 0.0 ? "raise BedOptions::densify_time, so that it gets denser more slowly, or lower the lid's pressure"
-                 : "raise BedOptions::relative_density");
+      more < 0.0 ? "raise BedOptions::relative_density"
+      : o.lid_pressure > 0.0
+          ? "raise BedOptions::densify_time, so that it gets denser more slowly, or lower lid_pressure"
+          : "raise BedOptions::densify_time, so that it gets denser more slowly");
   return report;
 }
 

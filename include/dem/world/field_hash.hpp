@@ -1,6 +1,7 @@
 #pragma once
 
 #include <dem/math/fingerprint.hpp>
+#include <dem/mbd/load/terrain.hpp>
 #include <dem/mbd/sensor/sensor.hpp>
 
 #include <algorithm>
@@ -30,7 +31,7 @@ class Hash {
 /// Which fields are hashed.
 enum class Hashed {
   all,   ///< those that are set up and those that change
-  state  ///< those that change, but no averages, which follow from the rest
+  state  ///< those that change, but no averages, which follow from the rest, and no terrain, whose loads tell of it
 };
 
 /// Goes through the fields of a struct as io::Fields does, and mixes them into a hash. Changes nothing.
@@ -84,7 +85,8 @@ class HashOf {
  private:
   template <class T>
   void visit(T& x) {
-    if constexpr (std::is_same_v<T, mbd::WindowAverage> && !has_given) return;
+    constexpr bool is_left_out = std::is_same_v<T, mbd::WindowAverage> || std::is_same_v<T, mbd::TerrainPart>;
+    if constexpr (is_left_out && !has_given) return;
     else if constexpr (requires { x.fields(*this); }) x.fields(*this);
     else if constexpr (std::is_arithmetic_v<T> || std::is_enum_v<T>) bytes_of(x);
     else if constexpr (requires { T::RowsAtCompileTime; }) {

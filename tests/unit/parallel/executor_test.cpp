@@ -175,8 +175,8 @@ TEST_CASE("a helper that is held up is hardly called for, and tried again") {
     }
     return std::pair(calls, helped);
   };
-  // Alone a call takes 0.4 ms, with the helper at least 4 ms. It is tried for some 20 ms, then left out for 100, 200 and
-  // 400: 1 in 100 calls, and more on a busy machine, where a piece of the caller takes longer.
+  // Alone a call takes 0.4 ms, with the helper at least 4 ms. It is tried for some 20 ms, then left out for 100, 200
+  // and 400: 1 in 100 calls, and more on a busy machine, where a piece of the caller takes longer.
   const auto [calls, helped] = work_for(milliseconds(700), true);
   CAPTURE(calls, helped);
   CHECK(helped < calls / 2);

@@ -186,11 +186,12 @@ TEST_CASE("the study of plates has the spread of the seeds, and changes paired b
   dem::io::check_table(table);
   CHECK(table.rows[0][0] == "as set");
   CHECK(table.rows[0][5] == "9.1");  // 2 of 22 kPa
-  CHECK(table.rows[0][8].empty());
-  CHECK(table.rows[3][8] == "-10.0");
-  CHECK(table.rows[3][11] == "5 %: no");
+  CHECK(table.rows[0][6].empty());  // pairs
+  CHECK(table.rows[0][9].empty());
+  CHECK(table.rows[3][9] == "-10.0");
+  CHECK(table.rows[3][12] == "5 %: no");
   CHECK(table.rows[5][1] == "mean");
-  CHECK(table.rows[8][10] == "no");
+  CHECK(table.rows[8][11] == "no");
   const auto words = plate_sinkage::study_findings(c);
   REQUIRE(words.size() == 3);
   CHECK_THAT(words[0], Catch::Contains("Beds of 3 seeds in the box as set deviate by 6.8 % in the mean pressure of the "

@@ -86,8 +86,8 @@ inline io::Table study_table(const Campaign& c) {
   io::Table t{.caption =
                   "Mean pressure over the second half of the sinkage: mean over the seeds (± standard error) and "
                   "what the study changes",
-              .header = {"runs", "plate [mm]", "seeds", "pressure [kPa]", "±", "deviation of a bed [%]", "change [kPa]",
-                         "±", "change [%]", "±", "told from none", "within the limit"}};
+              .header = {"runs", "plate [mm]", "seeds", "pressure [kPa]", "±", "deviation of a bed [%]", "pairs",
+                         "change [kPa]", "±", "change [%]", "±", "told from none", "within the limit"}};
   for (const StudyRow& r : study_rows(c)) {
     const BedScatter& p = r.pressure;
     const Change& change = r.from_as_set;
@@ -95,9 +95,9 @@ inline io::Table study_table(const Campaign& c) {
     const auto of_change = [&](double value, const char* format) { return is_change ? number(value, format) : ""; };
     t.row(change_text(r.change), std::isfinite(r.width) ? number(1e3 * r.width, "{:.0f}") : "mean", p.beds,
           number(1e-3 * p.mean), number(1e-3 * p.error()), number(100.0 * p.deviation / p.mean, "{:.1f}"),
-          of_change(1e-3 * change.value.value, "{:+.2f}"), of_change(1e-3 * change.value.error, "{:.2f}"),
-          of_change(change.percent.value, "{:+.1f}"), of_change(change.percent.error, "{:.1f}"),
-          is_change ? change.is_told() : "",
+          is_change ? text("{}", change.pairs) : "", of_change(1e-3 * change.value.value, "{:+.2f}"),
+          of_change(1e-3 * change.value.error, "{:.2f}"), of_change(change.percent.value, "{:+.1f}"),
+          of_change(change.percent.error, "{:.1f}"), is_change ? change.is_told() : "",
           is_change ? text("{:g} %: {}", r.limit, change.is_within(r.limit)) : std::string());
   }
   return t;
