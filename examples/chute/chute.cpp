@@ -28,11 +28,11 @@ struct Beads : Model {
   using Domain = domain::Periodic;
 };
 
-int main(int argc, char** argv) {
-  Arguments arguments(argc, argv);
-  const double angle = arguments.number("--angle", 24.0), slope = angle * std::numbers::pi / 180;
-  const double seconds = arguments.number("--seconds", 2.0);  // to flow, and as long again to take means
-  const std::string folder = arguments.take("--output", "chute");
+void simulate(Arguments& arguments) {
+  const double angle = arguments.number("--angle", 24.0, "of the incline [deg]"),
+               slope = angle * std::numbers::pi / 180;
+  const double seconds = arguments.number("--seconds", 2.0, "to flow, and as long again to take means [s]");
+  const std::string folder = arguments.take("--output", "chute", "folder for the results");
   arguments.check();
 
   // Beads of about 1 mm whose weight presses them in by d/20,000. x leads down the incline: it is gravity that is
@@ -111,4 +111,8 @@ int main(int argc, char** argv) {
     return world.species_of(p) == floor ? 0x808080u : Picture::heat(world.velocity(p).x() / fastest);
   });
   picture.save(folder + "/picture", "Beads flow down a rough incline, from left to right");
+}
+
+int main(int argc, char** argv) {
+  return run_example(argc, argv, "Steady flow of beads down a rough incline, in a periodic cell", simulate);
 }

@@ -26,12 +26,13 @@ struct Beads : Model {
   using Integrator = integrator::VelocityVerlet;
 };
 
-int main(int argc, char** argv) {
-  Arguments arguments(argc, argv);
-  const double seconds = arguments.number("--seconds", 1.0), turns = arguments.number("--turns", 0.25);
-  const std::vector<double> froude_numbers = arguments.numbers("--froude", {1e-3, 1e-2, 5e-2, 0.2});
-  const std::string folder = arguments.take("--output", "drum");
-  const int threads = static_cast<int>(arguments.number("--threads", 1));
+void simulate(Arguments& arguments) {
+  const double seconds = arguments.number("--seconds", 1.0, "to run in at each speed, and half as long to measure [s]"),
+               turns = arguments.number("--turns", 0.25, "of the drum at least, to run in and to measure");
+  const std::vector<double> froude_numbers =
+      arguments.numbers("--froude", {1e-3, 1e-2, 5e-2, 0.2}, "Froude numbers w^2 R/g of the speeds");
+  const std::string folder = arguments.take("--output", "drum", "folder for the results");
+  const int threads = static_cast<int>(arguments.number("--threads", 1, "that share the work"));
   arguments.check();
   require_non_negative(turns, "--turns", "turns");
   for (const double froude : froude_numbers) require_positive(froude, "a number of --froude", "(no unit)");
@@ -131,4 +132,8 @@ int main(int argc, char** argv) {
   }
   io::render_plot({.x_label = "Froude number", .y_label = "slope [deg]", .series = {slope, low, high}, .log_x = true},
                   folder + "/slope");
+}
+
+int main(int argc, char** argv) {
+  return run_example(argc, argv, "A rotating drum: the slope of the flowing grains over the Froude number", simulate);
 }

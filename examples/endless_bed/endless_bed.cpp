@@ -246,17 +246,18 @@ void draw(const Run& run, const std::string& folder) {
 
 }  // namespace
 
-int main(int argc, char** argv) {
-  Arguments arguments(argc, argv);
-  const double tiles = arguments.number("--tiles", 10.0), slip = arguments.number("--slip", 0.3);
-  const double load = arguments.number("--load", 1.0);                          // N
-  const auto patch_tiles = static_cast<int>(arguments.number("--patch", 6.0));  // long
-  const double doubles_at = length * arguments.number("--double-at", -1.0);     // tiles of the way
-  const auto beds = static_cast<int>(arguments.number("--beds", 1.0));          // seeds of the tile
-  const auto first_seed = static_cast<int>(arguments.number("--seed", 1.0));    // of them
-  const bool compares = arguments.number("--compare", 0.0) != 0.0;
-  const std::vector<double> laid = arguments.numbers("--lay", {0.0, 0.0});  // tiles along x and y
-  const std::string folder = arguments.take("--output", "endless_bed");
+int simulate(Arguments& arguments) {
+  const double tiles = arguments.number("--tiles", 10.0, "that the wheel rolls over"),
+               slip = arguments.number("--slip", 0.3, "of the wheel");
+  const double load = arguments.number("--load", 1.0, "of the wheel [N]");
+  const auto patch_tiles = static_cast<int>(arguments.number("--patch", 6.0, "tiles of the patch"));
+  const double doubles_at =
+      length * arguments.number("--double-at", -1.0, "tiles of the way after which the patch is doubled; -1: never");
+  const auto beds = static_cast<int>(arguments.number("--beds", 1.0, "tiles of other seeds"));
+  const auto first_seed = static_cast<int>(arguments.number("--seed", 1.0, "of the first of these tiles"));
+  const bool compares = arguments.number("--compare", 0.0, "1: a bed as long as the way, too") != 0.0;
+  const std::vector<double> laid = arguments.numbers("--lay", {0.0, 0.0}, "no wheel: tiles to lay along x and y");
+  const std::string folder = arguments.take("--output", "endless_bed", "folder for the results");
   arguments.check();
   if (laid.size() != 2) fail("--lay has {} numbers, but must have two: tiles along x and y", laid.size());
   const bool lays = laid != std::vector<double>{0.0, 0.0};
@@ -305,4 +306,8 @@ int main(int argc, char** argv) {
     is_same &= size - unsure <= 0.02;
   }
   return is_same ? 0 : 1;
+}
+
+int main(int argc, char** argv) {
+  return run_example(argc, argv, "A wheel rolls over a bed of tiles that never ends", simulate);
 }

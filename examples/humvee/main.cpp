@@ -366,10 +366,12 @@ int main(int argc, char** argv) {
     return 1;
   }
   if (!found) {
-    fmt::print(stderr, "there is no scene '{}'; give all, tyres", wanted);
-    for (const Scene& scene : scenes) fmt::print(stderr, ", {}", scene.name);
-    fmt::print(stderr, "\n");
-    return 2;
+    const bool helps = wanted == "--help";
+    std::string names = "all, tyres";
+    for (const Scene& scene : scenes) names += std::string(", ") + scene.name;
+    if (helps) fmt::print("A Humvee on hard ground: humvee <scene> --output <folder>\nScenes: {}\n", names);
+    else fmt::print(stderr, "there is no scene '{}'; give {}\n", wanted, names);
+    return helps ? 0 : 2;
   }
   fmt::print("\nresults in {}\n", folder);
 }

@@ -25,10 +25,9 @@ struct Gravel : Model {
   using Integrator = integrator::VelocityVerlet;
 };
 
-int main(int argc, char** argv) {
-  Arguments arguments(argc, argv);
-  const double seconds = arguments.number("--seconds", 5.0), flow = 0.06;  // kg/s
-  const std::string folder = arguments.take("--output", "screw");
+int simulate(Arguments& arguments) {
+  const double seconds = arguments.number("--seconds", 5.0, "to run [s]"), flow = 0.06;  // kg/s
+  const std::string folder = arguments.take("--output", "screw", "folder for the results");
   arguments.check();
   const double outer = 24e-3, shaft = 8e-3, pitch = 40e-3, length = 4 * pitch, wall = outer + 0.6e-3;  // m
   const double turns = 2.0, pi = std::numbers::pi;                                                     // 1/s
@@ -93,4 +92,9 @@ int main(int argc, char** argv) {
   picture.line(edge);
   for (const double y : {-wall, wall}) picture.line({Vec3(0, y, 0), Vec3(length, y, 0)}, 0x909090);
   picture.save(folder + "/picture", "A screw conveyor from above and the side: gravel by size", 1200, 520);
+  return 0;
+}
+
+int main(int argc, char** argv) {
+  return run_example(argc, argv, "A screw conveyor carries grains of a sieve curve", simulate);
 }

@@ -37,12 +37,13 @@ struct Dice : Beads {
 
 template <class Model>
 void settle(const typename Model::Shape& grain, Arguments& arguments) {
-  const int grains = static_cast<int>(arguments.number("--grains", 20000));
-  const int settle = static_cast<int>(arguments.number("--settle", 3000));
-  const int steps = static_cast<int>(arguments.number("--steps", 300));
-  const int threads = static_cast<int>(arguments.number("--threads", 0));
-  const double settle_gravity = arguments.number("--settle-gravity", 9.81);
-  const std::filesystem::path bed = arguments.take("--bed", ""), folder = arguments.take("--output", "settle_ranks");
+  const int grains = static_cast<int>(arguments.number("--grains", 20000, "how many"));
+  const int settle = static_cast<int>(arguments.number("--settle", 3000, "steps to settle"));
+  const int steps = static_cast<int>(arguments.number("--steps", 300, "steps that are timed"));
+  const int threads = static_cast<int>(arguments.number("--threads", 0, "of each process; 0: all"));
+  const double settle_gravity = arguments.number("--settle-gravity", 9.81, "while grains settle [m/s^2]");
+  const std::filesystem::path bed = arguments.take("--bed", "", "file that the settled bed is taken from, or kept in");
+  const std::filesystem::path folder = arguments.take("--output", "settle_ranks", "folder for settled.csv");
   arguments.check();
 
   const double pitch = 2.2 * grain.bounding_radius();  // m
@@ -134,11 +135,14 @@ void settle(const typename Model::Shape& grain, Arguments& arguments) {
   }
 }
 
-int main(int argc, char** argv) {
-  const domain::Session mpi(argc, argv);
-  Arguments arguments(argc, argv);
-  const std::string kind = arguments.take("--shape", "spheres");
+void simulate(Arguments& arguments) {
+  const std::string kind = arguments.take("--shape", "spheres", "spheres or cubes");
   if (kind == "spheres") settle<Beads>(shape::Sphere(1e-3), arguments);
   else if (kind == "cubes") settle<Dice>(shape::cube8(0.6e-3), arguments);
   else fail("--shape is '{}', but must be spheres or cubes", kind);
+}
+
+int main(int argc, char** argv) {
+  const domain::Session mpi(argc, argv);
+  return run_example(argc, argv, "Grains settle in a long box, shared by as many processes as mpirun starts", simulate);
 }

@@ -29,11 +29,11 @@ struct Beads : Model {
   using Integrator = integrator::VelocityVerlet;
 };
 
-int main(int argc, char** argv) {
-  Arguments arguments(argc, argv);
-  const double wide = arguments.number("--hole", 6.0), mu = arguments.number("--friction", 0.5),
-               beads = arguments.number("--beads", 3200);
-  const std::string folder = arguments.take("--output", "silo");
+void simulate(Arguments& arguments) {
+  const double wide = arguments.number("--hole", 6.0, "width, in grain diameters"),
+               mu = arguments.number("--friction", 0.5, "coefficient of the beads"),
+               beads = arguments.number("--beads", 3200, "how many fill it");
+  const std::string folder = arguments.take("--output", "silo", "folder for the results");
   arguments.check();
   const double d = 5e-3, density = 2500;                                                    // m, kg/m^3
   const double hole = wide * d, radius = 7.5 * d, high = 24 * d, bottom = 2 * d, g = 9.81;  // m; m/s^2
@@ -115,4 +115,8 @@ int main(int argc, char** argv) {
              measured / beverloo);
   const double middle = inside / looks / (std::numbers::pi * 0.0625 * hole * hole * d);
   fmt::print("in the middle of the hole {:.0f} kg/m^3, {:.3f} of what it is at rest\n", middle, middle / bulk);
+}
+
+int main(int argc, char** argv) {
+  return run_example(argc, argv, "A silo runs out: its mass flow beside Beverloo's law", simulate);
 }

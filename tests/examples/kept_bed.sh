@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # settle_ranks with a bed that is kept: one process settles it, two go on from the file to the state of a run that was not
-# broken off, and another number of grains is refused.
+# broken off, and another number of grains is refused. What it refuses is told once, in words, and ends both with 1.
 #
 #   kept_bed.sh <mpiexec> <settle_ranks> <output folder>
 set -euo pipefail
@@ -23,10 +23,20 @@ if [ "$whole" != "$made" ] || [ "$whole" != "$taken" ]; then
   echo "unbroken: $whole; as the bed is kept: $made; on two processes from the file: $taken"
   exit 1
 fi
-status=0
-"$mpiexec" -n 2 "$program" --grains 601 --bed "$output/bed.h5" --output "$output/refused" > "$output/refused.txt" 2>&1 || status=$?
-if [ $status = 0 ] || ! grep -q "has 600 grains, but --grains is 601" "$output/refused.txt"; then
-  echo "another number of grains was not refused in words:"
-  cat "$output/refused.txt"
-  exit 1
-fi
+# refused <text> <options>...: two processes end in these words, with 1.
+refused() {
+  local text=$1 status=0
+  shift
+  "$mpiexec" -n 2 "$program" --threads 1 "$@" > "$output/refused.txt" 2>&1 || status=$?
+  if [ $status != 1 ] || [ "$(grep -c "$text" "$output/refused.txt")" != 1 ] || grep -q "terminate called" "$output/refused.txt"; then
+    echo "$*: ended with $status, and not once in the words '$text':"
+    cat "$output/refused.txt"
+    exit 1
+  fi
+}
+refused "has 600 grains, but --grains is 601" --grains 601 --bed "$output/bed.h5" --output "$output/refused"
+refused "settle_ranks: --grain is no option of this program" --grain 600
+# A file stands where the folder is to be, which the process that writes finds alone.
+touch "$output/file"
+refused "rank 0 of 2: settle_ranks: cannot make the folder" --grains 600 --settle 10 --steps 10 --output "$output/file"
+"$mpiexec" -n 2 "$program" --help | grep -q -- "--grains 20000 "

@@ -3,7 +3,9 @@
 
 #include <dem/core/output.hpp>
 #include <dem/core/text.hpp>
+#include <dem/rig/tell.hpp>
 
+#include <cstdio>
 #include <cstdlib>
 #include <string>
 
@@ -42,5 +44,12 @@ inline std::string why_not_launched([[maybe_unused]] const std::string& path) {
 inline bool is_first_launched() { return left_by_launcher("OMPI_COMM_WORLD_RANK", "PMI_RANK", 0) == 0; }
 
 }  // namespace detail
+
+/// Whether this program, whose path is `path`, may run; says why where it may not.
+inline bool may_run(const std::string& name, const std::string& path) {
+  const std::string why = detail::why_not_launched(path);
+  if (!why.empty() && detail::is_first_launched()) tell(stderr, "{}: {}\n", name, why);
+  return why.empty();
+}
 
 }  // namespace dem::rig

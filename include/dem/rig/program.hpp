@@ -2,6 +2,7 @@
 // The program of a rig. Needs CLI11. Programs that link dem::hdf5 can go on after they were stopped.
 
 #include <dem/rig/command_line.hpp>
+#include <dem/rig/fail_with.hpp>
 #include <dem/rig/launcher.hpp>
 #include <dem/rig/rig.hpp>
 #if defined(DEM_WITH_HDF5)
@@ -109,16 +110,6 @@ inline int report_run(const ProgramText& program, const Rig& rig, Session& sessi
   return 0;
 }
 
-/// Says what went wrong, and returns the code that main() returns. Of several processes one says it for all, if all
-/// come here; else others wait for this one, and it ends them.
-inline int fail_with(int code, const std::string& words) {
-  const bool all = processes.all_come();
-  if (!all) tell(stderr, "rank {} of {}: {}\n", processes.rank, processes.count, words);
-  else if (processes.rank == 0) tell(stderr, "{}\n", words);
-  if (!all) processes.end(code);
-  return code;
-}
-
 }  // namespace detail
 
 /// Reads the settings of a rig, checks them, runs it and makes its report. Returns what main() returns: see
@@ -126,10 +117,7 @@ inline int fail_with(int code, const std::string& words) {
 inline int run_program(const ProgramText& program, Rig& rig, int argc, const char* const* argv) {
   detail::open_standard_streams();
   std::signal(SIGPIPE, SIG_IGN);  // whoever read the messages is gone: no reason to lose the results
-  if (const std::string why = detail::why_not_launched(argc > 0 ? argv[0] : program.name); !why.empty()) {
-    if (detail::is_first_launched()) tell(stderr, "{}: {}\n", program.name, why);
-    return 2;
-  }
+  if (!may_run(program.name, argc > 0 ? argv[0] : program.name)) return 2;
   try {
     Options options;
     rig.declare(options);
@@ -151,11 +139,11 @@ inline int run_program(const ProgramText& program, Rig& rig, int argc, const cha
     // One process writes. The others have nothing to add.
     return processes.of_first(process_writes_files ? detail::report_run(program, rig, session) : 0);
   } catch (const InAnotherProgram& error) {
-    return detail::fail_with(3, text("{}: {}", program.name, error.what()));
+    return fail_with(3, text("{}: {}", program.name, error.what()));
   } catch (const std::bad_alloc&) {
-    return detail::fail_with(2, text("{}: {}", program.name, detail::no_memory));
+    return fail_with(2, text("{}: {}", program.name, detail::no_memory));
   } catch (const std::exception& error) {
-    return detail::fail_with(2, text("{}: {}", program.name, error.what()));
+    return fail_with(2, text("{}: {}", program.name, error.what()));
   }
 }
 
