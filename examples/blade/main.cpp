@@ -9,6 +9,7 @@
 #include <dem/dem.hpp>
 #include <dem/rig/frames.hpp>
 #include <dem/rig/part_of.hpp>
+#include <dem/rig/processes.hpp>
 #include <dem/rig/program.hpp>
 #include <dem/rig/samples_file.hpp>
 #include <dem/soil/packing.hpp>
@@ -22,10 +23,11 @@ using namespace dem;
 struct Soil : Model {
   using Shape = shape::Sphere;
   using Integrator = integrator::VelocityVerlet;
+  using Domain = rig::Domain;
 };
 
-const Vec3 box(0.12, 0.03, 0.06), blade_edges(4e-3, 0.024, 0.03);  // m
-const double grain_radius = 1.5e-3, blade_start = 0.02;            // m
+const Vec3 bed_edges(0.12, 0.03, 0.06), blade_edges(4e-3, 0.024, 0.03);  // m
+const double grain_radius = 1.5e-3, blade_start = 0.02;                  // m
 
 /// A bed of grains in an open box: a loose block, to be left to settle.
 void pour_bed(World<Soil>& world) {
@@ -34,18 +36,20 @@ void pour_bed(World<Soil>& world) {
   const auto add_wall = [&](const Vec3& middle, const Vec3& edges) {
     world.add_surface(world.ground(), surface::Box(edges), {.position = middle});
   };
-  add_wall({box.x() / 2, 0, -wall / 2}, {box.x(), box.y(), wall});
+  add_wall({bed_edges.x() / 2, 0, -wall / 2}, {bed_edges.x(), bed_edges.y(), wall});
   for (const double side : {-1.0, 1.0}) {
-    add_wall({box.x() / 2 + side * (box.x() + wall) / 2, 0, box.z() / 2}, {wall, box.y() + 2 * wall, box.z()});
-    add_wall({box.x() / 2, side * (box.y() + wall) / 2, box.z() / 2}, {box.x(), wall, box.z()});
+    add_wall({bed_edges.x() / 2 + side * (bed_edges.x() + wall) / 2, 0, bed_edges.z() / 2},
+             {wall, bed_edges.y() + 2 * wall, bed_edges.z()});
+    add_wall({bed_edges.x() / 2, side * (bed_edges.y() + wall) / 2, bed_edges.z() / 2},
+             {bed_edges.x(), wall, bed_edges.z()});
   }
   const SpeciesId grain = world.add_species(shape::Sphere(grain_radius), {.density = 2650});
   std::mt19937 random(1);
   std::uniform_real_distribution<double> jitter(-2e-4, 2e-4);
   const double pitch = 2.3 * grain_radius;
   for (double z = pitch / 2; z < 0.04; z += pitch) {
-    for (double x = pitch / 2; x < box.x() - pitch / 2; x += pitch) {
-      for (double y = -box.y() / 2 + pitch / 2; y < box.y() / 2 - pitch / 2; y += pitch) {
+    for (double x = pitch / 2; x < bed_edges.x() - pitch / 2; x += pitch) {
+      for (double y = -bed_edges.y() / 2 + pitch / 2; y < bed_edges.y() / 2 - pitch / 2; y += pitch) {
         world.add_grain({grain, Vec3(x + jitter(random), y + jitter(random), z + jitter(random))});
       }
     }
@@ -211,6 +215,7 @@ class Blade : public rig::Rig {
 };
 
 int main(int argc, char** argv) {
+  const rig::MpiSession mpi(argc, argv);
   Blade blade;
   return rig::run_program({.name = "blade",
                            .title = "A blade in soil",
