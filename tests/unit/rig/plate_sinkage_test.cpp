@@ -186,7 +186,7 @@ TEST_CASE("the study of plates has the spread of the seeds, and changes paired b
   dem::io::check_table(table);
   CHECK(table.rows[0][0] == "as set");
   CHECK(table.rows[0][5] == "9.1");  // 2 of 22 kPa
-  CHECK(table.rows[0][6].empty());  // pairs
+  CHECK(table.rows[0][6].empty());   // pairs
   CHECK(table.rows[0][9].empty());
   CHECK(table.rows[3][9] == "-10.0");
   CHECK(table.rows[3][12] == "5 %: no");
