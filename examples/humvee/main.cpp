@@ -12,6 +12,7 @@
 // and prints what was measured beside what was expected.
 
 #include <dem/io/csv.hpp>
+#include <dem/rig/launcher.hpp>
 
 #include <fmt/format.h>
 
@@ -306,6 +307,7 @@ struct Scene {
 }  // namespace
 
 int main(int argc, char** argv) {
+  if (!dem::rig::may_run("humvee", argv[0])) return 1;
   std::vector<std::string> words;
   for (int k = 1; k < argc; ++k) {
     if (std::string(argv[k]) != "--output") words.emplace_back(argv[k]);

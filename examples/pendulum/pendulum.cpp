@@ -10,6 +10,7 @@
 #include <dem/mbd/mbd.hpp>
 #include <dem/report/columns.hpp>
 #include <dem/report/plot.hpp>
+#include <dem/rig/launcher.hpp>
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
@@ -28,6 +29,7 @@ int main(int argc, char** argv) {
   app.add_option("--output", output, "folder for the results")->capture_default_str();
   app.add_flag("--vtk,!--no-vtk", vtk, "files for ParaView");
   CLI11_PARSE(app, argc, argv);
+  if (!dem::rig::may_run("pendulum", argv[0])) return 1;
 
   try {
     using namespace dem;

@@ -10,6 +10,7 @@
 #include <dem/io/csv.hpp>
 #include <dem/report/ascii_table.hpp>
 #include <dem/report/plot.hpp>
+#include <dem/rig/launcher.hpp>
 #include <dem/terramechanics/column_wheel.hpp>
 #include <dem/terramechanics/rut_files.hpp>
 #include <dem/terramechanics/rut_vtk.hpp>
@@ -44,6 +45,7 @@ int main(int argc, char** argv) {
   app.add_option("--travel", s.travel, "[m]")->capture_default_str()->check(CLI::Range(0.05, 10.0));
   app.add_option("--output", output, "folder for the results")->capture_default_str();
   CLI11_PARSE(app, argc, argv);
+  if (!dem::rig::may_run("soil_columns", argv[0])) return 1;
   try {
     if (!soil_file.empty()) named = load_soil(soil_file);
     s.soil = named.soil;

@@ -10,6 +10,7 @@
 #include <dem/report/ascii_table.hpp>
 #include <dem/report/columns.hpp>
 #include <dem/report/plot.hpp>
+#include <dem/rig/launcher.hpp>
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
@@ -29,6 +30,7 @@ int main(int argc, char** argv) {
   app.add_option("--dt", dt, "time step in s; the joints get stiffer as it gets smaller")->capture_default_str();
   app.add_option("--output", output, "folder for the results")->capture_default_str();
   CLI11_PARSE(app, argc, argv);
+  if (!dem::rig::may_run("squeezer", argv[0])) return 1;
 
   try {
     using namespace dem;
