@@ -2,16 +2,18 @@
 // torque is set beside the weight of the grains times the lever of their centre of mass, which it lifts.
 //
 //   drum --froude 0.001,0.01,0.05,0.2 --seconds 1 --turns 0.25 --threads 2 --output out/drum
+//   drum --friction 0.3 --diameter 0.004 --radius 0.06 --length 0.03 --filled 0.4
 //
 // At each speed the drum runs in for this many seconds, and is then measured for half as long; either takes at least so
 // many turns.
 //
-// Writes slope.gp (slope over Froude number) and picture.gp, and draws them where gnuplot is installed.
+// Writes drum.csv, slope.gp (slope over Froude number) and picture.gp, and draws them where gnuplot is installed.
 
 #include "arguments.hpp"
 #include "picture.hpp"
 
 #include <dem/dem.hpp>
+#include <dem/io/csv.hpp>
 #include <dem/report/plot.hpp>
 
 #include <cstdlib>
@@ -31,16 +33,28 @@ void simulate(Arguments& arguments) {
                turns = arguments.number("--turns", 0.25, "of the drum at least, to run in and to measure");
   const std::vector<double> froude_numbers =
       arguments.numbers("--froude", {1e-3, 1e-2, 5e-2, 0.2}, "Froude numbers w^2 R/g of the speeds");
+  const double d = arguments.number("--diameter", 3e-3, "of a bead [m]"),
+               radius = arguments.number("--radius", 0.042, "of the circle of the lining's beads [m]"),
+               length = arguments.number("--length", 0.018, "of the drum [m]"),
+               share = arguments.number("--filled", 0.5, "share of the drum"),
+               friction = arguments.number("--friction", 0.5, "mu of beads on beads"),
+               restitution = arguments.number("--restitution", 0.6, "of beads");
   const std::string folder = arguments.take("--output", "drum", "folder for the results");
   const int threads = static_cast<int>(arguments.number("--threads", 1, "that share the work"));
   arguments.check();
   require_non_negative(turns, "--turns", "turns");
   for (const double froude : froude_numbers) require_positive(froude, "a number of --froude", "(no unit)");
-  const double d = 3e-3, radius = 14 * d, length = 6 * d, g = 9.81, pi = std::numbers::pi;  // m; m/s^2
+  require_positive(d, "--diameter", "m");
+  require_within(radius, 4 * d, 1000 * d, "--radius (m; 4 to 1000 beads)");
+  require_within(length, 3 * d, 1000 * d, "--length (m; 3 to 1000 beads)");
+  require_within(share, 0.05, 0.6, "--filled");
+  require_non_negative(friction, "--friction", "(no unit)");
+  require_within(restitution, 0.05, 0.99, "--restitution");
+  const double g = 9.81, pi = std::numbers::pi;  // m/s^2
 
   World<Beads> world({.threads = threads});
-  const ContactParameters<Beads> rough = {.normal = contact::LinearSpringDashpot::with_restitution(500, 0.6),
-                                          .friction = {0.5, 350, 0.1}};
+  const ContactParameters<Beads> rough = {.normal = contact::LinearSpringDashpot::with_restitution(500, restitution),
+                                          .friction = {friction, 350, 0.1}};
   ContactParameters<Beads> smooth = rough;
   smooth.friction.coefficient = 0.0;
   world.set_contact(rough);
@@ -69,7 +83,7 @@ void simulate(Arguments& arguments) {
     const std::string name = fmt::format("grains on the drum, {}", loads.size());
     loads.push_back(machine.add_sensor(mbd::contact_sensor(name, drum, measured_for(froude))));
   }
-  const int around = static_cast<int>(2 * pi * radius / d), across = static_cast<int>(length / d);
+  const int around = static_cast<int>(2 * pi * radius / d), across = static_cast<int>(length / d + 1e-9);
   for (int k = 0; k < around; ++k) {
     const double a = 2 * pi * k / around;
     for (int j = 0; j < across; ++j) {
@@ -77,8 +91,8 @@ void simulate(Arguments& arguments) {
       world.attach(world.add_grain({lining, {radius * std::cos(a), y, radius * std::sin(a)}}), drum);
     }
   }
-  // Half of it is filled by a rain.
-  const double inner = radius - 0.5 * d, filled = 0.5 * pi * inner * inner * length * 0.58 * 2650;  // kg
+  // It is filled by a rain.
+  const double inner = radius - 0.5 * d, filled = share * pi * inner * inner * length * 0.58 * 2650;  // kg
   const InletId rain = world.add_inlet(
       InletRegion::box({-0.6 * inner, -0.4 * length, 0.3 * inner}, {0.6 * inner, 0.4 * length, 0.6 * inner}),
       {.name = "rain", .grains = bead, .mass_flow = filled / 0.5, .total_mass = filled, .velocity = {0, 0, -1}});
@@ -86,6 +100,8 @@ void simulate(Arguments& arguments) {
     if (const auto report = world.run_for(time); !report) fmt::print("{}\n", report.text), std::exit(1);
   };
   while (world.inlet(rain).mass() < 0.999 * filled && world.time() < 10) run(0.05);
+  io::CsvWriter csv(folder + "/drum.csv", {"froude_number", "speed_rad_per_s", "slope_deg", "deviation_deg",
+                                           "measured_for_s", "turns", "torque_Nm", "torque_over_weight_times_lever"});
   fmt::print("{} beads of {:g} mm in a drum of {:.0f} mm\n", world.inlet(rain).grains(), 1e3 * d, 2e3 * radius);
 
   io::Series slope{.name = "of the line through the centre of mass", .style = io::SeriesStyle::LinePoints, .color = 0};
@@ -119,6 +135,7 @@ void simulate(Arguments& arguments) {
         "of "
         "weight times lever\n",
         froude, angle, deviation, measured, measured * speed / (2 * pi), torque, torque / -lever);
+    csv.row(froude, speed, angle, deviation, measured, measured * speed / (2 * pi), torque, torque / -lever);
     for (io::Series* series : {&slope, &low, &high}) series->x.push_back(froude);
     slope.y.push_back(angle), low.y.push_back(angle - deviation), high.y.push_back(angle + deviation);
     if (froude == froude_numbers[froude_numbers.size() / 2]) {
