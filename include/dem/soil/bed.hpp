@@ -203,14 +203,17 @@ class Bed {
   }
   template <class Look>
   void settle_on(Look&& look) {
+    const bool slowed = stage_ == Stage::fallen && options_.fall_speed > 0.0;
+    const double limit = options_.time_limit + (slowed ? filling_.top() / options_.fall_speed : 0.0);
     while (!settling_.look(world_.time())) {
-      if (world_.time() - settling_.start > options_.time_limit) {
+      if (world_.time() - settling_.start > limit) {
         fail(
             "the grains of a bed are not at rest after {:g} s: their r.m.s. speed is {:g} m/s, rest is below {:g}; "
             "raise BedOptions::time_limit or the damping",
-            options_.time_limit, settling_.speed, settling_.rest);
+            limit, settling_.speed, settling_.rest);
       }
       settling_.go_on(world_, running());
+      if (slowed) limit_fall(world_, options_.fall_speed);
       look();
     }
   }

@@ -17,6 +17,7 @@ struct BedOptions {
   double expected_fraction = 0.6;  ///< solid fraction as it settles, by which grains are counted
   double room = 0.05;              ///< between grains as they are placed, in largest diameters
   double rain_flow = 0.0;          ///< kg/s, of grains that rain; 0: they are placed in a lattice, and fall together
+  double fall_speed = 0.0;         ///< m/s, at which those of a lattice fall at most (limit_fall); 0: freely
   double rain_height = 0.05;       ///< m, of the inlet that it rains from, over the grains when it is full
   double densify_time = 0.5;       ///< s, in which friction goes to zero
   double shaking = 0.5;            ///< to and fro along x, while friction sinks, in weights
@@ -36,6 +37,7 @@ struct BedOptions {
     require_within(expected_fraction, 0.01, 1.0, "solid fraction that a bed is expected to have");
     require_within(room, 0.0, 10.0, "room between grains as they are placed");
     require_non_negative(rain_flow, "flow of the rain on a bed", "kg/s");
+    require_non_negative(fall_speed, "speed at which the grains of a bed fall (0: freely)", "m/s");
     require_positive(rain_height, "height from which it rains on a bed", "m");
     require_positive(densify_time, "time in which a bed is made denser", "s");
     require_non_negative(shaking, "strength of shaking", "weights");
@@ -61,7 +63,8 @@ struct BedOptions {
     v.given("height", height, "m"), v.given("relative_density", relative_density);
     v.given("loosest", limits.loosest), v.given("densest", limits.densest);
     v.given("expected_fraction", expected_fraction), v.given("room", room);
-    v.given("rain_flow", rain_flow, "kg/s"), v.given("rain_height", rain_height, "m");
+    v.given("rain_flow", rain_flow, "kg/s"), v.given("fall_speed", fall_speed, "m/s");
+    v.given("rain_height", rain_height, "m");
     v.given("densify_time", densify_time, "s"), v.given("shaking", shaking), v.given("frequency", frequency, "Hz");
     v.given("lid_pressure", lid_pressure, "Pa"), v.given("lid_speed", lid_speed, "m/s");
     v.given("time_limit", time_limit, "s"), v.given("seed", seed);

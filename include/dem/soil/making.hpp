@@ -56,6 +56,16 @@ struct Settling {
   }
 };
 
+/// Slows grains that fall faster than `speed` (m/s) to it, as a drag does. Deep beds are not packed by longer falls
+/// then.
+template <class World>
+void limit_fall(World& world, double speed) {
+  for (const GrainId p : world.grains()) {
+    const Vec3 v = world.velocity(p);
+    if (v.z() < -speed) world.set_velocity(p, {v.x(), v.y(), -speed});
+  }
+}
+
 /// To and fro along a direction, by gravity: in the frame of a container that is the same as a container that shakes.
 struct Shaking {
   Vec3 gravity;      ///< m/s^2, at rest

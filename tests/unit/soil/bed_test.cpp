@@ -88,6 +88,24 @@ TEST_CASE("a bed fills a box, a trough and a cylinder to its height, level and a
   }
 }
 
+TEST_CASE("grains of a lattice fall as slowly as was asked for, and fill a bed to its height") {
+  double fastest[2];
+  for (const bool slowed : {false, true}) {
+    SoilOfBalls soil;
+    dem::soil::Bed<Balls> bed(soil.world, Container::box(0.018, 0.014), soil.ball,
+                              {.height = 0.012, .fall_speed = slowed ? 0.1 : 0.0, .time_limit = 0.5});
+    double& most = fastest[slowed ? 1 : 0] = 0.0;
+    bed.make([](double) {},
+             [&] {
+               for (const GrainId p : soil.world.grains()) most = std::max(most, -soil.world.velocity(p).z());
+             });
+    check_bed(soil.world, bed);
+  }
+  CHECK(fastest[0] > 0.3);  // a fall through 5 mm
+  CHECK(fastest[1] <= 0.1);
+  CHECK(fastest[1] > 0.09);
+}
+
 TEST_CASE("a bed that is rained is filled at its flow from its height, level and at rest") {
   for (const Container& container :
        {Container::box(0.018, 0.014), Container::trough(0.018, 0.008, 0.4), Container::cylinder(0.0085)}) {

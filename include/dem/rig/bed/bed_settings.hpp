@@ -14,6 +14,7 @@ struct BedSettings {
   double length = 0.0;            ///< m, inner length of the box along x; 0: by size
   double width = 0.0;             ///< m, along y; 0: by size
   double depth = 0.0;             ///< m, of the bed as it settles at relative density 0; 0: by size
+  double fall_speed = 0.0;        ///< m/s, at which grains fall at most while they are rained; 0: freely
   double relative_density = 0.0;  ///< 0: as it settles
   double densify_time = 0.5;      ///< s, in which friction goes to zero while the bed is shaken
   double shake_amplitude = 2e-4;  ///< m
@@ -50,6 +51,7 @@ inline void add_bed_options(Options& options, BedSettings& s) {
   add("--bed-length", s.length, "inner length of the box, along x [m]; 0: by size");
   add("--bed-width", s.width, "inner width [m]; 0: by size");
   add("--bed-depth", s.depth, "of the bed as it settles [m]; 0: by size");
+  add("--fall-speed", s.fall_speed, "at which grains fall at most while they are rained [m/s]; 0: freely");
   add("--relative-density", s.relative_density, "0 (as it settles) to 1 (the densest)");
   add("--densify-time", s.densify_time, "friction goes to zero in this time while the bed is shaken [s]");
   add("--shake-amplitude", s.shake_amplitude, "[m]");
@@ -74,8 +76,8 @@ inline void add_bed_options(Options& options, BedSettings& s) {
 inline void find_idle(IdleOptions& idle, const BedSettings& s) {
   idle.unless(s.file.empty(), "without --bed-file: a bed that is read is not saved again", {"--save-bed"});
   idle.unless(s.is_rained(), "without --bed-file, which fixes the grains",
-              {"--bed-depth", "--relative-density", "--densify-time", "--shake-amplitude", "--shake-frequency",
-               "--strike-off", "--seed"});
+              {"--bed-depth", "--fall-speed", "--relative-density", "--densify-time", "--shake-amplitude",
+               "--shake-frequency", "--strike-off", "--seed"});
   if (!s.is_rained()) return;
   idle.unless(s.relative_density != 0.0, "with a --relative-density above 0, for which a bed is shaken",
               {"--densify-time", "--shake-amplitude", "--shake-frequency"});
@@ -103,6 +105,7 @@ inline void resolve(BedSettings& s, const BedBySize& by_size, const std::string&
   require_positive(s.length, "--bed-length", "m (0: by size)");
   require_positive(s.width, "--bed-width", "m (0: by size)");
   require_positive(s.depth, "--bed-depth", "m (0: by size)");
+  require_within(s.fall_speed, 0.0, 100.0, "--fall-speed (m/s; 0: freely)");
   require_within(s.relative_density, 0.0, 1.0, "--relative-density");
   require_positive(s.densify_time, "--densify-time", "s");
   require_within(s.shake_amplitude, 0.0, 0.01, "--shake-amplitude (m)");

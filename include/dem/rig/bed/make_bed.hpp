@@ -111,8 +111,12 @@ Bed<Model> make_bed(const BedSettings& s, const GrainSettings& grains, const typ
   const auto kept = stages.keep("bed", bed);
   stages.begin(made ? "rain" : "settle", 1.0);
   const double high = mean_height(bed.world), low = 0.5 * s.depth;
-  settle(bed.world, grains.edge(), s.stage_limit, "--stage-limit", stages,
-         [&] { return made ? fallen_share(bed.world, high, low) : 0.0; });
+  const bool slowed = made && s.fall_speed > 0.0;
+  const double limit = s.stage_limit + (slowed ? 2.0 * high / s.fall_speed : 0.0);
+  settle(bed.world, grains.edge(), limit, "--stage-limit", stages, [&] {
+    if (slowed) soil::limit_fall(bed.world, s.fall_speed);
+    return made ? fallen_share(bed.world, high, low) : 0.0;
+  });
   if (made && s.relative_density > 0.0) {
     densify(bed, stages);
     stages.begin("settle");
