@@ -19,9 +19,10 @@ class ForceSums {
   /// Hands the sums to the grains of a chunk.
   template <class GrainColumns>
   void write(std::size_t chunk_index, GrainColumns& p) const {
-    for (std::size_t k = 0; k < chunk_size; ++k) {
-      p.force.set(chunk_index * chunk_size + k, rows_[k].force);
-      p.torque.set(chunk_index * chunk_size + k, rows_[k].torque);
+    const std::size_t begin = chunk_index * chunk_size, rows = p.packs_end(begin) - begin;
+    for (std::size_t k = 0; k < rows; ++k) {
+      p.force.set(begin + k, rows_[k].force);
+      p.torque.set(begin + k, rows_[k].torque);
     }
   }
 

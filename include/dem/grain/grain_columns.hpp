@@ -88,6 +88,11 @@ struct GrainColumns {
   }
 
   std::size_t chunks() const { return (count + chunk_size - 1) / chunk_size; }
+  /// One past the last row of the packs that hold grains of the chunk whose first row is `begin`.
+  std::size_t packs_end(std::size_t begin) const {
+    constexpr auto width = static_cast<std::size_t>(pack_width);
+    return std::min(begin + chunk_size, (count + width - 1) / width * width);
+  }
   const double* pose_of(std::size_t i) const { return pose.data() + i * Shape::pose_size; }
   double* pose_of(std::size_t i) { return pose.data() + i * Shape::pose_size; }
 
@@ -246,9 +251,11 @@ struct GrainColumns {
   }
 
   /// Puts the padding rows where the last grain is and stops them, so that bounds and displacements stay right.
-  void pad() {
+  void pad() { pad(chunks() * chunk_size); }
+  /// Those before row `stop`.
+  void pad(std::size_t stop) {
     if (count == 0) return;
-    for (std::size_t i = count; i < chunks() * chunk_size; ++i) {
+    for (std::size_t i = count; i < stop; ++i) {
       position.set(i, position[count - 1]);
       listed_at.set(i, listed_at[count - 1]);
       for (Columns3* c : {&velocity, &local_angular_velocity, &force, &torque}) c->set(i, {0, 0, 0});

@@ -95,10 +95,11 @@ void refresh_chunk(std::size_t chunk_index, Chunk<Model>& chunk, GrainColumns& p
       for (std::size_t i = first; i < stop; ++i) species[p.species[i]].shape.orient(p.rotation(i), p.pose_of(i));
     }
   });
-  if (end < begin + chunk_size) p.pad();
+  const std::size_t stop = p.packs_end(begin);
+  if (end < stop) p.pad(stop);
   Vector3<Pack> low = p.position.pack(begin), high = low;
   Pack moved2(0.0), check(0.0);
-  for (std::size_t i = begin; i < begin + chunk_size; i += static_cast<std::size_t>(pack_width)) {
+  for (std::size_t i = begin; i < stop; i += static_cast<std::size_t>(pack_width)) {
     const Vector3<Pack> x = p.position.pack(i), v = p.velocity.pack(i), w = p.local_angular_velocity.pack(i);
     low = {min(low.x, x.x), min(low.y, x.y), min(low.z, x.z)};
     high = {max(high.x, x.x), max(high.y, x.y), max(high.z, x.z)};
@@ -147,7 +148,8 @@ inline std::size_t count_awake(std::size_t i, Wakefulness doing) {
 /// Calls advance(i, motion, memory) for each pack of a chunk's grains. Grains that sleep stay as they are.
 template <class GrainColumns, class Advance>
 void advance_chunk(std::size_t begin, GrainColumns& p, Wakefulness doing, const Advance& advance) {
-  for (std::size_t i = begin; i < begin + chunk_size; i += static_cast<std::size_t>(pack_width)) {
+  const std::size_t stop = p.packs_end(begin);
+  for (std::size_t i = begin; i < stop; i += static_cast<std::size_t>(pack_width)) {
     const std::size_t awake_here = doing.empty() ? pack_width : count_awake(i, doing);
     if (awake_here == 0) continue;
     integrator::Motion<Pack> m = p.motion(i);
@@ -197,8 +199,8 @@ void move_chunk(std::size_t chunk_index, Chunk<Model>& chunk, GrainColumns& p,
 template <class Model, class GrainColumns>
 void initialise_chunk(std::size_t chunk_index, GrainColumns& p, std::span<const SpeciesInertia> inertia,
                       const Vec3& gravity) {
-  const std::size_t begin = chunk_index * chunk_size;
-  for (std::size_t i = begin; i < begin + chunk_size; i += static_cast<std::size_t>(pack_width)) {
+  const std::size_t begin = chunk_index * chunk_size, stop = p.packs_end(begin);
+  for (std::size_t i = begin; i < stop; i += static_cast<std::size_t>(pack_width)) {
     auto memory = p.memory_pack(i);
     Model::Integrator::template initialise<Pack>(memory, acceleration(i, p, inertia, gravity, p.motion(i)));
     p.set_memory_pack(i, memory);
