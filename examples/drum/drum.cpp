@@ -16,7 +16,6 @@
 #include <dem/io/csv.hpp>
 #include <dem/report/plot.hpp>
 
-#include <cstdlib>
 #include <numbers>
 
 using namespace dem;
@@ -36,25 +35,31 @@ void simulate(Arguments& arguments) {
   const double d = arguments.number("--diameter", 3e-3, "of a bead [m]"),
                radius = arguments.number("--radius", 0.042, "of the circle of the lining's beads [m]"),
                length = arguments.number("--length", 0.018, "of the drum [m]"),
-               share = arguments.number("--filled", 0.5, "share of the drum"),
+               share = arguments.number("--filled", 0.5, "share of the drum's volume, at a solid fraction of 0.58"),
                friction = arguments.number("--friction", 0.5, "mu of beads on beads"),
-               restitution = arguments.number("--restitution", 0.6, "of beads");
+               restitution = arguments.number("--restitution", 0.6, "of beads"),
+               given_stiffness =
+                   arguments.number("--stiffness", 0, "of beads [N/m]; 0: 500 for 3 mm in 84 mm, more for larger ones");
   const std::string folder = arguments.take("--output", "drum", "folder for the results");
   const int threads = static_cast<int>(arguments.number("--threads", 1, "that share the work"));
   arguments.check();
   require_non_negative(turns, "--turns", "turns");
   for (const double froude : froude_numbers) require_positive(froude, "a number of --froude", "(no unit)");
   require_positive(d, "--diameter", "m");
-  require_within(radius, 4 * d, 1000 * d, "--radius (m; 4 to 1000 beads)");
-  require_within(length, 3 * d, 1000 * d, "--length (m; 3 to 1000 beads)");
+  require_within(radius, (4 - 1e-9) * d, 1000 * d, "--radius (m; 4 to 1000 beads)");
+  require_within(length, (3 - 1e-9) * d, 1000 * d, "--length (m; 3 to 1000 beads)");
   require_within(share, 0.05, 0.6, "--filled");
   require_non_negative(friction, "--friction", "(no unit)");
   require_within(restitution, 0.05, 0.99, "--restitution");
-  const double g = 9.81, pi = std::numbers::pi;  // m/s^2
+  require_non_negative(given_stiffness, "--stiffness", "N/m");
+  // The weight of a layer as deep as the drum presses beads in by as large a share of their size in any drum.
+  const double stiffness = given_stiffness > 0 ? given_stiffness : 500 * (radius * d / (0.042 * 3e-3));  // N/m
+  const double g = 9.81, pi = std::numbers::pi;                                                          // m/s^2
 
   World<Beads> world({.threads = threads});
-  const ContactParameters<Beads> rough = {.normal = contact::LinearSpringDashpot::with_restitution(500, restitution),
-                                          .friction = {friction, 350, 0.1}};
+  const ContactParameters<Beads> rough = {
+      .normal = contact::LinearSpringDashpot::with_restitution(stiffness, restitution),
+      .friction = {friction, 0.7 * stiffness, 0.1}};
   ContactParameters<Beads> smooth = rough;
   smooth.friction.coefficient = 0.0;
   world.set_contact(rough);
@@ -97,9 +102,13 @@ void simulate(Arguments& arguments) {
       InletRegion::box({-0.6 * inner, -0.4 * length, 0.3 * inner}, {0.6 * inner, 0.4 * length, 0.6 * inner}),
       {.name = "rain", .grains = bead, .mass_flow = filled / 0.5, .total_mass = filled, .velocity = {0, 0, -1}});
   const auto run = [&](double time) {
-    if (const auto report = world.run_for(time); !report) fmt::print("{}\n", report.text), std::exit(1);
+    if (const auto report = world.run_for(time); !report) fail("{}", report.text);
   };
-  while (world.inlet(rain).mass() < 0.999 * filled && world.time() < 10) run(0.05);
+  const double bead_mass = world.species(bead).mass;
+  while (world.inlet(rain).mass() + 0.6 * bead_mass < filled) {
+    if (world.time() > 10) fail("the drum is not filled after 10 s: {}; lower --filled", world.inlet(rain).note());
+    run(0.05);
+  }
   io::CsvWriter csv(folder + "/drum.csv", {"froude_number", "speed_rad_per_s", "slope_deg", "deviation_deg",
                                            "measured_for_s", "turns", "torque_Nm", "torque_over_weight_times_lever"});
   fmt::print("{} beads of {:g} mm in a drum of {:.0f} mm\n", world.inlet(rain).grains(), 1e3 * d, 2e3 * radius);

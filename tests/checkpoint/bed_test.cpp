@@ -53,7 +53,7 @@ TEST_CASE("a bed that is left at any of its stages goes on from a file on other 
   const Folder folder;
   const bool rains = GENERATE(true, false);
   dem::soil::BedOptions o = pressed_bed;
-  o.height = 0.007, o.rain_flow = rains ? 0.02 : 0.0, o.rain_height = 0.01;
+  o.height = 0.007, o.rain_flow = rains ? 0.02 : 0.0, o.rain_height = 0.01, o.fall_speed = rains ? 0.0 : 0.2;
   constexpr double radius = 0.0065;
   o.lid_pressure = 0.0;
   BedOfBalls loose(2, o, radius);

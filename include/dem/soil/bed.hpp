@@ -129,7 +129,7 @@ class Bed {
   }
   /// Runs until the grains rest (Settling).
   void settle() {
-    settling_ = {world_.time(), rest()};
+    settling_ = {world_.time(), rest(), options_.fall_speed};
     settle_on([] {});
   }
   /// Lowers the lid until the grains carry it within 2 % and it rests, both for 10 ms, takes it off, and lets the
@@ -177,7 +177,7 @@ class Bed {
     stage_ = stage;
     if (stage == Stage::densifying) densifying_ = {world_.time(), solid_fraction(), options_.densify_time};
     else if (stage == Stage::pressing) lower_lid();
-    else if (stage != Stage::raining) settling_ = {world_.time(), rest()};
+    else if (stage != Stage::raining) settling_ = {world_.time(), rest(), options_.fall_speed};
   }
 
   double rest() const { return rest_speed(2.0 * filling_.radius(), gravity_.norm()); }  // m/s
@@ -203,8 +203,8 @@ class Bed {
   }
   template <class Look>
   void settle_on(Look&& look) {
-    const bool slowed = stage_ == Stage::fallen && options_.fall_speed > 0.0;
-    const double limit = options_.time_limit + (slowed ? filling_.top() / options_.fall_speed : 0.0);
+    const double fall = options_.fall_speed > 0.0 ? filling_.top() / options_.fall_speed : 0.0;
+    const double limit = options_.time_limit + fall;  // s
     while (!settling_.look(world_.time())) {
       if (world_.time() - settling_.start > limit) {
         fail(
@@ -213,7 +213,6 @@ class Bed {
             limit, settling_.speed, settling_.rest);
       }
       settling_.go_on(world_, running());
-      if (slowed) limit_fall(world_, options_.fall_speed);
       look();
     }
   }

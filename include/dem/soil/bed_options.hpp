@@ -1,6 +1,7 @@
 #pragma once
 
 #include <dem/core/error.hpp>
+#include <dem/soil/making.hpp>
 #include <dem/soil/relative_density.hpp>
 
 #include <cstdint>
@@ -24,7 +25,7 @@ struct BedOptions {
   double frequency = 25.0;         ///< Hz, of the shaking
   double lid_pressure = 0.0;       ///< Pa, by which a lid presses the grains flat before they are struck off; 0: none
   double lid_speed = 0.05;         ///< m/s, at which it comes down
-  double time_limit = 5.0;         ///< s, in which the grains must come to rest, and the lid on them
+  double time_limit = 5.0;         ///< s, in which grains must come to rest after their fall, and the lid on them
   std::uint64_t seed = 1;
   std::string wall_material = "wall";
 
@@ -37,7 +38,13 @@ struct BedOptions {
     require_within(expected_fraction, 0.01, 1.0, "solid fraction that a bed is expected to have");
     require_within(room, 0.0, 10.0, "room between grains as they are placed");
     require_non_negative(rain_flow, "flow of the rain on a bed", "kg/s");
-    require_non_negative(fall_speed, "speed at which the grains of a bed fall (0: freely)", "m/s");
+    require_fall_speed(fall_speed, "the speed at which the grains of a bed fall at most");
+    if (fall_speed > 0.0 && is_rained()) {
+      fail(
+          "a bed is to be rained, and its grains to fall at {:g} m/s at most, which is for grains that are placed in a "
+          "lattice; leave out BedOptions::fall_speed, or BedOptions::rain_flow",
+          fall_speed);
+    }
     require_positive(rain_height, "height from which it rains on a bed", "m");
     require_positive(densify_time, "time in which a bed is made denser", "s");
     require_non_negative(shaking, "strength of shaking", "weights");

@@ -1,8 +1,9 @@
 #pragma once
-// What a bed is made by: grains rain, come to rest, get denser, and are pressed by a lid. Each is a struct that is gone
-// on with a little at a time, so that the caller may report, stop, save and go on in between: one that is made again
-// with the same arguments and gets its fields() back goes on. `run(seconds)` runs the world.
+// What a bed is made by: grains rain, come to rest, get denser, and are pressed by a lid. Each stage is a struct that
+// is gone on with a little at a time, so that the caller may report, stop, save and go on in between: one that is made
+// again with the same arguments and gets its fields() back goes on. `run(seconds)` runs the world.
 
+#include <dem/core/error.hpp>
 #include <dem/math/vector.hpp>
 #include <dem/soil/rest.hpp>
 #include <dem/soil/solid_layers.hpp>
@@ -34,30 +35,8 @@ struct Raining {
   }
 };
 
-/// Grains come to rest: their r.m.s. speed stays below that of rest for 20 ms.
-struct Settling {
-  double start;  ///< s
-  double rest;   ///< m/s, the speed of rest
-  StaysBelow slow;
-  double speed = 1e300;  ///< m/s, r.m.s.
-
-  Settling(double now, double rest_speed) : start(now), rest(rest_speed), slow(rest_speed, 0.02) {}
-
-  /// Looks at the speed, before the first go_on() and after each: true when they rest.
-  [[nodiscard]] bool look(double time) { return slow(time, speed); }
-  template <class World, std::invocable<double> Run>
-  void go_on(const World& world, Run&& run) {
-    run(2e-3);
-    speed = rms_speed(world);
-  }
-  template <class V>
-  void fields(V& v) {
-    v("start", start, "s"), v("at_rest", slow), v("speed", speed, "m/s");
-  }
-};
-
-/// Slows grains that fall faster than `speed` (m/s) to it, as a drag does. Deep beds are not packed by longer falls
-/// then.
+/// Sets grains that fall along -z faster than `speed` (m/s) to it. To be called between short runs: in 2 ms gravity
+/// adds 0.02 m/s. A bed whose grains fall freely is packed at its top, as the last grains fall farthest.
 template <class World>
 void limit_fall(World& world, double speed) {
   for (const GrainId p : world.grains()) {
@@ -65,6 +44,37 @@ void limit_fall(World& world, double speed) {
     if (v.z() < -speed) world.set_velocity(p, {v.x(), v.y(), -speed});
   }
 }
+/// Throws Error for a speed of falling grains (m/s) that limit_fall() does not hold them to. 0: they fall freely.
+inline void require_fall_speed(double speed, const char* what) {
+  constexpr double least = 0.05;  // m/s; gravity adds 0.02 between two calls
+  if (speed == 0.0 || (speed >= least && speed <= 100.0)) return;
+  fail("{} is {:g} m/s, but must be 0 (grains fall freely) or {:g} to 100", what, speed, least);
+}
+
+/// Grains come to rest: their r.m.s. speed stays below that of rest for 20 ms.
+struct Settling {
+  double start;       ///< s
+  double rest;        ///< m/s, the speed of rest
+  double fall_speed;  ///< m/s, for limit_fall(); 0: they fall freely
+  StaysBelow slow;
+  double speed = 1e300;  ///< m/s, r.m.s.
+
+  Settling(double now, double rest_speed, double most_fall_speed = 0.0)
+      : start(now), rest(rest_speed), fall_speed(most_fall_speed), slow(rest_speed, 0.02) {}
+
+  /// Looks at the speed, before the first go_on() and after each: true when they rest.
+  [[nodiscard]] bool look(double time) { return slow(time, speed); }
+  template <class World, std::invocable<double> Run>
+  void go_on(World& world, Run&& run) {
+    run(2e-3);
+    if (fall_speed > 0.0) limit_fall(world, fall_speed);
+    speed = rms_speed(world);
+  }
+  template <class V>
+  void fields(V& v) {
+    v("start", start, "s"), v("at_rest", slow), v("speed", speed, "m/s");
+  }
+};
 
 /// To and fro along a direction, by gravity: in the frame of a container that is the same as a container that shakes.
 struct Shaking {

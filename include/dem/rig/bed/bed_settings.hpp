@@ -3,6 +3,7 @@
 
 #include <dem/rig/bed/grain_settings.hpp>
 #include <dem/rig/own_words.hpp>
+#include <dem/soil/making.hpp>
 
 #include <cstdint>
 #include <string>
@@ -59,7 +60,7 @@ inline void add_bed_options(Options& options, BedSettings& s) {
   add("--strike-off", s.strike_off, "share of the grains, the highest, taken off before the lid comes");
   add("--lid-pressure", s.lid_pressure, "of the lid that levels the bed [Pa]");
   add("--lid-speed", s.lid_speed, "[m/s]");
-  add("--stage-limit", s.stage_limit, "a bed or a lid must be at rest by then [s]");
+  add("--stage-limit", s.stage_limit, "a bed or a lid must be at rest by then [s]; with --fall-speed, after the fall");
   add("--stable-share", s.stable_share, "time step, as a share of the largest stable one");
   add("--seed", s.seed, "of the rain");
   add("--threads", s.threads, "0: all, at least 1000 grains for each").changes_no_result();
@@ -105,7 +106,7 @@ inline void resolve(BedSettings& s, const BedBySize& by_size, const std::string&
   require_positive(s.length, "--bed-length", "m (0: by size)");
   require_positive(s.width, "--bed-width", "m (0: by size)");
   require_positive(s.depth, "--bed-depth", "m (0: by size)");
-  require_within(s.fall_speed, 0.0, 100.0, "--fall-speed (m/s; 0: freely)");
+  soil::require_fall_speed(s.fall_speed, "--fall-speed");
   require_within(s.relative_density, 0.0, 1.0, "--relative-density");
   require_positive(s.densify_time, "--densify-time", "s");
   require_within(s.shake_amplitude, 0.0, 0.01, "--shake-amplitude (m)");
@@ -131,16 +132,22 @@ inline std::uint64_t grains_in(const BedSettings& s, double volume) {
       count, s.length, s.width, s.depth);
 }
 
+/// How the grains fall, for a report; empty where they fall freely.
+inline std::string fall_text(const BedSettings& s) {
+  return s.fall_speed > 0.0 ? text(" at {:g} m/s at most", s.fall_speed) : "";
+}
+
 /// Adds names and values for a report.
 inline void list_settings(NamesAndValues& list, const BedSettings& s) {
   const std::string name = s.file.substr(s.file.rfind('/') + 1);
-  list.insert(list.end(),
-              {{"box", text("{:g} x {:g} mm", 1e3 * s.length, 1e3 * s.width)},
-               {"bed", s.file.empty() ? text("{:g} mm deep as it settles, seed {}, relative density {:g} asked "
-                                             "for",
-                                             1e3 * s.depth, s.seed, s.relative_density)
-                                      : "from " + name},
-               {"levelled by a lid of", text("{:g} kPa", 1e-3 * s.lid_pressure)}});
+  list.insert(
+      list.end(),
+      {{"box", text("{:g} x {:g} mm", 1e3 * s.length, 1e3 * s.width)},
+       {"bed", s.file.empty() ? text("{:g} mm deep as it settles, rained{}, seed {}, relative density {:g} asked "
+                                     "for",
+                                     1e3 * s.depth, fall_text(s), s.seed, s.relative_density)
+                              : "from " + name},
+       {"levelled by a lid of", text("{:g} kPa", 1e-3 * s.lid_pressure)}});
 }
 
 }  // namespace dem::rig

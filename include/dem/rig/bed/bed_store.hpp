@@ -6,6 +6,7 @@
 #include <dem/rig/session.hpp>
 
 #include <algorithm>
+#include <optional>
 #include <string>
 
 namespace dem::rig {
@@ -102,13 +103,20 @@ class BedStore final : public PartStore {
       fail("'{}' is no bed: it was not written by --save-bed; give another --bed-file", file);
     }
     std::erase_if(state_, [](const auto& column) { return column.first.starts_with(settings_name); });
+    const auto value_of = [](const NamesAndValues& list, const std::string& name) -> std::optional<std::string> {
+      const auto at = std::find_if(list.begin(), list.end(), [&](const auto& m) { return m.first == name; });
+      if (at == list.end()) return {};
+      return at->second;
+    };
+    const NamesAndValues defaults = settings_of({}, {}, "");
     for (const auto& [name, value] : settings_) {
-      const auto then = std::find_if(made.begin(), made.end(), [&, &n = name](const auto& m) { return m.first == n; });
-      if (then != made.end() && then->second == value) continue;
+      // An option that the program which made it did not have yet counts as left alone.
+      const auto given = value_of(made, name), then = given ? given : value_of(defaults, name);
+      if (then == value) continue;
       fail(
           "the bed '{}' was made with {} {}, but here it is {}; give the settings that it was made with, or another "
           "bed",
-          file, name, then == made.end() ? "not given" : then->second, value);
+          file, name, then.value_or("not given"), value);
     }
   }
 

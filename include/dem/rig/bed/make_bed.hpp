@@ -111,12 +111,11 @@ Bed<Model> make_bed(const BedSettings& s, const GrainSettings& grains, const typ
   const auto kept = stages.keep("bed", bed);
   stages.begin(made ? "rain" : "settle", 1.0);
   const double high = mean_height(bed.world), low = 0.5 * s.depth;
-  const bool slowed = made && s.fall_speed > 0.0;
-  const double limit = s.stage_limit + (slowed ? 2.0 * high / s.fall_speed : 0.0);
-  settle(bed.world, grains.edge(), limit, "--stage-limit", stages, [&] {
-    if (slowed) soil::limit_fall(bed.world, s.fall_speed);
-    return made ? fallen_share(bed.world, high, low) : 0.0;
-  });
+  const double fall_speed = made ? s.fall_speed : 0.0;
+  const double fall = fall_speed > 0.0 ? 2.0 * high / fall_speed : 0.0;  // s
+  settle(
+      bed.world, grains.edge(), s.stage_limit + fall, "--stage-limit", stages,
+      [&] { return made ? fallen_share(bed.world, high, low) : 0.0; }, [] {}, fall_speed);
   if (made && s.relative_density > 0.0) {
     densify(bed, stages);
     stages.begin("settle");
@@ -136,8 +135,8 @@ soil::Packing packing_of(const Bed<Model>& bed) {
   return {bed.grains().half_edge,
           s.length,
           s.width,
-          text("rained, seed {}, relative density {:g} asked for, levelled{}", s.seed, s.relative_density,
-               Bed<Model>::is_endless ? text(", {}", repeating_note) : ""),
+          text("rained{}, seed {}, relative density {:g} asked for, levelled{}", fall_text(s), s.seed,
+               s.relative_density, Bed<Model>::is_endless ? text(", {}", repeating_note) : ""),
           soil::placements(bed.world),
           "cube8"};
 }

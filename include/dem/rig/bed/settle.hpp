@@ -9,10 +9,11 @@ namespace dem::rig {
 
 /// Enters a stage in which the grains of a world come to rest: soil::Settling of their size (m). `done()` is what of
 /// the stage is done. Throws Stopped if that takes longer than `limit` (s); `option` is what sets the limit. `set_up()`
-/// as for Stages::enter.
+/// as for Stages::enter. Where `fall_speed` (m/s) is above 0, the grains fall no faster.
 template <class World, class Done, std::invocable SetUp>
-void settle(World& world, double size, double limit, const char* option, Stages& stages, Done&& done, SetUp&& set_up) {
-  soil::Settling n{world.time(), soil::rest_speed(size)};
+void settle(World& world, double size, double limit, const char* option, Stages& stages, Done&& done, SetUp&& set_up,
+            double fall_speed = 0.0) {
+  soil::Settling n{world.time(), soil::rest_speed(size), fall_speed};
   const auto stage = stages.enter(world, n, set_up);
   if (!stage) return;
   while (!n.look(world.time())) {

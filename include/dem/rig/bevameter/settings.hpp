@@ -16,6 +16,7 @@ namespace dem::rig::bevameter {
 struct Settings {
   std::string size = "quick";  ///< smoke, quick or full
   GrainSettings grains{.constants_for = 1.86e-3};
+  double fall_speed = 0.0;        ///< m/s, at which the grains of the beds fall at most; 0: freely
   double relative_density = 0.0;  ///< of the beds; 0: as they settle. The sheared specimen is made as dense as the bed
                                   ///< of the plates has come out
   std::uint64_t seed = 1;
@@ -56,6 +57,7 @@ struct Settings {
 inline void declare(Options& options, Settings& s) {
   const auto add = [&](const char* name, auto& value, const char* text) { return options.add(name, value, text); };
   add("--size", s.size, "smoke (seconds, without a wheel), quick (minutes) or full (many hours)");
+  add("--fall-speed", s.fall_speed, "at which grains of the beds fall at most while they are rained [m/s]; 0: freely");
   add("--relative-density", s.relative_density, "of the beds, 0 (as they settle) to 1");
   add("--seed", s.seed, "of the rain");
   add("--confidence", s.confidence, "of the intervals");
@@ -102,6 +104,7 @@ inline BedSettings bed_of(const Settings& s, double length, double width, double
   BedSettings bed;
   bed.length = length, bed.width = width, bed.depth = depth;
   bed.relative_density = s.relative_density;
+  bed.fall_speed = s.fall_speed;
   bed.seed = s.seed;
   bed.threads = s.threads;
   return bed;
