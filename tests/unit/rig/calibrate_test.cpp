@@ -89,12 +89,19 @@ TEST_CASE("constants are found through noise, and as surely as is said") {
   const auto first = [](double a, double b) { return 20.0 + 15.0 * a - 6.0 * a * a + 3.0 * b; };
   const auto second = [](double a, double b) { return 10.0 + 2.0 * a + 20.0 * b; };
   const double a0 = 0.4, b0 = 0.7;
+  const bool by_two_runs =
+      GENERATE(false, true);  // a goal is the mean of two runs, which may be close to each other by chance
   SmallNoise noise;
+  const auto goal_of = [&](double exact, double scatter) -> Goal {
+    if (!by_two_runs) return {exact, 1e-6};
+    const double one = exact + scatter * noise(), other = exact + scatter * noise();
+    return {0.5 * (one + other), 0.5 * std::abs(one - other), 2.0};
+  };
   int held = 0;
   constexpr int searches = 40;
   for (int search = 0; search < searches; ++search) {
     Measurements m{.dimensions = 2, .places = {}, .values = {{}, {}}};
-    const std::vector<Goal> goals{{first(a0, b0), 1e-6}, {second(a0, b0), 1e-6}};
+    const std::vector<Goal> goals{goal_of(first(a0, b0), 0.5), goal_of(second(a0, b0), 0.8)};
     std::optional<Found> found;
     for (std::size_t k = 0; k < 12; ++k) {
       const auto place = next_place(k, 2, found);
@@ -109,9 +116,10 @@ TEST_CASE("constants are found through noise, and as surely as is said") {
     const double t = dem::terramechanics::student_t(found->freedom);
     held += std::abs(found->place[0] - a0) < t * found->error[0] ? 1 : 0;
     held += std::abs(found->place[1] - b0) < t * found->error[1] ? 1 : 0;
-    CHECK(found->error[0] < 0.1);  // noise 0.5 over a slope of 10, from 24 runs: 0.02
+    // Noise 0.5 over a slope of 10, from 24 runs: 0.02; from the two of a goal 0.04, and more where the slope is less.
+    CHECK(found->error[0] < (by_two_runs ? 0.25 : 0.1));
   }
-  CHECK(held >= 68);  // of 80 intervals of 95 % 76 in the mean; fewer than 68 once in some thousand times
+  CHECK(held >= 70);  // of 80 intervals of 95 % 76 in the mean; fewer than 70 once in some three hundred times
 }
 
 TEST_CASE("a failed run is passed over, and what the goals do not determine has no error") {

@@ -188,7 +188,7 @@ class CalibrateRig : public Rig {
         if (t.point == 0 && std::isfinite(t.results[q])) squares += std::pow(t.results[q] - sum / n, 2);
       }
       if (n < 2.0) throw Stopped(text("{} runs have made a target, but two are needed", n));
-      list.push_back({sum / n, std::sqrt(squares / (n - 1.0) / n)});
+      list.push_back({sum / n, std::sqrt(squares / (n - 1.0) / n), n});
     }
     return list;
   }

@@ -6,6 +6,7 @@
 #include <dem/terramechanics/confidence.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -33,6 +34,12 @@ struct Measurements {
 /// What each quantity shall be.
 struct Goal {
   double value, error;  ///< with its standard error
+  double runs = 0.0;    ///< that it is the mean of; 0: it was given
+  /// Standard error where one run scatters by so much. Few runs that happen to be close to each other are no better
+  /// than that says.
+  [[nodiscard]] double error_with(double scatter) const {
+    return runs > 0.0 ? std::max(error, scatter / std::sqrt(runs)) : error;
+  }
 };
 
 /// Finds the least value of a function over the unit cube. `start` is where it begins.
@@ -62,7 +69,8 @@ inline double misfit(const double* x, const void* data) {
   double sum = 0.0;
   for (std::size_t q = 0; q < m.goals.size(); ++q) {
     const double rest = (*m.surrogates)[q].value(place) - m.goals[q].value, scatter = (*m.surrogates)[q].scatter();
-    sum += rest * rest / std::max(1e-300, m.goals[q].error * m.goals[q].error + scatter * scatter);
+    const double of_goal = m.goals[q].error_with(scatter);
+    sum += rest * rest / std::max(1e-300, of_goal * of_goal + scatter * scatter);
   }
   return sum;
 }
@@ -106,7 +114,8 @@ inline Found find_constants(const Measurements& m, std::span<const Goal> goals, 
   for (std::size_t q = 0; q < goals.size(); ++q) {
     const auto slopes = found.surrogates[q].gradient(found.place);
     const double error = found.surrogates[q].error(found.place);
-    const double weight = 1.0 / std::max(1e-300, error * error + goals[q].error * goals[q].error);
+    const double of_goal = goals[q].error_with(found.surrogates[q].scatter());
+    const double weight = 1.0 / std::max(1e-300, error * error + of_goal * of_goal);
     for (std::size_t a = 0; a < d; ++a) {
       for (std::size_t b = 0; b < d; ++b) information[a * d + b] += weight * slopes[a] * slopes[b];
     }

@@ -74,8 +74,8 @@ inline io::Table goals_table(const Settings& s, const Found& f, const std::vecto
   const auto quantities = quantities_of(s);
   for (std::size_t q = 0; q < quantities.size(); ++q) {
     const Surrogate& y = f.surrogates[q];
-    t.row(titled(quantities[q]), number(goals[q].value), number(goals[q].error, "{:.2g}"), number(y.value(f.place)),
-          number(y.error(f.place), "{:.2g}"), number(y.scatter(), "{:.2g}"),
+    t.row(titled(quantities[q]), number(goals[q].value), number(goals[q].error_with(y.scatter()), "{:.2g}"),
+          number(y.value(f.place)), number(y.error(f.place), "{:.2g}"), number(y.scatter(), "{:.2g}"),
           y.is_quadratic() ? "of second degree" : "plane");
   }
   return t;
