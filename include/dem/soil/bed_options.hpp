@@ -1,7 +1,7 @@
 #pragma once
 
 #include <dem/core/error.hpp>
-#include <dem/soil/making.hpp>
+#include <dem/soil/fall_speed.hpp>
 #include <dem/soil/relative_density.hpp>
 
 #include <cstdint>

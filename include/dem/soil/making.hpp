@@ -3,8 +3,8 @@
 // is gone on with a little at a time, so that the caller may report, stop, save and go on in between: one that is made
 // again with the same arguments and gets its fields() back goes on. `run(seconds)` runs the world.
 
-#include <dem/core/error.hpp>
 #include <dem/math/vector.hpp>
+#include <dem/soil/fall_speed.hpp>
 #include <dem/soil/rest.hpp>
 #include <dem/soil/solid_layers.hpp>
 
@@ -34,22 +34,6 @@ struct Raining {
     v("start", start, "s"), v("wanted", wanted, "m^3"), v("solid", solid, "m^3");
   }
 };
-
-/// Sets grains that fall along -z faster than `speed` (m/s) to it. To be called between short runs: in 2 ms gravity
-/// adds 0.02 m/s. A bed whose grains fall freely is packed at its top, as the last grains fall farthest.
-template <class World>
-void limit_fall(World& world, double speed) {
-  for (const GrainId p : world.grains()) {
-    const Vec3 v = world.velocity(p);
-    if (v.z() < -speed) world.set_velocity(p, {v.x(), v.y(), -speed});
-  }
-}
-/// Throws Error for a speed of falling grains (m/s) that limit_fall() does not hold them to. 0: they fall freely.
-inline void require_fall_speed(double speed, const char* what) {
-  constexpr double least = 0.05;  // m/s; gravity adds 0.02 between two calls
-  if (speed == 0.0 || (speed >= least && speed <= 100.0)) return;
-  fail("{} is {:g} m/s, but must be 0 (grains fall freely) or {:g} to 100", what, speed, least);
-}
 
 /// Grains come to rest: their r.m.s. speed stays below that of rest for 20 ms.
 struct Settling {

@@ -3,7 +3,7 @@
 
 #include <dem/rig/bed/grain_settings.hpp>
 #include <dem/rig/own_words.hpp>
-#include <dem/soil/making.hpp>
+#include <dem/soil/fall_speed.hpp>
 
 #include <cstdint>
 #include <string>
