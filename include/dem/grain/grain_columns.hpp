@@ -250,7 +250,8 @@ struct GrainColumns {
     freed.clear();
   }
 
-  /// Puts the padding rows where the last grain is and stops them, so that bounds and displacements stay right.
+  /// Puts the padding rows where the last grain is and stops them, so that bounds and displacements stay right. A step
+  /// puts back those of the last pack, which it moves; the rows behind stay where a new neighbour list put them.
   void pad() { pad(chunks() * chunk_size); }
   /// Those before row `stop`.
   void pad(std::size_t stop) {
