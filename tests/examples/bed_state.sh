@@ -38,6 +38,7 @@ refused() {
 }
 all=("$@")
 refused "was made with --seed 1, but here it is 7" --bed-file "$output/bed.h5" --seed 7
+refused "was made with --fall-speed 0, but here it is 0.3" --bed-file "$output/bed.h5" --fall-speed 0.3
 refused "was made with --stable-share 0.8, but here it is 0.5" --bed-file "$output/bed.h5" --stable-share 0.5
 refused "was made with --strike-off 0.02, but here it is 0.3" --bed-file "$output/bed.h5" --strike-off 0.3
 refused "give another place" --save-bed "$output/taken/checkpoint/bed.h5"

@@ -94,6 +94,20 @@ TEST_CASE("settings of plates that make no sense are refused by the names of the
   refuses([](auto& s) { s.grains.half_edge = -1.0; }, "--half-edge");
 }
 
+TEST_CASE("a bed whose grains fall slowly takes longer to make, and says so") {
+  const auto bed_at = [](double fall_speed) {
+    auto s = small();
+    s.bed.fall_speed = fall_speed;
+    return PlateSinkage<models::VerletCubes>(s, [](double h) { return dem::shape::cube8(h); }).make_bed();
+  };
+  const auto freely = bed_at(0.0), slowly = bed_at(0.1);
+  CHECK(slowly.world.grain_count() == freely.world.grain_count());
+  // The topmost of five layers of the lattice comes down by some 40 mm: 0.4 s in place of 0.1.
+  CHECK(slowly.world.time() > freely.world.time() + 0.15);
+  CHECK_THAT(packing_of(freely).note, Catch::Contains("rained, seed"));
+  CHECK_THAT(packing_of(slowly).note, Catch::Contains("rained at 0.1 m/s at most, seed"));
+}
+
 TEST_CASE("walls leave room for a heap above a bed that starts level, as one from a file does") {
   const GrainSettings grains{.half_edge = 5e-3};
   const dem::soil::Packing level{.half_edge = 5e-3, .grains = {{{0, 0, 0.02}, {}}, {{0.01, 0, 0.03}, {}}}};
