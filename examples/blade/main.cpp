@@ -12,9 +12,8 @@
 #include <dem/rig/processes.hpp>
 #include <dem/rig/program.hpp>
 #include <dem/rig/samples_file.hpp>
-#include <dem/soil/packing.hpp>
+#include <dem/soil/bed.hpp>
 
-#include <random>
 #include <string>
 #include <vector>
 
@@ -26,34 +25,14 @@ struct Soil : Model {
   using Domain = rig::Domain;
 };
 
-const Vec3 bed_edges(0.12, 0.03, 0.06), blade_edges(4e-3, 0.024, 0.03);  // m
-const double grain_radius = 1.5e-3, blade_start = 0.02;                  // m
+const Vec3 blade_edges(4e-3, 0.024, 0.03);                // m
+const double grain_radius = 1.5e-3, blade_start = -0.04;  // m
 
-/// A bed of grains in an open box: a loose block, to be left to settle.
-void pour_bed(World<Soil>& world) {
-  const double wall = 0.01;
+/// A bed of grains in an open box, 120 x 30 x 30 mm, to be made.
+soil::Bed<Soil> add_bed(World<Soil>& world) {
   world.set_contact({.normal = {2000, 0.05, 1.0}, .friction = {0.5, 2000, 0.05, 0.975}});
-  const auto add_wall = [&](const Vec3& middle, const Vec3& edges) {
-    world.add_surface(world.ground(), surface::Box(edges), {.position = middle});
-  };
-  add_wall({bed_edges.x() / 2, 0, -wall / 2}, {bed_edges.x(), bed_edges.y(), wall});
-  for (const double side : {-1.0, 1.0}) {
-    add_wall({bed_edges.x() / 2 + side * (bed_edges.x() + wall) / 2, 0, bed_edges.z() / 2},
-             {wall, bed_edges.y() + 2 * wall, bed_edges.z()});
-    add_wall({bed_edges.x() / 2, side * (bed_edges.y() + wall) / 2, bed_edges.z() / 2},
-             {bed_edges.x(), wall, bed_edges.z()});
-  }
   const SpeciesId grain = world.add_species(shape::Sphere(grain_radius), {.density = 2650});
-  std::mt19937 random(1);
-  std::uniform_real_distribution<double> jitter(-2e-4, 2e-4);
-  const double pitch = 2.3 * grain_radius;
-  for (double z = pitch / 2; z < 0.04; z += pitch) {
-    for (double x = pitch / 2; x < bed_edges.x() - pitch / 2; x += pitch) {
-      for (double y = -bed_edges.y() / 2 + pitch / 2; y < bed_edges.y() / 2 - pitch / 2; y += pitch) {
-        world.add_grain({grain, Vec3(x + jitter(random), y + jitter(random), z + jitter(random))});
-      }
-    }
-  }
+  return {world, soil::Container::box(0.12, 0.03), grain, {.height = 0.03}};
 }
 
 /// The machine: ground - rail - carriage - guide - blade, which stands just above a bed of this height (m). It goes
@@ -100,11 +79,11 @@ class Blade : public rig::Rig {
 
   // What a run that goes on after it was stopped takes over, besides the world.
   struct Found {
-    double level = 0.0, start = 0.0;  // m, s: of the settled bed
+    double start = 0.0;  // s, when the bed is made
     std::vector<Sample> samples;
     template <class V>
     void fields(V& v) {
-      v("level", level), v("start", start), v("samples", samples);
+      v("start", start), v("samples", samples);
     }
   } found;
 
@@ -142,24 +121,20 @@ class Blade : public rig::Rig {
 
   void run(rig::Session& session) override {
     World<Soil> world({.gravity = {0, 0, -9.81}});
-    pour_bed(world);
-    grains = world.grain_count();
+    soil::Bed<Soil> bed = add_bed(world);
     session.begin_run(3);
     rig::PartOf<Soil> part(session, session, "blade");
     rig::Frames frames(session, vtk ? "blade" : "", frame_time);
     const auto keep_found = session.keep("found", found), keep_frames = session.keep("frames", frames);
     rig::NoNumbers none;
 
-    const double settled = 0.4;
-    session.begin("settle", settled);
-    if (const auto stage = session.enter(world, none)) {
-      while (world.time() < settled) rig::run(world, 0.01), session.update(world.time());
+    session.begin("make the bed");
+    if (const auto stage = session.enter(world, bed)) {
+      bed.make([](double) {}, [&] { session.update(world.time()); });
       found.start = world.time();
-      found.level = soil::height_percentile(soil::placements(world), 0.95) + grain_radius;
     }
-
     const double down = found.start + 0.3, end = down + travel / speed;
-    const Pusher pusher(world, found.level, depth, speed, found.start, down);
+    const Pusher pusher(world, bed.height(), depth, speed, found.start, down);
     const auto go_on = [&] {  // for a millisecond
       rig::run(world, 1e-3);
       const auto& machine = world.machine();
@@ -178,6 +153,7 @@ class Blade : public rig::Rig {
         session.update(found.samples.back().travel, text("{:.2f} N", found.samples.back().push));
       }
     }
+    grains = world.grain_count();
     session.complete();
   }
 

@@ -211,13 +211,16 @@ TEST_CASE("a file that is cut short, damaged, of another schema or none at all i
     CHECK(holds(refusal(bad), "cannot load '"));
   }
 
-  std::string another = good;
+  // An older schema, and one to come.
   const std::string now = std::to_string(dem::io::checkpoint_schema);
-  const auto schema = another.find("schema " + now);
+  const auto schema = good.find("schema " + now);
   REQUIRE(schema != std::string::npos);
-  another.replace(schema + 7, now.size(), std::string(now.size(), '9'));
-  CHECK(holds(refusal(another),
-              "it is of schema " + std::string(now.size(), '9') + ", but this version of dem reads schema " + now));
+  for (const auto& then : {std::to_string(dem::io::checkpoint_schema - 1), std::string(now.size(), '9')}) {
+    std::string another = good;
+    another.replace(schema + 7, now.size(), then);
+    CHECK(holds(refusal(another), "it is of schema " + then + ", but this version of dem reads schema " + now +
+                                      "; use the version that saved it"));
+  }
 }
 
 TEST_CASE("a file that cannot be written leaves the last one as it is") {
