@@ -7,7 +7,7 @@ packages=(
   g++ cmake ninja-build        # compiler and build
   libeigen3-dev libfmt-dev     # the library
   libcli11-dev gnuplot-nox libjs-three libnlopt-cxx-dev  # examples: command lines, plots, replays, calibration
-  catch2 clang-format          # tests
+  catch2 clang-format hdf5-tools  # tests
   libbenchmark-dev             # benchmarks
   libopenmpi-dev openmpi-bin   # worlds that several processes share
   libhdf5-dev zlib1g-dev       # states that are saved and loaded; compressed files for ParaView

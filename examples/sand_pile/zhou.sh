@@ -25,14 +25,14 @@ points="10 0.4 0.5 0.05 0.1
 echo "$kind, piles of each: $seeds"
 echo "  d    mu_pp mu_pw  m_pp  m_pw    fit   here  (deg)"
 while read -r d mu_pp mu_pw m_pp m_pw; do
-  name=${kind}_x${seeds}_d${d}_${mu_pp}_${mu_pw}_${m_pp}_${m_pw}
-  # A floor 28 d long, 12 d wide, filled 11 d high: a slope of 22 deg reaches its back wall. A sphere of diameter d has
-  # the volume of a cube of half-edge 0.403 d. K is about as soft as the 1 MPa of
-  # the fit: 3.6 kN/m for 10 mm.
+  name=${kind}_x${seeds}_w20_d${d}_${mu_pp}_${mu_pw}_${m_pp}_${m_pw}
+  # A floor 28 d long, filled 11 d high: a slope of 22 deg reaches its back wall. It is 20 d wide, as the box of the fit
+  # was with 10 mm (1 x 1 x 0.2 m): between closer walls slopes stand steeper. A sphere of diameter d has the volume of a
+  # cube of half-edge 0.403 d. K is about as soft as the 1 MPa of the fit: 3.6 kN/m for 10 mm.
   read -r half width slot length m1 m2 <<< "$(awk -v d="$d" -v a="$m_pp" -v b="$m_pw" 'BEGIN {
-    print d * 4.02998e-4, 12e-3 * d, 5e-3 * d, 28e-3 * d, 1e-3 * a, 1e-3 * b }')"
+    print d * 4.02998e-4, 20e-3 * d, 5e-3 * d, 28e-3 * d, 1e-3 * a, 1e-3 * b }')"
   [ -s "$name/results.csv" ] || "$rig" --size quick --method drain --plate flat --kinds "$kind" --density 2400 \
-    --half-edge "$half" --grains "${GRAINS:-5000}" --box-width "$width" --slot-width "$slot" --box-length "$length" \
+    --half-edge "$half" --grains "${GRAINS:-8333}" --box-width "$width" --slot-width "$slot" --box-length "$length" \
     --friction "$mu_pp" --plate-friction "$mu_pw" --rolling-length "$m1" --plate-rolling-length "$m2" \
     --stiffness 200 --rest-limit 2 --creep-time 0.2 --seeds "$seeds" --no-vtk --no-replay \
     --threads "${THREADS:-1}" --output "$name" > "$name.log" 2>&1

@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # A rig whose bed is saved as a state (--save-bed bed.h5): a run that starts from it ends with the same bytes in its CSV
-# files as the one that made it, and settings of another bed are refused in words, before earlier results are lost.
+# files as the one that made it, and settings of another bed are refused in words, before earlier results are lost. Other
+# programs read the state: h5dump (Debian's hdf5-tools) tells a place for each grain, with its unit.
 #
 #   bed_state.sh <rig> <output folder> <options>...
 set -euo pipefail
@@ -28,6 +29,13 @@ mkdir -p "$output"
 for file in "$output"/made/*.csv; do
   cmp "$file" "$output/taken/$(basename "$file")" || refuse "$(basename "$file") is not what it is where the bed is made"
 done
+if command -v h5dump > /dev/null; then
+  h5dump -d /grains/position/x "$output/bed.h5" > "$output/places.txt" || refuse "h5dump does not read the bed"
+  grep -q '(0): "m"' "$output/places.txt" || refuse "places have no unit"
+  grains=$(h5dump -d /grains/count "$output/bed.h5" | sed -n 's/.*(0): //p')
+  rows=$(sed -n 's/.*SIMPLE { ( \([0-9]*\) ) .*/\1/p' "$output/places.txt" | head -n 1)
+  [ "$grains" -gt 0 ] && [ "$rows" = "$grains" ] || refuse "there are $rows places of $grains grains"
+fi
 # refused <words> <options>...: and earlier results stay.
 refused() {
   local words=$1
