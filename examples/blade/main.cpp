@@ -28,7 +28,7 @@ struct Soil : Model {
 const Vec3 blade_edges(4e-3, 0.024, 0.03);                // m
 const double grain_radius = 1.5e-3, blade_start = -0.04;  // m
 
-/// A bed of grains in an open box, 120 x 30 x 30 mm, to be made.
+/// A bed of grains, 30 mm high in an open box of 120 x 30 mm, to be made.
 soil::Bed<Soil> add_bed(World<Soil>& world) {
   world.set_contact({.normal = {2000, 0.05, 1.0}, .friction = {0.5, 2000, 0.05, 0.975}});
   const SpeciesId grain = world.add_species(shape::Sphere(grain_radius), {.density = 2650});
@@ -75,15 +75,15 @@ class Blade : public rig::Rig {
   std::string size = "quick", folder = "blade";
   double depth = 0.012, speed = 0.1, travel = 0.0, frame_time = 0.02;
   bool vtk = true;
-  std::size_t grains = 0;
 
   // What a run that goes on after it was stopped takes over, besides the world.
   struct Found {
     double start = 0.0;  // s, when the bed is made
+    std::uint64_t grains = 0;
     std::vector<Sample> samples;
     template <class V>
     void fields(V& v) {
-      v("start", start), v("samples", samples);
+      v("start", start), v("grains", grains), v("samples", samples);
     }
   } found;
 
@@ -132,6 +132,7 @@ class Blade : public rig::Rig {
     if (const auto stage = session.enter(world, bed)) {
       bed.make([](double) {}, [&] { session.update(world.time()); });
       found.start = world.time();
+      found.grains = world.grain_count();
     }
     const double down = found.start + 0.3, end = down + travel / speed;
     const Pusher pusher(world, bed.height(), depth, speed, found.start, down);
@@ -153,7 +154,6 @@ class Blade : public rig::Rig {
         session.update(found.samples.back().travel, text("{:.2f} N", found.samples.back().push));
       }
     }
-    grains = world.grain_count();
     session.complete();
   }
 
@@ -173,7 +173,7 @@ class Blade : public rig::Rig {
     const auto over = [](double sum, double of) { return of != 0.0 ? text("{:.3f}", sum / of) : std::string("-"); };
     table.row(over(push, count), over(soil, count), over(push, soil));
     report.part("the printed report", [&] {
-      fmt::print("{} grains, blade {:.0f} mm deep and {:.0f} mm wide, {:.0f} mm/s\n", grains, 1e3 * depth,
+      fmt::print("{} grains, blade {:.0f} mm deep and {:.0f} mm wide, {:.0f} mm/s\n", found.grains, 1e3 * depth,
                  1e3 * blade_edges.y(), 1e3 * speed);
       fmt::print("push {} N, soil on the blade {} N, ratio {}\n", over(push, count), over(soil, count),
                  over(push, soil));

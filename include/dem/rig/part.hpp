@@ -113,8 +113,10 @@ class Part {
   }
   void drop() { kept_.pop_back(); }
 
+  /// Whether it is in a stage.
+  [[nodiscard]] bool is_in_stage() const { return numbers_ != nullptr; }
   /// Whether it is in a stage that is saved.
-  [[nodiscard]] bool is_kept() const { return numbers_ && store_.writes(); }
+  [[nodiscard]] bool is_kept() const { return is_in_stage() && store_.writes(); }
   /// Saves the part, which is kept. Returns why that did not work.
   std::string save_now() { return save(world_, type_); }
   /// Saves the part, if it is in a stage and it is time to. Returns why that did not work.

@@ -100,7 +100,7 @@ class Stages {
   /// A stage begins, and the one before it is done. `total` is its amount of work in any unit.
   virtual void begin([[maybe_unused]] std::string_view name, [[maybe_unused]] double total = unknown) {}
   /// So much of the total is done; `status` is one line on how things stand. Throws Interrupted after Ctrl-C in a stage
-  /// that was entered.
+  /// of a part, which is saved first if it is kept.
   virtual void update([[maybe_unused]] double done, [[maybe_unused]] std::string_view status = {}) {}
   /// What the next update() tells was done by an earlier run: the stage goes on where it was saved.
   virtual void go_on() {}
@@ -157,11 +157,11 @@ class Stages {
   [[nodiscard]] Part* part() const { return part_; }
 
  protected:
-  /// To be called by update(). After Ctrl-C a part that is kept is saved whether it is due or not, and Interrupted is
-  /// thrown.
+  /// To be called by update(). After Ctrl-C in a stage of a part it throws Interrupted; where the part is kept it is
+  /// saved first, whether it is due or not.
   void save_if_due() {
     if (part_ == nullptr) return;
-    const bool ends = processes.any(io::interrupted());
+    const bool ends = processes.any(io::interrupted()) && part_->is_in_stage();
     warn(ends && part_->is_kept() ? part_->save_now() : part_->save_if_due());
     if (ends) throw Interrupted{};
   }

@@ -10,6 +10,7 @@
 #include <dem/rig/program.hpp>
 #include <dem/rig/samples_file.hpp>
 
+#include <csignal>
 #include <fstream>
 #include <functional>
 #include <string>
@@ -115,25 +116,27 @@ struct PushedBalls : Rig {
   }
 
   void go_on(dem::World<Balls>& world, Session& session, Found& to) {
-    dem::rig::run(world, 1e-3);
+    if (signal_after < 0) dem::rig::run(world, 1e-3);
+    else REQUIRE(world.run_for(1e-3));
     double height = 0.0, speed = 0.0;
     for (const auto p : world.grains()) height += world.position(p).z(), speed += world.velocity(p).norm();
     to.samples.push_back({world.time(), height, speed});
     ++updates;
+    if (updates == signal_after) std::raise(SIGTERM);
     session.update(world.time());
     if (updates == stop_after) throw Interrupted{};
   }
 
   std::string folder;
   double friction = 0.4;
-  int threads = 1, updates = 0, stop_after = -1;
+  int threads = 1, updates = 0, stop_after = -1, signal_after = -1;
   Found found;
 };
 
 struct RunOfBalls {
-  int run(std::vector<std::string> more, int stop_after = -1) {
+  int run(std::vector<std::string> more, int stop_after = -1, int signal_after = -1) {
     rig = {};
-    rig.stop_after = stop_after;
+    rig.stop_after = stop_after, rig.signal_after = signal_after;
     std::vector<std::string> words = {"balls", "--output", path().string()};
     words.insert(words.end(), more.begin(), more.end());
     std::vector<const char*> argv;
@@ -178,6 +181,20 @@ TEST_CASE("what is saved now and then is where the run goes on, not where it was
   CHECK_FALSE(fs::exists(r.path() / "checkpoint/pushed.h5"));
   REQUIRE(r.run({"--resume"}) == 0);
   CHECK(r.rig.updates == 20);
+}
+
+// rig::run would have heard the signal itself.
+TEST_CASE("a signal ends a stage whose world is not run by rig::run, whether the run is kept or not") {
+  for (const bool is_kept : {false, true}) {
+    CAPTURE(is_kept);
+    RunOfBalls r;
+    std::vector<std::string> options;
+    if (is_kept) options.emplace_back("--checkpoint-every=1000");
+    CHECK(r.run(options, -1, 15) == 130);
+    dem::io::clear_interrupt();
+    CHECK(r.rig.updates == 15);
+    CHECK(fs::exists(r.path() / "checkpoint/pushed.h5") == is_kept);
+  }
 }
 
 TEST_CASE("a run goes on with its own settings only, and is refused in words") {
