@@ -4,6 +4,8 @@
 # with the rolling lengths m and the diameter d in mm. Prints a table. Runs that are there already are not made again.
 # Rolling meets a constant torque, as in the simulations of the fit. KIND=sphere-rolling has springs instead.
 #
+# WIDTH and LENGTH are those of the box in diameters (20, 28), GRAINS the spheres in it (8333).
+#
 #   zhou.sh <sand_pile> <folder> [seeds]
 set -euo pipefail
 
@@ -11,6 +13,7 @@ set -euo pipefail
 rig=$(realpath "$1")
 seeds=${3:-1}
 kind=${KIND:-sphere-braked}
+length_d=${LENGTH:-28} width_d=${WIDTH:-20} grains=${GRAINS:-8333}
 mkdir -p "$2"
 cd "$2"
 
@@ -25,14 +28,14 @@ points="10 0.4 0.5 0.05 0.1
 echo "$kind, piles of each: $seeds"
 echo "  d    mu_pp mu_pw  m_pp  m_pw    fit   here  (deg)"
 while read -r d mu_pp mu_pw m_pp m_pw; do
-  name=${kind}_x${seeds}_w20_d${d}_${mu_pp}_${mu_pw}_${m_pp}_${m_pw}
+  name=${kind}_x${seeds}_${length_d}x${width_d}_${grains}_d${d}_${mu_pp}_${mu_pw}_${m_pp}_${m_pw}
   # A floor 28 d long, filled 11 d high: a slope of 22 deg reaches its back wall. It is 20 d wide, as the box of the fit
   # was with 10 mm (1 x 1 x 0.2 m): between closer walls slopes stand steeper. A sphere of diameter d has the volume of a
   # cube of half-edge 0.403 d. K is about as soft as the 1 MPa of the fit: 3.6 kN/m for 10 mm.
-  read -r half width slot length m1 m2 <<< "$(awk -v d="$d" -v a="$m_pp" -v b="$m_pw" 'BEGIN {
-    print d * 4.02998e-4, 20e-3 * d, 5e-3 * d, 28e-3 * d, 1e-3 * a, 1e-3 * b }')"
+  read -r half width slot length m1 m2 <<< "$(awk -v d="$d" -v a="$m_pp" -v b="$m_pw" -v w="$width_d" -v l="$length_d" 'BEGIN {
+    print d * 4.02998e-4, 1e-3 * w * d, 5e-3 * d, 1e-3 * l * d, 1e-3 * a, 1e-3 * b }')"
   [ -s "$name/results.csv" ] || "$rig" --size quick --method drain --plate flat --kinds "$kind" --density 2400 \
-    --half-edge "$half" --grains "${GRAINS:-8333}" --box-width "$width" --slot-width "$slot" --box-length "$length" \
+    --half-edge "$half" --grains "$grains" --box-width "$width" --slot-width "$slot" --box-length "$length" \
     --friction "$mu_pp" --plate-friction "$mu_pw" --rolling-length "$m1" --plate-rolling-length "$m2" \
     --stiffness 200 --rest-limit 2 --creep-time 0.2 --seeds "$seeds" --no-vtk --no-replay \
     --threads "${THREADS:-1}" --output "$name" > "$name.log" 2>&1

@@ -29,11 +29,13 @@ mkdir -p "$output"
 for file in "$output"/made/*.csv; do
   cmp "$file" "$output/taken/$(basename "$file")" || refuse "$(basename "$file") is not what it is where the bed is made"
 done
-if command -v h5dump > /dev/null; then
-  h5dump -d /grains/position/x "$output/bed.h5" > "$output/places.txt" || refuse "h5dump does not read the bed"
-  grep -q '(0): "m"' "$output/places.txt" || refuse "places have no unit"
-  grains=$(h5dump -d /grains/count "$output/bed.h5" | sed -n 's/.*(0): //p')
-  rows=$(sed -n 's/.*SIMPLE { ( \([0-9]*\) ) .*/\1/p' "$output/places.txt" | head -n 1)
+if ! command -v h5dump > /dev/null; then
+  echo "no h5dump: other programs' view is not tested"
+else
+  h5dump -d /grains/position/x "$output/bed.h5" > "$output/places.dump" || refuse "h5dump does not read the bed"
+  grep -q '(0): "m"' "$output/places.dump" || refuse "places have no unit"
+  grains=$(h5dump -d /grains/count "$output/bed.h5" | sed -n 's/.*(0): //p') || refuse "h5dump does not read the number of grains"
+  rows=$(sed -n 's/.*SIMPLE { ( \([0-9]*\) ) .*/\1/p' "$output/places.dump" | head -n 1)
   [ "$grains" -gt 0 ] && [ "$rows" = "$grains" ] || refuse "there are $rows places of $grains grains"
 fi
 # refused <words> <options>...: and earlier results stay.
