@@ -81,8 +81,8 @@ class PlateSinkage {
         run(world, interval);
         const double travel = n.travel = -m.coordinate(slide);
         const double force = m.sensor(grains).mean().force.z, pressure = force / area;
-        result.samples.push_back({world.time() - n.start, travel, plate_sinkage::not_known, pressure, force,
-                                  -m.sensor(driven).mean().force.x});
+        result.samples.push_back(
+            {world.time() - n.start, travel, not_known, pressure, force, -m.sensor(driven).mean().force.x});
         if (std::isnan(n.zero) && pressure >= s.threshold) n.zero = travel;
         look(std::as_const(world), travel);
         stages.update(std::isnan(n.zero) ? 0.0 : travel - n.zero, text("{:.1f} kPa", 1e-3 * pressure));

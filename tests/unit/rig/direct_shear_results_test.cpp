@@ -149,7 +149,7 @@ TEST_CASE("lines are fitted to the finished loads, where there are enough") {
   c.loads = {load(10e3, 8e3), load(10e3, 9e3)};  // no line goes through one normal stress
   CHECK_FALSE(fit(c).free);
   CHECK(fit(c).origin);
-  c.loads = {load(10e3, not_known)};
+  c.loads = {load(10e3, dem::rig::not_known)};
   CHECK_FALSE(fit(c).origin);
 }
 
@@ -159,7 +159,7 @@ TEST_CASE("relative density is not known of what is no solid fraction") {
   CHECK(relative_density(s, 0.960) == Approx(1.0));
   CHECK(std::isnan(relative_density(s, 1.01)));
   CHECK(std::isnan(relative_density(s, 0.0)));
-  CHECK(std::isnan(relative_density(s, not_known)));
+  CHECK(std::isnan(relative_density(s, dem::rig::not_known)));
 }
 
 TEST_CASE("relative density is counted between the limits of the grains' shape") {

@@ -12,7 +12,6 @@
 
 namespace dem::rig::bevameter {
 
-using plate_sinkage::number;
 using terramechanics::degrees;
 
 /// A constant under its name, in the unit that it is shown in.

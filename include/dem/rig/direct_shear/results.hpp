@@ -1,19 +1,17 @@
 #pragma once
 
 #include <dem/report/replay_recorder.hpp>
+#include <dem/rig/number.hpp>
 #include <dem/rig/samples.hpp>
 #include <dem/soil/packing.hpp>
 #include <dem/soil/rest.hpp>
 
 #include <cmath>
-#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
 
 namespace dem::rig::direct_shear {
-
-inline constexpr double not_known = std::numeric_limits<double>::quiet_NaN();
 
 /// One row of a shearing stage: means over about 0.01 mm of travel.
 struct Sample {

@@ -16,10 +16,6 @@ namespace dem::rig::direct_shear {
 
 inline constexpr double degrees = 180.0 / std::numbers::pi;
 
-inline std::string number(double value, const char* format = "{:.2f}") {
-  return std::isfinite(value) ? dem::text_of(format, {value}) : "-";
-}
-
 /// Pa, the normal stress that belongs to the maximum; before there is one, the nominal stress.
 inline double stress_at_maximum(const LoadResult& r) {
   return std::isfinite(r.normal_at_maximum) ? r.normal_at_maximum : r.normal_stress;

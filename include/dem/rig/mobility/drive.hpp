@@ -1,6 +1,7 @@
 #pragma once
 
 #include <dem/rig/mobility/settings.hpp>
+#include <dem/rig/number.hpp>
 #include <dem/rig/stages.hpp>
 #include <dem/vehicle/ending.hpp>
 #include <dem/vehicle/lane_driver.hpp>
@@ -9,15 +10,12 @@
 #include <array>
 #include <cmath>
 #include <ctime>
-#include <limits>
 #include <numbers>
 #include <string>
 #include <utility>
 #include <vector>
 
 namespace dem::rig::mobility {
-
-inline constexpr double not_known = std::numeric_limits<double>::quiet_NaN();
 
 /// What differs between the drives of a study.
 struct Case {

@@ -14,10 +14,6 @@
 
 namespace dem::rig::mobility {
 
-inline std::string number(double value, const char* format = "{:.2f}") {
-  return std::isfinite(value) ? dem::text_of(format, {value}) : "-";
-}
-
 /// The soil of a case in words.
 inline std::string ground_of(const Case& c) {
   if (c.lane.size() == 1) return c.lane[0].soil.name;

@@ -1,19 +1,17 @@
 #pragma once
 
 #include <dem/report/replay_recorder.hpp>
+#include <dem/rig/number.hpp>
 #include <dem/rig/plate_sinkage/settings.hpp>
 #include <dem/rig/samples.hpp>
 #include <dem/terramechanics/bevameter_fit.hpp>
 
 #include <cmath>
-#include <limits>
 #include <optional>
 #include <span>
 #include <vector>
 
 namespace dem::rig::plate_sinkage {
-
-inline constexpr double not_known = std::numeric_limits<double>::quiet_NaN();
 
 /// One row of a plate: forces are means over the interval before it.
 struct Sample {

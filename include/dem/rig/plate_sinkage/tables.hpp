@@ -13,10 +13,6 @@
 
 namespace dem::rig::plate_sinkage {
 
-inline std::string number(double value, const char* format = "{:.2f}") {
-  return std::isfinite(value) ? dem::text_of(format, {value}) : "-";
-}
-
 /// P3 under a plate: the surrogate of the thesis's measured curves, which are lost.
 inline terramechanics::PressureCurve reference(double width) {
   return under(terramechanics::mojave_martian_simulant.pressure, width);

@@ -2,20 +2,18 @@
 
 #include <dem/report/replay_recorder.hpp>
 #include <dem/rig/bed/surface_profile.hpp>
+#include <dem/rig/number.hpp>
 #include <dem/rig/rigid_wheel/contact_print.hpp>
 #include <dem/rig/rigid_wheel/settings.hpp>
 #include <dem/rig/samples.hpp>
 #include <dem/rig/steady_window.hpp>
 #include <dem/soil/packing.hpp>
 
-#include <limits>
 #include <optional>
 #include <utility>
 #include <vector>
 
 namespace dem::rig::rigid_wheel {
-
-inline constexpr double not_known = std::numeric_limits<double>::quiet_NaN();
 
 /// One row of a run: forces are means over the interval before it.
 struct Sample {

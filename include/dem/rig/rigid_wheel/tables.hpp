@@ -14,10 +14,6 @@
 
 namespace dem::rig::rigid_wheel {
 
-inline std::string number(double value, const char* format = "{:.2f}") {
-  return std::isfinite(value) ? dem::text_of(format, {value}) : "-";
-}
-
 inline io::Table slip_table(const Campaign& c) {
   io::Table t{.caption = "Means over the steady window, slip s = 1 - v/(omega r) (± standard deviation in time)",
               .header = {"slip", "pull [N]", "±", "torque [N m]", "±", "sinkage [mm]", "±", "efficiency", "carried [N]",

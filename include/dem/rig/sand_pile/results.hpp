@@ -1,18 +1,16 @@
 #pragma once
 
 #include <dem/report/replay_recorder.hpp>
+#include <dem/rig/number.hpp>
 #include <dem/rig/samples.hpp>
 #include <dem/rig/sand_pile/settings.hpp>
 #include <dem/soil/angle_of_repose.hpp>
 
-#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
 
 namespace dem::rig::sand_pile {
-
-inline constexpr double not_known = std::numeric_limits<double>::quiet_NaN();
 
 /// A pile at one time.
 struct Sample {

@@ -2,6 +2,7 @@
 
 #include <dem/report/replay_recorder.hpp>
 #include <dem/rig/bed/surface_profile.hpp>
+#include <dem/rig/number.hpp>
 #include <dem/rig/soft_lane/settings.hpp>
 #include <dem/vehicle/ending.hpp>
 #include <dem/vehicle/telemetry.hpp>
@@ -9,14 +10,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
 
 namespace dem::rig::soft_lane {
-
-inline constexpr double not_known = std::numeric_limits<double>::quiet_NaN();
 
 using vehicle::WheelSample;
 

@@ -13,10 +13,6 @@
 
 namespace dem::rig::soft_lane {
 
-inline std::string number(double value, const char* format = "{:.2f}") {
-  return std::isfinite(value) ? dem::text_of(format, {value}) : "-";
-}
-
 inline io::Table drive_table(const Settings& s, const Campaign& c) {
   io::Table t{.caption = "The drive; means over the second half of the way",
               .header = {"scene", "ended", "way [m]", "time [s]", "speed [m/s]", "slip", "sinkage [mm]", "pull [kN]",
