@@ -186,28 +186,29 @@ TEST_CASE("the study of plates has the spread of the seeds, and changes paired b
   }
   auto rows = plate_sinkage::study_rows(c);
   REQUIRE(rows.size() == 9);  // two plates and their mean, thrice
-  CHECK(rows[0].pressure.beds == 3);
-  CHECK(rows[0].pressure.mean == Approx(22e3));
-  CHECK(rows[0].pressure.deviation == Approx(2e3));
+  CHECK(rows[0].value.beds == 3);
+  CHECK(rows[0].value.mean == Approx(22e3));
+  CHECK(rows[0].value.deviation == Approx(2e3));
   CHECK(rows[0].from_as_set.pairs == 0);
-  CHECK(rows[2].pressure.mean == Approx(26.5e3));
-  CHECK(std::isnan(rows[2].width));
-  CHECK(rows[3].from_as_set.percent.value == Approx(-10.0));
-  CHECK(rows[3].from_as_set.percent.error == Approx(2.0 / std::sqrt(3.0)));
+  CHECK(rows[2].value.mean == Approx(26.5e3));
+  CHECK(rows[2].place == 2);
+  CHECK(rows[3].from_as_set.percent.value == Approx(-10.06).epsilon(1e-3));
+  CHECK(rows[3].from_as_set.percent.error == Approx(1.206).epsilon(1e-3));
   CHECK(rows[4].from_as_set.percent.error == Approx(0.0).margin(1e-9));
-  CHECK(rows[6].from_as_set.is_within(plate_sinkage::box_limit) == std::string("yes"));
+  CHECK(rows[6].from_as_set.is_within(5.0) == std::string("yes"));
 
-  const auto table = plate_sinkage::study_table(c);
+  const StudiedValue of = plate_sinkage::studied_pressure(s);
+  const auto table = study_table(of, rows, plate_sinkage::study_caption);
   dem::io::check_table(table);
   CHECK(table.rows[0][0] == "as set");
   CHECK(table.rows[0][5] == "9.1");  // 2 of 22 kPa
   CHECK(table.rows[0][6].empty());   // pairs
   CHECK(table.rows[0][9].empty());
-  CHECK(table.rows[3][9] == "-10.0");
-  CHECK(table.rows[3][12] == "5 %: no");
+  CHECK(table.rows[3][9] == "-10.1");
+  CHECK(table.rows[3][12] == "5 %: not told");  // 10.06 less 4.30 times 1.21 is 4.87 %
   CHECK(table.rows[5][1] == "mean");
   CHECK(table.rows[8][11] == "no");
-  const auto words = plate_sinkage::study_findings(c);
+  const auto words = study_findings(of, rows, 2);
   REQUIRE(words.size() == 3);
   CHECK_THAT(words[0], Catch::Contains("Beds of 3 seeds in the box as set deviate by 6.8 % in the mean pressure of the "
                                        "plates, 26.50 ± 1.04 kPa"));

@@ -115,77 +115,65 @@ TEST_CASE("settings of wheels that make no sense are refused by the names of the
   CHECK(rigid_wheel::slip_name(0.3) == "slip_30");
 }
 
-TEST_CASE("a study of a wheel changes the box, the speed or the seed, and nothing else; it makes its own beds") {
+TEST_CASE("a study of a wheel changes the box, the speed or the seed, and nothing else") {
   auto s = small();
   rigid_wheel::resolve(s);
   CHECK(rigid_wheel::variants(s).size() == 1);
   s.study = "box";
+  s.study_seeds = 2;
   const auto box = rigid_wheel::variants(s);
-  REQUIRE(box.size() == 5);  // and two other seeds, for the error
+  REQUIRE(box.size() == 6);
   CHECK(box[1].settings.bed.width == Approx(2.0 * s.bed.width));
   CHECK(box[1].settings.bed.depth == s.bed.depth);
   CHECK(box[2].settings.bed.depth == Approx(2.0 * s.bed.depth));
   CHECK(box[2].prefix() == "deep_");
   CHECK(box[3].settings.bed.seed == s.bed.seed + 1);
-  CHECK(box[3].prefix() == "second_");
-  CHECK(box[4].settings.bed.width == s.bed.width);
+  CHECK(box[3].settings.bed.width == s.bed.width);
   s.study = "speed";
   const auto speed = rigid_wheel::variants(s);
-  REQUIRE(speed.size() == 2);
+  REQUIRE(speed.size() == 4);
   CHECK(speed[1].settings.spin() == Approx(0.5 * s.spin()));
   CHECK(speed[1].settings.bed.seed == s.bed.seed);
-  s.study = "seeds";
-  CHECK(rigid_wheel::variants(s).at(2).settings.bed.seed == s.bed.seed + 2);
+  s.study = "box";
   s.bed.file = "bed.txt";
   CHECK_THROWS_WITH(rigid_wheel::resolve(s), Catch::Contains("--bed-file"));
-  s.study = "speed";
-  rigid_wheel::resolve(s);
 }
 
-TEST_CASE("the change of a pull in a study has an error, and is called small or not where two errors can tell") {
-  const auto at = [](double pull, double error, bool finished = true) {
-    return rigid_wheel::SlipResult{.slip = 0.3, .finished = finished, .pull = {pull, 3.0}, .pull_error = error};
-  };
-  const auto study = [&](const char* name, const rigid_wheel::SlipResult& of_it) {
-    rigid_wheel::Campaign c;
-    c.variant.settings.study = "box";
-    c.slips = {at(-20.0, 0.3)};
-    c.study.push_back({.variant = {.change = name, .text = "other"}, .slips = {of_it}});
-    return c;
-  };
-  const auto change = [](const rigid_wheel::Campaign& c) { return rigid_wheel::pull_change(c, c.study[0], 0); };
-  // In the same bed: errors of means in time.
-  const auto slow = study("slow", at(-26.0, 0.4));
-  CHECK(change(slow).value.value == Approx(-6.0));
-  CHECK(change(slow).value.error == Approx(0.5));
-  CHECK(change(slow).percent.value == Approx(-30.0));
-  CHECK(change(slow).percent.error == Approx(100.0 * std::hypot(0.4, 1.3 * 0.3) / 20.0));
-  CHECK(change(slow).is_within(5.0) == std::string("no"));                                 // 30 +- 2.8 %
-  CHECK(change(study("slow", at(-20.2, 0.1))).is_within(5.0) == std::string("yes"));       // 1 +- 1.6 %
-  CHECK(change(study("slow", at(-19.0, 0.4))).is_within(5.0) == std::string("not told"));  // 5 +- 2.5 %
-  CHECK(change(study("slow", at(-19.0, 0.4, false))).is_within(5.0) == std::string("-"));
-  CHECK(change(study("slow", at(-20.2, std::nan("")))).is_within(5.0) == std::string("-"));
-  // With other grains: three beds of -20, -20.2 and -23 N deviate by 1.677 N, which counts for both runs.
-  auto wide = study("wide", at(-26.0, 0.4));
-  wide.study.push_back({.variant = {.seed = "second"}, .slips = {at(-20.2, 0.3)}});
-  wide.study.push_back({.variant = {.seed = "third"}, .slips = {at(-23.0, 0.3)}});
-  const auto beds = rigid_wheel::scatter_of_beds(wide, 0);
-  CHECK(beds.beds == 3);
-  CHECK(beds.mean == Approx(-21.0667).epsilon(1e-5));
-  CHECK(beds.deviation == Approx(1.6773).epsilon(1e-4));
-  CHECK(beds.error() == Approx(1.6773 / std::sqrt(3.0)).epsilon(1e-4));
-  CHECK(change(wide).value.error == Approx(std::sqrt(2.0) * 1.6773).epsilon(1e-4));
-  CHECK(change(wide).percent.error == Approx(100.0 * 1.6773 * std::hypot(1.0, 1.3) / 20.0).epsilon(1e-4));
-  CHECK(change(wide).is_within(5.0) == std::string("not told"));         // 30 +- 13.8 %
-  CHECK(std::isnan(change(study("wide", at(-26.0, 0.4))).value.error));  // what a bed deviates by is not known
-
-  const auto tables = rigid_wheel::study_tables(wide);
-  REQUIRE(tables.size() == 2);
-  for (const auto& table : tables) dem::io::check_table(table);
-  REQUIRE(tables[0].rows.size() == 4);
-  CHECK(tables[0].rows[0][9].empty());
-  CHECK(tables[0].rows[1][9] == "-30.0");
-  CHECK(rigid_wheel::study_tables({}).empty());
+TEST_CASE("the study of a wheel has the pull of each slip with its change, and all runs by themselves") {
+  auto s = small();
+  s.slips = {-0.5, 0.3};
+  s.study = "speed";
+  s.study_seeds = 2;
+  rigid_wheel::resolve(s);
+  const double pulls[4][2] = {{-20, 10}, {-21, 12}, {-24, 8}, {-25.2, 6}};
+  rigid_wheel::Campaign c;
+  const auto all = rigid_wheel::variants(s);
+  for (std::size_t v = 0; v < all.size(); ++v) {
+    rigid_wheel::VariantResult& of = v == 0 ? c : c.study.emplace_back();
+    of.variant = all[v];
+    of.solid_fraction = 0.78;
+    for (std::size_t k = 0; k < 2; ++k) {
+      of.slips.push_back({.slip = s.slips[k], .finished = true, .pull = {pulls[v][k], 3.0}, .pull_error = 0.5});
+    }
+  }
+  auto rows = rigid_wheel::study_rows(c);
+  REQUIRE(rows.size() == 4);
+  CHECK(rows[0].value.mean == Approx(-22.0));
+  CHECK(rows[2].from_as_set.percent.value == Approx(-5.0));  // it is braked more
+  CHECK(rows[3].from_as_set.value.value == Approx(0.0).margin(1e-12));
+  const auto words = study_findings(rigid_wheel::studied_pull(s), rows);
+  REQUIRE(words.size() == 4);
+  CHECK_THAT(words[2], Catch::StartsWith("Half the speed changes the pull at slip -0.5 by -5.0 ± 0.0 % (2 seeds)"));
+  const auto runs = rigid_wheel::runs_table(c);
+  dem::io::check_table(runs);
+  CHECK(runs.rows.size() == 8);
+  CHECK(runs.rows[2][0] == "half the speed");
+  CHECK(runs.rows[2][5] == "-21.00");
+  // A slip that ended early has no pull.
+  c.study[2].slips[0].finished = false;
+  rows = rigid_wheel::study_rows(c);
+  CHECK(rows[2].from_as_set.pairs == 1);
+  CHECK(std::isnan(rows[2].from_as_set.percent.error));
 }
 
 TEST_CASE("a wheel is set down gently, carries its load, and keeps its slip") {

@@ -56,25 +56,22 @@ struct Change {
   [[nodiscard]] bool is_known() const { return std::isfinite(percent.value) && std::isfinite(percent.error); }
 };
 
-/// Of two runs with errors of their own. Two errors of the change decide.
-inline Change change_of(const ValueAndError& as_set, const ValueAndError& changed) {
-  const double a = as_set.value, b = changed.value, e = as_set.error, f = changed.error;
-  return {.pairs = 1,
-          .value = {b - a, std::hypot(e, f)},
-          .percent = {100.0 * (b - a) / std::abs(a), 100.0 * std::hypot(f, b / a * e) / std::abs(a)}};
-}
-
-/// Of pairs of runs, each pair of one seed: the mean of their changes, with the error by how these scatter. So what two
-/// runs of one seed share does not count as an error. Student's t at 95 % decides, as there are few pairs. One pair has
-/// a change, but no error.
+/// Of pairs of runs, each pair of one seed: the change of their mean, with the error by how the pairs scatter. So what
+/// two runs of one seed share does not count as an error. In percent it is that of a ratio of means (the residuals'
+/// scatter about it; Cochran, Sampling Techniques, 1977, section 6.3): a mean of the pairs' percentages would be ruled
+/// by those whose value as set is small. Student's t at 95 % decides, as there are few pairs. One pair has a change,
+/// but no error.
 inline Change change_of(std::span<const AsSetAndChanged> pairs) {
   if (pairs.empty()) return {};
-  std::vector<double> values, percents;
-  for (const auto& [a, b] : pairs) values.push_back(b - a), percents.push_back(100.0 * (b - a) / std::abs(a));
-  const BedScatter value = scatter_of(values), percent = scatter_of(percents);
+  const double n = static_cast<double>(pairs.size());
+  double as_set = 0.0, changed = 0.0;
+  for (const auto& [a, b] : pairs) as_set += a / n, changed += b / n;
+  std::vector<double> changes, residuals;
+  for (const auto& [a, b] : pairs) changes.push_back(b - a), residuals.push_back(b - changed / as_set * a);
+  const BedScatter value = scatter_of(changes);
   return {.pairs = pairs.size(),
           .value = {value.mean, value.error()},
-          .percent = {percent.mean, percent.error()},
+          .percent = {100.0 * value.mean / std::abs(as_set), 100.0 * scatter_of(residuals).error() / std::abs(as_set)},
           .reach = pairs.size() > 1 ? terramechanics::student_t(pairs.size() - 1) : 2.0};
 }
 

@@ -46,9 +46,12 @@ class PlateRig : public Rig {
     std::vector<std::string> words{bed_text(v), finding_text(v)};
     if (!small_bed().empty()) words.push_back(small_bed());
     if (campaign.variants.size() > 1) {
-      for (auto& line : study_findings(campaign)) words.push_back(std::move(line));
-      words.emplace_back(study_text);
-      report.part("study.csv", [&] { write_study(report.folder() / "study.csv", campaign); });
+      const StudiedValue of = studied_pressure(settings);
+      const std::vector<StudyRow> rows = study_rows(campaign);
+      const std::size_t last = of.places.size() - 1;  // the mean of all plates
+      for (auto& line : study_findings(of, rows, last)) words.push_back(std::move(line));
+      words.emplace_back(text("{} {}", study_text, study_note));
+      report.part("study.csv", [&] { write_study(report.folder() / "study.csv", of, rows); });
     }
     report.part("results.csv", [&] { write_results(report.folder() / "results.csv"); });
     report.part("the printed report", [&] {
@@ -91,7 +94,9 @@ class PlateRig : public Rig {
     std::vector<io::Table> list{pressure_table(v), fit_table(v)};
     if (auto constants = constants_table(v); !constants.rows.empty()) list.push_back(std::move(constants));
     list.push_back(runs_table(campaign));
-    if (campaign.variants.size() > 1) list.push_back(study_table(campaign));
+    if (campaign.variants.size() > 1) {
+      list.push_back(study_table(studied_pressure(settings), study_rows(campaign), study_caption));
+    }
     return list;
   }
 

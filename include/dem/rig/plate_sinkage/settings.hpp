@@ -64,10 +64,7 @@ inline void declare(Options& options, Settings& s) {
   add("--fit-from", s.fit_from, "share of the sinkage from which points are fitted");
   options.flag("--unload", s.unload, "then draw the plate up again: the slope of unloading");
   add("--unload-speed", s.unload_speed, "at which it is drawn up [m/s]; 0: a tenth of the speed");
-  add_study_option(options, s.study);
-  add("--study-seeds", s.study_seeds,
-      "seeds of each run of the study, for its errors (0: three; with --bed-file one): a change is that of two runs of "
-      "one seed");
+  add_study_options(options, s.study, s.study_seeds);
   add_grain_options(options, s.grains);
   add_bed_options(options, s.bed);
   add_output_options(options, s, "a plate");
@@ -77,7 +74,7 @@ inline void find_idle(IdleOptions& idle, const Settings& s) {
   rig::find_idle(idle, s.grains);
   rig::find_idle(idle, s.bed);
   find_idle_replay(idle, s);
-  idle.unless(s.study != "none", "with a --study", {"--study-seeds"});
+  find_idle_study(idle, s.study);
   idle.unless(s.unload, "with --unload", {"--unload-speed"});
 }
 
@@ -120,19 +117,12 @@ inline void resolve(Settings& s) {
   require_positive(s.threshold, "--threshold", "Pa");
   require_within(s.smoothing, 0.0, 0.5, "--smoothing");
   require_within(s.fit_from, 1e-3, 0.9, "--fit-from");
-  check_study(s.study, s.bed);
-  if (s.study_seeds == 0) s.study_seeds = s.bed.file.empty() ? 3 : 1;
-  require_within(static_cast<double>(s.study_seeds), s.study == "seeds" ? 2.0 : 1.0, 9.0, "--study-seeds");
-  if (s.study == "speed" && s.study_seeds > 1 && !s.bed.file.empty()) {
-    fail("--study-seeds {} needs other beds than the one of --bed-file; leave one of them out", s.study_seeds);
-  }
+  resolve_study(s.study, s.study_seeds, s.bed);
 }
 
 /// The run itself, and those of the study.
 inline std::vector<Variant> variants(const Settings& s) {
-  const std::uint64_t seeds = s.study == "none" ? 1 : s.study_seeds;
-  return variants_of(s, {.as_set = seeds, .changed = seeds},
-                     [](Settings& x) { x.speed *= 0.5, x.unload_speed *= 0.5; });
+  return variants_of(s, [](Settings& x) { x.speed *= 0.5, x.unload_speed *= 0.5; });
 }
 
 /// Names and values for the report.
@@ -150,7 +140,7 @@ inline NamesAndValues list_settings(const Settings& s) {
        {"friction, grain on plate", text("{:g}", s.plate_friction)},
        {"speed", text("{:g} mm/s", 1e3 * s.speed)},
        {"sinkage", text("{:g} mm, from where the pressure first is {:g} kPa", 1e3 * s.sinkage, 1e-3 * s.threshold)},
-       {"study", s.study == "none" ? s.study : text("{}, {} seeds", s.study, s.study_seeds)}});
+       {"study", study_setting(s.study, s.study_seeds)}});
   return list;
 }
 

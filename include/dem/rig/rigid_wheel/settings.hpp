@@ -35,8 +35,9 @@ struct Settings {
   double ramp_time = 0.05;       ///< s, of the smooth start
   double set_down_speed = 0.05;  ///< m/s
 
-  std::string study = "none";  ///< none, box, speed or seeds
-  std::string soil;            ///< file of a soil, which the grains stand beside too
+  std::string study = "none";     ///< none, box, speed or seeds
+  std::uint64_t study_seeds = 0;  ///< of each run of the study; 0: three, but one with a bed from a file
+  std::string soil;               ///< file of a soil, which the grains stand beside too
   std::string output = "rigid_wheel_output";
   bool replay = true;
   std::uint64_t replay_forces = 2000;  ///< force chains of a frame of the replay, the largest; 0: none
@@ -86,7 +87,7 @@ inline void declare(Options& options, Settings& s) {
   add("--set-down-speed", s.set_down_speed, "of the load servo [m/s]");
   add("--soil", s.soil,
       "file of a soil as the bevameter writes it: Bekker-Wong and dynamic Bekker with it are drawn too");
-  add_study_option(options, s.study, " (two; box also makes these, for the error)");
+  add_study_options(options, s.study, s.study_seeds);
   add_grain_options(options, s.grains);
   add_bed_options(options, s.bed);
   add_output_options(options, s, "a slip");
@@ -96,6 +97,7 @@ inline void find_idle(IdleOptions& idle, const Settings& s) {
   rig::find_idle(idle, s.grains);
   rig::find_idle(idle, s.bed);
   find_idle_replay(idle, s);
+  find_idle_study(idle, s.study);
   idle.unless(s.wheel == "grousers", "with --wheel grousers",
               {"--grousers", "--grouser-height", "--grouser-thickness"});
 }
@@ -122,7 +124,7 @@ inline void resolve(Settings& s) {
   fill(s.spin_deg, by_size.spin_deg);
   fill(s.path, by_size.path);
   if (s.slips.empty()) s.slips = by_size.slips;
-  check_study(s.study, s.bed);
+  resolve_study(s.study, s.study_seeds, s.bed);
   if (s.wheel_friction < 0.0)
     s.wheel_friction = s.wheel == "smooth" ? 0.2 : s.wheel == "rough" ? 0.8 : s.grains.friction;
   std::sort(s.slips.begin(), s.slips.end());
@@ -154,11 +156,9 @@ inline void resolve(Settings& s) {
   }
 }
 
-/// The run itself, and those of the study. With other boxes come other seeds: what a box changes is to be seen beside
-/// how far beds of one box differ.
+/// The run itself, and those of the study.
 inline std::vector<Variant> variants(const Settings& s) {
-  const StudySeeds seeds = {.as_set = s.study == "box" || s.study == "seeds" ? 3u : 1u};
-  return variants_of(s, seeds, [](Settings& x) { x.spin_deg *= 0.5; });
+  return variants_of(s, [](Settings& x) { x.spin_deg *= 0.5; });
 }
 
 /// Names and values for the report.
@@ -178,7 +178,7 @@ inline NamesAndValues list_settings(const Settings& s) {
                {"spin", text("{:g} deg/s: the rim at {:g} mm/s", s.spin_deg, 1e3 * s.rim_speed())},
                {"slip is", "s = 1 - v/(omega r), as in table 5.3"},
                {"path of the rim", text("{:g} mm", 1e3 * s.path)},
-               {"study", s.study}});
+               {"study", study_setting(s.study, s.study_seeds)}});
   return list;
 }
 

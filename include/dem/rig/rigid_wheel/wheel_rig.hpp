@@ -26,8 +26,8 @@ class WheelRig : public Rig {
   [[nodiscard]] std::string output() const override { return settings.output; }
   [[nodiscard]] ResultNames results() const override {
     ResultNames names{
-        .files = {"results.csv", "rut.csv", "under_wheel.csv", "study.csv", "slip_#+.csv", "slip_m#+.csv",
-                  "slip_#+.pvd", "slip_m#+.pvd"},
+        .files = {"results.csv", "rut.csv", "under_wheel.csv", "study.csv", "study_runs.csv", "slip_#+.csv",
+                  "slip_m#+.csv", "slip_#+.pvd", "slip_m#+.pvd"},
         .plots = {"pull", "torque", "sinkage", "pull_over_time", "sinkage_over_time", "rut", "stress", "print"},
         .frames = {"grains", "surfaces"}};
     for (const std::string& variant : variant_prefixes()) {
@@ -51,9 +51,14 @@ class WheelRig : public Rig {
     report.part("under_wheel.csv", [&] { write_print(report.folder() / "under_wheel.csv"); });
     std::vector<std::string> words{bed_text(s, campaign), window_text, reference_text, print_text};
     if (!campaign.study.empty()) {
-      words.push_back(study_text);
-      for (auto& table : study_tables(campaign)) tables.push_back(std::move(table));
-      report.part("study.csv", [&] { write_study(report.folder() / "study.csv", campaign); });
+      const StudiedValue of = studied_pull(s);
+      const std::vector<StudyRow> rows = study_rows(campaign);
+      for (auto& line : study_findings(of, rows)) words.push_back(std::move(line));
+      words.emplace_back(text("{} {}", study_text, runs_text));
+      tables.push_back(study_table(of, rows, study_caption));
+      tables.push_back(runs_table(campaign));
+      report.part("study.csv", [&] { write_study(report.folder() / "study.csv", of, rows); });
+      report.part("study_runs.csv", [&] { write_runs(report.folder() / "study_runs.csv", campaign); });
     }
     report.part("the printed report", [&] {
       fmt::print("\n");
