@@ -189,40 +189,42 @@ TEST_CASE("the study of plates has the spread of the seeds, and changes paired b
   CHECK(rows[0].value.beds == 3);
   CHECK(rows[0].value.mean == Approx(22e3));
   CHECK(rows[0].value.deviation == Approx(2e3));
-  CHECK(rows[0].from_as_set.pairs == 0);
+  CHECK(rows[0].from_as_set.pairs() == 0);
   CHECK(rows[2].value.mean == Approx(26.5e3));
   CHECK(rows[2].place == 2);
-  CHECK(rows[3].from_as_set.percent.value == Approx(-10.06).epsilon(1e-3));
-  CHECK(rows[3].from_as_set.percent.error == Approx(1.206).epsilon(1e-3));
-  CHECK(rows[4].from_as_set.percent.error == Approx(0.0).margin(1e-9));
+  CHECK(rows[3].from_as_set.percent().value == Approx(-10.06).epsilon(1e-3));
+  CHECK(rows[3].from_as_set.percent().error == Approx(1.206).epsilon(1e-3));
+  CHECK(rows[4].from_as_set.percent().error == Approx(0.0).margin(1e-9));
   CHECK(rows[6].from_as_set.is_within(5.0) == std::string("yes"));
 
   const StudiedValue of = plate_sinkage::studied_pressure(s);
   const auto table = study_table(of, rows, plate_sinkage::study_caption);
   dem::io::check_table(table);
   CHECK(table.rows[0][0] == "as set");
-  CHECK(table.rows[0][5] == "9.1");  // 2 of 22 kPa
-  CHECK(table.rows[0][6].empty());   // pairs
+  CHECK(table.rows[0][5] == "2.00");
+  CHECK(table.rows[0][6].empty());  // pairs
   CHECK(table.rows[0][9].empty());
   CHECK(table.rows[3][9] == "-10.1");
-  CHECK(table.rows[3][12] == "5 %: not told");  // 10.06 less 4.30 times 1.21 is 4.87 %
+  CHECK(table.rows[3][12] == "5 %: not told");
   CHECK(table.rows[5][1] == "mean");
   CHECK(table.rows[8][11] == "no");
   const auto words = study_findings(of, rows, 2);
   REQUIRE(words.size() == 3);
-  CHECK_THAT(words[0], Catch::Contains("Beds of 3 seeds in the box as set deviate by 6.8 % in the mean pressure of the "
-                                       "plates, 26.50 ± 1.04 kPa"));
+  CHECK_THAT(words[0], Catch::Contains("Beds of 3 seeds in the box as set deviate by 1.80 kPa in the mean pressure of "
+                                       "the plates, 26.50 ± 1.04 kPa"));
   CHECK_THAT(words[1],
-             Catch::StartsWith("A bed twice as wide changes the mean pressure of the plates by -10.0 ± 0.5 %"));
+             Catch::StartsWith(
+                 "A bed twice as wide changes the mean pressure of the plates by -2.66 ± 0.22 kPa, -10.0 ± 0.5 %"));
   CHECK_THAT(words[1], Catch::EndsWith("told from none, and more than the 5 %."));
   CHECK_THAT(words[2], Catch::EndsWith("not told from none, and within the 5 %."));
 
   // A run that ended early has no pressure; its seed drops out of the pair.
   c.variants[4].plates.back().finished = false;
   rows = plate_sinkage::study_rows(c);
-  CHECK(rows[3].from_as_set.pairs == 3);
-  CHECK(rows[4].from_as_set.pairs == 2);
-  CHECK(rows[5].from_as_set.pairs == 2);
+  CHECK(rows[3].from_as_set.pairs() == 3);
+  CHECK(rows[4].from_as_set.pairs() == 2);
+  CHECK(rows[5].from_as_set.pairs() == 2);
+  CHECK(of.speed_limit == 3.0);
   c.variants.resize(1);
   CHECK(plate_sinkage::study_rows(c).empty());
 }

@@ -1,6 +1,8 @@
 #include "catch.hpp"
+#include "io/files.hpp"
 #include "worlds.hpp"
 
+#include <dem/io/file.hpp>
 #include <dem/rig/rigid_wheel.hpp>
 #include <dem/rig/rigid_wheel/study.hpp>
 
@@ -120,6 +122,7 @@ TEST_CASE("a study of a wheel changes the box, the speed or the seed, and nothin
   rigid_wheel::resolve(s);
   CHECK(rigid_wheel::variants(s).size() == 1);
   s.study = "box";
+  CHECK(rigid_wheel::variants(s).size() == 9);  // of three seeds
   s.study_seeds = 2;
   const auto box = rigid_wheel::variants(s);
   REQUIRE(box.size() == 6);
@@ -137,6 +140,10 @@ TEST_CASE("a study of a wheel changes the box, the speed or the seed, and nothin
   s.study = "box";
   s.bed.file = "bed.txt";
   CHECK_THROWS_WITH(rigid_wheel::resolve(s), Catch::Contains("--bed-file"));
+  s.study = "speed";
+  s.study_seeds = 0;
+  rigid_wheel::resolve(s);  // in the bed of a file: that is one seed
+  CHECK(rigid_wheel::variants(s).size() == 2);
 }
 
 TEST_CASE("the study of a wheel has the pull of each slip with its change, and all runs by themselves") {
@@ -145,6 +152,7 @@ TEST_CASE("the study of a wheel has the pull of each slip with its change, and a
   s.study = "speed";
   s.study_seeds = 2;
   rigid_wheel::resolve(s);
+  // Seeds 1 and 2, at the speed as set and at half of it.
   const double pulls[4][2] = {{-20, 10}, {-21, 12}, {-24, 8}, {-25.2, 6}};
   rigid_wheel::Campaign c;
   const auto all = rigid_wheel::variants(s);
@@ -159,21 +167,30 @@ TEST_CASE("the study of a wheel has the pull of each slip with its change, and a
   auto rows = rigid_wheel::study_rows(c);
   REQUIRE(rows.size() == 4);
   CHECK(rows[0].value.mean == Approx(-22.0));
-  CHECK(rows[2].from_as_set.percent.value == Approx(-5.0));  // it is braked more
-  CHECK(rows[3].from_as_set.value.value == Approx(0.0).margin(1e-12));
+  CHECK(rows[2].from_as_set.value().value == Approx(-1.1));  // it is braked more
+  CHECK(rows[3].from_as_set.value().value == Approx(0.0).margin(1e-12));
   const auto words = study_findings(rigid_wheel::studied_pull(s), rows);
   REQUIRE(words.size() == 4);
-  CHECK_THAT(words[2], Catch::StartsWith("Half the speed changes the pull at slip -0.5 by -5.0 ± 0.0 % (2 seeds)"));
+  CHECK(words[0] == "Beds of 2 seeds in the box as set deviate by 2.83 N in the pull at slip -0.5, -22.00 ± 2.00 N.");
+  // Of two pairs Student's t is 12.7: neither mean is told from zero by it, so there are no percentages.
+  CHECK_THAT(words[2], Catch::StartsWith("Half the speed changes the pull at slip -0.5 by -1.10 ± 0.10 N (2 seeds)"));
   const auto runs = rigid_wheel::runs_table(c);
   dem::io::check_table(runs);
   CHECK(runs.rows.size() == 8);
   CHECK(runs.rows[2][0] == "half the speed");
   CHECK(runs.rows[2][5] == "-21.00");
+  CHECK(runs.rows[2][9] == "yes");
+  TempFolder folder;
+  rigid_wheel::write_runs(folder / "runs.csv", c);
+  CHECK_THAT(dem::io::read_file(folder / "runs.csv"),
+             Catch::StartsWith("run,slip_1-v/(omega*r),grains,solid_fraction,drawbar_pull_N,") &&
+                 Catch::Contains("\nhalf the speed,-0.5,0,0.78,-21,0.5,,,1\n"));
   // A slip that ended early has no pull.
   c.study[2].slips[0].finished = false;
   rows = rigid_wheel::study_rows(c);
-  CHECK(rows[2].from_as_set.pairs == 1);
-  CHECK(std::isnan(rows[2].from_as_set.percent.error));
+  CHECK(rows[2].from_as_set.pairs() == 1);
+  CHECK(std::isnan(rows[2].from_as_set.value().error));
+  CHECK(rigid_wheel::runs_table(c).rows[6][9] == "no");
 }
 
 TEST_CASE("a wheel is set down gently, carries its load, and keeps its slip") {

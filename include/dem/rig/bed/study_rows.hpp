@@ -7,6 +7,7 @@
 #include <dem/rig/bed/study_change.hpp>
 #include <dem/rig/number.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <span>
@@ -45,8 +46,8 @@ struct StudyRow {
   double limit = not_known;  ///< %, that the change should be within
 };
 
-/// `value_at(run, place)` is NaN where a run has none. `runs` point to what has a Variant as its `variant`. None of a
-/// single run.
+/// `value_at(run, place)` is NaN where a run has none. `runs` point to what has a Variant as its `variant`. Empty where
+/// there is one run.
 template <class Run, class ValueAt>
 std::vector<StudyRow> study_rows(std::span<const Run* const> runs, const StudiedValue& value, ValueAt&& value_at) {
   std::vector<StudyRow> rows;
@@ -76,71 +77,79 @@ std::vector<StudyRow> study_rows(std::span<const Run* const> runs, const Studied
       }
       if (!values.empty()) row.value = scatter_of(values);
       if (change.empty()) continue;
-      row.from_as_set = change_of(pairs);
+      row.from_as_set = Change(std::move(pairs));
       row.limit = change == "slow" ? value.speed_limit : value.box_limit;
     }
   }
   return rows;
 }
 
-/// Means over the seeds, how they scatter, and what is changed.
+/// Means over the seeds, how they scatter, and what is changed, if anything is.
 inline io::Table study_table(const StudiedValue& of, std::span<const StudyRow> rows, std::string caption) {
-  io::Table t{
-      .caption = std::move(caption),
-      .header = {"runs", of.place, "seeds", text("{} [{}]", of.name, of.unit), "±", "deviation of a bed [%]", "pairs",
-                 text("change [{}]", of.unit), "±", "change [%]", "±", "told from none", "within the limit"}};
+  io::Table t{.caption = std::move(caption),
+              .header = {"runs", of.place, "seeds", text("{} [{}]", of.name, of.unit), "±",
+                         text("deviation of a bed [{}]", of.unit)}};
+  const bool any_change = std::any_of(rows.begin(), rows.end(), [](const StudyRow& r) { return !r.change.empty(); });
+  if (any_change) {
+    t.header.insert(t.header.end(), {"pairs", text("change [{}]", of.unit), "±", "change [%]", "±", "told from none",
+                                     "within the limit"});
+  }
   for (const StudyRow& r : rows) {
     const BedScatter& x = r.value;
-    const Change& change = r.from_as_set;
-    const bool is_change = !r.change.empty();
-    const auto of_change = [&](double value, const char* format) { return is_change ? number(value, format) : ""; };
-    t.row(change_text(r.change), of.places[r.place].in_tables, x.beds, number(of.scale * x.mean),
-          number(of.scale * x.error()), number(100.0 * x.deviation / std::abs(x.mean), "{:.1f}"),
-          is_change ? text("{}", change.pairs) : "", of_change(of.scale * change.value.value, "{:+.2f}"),
-          of_change(of.scale * change.value.error, "{:.2f}"), of_change(change.percent.value, "{:+.1f}"),
-          of_change(change.percent.error, "{:.1f}"), is_change ? change.is_told() : "",
-          is_change ? text("{:g} %: {}", r.limit, change.is_within(r.limit)) : std::string());
+    std::vector<std::string> row{change_text(r.change),        of.places[r.place].in_tables,
+                                 text("{}", x.beds),           number(of.scale * x.mean),
+                                 number(of.scale * x.error()), number(of.scale * x.deviation)};
+    if (!r.change.empty()) {
+      const Change& c = r.from_as_set;
+      const ValueAndError value = c.value(), percent = c.percent();
+      row.insert(row.end(),
+                 {text("{}", c.pairs()), number(of.scale * value.value, "{:+.2f}"), number(of.scale * value.error),
+                  number(percent.value, "{:+.1f}"), number(percent.error, "{:.1f}"), c.is_told(),
+                  text("{:g} %: {}", r.limit, c.is_within(r.limit))});
+    }
+    row.resize(t.header.size());
+    t.rows.push_back(std::move(row));
   }
   return t;
 }
 inline constexpr const char* study_text =
-    "A change is that of two runs of one seed, and its mean over the seeds. Its ± is the standard error by how the "
-    "seeds scatter. With one seed there is none. A change is told from none, or within or beyond its limit, where "
-    "Student's t at 95 % decides it.";
+    "A change is that of two runs of one seed, in the mean over the seeds. Its ± is the standard error by how the "
+    "seeds scatter. With one seed there is none. In percent it is that change over the mean as set, if that is told "
+    "from zero. A change is told from none, or within or beyond its limit, where Student's t at 95 % decides it.";
 
-/// The spread of the seeds and the verdicts, at the places from the first that is given.
+/// The spread of the seeds and the verdicts, at `first_place` and the places after it.
 inline std::vector<std::string> study_findings(const StudiedValue& of, std::span<const StudyRow> rows,
                                                std::size_t first_place = 0) {
   std::vector<std::string> list;
   for (const StudyRow& r : rows) {
     if (r.place < first_place) continue;
+    const std::string& phrase = of.places[r.place].phrase;
     if (!r.change.empty()) {
       const std::string what = r.change == "slow" ? "Half the speed" : "A " + change_text(r.change);
-      list.push_back(verdict_text(what, of.places[r.place].phrase, r.from_as_set, r.limit));
+      list.push_back(verdict_text(what, phrase, r.from_as_set, r.limit, of.unit, of.scale));
     } else if (r.value.beds > 1) {
-      list.push_back(text("Beds of {} seeds in the box as set deviate by {:.1f} % in {}, {:.2f} ± {:.2f} {}.",
-                          r.value.beds, 100.0 * r.value.deviation / std::abs(r.value.mean), of.places[r.place].phrase,
-                          of.scale * r.value.mean, of.scale * r.value.error(), of.unit));
+      list.push_back(text("Beds of {} seeds in the box as set deviate by {:.2f} {} in {}, {:.2f} ± {:.2f} {}.",
+                          r.value.beds, of.scale * r.value.deviation, of.unit, phrase, of.scale * r.value.mean,
+                          of.scale * r.value.error(), of.unit));
     }
   }
   return list;
 }
 
-/// Columns in SI units; an empty cell is a value that is not known.
+/// Columns in SI units; an empty cell is what is not known.
 inline void write_study(const std::filesystem::path& path, const StudiedValue& of, std::span<const StudyRow> rows) {
   const std::string& unit = of.si_unit;
   io::CsvWriter csv(
       path, {"runs", of.file_place, "seeds", text("mean_{}_{}", of.name, unit), text("{}_error_{}", of.name, unit),
              "bed_deviation_" + unit, "pairs", "change_" + unit, "change_error_" + unit, "change_percent",
              "change_error_percent", "told_from_none", "limit_percent", "within_limit"});
-  const auto cell = [](double value) { return std::isfinite(value) ? text("{}", value) : ""; };
   for (const StudyRow& r : rows) {
-    const Change& change = r.from_as_set;
-    const bool is_change = !r.change.empty();
+    const Change& c = r.from_as_set;
+    const ValueAndError value = c.value(), percent = c.percent();
+    const bool is_known = c.pairs() > 1;
     csv.row(change_text(r.change), of.places[r.place].in_files, r.value.beds, cell(r.value.mean), cell(r.value.error()),
-            cell(r.value.deviation), change.pairs, cell(change.value.value), cell(change.value.error),
-            cell(change.percent.value), cell(change.percent.error), is_change ? change.is_told() : "", cell(r.limit),
-            is_change ? change.is_within(r.limit) : "");
+            cell(r.value.deviation), c.pairs(), cell(value.value), cell(value.error), cell(percent.value),
+            cell(percent.error), is_known ? c.is_told() : "", cell(r.limit), is_known ? c.is_within(r.limit) : "");
   }
   csv.flush();
 }

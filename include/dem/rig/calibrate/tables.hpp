@@ -7,6 +7,7 @@
 #include <dem/rig/bed/grain_settings.hpp>
 #include <dem/rig/calibrate/search.hpp>
 #include <dem/rig/calibrate/trial.hpp>
+#include <dem/rig/number.hpp>
 
 #include <string>
 #include <vector>
@@ -30,9 +31,7 @@ inline std::string titled(Constant c) {
 inline std::string titled(Quantity q) {
   return text("{} [{}]", names_of_quantities[static_cast<int>(q)], units_of_quantities[static_cast<int>(q)]);
 }
-inline std::string number(double value, const char* format = "{:.4g}") {
-  return std::isfinite(value) ? dem::text_of(format, {value}) : "-";
-}
+inline std::string number(double value, const char* format = "{:.4g}") { return rig::number(value, format); }
 
 /// A constant that was found, with its standard error in its own unit.
 inline terramechanics::Estimate estimate_of(const Settings& s, const Found& f, std::size_t k) {

@@ -14,7 +14,6 @@ inline void write_results_csv(const std::filesystem::path& path, const Settings&
   io::CsvWriter csv(path, {"load_kg", "normal_stress_Pa", "maximum_shear_Pa", "displacement_at_maximum_m",
                            "residual_shear_Pa", "solid_fraction", "bulk_density_kg_m3", "dilation_m",
                            "plane_normal_stress_Pa", "normal_stress_at_maximum_Pa", "inertial_number", "finished"});
-  const auto cell = [](double value) { return std::isfinite(value) ? text("{}", value) : ""; };
   for (const LoadResult& r : c.loads) {
     csv.row(r.load, r.normal_stress, cell(r.maximum), cell(r.at_maximum), cell(r.residual), cell(r.solid_fraction),
             cell(s.density * r.solid_fraction), cell(r.dilation), cell(r.plane_stress), cell(r.normal_at_maximum),

@@ -195,7 +195,6 @@ class MobilityRig : public Rig {
                              "rut_right_m",
                              "weight_N",
                              "widest_joint_m"});
-    const auto cell = [](double value) { return std::isfinite(value) ? text("{}", value) : std::string(); };
     for (std::size_t k = 0; k < campaign.results.size(); ++k) {
       const Case& of = campaign.cases[k];
       const Result& r = campaign.results[k];

@@ -103,7 +103,6 @@ class PlateRig : public Rig {
   void write_results(const std::filesystem::path& path) const {
     io::CsvWriter csv(path, {"run", "plate_m", "k_Pa_per_m^n", "k_error", "n", "n_error", "mean_pressure_Pa",
                              "unloading_Pa_per_m", "solid_fraction", "grains", "finished"});
-    const auto cell = [](double value) { return std::isfinite(value) ? text("{}", value) : ""; };
     for (const VariantResult& v : campaign.variants) {
       for (const PlateResult& r : v.plates) {
         const bool f = r.fit.has_value();

@@ -4,7 +4,6 @@
 #include <dem/rig/bed/study_rows.hpp>
 #include <dem/rig/plate_sinkage/tables.hpp>
 
-#include <cmath>
 #include <string>
 #include <vector>
 

@@ -1,6 +1,7 @@
 #pragma once
 // How far the pull depends on the box, the speed and the seed of the bed, with errors.
 
+#include <dem/io/csv.hpp>
 #include <dem/rig/bed/study_rows.hpp>
 #include <dem/rig/rigid_wheel/tables.hpp>
 
@@ -45,21 +46,21 @@ inline std::vector<StudyRow> study_rows(const Campaign& c) {
 inline constexpr const char* study_caption =
     "Pull: mean over the seeds (± standard error) and what the study changes, slip s = 1 - v/(omega r)";
 inline constexpr const char* runs_text =
-    "The ± of the pull of one run is the standard error of its mean in time, by ten parts of the steady window. It "
-    "does "
-    "not tell how far another bed, or the same bed at another moment, would be from it.";
+    "The ± of the pull of one run is the standard error of its mean in time, by ten parts of the steady window. How "
+    "far another bed, or the same bed at another moment, would be from it, is not told by that.";
 
 /// Each run of a study by itself.
 inline io::Table runs_table(const Campaign& c) {
   io::Table t{.caption = "Runs of the study (± standard error of the mean in time), slip s = 1 - v/(omega r)",
               .header = {"run", "grains", "solid fraction", "rel. density", "slip", "pull [N]", "±", "torque [N m]",
-                         "sinkage [mm]"}};
+                         "sinkage [mm]", "done"}};
   for (const VariantResult* v : all_runs(c)) {
     const double density =
         std::isfinite(v->solid_fraction) ? soil::relative_density(v->solid_fraction, soil::cube8_limits) : not_known;
     for (const SlipResult& r : v->slips) {
       t.row(v->variant.text, v->grains, number(v->solid_fraction, "{:.3f}"), number(density), number(r.slip),
-            number(r.pull.mean), number(r.pull_error), number(r.torque.mean), number(1e3 * r.sinkage.mean, "{:.1f}"));
+            number(r.pull.mean), number(r.pull_error), number(r.torque.mean), number(1e3 * r.sinkage.mean, "{:.1f}"),
+            r.finished ? "yes" : "no");
     }
   }
   return t;
@@ -68,7 +69,6 @@ inline io::Table runs_table(const Campaign& c) {
 inline void write_runs(const std::filesystem::path& path, const Campaign& c) {
   io::CsvWriter csv(path, {"run", "slip_1-v/(omega*r)", "grains", "solid_fraction", "drawbar_pull_N", "pull_error_N",
                            "torque_Nm", "sinkage_m", "finished"});
-  const auto cell = [](double value) { return std::isfinite(value) ? text("{}", value) : ""; };
   for (const VariantResult* v : all_runs(c)) {
     for (const SlipResult& r : v->slips) {
       csv.row(v->variant.text, r.slip, v->grains, cell(v->solid_fraction), cell(r.pull.mean), cell(r.pull_error),

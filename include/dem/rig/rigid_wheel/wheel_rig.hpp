@@ -127,7 +127,6 @@ class WheelRig : public Rig {
     io::CsvWriter csv(path, {"slip_1-v/(omega*r)", "drawbar_pull_N", "pull_deviation_N", "torque_Nm",
                              "torque_deviation_Nm", "sinkage_m", "sinkage_deviation_m", "efficiency", "carried_N",
                              "steady_from_s", "steady", "rut_depth_m", "rut_width_m", "finished"});
-    const auto cell = [](double value) { return std::isfinite(value) ? text("{}", value) : ""; };
     for (const SlipResult& r : campaign.slips) {
       csv.row(r.slip, cell(r.pull.mean), cell(r.pull.deviation), cell(r.torque.mean), cell(r.torque.deviation),
               cell(r.sinkage.mean), cell(r.sinkage.deviation), cell(r.efficiency), cell(r.carried.mean),

@@ -16,9 +16,7 @@
 
 namespace dem::rig::sand_pile {
 
-inline std::string number(double value, const char* format = "{:.1f}") {
-  return std::isfinite(value) ? dem::text_of(format, {value}) : "-";
-}
+inline std::string number(double value, const char* format = "{:.1f}") { return rig::number(value, format); }
 
 /// What is measured of a pile, in words.
 inline std::string fit_text(const Settings& s) {
@@ -63,7 +61,6 @@ inline void write_results_csv(const std::filesystem::path& path, const Campaign&
   io::CsvWriter csv(path, {"grains", "seed", "angle_deg", "deviation_over_directions_deg", "height_m", "flank_from_m",
                            "flank_to_m", "at_rest", "creep_time_s", "creep_rms_grains", "creep_median_grains",
                            "angle_after_deg", "poured", "lost", "finished"});
-  const auto cell = [](double value) { return std::isfinite(value) ? text("{}", value) : ""; };
   for (const PileResult& r : c.piles) {
     csv.row(r.kind.name, r.seed, cell(degrees * r.flank.angle), cell(degrees * r.flank.scatter), cell(r.flank.height),
             cell(r.flank.from), cell(r.flank.to), r.at_rest, cell(r.creep_time), cell(r.creep), cell(r.creep_median),

@@ -148,8 +148,6 @@ class LaneRig : public Rig {
     csv.flush();
   }
 
-  static std::string cell(double value) { return std::isfinite(value) ? text("{}", value) : std::string(); }
-
   void write_pulls(const std::filesystem::path& path) const {
     io::CsvWriter csv(path, {vehicle::slip_column, "pull_N", "torque_Nm", "sinkage_m", "efficiency"});
     for (const PullPoint& p : campaign.pulls) csv.row(p.slip, p.pull, p.torque, p.sinkage, cell(p.efficiency));
