@@ -22,6 +22,8 @@ namespace dem::surface {
 //   point_contacts(point, gap, callback)   contacts of a point up to a gap before it, where they are not found as
 //                         those of spheres are;
 //   find_points_to(depth)   from now on points are found so deep behind it;
+//   hides(point, radius, points)   whether a point of a solid lies deeper in it than a radius, and than sample points
+//                         are found: a grain there is refused;
 //   lets_points_through()   whether points (radius 0) pass it unseen, as a sheet without thickness;
 //   names_directions      true if features end in the direction of their contact (direction_code.hpp).
 // Other machine parts find it with
@@ -52,6 +54,10 @@ struct AnyCorner {
 template <class S>
 concept KnowsClose = requires(const S& s, const Vector3<double>& point) {
   { s.close(point, 1.0, true) } -> std::same_as<bool>;
+};
+template <class S>
+concept HidesGrains = requires(const S& s, const Vector3<double>& point) {
+  { s.hides(point, 1.0, true) } -> std::same_as<bool>;
 };
 template <class S>
 concept HasCorners = requires(const S& s, const Vector3<double>& point) {

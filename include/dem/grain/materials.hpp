@@ -58,7 +58,11 @@ class Materials {
   }
   /// Constants of the pair a, b (and b, a). Throws Error if one makes no sense.
   void set(std::string_view a, std::string_view b, const Parameters& p) {
-    check(p);
+    try {
+      check(p);
+    } catch (const Error& e) {
+      fail("contact of '{}' and '{}': {}", a, b, e.what());
+    }
     const MaterialId ia = id(a), ib = id(b);
     if (const std::uint32_t known = entry(ia, ib); known != default_entry) {
       table_[known] = p;

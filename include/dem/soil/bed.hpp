@@ -42,7 +42,7 @@ class Bed {
  public:
   /// Adds the walls. Throws Error for settings that make no sense.
   Bed(World<Model>& world, const Container& container, const Mixture& grains, const BedOptions& o)
-      : world_(world),
+      : world_((require_no_grains(world), world)),
         container_(container),
         options_((o.check(), o)),
         gravity_(world.state().options.gravity),
@@ -170,6 +170,13 @@ class Bed {
   }
 
  private:
+  static void require_no_grains(const World<Model>& world) {
+    if (world.grain_count() == 0) return;
+    fail(
+        "a bed is made in a world that has {} grain{} already: its walls and its rain would be put into them; make the "
+        "bed first, or add these grains when it is made",
+        world.grain_count(), world.grain_count() == 1 ? "" : "s");
+  }
   /// What is going on. Of two that settle, what follows differs.
   enum class Stage { filling, raining, fallen, densifying, dense, pressing, pressed, levelled, made };
 

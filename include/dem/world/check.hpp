@@ -42,6 +42,17 @@ std::string misfit_in_period(const WorldState<Model>& w, std::size_t number,
   return {};
 }
 
+/// What to do about an overlap. In the first step after something was added or moved it is where that was put.
+template <class Model>
+std::string overlap_remedy(const WorldState<Model>& w) {
+  if (w.step == w.prepared_at + 1) return "they overlap as they were placed: put one of them elsewhere";
+  return dem::text(
+      "raise the normal stiffness, lower time_step (now {:g} s), the load or the speed of moving parts, or start from "
+      "a "
+      "looser packing",
+      w.time_step);
+}
+
 /// Looks for grains of this process's chunks that are not finite, lost, or pressed too deep into something. Costs a
 /// look at each chunk; only when something is wrong the grain is searched.
 template <class Model>
@@ -81,15 +92,15 @@ StepReport find_problem_of_grains(WorldState<Model>& w) {
       }
     }
     if (const DeepestContact& deepest = chunk.deepest; deepest.overlap > w.options.overlap_limit) [[unlikely]] {
+      const Vec3 x = to_eigen(p.position[deepest.i]);
+      const std::string partner =
+          deepest.with_surface ? surface_in_words(w, deepest.partner) : dem::text("grain {}", p.id[deepest.partner]);
       return problem(
           StepReport::Problem::overlap, deepest.i,
-          dem::text("grain {} overlaps {} by {:.3g} of their effective diameter {}, more than overlap_limit {:g}; "
-                    "raise the normal stiffness, lower time_step (now {:g} s) or the load, or start from a looser "
-                    "packing",
-                    p.id[deepest.i],
-                    deepest.with_surface ? surface_in_words(w, deepest.partner)
-                                         : dem::text("grain {}", p.id[deepest.partner]),
-                    deepest.overlap, when(), w.options.overlap_limit, w.time_step));
+          dem::text("grain {} at ({:.4g}, {:.4g}, {:.4g}) m overlaps {} by {:.3g} of their effective diameter "
+                    "{}, more than overlap_limit {:g}; {}",
+                    p.id[deepest.i], x.x(), x.y(), x.z(), partner, deepest.overlap, when(), w.options.overlap_limit,
+                    overlap_remedy(w)));
     }
   }
   return {StepReport::Problem::none, w.time, w.step, {}, {}, {}};

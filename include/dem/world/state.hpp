@@ -2,8 +2,8 @@
 
 #include <dem/coupling/body_contacts.hpp>
 #include <dem/coupling/body_stability.hpp>
+#include <dem/coupling/buried.hpp>
 #include <dem/coupling/machine_surface.hpp>
-#include <dem/coupling/surface_contacts.hpp>
 #include <dem/grain/energy_ledger.hpp>
 #include <dem/grain/held.hpp>
 #include <dem/grain/materials.hpp>
@@ -84,6 +84,7 @@ struct WorldState {
   grain::SkinChoice skin_choice;         ///< unless a skin was given
   bool list_valid = false;               ///< false after grains were added or moved by hand
   bool grains_added = false;             ///< by hand, and are in no list yet: see World::prepare
+  std::uint64_t prepared_at = ~0ull;     ///< the step after which something was last added or changed by hand
   std::uint64_t rebuilds = 0;            ///< neighbour lists made
   std::set<std::uint32_t> known_lost;    ///< ids of grains that were reported as lost
   std::vector<std::uint32_t> to_remove;  ///< ids of grains that are gone, but whose rows are there until the next list
@@ -104,6 +105,8 @@ struct WorldState {
   mbd::LazySolver<Integrator, typename Model::Joints> machine_solver;
   std::vector<Surface> surfaces;
   std::vector<coupling::FindHits<Model>> find_hits;  ///< of the surfaces: the code for their kinds
+  std::vector<coupling::IsBuried<Model>> is_buried;  ///< the same; null of most kinds
+  std::size_t surfaces_looked_into = 0;              ///< for grains in them
   std::vector<SurfaceSensor> surface_sensors;
   coupling::BodyContacts<Model> body_contacts;
   void (*find_body_contacts)(WorldState&) = nullptr;  ///< set with the first pair: other programs are without that code

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <dem/world/buried_grains.hpp>
 #include <dem/world/check.hpp>
 #include <dem/world/period.hpp>
 #include <dem/world/report.hpp>
@@ -29,8 +30,8 @@ class World : public WorldSetup<M> {
   // ---- running ---------------------------------------------------------------------------------------------------
 
   /// Checks the set-up, chooses or checks the time step, and lists grains that were added; called by step() and run().
-  /// Throws Error if contact constants are missing, the time step is too large, points would pass a two-sided sheet, or
-  /// a prescribed motion would have to jump.
+  /// Throws Error if contact constants are missing, the time step is too large, points would pass a two-sided sheet, a
+  /// grain lies unseen within a solid mesh, or a prescribed motion would have to jump.
   void prepare() {
     if (unfinished_) {
       fail(
@@ -45,10 +46,12 @@ class World : public WorldSetup<M> {
                        .grains = !initialised_ || state_.grains_added,
                        .steered = true});
     }
+    if (!checked_ || !initialised_ || state_.grains_added) state_.prepared_at = state_.step;
     if (!checked_ || !machine_is_initialised()) {
       state_.materials.check_complete();
       state_.materials.check_names(used_materials());
       check_thin_sheets(state_);
+      check_buried_grains(state_);
       const double range = state_.materials.range();
       state_.materials.find_range(state_.largest_radius);
       check_period(state_);
@@ -98,6 +101,11 @@ class World : public WorldSetup<M> {
   /// The same, asking `goes_on()` after each step: false ends the run there, with all well and nothing owed.
   ///
   ///     world.run_for(10.0, [] { return !io::interrupted(); });   // Ctrl-C ends it after the present step
+  ///
+  /// What was left of the span is forgotten. A run that is to be saved and go on with the same bits asks between short
+  /// spans instead:
+  ///
+  ///     while (world.time() < 10.0 && !io::interrupted()) (void)world.run_for(1e-3);   // look at the report
   template <std::predicate F>
   [[nodiscard]] StepReport run_for(double seconds, F&& goes_on) {
     prepare();

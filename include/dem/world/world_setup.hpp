@@ -178,15 +178,13 @@ class WorldSetup {
   template <class Kind>
   requires surface::is_one_of<Kind, typename Model::Surfaces> SurfaceId add_surface(BodyId body, const Kind& geometry,
                                                                                     const SurfaceOptions& o = {}) {
-    return place_surface(body, geometry, o, &coupling::find_hits_on<Model, Kind>);
+    return place_surface(body, geometry, o, coupling::code_for<Model, Kind>());
   }
   /// The same of a kind that is known when the program runs.
   SurfaceId add_surface(BodyId body, const typename Model::Surfaces& geometry, const SurfaceOptions& o = {}) {
     return place_surface(
         body, geometry, o,
-        std::visit(
-            []<class Kind>(const Kind&) -> coupling::FindHits<Model> { return &coupling::find_hits_on<Model, Kind>; },
-            geometry));
+        std::visit([]<class Kind>(const Kind&) { return coupling::code_for<Model, Kind>(); }, geometry));
   }
   /// Lets two surfaces of different bodies touch each other, with the contact constants of their materials. Each shows
   /// its points (corners, vertices, rims) to the other; a plane has none. Throws Error for surfaces of one body, of two
@@ -226,7 +224,7 @@ class WorldSetup {
 
  protected:
   SurfaceId place_surface(BodyId body, const typename Model::Surfaces& geometry, const SurfaceOptions& o,
-                          coupling::FindHits<Model> find_hits) {
+                          const coupling::SurfaceCode<Model>& code) {
     if (body.index() >= state_.machine.bodies().size()) {
       fail("surface '{}' was given body {}, but the machine has {}", o.name, body.value,
            state_.machine.bodies().size());
@@ -248,7 +246,8 @@ class WorldSetup {
     }
     typename WorldState<Model>::Surface s{o.name, body, state_.materials.id(o.material), geometry, position, rotation};
     state_.surfaces.push_back(s);
-    state_.find_hits.push_back(find_hits);
+    state_.find_hits.push_back(code.find_hits);
+    state_.is_buried.push_back(code.is_buried);
     state_.sleepers.all_work = true;  // it may stand still in grains that sleep
     checked_ = false;
     return SurfaceId(state_.surfaces.size() - 1);

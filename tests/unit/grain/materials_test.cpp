@@ -73,7 +73,11 @@ TEST_CASE("a default serves every pair") {
 TEST_CASE("constants that make no sense are refused where they are set") {
   ModelMaterials m;
   check_refused([&] { m.set_default({{-1.0, 0.0, 1.0}, {0.1, 1.0, 0.0, 0.0}}); }, "normal stiffness is -1");
-  check_refused([&] { m.set("a", "b", {{1.0, 0.0, 1.0}, {-0.1, 1.0, 0.0, 0.0}}); }, "friction coefficient is -0.1");
+  check_refused(
+      [&] {
+        m.set("a", "b", {{1.0, 0.0, 1.0}, {-0.1, 1.0, 0.0, 0.0}});
+      },
+      "contact of 'a' and 'b': friction coefficient is -0.1");
 }
 
 TEST_CASE("constants of rolling and cohesion are checked, and the farthest reach of all pairs is known") {

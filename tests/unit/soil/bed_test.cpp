@@ -262,3 +262,11 @@ TEST_CASE("a bed that makes no sense is refused in words") {
       {.height = 0.006, .expected_fraction = 1.0, .rain_flow = 0.1, .rain_height = 1e-4, .time_limit = 0.05});
   check_refused([&] { heaped.make(); }, "as there is no room where it comes from; lower BedOptions::rain_flow");
 }
+
+TEST_CASE("a bed is refused in a world that has grains") {
+  SoilOfBalls soil;
+  soil.world.add_grain({soil.ball, Vec3(0, 0, 0.1)});
+  const auto message =
+      message_of([&] { dem::soil::Bed<Balls>(soil.world, Container::box(0.02, 0.02), soil.ball, {.height = 5e-3}); });
+  CHECK_THAT(message, Catch::Matchers::ContainsSubstring("in a world that has 1 grain already"));
+}

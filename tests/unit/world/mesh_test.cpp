@@ -165,3 +165,54 @@ TEST_CASE("a corner of a surface holds a grain that none of the grain's own poin
     CHECK(w.state().chunks[0].surface_contacts.committed() == 1);
   }
 }
+
+namespace {
+
+/// A ball of 5 mm, and a surface that is added when the ball is there. Empty if the world accepts both.
+std::string refusal_of(const TriangleMesh& geometry, const Vec3& ball, const Vec3& surface) {
+  dem::World<Balls> world(options(Vec3::Zero(), 1e-5));
+  world.set_contact(sand<Balls>());
+  const auto species = world.add_species(Sphere(5e-3));
+  world.add_grain({species, Vec3(1, 0, 0)});
+  world.add_grain({species, ball});
+  REQUIRE(world.run(1));
+  world.add_surface(world.machine().add_fixed_body("part", surface), geometry, {.name = "block"});
+  try {
+    world.prepare();
+  } catch (const dem::Error& e) {
+    return e.what();
+  }
+  return {};
+}
+
+}  // namespace
+
+TEST_CASE("a ball too deep in a solid mesh to be felt is refused, wherever the mesh's body stands") {
+  const TriangleMesh block(mesh::box({0.1, 0.1, 0.1}, 3));  // +-50 mm; a ball of 5 mm is felt down to 45 mm
+  for (const Vec3& surface : {Vec3(0, 0, 0), Vec3(0.3, -0.2, 0.1)}) {
+    // In the middle, under an edge, and on the planes through corners, where a way out meets edges.
+    for (const Vec3& at : {Vec3(0, 0, 0), Vec3(0.044, 0.044, 0.044), Vec3(-0.03, 0.03, 0.03), Vec3(0.0, 0.0, -0.044)}) {
+      CHECK_THAT(refusal_of(block, surface + at, surface),
+                 Catch::Matchers::ContainsSubstring("grain 1 at (") &&
+                     Catch::Matchers::ContainsSubstring("lies within surface 'block'"));
+    }
+    for (const Vec3& at : {Vec3(0, 0, 0.0551), Vec3(0.2, 0, 0), Vec3(0.0, 0.0, -0.0549)}) {
+      CHECK(refusal_of(block, surface + at, surface).empty());
+    }
+  }
+}
+
+TEST_CASE("cavities and sheets hide no ball") {
+  const dem::IndexedMesh box = mesh::box({0.1, 0.1, 0.1}, 3);
+  CHECK(refusal_of(TriangleMesh(box, {.facing = dem::MeshFacing::inward}), Vec3(0, 0, 0), Vec3::Zero()).empty());
+  CHECK(refusal_of(TriangleMesh(box, {.side = MeshSide::one_sided}), Vec3(0, 0, 0), Vec3::Zero()).empty());
+  CHECK(refusal_of(TriangleMesh(box, {.side = MeshSide::two_sided}), Vec3(0, 0, 0), Vec3::Zero()).empty());
+  // A hollow box: walls of 20 mm, in which a ball is hidden; within them it is free.
+  dem::IndexedMesh hollow = box;
+  const dem::IndexedMesh inner = mesh::box({0.06, 0.06, 0.06}, 3);
+  const auto first = static_cast<std::uint32_t>(hollow.vertices.size());
+  hollow.vertices.insert(hollow.vertices.end(), inner.vertices.begin(), inner.vertices.end());
+  for (auto t : inner.triangles) hollow.triangles.push_back({t[0] + first, t[1] + first, t[2] + first});
+  CHECK(refusal_of(TriangleMesh(hollow), Vec3(0, 0, 0), Vec3::Zero()).empty());
+  CHECK_FALSE(refusal_of(TriangleMesh(hollow), Vec3(0.04, 0.005, 0), Vec3::Zero()).empty());
+}

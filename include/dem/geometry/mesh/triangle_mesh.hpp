@@ -153,6 +153,20 @@ class TriangleMesh {
     if (options_.side == MeshSide::solid) surface::parts_inside(*data_, tail, head, callback);
   }
 
+  /// Whether a point of the solid is farther (m) from its surface than a radius, and than sample points are found.
+  /// `points`: whether any sample point has no radius. A sheet or a cavity hides nothing.
+  bool hides(const Vector3<double>& p, double radius, bool points) const {
+    if (options_.facing == MeshFacing::inward || !near(p, 0.0)) return false;
+    Minimum nearest;
+    if (find_nearest(p, std::max(radius, points ? point_depth_ : options_.depth), nearest)) return false;
+    // Out of its box, askew to its axes: a way along a face would cross it or not by chance.
+    const Vector3<double> size = high_ - low_;
+    const Vector3<double> head = p + (size.x + size.y + size.z) * Vector3<double>{0.31, 0.23, 1.1};
+    bool inside = false;
+    parts_inside(p, head, [&](double from, double) { inside |= from == 0.0; });
+    return inside;
+  }
+
   Aabb bounds() const { return {to_eigen(low_), to_eigen(high_)}; }
 
   /// Points of partners that may be so deep (m) are found behind the surface, if no `depth` was chosen: a solid's to

@@ -84,7 +84,10 @@ class Mechanism {
     for (std::size_t i = 0; i < parts_.bodies.size(); ++i) {
       if (parts_.bodies[i].name == name) return BodyId(i);
     }
-    fail("no body is named '{}'", name);
+    std::string names;
+    for (const Body& b : parts_.bodies) names += (names.empty() ? "'" : ", '") + b.name + "'";
+    fail("no body is named '{}'; there {} {}", name, parts_.bodies.size() == 1 ? "is" : "are",
+         names.empty() ? "none" : names);
   }
   /// Global position (m) of a point of the body's reference frame.
   Vec3 reference_point(BodyId id, const Vec3& point) const {

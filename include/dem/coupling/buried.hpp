@@ -1,0 +1,33 @@
+#pragma once
+
+#include <dem/coupling/surface_contacts.hpp>
+
+#include <variant>
+
+namespace dem::coupling {
+
+/// Whether a grain's centre (m, in the surface's frame) is deeper in a solid than a radius (m), and than its contacts
+/// are found.
+template <class Model>
+using IsBuried = bool (*)(const typename Model::Surfaces&, const Vector3<double>&, double);
+
+/// What a program has for a kind of surface that it adds.
+template <class Model>
+struct SurfaceCode {
+  FindHits<Model> find_hits;
+  IsBuried<Model> is_buried;  ///< null of kinds in which grains are found at any depth
+};
+
+template <class Model, class G>
+constexpr SurfaceCode<Model> code_for() {
+  if constexpr (surface::HidesGrains<G>) {
+    return {&find_hits_on<Model, G>,
+            [](const typename Model::Surfaces& surface, const Vector3<double>& centre, double radius) {
+              return std::get_if<G>(&surface)->hides(centre, radius, shows_points<typename Model::Shape>);
+            }};
+  } else {
+    return {&find_hits_on<Model, G>, nullptr};
+  }
+}
+
+}  // namespace dem::coupling
