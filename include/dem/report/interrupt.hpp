@@ -72,8 +72,8 @@ inline void clear_interrupt() noexcept { detail::caught_signal.store(0); }
 /// by nohup, stay ignored.
 ///
 ///     InterruptGuard guard;
-///     world.run_for(seconds, [] { return !interrupted(); });  // ends after the step that is under way
-///     save();
+///     while (world.time() < end && !interrupted()) (void)world.run_for(1e-3);   // look at the report
+///     save(world, "state.h5");
 class InterruptGuard {
  public:
   enum class Message { Print, Silent };
