@@ -212,7 +212,8 @@ TEST_CASE("cavities and sheets hide no ball") {
   const dem::IndexedMesh inner = mesh::box({0.06, 0.06, 0.06}, 3);
   const auto first = static_cast<std::uint32_t>(hollow.vertices.size());
   hollow.vertices.insert(hollow.vertices.end(), inner.vertices.begin(), inner.vertices.end());
-  for (auto t : inner.triangles) hollow.triangles.push_back({t[0] + first, t[1] + first, t[2] + first});
+  for (auto t : inner.triangles)
+    hollow.triangles.push_back({t[0] + first, t[2] + first, t[1] + first});  // looks inward
   CHECK(refusal_of(TriangleMesh(hollow), Vec3(0, 0, 0), Vec3::Zero()).empty());
   CHECK_FALSE(refusal_of(TriangleMesh(hollow), Vec3(0.04, 0.005, 0), Vec3::Zero()).empty());
 }
