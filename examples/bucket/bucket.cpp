@@ -34,7 +34,7 @@ namespace {
 
 constexpr double length = 0.24, width = 0.06, depth = 0.04;  // m, of the bed
 constexpr double arm = 0.06, radius = 0.018, mouth = 0.04;   // m; mouth: width of the bucket
-constexpr std::size_t samples = 300;
+constexpr std::size_t samples = 300, while_it_turns = 250;
 constexpr double from = 75.0 * std::numbers::pi / 180, to = -100.0 * std::numbers::pi / 180;
 const Vec3 pin_at(0, 0, 0.094);
 
@@ -93,10 +93,11 @@ struct Sample {
 };
 /// What was found so far, which is saved beside the world.
 struct Found {
-  std::vector<Sample> samples;
+  double seconds = 0.0;  // given: a run that goes on has the same, as functions of time cannot be compared
+  std::vector<Sample> samples = {};
   template <class V>
   void fields(V& v) {
-    v("samples", samples);
+    v.given("seconds", seconds, "s"), v("samples", samples);
   }
 };
 
@@ -110,9 +111,10 @@ struct Clock {
   template <class Save>
   void look(Save&& save) {
     const auto now = std::chrono::steady_clock::now();
+    const bool stops = io::interrupted();
     const bool is_due = every > 0.0 && std::chrono::duration<double>(now - last).count() > every;
-    if (is_due || io::interrupted()) save(), last = now;
-    if (io::interrupted()) throw Stopped{};
+    if (is_due || stops) save(), last = now;
+    if (stops) throw Stopped{};
   }
 };
 
@@ -157,12 +159,12 @@ int simulate(Arguments& arguments) {
 
   // The second one. The machine is put together before its state is taken up: its motion starts when the bed was made.
   const Digger digger(world, start, seconds);
-  Found found;
+  Found found{.seconds = seconds};
   io::VtkSeries frames(folder / "bucket.pvd");
   if (fs::exists(dig_file)) load(world, dig_file, found, frames);
   const auto& m = world.machine();
   while (found.samples.size() < samples) {
-    const auto report = world.run_for(seconds / 250);
+    const auto report = world.run_for(seconds / while_it_turns);
     if (!report) {
       fmt::print("{}\n", report.text);
       break;  // what was found by then is written
@@ -173,8 +175,6 @@ int simulate(Arguments& arguments) {
     if (found.samples.size() % 15 == 0) io::add_vtk_frame(frames, world, {.plane_size = length});
     clock.look([&] { save(world, dig_file, found, frames); });
   }
-  fs::remove(dig_file);
-
   io::CsvWriter csv(folder / "bucket.csv", {"time_s", "angle_rad", "force_x_N", "force_z_N", "motor_Nm"});
   io::Series forward{.name = "force on the bucket along x [N]"}, effort{.name = "torque of the motor [0.1 N m]"};
   for (const Sample& s : found.samples) {
@@ -185,9 +185,13 @@ int simulate(Arguments& arguments) {
   csv.flush();
   if (found.samples.empty()) return 1;
   const auto held = load_of(world, digger.bucket);
-  const double weight = 9.81 * world.species(cube).mass * static_cast<double>(held.size());
-  fmt::print("{} grains in and on the bucket weigh {:.3f} N; its sensor reads {:.3f} N\n", held.size(), weight,
-             -found.samples.back().force_z);
+  double read = 0.0;  // N, mean over the last 20 samples
+  const std::size_t last = std::min<std::size_t>(20, found.samples.size());
+  for (std::size_t k = 1; k <= last; ++k)
+    read -= found.samples[found.samples.size() - k].force_z / static_cast<double>(last);
+  const double weight =
+      -world.state().options.gravity.z() * world.species(cube).mass * static_cast<double>(held.size());
+  fmt::print("{} grains in and on the bucket weigh {:.3f} N; its sensor reads {:.3f} N\n", held.size(), weight, read);
 
   io::render_plot({.x_label = "time [s]", .y_label = "", .series = {forward, effort}}, folder / "effort");
   Picture picture({1, 0, 0}, Vec3(0, 0.5, 0.87));
@@ -202,7 +206,9 @@ int simulate(Arguments& arguments) {
     picture.line(rim), picture.line({rim.front(), pin_at, rim.back()});
   }
   picture.save(folder / "picture", "A bucket that has dug through a bed: red, what it holds", 1100, 620);
-  return found.samples.size() == samples ? 0 : 1;
+  if (found.samples.size() < samples) return 1;
+  fs::remove(dig_file);
+  return 0;
 }
 
 int main(int argc, char** argv) {

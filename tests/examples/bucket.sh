@@ -15,7 +15,7 @@ refuse() {
 }
 rm -rf "$output"
 mkdir -p "$output"
-trap 'kill -KILL "$run" 2> /dev/null || true' EXIT
+trap '[ -z "$run" ] || kill -KILL "$run" 2> /dev/null || true' EXIT
 run=
 
 # until_there <file>: waits for what a run writes on its way.
@@ -29,8 +29,8 @@ until_there() {
 "$bucket" "${options[@]}" --output "$output/whole" > "$output/whole.txt" || refuse "the run that is not stopped ended with $?"
 [ -e "$output/whole/bed.h5" ] && [ ! -e "$output/whole/digging.h5" ] || refuse "a bed is to be left, and nothing of the digging"
 
-# What lies in the bucket weighs what the sensor reads. Some grains lie on its rims, half on each other: 0.36 N in it and
-# 0.42 N on it were found with these coarse grains, 0.51 and 0.53 N with those of half the size.
+# What lies in the bucket weighs what the sensor reads. Some grains lie on its rims: with these coarse ones 0.36 N were
+# counted where the sensor read 0.42 N, with those of half the size 0.51 and 0.53 N.
 awk '/weigh/ { share = $9 / $14 } END { exit !(share > 0.7 && share < 1.1) }' "$output/whole.txt" || refuse "$(tail -n 1 "$output/whole.txt")"
 
 "$bucket" "${options[@]}" --every 0.2 --output "$output/stopped" > "$output/stopped.txt" & run=$!
@@ -38,6 +38,7 @@ until_there "$output/stopped/bed.h5"
 kill -TERM "$run"
 code=0
 wait "$run" || code=$?
+run=
 [ "$code" = 130 ] || refuse "after SIGTERM it ended with $code"
 [ ! -e "$output/stopped/digging.h5" ] || refuse "it was stopped too late: it dug already"
 
@@ -45,6 +46,8 @@ wait "$run" || code=$?
 until_there "$output/stopped/digging.h5"
 kill -KILL "$run"
 wait "$run" 2> /dev/null || true
+run=
+rm -f "$output"/stopped/*.tmp  # of a save that was under way
 
 "$bucket" "${options[@]}" --output "$output/stopped" > "$output/stopped.txt" || refuse "the run that goes on ended with $?"
 diff "$output/whole.txt" "$output/stopped.txt" || refuse "it tells something else"

@@ -6,8 +6,8 @@
 
 namespace dem::coupling {
 
-/// Whether a grain's centre (m, in the surface's frame) is deeper in a solid than a radius (m), and than its contacts
-/// are found.
+/// Whether a grain lies so deep in a solid that nothing of it is felt: its centre (m) in the surface's frame, and its
+/// bounding radius (m).
 template <class Model>
 using IsBuried = bool (*)(const typename Model::Surfaces&, const Vector3<double>&, double);
 

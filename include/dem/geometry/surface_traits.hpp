@@ -22,8 +22,8 @@ namespace dem::surface {
 //   point_contacts(point, gap, callback)   contacts of a point up to a gap before it, where they are not found as
 //                         those of spheres are;
 //   find_points_to(depth)   from now on points are found so deep behind it;
-//   hides(point, radius, points)   whether a point of a solid lies deeper in it than a radius, and than sample points
-//                         are found: a grain there is refused;
+//   hides(point, radius, points)   whether a point lies so deep in a solid that no sample point of a grain with that
+//                         bounding radius is found: the grain is refused;
 //   lets_points_through()   whether points (radius 0) pass it unseen, as a sheet without thickness;
 //   names_directions      true if features end in the direction of their contact (direction_code.hpp).
 // Other machine parts find it with

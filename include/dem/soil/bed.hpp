@@ -171,11 +171,13 @@ class Bed {
 
  private:
   static void require_no_grains(const World<Model>& world) {
-    if (world.grain_count() == 0) return;
+    std::size_t count = 0;
+    for (const GrainId p : world.grains()) count += world.species(world.species_of(p)).is_held() ? 0 : 1;
+    if (count == 0) return;
     fail(
         "a bed is made in a world that has {} grain{} already: its walls and its rain would be put into them; make the "
         "bed first, or add these grains when it is made",
-        world.grain_count(), world.grain_count() == 1 ? "" : "s");
+        count, count == 1 ? "" : "s");
   }
   /// What is going on. Of two that settle, what follows differs.
   enum class Stage { filling, raining, fallen, densifying, dense, pressing, pressed, levelled, made };

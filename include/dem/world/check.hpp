@@ -42,10 +42,17 @@ std::string misfit_in_period(const WorldState<Model>& w, std::size_t number,
   return {};
 }
 
-/// What to do about an overlap. In the first step after something was added or moved it is where that was put.
+/// What to do about an overlap of a grain. In the first step after one of the two was put somewhere by hand it is where
+/// that was put.
 template <class Model>
-std::string overlap_remedy(const WorldState<Model>& w) {
-  if (w.step == w.prepared_at + 1) return "they overlap as they were placed: put one of them elsewhere";
+std::string overlap_remedy(const WorldState<Model>& w, const DeepestContact& deepest) {
+  const auto& id = w.grains.id;
+  const bool grain_is_new = id[deepest.i] >= w.placed.first_grain;
+  const bool partner_is_new =
+      deepest.with_surface ? deepest.partner >= w.placed.first_surface : id[deepest.partner] >= w.placed.first_grain;
+  if (w.step == w.placed.at + 1 && (grain_is_new || partner_is_new)) {
+    return "they overlap as they were placed: put one of them elsewhere";
+  }
   return dem::text(
       "raise the normal stiffness, lower time_step (now {:g} s), the load or the speed of moving parts, or start from "
       "a "
@@ -100,7 +107,7 @@ StepReport find_problem_of_grains(WorldState<Model>& w) {
           dem::text("grain {} at ({:.4g}, {:.4g}, {:.4g}) m overlaps {} by {:.3g} of their effective diameter "
                     "{}, more than overlap_limit {:g}; {}",
                     p.id[deepest.i], x.x(), x.y(), x.z(), partner, deepest.overlap, when(), w.options.overlap_limit,
-                    overlap_remedy(w)));
+                    overlap_remedy(w, deepest)));
     }
   }
   return {StepReport::Problem::none, w.time, w.step, {}, {}, {}};

@@ -17,6 +17,8 @@
 #include <dem/world/options.hpp>
 #include <dem/world/stopwatch.hpp>
 
+#include <algorithm>
+#include <limits>
 #include <set>
 
 namespace dem {
@@ -55,6 +57,22 @@ struct MoveStage {
   bool at_once = false;           ///< within the sweep that finds contacts
 };
 
+/// What was last put somewhere by hand, between two steps.
+struct Placed {
+  std::uint64_t at = ~0ull;                                               ///< the step before
+  std::uint32_t first_grain = std::numeric_limits<std::uint32_t>::max();  ///< the lowest id
+  std::size_t first_surface = std::numeric_limits<std::size_t>::max();
+
+  void grain(std::uint64_t step, std::uint32_t id) { begin(step), first_grain = std::min(first_grain, id); }
+  void surface(std::uint64_t step, std::size_t s) { begin(step), first_surface = std::min(first_surface, s); }
+
+ private:
+  void begin(std::uint64_t step) {
+    if (at != step) *this = {};
+    at = step;
+  }
+};
+
 /// Everything a world consists of. Only World and the functions of the step see it.
 template <class Model>
 struct WorldState {
@@ -80,11 +98,11 @@ struct WorldState {
   grain::Images<typename Model::Domain> images;
   std::vector<std::uint32_t> incoming_first;
   std::vector<grain::Incoming> incoming;
-  double list_skin = 0.0;                ///< m, with which the neighbour list was made
-  grain::SkinChoice skin_choice;         ///< unless a skin was given
-  bool list_valid = false;               ///< false after grains were added or moved by hand
-  bool grains_added = false;             ///< by hand, and are in no list yet: see World::prepare
-  std::uint64_t prepared_at = ~0ull;     ///< the step after which something was last added or changed by hand
+  double list_skin = 0.0;         ///< m, with which the neighbour list was made
+  grain::SkinChoice skin_choice;  ///< unless a skin was given
+  bool list_valid = false;        ///< false after grains were added or moved by hand
+  bool grains_added = false;      ///< by hand, and are in no list yet: see World::prepare
+  Placed placed;
   std::uint64_t rebuilds = 0;            ///< neighbour lists made
   std::set<std::uint32_t> known_lost;    ///< ids of grains that were reported as lost
   std::vector<std::uint32_t> to_remove;  ///< ids of grains that are gone, but whose rows are there until the next list

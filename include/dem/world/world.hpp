@@ -46,12 +46,10 @@ class World : public WorldSetup<M> {
                        .grains = !initialised_ || state_.grains_added,
                        .steered = true});
     }
-    if (!checked_ || !initialised_ || state_.grains_added) state_.prepared_at = state_.step;
     if (!checked_ || !machine_is_initialised()) {
       state_.materials.check_complete();
       state_.materials.check_names(used_materials());
       check_thin_sheets(state_);
-      check_buried_grains(state_);
       const double range = state_.materials.range();
       state_.materials.find_range(state_.largest_radius);
       check_period(state_);
@@ -63,6 +61,9 @@ class World : public WorldSetup<M> {
       coupling::list_pairs(state_.body_contacts, std::span(std::as_const(state_.surfaces)), state_.materials);
       choose_time_step(state_, initialised_);
       checked_ = true;
+    }
+    if (state_.surfaces_looked_into < state_.surfaces.size() || state_.placed.at == state_.step) {
+      check_buried_grains(state_);
     }
     // A step that has begun must not be refused: motions that were added or changed are looked at before it.
     state_.machine_solver.check_motions(state_.machine);
@@ -205,6 +206,7 @@ class World : public WorldSetup<M> {
     require_finite(x, "position of a grain");
     wake_around(state_, row_that_moves(p));
     state_.grains.position.set(row(p), from_eigen(x));
+    state_.placed.grain(state_.step, state_.grains.id[row(p)]);
     touched();
   }
 

@@ -103,6 +103,7 @@ class WorldSetup {
                                      from_eigen(rotation), from_eigen(Vec3(rotation.transpose() * n.angular_velocity)));
     state_.list_valid = false;
     state_.grains_added = true;
+    state_.placed.grain(state_.step, p.id[row]);
     begin_to_fall(state_, row);
     return p.name(p.id[row]);
   }
@@ -219,6 +220,10 @@ class WorldSetup {
   void set_active(SurfaceId s, bool active) {
     auto& surface = known(state_.surfaces, s, "surface");
     if (surface.active != active) wake_all(state_);
+    if (active && !surface.active) {
+      state_.placed.surface(state_.step, s.index());
+      state_.surfaces_looked_into = std::min(state_.surfaces_looked_into, s.index());
+    }
     surface.active = active;
   }
 
@@ -248,6 +253,7 @@ class WorldSetup {
     state_.surfaces.push_back(s);
     state_.find_hits.push_back(code.find_hits);
     state_.is_buried.push_back(code.is_buried);
+    state_.placed.surface(state_.step, state_.surfaces.size() - 1);
     state_.sleepers.all_work = true;  // it may stand still in grains that sleep
     checked_ = false;
     return SurfaceId(state_.surfaces.size() - 1);

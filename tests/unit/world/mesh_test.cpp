@@ -217,3 +217,58 @@ TEST_CASE("cavities and sheets hide no ball") {
   CHECK(refusal_of(TriangleMesh(hollow), Vec3(0, 0, 0), Vec3::Zero()).empty());
   CHECK_FALSE(refusal_of(TriangleMesh(hollow), Vec3(0.04, 0.005, 0), Vec3::Zero()).empty());
 }
+
+TEST_CASE("no ball beside a solid mesh is refused, on a lattice from which ways out graze its edges") {
+  // A channel along y: a floor and two walls of 10 mm, in one piece; all coordinates round, as those of the lattice.
+  const std::vector<std::array<double, 2>> outline = {{-0.06, 0},   {0.06, 0},     {0.06, 0.11},  {0.05, 0.11},
+                                                      {0.05, 0.01}, {-0.05, 0.01}, {-0.05, 0.11}, {-0.06, 0.11}};
+  dem::IndexedMesh channel;
+  for (const double y : {-0.1, 0.1}) {
+    for (const auto& [x, z] : outline) channel.vertices.emplace_back(x, y, z);
+  }
+  for (std::uint32_t k = 0; k < 8; ++k) {
+    const std::uint32_t next = (k + 1) % 8;
+    channel.triangles.push_back({k, next, next + 8});
+    channel.triangles.push_back({k, next + 8, k + 8});
+  }
+  for (const std::uint32_t end : {0u, 8u}) {
+    for (const auto& t :
+         {std::array{0u, 1u, 4u}, {0u, 4u, 5u}, {1u, 2u, 3u}, {1u, 3u, 4u}, {0u, 5u, 6u}, {0u, 6u, 7u}}) {
+      channel.triangles.push_back({end + t[0], end + t[1], end + t[2]});
+    }
+  }
+  const TriangleMesh mesh(channel);
+  int hidden = 0;
+  for (int i = -94; i <= 94; ++i) {
+    for (int j = -40; j <= 40; ++j) {
+      for (int k = 0; k < 40; ++k) {
+        hidden += mesh.hides({5e-4 * i, 5e-4 * j, 0.0125 + 2.5e-3 * k}, 1e-3, false);
+      }
+    }
+  }
+  CHECK(hidden == 0);
+  CHECK(mesh.hides({0.055, 0.0, 0.05}, 1e-3, false));
+  CHECK(mesh.hides({0.0, 0.03, 0.005}, 1e-3, false));
+}
+
+TEST_CASE("a ball that is put into a solid mesh later is refused too, and one in a mesh that is switched on") {
+  dem::World<Balls> world(options(Vec3::Zero(), 1e-5));
+  world.set_contact(sand<Balls>());
+  const auto species = world.add_species(Sphere(5e-3));
+  const auto free = world.add_grain({species, Vec3(1, 0, 0)});
+  const auto block = world.add_surface(world.ground(), TriangleMesh(mesh::box({0.1, 0.1, 0.1}, 3)), {.name = "block"});
+  REQUIRE(world.run(1));
+  const auto refused = [](auto w) { CHECK_THROWS_WITH(w.run(1), Catch::Contains("lies within surface 'block'")); };
+  auto added = world;
+  added.add_grain({species, Vec3(0, 0, 0.01)});
+  refused(added);
+  auto moved = world;
+  moved.set_position(free, {0, 0, 0.01});
+  refused(moved);
+  auto switched = world;
+  switched.set_active(block, false);
+  switched.set_position(free, {0, 0, 0.01});
+  REQUIRE(switched.run(1));
+  switched.set_active(block, true);
+  refused(switched);
+}

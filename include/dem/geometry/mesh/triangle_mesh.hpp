@@ -153,18 +153,20 @@ class TriangleMesh {
     if (options_.side == MeshSide::solid) surface::parts_inside(*data_, tail, head, callback);
   }
 
-  /// Whether a point of the solid is farther (m) from its surface than a radius, and than sample points are found.
-  /// `points`: whether any sample point has no radius. A sheet or a cavity hides nothing.
+  /// Whether a point of the solid is so far (m) from its surface that no sample point of a grain with that bounding
+  /// radius about it is found. `points`: whether any sample point has no radius. A sheet or a cavity hides nothing.
   bool hides(const Vector3<double>& p, double radius, bool points) const {
-    if (options_.facing == MeshFacing::inward || !near(p, 0.0)) return false;
+    if (options_.side != MeshSide::solid || options_.facing == MeshFacing::inward || !near(p, 0.0)) return false;
     Minimum nearest;
-    if (find_nearest(p, std::max(radius, points ? point_depth_ : options_.depth), nearest)) return false;
-    // Out of its box, askew to its axes: a way along a face would cross it or not by chance.
-    const Vector3<double> size = high_ - low_;
-    const Vector3<double> head = p + (size.x + size.y + size.z) * Vector3<double>{0.31, 0.23, 1.1};
+    if (find_nearest(p, radius + (points ? point_depth_ : options_.depth), nearest)) return false;
+    const Vector3<double> size = high_ - low_, head = p + (size.x + size.y + size.z) * Vector3<double>{0.31, 0.23, 1.1};
     bool inside = false;
     parts_inside(p, head, [&](double from, double) { inside |= from == 0.0; });
-    return inside;
+    if (!inside) return false;
+    // That way may graze an edge, and is then wrong. The solid angle never is, but takes all triangles.
+    std::vector<std::uint32_t> all(mesh().triangles.size());
+    for (std::size_t t = 0; t < all.size(); ++t) all[t] = static_cast<std::uint32_t>(t);
+    return dem::detail::winding_number(mesh(), all, to_eigen(p)) > 0.5;
   }
 
   Aabb bounds() const { return {to_eigen(low_), to_eigen(high_)}; }

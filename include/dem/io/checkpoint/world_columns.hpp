@@ -246,7 +246,8 @@ void compare_others(const StateColumns& saved, Others&... others) {
 /// What follows from the state that was restored.
 template <class Model>
 void settle_restored(WorldState<Model>& w, bool is_checked) {
-  w.surfaces_looked_into = w.surfaces.size();  // before they were saved
+  w.placed = {};
+  w.surfaces_looked_into = is_checked ? w.surfaces.size() : 0;
   if (is_checked) {
     find_points_deep_enough(w);
     coupling::list_pairs(w.body_contacts, std::span(std::as_const(w.surfaces)), w.materials);
