@@ -55,8 +55,7 @@ std::string overlap_remedy(const WorldState<Model>& w, const DeepestContact& dee
   }
   return dem::text(
       "raise the normal stiffness, lower time_step (now {:g} s), the load or the speed of moving parts, or start from "
-      "a "
-      "looser packing",
+      "a looser packing",
       w.time_step);
 }
 

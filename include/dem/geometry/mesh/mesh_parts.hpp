@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
+#include <vector>
 
 namespace dem::surface {
 
@@ -59,6 +61,18 @@ void parts_inside(const MeshData& m, const Vector3<double>& tail, const Vector3<
     from = c.at;
   }
   if (inside && from < 1.0) callback(from, 1.0);
+}
+
+/// Whether a point lies in a closed mesh that looks outward and is that long (m) at most.
+DEM_LAZY inline bool lies_inside(const MeshData& m, const Vector3<double>& p, double size) {
+  bool inside = false;
+  parts_inside(m, p, p + 1.2 * size * Vector3<double>{0.27, 0.2, 0.95},
+               [&](double from, double) { inside |= from == 0.0; });
+  if (!inside) return false;
+  // That way may graze an edge, and is then wrong. The solid angle never is, but takes all triangles.
+  std::vector<std::uint32_t> all(m.mesh.triangles.size());
+  std::iota(all.begin(), all.end(), 0u);
+  return dem::detail::winding_number(m.mesh, all, to_eigen(p)) > 0.5;
 }
 
 }  // namespace dem::surface
