@@ -22,7 +22,7 @@ struct Parts : Balls {
 constexpr double K = 1e5;
 
 /// A surface on a body of its own at a place.
-struct Placed {
+struct BodyAt {
   Parts::Surfaces geometry;
   Vec3 at = Vec3::Zero();
   Mat3 turned = Mat3::Identity();
@@ -31,7 +31,7 @@ struct Placed {
 struct Push {
   Vec3 force, torque;
 };
-Push push(const Placed& a, const Placed& b) {
+Push push(const BodyAt& a, const BodyAt& b) {
   World<Parts> w(options(Vec3::Zero(), 1e-6));
   w.set_contact({{K, 0.0, 1.0}, {0.0, K, 0.0, 0.0}});
   const auto body = w.machine().add_body(box_body("a", {1, 1, 1}, 1e4).at(a.at, a.turned));
@@ -239,7 +239,7 @@ TEST_CASE("a ball touches superquadrics and cylinders where their surface is nea
   const Mat3 turned = about({1, 2, -1}, 0.7);
   const auto check = [&](const Parts::Surfaces& other, const Vec3& foot, const Vec3& normal, double tolerance) {
     const Vec3 place = at + turned * foot, n = turned * normal;
-    const Placed b = {ball, place + (r - depth) * n}, o = {other, at, turned};
+    const BodyAt b = {ball, place + (r - depth) * n}, o = {other, at, turned};
     const Push on_ball = push(b, o), on_other = push(o, b);
     CHECK((on_ball.force - depth * n).norm() < tolerance * depth);
     CHECK((on_other.force + depth * n).norm() < tolerance * depth);
