@@ -4,7 +4,6 @@
 #include <dem/world/check.hpp>
 
 #include <algorithm>
-#include <array>
 
 namespace dem {
 
@@ -25,10 +24,9 @@ bool meets_with_points(const Shape& shape) {
   bool any = false;
   shape::visit_kind(shape, [&]<class Kind>(const Kind& grain) {
     if (coupling::touches_as_ball(grain)) return;
-    std::array<double, std::max(1, Kind::pose_size)> pose = {};
-    if constexpr (Kind::pose_size > 0) grain.orient(Matrix3<double>::identity(), pose.data());
-    grain.sample_points(pose.data(),
-                        [&](std::uint32_t, const contact::SamplePoint& sample) { any |= sample.radius <= 0.0; });
+    alignas(64) double pose[std::max(1, Kind::pose_size)] = {};
+    if constexpr (Kind::pose_size > 0) grain.orient(Matrix3<double>::identity(), pose);
+    grain.sample_points(pose, [&](std::uint32_t, const contact::SamplePoint& sample) { any |= sample.radius <= 0.0; });
   });
   return any;
 }
