@@ -95,7 +95,7 @@ DEM_HOT double lane(const Pack& a, int k) { return a.lanes[k]; }
 /// A pack whose lane k is f(k).
 template <class F>
 DEM_HOT Pack generate(F&& f) {
-  simd::Register r;
+  simd::Register r = {};
   for (int k = 0; k < pack_width; ++k) r[k] = f(k);
   return Pack(r);
 }

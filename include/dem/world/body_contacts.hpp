@@ -3,6 +3,7 @@
 // Which surfaces of machine parts may touch each other (WorldSetup::add_body_contact).
 
 #include <dem/core/known.hpp>
+#include <dem/world/check.hpp>
 #include <dem/world/state.hpp>
 
 #include <algorithm>
@@ -23,15 +24,16 @@ BodyContactId add_body_contact(WorldState<Model>& w, SurfaceId a, SurfaceId b) {
   const auto &sa = known(w.surfaces, a, "surface"), &sb = known(w.surfaces, b, "surface");
   const Body &body_a = w.machine.body(sa.body), &body_b = w.machine.body(sb.body);
   if (sa.body == sb.body) {
-    fail("surfaces {} and {} both belong to body '{}' and cannot touch each other", a.value, b.value, body_a.name);
+    fail("{} and {} belong to the same body and cannot touch each other", surface_in_words(w, a.index()),
+         surface_in_words(w, b.index()));
   }
   if (are_fixed_for_good(body_a, body_b)) {
     fail("body '{}' and body '{}' are both fixed for good, so no force between them would move anything", body_a.name,
          body_b.name);
   }
   if (!coupling::has_points(sa) && !coupling::has_points(sb)) {
-    fail("neither surface {} nor surface {} has points that could touch the other (planes have none)", a.value,
-         b.value);
+    fail("neither {} nor {} has points that could touch the other (planes have none)", surface_in_words(w, a.index()),
+         surface_in_words(w, b.index()));
   }
   if (w.body_contacts.pairs.size() >= coupling::BodyKey::most_pairs) {
     fail("a world takes at most {} pairs of surfaces that may touch", coupling::BodyKey::most_pairs);

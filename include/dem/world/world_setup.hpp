@@ -83,8 +83,9 @@ class WorldSetup {
     require_between_runs("a new grain");
     auto& p = state_.grains;
     const std::uint32_t id = p.given;
+    if (!n.species.valid()) fail("grain {} was given no species; use the SpeciesId that add_species returned", id);
     if (n.species.index() >= state_.species.size()) {
-      fail("a grain was given species {}, but the world has {}; call add_species first", n.species.value,
+      fail("grain {} was given species {}, but the world has {}; call add_species first", id, n.species.value,
            state_.species.size());
     }
     if (!is_finite(n.position) || !is_finite(n.velocity) || !is_finite(n.angular_velocity)) {
@@ -230,10 +231,7 @@ class WorldSetup {
  protected:
   SurfaceId place_surface(BodyId body, const typename Model::Surfaces& geometry, const SurfaceOptions& o,
                           const coupling::SurfaceCode<Model>& code) {
-    if (body.index() >= state_.machine.bodies().size()) {
-      fail("surface '{}' was given body {}, but the machine has {}", o.name, body.value,
-           state_.machine.bodies().size());
-    }
+    mbd::known_body(state_.machine.parts(), body, text("surface '{}'", o.name));
     // Written such that a NaN fails as well: a wall whose place is not known would let everything through.
     if (!is_finite(o.position) || !(distance_from_rotation(o.rotation) <= 1e-6)) {
       fail(

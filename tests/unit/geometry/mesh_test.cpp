@@ -164,7 +164,12 @@ TEST_CASE("holes and edges of three triangles are found, not hidden") {
   IndexedMesh fin = mesh::box({1, 1, 1});
   fin.vertices.emplace_back(2, 2, 2);
   fin.triangles.push_back({fin.triangles[0][0], fin.triangles[0][1], 8});
-  CHECK(dem::repaired(fin).report.non_manifold_edges == 1);
+  const auto finned = dem::repaired(fin).report;
+  CHECK(finned.non_manifold_edges == 1);
+  const Vec3 edge = 0.5 * (fin.corner(0, 0) + fin.corner(0, 1));
+  CHECK((finned.non_manifold_at - edge).norm() < 1e-15);
+  CHECK_THAT(finned.text(), Catch::Matchers::ContainsSubstring(
+                                dem::text("lies at ({:g}, {:g}, {:g}) m", edge.x(), edge.y(), edge.z())));
 
   IndexedMesh strip;  // a band of 10 quads with half a turn
   for (int k = 0; k < 10; ++k) {

@@ -108,8 +108,11 @@ TEST_CASE("impossible bodies are refused in words") {
   CHECK_THAT(message_of([&] { m.add_body(given_body("arm", 1.0, Vec3(1, 1, 3))); }), Contains("no mass distribution"));
   CHECK_THAT(message_of([&] { m.add_body(brick("arm", X).at(X, 2.0 * Mat3::Identity())); }),
              Contains("not a right-handed rotation"));
-  CHECK_THAT(message_of([&] { box_body("b", {1, 0, 1}, 1000.0); }), Contains("smallest edge of a box is 0 m"));
-  CHECK_THAT(message_of([&] { sphere_body("b", 1, -1.0); }), Contains("density is -1"));
+  CHECK_THAT(message_of([&] {
+               box_body("b", {1, 0, 1}, 1000.0);
+             }),
+             Contains("body 'b': smallest edge of a box is 0 m"));
+  CHECK_THAT(message_of([&] { sphere_body("b", 1, -1.0); }), Contains("body 'b': density is -1"));
   CHECK_THAT(message_of([&] { m.add_body(brick("arm", Vec3(0, std::nan(""), 0))); }),
              Contains("body 'arm' was given (0, nan, 0)") && Contains("must be finite"));
   CHECK_THAT(message_of([&] { m.add_body(brick("arm", X).moving(Vec3(HUGE_VAL, 0, 0))); }), Contains("must be finite"));

@@ -360,7 +360,8 @@ TEST_CASE("contacts of bodies are found by rule, but not those of joints, of one
   // a1, a2, b, c, three of the ground: pairs of different bodies 5 * ... without a-b and ground-ground.
   CHECK(w.add_body_contacts() == 2 * 1 + 2 * 3 + 1 * 1 + 3 + 3);
   CHECK(w.add_body_contacts() == 0);
-  check_refused([&] { w.add_body_contact(SurfaceId(0), SurfaceId(1)); }, "both belong to body 'a'");
+  check_refused([&] { w.add_body_contact(SurfaceId(0), SurfaceId(1)); },
+                "surface 0 of body 'a' and surface 1 of body 'a' belong to the same body");
   check_refused([&] { w.add_body_contact(SurfaceId(4), SurfaceId(99)); }, "surface 99");
   check_refused(
       [&] {

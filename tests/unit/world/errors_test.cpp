@@ -82,6 +82,7 @@ TEST_CASE("a surface needs its body") {
         w.add_surface(dem::BodyId(4), dem::surface::Plane{}, o);
       },
       "surface 'lid'", "body 4", "the machine has 0");
+  check_refused([&] { w.add_surface({}, dem::surface::Plane{}); }, "names a body that was never added");
   check_refused([&] { w.add_surface(w.ground(), dem::surface::Box({1, -1, 1})); }, "edge length of a box is -1 m");
 }
 

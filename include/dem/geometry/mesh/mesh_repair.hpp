@@ -18,6 +18,7 @@ struct MeshReport {
   std::size_t flipped_triangles = 0;        ///< turned round
   std::size_t components = 0;               ///< connected pieces
   std::size_t boundary_edges = 0, non_manifold_edges = 0, inconsistent_edges = 0;  ///< left after the repair
+  Vec3 boundary_at = Vec3::Zero(), non_manifold_at = Vec3::Zero(), inconsistent_at = Vec3::Zero();  ///< m, the first
   double enclosed_volume = 0.0;  ///< m^3, of the closed mesh; negative where it faces inward
   double tolerance = 0.0;        ///< m, within which vertices are one
 
@@ -36,10 +37,14 @@ struct MeshReport {
     line(degenerate_triangles, "triangles had no area and were removed or joined to a neighbour");
     line(duplicate_triangles, "triangles were there twice; one of each was kept");
     line(flipped_triangles, "triangles looked the wrong way and were turned round");
-    line(boundary_edges, "edges belong to one triangle only: the surface has holes or is a sheet");
-    line(non_manifold_edges, "edges belong to more than two triangles: split the parts that meet there");
-    line(inconsistent_edges,
-         "edges lie between triangles that look opposite ways (a Moebius strip): no side is outside");
+    const auto edges = [&](std::size_t count, const char* what, const Vec3& at) {
+      if (count > 0)
+        s += dem::text("{} edges {}; the first lies at ({:g}, {:g}, {:g}) m\n", count, what, at.x(), at.y(), at.z());
+    };
+    edges(boundary_edges, "belong to one triangle only: the surface has holes or is a sheet", boundary_at);
+    edges(non_manifold_edges, "belong to more than two triangles: split the parts that meet there", non_manifold_at);
+    edges(inconsistent_edges, "lie between triangles that look opposite ways (a Moebius strip): no side is outside",
+          inconsistent_at);
     if (closed()) {
       s += dem::text("closed; encloses {:.6g} m^3{}\n", std::abs(enclosed_volume),
                      enclosed_volume < 0.0 ? ", facing inward (a cavity)" : "");
@@ -254,6 +259,9 @@ DEM_LAZY inline RepairedMesh repaired(const IndexedMesh& given, MeshFacing facin
   report.boundary_edges = topology.boundary_edges;
   report.non_manifold_edges = topology.non_manifold_edges;
   report.inconsistent_edges = topology.inconsistent_edges;
+  report.boundary_at = topology.boundary_at;
+  report.non_manifold_at = topology.non_manifold_at;
+  report.inconsistent_at = topology.inconsistent_at;
   for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
     report.enclosed_volume += detail::spanned(mesh, t, mesh.vertices[0]) / 6.0;
   }

@@ -18,6 +18,7 @@ struct MeshTopology {
   std::size_t boundary_edges = 0;                       ///< that belong to one triangle only
   std::size_t non_manifold_edges = 0;                   ///< that belong to three or more
   std::size_t inconsistent_edges = 0;                   ///< whose two triangles run along them the same way
+  Vec3 boundary_at = Vec3::Zero(), non_manifold_at = Vec3::Zero(), inconsistent_at = Vec3::Zero();  ///< m, the first
 
   bool closed() const { return boundary_edges == 0 && non_manifold_edges == 0; }
   bool oriented() const { return inconsistent_edges == 0; }
@@ -45,13 +46,17 @@ DEM_LAZY inline MeshTopology topology_of(const IndexedMesh& mesh) {
   topology.neighbour.assign(mesh.triangles.size(), {MeshTopology::none, MeshTopology::none, MeshTopology::none});
   for (std::size_t from = 0, to = 0; from < uses.size(); from = to) {
     while (to < uses.size() && uses[to].low == uses[from].low && uses[to].high == uses[from].high) ++to;
-    if (to - from == 1) ++topology.boundary_edges;
-    if (to - from > 2) ++topology.non_manifold_edges;
+    const auto count = [&, middle = 0.5 * (mesh.vertices[uses[from].low] + mesh.vertices[uses[from].high])](
+                           std::size_t& edges, Vec3& at) {
+      if (edges++ == 0) at = middle;
+    };
+    if (to - from == 1) count(topology.boundary_edges, topology.boundary_at);
+    if (to - from > 2) count(topology.non_manifold_edges, topology.non_manifold_at);
     if (to - from != 2) continue;
     const Use &a = uses[from], &b = uses[from + 1];
     topology.neighbour[a.triangle][a.edge] = b.triangle;
     topology.neighbour[b.triangle][b.edge] = a.triangle;
-    if (a.forward == b.forward) ++topology.inconsistent_edges;
+    if (a.forward == b.forward) count(topology.inconsistent_edges, topology.inconsistent_at);
   }
   return topology;
 }

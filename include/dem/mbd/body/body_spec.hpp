@@ -1,5 +1,6 @@
 #pragma once
 
+#include <dem/core/error.hpp>
 #include <dem/core/macros.hpp>
 #include <dem/geometry/principal_axes.hpp>
 #include <dem/mbd/body/body.hpp>
@@ -36,6 +37,21 @@ struct BodySpec {
   }
 };
 
+namespace detail {
+
+/// What `make` gives; what it refuses is told with the body's name.
+template <class Make>
+BodySpec made_of(std::string name, Make&& make) {
+  try {
+    const BodyMass mass = make();
+    return {.name = std::move(name), .mass_properties = mass};
+  } catch (const Error& e) {
+    fail("body '{}': {}", name, e.what());
+  }
+}
+
+}  // namespace detail
+
 /// A body of given mass (kg) and inertia about its centre of mass (kg m^2) in reference axes: a tensor (3 x 3), or the
 /// moments about x, y, z (a vector of 3) where these are principal axes.
 template <class Derived>
@@ -54,14 +70,14 @@ BodySpec given_body(std::string name, double mass, const Eigen::MatrixBase<Deriv
 }
 /// A box with full edges `size` (m), reference frame in its middle; density in kg/m^3.
 DEM_COLD inline BodySpec box_body(std::string name, const Vec3& size, double density) {
-  return {.name = std::move(name), .mass_properties = box_mass(size, density)};
+  return detail::made_of(std::move(name), [&] { return box_mass(size, density); });
 }
 /// A full cylinder about the z axis of its reference frame, which sits in its middle (m, kg/m^3).
 DEM_COLD inline BodySpec cylinder_body(std::string name, double radius, double length, double density) {
-  return {.name = std::move(name), .mass_properties = cylinder_mass(radius, length, density)};
+  return detail::made_of(std::move(name), [&] { return cylinder_mass(radius, length, density); });
 }
 DEM_COLD inline BodySpec sphere_body(std::string name, double radius, double density) {
-  return {.name = std::move(name), .mass_properties = sphere_mass(radius, density)};
+  return detail::made_of(std::move(name), [&] { return sphere_mass(radius, density); });
 }
 /// A body that stays where it is (or is moved by prescribed motion alone); it needs no mass.
 DEM_COLD inline BodySpec fixed_body(std::string name, const Vec3& position = Vec3::Zero()) {

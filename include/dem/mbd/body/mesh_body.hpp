@@ -23,9 +23,8 @@ DEM_LAZY inline BodyMass mesh_mass(const IndexedMesh& mesh, double density) {
   if (!topology.closed() || !topology.oriented()) {
     fail(
         "a mesh of a body is not closed: {} of its edges belong to one triangle only, {} to three or more, and along "
-        "{} "
-        "the two triangles look different ways; merge its vertices and turn its triangles with repaired(), and close "
-        "the holes",
+        "{} the two triangles look different ways; merge its vertices and turn its triangles with repaired(), and "
+        "close the holes",
         topology.boundary_edges, topology.non_manifold_edges, topology.inconsistent_edges);
   }
   return mass;
@@ -38,7 +37,7 @@ DEM_LAZY inline BodyMass mesh_mass(std::span<const Vec3> vertices,
 /// A solid that a closed mesh encloses, in the frame of the mesh (kg/m^3). Throws Error if the mesh is open or encloses
 /// no volume.
 DEM_LAZY inline BodySpec mesh_body(std::string name, const IndexedMesh& mesh, double density) {
-  return {.name = std::move(name), .mass_properties = mesh_mass(mesh, density)};
+  return detail::made_of(std::move(name), [&] { return mesh_mass(mesh, density); });
 }
 
 }  // namespace dem::mbd

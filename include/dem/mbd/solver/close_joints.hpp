@@ -24,15 +24,19 @@ inline int substeps_for(int n, double share, double wanted, int most) {
   return std::max(n, needed < most ? static_cast<int>(needed) : most);
 }
 
-/// The farthest that weight alone (gravity in m/s^2) opens one of the watched joints, as a share of what is allowed, if
-/// each carries all bodies that it is joined with.
-inline double opening_under_weight(const Parts& m, const JointWatch& watch, const Vec3& gravity) {
-  double worst = 0.0;
+/// The watched joint that weight opens farthest, as a share of what is allowed and of gravity (s^2/m), if each carries
+/// all bodies that it is joined with.
+struct MostLoaded {
+  JointId joint = {};
+  double share = 0.0;
+};
+inline MostLoaded most_loaded(const Parts& m, const JointWatch& watch) {
+  MostLoaded most;
   for (const JointWatch::Watched& w : watch.watched()) {
     const double k = m.joints[w.joint].k;
-    if (k > 0.0) worst = std::max(worst, w.mass * norm(from_eigen(gravity)) / (k * w.displacement));
+    if (k > 0.0 && w.mass / (k * w.displacement) > most.share) most = {JointId(w.joint), w.mass / (k * w.displacement)};
   }
-  return worst;
+  return most;
 }
 
 /// Brings stiffness that was raised while a machine runs in by and by. A strained spring that gets stiffer all at once

@@ -53,7 +53,9 @@ DEM_COLD inline std::string note_of(const Parts& m, const AssemblyReport& assemb
   if (from == 0) return text;
   text += dem::text("{}The machine takes {} substeps instead of {}, to keep its joints within joint_tolerance.",
                     text.empty() ? "" : " ", to, from);
-  if (joints.is_exceeded()) text += dem::text(" Before they were raised, {}.", in_words(m, joints.worst()));
+  if (joints.is_exceeded()) return text + dem::text(" Before they were raised, {}.", in_words(m, joints.worst()));
+  const JointId most = joints.worst().joint.valid() ? joints.worst().joint : most_loaded(m, joints).joint;
+  if (most.valid()) text += dem::text(" It is {} that needs most.", detail::joint_in_words(m, most.index()));
   return text;
 }
 

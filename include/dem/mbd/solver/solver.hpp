@@ -40,7 +40,7 @@ class Solver {
   /// joint is joined with opens none beyond joint_tolerance.
   DEM_COLD void carry_weight(Mechanism& m, const Vec3& gravity) {
     const JointWatch watch(m.parts(), m.joint_tolerance);
-    const double share = opening_under_weight(m.parts(), watch, gravity);
+    const double share = most_loaded(m.parts(), watch).share * norm(from_eigen(gravity));
     const int n = substeps_for(m.substeps, share, 1.0, std::max(m.substeps, m.most_substeps));
     if (n == m.substeps) return;
     raised_.raise(m.substeps, n);
