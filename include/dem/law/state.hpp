@@ -39,4 +39,16 @@ struct TangentialState {
 template <class Struct>
 inline constexpr int field_count = std::is_empty_v<Struct> ? 0 : static_cast<int>(sizeof(Struct) / sizeof(double));
 
+/// Stands for a T where sizes are counted.
+template <int Bytes>
+struct SizedNumber {
+  unsigned char bytes[Bytes];
+};
+/// Whether a law's Parameters or History grow with the size of a T as if they held nothing but Ts: contacts are read
+/// and written number by number. Another member fits one odd size at most.
+template <template <class> class Struct>
+inline constexpr bool holds_numbers_alone = std::is_empty_v<Struct<double>> ||
+                                            (sizeof(Struct<SizedNumber<3>>) == 3 * field_count<Struct<double>> &&
+                                             sizeof(Struct<SizedNumber<5>>) == 5 * field_count<Struct<double>>);
+
 }  // namespace dem::contact

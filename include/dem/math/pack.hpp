@@ -24,9 +24,13 @@ DEM_HOT double select(bool condition, double yes, double no) { return condition 
 DEM_HOT double min(double a, double b) { return a < b ? a : b; }
 DEM_HOT double max(double a, double b) { return a > b ? a : b; }
 // The very same functions, so that after `using namespace dem` sqrt(double) is not ambiguous.
+using std::abs;
 using std::cbrt;
 using std::exp;
+using std::log;
+using std::pow;
 using std::sqrt;
+using std::tanh;
 DEM_HOT bool any_of(bool condition) { return condition; }
 
 #if defined(DEM_HAS_SIMD)
@@ -105,6 +109,16 @@ DEM_HOT Pack cbrt(const Pack& a) {
 DEM_HOT Pack exp(const Pack& a) {
   return generate([&](int k) { return std::exp(lane(a, k)); });
 }
+DEM_HOT Pack log(const Pack& a) {
+  return generate([&](int k) { return std::log(lane(a, k)); });
+}
+DEM_HOT Pack pow(const Pack& a, const Pack& exponent) {
+  return generate([&](int k) { return std::pow(lane(a, k), lane(exponent, k)); });
+}
+DEM_HOT Pack tanh(const Pack& a) {
+  return generate([&](int k) { return std::tanh(lane(a, k)); });
+}
+DEM_HOT Pack abs(const Pack& a) { return max(a, -a); }
 
 /// Loads a pack from memory aligned to its size.
 DEM_HOT Pack load(const double* p) { return Pack(*reinterpret_cast<const simd::StoredRegister*>(p)); }

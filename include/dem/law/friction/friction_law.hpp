@@ -54,6 +54,9 @@ constexpr void check_friction_law() {
       requires { typename L::template History<double>; },
       "FrictionLaw: needs 'template <class T> struct History', what a contact remembers (may be empty)");
   static_assert(
+      contact::holds_numbers_alone<L::template Parameters> && contact::holds_numbers_alone<L::template History>,
+      "FrictionLaw: Parameters<T> and History<T> hold nothing but Ts; write T for a bool, an int or a double");
+  static_assert(
       requires(const typename L::template Parameters<double>& p, const TangentialState<double>& state,
                typename L::template History<double>& history) {
         { L::force(p, state, history) } -> std::same_as<Vector3<double>>;

@@ -62,6 +62,9 @@ constexpr void check_normal_law() {
       requires { typename L::template History<double>; },
       "NormalLaw: needs 'template <class T> struct History', what a contact remembers (may be empty)");
   static_assert(
+      contact::holds_numbers_alone<L::template Parameters> && contact::holds_numbers_alone<L::template History>,
+      "NormalLaw: Parameters<T> and History<T> hold nothing but Ts; write T for a bool, an int or a double");
+  static_assert(
       requires(const typename L::template Parameters<double>& p, const NormalState<double>& state,
                typename L::template History<double>& history) {
         { L::force(p, state, history) } -> std::same_as<double>;
