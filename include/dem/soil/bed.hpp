@@ -42,7 +42,7 @@ class Bed {
  public:
   /// Adds the walls. Throws Error for settings that make no sense.
   Bed(World<Model>& world, const Container& container, const Mixture& grains, const BedOptions& o)
-      : world_((require_no_grains(world), world)),
+      : world_((require_no_grains(world), require_gravity_down(world), world)),
         container_(container),
         options_((o.check(), o)),
         gravity_(world.state().options.gravity),
@@ -178,6 +178,14 @@ class Bed {
         "a bed is made in a world that has {} grain{} already: its walls and its rain would be put into them; make the "
         "bed first, or add these grains when it is made",
         count, count == 1 ? "" : "s");
+  }
+  static void require_gravity_down(const World<Model>& world) {
+    const Vec3& g = world.state().options.gravity;
+    if (g.z() < 0.0 && std::hypot(g.x(), g.y()) <= 0.02 * -g.z()) return;
+    fail(
+        "a bed comes to rest and is levelled under gravity along -z, but it is ({:g}, {:g}, {:g}) m/s^2; set "
+        "WorldOptions::gravity, and turn it by set_gravity() when the bed is made",
+        g.x(), g.y(), g.z());
   }
   /// What is going on. Of two that settle, what follows differs.
   enum class Stage { filling, raining, fallen, densifying, dense, pressing, pressed, levelled, made };

@@ -23,15 +23,26 @@ class BedFilling {
       : world_(world), container_(container), options_(o), random_(o.seed) {
     const auto mass_of = [&](SpeciesId s) { return world.species(s).mass; };
     draw_ = MixtureDraw(grains, mass_of);
-    double numbers = 0.0, volumes = 0.0, masses = 0.0;
+    double numbers = 0.0, radii = 0.0, volumes = 0.0, masses = 0.0;
     for (const Mixture::Part& part : grains.parts) {
       const auto& shape = world.species(part.species).shape;
       const double number = grains.by == ShareOf::mass ? part.share / mass_of(part.species) : part.share;
       if (number > 0.0) radius_ = std::max(radius_, shape.bounding_radius());
+      radii += number * shape.bounding_radius();
       numbers += number, volumes += number * shape.volume(), masses += number * mass_of(part.species);
     }
     density_ = masses / volumes;
     cell_ = 2.0 * (1.0 + o.room) * radius_;
+    if (const double across = 2.0 * radii / numbers; o.height < 2.0 * across) {
+      fail("a bed of {:g} m is to be made of grains of {:g} m across, but must be two of them high at least, {:g} m",
+           o.height, across, 2.0 * across);
+    }
+    if (const double count = missing() * numbers / volumes; count > 4e9) {
+      fail(
+          "a bed of {:g} m x {:g} m x {:g} m takes {:.2g} grains of {:g} m across, but a world has at most 4e9; all "
+          "lengths are in m",
+          container_.length(), container_.width(o.height), o.height, count, 2.0 * radius_);
+    }
     if (o.is_rained()) {
       add_inlet(grains);
     } else {  // half as high again as the lattice would need without walls

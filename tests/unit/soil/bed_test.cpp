@@ -234,6 +234,15 @@ TEST_CASE("a bed that makes no sense is refused in words") {
   const auto box = Container::box(0.02, 0.02);
   const auto bed_of = [&](const dem::soil::BedOptions& o) { dem::soil::Bed<Balls>(soil.world, box, soil.ball, o); };
   check_refused([&] { bed_of({.height = 0.0}); }, "height of a bed");
+  check_refused([&] { bed_of({.height = 0.003}); }, "grains of 0.002 m across", "two of them high at least, 0.004 m");
+  check_refused([&] { dem::soil::Bed<Balls>(soil.world, Container::box(40, 40), soil.ball, {.height = 20}); },
+                "a world has at most 4e9; all lengths are in m");
+  for (const Vec3& gravity : {Vec3(0, 0, 0), Vec3(0, 0, 9.81), Vec3(5, 0, -9.81)}) {
+    SoilOfBalls turned;
+    turned.world.set_gravity(gravity);
+    check_refused([&] { dem::soil::Bed<Balls>(turned.world, box, turned.ball, {.height = 0.01}); },
+                  "is levelled under gravity along -z, but it is (", "turn it by set_gravity() when the bed is made");
+  }
   check_refused([&] { bed_of({.height = 0.01, .lid_pressure = -1.0}); }, "pressure of the lid");
   check_refused([&] { bed_of({.height = 0.01, .relative_density = 0.5}); }, "set BedOptions::limits");
   check_refused([&] { Container::cylinder(-1.0); }, "radius of a container");
