@@ -17,7 +17,8 @@ namespace dem::mbd {
 
 /// What an actuator is made from. Gains as in eqs. 34 and 38: force = -position_gain (l - l_set) - speed_gain (l' -
 /// l'_set), positive where it makes the coordinate l grow (pushes two points apart, drives b forward along or about a
-/// joint). A gain of zero switches that part off: position_gain = 0 is a speed controller.
+/// joint). A gain of zero switches that part off: position_gain = 0 is a speed controller, which
+/// follows the rate of its set point: Signal::ramp(0, speed).
 struct ActuatorSpec {
   std::string name;
   JointId joint = {};  ///< acts on this joint's coordinate; if not valid, between two points

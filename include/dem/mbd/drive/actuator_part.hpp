@@ -79,6 +79,15 @@ DEM_COLD inline ActuatorId add_actuator(Parts& parts, ActuatorSpec spec) {
     u.a = spec.a.value;
     u.b = spec.b.value;
   }
+  if (spec.joint.valid() && spec.on && spec.set_point && spec.set_point->is_constant() &&
+      (*spec.set_point)(0.0).value != 0.0 && spec.position_gain == 0.0 && spec.speed_gain > 0.0) {
+    const double value = (*spec.set_point)(0.0).value;
+    fail(
+        "{} has no position_gain, so it follows the rate of its set point alone, and that of the constant {:g} is 0: "
+        "it "
+        "would brake; to drive at this speed give it Signal::ramp(0, {:g}); to brake, leave the set point out",
+        who, value, value);
+  }
   u.spec = std::move(spec);
   if (!u.spec.set_point) {
     u.spec.set_point = coordinate_of(u, parts.joints, parts.bodies[u.a], parts.bodies[u.b]).value;

@@ -93,6 +93,9 @@ class Signal {
     return Signal([value = *this](double t, double dt) -> Sample { return {0.0, value(t, dt).value}; });
   }
 
+  /// Whether it is a number, which stays until another signal is given.
+  bool is_constant() const { return !function_ && sample_.rate == 0.0; }
+
   /// At a time (s) of a machine that takes steps of dt (s; 0: not known).
   Sample operator()(double time, double dt = 0.0) const { return function_ ? function_(time, dt) : sample_; }
 
