@@ -2,6 +2,7 @@
 #include "world/listed_contacts.hpp"
 
 #include <dem/world/force_lines.hpp>
+#include <dem/world/query.hpp>
 
 using Catch::Approx;
 using dem::ContactKind;
@@ -126,4 +127,36 @@ TEST_CASE("force lines join the contacts of a pair") {
   CHECK((lines[0].to - Vec3(0, 0, 2.998e-3)).norm() < 1e-15);
   CHECK(lines[1].surface == SurfaceId(0));
   CHECK((lines[1].to - Vec3(0, 0, -0.5e-6)).norm() < 1e-9);
+}
+
+TEST_CASE("questions about grains in a box, momentum, one grain's contacts and the fabric are answered") {
+  dem::World<Balls> w(options({0, 0, -g}, 1e-5));
+  w.set_contact(sand<Balls>());
+  const SpeciesId ball = w.add_species(Sphere(1e-3));
+  // Three balls that touch along x, one that touches the middle one along y, one by itself.
+  std::vector<GrainId> p;
+  for (const Vec3& x : {Vec3(-1.99e-3, 0, 0), Vec3(0, 0, 0), Vec3(1.99e-3, 0, 0), Vec3(0, 1.99e-3, 0), Vec3(0, 0, 0.1)})
+    p.push_back(
+        w.add_grain({.species = ball, .position = x, .velocity = Vec3(1, 2, 3), .angular_velocity = {0, 0, 50}}));
+  w.set_velocity(p[4], {-1, 0, 2});
+
+  CHECK(dem::grains_in(w, {-1e-3, -1e-3, -1e-3}, {2e-3, 2e-3, 1e-3}) == std::vector{p[1], p[2], p[3]});
+  CHECK(dem::grains_in(w, {0, 0, 0.1}, {0, 0, 0.1}) == std::vector{p[4]});
+
+  const dem::Momentum sum = dem::momentum_of(w);
+  const double m = w.species(ball).mass;
+  CHECK(sum.mass == Approx(5 * m));
+  CHECK((sum.linear - m * Vec3(3, 8, 14)).norm() < 1e-14 * m);
+  CHECK((sum.linear - momentum(w)).norm() < 1e-14 * m);
+  CHECK((sum.angular - angular_momentum(w)).norm() < 1e-14 * m);
+  CHECK((sum.centre - Vec3(0, 1.99e-3, 0.1) / 5).norm() < 1e-15);
+  const Vec3 point(0.1, 0.2, 0.3);
+  CHECK((dem::momentum_of(w, point).angular - (sum.angular - point.cross(sum.linear))).norm() < 1e-13 * m);
+
+  const auto contacts = contacts_of(w);
+  CHECK(dem::contacts_with(contacts, p[1]).size() == 3);
+  CHECK(dem::contacts_with(contacts, p[3]).size() == 1);
+  CHECK(dem::contacts_with(contacts, p[4]).empty());
+  const dem::Mat3 fabric = dem::fabric_of(contacts);  // two normals along x, one along y
+  CHECK((fabric - dem::Mat3(Vec3(2.0 / 3, 1.0 / 3, 0).asDiagonal())).norm() < 1e-12);
 }
