@@ -22,7 +22,7 @@ void check_buried_grains(WorldState<Model>& w) {
     std::size_t count = 0, first = 0;
     for (std::size_t i = 0; i < p.count; ++i) {
       const auto& kind = w.species[p.species[i]];
-      if (!is_new && p.id[i] < w.placed.first_grain) continue;
+      if (!is_new && !w.placed.has_grain(p.id[i])) continue;
       if (kind.is_held() || p.row_of[p.id[i]] == p.gone) continue;
       const Vector3<double> centre = transpose_times(axes, Vector3<double>(p.position[i]) - origin);
       if (!is_buried(surface.geometry, centre, kind.shape.bounding_radius())) continue;

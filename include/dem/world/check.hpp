@@ -9,12 +9,17 @@
 
 namespace dem {
 
-/// A surface in words: its name, or its number if it has none.
+/// A surface in words: its name, with its number and body where it has none or others are called the same.
 template <class Model>
 std::string surface_in_words(const WorldState<Model>& w, std::size_t s) {
   const std::string& name = w.surfaces[s].name;
-  return name.empty() ? dem::text("surface {} of body '{}'", s, w.machine.bodies()[w.surfaces[s].body.index()].name)
-                      : dem::text("surface '{}'", name);
+  const auto is_called_so = [&](const auto& other) { return other.name == name; };
+  if (!name.empty() && std::count_if(w.surfaces.begin(), w.surfaces.end(), is_called_so) == 1) {
+    return dem::text("surface '{}'", name);
+  }
+  const std::string& body = w.machine.bodies()[w.surfaces[s].body.index()].name;
+  return name.empty() ? dem::text("surface {} of body '{}'", s, body)
+                      : dem::text("surface {} ('{}' of body '{}')", s, name, body);
 }
 
 /// Why a surface of a periodic world, where it is now, does not fit the cell, in words; empty if it does. Grains meet
@@ -42,17 +47,42 @@ std::string misfit_in_period(const WorldState<Model>& w, std::size_t number,
   return {};
 }
 
-/// What to do about an overlap of a grain. In the first step after one of the two was put somewhere by hand it is where
-/// that was put.
+/// "grain 4 at (0, 0, 0.1) m overlaps surface 'wheel' by 0.3 of their effective diameter".
+template <class Model>
+std::string overlap_in_words(const WorldState<Model>& w, const DeepestContact& deepest) {
+  const auto& p = w.grains;
+  const Vec3 x = to_eigen(p.position[deepest.i]);
+  const std::string partner =
+      deepest.with_surface ? surface_in_words(w, deepest.partner) : dem::text("grain {}", p.id[deepest.partner]);
+  return dem::text("grain {} at ({:.4g}, {:.4g}, {:.4g}) m overlaps {} by {:.3g} of their effective diameter",
+                   p.id[deepest.i], x.x(), x.y(), x.z(), partner, deepest.overlap);
+}
+
+/// Whether a contact is of something that was put somewhere by hand just before the newest step: then it is as deep as
+/// it was placed.
+template <class Model>
+bool is_as_placed(const WorldState<Model>& w, const DeepestContact& deepest) {
+  if (w.step != w.placed.at + 1) return false;
+  const auto& id = w.grains.id;
+  if (w.placed.has_grain(id[deepest.i])) return true;
+  return deepest.with_surface ? w.placed.has_surface(deepest.partner) : w.placed.has_grain(id[deepest.partner]);
+}
+
+/// Notes the deepest overlap of what was just placed, where it is deep enough to throw grains about.
+template <class Model>
+void note_deep(WorldState<Model>& w) {
+  double most = 0.1;
+  for (const auto& chunk : w.chunks) {
+    if (!(chunk.deepest.overlap > most) || !is_as_placed(w, chunk.deepest)) continue;
+    most = chunk.deepest.overlap;
+    w.placed_note = overlap_in_words(w, chunk.deepest) + " as it was placed, and is thrown out by it.";
+  }
+}
+
+/// What to do about an overlap of a grain.
 template <class Model>
 std::string overlap_remedy(const WorldState<Model>& w, const DeepestContact& deepest) {
-  const auto& id = w.grains.id;
-  const bool grain_is_new = id[deepest.i] >= w.placed.first_grain;
-  const bool partner_is_new =
-      deepest.with_surface ? deepest.partner >= w.placed.first_surface : id[deepest.partner] >= w.placed.first_grain;
-  if (w.step == w.placed.at + 1 && (grain_is_new || partner_is_new)) {
-    return "they overlap as they were placed: put one of them elsewhere";
-  }
+  if (is_as_placed(w, deepest)) return "they overlap as they were placed: put one of them elsewhere";
   return dem::text(
       "raise the normal stiffness, lower time_step (now {:g} s), the load or the speed of moving parts, or start from "
       "a looser packing",
@@ -98,15 +128,9 @@ StepReport find_problem_of_grains(WorldState<Model>& w) {
       }
     }
     if (const DeepestContact& deepest = chunk.deepest; deepest.overlap > w.options.overlap_limit) [[unlikely]] {
-      const Vec3 x = to_eigen(p.position[deepest.i]);
-      const std::string partner =
-          deepest.with_surface ? surface_in_words(w, deepest.partner) : dem::text("grain {}", p.id[deepest.partner]);
-      return problem(
-          StepReport::Problem::overlap, deepest.i,
-          dem::text("grain {} at ({:.4g}, {:.4g}, {:.4g}) m overlaps {} by {:.3g} of their effective diameter "
-                    "{}, more than overlap_limit {:g}; {}",
-                    p.id[deepest.i], x.x(), x.y(), x.z(), partner, deepest.overlap, when(), w.options.overlap_limit,
-                    overlap_remedy(w, deepest)));
+      return problem(StepReport::Problem::overlap, deepest.i,
+                     dem::text("{} {}, more than overlap_limit {:g}; {}", overlap_in_words(w, deepest), when(),
+                               w.options.overlap_limit, overlap_remedy(w, deepest)));
     }
   }
   return {StepReport::Problem::none, w.time, w.step, {}, {}, {}};

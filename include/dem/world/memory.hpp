@@ -14,7 +14,8 @@ std::size_t memory_bytes(const WorldState<Model>& w) {
   p.for_each_column([&](const AlignedVector<double>& column) { sum += bytes(column); });
   sum += bytes(p.view) + bytes(p.pose) + bytes(p.species) + bytes(p.id) + bytes(p.row_of) + bytes(p.number) +
          bytes(p.freed) + bytes(p.free_again);
-  sum += bytes(w.incoming_first) + bytes(w.incoming) + w.broad_phase.memory_bytes() + w.turns.bytes();
+  sum +=
+      w.placed.bytes() + bytes(w.incoming_first) + bytes(w.incoming) + w.broad_phase.memory_bytes() + w.turns.bytes();
   const auto of_histories = [&](const auto& histories) {
     std::size_t b = bytes(histories.key);
     for (const auto& column : histories.history) b += bytes(column);

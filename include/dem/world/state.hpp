@@ -18,6 +18,7 @@
 #include <dem/world/stopwatch.hpp>
 
 #include <algorithm>
+#include <iterator>
 #include <limits>
 #include <set>
 
@@ -59,18 +60,37 @@ struct MoveStage {
 
 /// What was last put somewhere by hand, between two steps.
 struct Placed {
-  std::uint64_t at = ~0ull;                                               ///< the step before
-  std::uint32_t first_grain = std::numeric_limits<std::uint32_t>::max();  ///< the lowest id
+  std::uint64_t at = ~0ull;  ///< the step before
   std::size_t first_surface = std::numeric_limits<std::size_t>::max();
 
-  void grain(std::uint64_t step, std::uint32_t id) { begin(step), first_grain = std::min(first_grain, id); }
+  void grain(std::uint64_t step, std::uint32_t id) {
+    begin(step);
+    const auto next =
+        std::upper_bound(ids_.begin(), ids_.end(), id, [](auto a, const Range& r) { return a < r.first; });
+    if (next != ids_.begin() && id <= std::prev(next)->end)
+      std::prev(next)->end = std::max(std::prev(next)->end, id + 1);
+    else ids_.insert(next, {id, id + 1});
+  }
   void surface(std::uint64_t step, std::size_t s) { begin(step), first_surface = std::min(first_surface, s); }
 
+  bool has_grain(std::uint32_t id) const {
+    const auto next =
+        std::upper_bound(ids_.begin(), ids_.end(), id, [](auto a, const Range& r) { return a < r.first; });
+    return next != ids_.begin() && id < std::prev(next)->end;
+  }
+  bool has_surface(std::size_t s) const { return s >= first_surface; }
+  std::size_t bytes() const { return ids_.capacity() * sizeof(Range); }
+
  private:
+  struct Range {
+    std::uint32_t first, end;
+  };
   void begin(std::uint64_t step) {
     if (at != step) *this = {};
     at = step;
   }
+
+  std::vector<Range> ids_;  // ascending: most are added one after the other
 };
 
 /// Everything a world consists of. Only World and the functions of the step see it.
@@ -83,6 +103,7 @@ struct WorldState {
   WorldOptions options;
   double time = 0.0;
   double time_step = 0.0;
+  std::optional<std::string> time_step_note;  ///< of a machine that makes it small; none where it is not known yet
   std::uint64_t step = 0;
 
   Materials<Model> materials;
@@ -103,6 +124,7 @@ struct WorldState {
   bool list_valid = false;        ///< false after grains were added or moved by hand
   bool grains_added = false;      ///< by hand, and are in no list yet: see World::prepare
   Placed placed;
+  std::string placed_note;               ///< in words, of a deep overlap of what was placed before or within this run
   std::uint64_t rebuilds = 0;            ///< neighbour lists made
   std::set<std::uint32_t> known_lost;    ///< ids of grains that were reported as lost
   std::vector<std::uint32_t> to_remove;  ///< ids of grains that are gone, but whose rows are there until the next list

@@ -99,4 +99,17 @@ void choose_time_step(WorldState<Model>& w, bool& initialised) {
                : detail::check_time_step(w, given, initialised);
 }
 
+/// What makes a time step that was chosen less than a tenth of what the contacts allow, in words; else empty.
+template <class Model>
+std::string note_of_time_step(const WorldState<Model>& w) {
+  if (w.options.time_step != 0.0) return {};
+  const StableTimeStep of_given = w.machine_solver.stable_time_step_of_given(w.machine);
+  const double of_contacts = detail::stable_time_step_of_contacts(w).dt;
+  if (!(of_contacts < 1e300 && of_given.dt < 0.1 * of_contacts)) return {};
+  return dem::text(
+      "The time step is {:.3g} of what the contacts allow, because of {}: a smaller stiffness, gain or damping there "
+      "makes the run as much faster.",
+      of_given.dt / of_contacts, of_given.limited_by);
+}
+
 }  // namespace dem

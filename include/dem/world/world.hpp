@@ -10,6 +10,7 @@
 #include <dem/world/time_step.hpp>
 #include <dem/world/world_setup.hpp>
 
+#include <array>
 #include <concepts>
 
 namespace dem {
@@ -61,7 +62,9 @@ class World : public WorldSetup<M> {
       coupling::list_pairs(state_.body_contacts, std::span(std::as_const(state_.surfaces)), state_.materials);
       choose_time_step(state_, initialised_);
       checked_ = true;
+      state_.time_step_note.reset();
     }
+    if (!state_.time_step_note) state_.time_step_note = note_of_time_step(state_);
     if (state_.surfaces_looked_into < state_.surfaces.size() || state_.placed.at == state_.step) {
       check_buried_grains(state_);
     }
@@ -76,7 +79,7 @@ class World : public WorldSetup<M> {
     }
   }
   /// Whether prepare() has nothing left to do: nothing was changed since the last step.
-  bool is_prepared() const { return checked_ && initialised_ && !state_.grains_added && machine_is_initialised(); }
+  bool is_prepared() const { return is_set_up() && initialised_ && !state_.grains_added; }
   /// Runs one step. Where ranks share the grains each call tells all ranks all grains, as each run() does: run(n) costs
   /// less than n calls.
   [[nodiscard]] StepReport step() { return run(1); }
@@ -84,17 +87,12 @@ class World : public WorldSetup<M> {
   /// of a law, a shape or a function of your own arrives here, from whichever thread; the world may then be looked at,
   /// but not run on.
   [[nodiscard]] StepReport run(std::uint64_t n) { return run(n, always); }
-  /// The same, asking `goes_on()` after each step: false ends the run there, with all well.
+  /// The same, asking `goes_on()` after each step: false ends the run there, with all well. What it changes of the
+  /// set-up (bodies, joints, surfaces, contact constants, species) is prepared for before the next step, as between
+  /// runs. What it changes of grains and gravity the next step takes as it is.
   template <std::predicate F>
   [[nodiscard]] StepReport run(std::uint64_t n, F&& goes_on) {
-    prepare();
-    if constexpr (Model::Domain::has_ranks) {
-      return run_shared(state_, n, [&] { return run_steps(n, goes_on); });
-    } else if constexpr (is_flat<Model>()) {
-      return flat::Step<Model>::run(state_, n, [&] { return run_steps(n, goes_on); });
-    } else {
-      return run_steps(n, goes_on);
-    }
+    return run_on(n, goes_on, [](std::uint64_t left, double) { return left; });
   }
   /// Runs for a time span (s) in whole steps; what a span leaves of a step counts in the next one. Throws Error for
   /// more steps than 9e15.
@@ -110,13 +108,10 @@ class World : public WorldSetup<M> {
   template <std::predicate F>
   [[nodiscard]] StepReport run_for(double seconds, F&& goes_on) {
     prepare();
-    const double owed = owed_steps_ + require_non_negative(seconds, "time to run", "s") / time_step();
-    if (!(owed <= 0x1.0p53)) {  // beyond it time stands still: t + dt = t
-      fail("time to run is {:g} s, {:g} steps of {:g} s, but must be at most 9e15 steps", seconds, owed, time_step());
-    }
-    const double whole = std::max(0.0, std::round(owed));
-    owed_steps_ = owed - whole;
-    return run(static_cast<std::uint64_t>(whole), goes_on);
+    require_non_negative(seconds, "time to run", "s");
+    return run_on(whole_steps(owed_steps_ + seconds / time_step()), goes_on, [this](std::uint64_t left, double step) {
+      return whole_steps((static_cast<double>(left) + owed_steps_) * step / time_step());
+    });
   }
 
   double time() const { return state_.time; }
@@ -210,6 +205,19 @@ class World : public WorldSetup<M> {
     touched();
   }
 
+  /// Turns a grain; it keeps its angular velocity in global axes.
+  void set_rotation(GrainId p, const Mat3& r) requires(Shape::has_orientation) {
+    if (!(distance_from_rotation(r) <= 1e-6)) {
+      fail("grain {} was given a rotation matrix that is no rotation; normalise it (R^T R = I, det R = 1)", p.value);
+    }
+    wake_around(state_, row_that_moves(p));
+    const Vec3 w = angular_velocity(p);
+    state_.grains.set_rotation(row(p), from_eigen(r));
+    state_.grains.local_angular_velocity.set(row(p), from_eigen(Vec3(r.transpose() * w)));
+    state_.placed.grain(state_.step, state_.grains.id[row(p)]);
+    touched();
+  }
+
   /// What an outlet took so far, and its mass flow.
   const Outlet& outlet(OutletId o) const { return known(state_.outlets, o, "outlet"); }
   /// The same of the grains that left a domain which removes them (BeyondDomain::remove), over the last 0.1 s.
@@ -247,9 +255,43 @@ class World : public WorldSetup<M> {
   };
   static constexpr Always always = {};
 
+  /// A number of steps to run; the part of one is owed to the next time span.
+  std::uint64_t whole_steps(double steps) {
+    if (!(steps <= 0x1.0p53)) {  // beyond it time stands still: t + dt = t
+      fail("time to run is {:g} s, {:g} steps of {:g} s, but must be at most 9e15 steps", steps * time_step(), steps,
+           time_step());
+    }
+    const double whole = std::max(0.0, std::round(steps));
+    owed_steps_ = steps - whole;
+    return static_cast<std::uint64_t>(whole);
+  }
+
+  /// Runs n steps. Where goes_on() changes the set-up, the world is prepared anew; where the time step is another one
+  /// then, recount(steps left, time step before) tells how many are left.
+  template <class F, class Recount>
+  StepReport run_on(std::uint64_t n, F& goes_on, Recount&& recount) {
+    prepare();
+    state_.placed_note.clear();
+    double step = time_step();
+    for (std::uint64_t left = n;;) {
+      const auto steps = [&] { return run_steps(left, goes_on); };
+      StepReport report = [&] {
+        if constexpr (Model::Domain::has_ranks) return run_shared(state_, left, steps);
+        else if constexpr (is_flat<Model>()) return flat::Step<Model>::run(state_, left, steps);
+        else return steps();
+      }();
+      if (left == 0 || !report) return report;
+      prepare();
+      if (time_step() != step) left = recount(left, std::exchange(step, time_step()));
+    }
+  }
+
+  /// Until none is left, a problem shows, or goes_on() has changed what has to be prepared for.
   template <class F>
-  StepReport run_steps(std::uint64_t n, F& goes_on) {
-    for (std::uint64_t k = 0; k < n; ++k) {
+  StepReport run_steps(std::uint64_t& left, F& goes_on) {
+    const double step = time_step();
+    while (left > 0) {
+      --left;
       unfinished_ = true;
       list_added();  // goes_on() may have added some
       if (state_.put_in) state_.put_in(state_);
@@ -259,10 +301,20 @@ class World : public WorldSetup<M> {
       unfinished_ = false;
       state_.machine_solver.close_joints(state_.machine);
       if (StepReport report = find_problem(state_); !report) return report;
+      if constexpr (!Model::Domain::has_ranks) {
+        if (state_.step == state_.placed.at + 1) [[unlikely]]
+          note_deep(state_);
+      }
       if constexpr (!std::is_same_v<F, const Always>) {
-        bool goes = goes_on();
-        if constexpr (Model::Domain::has_ranks) goes = state_.domain.all(goes);
-        if (!goes) break;
+        bool goes = goes_on(), stays = is_set_up() && time_step() == step;
+        if constexpr (Model::Domain::has_ranks) {  // prepare() tells where the set-ups of ranks differ
+          const auto [ends, changed] =
+              state_.domain.largest(std::array<double, 2>{goes ? 0.0 : 1.0, stays ? 0.0 : 1.0});
+          goes = ends == 0.0, stays = changed == 0.0;
+        }
+        if (!goes) left = 0;
+        if (!stays) break;
+        state_.machine_solver.check_motions(state_.machine);
       }
     }
     return ok();
@@ -283,12 +335,18 @@ class World : public WorldSetup<M> {
     for (const auto& s : state_.surfaces) used.push_back(s.material);
     return used;
   }
+  /// Whether nothing was changed since the last step but grains, their velocities, and gravity, which the next step
+  /// takes as they are.
+  bool is_set_up() const { return checked_ && machine_is_initialised(); }
   bool machine_is_initialised() const { return state_.machine_solver.is_initialised(state_.machine); }
   StepReport ok() const {
     StepReport r{
         StepReport::Problem::none, state_.time, state_.step, {}, {}, state_.machine_solver.note(state_.machine)};
+    const auto add = [&](const std::string& note) { r.note += (r.note.empty() || note.empty() ? "" : " ") + note; };
+    add(state_.time_step_note.value_or(""));
+    add(state_.placed_note);
     for (const Inlet& inlet : state_.inlets) {
-      if (inlet.is_short()) r.note += (r.note.empty() ? "" : "; ") + inlet.note();
+      if (inlet.is_short()) add(inlet.note());
     }
     return r;
   }

@@ -88,6 +88,29 @@ TEST_CASE("grains are put elsewhere and set spinning by hand") {
   CHECK((w.angular_velocity(p) - Vec3(1, -2, 3)).norm() < 1e-9);
   CHECK((w.position(p) - Vec3(0.1, 0.2, 0.3)).norm() < 1e-15);
   check_refused([&] { w.set_position(p, Vec3(0, std::nan(""), 0)); }, "position of a grain");
+  check_refused([&] { w.set_rotation(p, dem::Mat3::Zero()); }, "rotation matrix that is no rotation");
+}
+
+TEST_CASE("a grain that is turned by hand meets others as one that was added so, and keeps its spin") {
+  const dem::Mat3 turned = Eigen::AngleAxisd(0.7, Vec3(1, 2, 3).normalized()).toRotationMatrix();
+  const auto fallen = [&](bool by_hand) {
+    dem::World<Cubes> w(options({0, 0, -g}, 1e-5));
+    w.set_contact(sand<Cubes>());
+    const auto species = w.add_species(dem::shape::cube8(1e-3));
+    w.add_surface(w.ground(), dem::surface::Plane{});
+    const auto p = w.add_grain({.species = species,
+                                .position = {0, 0, 1.8e-3},
+                                .rotation = by_hand ? dem::Mat3(dem::Mat3::Identity()) : turned,
+                                .angular_velocity = {1, -2, 3}});
+    if (by_hand) {
+      REQUIRE(w.run(0));
+      w.set_rotation(p, turned);
+      CHECK((w.angular_velocity(p) - Vec3(1, -2, 3)).norm() < 1e-14);
+    }
+    REQUIRE(w.run(2000));
+    return w.rotation(p);
+  };
+  CHECK((fallen(true) - fallen(false)).norm() < 1e-9);  // the spins differ by rounding
 }
 
 TEST_CASE("a shape without inertia is refused") {

@@ -89,12 +89,19 @@ TEST_CASE("a grain that is pressed too deep is named") {
   CHECK_THAT(report.text, ContainsSubstring("0.25"));
   CHECK_THAT(report.text, ContainsSubstring("overlap_limit 0.1"));
   CHECK_THAT(report.text, ContainsSubstring(" m overlaps") && ContainsSubstring("as they were placed"));
-  // With the limit above it all is well.
+  // With the limit above it all is well, but it is said once that they are thrown out.
   o.overlap_limit = 0.3;
   auto v = make(o);
   add(v, {0, 0, 0});
   add(v, {0, 1.75e-3, 0});
-  CHECK(v.run(10));
+  const dem::StepReport told = v.run(10);
+  CHECK(told);
+  CHECK_THAT(told.note, ContainsSubstring("by 0.25 of their effective diameter as it was placed, and is thrown out"));
+  CHECK(v.run(10).note.empty());
+  // A grain that is moved far away makes no others new.
+  add(v, {0.1, 0, 0});
+  v.set_position(GrainId(2), {0.2, 0, 0});
+  CHECK(v.run(10).note.empty());
 }
 
 TEST_CASE("an overlap on the way is said to be one of stiffness, speed or load, not of where grains were placed") {
