@@ -40,6 +40,14 @@ class HeldContacts {
     }
   }
 
+  /// Sets the bodies' forces to those of the grains that the sub-steps of the last step were taken with.
+  void put_earlier_on(std::vector<Body>& bodies) const {
+    for (std::size_t i = 0; i < bodies.size(); ++i) {
+      bodies[i].force = earlier_[i].force;
+      bodies[i].torque = earlier_[i].torque;
+    }
+  }
+
   /// Gives the bodies half of the impulse by which the grains' forces changed since the last step, dt (s) ago: what the
   /// kick at the end of a step is to velocity Verlet. The machine's own step h (s) is in it because its first half kick
   /// was with the earlier force (Verlet), or its kicks come before its drifts (symplectic Euler).

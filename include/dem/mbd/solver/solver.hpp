@@ -109,6 +109,7 @@ class Solver {
   template <class PutForces>
   DEM_COLD void initialise(Mechanism& m, double time, const Vec3& gravity, PutForces&& put_forces) {
     Parts& parts = m.parts();
+    const bool goes_on = is_initialised(m) && m.substeps > 1;
     if (design_dt_ <= 0.0) require_derived(parts);
     clear_forces(parts);
     put_forces();
@@ -118,7 +119,7 @@ class Solver {
     if (parts.apply_motions) parts.apply_motions(parts, time, step, false);
     stages_.hold_joints(parts);
     if (!is_assembled_) assemble(m);
-    stages_.start(parts, step, gravity);
+    stages_.start(parts, step, gravity, goes_on);
     stages_.watches.watch_joints(m);
     note_stable_step(m);
     start(m);

@@ -36,10 +36,14 @@ class Stages {
   /// Contacts' forces are held from here on over the sub-steps.
   void hold_contacts(Parts& m) { held_.start(m.outside); }
   /// The integrator's memory is filled from the forces at this state; those from outside are in the bodies already.
-  void start(Parts& m, double h, const Vec3& gravity) {
+  /// Where a machine `goes_on` in its sub-steps as it was, with an integrator of one stage, those are of the last step:
+  /// it has still to catch up with how they changed.
+  void start(Parts& m, double h, const Vec3& gravity, bool goes_on) {
     for (PrescribedMotion& p : m.motions) p.drive.impulse = 0.0;  // the speeds that it starts with
+    const bool catches_up = goes_on && I::stages == 1;
+    if (catches_up) held_.put_earlier_on(m.bodies);
     add_forces(m, time_, h, false);
-    hold_contacts(m);
+    if (!catches_up) hold_contacts(m);
     motion_.initialise(m.bodies, from_eigen(gravity));
   }
 
