@@ -43,7 +43,7 @@ inline void add_checkpoint_options(Options& options, CheckpointOptions& o) {
   options
       .add("--checkpoint-every", o.every,
            "keep what the run can go on from, in the output folder, each time that so much wall time has gone by [s], "
-           "and at Ctrl-C; 0: never")
+           "and at Ctrl-C; 0: never; with --resume 900, unless it is given")
       .of_this_run();
   options
       .flag("--resume", o.resume,
@@ -67,6 +67,7 @@ inline void resolve(CheckpointOptions& o, const Options& options) {
 #endif
   for (const Option& option : options.all()) {
     if (!option.changes_results) o.free_settings.push_back(option.key());
+    if (option.key() == "checkpoint-every" && option.given.empty() && o.resume) o.every = 900.0;
   }
 }
 

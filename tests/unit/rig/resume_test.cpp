@@ -197,6 +197,20 @@ TEST_CASE("a signal ends a stage whose world is not run by rig::run, whether the
   }
 }
 
+TEST_CASE("a run that goes on is kept again, unless it is told not to") {
+  for (const bool is_told : {false, true}) {
+    RunOfBalls r;
+    std::vector<std::string> options = {"--resume"};
+    if (is_told) options.emplace_back("--checkpoint-every=0");
+    REQUIRE(r.run({"--checkpoint-every=1000"}, -1, 15) == 130);
+    dem::io::clear_interrupt();
+    REQUIRE(r.run(options, -1, 3) == 130);
+    dem::io::clear_interrupt();
+    REQUIRE(r.run({"--resume"}) == 0);
+    CHECK(r.rig.updates == (is_told ? 15 : 12));
+  }
+}
+
 TEST_CASE("a run goes on with its own settings only, and is refused in words") {
   RunOfBalls r;
   const auto refusal = [&](const char* settings, CheckpointOptions options) {
