@@ -15,10 +15,10 @@
 #include <dem/mbd/solver/lazy_solver.hpp>
 #include <dem/world/model.hpp>
 #include <dem/world/options.hpp>
+#include <dem/world/placed.hpp>
 #include <dem/world/stopwatch.hpp>
 
 #include <algorithm>
-#include <iterator>
 #include <limits>
 #include <set>
 
@@ -56,41 +56,6 @@ struct MoveStage {
   bool last = false;              ///< of its stages
   bool cleans_rotations = false;  ///< rotation matrices are made orthonormal
   bool at_once = false;           ///< within the sweep that finds contacts
-};
-
-/// What was last put somewhere by hand, between two steps.
-struct Placed {
-  std::uint64_t at = ~0ull;  ///< the step before
-  std::size_t first_surface = std::numeric_limits<std::size_t>::max();
-
-  void grain(std::uint64_t step, std::uint32_t id) {
-    begin(step);
-    const auto next =
-        std::upper_bound(ids_.begin(), ids_.end(), id, [](auto a, const Range& r) { return a < r.first; });
-    if (next != ids_.begin() && id <= std::prev(next)->end)
-      std::prev(next)->end = std::max(std::prev(next)->end, id + 1);
-    else ids_.insert(next, {id, id + 1});
-  }
-  void surface(std::uint64_t step, std::size_t s) { begin(step), first_surface = std::min(first_surface, s); }
-
-  bool has_grain(std::uint32_t id) const {
-    const auto next =
-        std::upper_bound(ids_.begin(), ids_.end(), id, [](auto a, const Range& r) { return a < r.first; });
-    return next != ids_.begin() && id < std::prev(next)->end;
-  }
-  bool has_surface(std::size_t s) const { return s >= first_surface; }
-  std::size_t bytes() const { return ids_.capacity() * sizeof(Range); }
-
- private:
-  struct Range {
-    std::uint32_t first, end;
-  };
-  void begin(std::uint64_t step) {
-    if (at != step) *this = {};
-    at = step;
-  }
-
-  std::vector<Range> ids_;  // ascending: most are added one after the other
 };
 
 /// Everything a world consists of. Only World and the functions of the step see it.

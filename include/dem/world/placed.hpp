@@ -1,0 +1,51 @@
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <iterator>
+#include <limits>
+#include <vector>
+
+namespace dem {
+
+/// What was last put somewhere by hand, between two steps.
+struct Placed {
+  std::uint64_t at = ~0ull;  ///< the step before
+  std::size_t first_surface = std::numeric_limits<std::size_t>::max();
+
+  void grain(std::uint64_t step, std::uint32_t id) {
+    begin(step);
+    const auto next = ids_.begin() + ranges_from(id);
+    if (next != ids_.begin() && id <= std::prev(next)->end) {
+      std::prev(next)->end = std::max(std::prev(next)->end, id + 1);
+    } else {
+      ids_.insert(next, {id, id + 1});
+    }
+  }
+  void surface(std::uint64_t step, std::size_t s) { begin(step), first_surface = std::min(first_surface, s); }
+
+  bool has_grain(std::uint32_t id) const {
+    const auto ranges = ranges_from(id);
+    return ranges > 0 && id < ids_[static_cast<std::size_t>(ranges - 1)].end;
+  }
+  bool has_surface(std::size_t s) const { return s >= first_surface; }
+  std::size_t bytes() const { return ids_.capacity() * sizeof(Range); }
+
+ private:
+  struct Range {
+    std::uint32_t first, end;
+  };
+  void begin(std::uint64_t step) {
+    if (at != step) *this = {};
+    at = step;
+  }
+  /// How many ranges begin at an id or before it.
+  std::ptrdiff_t ranges_from(std::uint32_t id) const {
+    return std::upper_bound(ids_.begin(), ids_.end(), id, [](auto a, const Range& r) { return a < r.first; }) -
+           ids_.begin();
+  }
+
+  std::vector<Range> ids_;  // ascending: most grains are added one after the other
+};
+
+}  // namespace dem
