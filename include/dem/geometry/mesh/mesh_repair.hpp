@@ -8,8 +8,8 @@
 
 namespace dem {
 
-/// What was found in a mesh, and what was done about it.
-struct MeshReport {
+/// What was found in a mesh, and what was done about it. Its bad edges are those that are left after the repair.
+struct MeshReport : BadEdges {
   std::size_t vertices = 0, triangles = 0;  ///< left after the repair
   std::size_t merged_vertices = 0;          ///< that lay on another one
   std::size_t unused_vertices = 0;          ///< removed
@@ -17,10 +17,8 @@ struct MeshReport {
   std::size_t duplicate_triangles = 0;      ///< over the same three vertices as another one: removed
   std::size_t flipped_triangles = 0;        ///< turned round
   std::size_t components = 0;               ///< connected pieces
-  std::size_t boundary_edges = 0, non_manifold_edges = 0, inconsistent_edges = 0;  ///< left after the repair
-  Vec3 boundary_at = Vec3::Zero(), non_manifold_at = Vec3::Zero(), inconsistent_at = Vec3::Zero();  ///< m, the first
-  double enclosed_volume = 0.0;  ///< m^3, of the closed mesh; negative where it faces inward
-  double tolerance = 0.0;        ///< m, within which vertices are one
+  double enclosed_volume = 0.0;             ///< m^3, of the closed mesh; negative where it faces inward
+  double tolerance = 0.0;                   ///< m, within which vertices are one
 
   bool closed() const { return triangles > 0 && boundary_edges == 0 && non_manifold_edges == 0; }
   bool oriented() const { return inconsistent_edges == 0; }
@@ -256,12 +254,7 @@ DEM_LAZY inline RepairedMesh repaired(const IndexedMesh& given, MeshFacing facin
   const MeshTopology topology = topology_of(mesh);
   report.vertices = mesh.vertices.size();
   report.triangles = mesh.triangles.size();
-  report.boundary_edges = topology.boundary_edges;
-  report.non_manifold_edges = topology.non_manifold_edges;
-  report.inconsistent_edges = topology.inconsistent_edges;
-  report.boundary_at = topology.boundary_at;
-  report.non_manifold_at = topology.non_manifold_at;
-  report.inconsistent_at = topology.inconsistent_at;
+  static_cast<BadEdges&>(report) = topology;
   for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
     report.enclosed_volume += detail::spanned(mesh, t, mesh.vertices[0]) / 6.0;
   }

@@ -10,15 +10,19 @@
 
 namespace dem {
 
+/// The edges by which a mesh is open, or has no sides.
+struct BadEdges {
+  std::size_t boundary_edges = 0;      ///< that belong to one triangle only
+  std::size_t non_manifold_edges = 0;  ///< that belong to three or more
+  std::size_t inconsistent_edges = 0;  ///< whose two triangles run along them the same way
+  Vec3 boundary_at = Vec3::Zero(), non_manifold_at = Vec3::Zero(), inconsistent_at = Vec3::Zero();  ///< m, the first
+};
+
 /// Who shares which edge. Edge k of a triangle leads from its corner k to its corner k + 1.
-struct MeshTopology {
+struct MeshTopology : BadEdges {
   static constexpr std::uint32_t none = 0xffffffffu;
 
   std::vector<std::array<std::uint32_t, 3>> neighbour;  ///< triangle across each edge; none: boundary or non-manifold
-  std::size_t boundary_edges = 0;                       ///< that belong to one triangle only
-  std::size_t non_manifold_edges = 0;                   ///< that belong to three or more
-  std::size_t inconsistent_edges = 0;                   ///< whose two triangles run along them the same way
-  Vec3 boundary_at = Vec3::Zero(), non_manifold_at = Vec3::Zero(), inconsistent_at = Vec3::Zero();  ///< m, the first
 
   bool closed() const { return boundary_edges == 0 && non_manifold_edges == 0; }
   bool oriented() const { return inconsistent_edges == 0; }
