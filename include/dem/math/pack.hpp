@@ -32,6 +32,10 @@ using std::pow;
 using std::sqrt;
 using std::tanh;
 DEM_HOT bool any_of(bool condition) { return condition; }
+template <class F>
+DEM_HOT double by_lane(double x, F&& f) {
+  return f(x);
+}
 
 #if defined(DEM_HAS_SIMD)
 
@@ -103,20 +107,25 @@ DEM_HOT Pack generate(F&& f) {
   for (int k = 0; k < pack_width; ++k) r[k] = f(k);
   return Pack(r);
 }
+/// f of each lane: for functions that packs do not have. Of a double it is f(x).
+template <class F>
+DEM_HOT Pack by_lane(const Pack& a, F&& f) {
+  return generate([&](int k) { return f(lane(a, k)); });
+}
 DEM_HOT Pack cbrt(const Pack& a) {
-  return generate([&](int k) { return std::cbrt(lane(a, k)); });
+  return by_lane(a, [](double x) { return std::cbrt(x); });
 }
 DEM_HOT Pack exp(const Pack& a) {
-  return generate([&](int k) { return std::exp(lane(a, k)); });
+  return by_lane(a, [](double x) { return std::exp(x); });
 }
 DEM_HOT Pack log(const Pack& a) {
-  return generate([&](int k) { return std::log(lane(a, k)); });
+  return by_lane(a, [](double x) { return std::log(x); });
+}
+DEM_HOT Pack tanh(const Pack& a) {
+  return by_lane(a, [](double x) { return std::tanh(x); });
 }
 DEM_HOT Pack pow(const Pack& a, const Pack& exponent) {
   return generate([&](int k) { return std::pow(lane(a, k), lane(exponent, k)); });
-}
-DEM_HOT Pack tanh(const Pack& a) {
-  return generate([&](int k) { return std::tanh(lane(a, k)); });
 }
 DEM_HOT Pack abs(const Pack& a) { return max(a, -a); }
 
