@@ -8,7 +8,7 @@
 #include <dem/world/step.hpp>
 #include <dem/world/thin_sheets.hpp>
 #include <dem/world/time_step.hpp>
-#include <dem/world/world_setup.hpp>
+#include <dem/world/world_grains.hpp>
 
 #include <array>
 #include <concepts>
@@ -16,16 +16,14 @@
 namespace dem {
 
 /// A simulation: grains, machine, and the laws between them, specialised at compile time for a Model. What is put into
-/// it is in WorldSetup.
+/// it is in WorldSetup, what is asked and set of single grains in WorldGrains.
 template <class M>
-class World : public WorldSetup<M> {
-  using Setup = WorldSetup<M>;
-  using Setup::state_, Setup::checked_, Setup::initialised_, Setup::row, Setup::row_that_moves, Setup::require_finite,
-      Setup::require_between_runs, Setup::touched;
+class World : public WorldGrains<M> {
+  using Setup = WorldGrains<M>;
+  using Setup::state_, Setup::checked_, Setup::initialised_, Setup::require_finite;
 
  public:
   using Model = M;
-  using Shape = typename Model::Shape;
   using Setup::Setup;
 
   // ---- running ---------------------------------------------------------------------------------------------------
@@ -148,76 +146,6 @@ class World : public WorldSetup<M> {
 
   // ---- looking -----------------------------------------------------------------------------------------------------
 
-  std::size_t grain_count() const { return state_.grains.count - state_.to_remove.size(); }
-  /// All grains that are there, in the order in which they were added.
-  std::vector<GrainId> grains() const {
-    std::vector<GrainId> ids;
-    for (std::size_t k = 0; k < state_.grains.row_of.size(); ++k) {
-      if (state_.grains.row_of[k] == state_.grains.gone) continue;
-      ids.push_back(state_.grains.name(static_cast<std::uint32_t>(k)));
-    }
-    if (!state_.grains.number.empty()) std::sort(ids.begin(), ids.end());
-    return ids;
-  }
-  Vec3 position(GrainId p) const { return to_eigen(state_.grains.position[row(p)]); }
-  Vec3 velocity(GrainId p) const { return to_eigen(state_.grains.velocity[row(p)]); }
-  Vec3 angular_velocity(GrainId p) const { return to_eigen(state_.grains.angular_velocity(row(p))); }
-  Mat3 rotation(GrainId p) const { return to_eigen(state_.grains.rotation(row(p))); }
-  /// Contact force (N) and torque (N m) on a grain in the last force evaluation.
-  Vec3 force(GrainId p) const { return to_eigen(state_.grains.force[row(p)]); }
-  Vec3 torque(GrainId p) const { return to_eigen(state_.grains.torque[row(p)]); }
-  /// Whether a grain sleeps (WorldOptions::sleep).
-  bool is_asleep(GrainId p) const { return dem::is_asleep(state_, state_.grains.id[row(p)]); }
-  /// How many grains sleep.
-  std::size_t asleep_count() const {
-    require_between_runs("how many grains sleep");
-    if (!state_.options.sleep) return 0;
-    const auto& rests = state_.sleepers.grains;
-    const auto& rows = state_.grains.row_of;
-    std::size_t count = 0;
-    for (std::size_t id = 0; id < rests.size(); ++id) {
-      count += rests[id].asleep && rows[id] != state_.grains.gone ? 1 : 0;
-    }
-    return count;
-  }
-  SpeciesId species_of(GrainId p) const { return SpeciesId(state_.grains.species[row(p)]); }
-  const Species<Shape>& species(SpeciesId s) const { return known(state_.species, s, "species"); }
-
-  void set_velocity(GrainId p, const Vec3& v) {
-    require_finite(v, "velocity of a grain");
-    wake_around(state_, row_that_moves(p));
-    state_.grains.velocity.set(row(p), from_eigen(v));
-    initialised_ = false;
-  }
-  /// rad/s, global axes.
-  void set_angular_velocity(GrainId p, const Vec3& w) {
-    require_finite(w, "angular velocity of a grain");
-    wake_around(state_, row_that_moves(p));
-    state_.grains.local_angular_velocity.set(row(p), from_eigen(Vec3(rotation(p).transpose() * w)));
-    initialised_ = false;
-  }
-  /// Puts a grain elsewhere; its contacts there start without friction, those that it still has go on.
-  void set_position(GrainId p, const Vec3& x) {
-    require_finite(x, "position of a grain");
-    wake_around(state_, row_that_moves(p));
-    state_.grains.position.set(row(p), from_eigen(x));
-    state_.placed.grain(state_.step, state_.grains.id[row(p)]);
-    touched();
-  }
-
-  /// Turns a grain; it keeps its angular velocity in global axes.
-  void set_rotation(GrainId p, const Mat3& r) requires(Shape::has_orientation) {
-    if (!(distance_from_rotation(r) <= 1e-6)) {
-      fail("grain {} was given a rotation matrix that is no rotation; normalise it (R^T R = I, det R = 1)", p.value);
-    }
-    wake_around(state_, row_that_moves(p));
-    const Vec3 w = angular_velocity(p);
-    state_.grains.set_rotation(row(p), from_eigen(r));
-    state_.grains.local_angular_velocity.set(row(p), from_eigen(Vec3(r.transpose() * w)));
-    state_.placed.grain(state_.step, state_.grains.id[row(p)]);
-    touched();
-  }
-
   /// What an outlet took so far, and its mass flow.
   const Outlet& outlet(OutletId o) const { return known(state_.outlets, o, "outlet"); }
   /// The same of the grains that left a domain which removes them (BeyondDomain::remove), over the last 0.1 s.
@@ -313,7 +241,7 @@ class World : public WorldSetup<M> {
           goes = ends == 0.0, stays = changed == 0.0;
         }
         if (!goes) left = 0;
-        if (!stays) break;
+        if (!goes || !stays) break;
         state_.machine_solver.check_motions(state_.machine);
       }
     }
