@@ -237,6 +237,10 @@ TEST_CASE("a bed that makes no sense is refused in words") {
   check_refused([&] { bed_of({.height = 0.003}); }, "grains of 0.002 m across", "two of them high at least, 0.004 m");
   check_refused([&] { dem::soil::Bed<Balls>(soil.world, Container::box(40, 40), soil.ball, {.height = 20}); },
                 "a world has at most 4e9; all lengths are in m");
+  // Few stones in sand may be higher than half of the bed.
+  const SpeciesId stone = soil.world.add_species(models::Sphere(2e-3));
+  const dem::Mixture with_stones = {{{soil.ball, 0.98}, {stone, 0.02}}};
+  CHECK_NOTHROW(dem::soil::Bed<Balls>(soil.world, box, with_stones, {.height = 0.006}));
   for (const Vec3& gravity : {Vec3(0, 0, 0), Vec3(0, 0, 9.81), Vec3(5, 0, -9.81)}) {
     SoilOfBalls turned;
     turned.world.set_gravity(gravity);
