@@ -186,7 +186,7 @@ TEST_CASE("the study of plates has the spread of the seeds, and changes paired b
   }
   auto rows = plate_sinkage::study_rows(c);
   REQUIRE(rows.size() == 9);  // two plates and their mean, thrice
-  CHECK(rows[0].value.beds == 3);
+  CHECK(rows[0].value.count == 3);
   CHECK(rows[0].value.mean == Approx(22e3));
   CHECK(rows[0].value.deviation == Approx(2e3));
   CHECK(rows[0].from_as_set.pairs() == 0);

@@ -1,5 +1,6 @@
 #include "catch.hpp"
 
+#include <dem/rig/scatter.hpp>
 #include <dem/rig/side_by_side.hpp>
 #include <dem/rig/steady_window.hpp>
 
@@ -18,6 +19,21 @@ TEST_CASE("mean and standard deviation are those of the values, and not known wi
   CHECK(m.mean == Approx(3.0));
   CHECK(m.deviation == Approx(std::sqrt(3.5)));  // (4 + 1 + 0 + 9)/4
   CHECK(std::isnan(mean_of({}).mean));
+}
+
+TEST_CASE("how values scatter is told of those that are known, and of two at the least") {
+  const std::vector<double> values{1.0, not_known, 2.0, 3.0, 6.0};
+  const Scatter s = scatter_of(values);
+  CHECK(s.count == 4);
+  CHECK(s.mean == Approx(3.0));
+  CHECK(s.deviation == Approx(std::sqrt(14.0 / 3.0)));  // (4 + 1 + 0 + 9)/(4 - 1)
+  CHECK(s.error() == Approx(std::sqrt(14.0 / 12.0)));
+  const std::vector<double> one{not_known, 2.0};
+  CHECK(scatter_of(one).mean == Approx(2.0));
+  CHECK(std::isnan(scatter_of(one).deviation));
+  CHECK(std::isnan(scatter_of(one).error()));
+  CHECK(scatter_of({}).count == 0);
+  CHECK(std::isnan(scatter_of({}).mean));
 }
 
 TEST_CASE("the error of a mean is that of ten parts, so that values which err alike count as one") {

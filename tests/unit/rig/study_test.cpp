@@ -158,7 +158,7 @@ TEST_CASE("rows of a study have what scatters between seeds, and pairs of a seed
   of.add_place("0.3", "0.3", "the pull at slip 0.3");
   const auto rows = study_rows<Run>(all, of, [](const Run& r, std::size_t) { return r.value; });
   REQUIRE(rows.size() == 2);
-  CHECK(rows[0].value.beds == 3);
+  CHECK(rows[0].value.count == 3);
   CHECK(rows[0].value.mean == Approx(22.0));
   CHECK(rows[0].value.deviation == Approx(2.0));
   CHECK(rows[1].from_as_set.pairs() == 2);

@@ -3,12 +3,11 @@
 
 #include <dem/core/text.hpp>
 #include <dem/rig/number.hpp>
-#include <dem/rig/steady_window.hpp>
+#include <dem/rig/scatter.hpp>
 #include <dem/terramechanics/confidence.hpp>
 
 #include <cmath>
 #include <cstddef>
-#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -19,18 +18,6 @@ namespace dem::rig {
 struct ValueAndError {
   double value = not_known, error = not_known;
 };
-
-/// The mean over beds, and how the beds scatter.
-struct BedScatter {
-  std::size_t beds = 0;
-  double mean = not_known, deviation = not_known;  ///< the latter between the beds; NaN of one
-  [[nodiscard]] double error() const { return deviation / std::sqrt(static_cast<double>(beds)); }  ///< of the mean
-};
-inline BedScatter scatter_of(std::span<const double> values) {
-  const MeanAndDeviation all = mean_of(values);
-  const double n = static_cast<double>(values.size());
-  return {values.size(), all.mean, n > 1.0 ? all.deviation * std::sqrt(n / (n - 1.0)) : not_known};
-}
 
 /// A value of a run as set, and of the run with its seed whose box or speed a study changes.
 struct AsSetAndChanged {
@@ -92,7 +79,7 @@ class Change {
     if (pairs_.empty()) return {};
     std::vector<double> rest;
     for (const auto& [as_set, changed] : pairs_) rest.push_back(changed - as_set - share * as_set);
-    const BedScatter all = scatter_of(rest);
+    const Scatter all = scatter_of(rest);
     return {all.mean, all.error()};
   }
 

@@ -6,6 +6,7 @@
 #include <dem/rig/bed/study.hpp>
 #include <dem/rig/bed/study_change.hpp>
 #include <dem/rig/number.hpp>
+#include <dem/rig/scatter.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -41,7 +42,7 @@ struct StudiedValue {
 struct StudyRow {
   std::string change = {};   ///< of Variant
   std::size_t place = 0;     ///< of StudiedValue
-  BedScatter value = {};     ///< over the seeds
+  Scatter value = {};        ///< over the seeds
   Change from_as_set = {};   ///< none of runs as set
   double limit = not_known;  ///< %, that the change should be within
 };
@@ -95,9 +96,9 @@ inline io::Table study_table(const StudiedValue& of, std::span<const StudyRow> r
                                      "within the limit"});
   }
   for (const StudyRow& r : rows) {
-    const BedScatter& x = r.value;
+    const Scatter& x = r.value;
     std::vector<std::string> row{change_text(r.change),        of.places[r.place].in_tables,
-                                 text("{}", x.beds),           number(of.scale * x.mean),
+                                 text("{}", x.count),          number(of.scale * x.mean),
                                  number(of.scale * x.error()), number(of.scale * x.deviation)};
     if (!r.change.empty()) {
       const Change& c = r.from_as_set;
@@ -127,9 +128,9 @@ inline std::vector<std::string> study_findings(const StudiedValue& of, std::span
     if (!r.change.empty()) {
       const std::string what = r.change == "slow" ? "Half the speed" : "A " + change_text(r.change);
       list.push_back(verdict_text(what, phrase, r.from_as_set, r.limit, of.unit, of.scale));
-    } else if (r.value.beds > 1) {
+    } else if (r.value.count > 1) {
       list.push_back(text("Beds of {} seeds in the box as set deviate by {:.2f} {} in {}, {:.2f} ± {:.2f} {}.",
-                          r.value.beds, of.scale * r.value.deviation, of.unit, phrase, of.scale * r.value.mean,
+                          r.value.count, of.scale * r.value.deviation, of.unit, phrase, of.scale * r.value.mean,
                           of.scale * r.value.error(), of.unit));
     }
   }
@@ -147,9 +148,10 @@ inline void write_study(const std::filesystem::path& path, const StudiedValue& o
     const Change& c = r.from_as_set;
     const ValueAndError value = c.value(), percent = c.percent();
     const bool is_known = c.pairs() > 1;
-    csv.row(change_text(r.change), of.places[r.place].in_files, r.value.beds, cell(r.value.mean), cell(r.value.error()),
-            cell(r.value.deviation), c.pairs(), cell(value.value), cell(value.error), cell(percent.value),
-            cell(percent.error), is_known ? c.is_told() : "", cell(r.limit), is_known ? c.is_within(r.limit) : "");
+    csv.row(change_text(r.change), of.places[r.place].in_files, r.value.count, cell(r.value.mean),
+            cell(r.value.error()), cell(r.value.deviation), c.pairs(), cell(value.value), cell(value.error),
+            cell(percent.value), cell(percent.error), is_known ? c.is_told() : "", cell(r.limit),
+            is_known ? c.is_within(r.limit) : "");
   }
   csv.flush();
 }

@@ -3,6 +3,7 @@
 
 #include <dem/rig/direct_shear/evaluate.hpp>
 #include <dem/rig/plate_sinkage/results.hpp>
+#include <dem/rig/scatter.hpp>
 #include <dem/terramechanics/bevameter_fit.hpp>
 #include <dem/terramechanics/confidence.hpp>
 #include <dem/terramechanics/shear_fit.hpp>
@@ -69,15 +70,10 @@ inline terramechanics::ShearCurve shear_curve(const direct_shear::LoadResult& r,
   return curve;
 }
 
-/// The mean of some values with its standard error.
+/// The mean of values that do not depend on each other, with its standard error.
 inline Estimate mean_estimate(std::span<const double> values) {
-  const double n = static_cast<double>(values.size());
-  double mean = 0.0, squares = 0.0;
-  for (const double v : values) mean += v / n;
-  for (const double v : values) squares += (v - mean) * (v - mean);
-  if (values.empty()) return {};
-  if (values.size() < 2) return {values.front(), std::nan(""), 0};
-  return {mean, std::sqrt(squares / (n - 1.0) / n), values.size() - 1};
+  const Scatter all = scatter_of(values);
+  return {all.mean, all.error(), all.count > 1 ? all.count - 1 : 0};
 }
 
 /// Cohesion and friction angle of the strengths, and K of the curves. The cohesion is kept where it differs from none
@@ -145,9 +141,7 @@ inline Constants find_constants(const plate_sinkage::VariantResult& plates, cons
   if (curves.size() < 2) fail("{} plates can be fitted, but two are needed; raise --sinkage", curves.size());
   find_moduli(c, curves, static_cast<std::size_t>(pieces));
   std::vector<double> slopes;
-  for (const auto& r : plates.plates) {
-    if (std::isfinite(r.unloading_stiffness)) slopes.push_back(r.unloading_stiffness);
-  }
+  for (const auto& r : plates.plates) slopes.push_back(r.unloading_stiffness);
   c.unloading = mean_estimate(slopes);
 
   Soil soil;

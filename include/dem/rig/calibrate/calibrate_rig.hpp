@@ -4,6 +4,7 @@
 #include <dem/rig/calibrate/tables.hpp>
 #include <dem/rig/calibrate/tried.hpp>
 #include <dem/rig/rig.hpp>
+#include <dem/rig/scatter.hpp>
 #include <dem/rig/settings_file.hpp>
 #include <dem/rig/side_by_side.hpp>
 
@@ -180,15 +181,13 @@ class CalibrateRig : public Rig {
                                                            : Goal{s.pressure, s.pressure_error});
         continue;
       }
-      double n = 0.0, sum = 0.0, squares = 0.0;
+      std::vector<double> made;
       for (const Trial& t : tried) {
-        if (t.point == 0 && std::isfinite(t.results[q])) n += 1.0, sum += t.results[q];
+        if (t.point == 0) made.push_back(t.results[q]);
       }
-      for (const Trial& t : tried) {
-        if (t.point == 0 && std::isfinite(t.results[q])) squares += std::pow(t.results[q] - sum / n, 2);
-      }
-      if (n < 2.0) throw Stopped(text("{} runs have made a target, but two are needed", n));
-      list.push_back({sum / n, std::sqrt(squares / (n - 1.0) / n), n});
+      const Scatter all = scatter_of(made);
+      if (all.count < 2) throw Stopped(text("{} runs have made a target, but two are needed", all.count));
+      list.push_back({all.mean, all.error(), static_cast<double>(all.count)});
     }
     return list;
   }

@@ -6,6 +6,7 @@
 #include <dem/report/table.hpp>
 #include <dem/rig/report.hpp>
 #include <dem/rig/sand_pile/repose.hpp>
+#include <dem/rig/scatter.hpp>
 
 #include <cmath>
 #include <string>
@@ -47,9 +48,9 @@ inline io::Table angle_table(const Campaign& c) {
       lost.push_back(1e2 * static_cast<double>(r->lost) / static_cast<double>(std::max<std::size_t>(r->poured, 1)));
       at_rest = at_rest && r->at_rest;
     }
-    t.row(piles.front()->kind.name, piles.size(), number(spread_of(angle).mean), number(spread_of(scatter).mean),
-          number(spread_of(angle).deviation), number(spread_of(after).mean), number(spread_of(creep).mean, "{:.2g}"),
-          number(spread_of(median).mean, "{:.2g}"), number(spread_of(height).mean), number(spread_of(lost).mean),
+    t.row(piles.front()->kind.name, piles.size(), number(scatter_of(angle).mean), number(scatter_of(scatter).mean),
+          number(scatter_of(angle).deviation), number(scatter_of(after).mean), number(scatter_of(creep).mean, "{:.2g}"),
+          number(scatter_of(median).mean, "{:.2g}"), number(scatter_of(height).mean), number(scatter_of(lost).mean),
           at_rest);
   }
   return t;

@@ -2,7 +2,8 @@
 // The angles of repose of all kinds side by side, and what is published of spheres with rolling resistance.
 
 #include <dem/report/plot_data.hpp>
-#include <dem/rig/sand_pile/spread.hpp>
+#include <dem/rig/sand_pile/results.hpp>
+#include <dem/rig/scatter.hpp>
 
 #include <cmath>
 #include <string>
@@ -60,7 +61,7 @@ inline io::Plot repose_plot(const Settings& s, const Campaign& c) {
     if (angles.empty()) continue;
     const Kind& kind = piles.front()->kind;
     plot.x_ticks.push_back({x += 1.0, kind.name});
-    const Spread spread = spread_of(angles);
+    const Scatter spread = scatter_of(angles);
     means.x.push_back(x), means.y.push_back(spread.mean);
     if (angles.size() > 1) {
       bar(seeds, x, spread.mean, spread.deviation);

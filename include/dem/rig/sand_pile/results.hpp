@@ -6,6 +6,7 @@
 #include <dem/rig/sand_pile/settings.hpp>
 #include <dem/soil/angle_of_repose.hpp>
 
+#include <numbers>
 #include <optional>
 #include <string>
 #include <vector>
@@ -59,5 +60,17 @@ struct Campaign {
   std::vector<PileResult> piles = {};
   std::optional<report::Replay> replay = {};  ///< of the first
 };
+
+inline constexpr double degrees = 180.0 / std::numbers::pi;
+
+/// The piles of one kind, in the order in which they were made.
+inline std::vector<std::vector<const PileResult*>> by_kind(const Campaign& c) {
+  std::vector<std::vector<const PileResult*>> kinds;
+  for (const PileResult& r : c.piles) {
+    if (kinds.empty() || kinds.back().front()->kind.name != r.kind.name) kinds.emplace_back();
+    kinds.back().push_back(&r);
+  }
+  return kinds;
+}
 
 }  // namespace dem::rig::sand_pile
