@@ -64,10 +64,10 @@ DEM_COLD inline JointId joint_on_three_points(Parts& parts, const ActuatorSpec& 
 }
 
 /// A number is no speed: without a position gain the rate of the set point counts alone.
-DEM_COLD inline void refuse_constant_speed(const ActuatorSpec& spec, const std::string& who) {
+DEM_COLD inline void refuse_constant_speed(const ActuatorSpec& spec, const Signal& set_point, const std::string& who) {
   const bool follows_rate = spec.joint.valid() && spec.on && spec.position_gain == 0.0 && spec.speed_gain > 0.0;
-  if (!follows_rate || !spec.set_point || !spec.set_point->is_constant()) return;
-  const double value = (*spec.set_point)(0.0).value;
+  if (!follows_rate || !set_point.is_constant()) return;
+  const double value = set_point(0.0).value;
   if (value == 0.0) return;
   fail(
       "{} has no position_gain, so it follows the rate of its set point alone, and that of the constant {:g} is 0: it "
@@ -91,7 +91,7 @@ DEM_COLD inline ActuatorId add_actuator(Parts& parts, ActuatorSpec spec) {
     u.a = spec.a.value;
     u.b = spec.b.value;
   }
-  refuse_constant_speed(spec, who);
+  if (spec.set_point) refuse_constant_speed(spec, *spec.set_point, who);
   u.spec = std::move(spec);
   if (!u.spec.set_point) {
     u.spec.set_point = coordinate_of(u, parts.joints, parts.bodies[u.a], parts.bodies[u.b]).value;

@@ -3,6 +3,7 @@
 // What a machine is steered with while it runs: set points, brakes, switches.
 
 #include <dem/core/macros.hpp>
+#include <dem/mbd/drive/actuator_part.hpp>
 #include <dem/mbd/joint/take_hold.hpp>
 #include <dem/mbd/solver/parts.hpp>
 
@@ -20,6 +21,7 @@ DEM_COLD inline void set_friction_preload(Parts& parts, JointId id, double newto
 
 DEM_COLD inline void set_target(ActuatorSpec& s, Signal signal) {
   if (s.has_throttle()) fail("actuator '{}' is a motor, which has no set point; use set_throttle", s.name);
+  refuse_constant_speed(s, signal, dem::text("actuator '{}'", s.name));
   s.set_point = std::move(signal);
 }
 DEM_COLD inline void set_throttle(ActuatorSpec& s, double throttle) {
