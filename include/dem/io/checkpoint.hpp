@@ -26,6 +26,8 @@ namespace dem {
 ///       void fields(V& v) { v("rows", rows); }
 ///     };
 ///     dem::save(world, "bed.h5", progress);
+///
+/// Tables that the program writes beside it: flush() them before saving, and go on with CsvOptions::goes_on_after.
 template <class Model, class... Others>
 void save(const World<Model>& world, const std::filesystem::path& path, const Others&... others) {
   const io::StateColumns columns = io::columns_of(world, others...);

@@ -8,13 +8,17 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
+#include <cmath>
 #include <concepts>
 #include <cstddef>
 #include <filesystem>
 #include <iterator>
+#include <limits>
 #include <span>
 #include <string>
 #include <string_view>
+#include <system_error>
 #include <type_traits>
 #include <utility>
 #include <vector>
@@ -25,6 +29,13 @@ struct CsvOptions {
   int digits = 0;      ///< significant digits; 0: as few as read back as the very same number
   double flush_s = 2;  ///< rows reach the disk at the latest so many seconds after being written; 0: at once
   char separator = ',';
+
+  /// A file that is there goes on: its rows whose first cell, a time or another number that grows, is at most this
+  /// stay, and later ones are dropped. Not a number: the file is written anew.
+  ///
+  ///     dem::load(world, "half.h5");
+  ///     io::CsvWriter csv("force.csv", {"time_s", "force_N"}, {.goes_on_after = world.time()});
+  double goes_on_after = std::numeric_limits<double>::quiet_NaN();
 };
 
 /// `text` as one CSV cell (RFC 4180): in quotes when it holds a separator, a quote, a line end or outer spaces.
@@ -48,14 +59,13 @@ concept CsvCell = std::is_arithmetic_v<T> || std::convertible_to<T, std::string_
 ///     csv.row(t, u, stress);
 ///
 /// Everything throws dem::Error: a file that cannot be opened or written (the folder is made when missing), no
-/// columns, an empty or repeated column name, a row whose length is not that of the header.
+/// columns, an empty or repeated column name, a row whose length is not that of the header, a file to go on with that
+/// has other columns.
 class CsvWriter {
  public:
   CsvWriter(const std::filesystem::path& path, std::vector<std::string> columns, CsvOptions options = {})
-      : columns_((check_columns(path, columns), std::move(columns))), options_(options), file_(path) {
-    begin_row(columns_.size());
-    for (const auto& name : columns_) add_cell(name);
-    end_row();
+      : columns_((check_columns(path, columns), std::move(columns))), options_(options), file_(path, keep_rows(path)) {
+    if (is_new_) file_.write(header());
     flush();
   }
 
@@ -82,7 +92,7 @@ class CsvWriter {
     flush_time_ = steady_seconds();
   }
 
-  /// Rows written, without the header.
+  /// Rows in the file, without the header.
   [[nodiscard]] std::size_t rows() const { return rows_; }
   [[nodiscard]] const std::filesystem::path& path() const { return file_.path(); }
 
@@ -100,6 +110,50 @@ class CsvWriter {
     }
   }
 
+  [[nodiscard]] std::string header() const {
+    std::string line;
+    for (const auto& name : columns_) line += csv_quote(name, options_.separator) + options_.separator;
+    line.back() = '\n';  // in place of the last separator
+    return line;
+  }
+
+  /// Drops from an earlier file the rows that come again, and a last one that was cut off.
+  WriteFrom keep_rows(const std::filesystem::path& path) {
+    if (std::isnan(options_.goes_on_after) || !process_writes_files || !std::filesystem::exists(path)) {
+      return WriteFrom::start;
+    }
+    const std::string old = read_file(path), names = header();
+    if (old.empty()) return WriteFrom::start;
+    if (!old.starts_with(names)) {
+      fail("csv file '{}' cannot go on: its columns are '{}', not '{}'; give it another name, or move it away",
+           path.string(), old.substr(0, old.find('\n')), names.substr(0, names.size() - 1));
+    }
+    const double last = first_number(text_of(options_.goes_on_after), path);  // as rounded as the cells
+    std::size_t end = names.size();
+    for (std::size_t next = 0; (next = old.find('\n', end)) != old.npos; end = next + 1) {
+      if (!(first_number(std::string_view(old).substr(end, next - end), path) <= last)) break;
+      rows_ += 1;
+    }
+    write_file(path, std::string_view(old).substr(0, end));
+    is_new_ = false;
+    return WriteFrom::end;
+  }
+
+  [[nodiscard]] static double first_number(std::string_view line, const std::filesystem::path& path) {
+    double value = 0.0;
+    if (std::from_chars(line.data(), line.data() + line.size(), value).ec != std::errc()) {
+      fail("csv file '{}' cannot go on: its row '{}' does not begin with a number", path.string(), line);
+    }
+    return value;
+  }
+
+  /// As a cell. Not fmt::format_to, which would have every program compile fmt's own formatting anew.
+  template <std::floating_point T>
+  [[nodiscard]] std::string text_of(T number) const {
+    if (options_.digits > 0) return fmt::format("{:.{}g}", number, options_.digits);
+    return fmt::format("{}", number);  // shortest text that reads back as the same number
+  }
+
   void begin_row(std::size_t cells) {
     line_.clear();
     if (cells != columns_.size()) {
@@ -112,13 +166,8 @@ class CsvWriter {
 
   template <CsvCell T>
   void add_cell(const T& cell) {
-    // Not fmt::format_to, which would have every program compile fmt's own formatting anew.
     if constexpr (std::floating_point<T>) {
-      if (options_.digits > 0) {
-        line_ += fmt::format("{:.{}g}", cell, options_.digits);
-      } else {
-        line_ += fmt::format("{}", cell);  // shortest text that reads back as the same number
-      }
+      line_ += text_of(cell);
     } else if constexpr (std::same_as<T, bool>) {
       line_ += cell ? '1' : '0';
     } else if constexpr (std::is_arithmetic_v<T>) {
@@ -137,9 +186,10 @@ class CsvWriter {
 
   std::vector<std::string> columns_;
   CsvOptions options_;
+  std::size_t rows_ = 0;
+  bool is_new_ = true;
   OutputFile file_;
   std::string line_;
-  std::size_t rows_ = 0;
   double flush_time_ = 0;
 };
 

@@ -33,6 +33,9 @@ inline void make_folder_of(const std::filesystem::path& file) {
   }
 }
 
+/// Where the writing of a file that is there begins.
+enum class WriteFrom { start, end };
+
 namespace detail {
 
 /// A stream on a descriptor that never has the number of a standard stream that is closed: what is printed to that
@@ -48,9 +51,10 @@ inline std::FILE* stream_on(int descriptor) {
   return descriptor < 0 ? nullptr : ::fdopen(descriptor, "wb");
 }
 
-inline std::FILE* open_for_writing(const std::filesystem::path& path) {
+inline std::FILE* open_for_writing(const std::filesystem::path& path, WriteFrom from = WriteFrom::start) {
   if (!process_writes_files) return stream_on(::open("/dev/null", O_WRONLY | O_CLOEXEC));
-  return stream_on(::open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666));
+  const int where = from == WriteFrom::start ? O_TRUNC : O_APPEND;
+  return stream_on(::open(path.c_str(), O_WRONLY | O_CREAT | where | O_CLOEXEC, 0666));
 }
 
 /// A file in a folder that has no name yet, so that a process which is killed leaves nothing. Null where the system has
@@ -73,13 +77,13 @@ inline bool name_file(std::FILE* file, const std::filesystem::path& path) {
 
 }  // namespace detail
 
-/// A file that is written from its start; its folder is made when it is missing. Every method throws dem::Error,
-/// with the path and the system's reason, when the file cannot be opened or written.
+/// A file that is written from its start, or from its end; its folder is made when it is missing. Every method throws
+/// dem::Error, with the path and the system's reason, when the file cannot be opened or written.
 class OutputFile {
  public:
-  explicit OutputFile(std::filesystem::path path) : path_(std::move(path)) {
+  explicit OutputFile(std::filesystem::path path, WriteFrom from = WriteFrom::start) : path_(std::move(path)) {
     make_folder_of(path_);
-    file_.reset(detail::open_for_writing(path_));
+    file_.reset(detail::open_for_writing(path_, from));
     if (!file_) {
       fail("cannot open '{}' for writing ({}); choose a path that you may write to", path_.string(),
            std::strerror(errno));

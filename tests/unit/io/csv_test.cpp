@@ -113,6 +113,40 @@ TEST_CASE("a table of numbers is read back as it was written, and one that is no
   CHECK_THROWS_WITH(read("a\n1,2\n"), ContainsSubstring("line 2: 2 numbers, but there are 1 columns"));
 }
 
+TEST_CASE("a csv file goes on after a time, whatever an earlier run wrote later") {
+  const TempFolder folder;
+  const auto path = folder / "force.csv";
+  const auto write = [&](double from, double to, dem::io::CsvOptions options) {
+    CsvWriter csv(path, {"time_s", "force_N"}, options);
+    for (double t = from; t < to; t += 0.125) csv.row(t, 2 * t);
+    return csv.rows();
+  };
+  CHECK(write(0, 1, {.goes_on_after = 0.5}) == 8);  // there is none yet
+  const std::string whole = read_file(path);
+  CHECK(write(0.625, 1, {.goes_on_after = 0.5}) == 8);
+  CHECK(read_file(path) == whole);
+
+  // A row that was cut off as the run was killed goes as well.
+  dem::io::write_file(path, whole.substr(0, whole.size() - 2));
+  CHECK(write(0.875, 1, {.goes_on_after = 5}) == 8);
+  CHECK(read_file(path) == whole);
+
+  // Rounded cells are compared with what the time would be rounded to.
+  write(0, 1, {.digits = 1});
+  CHECK(write(0.75, 1, {.digits = 1, .goes_on_after = 0.625}) == 8);
+
+  CHECK(error_of([&] {
+          CsvWriter(path, {"time_s", "pull_N"}, {.goes_on_after = 0});
+        }) == "csv file '" + path.string() +
+                  "' cannot go on: its columns are 'time_s,force_N', not 'time_s,pull_N'; give it another name, or "
+                  "move it away");
+  dem::io::write_file(path, "time_s,force_N\nsand,1\n");
+  CHECK(error_of([&] {
+          CsvWriter(path, {"time_s", "force_N"}, {.goes_on_after = 0});
+        }) == "csv file '" + path.string() + "' cannot go on: its row 'sand,1' does not begin with a number");
+  CHECK(read_file(path) == "time_s,force_N\nsand,1\n");
+}
+
 TEST_CASE("csv mistakes are told") {
   const TempFolder folder;
   const std::string path = (folder / "a.csv").string();
