@@ -1,5 +1,6 @@
 #pragma once
 
+#include <dem/flat/history_store.hpp>
 #include <dem/flat/pair_kernels.hpp>
 #include <dem/world/state.hpp>
 
@@ -46,23 +47,19 @@ class PairContactStore {
       }
     });
     for (Step* step : {&now_, &last_}) step->bits.make_room(candidates), step->first.make_room(candidates + 1);
-    make_room(last_, contacts);
-    last_.contacts = contacts;
+    last_.histories.make_room(contacts);
     last_.bits.upload_to(0, bits.data(), candidates);
     last_.first.upload_to(0, first.data(), candidates + 1);
-    for (std::size_t h = 0; h < size; ++h) last_.values.upload_to(h * last_.room, columns[h].data(), contacts);
+    last_.histories.upload(columns);
   }
   /// Hands the contacts of the last step to the chunks.
   void bring_down(WorldState<Model>& w, const std::vector<std::uint32_t>& chunk_first) {
     const std::size_t candidates = chunk_first.back();
     std::vector<Bits> bits(candidates);
     std::vector<std::uint32_t> first(candidates + 1);
-    std::vector<std::vector<double>> columns(size, std::vector<double>(last_.contacts));
+    const auto columns = last_.histories.download();
     last_.bits.download(bits.data(), candidates);
     last_.first.download(first.data(), candidates + 1);
-    for (std::size_t h = 0; h < size; ++h) {
-      last_.values.download(columns[h].data(), last_.contacts, h * last_.room);
-    }
     w.executor.for_each(w.chunks.size(), [&](std::size_t c) {
       auto& of_chunk = w.chunks[c].pair_contacts.last;
       const std::uint32_t begin = first[chunk_first[c]];
@@ -83,8 +80,7 @@ class PairContactStore {
 
   /// Room for the contacts of this step.
   void make_room(std::size_t contacts) {
-    make_room(now_, contacts);
-    now_.contacts = contacts;
+    now_.histories.make_room(contacts);
     candidate_.make_room(contacts);
     bit_.make_room(contacts);
     results_.make_room(contacts);
@@ -93,33 +89,28 @@ class PairContactStore {
   void commit() { std::swap(now_, last_); }
 
   /// Of the last step.
-  std::size_t contacts() const { return last_.contacts; }
+  std::size_t contacts() const { return last_.histories.contacts(); }
   PairContactsView<Model> now() { return view(now_); }
   PairContactsView<Model> last() { return view(last_); }
   PairContactPlaces places() { return {candidate_.data(), bit_.data()}; }
   ContactResult* results() { return results_.data(); }
   std::size_t bytes() const {
     std::size_t sum = candidate_.bytes() + bit_.bytes() + results_.bytes();
-    for (const Step* s : {&now_, &last_}) sum += s->bits.bytes() + s->first.bytes() + s->values.bytes();
+    for (const Step* s : {&now_, &last_}) sum += s->bits.bytes() + s->first.bytes() + s->histories.bytes();
     return sum;
   }
 
  private:
   template <class T>
   using Array = typename Model::Executor::template Array<T>;
-  static constexpr auto size = static_cast<std::size_t>(history_size<Model>);
+  static constexpr auto size = HistoryStore<Model>::size;
 
   struct Step {
     Array<Bits> bits;
     Array<std::uint32_t> first;
-    Array<double> values;  // of the histories
-    std::size_t room = 0, contacts = 0;
+    HistoryStore<Model> histories;
   };
-  static void make_room(Step& s, std::size_t contacts) {
-    if (contacts > s.room) s.room = (contacts + contacts / 4 + 31) / 32 * 32;
-    s.values.make_room(size * s.room);
-  }
-  static PairContactsView<Model> view(Step& s) { return {s.bits.data(), s.first.data(), {s.values.data(), s.room}}; }
+  static PairContactsView<Model> view(Step& s) { return {s.bits.data(), s.first.data(), s.histories.view()}; }
   /// The first contact of each chunk, and one more.
   static std::vector<std::uint32_t> first_contacts(const WorldState<Model>& w) {
     std::vector<std::uint32_t> first = {0};

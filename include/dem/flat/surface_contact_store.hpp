@@ -1,5 +1,6 @@
 #pragma once
 
+#include <dem/flat/history_store.hpp>
 #include <dem/flat/surface_kernels.hpp>
 #include <dem/world/state.hpp>
 
@@ -41,18 +42,15 @@ class SurfaceContactStore {
     make_room(last_, contacts);
     last_.first.upload_to(0, first.data(), grains + 1);
     last_.key.upload_to(0, key.data(), contacts);
-    for (std::size_t h = 0; h < size; ++h) last_.values.upload_to(h * last_.room, columns[h].data(), contacts);
+    last_.histories.upload(columns);
   }
   /// Hands the contacts of the last step to the chunks.
   void bring_down(WorldState<Model>& w) {
     std::vector<std::uint32_t> first(grains_ + 1);
-    std::vector<std::uint64_t> key(last_.contacts);
-    std::vector<std::vector<double>> columns(size, std::vector<double>(last_.contacts));
+    std::vector<std::uint64_t> key(contacts());
+    const auto columns = last_.histories.download();
     last_.first.download(first.data(), grains_ + 1);
-    last_.key.download(key.data(), last_.contacts);
-    for (std::size_t h = 0; h < size; ++h) {
-      last_.values.download(columns[h].data(), last_.contacts, h * last_.room);
-    }
+    last_.key.download(key.data(), contacts());
     w.executor.for_each(w.chunks.size(), [&](std::size_t c) {
       const std::size_t begin = c * chunk_size, end = std::min(begin + chunk_size, grains_);
       std::vector<std::pair<std::uint64_t, std::uint32_t>> found;  // key in the chunk, and contact
@@ -81,7 +79,7 @@ class SurfaceContactStore {
   void commit() { std::swap(now_, last_); }
 
   /// Of the last step.
-  std::size_t contacts() const { return last_.contacts; }
+  std::size_t contacts() const { return last_.histories.contacts(); }
   /// How many each grain has, and whose each is, in this step.
   std::uint32_t* count() { return count_.data(); }
   std::uint32_t* grain_of() { return grain_.data(); }
@@ -90,28 +88,25 @@ class SurfaceContactStore {
   ContactResult* results() { return results_.data(); }
   std::size_t bytes() const {
     std::size_t sum = count_.bytes() + grain_.bytes() + results_.bytes();
-    for (const Step* s : {&now_, &last_}) sum += s->first.bytes() + s->key.bytes() + s->values.bytes();
+    for (const Step* s : {&now_, &last_}) sum += s->first.bytes() + s->key.bytes() + s->histories.bytes();
     return sum;
   }
 
  private:
   template <class T>
   using Array = typename Model::Executor::template Array<T>;
-  static constexpr auto size = static_cast<std::size_t>(history_size<Model>);
+  static constexpr auto size = HistoryStore<Model>::size;
 
   struct Step {
     Array<std::uint32_t> first;
     Array<std::uint64_t> key;
-    Array<double> values;  // of the histories
-    std::size_t room = 0, contacts = 0;
+    HistoryStore<Model> histories;
   };
   static void make_room(Step& s, std::size_t contacts) {
-    if (contacts > s.room) s.room = (contacts + contacts / 4 + 31) / 32 * 32;
-    s.key.make_room(s.room);
-    s.values.make_room(size * s.room);
-    s.contacts = contacts;
+    s.histories.make_room(contacts);
+    s.key.make_room(s.histories.room());
   }
-  static SurfaceContactsView<Model> view(Step& s) { return {s.first.data(), s.key.data(), {s.values.data(), s.room}}; }
+  static SurfaceContactsView<Model> view(Step& s) { return {s.first.data(), s.key.data(), s.histories.view()}; }
   static std::size_t row_of(std::size_t chunk, std::uint64_t key) {
     return chunk * chunk_size + grain::SurfaceKey{key}.local();
   }
