@@ -9,8 +9,18 @@
 #include <cstdint>
 #include <cstring>
 #include <limits>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
 
 namespace dem::io {
+
+/// A part of an STL file.
+struct StlSolid {
+  std::string name;  ///< as in the file; often empty, and always of a binary file
+  IndexedMesh mesh;
+};
 
 namespace detail {
 
@@ -53,9 +63,9 @@ inline IndexedMesh read_binary_stl(std::string_view bytes, const std::string& fi
   return mesh;
 }
 
-inline IndexedMesh read_ascii_stl(std::string_view text, const std::string& file) {
+inline std::vector<StlSolid> read_ascii_stl(std::string_view text, const std::string& file) {
   Words words(text, file);
-  IndexedMesh mesh;
+  std::vector<StlSolid> solids;
   const auto expect = [&](std::string_view wanted) {
     const std::string_view word = words.next();
     if (lower(word) == wanted) return;
@@ -67,7 +77,8 @@ inline IndexedMesh read_ascii_stl(std::string_view text, const std::string& file
   };
   while (!words.at_end()) {
     expect("solid");
-    words.skip_line();  // the name
+    const std::string name = words.rest_of_line();
+    IndexedMesh mesh;
     while (lower(words.peek()) == "facet") {
       expect("facet");
       expect("normal");
@@ -87,17 +98,19 @@ inline IndexedMesh read_ascii_stl(std::string_view text, const std::string& file
     }
     expect("endsolid");
     words.skip_line();
+    if (!mesh.triangles.empty()) solids.push_back({name, std::move(mesh)});
   }
-  if (mesh.triangles.empty()) fail("'{}' holds no facets; export the mesh again", file);
-  return mesh;
+  if (solids.empty()) fail("'{}' holds no facets; export the mesh again", file);
+  return solids;
 }
 
 }  // namespace detail
 
-/// The mesh in the bytes of an STL file; `file` is its name for messages. Each triangle has vertices of its own:
-/// `repaired` (geometry/mesh/mesh_repair.hpp), which surface::TriangleMesh calls, merges them. Lengths are as in the
-/// file, often mm: use IndexedMesh::scaled. Throws Error, with line or byte, for everything that is not an STL file.
-[[nodiscard]] inline IndexedMesh parse_stl(std::string_view bytes, const std::string& file) {
+/// The solids in the bytes of an STL file, at least one; `file` is its name for messages. A binary file is one solid.
+/// Each triangle has vertices of its own: `repaired` (geometry/mesh/mesh_repair.hpp), which surface::TriangleMesh
+/// calls, merges them. Lengths are as in the file, often mm: use IndexedMesh::scaled. Throws Error, with line or byte,
+/// for everything that is not an STL file.
+[[nodiscard]] inline std::vector<StlSolid> parse_stl_solids(std::string_view bytes, const std::string& file) {
   // A binary header may begin with "solid", too: a file of just the length that byte 80 announces is binary.
   const bool has_header = bytes.size() >= detail::stl_header;
   const bool length_fits =
@@ -112,7 +125,19 @@ inline IndexedMesh read_ascii_stl(std::string_view text, const std::string& file
         "more); export the mesh again",
         file, bytes.size());
   }
-  return detail::read_binary_stl(bytes, file);
+  return {{"", detail::read_binary_stl(bytes, file)}};
+}
+/// Reads the solids of an STL file, as the blades of a mixer that move apart. Throws Error as parse_stl_solids does, or
+/// if the file cannot be read.
+[[nodiscard]] inline std::vector<StlSolid> read_stl_solids(const std::filesystem::path& path) {
+  return parse_stl_solids(read_file(path), path.string());
+}
+
+/// All solids as one mesh. Otherwise as parse_stl_solids.
+[[nodiscard]] inline IndexedMesh parse_stl(std::string_view bytes, const std::string& file) {
+  IndexedMesh all;
+  for (const StlSolid& solid : parse_stl_solids(bytes, file)) all += solid.mesh;
+  return all;
 }
 /// Reads an STL file. Throws Error as parse_stl does, or if the file cannot be read.
 [[nodiscard]] inline IndexedMesh read_stl(const std::filesystem::path& path) {

@@ -58,6 +58,23 @@ TEST_CASE("a mesh survives STL files, binary and ascii, and OBJ files") {
   CHECK(dem::repaired(parse_stl(binary_stl(wheel), "b.stl")).report.closed());
 }
 
+TEST_CASE("the solids of an STL file are told apart by their names") {
+  const IndexedMesh box = mesh::box({1, 2, 3});
+  std::string text = ascii_stl(box) + "solid \n endsolid\n" + ascii_stl(box.moved({5, 0, 0}).scaled(2));
+  text.replace(text.rfind("solid part of"), 13, "solid lid of");  // behind "end"
+  text.replace(text.rfind("\nsolid part of") + 1, 13, "solid lid of");
+  const auto solids = dem::io::parse_stl_solids(text, "two.stl");
+  REQUIRE(solids.size() == 2);  // one has no facets
+  CHECK(solids[0].name == "part of a machine");
+  CHECK(solids[1].name == "lid of a machine");
+  CHECK(volume(solids[0].mesh) == Approx(6.0));
+  CHECK(volume(solids[1].mesh) == Approx(48.0));
+  const auto binary = dem::io::parse_stl_solids(binary_stl(box), "b.stl");
+  REQUIRE(binary.size() == 1);
+  CHECK(binary[0].name.empty());
+  CHECK(volume(binary[0].mesh) == Approx(6.0));
+}
+
 TEST_CASE("files of other programs: their line ends, their headers, their polygons") {
   const IndexedMesh box = mesh::box({1, 2, 3});
   std::string windows = ascii_stl(box), old_mac = ascii_stl(box);
