@@ -30,4 +30,14 @@ constexpr SurfaceCode<Model> code_for() {
   }
 }
 
+/// Whether a grain is buried in a surface, at a centre (m) in the world.
+template <class Model>
+bool is_buried_in(IsBuried<Model> is_buried, const MachineSurface<typename Model::Surfaces>& surface, const Body& body,
+                  const Vector3<double>& centre, double radius) {
+  if (is_buried == nullptr) return false;
+  const Matrix3<double> axes = body.motion.rotation * from_eigen(surface.rotation);
+  const Vector3<double> origin = body.motion.position + body.motion.rotation * from_eigen(surface.position);
+  return is_buried(surface.geometry, transpose_times(axes, centre - origin), radius);
+}
+
 }  // namespace dem::coupling

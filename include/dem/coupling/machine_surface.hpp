@@ -44,6 +44,17 @@ struct MachineSurface {
     v.reals("view", view), v("force", force, "N"), v("torque", torque, "N m");
   }
 
+  /// Whether another one of the same shape stands at the same place of the same body.
+  bool coincides_with(const MachineSurface& other) const {
+    if (body != other.body || geometry.index() != other.geometry.index()) return false;
+    if (position != other.position || rotation != other.rotation) return false;
+    const auto bounds_of = [](const auto& kind) { return kind.bounds(); };
+    const surface::Aabb a = std::visit(bounds_of, geometry), b = std::visit(bounds_of, other.geometry);
+    if (a.low != b.low || a.high != b.high) return false;  // quickly, as most differ
+    const auto fingerprint_of = [](const auto& kind) { return surface::fingerprint(kind); };
+    return std::visit(fingerprint_of, geometry) == std::visit(fingerprint_of, other.geometry);
+  }
+
   void follow(const Body& b) {
     const PartnerView last_view = view;
     view = {b.motion.position, 0.0, b.motion.velocity, b.fixed ? 0.0 : 1.0 / b.mass,

@@ -13,19 +13,16 @@ void check_buried_grains(WorldState<Model>& w) {
   const bool some_placed = w.placed.at == w.step;
   for (std::size_t s = 0; s < w.surfaces.size(); ++s) {
     const auto& surface = w.surfaces[s];
-    const auto is_buried = w.is_buried[s];
     const bool is_new = s >= w.surfaces_looked_into;
-    if (is_buried == nullptr || !surface.active || !(is_new || some_placed)) continue;
+    if (w.is_buried[s] == nullptr || !surface.active || !(is_new || some_placed)) continue;
     const Body& body = w.machine.bodies()[surface.body.index()];
-    const Matrix3<double> axes = body.motion.rotation * from_eigen(surface.rotation);
-    const Vector3<double> origin = body.motion.position + body.motion.rotation * from_eigen(surface.position);
     std::size_t count = 0, first = 0;
     for (std::size_t i = 0; i < p.count; ++i) {
       const auto& kind = w.species[p.species[i]];
       if (!is_new && !w.placed.has_grain(p.id[i])) continue;
       if (kind.is_held() || p.row_of[p.id[i]] == p.gone) continue;
-      const Vector3<double> centre = transpose_times(axes, Vector3<double>(p.position[i]) - origin);
-      if (!is_buried(surface.geometry, centre, kind.shape.bounding_radius())) continue;
+      if (!coupling::is_buried_in<Model>(w.is_buried[s], surface, body, p.position[i], kind.shape.bounding_radius()))
+        continue;
       if (count == 0 || p.id[i] < p.id[first]) first = i;
       ++count;
     }

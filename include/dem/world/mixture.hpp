@@ -42,7 +42,7 @@ struct Mixture {
   /// Of all shares. Throws Error for a share that is negative or not finite, and if none is positive.
   double sum() const {
     double total = 0.0;
-    for (const Part& p : parts) total += require_non_negative(p.share, "share of a species in a mixture", "");
+    for (const Part& p : parts) total += require_non_negative(p.share, "share of a species in a mixture", "(no unit)");
     if (!(total > 0.0)) fail("a mixture has no grains in it; give it a species with a positive share");
     return total;
   }

@@ -15,6 +15,7 @@ class SurfaceTrial {
  public:
   explicit SurfaceTrial(const WorldState<Model>& w) : w_(w) { grain_.resize(1); }
 
+  /// Whether it would touch a surface, or lie so deep in one that nothing of it is felt.
   bool touches(SpeciesId kind, const Vec3& x, const Mat3& rotation) {
     if (w_.surfaces.empty()) return false;
     const auto& shape = w_.species[kind.index()].shape;
@@ -31,7 +32,11 @@ class SurfaceTrial {
     scratch_.law_of.resize(w_.species.size());
     for (std::size_t s = 0; s < w_.surfaces.size() && scratch_.hits.empty(); ++s) {
       const auto& surface = w_.surfaces[s];
-      if (surface.active && coupling::may_meet(w_.domain, low, high, surface, reach)) w_.find_hits[s](at, s);
+      if (!surface.active || !coupling::may_meet(w_.domain, low, high, surface, reach)) continue;
+      const Body& body = w_.machine.bodies()[surface.body.index()];
+      if (coupling::is_buried_in<Model>(w_.is_buried[s], surface, body, from_eigen(x), shape.bounding_radius()))
+        return true;
+      w_.find_hits[s](at, s);
     }
     return !scratch_.hits.empty();
   }

@@ -201,6 +201,19 @@ TEST_CASE("a solid inside out is turned; a hollow inside stays a hollow") {
   CHECK(dem::repaired(two).report.enclosed_volume == Approx(9.0));
 }
 
+TEST_CASE("what stands in a vessel is a solid, and what is within that a hollow, whichever way they were given") {
+  for (int k = 0; k < 8; ++k) {
+    IndexedMesh vessel = mesh::box({4, 4, 4});
+    const auto add = [&](const IndexedMesh& piece, int flag) { vessel += k & flag ? piece.flipped() : piece; };
+    add(mesh::box({2, 2, 2}), 1);                           // an obstacle ...
+    add(mesh::box({1, 1, 1}), 2);                           // ... that is hollow
+    add(mesh::box({0.5, 0.5, 0.5}).moved({1.5, 0, 0}), 4);  // and another one beside it
+    const auto r = dem::repaired(vessel, MeshFacing::inward);
+    CHECK(r.report.enclosed_volume == Approx(-64.0 + 8.0 - 1.0 + 0.125));
+    CHECK(r.report.components == 4);
+  }
+}
+
 TEST_CASE("a hub in the hole of a tyre is not inside of the tyre") {
   // Each has to look outward, whichever of them was given inside out.
   const IndexedMesh tyre = mesh::tyre(1.0, 0.25, 600), hub = mesh::cylinder(0.2, 0.2, 24),

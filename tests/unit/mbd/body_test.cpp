@@ -37,14 +37,22 @@ TEST_CASE("a closed mesh has the mass properties of the solid it encloses") {
 
   std::vector<std::array<std::uint32_t, 3>> inside_out = faces;
   for (auto& f : inside_out) std::swap(f[0], f[1]);
-  CHECK_THAT(message_of([&] { mesh_mass(corners, inside_out, 10.0); }), Contains("counter-clockwise"));
+  CHECK(mesh_mass(corners, inside_out, 10.0).mass == Approx(box.mass));  // it is turned round
+
+  // Beside it a second one, of 1 m^3, that looks inward: neither is subtracted.
+  std::vector<Vec3> both = corners;
+  for (int i = 0; i < 8; ++i) both.push_back(Vec3(110.0 + (i & 1), 50.0 + (i >> 1 & 1), i >> 2));
+  std::vector<std::array<std::uint32_t, 3>> of_both = faces;
+  for (const auto& f : inside_out) of_both.push_back({f[0] + 8, f[1] + 8, f[2] + 8});
+  CHECK(mesh_mass(both, of_both, 10.0).mass == Approx(70.0));
+
   std::vector<std::array<std::uint32_t, 3>> open(faces.begin(), faces.end() - 1);
   CHECK_THAT(message_of([&] { mesh_mass(corners, open, 10.0); }),
              Contains("not closed: 3 of its edges belong to one triangle only"));
   CHECK_THAT(message_of([&] {
                mesh_mass(corners, std::vector<std::array<std::uint32_t, 3>>{{0, 1, 9}}, 1.0);
              }),
-             Contains("corner 9"));
+             Contains("names vertex 9"));
 }
 
 TEST_CASE("two halves make a whole") {

@@ -2,6 +2,7 @@
 
 #include <dem/geometry/box/box.hpp>
 #include <dem/law/normal/linear_spring_dashpot.hpp>
+#include <dem/mbd/sensor/energy_balance.hpp>
 
 #include <array>
 
@@ -100,4 +101,37 @@ TEST_CASE("boxes that collide as they tumble lose energy where their dampers mak
     mean += kept / pairs;
   }
   CHECK(mean < 0.8);
+}
+
+TEST_CASE("what a fixed body does to grains as a motion moves it is work of its drive") {
+  using dem::mbd::Signal;
+  for (const bool by_pose : {false, true}) {
+    CAPTURE(by_pose);
+    dem::World<Balls> w(options({0, 0, -g}, 1e-5));
+    w.set_contact(sand<Balls>());
+    const auto ball = w.add_species(Sphere(1e-3));
+    w.add_grain({ball, {0, 0, 1e-3}});
+    auto& m = w.machine();
+    const BodyId lift = m.add_fixed_body("lift", {0, 0, 0});
+    w.add_surface(lift, dem::surface::Plane{});
+    if (by_pose) {
+      m.add_motion(dem::mbd::prescribed_pose("up", lift, [](double t) {
+        return dem::mbd::Pose{.position = {0, 0, 0.1 * t}};
+      }));
+    } else {
+      m.add_motion(dem::mbd::prescribed_position("up", lift, Vec3::UnitZ(), Signal::ramp(0, 0.1)));
+    }
+    w.prepare();
+    dem::mbd::EnergyBalance balance(m, {0, 0, -g}, w.time());
+    REQUIRE(w.run_for(0.2, [&] {
+      balance.follow(w.time());
+      return true;
+    }));
+    // It was lifted by 20 mm, and moves at 0.1 m/s; the damper of the first touch took some.
+    const double mass = w.species(ball).mass, lifted = mass * g * 0.02 + 0.5 * mass * 0.01;
+    CHECK(balance.work_of_drives() > lifted);
+    CHECK(balance.work_of_drives() < 1.05 * lifted);
+    CHECK(balance.work_of_contacts() == Approx(-balance.work_of_drives()).epsilon(1e-3));
+    CHECK(std::abs(balance.error()) < 1e-3 * lifted);
+  }
 }

@@ -86,6 +86,21 @@ TEST_CASE("a surface needs its body") {
   check_refused([&] { w.add_surface(w.ground(), dem::surface::Box({1, -1, 1})); }, "edge length of a box is -1 m");
 }
 
+TEST_CASE("a surface that is there already is refused, as both would push") {
+  dem::World<Balls> w;
+  const auto body = w.machine().add_fixed_body("table", {0, 0, 0});
+  const auto floor = w.add_surface(body, dem::surface::Plane{}, {.name = "floor"});
+  CHECK(error_of([&] { w.add_surface(body, dem::surface::Plane{}, {.name = "ground"}); }) ==
+        "surface 'ground' was given twice: surface 'floor' has its shape and its place on body 'table', and both would "
+        "push on what touches them; leave one out");
+  w.add_surface(body, dem::surface::Plane{}, {.name = "floor", .position = {0, 0, 1e-9}});  // another place
+  w.add_surface(w.ground(), dem::surface::Plane{});                                         // another body
+  w.add_surface(body, dem::surface::Box({1, 1, 1}));
+  w.add_surface(body, dem::surface::Box({1, 1, 2}));  // another shape
+  w.set_active(floor, false);
+  w.add_surface(body, dem::surface::Plane{}, {.name = "ground"});  // in place of one that is switched off
+}
+
 TEST_CASE("missing contact constants are named before the first step") {
   dem::World<Balls> w(options({0, 0, -9.81}));
   w.add_species(Sphere(1e-3), {"gravel", 2650.0});

@@ -53,6 +53,17 @@ TEST_CASE("an inlet gives its mass flow, to half a grain at any time, and no gra
   for (const GrainId p : w.grains()) CHECK(w.velocity(p) == Vec3(0, 0, -1));
 }
 
+TEST_CASE("an inlet puts no grain deep into a solid of triangles, where nothing of it would be felt") {
+  auto w = fed();
+  const dem::IndexedMesh block = dem::mesh::box({0.1, 0.1, 0.1});
+  w.add_surface(w.ground(), dem::surface::TriangleMesh(block),
+                {.position = {-0.04, 0.01, 0.11}});  // as far as x = 10 mm
+  const auto in = w.add_inlet(above, {.grains = SpeciesId(0), .grain_flow = 5000, .velocity = {0, 0, -1}});
+  REQUIRE(w.run_for(0.02));
+  CHECK(w.inlet(in).grains() > 50);
+  for (const GrainId p : w.grains()) CHECK(w.position(p).x() > 0.011);
+}
+
 TEST_CASE("an inlet starts and ends when it should, and gives its total") {
   auto w = fed();
   const double mass = w.species(SpeciesId(0)).mass;

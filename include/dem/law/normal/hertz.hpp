@@ -10,7 +10,8 @@ namespace dem::contact {
 /// (Tsuji et al. 1992, doi:10.1016/0032-5910(92)88030-L; closed form by Antypov and Elliott 2011):
 ///   F = k d^(3/2) + sqrt(5) b sqrt(k m) d^(1/4) d',   k = 4/3 E* sqrt(R*),   b the damping ratio.
 /// It stiffens with the overlap. The stable time step takes it at WorldOptions::overlap_limit, the overlap above which
-/// a run is reported as broken. So a limit near the expected overlaps (a hundredth, say) allows longer steps.
+/// a run is reported as broken. So a limit a few times the expected overlaps allows longer steps; impacts overlap more
+/// than grains at rest.
 struct Hertz {
   template <class T>
   struct Parameters {

@@ -21,7 +21,9 @@ struct BodySpec {
   Mat3 rotation = Mat3::Identity();      ///< reference frame -> global
   Vec3 velocity = Vec3::Zero();          ///< m/s, of the origin of the reference frame, global
   Vec3 angular_velocity = Vec3::Zero();  ///< rad/s, global axes
-  bool fixed = false;                    ///< never moves by itself; prescribed motion may still move it
+  /// Never moves by itself; prescribed motion may still move it. With a velocity and no motion it stands where it is
+  /// and carries what touches it along, as a belt does.
+  bool fixed = false;
 
   BodySpec at(const Vec3& p, const Mat3& r = Mat3::Identity()) const {
     BodySpec s = *this;

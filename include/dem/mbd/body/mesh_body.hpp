@@ -4,7 +4,7 @@
 
 #include <dem/core/macros.hpp>
 #include <dem/geometry/mesh/mesh_mass_properties.hpp>
-#include <dem/geometry/mesh/mesh_topology.hpp>
+#include <dem/geometry/mesh/mesh_repair.hpp>
 #include <dem/mbd/body/body_spec.hpp>
 
 #include <array>
@@ -15,19 +15,19 @@
 
 namespace dem::mbd {
 
-/// A closed triangle mesh (corners counter-clockwise seen from outside), of density in kg/m^3. Throws Error if a corner
-/// index is out of range, the volume is not positive, or the mesh is not closed: what an open one encloses is anything.
+/// A closed triangle mesh, of density in kg/m^3. It is `repaired` first, as that of a surface::TriangleMesh: vertices
+/// that lie on each other are one, and pieces look outward. A piece within another is a cavity if it looks the other
+/// way; pieces that overlap count twice where they do. Throws Error as `repaired` does, or if the mesh is not closed:
+/// what an open one encloses is anything.
 DEM_LAZY inline BodyMass mesh_mass(const IndexedMesh& mesh, double density) {
-  const BodyMass mass = of_density(mesh_mass_properties(mesh), density);
-  const MeshTopology topology = topology_of(mesh);
-  if (!topology.closed() || !topology.oriented()) {
+  const auto [solid, report] = repaired(mesh);
+  if (!report.closed() || !report.oriented()) {
     fail(
         "a mesh of a body is not closed: {} of its edges belong to one triangle only, {} to three or more, and along "
-        "{} the two triangles look different ways; merge its vertices and turn its triangles with repaired(), and "
-        "close the holes",
-        topology.boundary_edges, topology.non_manifold_edges, topology.inconsistent_edges);
+        "{} the two triangles look different ways; close the holes, and split what meets in an edge",
+        report.boundary_edges, report.non_manifold_edges, report.inconsistent_edges);
   }
-  return mass;
+  return of_density(mesh_mass_properties(solid), density);
 }
 DEM_LAZY inline BodyMass mesh_mass(std::span<const Vec3> vertices,
                                    std::span<const std::array<std::uint32_t, 3>> triangles, double density) {

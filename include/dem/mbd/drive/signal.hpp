@@ -81,7 +81,8 @@ class Signal {
       return {value(t), rate(t)};
     });
   }
-  /// A value that stays, with a rate that is given: for set points that come from outside every step.
+  /// A value that stays, with a rate that is given: for set points that come from outside every step. A fixed body that
+  /// prescribed_position moves by held(0, v) is a belt: it stays, and its surfaces run at v (m/s).
   static Signal held(double value, double rate) {
     Signal s(value);
     s.sample_.rate = finite(rate, "rate of a signal");

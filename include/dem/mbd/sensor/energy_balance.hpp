@@ -3,6 +3,7 @@
 #include <dem/mbd/sensor/energy.hpp>
 #include <dem/mbd/solver/mechanism.hpp>
 
+#include <algorithm>
 #include <memory>
 #include <vector>
 
@@ -59,7 +60,8 @@ inline double speed_of(const Parts& m, const PrescribedMotion& p) {
 /// with the order of the integrator; across an impact, a jump of a load or the end of a slip, with dt. What closes it
 /// not: a joint, coupling or spring that is switched on or off, a ratio that is changed, a body that is fixed while it
 /// moves, sub-steps that are raised, and derived stiffness that is lowered in another pose. Begin anew after these (a
-/// new EnergyBalance). It refers to the machine, which has to outlive it and must not be moved.
+/// new EnergyBalance). What a fixed body with a velocity but no motion (a belt) does is not counted. It refers to the
+/// machine, which has to outlive it and must not be moved.
 class EnergyBalance {
  public:
   EnergyBalance(const Mechanism& machine, const Vec3& gravity, double time = 0.0)
@@ -152,7 +154,7 @@ class EnergyBalance {
       p.actuators += u.force * coordinate_of(u, m.joints, m.bodies[u.a], m.bodies[u.b]).speed;
     }
     for (std::size_t i = 0; i < m.outside.size(); ++i) {
-      if (!m.bodies[i].fixed) p.contacts += power(m.outside[i], velocity_of(m.bodies[i]));
+      if (!m.bodies[i].fixed || is_moved(i)) p.contacts += power(m.outside[i], velocity_of(m.bodies[i]));
     }
     for_each_posed([&](const Body& b) { p.posed += power({b.force, b.torque}, velocity_of(b)); });
     return p;
@@ -168,6 +170,13 @@ class EnergyBalance {
     return v;
   }
 
+  /// Whether a motion moves a body itself, and no joint of it: what its drive does then may go to what it touches.
+  bool is_moved(std::size_t body) const {
+    const auto& motions = machine_->parts().motions;
+    return std::any_of(motions.begin(), motions.end(), [&](const PrescribedMotion& p) {
+      return p.spec.on && p.spec.target != MotionSpec::Target::joint && p.spec.body.index() == body;
+    });
+  }
   /// Bodies whose pose is prescribed: what moves them gives them their energy, and takes what all others do to them.
   template <class F>
   void for_each_posed(F&& f) const {
