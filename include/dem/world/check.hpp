@@ -22,6 +22,18 @@ std::string surface_in_words(const WorldState<Model>& w, std::size_t s) {
                       : dem::text("surface {} ('{}' of body '{}')", s, name, body);
 }
 
+/// Of densities that hardly any solid has, as those in g/cm^3 or t/mm^3, in words; else empty.
+template <class Model>
+std::string note_of_density(const WorldState<Model>& w) {
+  for (std::size_t k = 0; k < w.species.size(); ++k) {
+    if (const double density = w.species[k].density; density < 5.0 || density > 30e3) {
+      return dem::text("Species {} has a density of {:g} kg/m^3; is it in another unit? Sand has 2650 kg/m^3.", k,
+                       density);
+    }
+  }
+  return {};
+}
+
 /// Why a surface of a periodic world, where it is now, does not fit the cell, in words; empty if it does. Grains meet
 /// the nearest image of a short surface. A longer one has to reach beyond the cell as far as a grain may: its bounding
 /// radius, and half of the widest skin.

@@ -273,6 +273,7 @@ class World : public WorldGrains<M> {
     const auto add = [&](const std::string& note) { r.note += (r.note.empty() || note.empty() ? "" : " ") + note; };
     add(state_.time_step_note.value_or(""));
     add(state_.placed_note);
+    add(note_of_density(state_));
     for (const Inlet& inlet : state_.inlets) {
       if (inlet.is_short()) add(inlet.note());
     }

@@ -131,8 +131,9 @@ class WorldSetup {
   }
   /// A box that takes grains out while the world runs, and counts them: an outlet of a silo, the end of a conveyor. It
   /// may be without end: {{-1, -1, -HUGE_VAL}, {1, 1, -0.1}} takes what falls below z = -0.1 m. A grain that is taken
-  /// is gone at once for who looks; others feel it for up to 16 steps more, until the next neighbour list. Throws Error
-  /// for a box that is none.
+  /// is gone at once for who looks; others feel it for up to 16 steps more, until the next neighbour list. One
+  /// that crosses the box within a step is not taken: make the box thicker than the fastest goes in a step. Throws
+  /// Error for a box that is none.
   OutletId add_outlet(const surface::Aabb& region, const OutletOptions& o = {}) {
     require_grains_here("a new outlet");
     state_.outlets.emplace_back(region, o);

@@ -104,6 +104,18 @@ TEST_CASE("a grain that is pressed too deep is named") {
   CHECK(v.run(10).note.empty());
 }
 
+TEST_CASE("a density that looks like one in other units is noted, and runs as it is") {
+  for (const auto& [density, is_noted] : {std::pair(2.65, true), {2650.0, false}, {20.0, false}, {2.65e6, true}}) {
+    dem::World<Balls> w(options({0, 0, 0}));
+    w.set_contact(sand<Balls>());
+    w.add_species(Sphere(1e-3), {.density = 2650});
+    w.add_grain({w.add_species(Sphere(1e-3), {.density = density}), {0, 0, 0}});
+    const dem::StepReport report = w.run(1);
+    CHECK(report);
+    CHECK((report.note.find("Species 1 has a density of") != std::string::npos) == is_noted);
+  }
+}
+
 TEST_CASE("an overlap on the way is said to be one of stiffness, speed or load, not of where grains were placed") {
   dem::WorldOptions o = options({0, 0, 0}, 1e-6);
   o.overlap_limit = 0.1;
