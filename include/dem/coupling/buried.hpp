@@ -30,14 +30,13 @@ constexpr SurfaceCode<Model> code_for() {
   }
 }
 
-/// Whether a grain is buried in a surface, at a centre (m) in the world.
+/// Whether a grain is buried in a surface that follows its body, with its centre there (m) or at the nearest image.
 template <class Model>
-bool is_buried_in(IsBuried<Model> is_buried, const MachineSurface<typename Model::Surfaces>& surface, const Body& body,
-                  const Vector3<double>& centre, double radius) {
+bool is_buried_in(IsBuried<Model> is_buried, const MachineSurface<typename Model::Surfaces>& surface,
+                  [[maybe_unused]] const typename Model::Domain& domain, Vector3<double> centre, double radius) {
   if (is_buried == nullptr) return false;
-  const Matrix3<double> axes = body.motion.rotation * from_eigen(surface.rotation);
-  const Vector3<double> origin = body.motion.position + body.motion.rotation * from_eigen(surface.position);
-  return is_buried(surface.geometry, transpose_times(axes, centre - origin), radius);
+  if constexpr (Model::Domain::has_images) centre = domain.nearest(centre, surface.low, surface.high, radius);
+  return is_buried(surface.geometry, transpose_times(surface.axes, centre - surface.origin), radius);
 }
 
 }  // namespace dem::coupling

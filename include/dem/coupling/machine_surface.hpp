@@ -7,6 +7,8 @@
 
 #include <cstring>
 #include <string>
+#include <type_traits>
+#include <variant>
 
 namespace dem {
 
@@ -44,13 +46,16 @@ struct MachineSurface {
     v.reals("view", view), v("force", force, "N"), v("torque", torque, "N m");
   }
 
-  /// Whether another one of the same shape stands at the same place of the same body.
+  /// Whether another one of the same shape stands at the same place of the same body. Of kinds without a fingerprint()
+  /// the bounds tell, which may be those of another shape: so they must have one name as well.
   bool coincides_with(const MachineSurface& other) const {
     if (body != other.body || geometry.index() != other.geometry.index()) return false;
     if (position != other.position || rotation != other.rotation) return false;
     const auto bounds_of = [](const auto& kind) { return kind.bounds(); };
     const surface::Aabb a = std::visit(bounds_of, geometry), b = std::visit(bounds_of, other.geometry);
     if (a.low != b.low || a.high != b.high) return false;  // quickly, as most differ
+    if (!std::visit([](const auto& kind) { return surface::TellsFingerprint<std::decay_t<decltype(kind)>>; }, geometry))
+      return name == other.name;
     const auto fingerprint_of = [](const auto& kind) { return surface::fingerprint(kind); };
     return std::visit(fingerprint_of, geometry) == std::visit(fingerprint_of, other.geometry);
   }

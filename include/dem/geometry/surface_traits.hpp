@@ -121,12 +121,14 @@ DEM_HOT double radius_on(const S& s, double radius) {
   }
 }
 
+template <class S>
+concept TellsFingerprint = requires(const S& s) {
+  { s.fingerprint() } -> std::same_as<std::uint64_t>;
+};
 /// 64 bits that differ where surfaces do: those that a surface tells, or those of its bounds.
 template <class S>
 std::uint64_t fingerprint(const S& s) {
-  if constexpr (requires {
-                  { s.fingerprint() } -> std::same_as<std::uint64_t>;
-                }) {
+  if constexpr (TellsFingerprint<S>) {
     return s.fingerprint();
   } else {
     return fingerprint_of(s.bounds().low, s.bounds().high);

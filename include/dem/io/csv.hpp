@@ -31,7 +31,8 @@ struct CsvOptions {
   char separator = ',';
 
   /// A file that is there goes on: its rows whose first cell, a time or another number that grows, is at most this
-  /// stay, and later ones are dropped. Not a number: the file is written anew.
+  /// stay, and later ones are dropped. `digits` must tell the times of rows apart. Not a number: the file is written
+  /// anew.
   ///
   ///     dem::load(world, "half.h5");
   ///     io::CsvWriter csv("force.csv", {"time_s", "force_N"}, {.goes_on_after = world.time()});
@@ -128,10 +129,9 @@ class CsvWriter {
       fail("csv file '{}' cannot go on: its columns are '{}', not '{}'; give it another name, or move it away",
            path.string(), old.substr(0, old.find('\n')), names.substr(0, names.size() - 1));
     }
-    const double last = first_number(text_of(options_.goes_on_after), path);  // as rounded as the cells
     std::size_t end = names.size();
-    for (std::size_t next = 0; (next = old.find('\n', end)) != old.npos; end = next + 1) {
-      if (!(first_number(std::string_view(old).substr(end, next - end), path) <= last)) break;
+    for (std::size_t next = 0; (next = end_of_row(old, end)) != old.npos; end = next + 1) {
+      if (!comes_first(std::string_view(old).substr(end, next - end), path)) break;
       rows_ += 1;
     }
     write_file(path, std::string_view(old).substr(0, end));
@@ -139,12 +139,23 @@ class CsvWriter {
     return WriteFrom::end;
   }
 
-  [[nodiscard]] static double first_number(std::string_view line, const std::filesystem::path& path) {
-    double value = 0.0;
-    if (std::from_chars(line.data(), line.data() + line.size(), value).ec != std::errc()) {
-      fail("csv file '{}' cannot go on: its row '{}' does not begin with a number", path.string(), line);
+  /// Where the line ends that is not within quotes.
+  [[nodiscard]] static std::size_t end_of_row(std::string_view text, std::size_t from) {
+    bool is_quoted = false;
+    for (; from < text.size(); ++from) {
+      if (text[from] == '"') is_quoted = !is_quoted;
+      if (text[from] == '\n' && !is_quoted) return from;
     }
-    return value;
+    return text.npos;
+  }
+  /// Whether a row is of no later than goes_on_after; a cell may have been rounded up.
+  [[nodiscard]] bool comes_first(std::string_view row, const std::filesystem::path& path) const {
+    double value = 0.0;
+    const auto [end, error] = std::from_chars(row.data(), row.data() + row.size(), value);
+    if (error != std::errc() || std::isnan(value)) {
+      fail("csv file '{}' cannot go on: its row '{}' does not begin with a number", path.string(), row);
+    }
+    return value <= options_.goes_on_after || std::string_view(row.data(), end) == text_of(options_.goes_on_after);
   }
 
   /// As a cell. Not fmt::format_to, which would have every program compile fmt's own formatting anew.

@@ -12,16 +12,18 @@ void check_buried_grains(WorldState<Model>& w) {
   const auto& p = w.grains;
   const bool some_placed = w.placed.at == w.step;
   for (std::size_t s = 0; s < w.surfaces.size(); ++s) {
-    const auto& surface = w.surfaces[s];
+    if (w.is_buried[s] == nullptr || !w.surfaces[s].active) continue;
     const bool is_new = s >= w.surfaces_looked_into;
-    if (w.is_buried[s] == nullptr || !surface.active || !(is_new || some_placed)) continue;
-    const Body& body = w.machine.bodies()[surface.body.index()];
+    if (!is_new && !some_placed) continue;
+    auto surface = w.surfaces[s];
+    surface.follow(w.machine.bodies()[surface.body.index()]);
     std::size_t count = 0, first = 0;
     for (std::size_t i = 0; i < p.count; ++i) {
       const auto& kind = w.species[p.species[i]];
       if (!is_new && !w.placed.has_grain(p.id[i])) continue;
       if (kind.is_held() || p.row_of[p.id[i]] == p.gone) continue;
-      if (!coupling::is_buried_in<Model>(w.is_buried[s], surface, body, p.position[i], kind.shape.bounding_radius()))
+      if (!coupling::is_buried_in<Model>(w.is_buried[s], surface, w.domain, p.position[i],
+                                         kind.shape.bounding_radius()))
         continue;
       if (count == 0 || p.id[i] < p.id[first]) first = i;
       ++count;

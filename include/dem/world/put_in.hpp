@@ -33,8 +33,7 @@ class SurfaceTrial {
     for (std::size_t s = 0; s < w_.surfaces.size() && scratch_.hits.empty(); ++s) {
       const auto& surface = w_.surfaces[s];
       if (!surface.active || !coupling::may_meet(w_.domain, low, high, surface, reach)) continue;
-      const Body& body = w_.machine.bodies()[surface.body.index()];
-      if (coupling::is_buried_in<Model>(w_.is_buried[s], surface, body, from_eigen(x), shape.bounding_radius()))
+      if (coupling::is_buried_in<Model>(w_.is_buried[s], surface, w_.domain, from_eigen(x), shape.bounding_radius()))
         return true;
       w_.find_hits[s](at, s);
     }

@@ -214,6 +214,16 @@ TEST_CASE("what stands in a vessel is a solid, and what is within that a hollow,
   }
 }
 
+TEST_CASE("solids in a vessel that overlap stay solids") {
+  // The block's box lies in that of the hub, whose round wall it crosses.
+  IndexedMesh vessel = mesh::box({4, 4, 4}).flipped();
+  const IndexedMesh hub = mesh::cylinder(1.0, 1.0, 32), block = mesh::box({0.3, 0.3, 0.3}).moved({0.7, 0.7, 0});
+  vessel += hub;
+  vessel += block;
+  const auto r = dem::repaired(vessel, MeshFacing::inward);
+  CHECK(r.report.flipped_triangles == 0);
+}
+
 TEST_CASE("a hub in the hole of a tyre is not inside of the tyre") {
   // Each has to look outward, whichever of them was given inside out.
   const IndexedMesh tyre = mesh::tyre(1.0, 0.25, 600), hub = mesh::cylinder(0.2, 0.2, 24),

@@ -135,6 +135,16 @@ TEST_CASE("a csv file goes on after a time, whatever an earlier run wrote later"
   write(0, 1, {.digits = 1});
   CHECK(write(0.75, 1, {.digits = 1, .goes_on_after = 0.625}) == 8);
 
+  // Steps, which are not rounded, and texts with line ends.
+  const auto count = [&](int from, int to, double after) {
+    CsvWriter csv(folder / "steps.csv", {"step", "note"}, {.digits = 3, .goes_on_after = after});
+    for (int k = from; k < to; k += 10) csv.row(k, "a\n5 b");
+    return csv.rows();
+  };
+  CHECK(count(12300, 12400, 0.0) == 10);
+  CHECK(count(12350, 12400, 12340) == 10);
+  CHECK(count(0, 0, 12345) == 5);
+
   CHECK(error_of([&] {
           CsvWriter(path, {"time_s", "pull_N"}, {.goes_on_after = 0});
         }) == "csv file '" + path.string() +
@@ -145,6 +155,10 @@ TEST_CASE("a csv file goes on after a time, whatever an earlier run wrote later"
           CsvWriter(path, {"time_s", "force_N"}, {.goes_on_after = 0});
         }) == "csv file '" + path.string() + "' cannot go on: its row 'sand,1' does not begin with a number");
   CHECK(read_file(path) == "time_s,force_N\nsand,1\n");
+  dem::io::write_file(path, "time_s,force_N\nnan,1\n");
+  CHECK(error_of([&] {
+          CsvWriter(path, {"time_s", "force_N"}, {.goes_on_after = 0});
+        }) == "csv file '" + path.string() + "' cannot go on: its row 'nan,1' does not begin with a number");
 }
 
 TEST_CASE("csv mistakes are told") {

@@ -46,6 +46,15 @@ TEST_CASE("a closed mesh has the mass properties of the solid it encloses") {
   for (const auto& f : inside_out) of_both.push_back({f[0] + 8, f[1] + 8, f[2] + 8});
   CHECK(mesh_mass(both, of_both, 10.0).mass == Approx(70.0));
 
+  // Solids that touch at a face or an edge stay two, whose edges are not shared.
+  for (const Vec3& beside : {Vec3(1, 0, 0), Vec3(1, 2, 0)}) {
+    std::vector<Vec3> touching = corners;
+    for (const Vec3& c : corners) touching.push_back(c + beside);
+    std::vector<std::array<std::uint32_t, 3>> of_two = faces;
+    for (const auto& f : faces) of_two.push_back({f[0] + 8, f[1] + 8, f[2] + 8});
+    CHECK(mesh_mass(touching, of_two, 10.0).mass == Approx(120.0));
+  }
+
   std::vector<std::array<std::uint32_t, 3>> open(faces.begin(), faces.end() - 1);
   CHECK_THAT(message_of([&] { mesh_mass(corners, open, 10.0); }),
              Contains("not closed: 3 of its edges belong to one triangle only"));

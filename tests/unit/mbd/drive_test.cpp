@@ -163,8 +163,8 @@ TEST_CASE("set points, loads and motions that are no numbers are refused where t
                 "actuator 'idler' has no position_gain", "to drive at this speed", "Signal::ramp(0, 4)");
   const ActuatorId idler = m.add_actuator(joint_actuator("idler", axle, 0.0, 1.0));
   check_refused([&] { m.set_target(idler, 4.0); }, "actuator 'idler' has no position_gain", "Signal::ramp(0, 4)");
-  m.set_target(idler, 0.0);  // a brake
-  m.set_target(idler, 4.0, 2.0);
+  m.set_target(idler, 0.0);       // a brake
+  m.set_target(idler, 4.0, 0.0);  // a controller whose rate passes through zero
   m.add_actuator(linear_actuator("shock", m.ground(), {-1, 0, 0}, cart, {0, 0, 0}, 0.0, 1.0, 1.0));  // a damper
   check_refused([&] { m.set_throttle(engine, nan); }, "throttle of a motor is nan");
   check_refused([&] { m.set_throttle(ram, 1.0); }, "actuator 'ram' is no motor", "use set_target");

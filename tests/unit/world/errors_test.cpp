@@ -90,7 +90,7 @@ TEST_CASE("a surface that is there already is refused, as both would push") {
   dem::World<Balls> w;
   const auto body = w.machine().add_fixed_body("table", {0, 0, 0});
   const auto floor = w.add_surface(body, dem::surface::Plane{}, {.name = "floor"});
-  CHECK(error_of([&] { w.add_surface(body, dem::surface::Plane{}, {.name = "ground"}); }) ==
+  CHECK(message_of([&] { w.add_surface(body, dem::surface::Plane{}, {.name = "ground"}); }) ==
         "surface 'ground' was given twice: surface 'floor' has its shape and its place on body 'table', and both would "
         "push on what touches them; leave one out");
   w.add_surface(body, dem::surface::Plane{}, {.name = "floor", .position = {0, 0, 1e-9}});  // another place

@@ -1,6 +1,8 @@
 #include "core/error_of.hpp"
 #include "scenes.hpp"
 
+#include <dem/geometry/mesh/mesh_shapes.hpp>
+
 #include <cmath>
 #include <tuple>
 

@@ -3,6 +3,8 @@
 #include "scenes.hpp"
 
 #include <dem/domain/periodic.hpp>
+#include <dem/geometry/mesh/mesh_shapes.hpp>
+#include <dem/geometry/mesh/triangle_mesh.hpp>
 #include <dem/soil/averages.hpp>
 #include <dem/world/contacts.hpp>
 #include <dem/world/energy.hpp>
@@ -125,6 +127,19 @@ TEST_CASE("what goes on in a cell that repeats in all directions keeps its momen
   for (const GrainId p : w.grains()) {
     CHECK(w.position(p).z() > -2e-4);
     CHECK(w.position(p).z() < 0.02 + 2e-4);
+  }
+}
+
+TEST_CASE("a grain is also buried in the image of a solid that reaches across a border") {
+  for (const double x : {0.001, length - 0.001, 0.5 * length}) {
+    CAPTURE(x);
+    dem::World<PeriodicCubes> w(cell(Vec3::Zero(), {.x = true, .y = true}));
+    set_up(w);
+    const dem::surface::TriangleMesh block(dem::mesh::box({0.016, 0.016, 0.016}));
+    w.add_surface(w.ground(), block, {.name = "block", .position = {0, 0.5 * width, 0}});  // from x = -8 to 8 mm
+    w.add_grain({SpeciesId(0), {x, 0.5 * width, 0}});
+    const std::string refusal = message_of([&] { (void)w.run(1); });
+    CHECK((refusal.find("lies within surface 'block'") != std::string::npos) == (x != 0.5 * length));
   }
 }
 

@@ -52,6 +52,16 @@ DEM_LAZY inline bool encloses(const IndexedMesh& mesh, const std::vector<std::ui
   return false;
 }
 
+/// Whether none of closed piece b lies outside of closed piece a, by the middles of some of its triangles.
+DEM_LAZY inline bool encloses_all(const IndexedMesh& mesh, const std::vector<std::uint32_t>& a,
+                                  const std::vector<std::uint32_t>& b) {
+  for (std::size_t k = 0; k < b.size(); k += 1 + b.size() / 64) {
+    const Vec3 middle = (mesh.corner(b[k], 0) + mesh.corner(b[k], 1) + mesh.corner(b[k], 2)) / 3.0;
+    if (std::abs(winding_number(mesh, a, middle)) < 1e-3) return false;
+  }
+  return true;
+}
+
 /// Makes neighbours look the same way, piece by piece: the smaller part of a piece is turned round. Then a closed piece
 /// that lies in no other one is made to look as asked. What lies in a solid is turned with it, so a hollow stays one.
 /// What stands in a cavity is a solid, what lies in that a cavity, and so on, whichever way they looked. Returns how
@@ -113,8 +123,11 @@ DEM_LAZY inline std::pair<std::size_t, std::size_t> orient(IndexedMesh& mesh, Me
       for (const std::uint32_t t : pieces[k]) std::swap(mesh.triangles[t][1], mesh.triangles[t][2]);
     };
     for (std::size_t k = 0; k < pieces.size(); ++k) {
-      std::size_t around = 0;  // pieces in which it lies
-      for (std::size_t outer = 0; outer < pieces.size(); ++outer) around += holds(outer, k) ? 1 : 0;
+      std::size_t around = 0;  // pieces in which it lies, whole where these tell which way it looks
+      for (std::size_t outer = 0; outer < pieces.size(); ++outer) {
+        around +=
+            holds(outer, k) && (facing != MeshFacing::inward || encloses_all(mesh, pieces[outer], pieces[k])) ? 1 : 0;
+      }
       if (facing == MeshFacing::inward) {
         if ((around % 2 == 0) == (volume[k] > 0.0)) turn(k);
       } else if (around == 0 && volume[k] < 0.0) {

@@ -153,7 +153,8 @@ class TriangleMesh {
   }
 
   /// Whether a point of the solid is so far (m) from its surface that no sample point of a grain with that bounding
-  /// radius about it is found. `points`: whether any sample point has no radius. A sheet or a cavity hides nothing.
+  /// radius about it is found. `points`: whether any sample point has no radius. A sheet, a cavity
+  /// and what stands in it hide nothing.
   bool hides(const Vector3<double>& p, double radius, bool points) const {
     if (options_.side != MeshSide::solid || options_.facing == MeshFacing::inward || !near(p, 0.0)) return false;
     Minimum nearest;

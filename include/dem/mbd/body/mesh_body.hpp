@@ -15,11 +15,18 @@
 
 namespace dem::mbd {
 
-/// A closed triangle mesh, of density in kg/m^3. It is `repaired` first, as that of a surface::TriangleMesh: vertices
-/// that lie on each other are one, and pieces look outward. A piece within another is a cavity if it looks the other
-/// way; pieces that overlap count twice where they do. Throws Error as `repaired` does, or if the mesh is not closed:
+/// A closed triangle mesh, of density in kg/m^3. Pieces that look inward are turned round; a piece within another is a
+/// cavity if it looks the other way. Pieces that overlap count twice where they do. A mesh that is not closed as it is,
+/// as that of an STL file, is `repaired` first. Throws Error as `repaired` does, or if it is not closed then either:
 /// what an open one encloses is anything.
 DEM_LAZY inline BodyMass mesh_mass(const IndexedMesh& mesh, double density) {
+  check_indices(mesh);
+  const MeshTopology given = topology_of(mesh);
+  if (given.closed()) {  // solids that touch stay apart
+    IndexedMesh solid = mesh;
+    dem::detail::orient(solid, MeshFacing::outward);
+    if (topology_of(solid).oriented()) return of_density(mesh_mass_properties(solid), density);
+  }
   const auto [solid, report] = repaired(mesh);
   if (!report.closed() || !report.oriented()) {
     fail(

@@ -174,7 +174,11 @@ class Mechanism {
   void set_friction_preload(JointId id, double newtons) { detail::set_friction_preload(parts_, id, newtons); }
   /// Sets the set point (m or rad) and its rate from outside, for instance every step. Throws Error unless finite, and
   /// for a motor, which has a throttle instead.
-  void set_target(ActuatorId id, double value, double rate = 0.0) { set_target(id, Signal::held(value, rate)); }
+  void set_target(ActuatorId id, double value) { set_target(id, Signal(value)); }
+  /// A controller's, which may pass through a rate of 0.
+  void set_target(ActuatorId id, double value, double rate) {
+    detail::set_target(known(parts_.actuators, id, "actuator").spec, Signal::held(value, rate), false);
+  }
   void set_target(ActuatorId id, Signal signal) {
     detail::set_target(known(parts_.actuators, id, "actuator").spec, std::move(signal));
   }
