@@ -22,6 +22,20 @@ std::string surface_in_words(const WorldState<Model>& w, std::size_t s) {
                       : dem::text("surface {} ('{}' of body '{}')", s, name, body);
 }
 
+/// Of surfaces that are there twice, in words; else empty.
+template <class Model>
+std::string note_of_twins(const WorldState<Model>& w) {
+  for (std::size_t b = 1; b < w.surfaces.size(); ++b) {
+    for (std::size_t a = 0; a < b; ++a) {
+      const auto &first = w.surfaces[a], &second = w.surfaces[b];
+      if (!first.active || !second.active || !second.coincides_with(first)) continue;
+      return dem::text("Surfaces {} and {} of body '{}' have one shape and one place: both push on what touches them.",
+                       a, b, w.machine.bodies()[first.body.index()].name);
+    }
+  }
+  return {};
+}
+
 /// Of densities that hardly any solid has, as those in g/cm^3 or t/mm^3, in words; else empty.
 template <class Model>
 std::string note_of_density(const WorldState<Model>& w) {

@@ -89,6 +89,7 @@ struct WorldState {
   bool list_valid = false;        ///< false after grains were added or moved by hand
   bool grains_added = false;      ///< by hand, and are in no list yet: see World::prepare
   Placed placed;
+  std::string twins_note;                ///< in words, of surfaces that are there twice
   std::string placed_note;               ///< in words, of a deep overlap of what was placed before or within this run
   std::uint64_t rebuilds = 0;            ///< neighbour lists made
   std::set<std::uint32_t> known_lost;    ///< ids of grains that were reported as lost

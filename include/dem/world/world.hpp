@@ -60,6 +60,7 @@ class World : public WorldGrains<M> {
       coupling::list_pairs(state_.body_contacts, std::span(std::as_const(state_.surfaces)), state_.materials);
       choose_time_step(state_, initialised_);
       checked_ = true;
+      state_.twins_note = note_of_twins(state_);
       state_.time_step_note.reset();
     }
     if (!state_.time_step_note) state_.time_step_note = note_of_time_step(state_);
@@ -274,6 +275,7 @@ class World : public WorldGrains<M> {
     add(state_.time_step_note.value_or(""));
     add(state_.placed_note);
     add(note_of_density(state_));
+    add(state_.twins_note);
     for (const Inlet& inlet : state_.inlets) {
       if (inlet.is_short()) add(inlet.note());
     }

@@ -249,13 +249,6 @@ class WorldSetup {
       rotation = built.reference_axes * o.rotation;
     }
     typename WorldState<Model>::Surface s{o.name, body, state_.materials.id(o.material), geometry, position, rotation};
-    for (const auto& other : state_.surfaces) {
-      if (!other.active || !s.coincides_with(other)) continue;
-      fail(
-          "surface '{}' was given twice: surface '{}' has its shape and its place on body '{}', and both would push on "
-          "what touches them; leave one out",
-          o.name, other.name, state_.machine.bodies()[body.index()].name);
-    }
     state_.surfaces.push_back(s);
     state_.find_hits.push_back(code.find_hits);
     state_.is_buried.push_back(code.is_buried);

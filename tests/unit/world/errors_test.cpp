@@ -86,19 +86,29 @@ TEST_CASE("a surface needs its body") {
   check_refused([&] { w.add_surface(w.ground(), dem::surface::Box({1, -1, 1})); }, "edge length of a box is -1 m");
 }
 
-TEST_CASE("a surface that is there already is refused, as both would push") {
-  dem::World<Balls> w;
-  const auto body = w.machine().add_fixed_body("table", {0, 0, 0});
-  const auto floor = w.add_surface(body, dem::surface::Plane{}, {.name = "floor"});
-  CHECK(message_of([&] { w.add_surface(body, dem::surface::Plane{}, {.name = "ground"}); }) ==
-        "surface 'ground' was given twice: surface 'floor' has its shape and its place on body 'table', and both would "
-        "push on what touches them; leave one out");
-  w.add_surface(body, dem::surface::Plane{}, {.name = "floor", .position = {0, 0, 1e-9}});  // another place
-  w.add_surface(w.ground(), dem::surface::Plane{});                                         // another body
-  w.add_surface(body, dem::surface::Box({1, 1, 1}));
-  w.add_surface(body, dem::surface::Box({1, 1, 2}));  // another shape
-  w.set_active(floor, false);
-  w.add_surface(body, dem::surface::Plane{}, {.name = "ground"});  // in place of one that is switched off
+TEST_CASE("surfaces that are there twice are noted, as both push") {
+  using dem::surface::Box, dem::surface::Plane;
+  const auto note = [](auto&& add) {
+    dem::World<Balls> w(options({0, 0, 0}, 1e-5));
+    w.set_contact(sand<Balls>());
+    const auto table = w.machine().add_fixed_body("table", {0, 0, 0});
+    w.add_surface(w.ground(), Box({1, 1, 1}), {.name = "block"});
+    const auto floor = w.add_surface(table, Plane{}, {.name = "floor"});
+    add(w, table, floor);
+    return w.run(1).note;
+  };
+  CHECK(note([](auto& w, auto table, auto) { w.add_surface(table, Plane{}, {.name = "floor"}); }) ==
+        "Surfaces 1 and 2 of body 'table' have one shape and one place: both push on what touches them.");
+  // Another place, another body, another size, or switched off.
+  CHECK(note([](auto& w, auto table, auto) {
+          w.add_surface(table, Plane{}, {.name = "floor", .position = {0, 0, 1e-9}});
+        }).empty());
+  CHECK(note([](auto& w, auto, auto) { w.add_surface(w.ground(), Plane{}, {.name = "floor"}); }).empty());
+  CHECK(note([](auto& w, auto, auto) { w.add_surface(w.ground(), Box({1, 1, 2}), {.name = "block"}); }).empty());
+  CHECK(note([](auto& w, auto table, auto floor) {
+          w.set_active(floor, false);
+          w.add_surface(table, Plane{}, {.name = "floor"});
+        }).empty());
 }
 
 TEST_CASE("missing contact constants are named before the first step") {
