@@ -108,7 +108,7 @@ inline std::vector<StlSolid> read_ascii_stl(std::string_view text, const std::st
 
 /// The solids in the bytes of an STL file, at least one; `file` is its name for messages. A binary file is one solid.
 /// Each triangle has vertices of its own: `repaired` (geometry/mesh/mesh_repair.hpp), which surface::TriangleMesh and
-/// mesh_body calls, merges them. Lengths are as in the file, often mm: use IndexedMesh::scaled. Throws Error, with line
+/// mesh_body call, merges them. Lengths are as in the file, often mm: use IndexedMesh::scaled. Throws Error, with line
 /// or byte, for everything that is not an STL file.
 [[nodiscard]] inline std::vector<StlSolid> parse_stl_solids(std::string_view bytes, const std::string& file) {
   // A binary header may begin with "solid", too: a file of just the length that byte 80 announces is binary.

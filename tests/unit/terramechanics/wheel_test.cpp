@@ -37,10 +37,10 @@ TEST_CASE("a frictionless wheel is towed with Bekker's compaction resistance") {
 }
 
 TEST_CASE("a wheel of the Lunar Roving Vehicle meets the resistance of a published example") {
-  // D. L. Akin, Terramechanics, lecture ENAE 788X, University of Maryland: a wheel 0.813 m in diameter and 0.229 m wide
-  // carries 259 N on lunar soil (k_c = 1400 N/m^2, k_phi = 820 kN/m^3, n = 1). Bekker's formula for it gives a
-  // compaction resistance of 28.3 N, 113 N on four wheels. It takes the rim for a parabola, which leaves out terms of
-  // the order z/D = 0.02.
+  // D. L. Akin, Terramechanics, lecture ENAE 788X, University of Maryland, as a program of that course quotes it: a
+  // wheel 0.813 m in diameter and 0.229 m wide carries 259 N on lunar soil (k_c = 1400 N/m^2, k_phi = 820 kN/m^3, n =
+  // 1). Bekker's formula for it gives a compaction resistance of 28.3 N, 113 N on four wheels. It takes the rim for a
+  // parabola, which leaves out terms of the order z/D = 0.02.
   Soil lunar = without_shear(820e3, 1.0);
   lunar.pressure = Bekker{1400.0, 820e3, 1.0};
   const auto f = wheel_under_load({.radius = 0.5 * 0.813, .width = 0.229}, lunar, {0.0}, 259.0);

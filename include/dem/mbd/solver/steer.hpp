@@ -19,10 +19,10 @@ DEM_COLD inline void set_friction_preload(Parts& parts, JointId id, double newto
   fail("joint '{}' has no friction to preload; add it with with_friction", known(parts.joint_specs, id, "joint").name);
 }
 
-/// `is_all`: no other set point follows soon, so one that would brake by mistake is refused.
-DEM_COLD inline void set_target(ActuatorSpec& s, Signal signal, bool is_all = true) {
+/// `lasts`: it stays until another is given, so a number that would brake by mistake is refused.
+DEM_COLD inline void set_target(ActuatorSpec& s, Signal signal, bool lasts = true) {
   if (s.has_throttle()) fail("actuator '{}' is a motor, which has no set point; use set_throttle", s.name);
-  if (is_all) refuse_constant_speed(s, signal, dem::text("actuator '{}'", s.name));
+  if (lasts) refuse_constant_speed(s, signal, dem::text("actuator '{}'", s.name));
   s.set_point = std::move(signal);
 }
 DEM_COLD inline void set_throttle(ActuatorSpec& s, double throttle) {
