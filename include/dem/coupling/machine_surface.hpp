@@ -5,6 +5,7 @@
 #include <dem/grain/partner_view.hpp>
 #include <dem/mbd/body/body.hpp>
 
+#include <algorithm>
 #include <cstring>
 #include <string>
 #include <type_traits>
@@ -30,6 +31,8 @@ struct MachineSurface {
   Vec3 low = Vec3::Zero(), high = Vec3::Zero();  ///< m, bounding box in global axes
   bool moved = true;  ///< where it is, or how fast its body goes, is not what it was in the evaluation before
   surface::Aabb swept = {Vec3::Zero(), Vec3::Zero()};  ///< m, around both places where it is and was
+  double went = 0.0;  ///< m, the farthest from one evaluation to the next, within this step
+  surface::Aabb went_over = {Vec3::Zero(), Vec3::Zero()};  ///< m, around the places before and after that
 
   PartnerView view = {};  ///< of the body
 
@@ -80,6 +83,8 @@ struct MachineSurface {
     low = to_eigen(origin) + (middle - half);
     high = to_eigen(origin) + (middle + half);
     swept = {low.cwiseMin(before.low), high.cwiseMax(before.high)};
+    const double way = moved ? norm(origin - last_origin) : 0.0;
+    if (way > went) went = way, went_over = swept;
   }
 };
 

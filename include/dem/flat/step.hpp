@@ -80,7 +80,9 @@ struct Step {
   /// Whether find_problem() would find one, and needs the grains to say which.
   static bool asks_for_a_look(const World& w, const Summary& s) {
     const bool reports_lost = w.borders && w.options.beyond_domain == BeyondDomain::report;
-    return s.not_finite > 0 || s.overlap > w.options.overlap_limit || (reports_lost && s.outside > 0);
+    const bool may_pass = std::any_of(w.surfaces.begin(), w.surfaces.end(),
+                                      [&](const auto& surface) { return may_have_passed(w, surface); });
+    return s.not_finite > 0 || s.overlap > w.options.overlap_limit || (reports_lost && s.outside > 0) || may_pass;
   }
 
   static void predict(World& w, Kept& kept) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <dem/coupling/surface_contacts.hpp>
 #include <dem/world/report.hpp>
 #include <dem/world/state.hpp>
 
@@ -115,7 +116,44 @@ std::string overlap_remedy(const WorldState<Model>& w, const DeepestContact& dee
       w.time_step);
 }
 
-/// Looks for grains of this process's chunks that are not finite, lost, or pressed too deep into something. Costs a
+/// Whether a surface went so far from one evaluation to the next that it may have passed the smallest grain.
+template <class Model>
+bool may_have_passed(const WorldState<Model>& w, const typename WorldState<Model>::Surface& s) {
+  return s.active && s.went > w.smallest_radius;
+}
+
+/// A grain of this process's chunks that a surface may have passed within the step without touching it, in words: it is
+/// where the surface went, which was farther than the grain's radius.
+template <class Model>
+StepReport find_passed_grain(const WorldState<Model>& w) {
+  const auto& p = w.grains;
+  const auto [first, last] = w.own_chunks();
+  for (std::size_t k = 0; k < w.surfaces.size(); ++k) {
+    if (!may_have_passed(w, w.surfaces[k])) [[likely]]
+      continue;
+    const auto& s = w.surfaces[k];
+    for (std::size_t c = first; c < last; ++c) {
+      if (!coupling::may_meet(w.domain, w.chunks[c].low, w.chunks[c].high, s.went_over, w.largest_radius)) continue;
+      for (std::size_t i = c * chunk_size, end = std::min(i + chunk_size, p.count); i < end; ++i) {
+        const double radius = w.species[p.species[i]].shape.bounding_radius();
+        const Vec3 x = to_eigen(p.position[i]);
+        if (radius >= s.went || p.row_of[p.id[i]] == p.gone || !coupling::may_meet(w.domain, x, x, s.went_over, radius))
+          continue;
+        std::string text = dem::text(
+            "{} went {:.3g} m within the step to t = {:.6g} s (step {}), more than the radius of grain {} "
+            "there, {:.3g} m, which it may have passed without touching it; let its motion go without a "
+            "jump (Signal::smooth_step), let it touch nothing meanwhile (set_active), or lower time_step "
+            "(now {:g} s)",
+            surface_in_words(w, k), s.went, w.time, w.step, p.id[i], radius, w.time_step);
+        return {StepReport::Problem::machine, w.time, w.step, p.name(p.id[i]), std::move(text), {}};
+      }
+    }
+  }
+  return {StepReport::Problem::none, w.time, w.step, {}, {}, {}};
+}
+
+/// Looks for grains of this process's chunks that are not finite, lost, pressed too deep into something, or passed by a
+/// surface. Costs a
 /// look at each chunk; only when something is wrong the grain is searched.
 template <class Model>
 StepReport find_problem_of_grains(WorldState<Model>& w) {
@@ -159,7 +197,7 @@ StepReport find_problem_of_grains(WorldState<Model>& w) {
                                w.options.overlap_limit, overlap_remedy(w, deepest)));
     }
   }
-  return {StepReport::Problem::none, w.time, w.step, {}, {}, {}};
+  return find_passed_grain(w);
 }
 
 /// The report of the lowest rank that has one, on every rank: that of the first chunk. The same message tells how far
@@ -190,6 +228,7 @@ StepReport find_problem(WorldState<Model>& w) {
   };
   const auto when = [&] { return dem::text("at t = {:.6g} s (step {})", w.time, w.step); };
   StepReport of_grains = find_problem_of_grains(w);
+  for (auto& s : w.surfaces) s.went = 0.0;  // looked at; the next step begins
   if constexpr (Model::Domain::has_ranks) of_grains = first_report(w, std::move(of_grains));
   if (!of_grains) return of_grains;
   if (w.body_contacts.worst_overlap > w.options.overlap_limit) [[unlikely]] {

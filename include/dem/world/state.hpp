@@ -19,6 +19,7 @@
 #include <dem/world/stopwatch.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <set>
 
@@ -75,6 +76,7 @@ struct WorldState {
   std::vector<Species<Shape>> species;
   std::vector<SpeciesInertia> inertia;  ///< of the species
   double largest_radius = 0.0;          ///< m, bounding radius
+  double smallest_radius = HUGE_VAL;    ///< m, the same
 
   GrainColumns<Shape, Integrator> grains;
   std::vector<Chunk<Model>> chunks;

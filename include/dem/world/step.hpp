@@ -157,6 +157,7 @@ void initialise(WorldState<Model>& w) {
     gather_forces(w, c);
     grain::initialise_chunk<Model>(c, w.grains, w.inertia, w.options.gravity);
   });
+  for (auto& s : w.surfaces) s.went = 0.0;  // by hand, not within a step
   if constexpr (Model::Domain::has_ranks) gather_rows(w);
 }
 

@@ -57,6 +57,7 @@ class WorldSetup {
     state_.species.push_back(s);
     state_.inertia.push_back(s.for_motion());
     state_.largest_radius = std::max(state_.largest_radius, shape.bounding_radius());
+    state_.smallest_radius = std::min(state_.smallest_radius, shape.bounding_radius());
     checked_ = false;
     return SpeciesId(state_.species.size() - 1);
   }
