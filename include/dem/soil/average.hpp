@@ -4,7 +4,10 @@
 #include <dem/geometry/surface.hpp>
 #include <dem/soil/kernel.hpp>
 
+#include <algorithm>
 #include <array>
+#include <cmath>
+#include <optional>
 #include <vector>
 
 namespace dem::soil {
@@ -53,6 +56,16 @@ struct AverageGrid {
   double volume() const { return edge(0) * edge(1) * edge(2); }  ///< m^3, of a cell
   Vec3 middle(int i, int j, int k) const {
     return box.low + Vec3((i + 0.5) * edge(0), (j + 0.5) * edge(1), (k + 0.5) * edge(2));
+  }
+  /// The cell, [low, high), that a place (m) is in; the box's upper faces belong to its last cells.
+  std::optional<std::size_t> cell_at(const Vec3& x) const {
+    std::array<int, 3> at{};
+    for (int a = 0; a < 3; ++a) {
+      const auto k = static_cast<std::size_t>(a);
+      if (!(x[a] >= box.low[a] && x[a] <= box.high[a])) return {};
+      at[k] = std::min(static_cast<int>((x[a] - box.low[a]) / edge(a)), cells[k] - 1);
+    }
+    return index(at[0], at[1], at[2]);
   }
   /// Throws Error for a box that has no volume or no end, and for less than one cell.
   void check() const {
