@@ -91,7 +91,7 @@ class Machine : public Mechanism {
     solver_.assemble(*this);
     return solver_.assembly();
   }
-  /// False before the first step or initialise, and after something was added or `substeps` was changed since.
+  /// False before the first step or initialise, and after something was added, a mass or `substeps` was changed.
   bool is_initialised() const { return solver_.is_initialised(*this); }
 
   /// The largest stable time step, all `substeps` together, and the part that limits it.

@@ -15,7 +15,7 @@
 namespace dem::detail {
 
 /// No force between them can move either.
-inline bool are_fixed_for_good(const Body& a, const Body& b) { return a.fixed && b.fixed && !(a.mass + b.mass > 0.0); }
+inline bool are_fixed_for_good(const Body& a, const Body& b) { return a.is_fixed_for_good() && b.is_fixed_for_good(); }
 
 /// Lets two surfaces touch each other when the world is next prepared. Throws Error for surfaces of one body, of two
 /// fixed bodies without mass, or that both have no points.

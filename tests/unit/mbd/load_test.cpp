@@ -100,3 +100,45 @@ TEST_CASE("a load acts at a point that is somewhere, and forces put on by hand b
   REQUIRE(m.step(1e-3));
   CHECK(m.body(a).velocity().norm() == 0.0);
 }
+
+TEST_CASE("a force on what is fixed for good is refused, whatever puts it on") {
+  Machine<PredictorCorrector> m;
+  const BodyId plate = m.add_fixed_body("plate", {0, 0, 1});
+  check_refused(
+      [&] {
+        m.add_load(applied_force("push", plate, {0, 0, 1}, Z, 10.0));
+      },
+      "load 'push' acts on body 'plate'", "fixed and has no mass", "prismatic");
+  check_refused([&] { m.add_load(applied_torque("twist", m.ground(), Z, 10.0)); }, "body 'ground'");
+  check_refused(
+      [&] {
+        m.add_spring(spring("coil", m.ground(), {0, 0, 0}, plate, {0, 0, 1}, 10.0, 1.0));
+      },
+      "spring 'coil'", "'ground' and body 'plate'");
+  check_refused(
+      [&] {
+        m.add_actuator(linear_actuator("jack", m.ground(), {0, 0, 0}, plate, {0, 0, 1}, 10.0, 1.0));
+      },
+      "actuator 'jack'");
+  // One that has a mass may be set free later.
+  BodySpec held = ball("held");
+  held.fixed = true;
+  CHECK_NOTHROW(m.add_load(applied_force("later", m.add_body(held), {0, 0, 0}, Z, 10.0)));
+}
+
+TEMPLATE_TEST_CASE("a mass that is changed between runs counts from the next step on", "", PredictorCorrector,
+                   VelocityVerlet) {
+  Machine<TestType> m;
+  m.gravity.setZero();
+  const BodyId a = m.add_body(ball("a", 1.0));
+  m.add_load(applied_force("push", a, {0, 0, 0}, X, 5.0));
+  REQUIRE(m.run(1.0, 1e-3));
+  CHECK(m.body(a).velocity().x() == Approx(5.0).epsilon(1e-12));
+  m.body(a).mass = 2.0;
+  REQUIRE(m.run(1.0, 1e-3));
+  // The predictor-corrector predicts its first stage by the acceleration of now, so the step of the change has no
+  // error.
+  CHECK(m.body(a).velocity().x() == Approx(7.5).epsilon(1e-12));
+  m.body(a).mass = -2.0;
+  check_refused([&] { (void)m.run(1.0, 1e-3); }, "mass of body 'a' is -2 kg");
+}

@@ -32,6 +32,8 @@ struct Body {
     v.given("name", name), v.given("mass", mass, "kg"), v.given("inertia", inertia, "kg m^2"), v("fixed", fixed);
     v("motion", motion), v("force", force, "N"), v("torque", torque, "N m");
   }
+  /// A body without mass cannot be set free.
+  bool is_fixed_for_good() const { return fixed && !(mass > 0.0); }
   Vec3 position() const { return to_eigen(motion.position); }
   Vec3 velocity() const { return to_eigen(motion.velocity); }
   Mat3 rotation() const { return to_eigen(motion.rotation); }

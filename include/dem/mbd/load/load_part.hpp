@@ -31,6 +31,7 @@ DEM_COLD inline LoadId add_load(Parts& parts, LoadSpec spec) {
   if (spec.pair_law && known_body(parts, spec.a, who).name == b.name) {
     fail("{} acts between body '{}' and itself; give it two different bodies", who, b.name);
   }
+  if (!spec.has_law()) require_one_moves(b, b, who);
   const Vector3<double> n = unit(spec.direction, who);
   Load load;
   load.point = to_body(b, finite_point(spec.at, "the point of " + who));

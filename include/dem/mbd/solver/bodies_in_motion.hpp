@@ -19,13 +19,18 @@ class BodiesInMotion {
     inverse_.clear();
     for (const Body& b : bodies) {
       check_body(b);
-      if (b.fixed) {
-        inverse_.push_back({0.0, {1, 1, 1}, {0, 0, 0}});
-      } else {
-        const Vector3<double> i = {b.inertia[0], b.inertia[1], b.inertia[2]};
-        inverse_.push_back({1.0 / b.mass, i, {1.0 / i.x, 1.0 / i.y, 1.0 / i.z}});
-      }
+      inverse_.push_back(inverse_of(b));
     }
+  }
+  /// Whether these are still the masses and inertias that were read.
+  bool has_read(const std::vector<Body>& bodies) const {
+    if (inverse_.size() != bodies.size()) return false;
+    for (std::size_t i = 0; i < bodies.size(); ++i) {
+      const Inverse now = inverse_of(bodies[i]);
+      const Vector3<double> change = now.inertia - inverse_[i].inertia;
+      if (now.mass != inverse_[i].mass || dot(change, change) != 0.0) return false;
+    }
+    return true;
   }
   /// Fills the integrator's memory from the forces that the bodies carry.
   void initialise(const std::vector<Body>& bodies, const Vector3<double>& gravity) {
@@ -82,6 +87,11 @@ class BodiesInMotion {
     }
   };
 
+  static Inverse inverse_of(const Body& b) {
+    if (b.fixed) return {0.0, {1, 1, 1}, {0, 0, 0}};
+    const Vector3<double> i = from_eigen(b.inertia);
+    return {1.0 / b.mass, i, {1.0 / i.x, 1.0 / i.y, 1.0 / i.z}};
+  }
   static integrator::Acceleration<double> acceleration(const Body& b, const Inverse& inv, const Vector3<double>& g,
                                                        double lead) {
     return {g + inv.mass * b.force,

@@ -73,8 +73,8 @@ class Mechanism {
 
   // ----------------------------------------------------------------------------------------------------- looked at
 
-  /// All bodies, in the order of their ids. Mass, inertia and `fixed` are read when a run starts; later, set_fixed
-  /// changes the latter. References are good until the next body is added; the ground does not count.
+  /// All bodies, in the order of their ids. Mass and inertia that are changed count from the next step on;
+  /// `fixed` is changed by set_fixed. References are good until the next body is added; the ground does not count.
   std::vector<Body>& bodies() { return parts_.bodies; }
   const std::vector<Body>& bodies() const { return parts_.bodies; }
   Body& body(BodyId id) { return known(parts_.bodies, id, "body"); }

@@ -14,6 +14,7 @@
 #include <dem/mbd/load/terrain.hpp>
 #include <dem/mbd/sensor/sensor.hpp>
 
+#include <cmath>
 #include <string>
 #include <vector>
 
@@ -90,6 +91,7 @@ struct Parts {
   void (*apply_motions)(Parts& parts, double time, double dt, bool is_over) = nullptr;
   void (*check_holds)(Parts& parts, double time) = nullptr;
   void (*sample_sensors)(Parts& parts, double dt) = nullptr;
+  double allowed_jump = HUGE_VAL;  ///< m, of a motion that takes hold: what the grains of a world stand
 
   bool couplings_changed = false;  ///< added, switched on or given another ratio since a lock was looked for
   std::uint64_t revision = 0;      ///< grows with each body, joint, coupling ... that is added, set free or fixed
@@ -212,11 +214,21 @@ inline Vector3<double> unit(const Vector3<double>& v, const std::string& asker) 
 /// A direction that was given by `asker`, of length 1.
 inline Vector3<double> unit(const Vec3& v, const std::string& asker) { return unit(from_eigen(v), asker); }
 
+/// Throws Error for an element whose force could move neither of the bodies that it acts on.
+DEM_COLD inline void require_one_moves(const Body& a, const Body& b, const std::string& who) {
+  if (!a.is_fixed_for_good() || !b.is_fixed_for_good()) return;
+  fail(
+      "{} acts on {}{}, which {} fixed and has no mass, so it would move nothing; make a body with a mass (box_body), "
+      "on a prismatic joint if it is to slide along one direction",
+      who, "body '" + a.name + "'", &a == &b ? "" : " and body '" + b.name + "'", &a == &b ? "is" : "are each");
+}
+
 /// Checks the two ends of an element between points and puts the points into body frames.
 template <class Part, class Spec>
 void attach_points(const Parts& parts, Part& part, const Spec& s, const std::string& who) {
   const Body &a = known_body(parts, s.a, who), &b = known_body(parts, s.b, who);
   if (s.a == s.b) fail("{} joins body '{}' to itself; give it two different bodies", who, a.name);
+  require_one_moves(a, b, who);
   const auto point_a = finite_point(s.at_a, "the first point of " + who);
   const auto point_b = finite_point(s.at_b, "the second point of " + who);
   if (const double apart = norm(point_b - point_a); !(apart > 1e-9)) {

@@ -88,10 +88,11 @@ class Solver {
     return accepted_time_step_of<I>(m.parts(), dt, checked_substeps(m));
   }
 
-  /// False before initialise, and after a body, a joint or a coupling was added or `substeps` was changed since:
-  /// design_for and initialise are due.
+  /// False before initialise, and after a body, a joint or a coupling was added, a mass or an inertia or `substeps` was
+  /// changed since: design_for and initialise are due.
   bool is_initialised(const Mechanism& m) const {
-    return initialised_ && m.parts().revision == revision_ && m.substeps == substeps_;
+    return initialised_ && m.parts().revision == revision_ && m.substeps == substeps_ &&
+           stages_.has_read(m.parts().bodies);
   }
   /// Whether what is derived belongs to steps of dt (s), and nothing was added since.
   bool is_designed_for(const Mechanism& m, double dt) const { return is_initialised(m) && dt == design_dt_; }

@@ -25,6 +25,8 @@ class Stages {
     held_joints_.take_springs_off(m);
     softening_ = Softening(m, h);
   }
+  /// Whether masses and inertias are those that begin() found.
+  bool has_read(const std::vector<Body>& bodies) const { return motion_.has_read(bodies); }
   /// Bodies are where they are, at `time` (s).
   void begin(Parts& m, double time) {
     time_ = time;
