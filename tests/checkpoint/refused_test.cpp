@@ -147,6 +147,48 @@ TEST_CASE("a difference of the set-up is named") {
   CHECK(holds(text, "shape is 'shape::Sphere' in the saved state, but 'shape::SphereCluster<8>' in this program"));
 }
 
+TEST_CASE("a motion that would jump after loading is refused, and one that goes on from the file's is not") {
+  using namespace dem::mbd;
+  const auto press = [](double ahead, bool by_pose) {  // a lid above a ball of 1 mm, which comes down at 0.1 m/s
+    dem::World<Balls> w({.gravity = {0, 0, 0}, .time_step = 1e-5});
+    w.set_contact(sand<Balls>());
+    w.add_grain({w.add_species(Sphere(1e-3)), Vec3(0, 0, 0)});
+    auto& m = w.machine();
+    const dem::BodyId lid = m.add_fixed_body("lid", {0, 0, 0.01});
+    w.add_surface(lid, dem::surface::Box({0.01, 0.01, 0.002}));
+    if (by_pose) {
+      m.add_motion(prescribed_pose("go", lid, [=](double t) {
+        return Pose{.position = {0, 0, 0.01 - ahead - 0.1 * t}};
+      }));
+    } else {
+      m.add_motion(prescribed_position("go", lid, Vec3::UnitZ(), Signal::ramp(-ahead, -0.1)));
+    }
+    return w;
+  };
+  const Folder folder;
+  for (const bool by_pose : {false, true}) {
+    auto saved = press(0.0, by_pose);
+    REQUIRE(saved.run(100));
+    dem::save(saved, folder / "state.h5");
+    REQUIRE(saved.run(100));
+
+    auto same = press(0.0, by_pose);
+    dem::load(same, folder / "state.h5");
+    REQUIRE(same.run(100));
+    CHECK(dem::io::hash_of(dem::io::columns_of(same)) == dem::io::hash_of(dem::io::columns_of(saved)));
+
+    auto near = press(5e-5, by_pose);  // within a tenth of the ball's radius
+    dem::load(near, folder / "state.h5");
+    CHECK(near.run(100));
+
+    auto far = press(2e-4, by_pose);
+    dem::load(far, folder / "state.h5");
+    const std::string text = error_of([&] { (void)far.run(1); });
+    CHECK(holds(text, "prescribed motion 'go' is 0.0002 m or rad off at t = 0.001 s"));
+    CHECK(holds(text, "allowed is 0.0001"));
+  }
+}
+
 TEST_CASE("another surface in the same bounding box is named") {
   namespace surface = dem::surface;
   const auto scene_with = [](const auto& geometry) {

@@ -54,9 +54,10 @@ void save(const World<Model>& world, const std::filesystem::path& path, const Ot
 /// A shape or a surface of your own is compared by its fingerprint(), or else by its sample points or its bounds. What
 /// only functions know is not compared.
 ///
-/// Restored, whatever the program set: the state, and what was steered while it ran. These are targets, throttles,
-/// switches, brakes' capacities, preloads of friction, ratios of gears, set_fixed, gravity, sub-steps, and whether
-/// grains may sleep. So call set_sleep after loading a bed that was saved awake, if its grains may sleep from now on.
+/// Restored, whatever the program set: the state, and what was steered while it ran. These are targets, sizes of loads
+/// (applied_force) that are numbers, throttles, switches, brakes' capacities, preloads of friction, ratios of gears,
+/// set_fixed, gravity, sub-steps, and whether grains may sleep. So what is to be another one from now on is set after
+/// loading: set_load for another pressure, set_sleep for a bed that was saved awake.
 ///
 /// To be set before loading, because the file has it to compare only or not at all:
 /// - contact constants that set_contact changed during the run, as they were when it was saved;

@@ -14,6 +14,7 @@ namespace dem::io {
 template <class World>
 void write_vtk_grains(const std::filesystem::path& path, const World& world, int divisions = 4,
                       const VtkOptions& options = {}) {
+  require_within(divisions, 1, 26, "number of divisions that grains are drawn with");
   std::vector<SurfaceMesh> meshes;
   for (const auto& species : world.state().species) meshes.push_back(grain_mesh(species.shape, divisions));
   std::vector<BodyMesh> grains;

@@ -68,6 +68,7 @@ class World : public WorldGrains<M> {
       check_buried_grains(state_);
     }
     // A step that has begun must not be refused: motions that were added or changed are looked at before it.
+    state_.machine.parts().allowed_jump = 0.1 * state_.smallest_radius;
     state_.machine_solver.check_motions(state_.machine);
     if (!initialised_ || !machine_is_initialised()) {
       together(state_, domain::Call::first_forces, "as the first forces were found", [&] { initialise(state_); });
@@ -275,6 +276,7 @@ class World : public WorldGrains<M> {
     add(state_.time_step_note.value_or(""));
     add(state_.placed_note);
     add(note_of_density(state_));
+    add(note_of_free_fall(state_));
     add(state_.twins_note);
     for (const Inlet& inlet : state_.inlets) {
       if (inlet.is_short()) add(inlet.note());

@@ -247,6 +247,7 @@ void compare_others(const StateColumns& saved, Others&... others) {
 template <class Model>
 void settle_restored(WorldState<Model>& w, bool is_checked) {
   w.placed = {};
+  for (auto& motion : w.machine.parts().motions) motion.was_loaded = true;
   w.surfaces_looked_into = is_checked ? w.surfaces.size() : 0;
   if (is_checked) {
     find_points_deep_enough(w);

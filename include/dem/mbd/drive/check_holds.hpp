@@ -2,40 +2,60 @@
 
 #include <dem/mbd/drive/prescribe.hpp>
 
+#include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace dem::mbd {
 
+namespace detail {
+
+/// How far (m or rad) a motion may be off its coordinate when it takes hold of it.
+inline double allowed_off(const Parts& parts, const PrescribedMotion& p) {
+  const bool turns = p.spec.target == MotionSpec::Target::rotation ||
+                     (p.spec.target == MotionSpec::Target::joint && is_rotation(p.spec.dof));
+  return turns ? 1e-3 : std::min(1e-3, parts.allowed_jump);
+}
+
+/// How far a motion is off its coordinate at `time` (s).
+inline double off_hold(const Parts& parts, PrescribedMotion& p, double time) {
+  const integrator::Motion<double>& m = parts.bodies[p.spec.body.index()].motion;
+  if (p.spec.target == MotionSpec::Target::pose) {
+    const Pose pose = p.spec.pose(time);
+    return norm(centre_at(p, pose) - m.position) + std::sqrt(squared_norm(rotation_at(p, pose) - m.rotation));
+  }
+  p.drive.value = p.spec.motion(time).value;
+  if (p.spec.target == MotionSpec::Target::position) return p.start + p.drive.value - dot(m.position, p.axis);
+  if (p.spec.target == MotionSpec::Target::rotation) return norm(rotation_off(p, m));
+  const Joint& j = parts.joints[p.spec.joint.index()];
+  return p.drive.value - coordinate_of(j, parts.bodies[j.a], parts.bodies[j.b], p.spec.dof).value;
+}
+
+/// Whether a motion that was loaded gives another value than it had when it was saved: it has to take hold again.
+inline bool differs_from_saved(const PrescribedMotion& p, double time, double tolerance) {
+  if (p.spec.target == MotionSpec::Target::pose) return true;  // which is compared whole
+  return std::abs(p.spec.motion(time).value - p.drive.value) > tolerance;
+}
+
+}  // namespace detail
+
 /// Throws Error if a motion that is on would have to jump at `time` (s) to take hold of its coordinate, which would
-/// tear the machine apart. To be called before each step.
+/// tear the machine apart, or press a part into grains. To be called before each step.
 inline void check_holds(Parts& parts, double time) {
-  constexpr double tolerance = 1e-3;  // m or rad
   for (PrescribedMotion& p : parts.motions) {
     if (!p.spec.on) continue;
+    const double tolerance = detail::allowed_off(parts, p);
     if (p.spec.by_speed) {  // it starts from where its coordinate is
       p.drive.start = p.drive.reached = detail::coordinate_of_drive(parts, p);
       p.drive.time = time;
       p.drive.moves = false;
       p.has_hold = true;
     }
-    if (p.has_hold) continue;
-    const integrator::Motion<double>& m = parts.bodies[p.spec.body.index()].motion;
-    double off = 0.0;
-    if (p.spec.target == MotionSpec::Target::pose) {
-      const Pose pose = p.spec.pose(time);
-      off = norm(detail::centre_at(p, pose) - m.position) +
-            std::sqrt(squared_norm(detail::rotation_at(p, pose) - m.rotation));
-    } else {
-      p.drive.value = p.spec.motion(time).value;
-      if (p.spec.target == MotionSpec::Target::position) {
-        off = p.start + p.drive.value - dot(m.position, p.axis);
-      } else if (p.spec.target == MotionSpec::Target::rotation) {
-        off = norm(detail::rotation_off(p, m));
-      } else {
-        const Joint& j = parts.joints[p.spec.joint.index()];
-        off = p.drive.value - coordinate_of(j, parts.bodies[j.a], parts.bodies[j.b], p.spec.dof).value;
-      }
+    if (std::exchange(p.was_loaded, false) && p.has_hold && !p.spec.by_speed) {
+      p.has_hold = !detail::differs_from_saved(p, time, tolerance);
     }
+    if (p.has_hold) continue;
+    const double off = detail::off_hold(parts, p, time);
     if (std::abs(off) > tolerance) {
       fail(
           "prescribed motion '{}' is {:g} m or rad off at t = {:g} s, where it takes hold of its coordinate; allowed "

@@ -32,7 +32,8 @@ using PoseFunction = Function<Pose(double)>;  ///< of the time (s)
 /// the joints. All drives are met at once. Where two repeat or contradict each other, the earlier one counts. A body
 /// that is fixed or whose pose is prescribed yields to no other drive; of two motions of such a body, the later one
 /// counts. A drive starts from the present value of its coordinate: a value that is more than 1 mm or 1 mrad off when
-/// the drive is added, switched on or given another signal is refused. A speed is set within one step, and the force of
+/// the drive is added, switched on, loaded or given another signal is refused; in a world of grains also one that is
+/// more than a tenth of the smallest grain's radius off. A speed is set within one step, and the force of
 /// that step is the jolt that this takes.
 ///
 /// Two coordinates of joints cannot be prescribed. A bend has no direction where the joint is straight; bend_x and
@@ -101,8 +102,9 @@ DEM_COLD inline MotionSpec prescribed_pose(std::string name, BodyId body, PoseFu
 struct PrescribedMotion {
   MotionSpec spec;
   Vector3<double> axis = {};
-  double start = 0.0;     ///< m, position along the axis when it was added
-  bool has_hold = false;  ///< it has been compared with its coordinate since it was added or changed
+  double start = 0.0;       ///< m, position along the axis when it was added
+  bool has_hold = false;    ///< it has been compared with its coordinate since it was added or changed
+  bool was_loaded = false;  ///< from a file, since when it has not been looked at
   Matrix3<double> start_rotation = Matrix3<double>::identity();
   Vector3<double> centre = {0, 0, 0};                  ///< m, of mass, in the frame of the poses
   Matrix3<double> axes = Matrix3<double>::identity();  ///< body frame -> frame of the poses
