@@ -80,6 +80,11 @@ struct AverageGrid {
              cells[static_cast<std::size_t>(a)], "xyz"[a]);
       }
     }
+    constexpr double most = 1e8;
+    if (const double all = 1.0 * cells[0] * cells[1] * cells[2]; !(all <= most)) {
+      fail("the box to average over is cut into {} x {} x {} = {:g} cells, but {:g} are allowed; make them larger",
+           cells[0], cells[1], cells[2], all, most);
+    }
   }
 };
 
@@ -98,6 +103,8 @@ class AverageSums {
     grid.check();
     sums_.resize(grid.count());
   }
+  const AverageGrid& grid() const { return grid_; }
+  const Kernel& kernel() const { return kernel_; }
 
   /// `touching`: how many grains touch it.
   void add_grain(double mass, double volume, const Vec3& x, const Vec3& v, double touching) {

@@ -36,9 +36,30 @@ std::vector<Vec3> shifts_of(const Domain& domain) {
   return shifts;
 }
 
+/// Throws Error where averages are asked for beyond the images next to a periodic cell.
+template <class Domain>
+void check_box_in_images(const AverageSums& sums, const Domain& domain) {
+  if constexpr (Domain::has_images) {
+    const surface::Aabb& box = sums.grid().box;
+    const double reach = sums.kernel().reach();
+    for (std::size_t k = 0; k < 3; ++k) {
+      const double period = domain.period()[k], low = domain.low(k);
+      const int axis = static_cast<int>(k);
+      if (period == 0.0) continue;
+      const double from = low - period + reach, to = low + 2.0 * period - reach;
+      if (box.low[axis] >= from - 1e-9 * period && box.high[axis] <= to + 1e-9 * period) continue;
+      fail(
+          "the box to average over reaches from {:g} to {:g} m along {}, where the domain repeats itself every {:g} m; "
+          "of its images those next to the cell are counted, so take a box between {:g} and {:g} m",
+          box.low[axis], box.high[axis], "xyz"[k], period, from, to);
+    }
+  }
+}
+
 /// Adds the grains and contacts of a world as it stands.
 template <class Model>
 void add_world(AverageSums& sums, const World<Model>& world) {
+  check_box_in_images(sums, world.state().domain);
   std::vector<int> touching(world.state().grains.given, 0);
   const ContactForce* before = nullptr;
   const auto contacts = contacts_of(world);
@@ -73,8 +94,10 @@ void add_world(AverageSums& sums, const World<Model>& world) {
 }  // namespace detail
 
 /// Density, velocity, stress, ... of a world's grains as it stands, at the middle of each cell of a grid; see Average.
-/// Images of a periodic cell count too, one cell on. The world is not changed. Throws Error for a grid that is none,
-/// and as contacts_of does. Where ranks share the grains, all ranks call it at once.
+/// Images of a periodic cell count too, one cell on. The world is not changed. Throws Error for a grid that is none or
+/// reaches beyond these images, and as contacts_of does. The velocity of a cell of the grid is one mean: how it changes
+/// within the cell counts as kinetic stress, density (rate L)^2/12 of a shear rate over a height L. Thin cells have
+/// little of it. Where ranks share the grains, all ranks call it at once.
 ///
 ///     const auto field = soil::averages(world, {{low, high}, {20, 20, 10}}, soil::Kernel::lucy(4 * radius));
 template <class Model>

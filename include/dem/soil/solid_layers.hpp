@@ -31,8 +31,9 @@ double solid_volume(const World& world) {
 }
 
 /// Solid fractions of a bed by depth, in layers of this thickness (m) from the floor up to `top` (m); the last may be
-/// thinner. A grain that a border cuts counts as a ball of its volume. Layers reach to the walls, which loosen what
-/// lies beside them. Throws Error for a thickness and a top that are not positive.
+/// thinner. A grain that a border cuts counts as a ball of its volume; one whose centre is outside the container does
+/// not count. Layers reach to the walls, which loosen what lies beside them. Throws Error for a thickness and a top
+/// that are not positive.
 template <class World>
 std::vector<SolidLayer> solid_layers(const World& world, const Container& c, double thickness, double top) {
   require_positive(thickness, "thickness of a layer", "m");
@@ -44,6 +45,7 @@ std::vector<SolidLayer> solid_layers(const World& world, const Container& c, dou
     layers.push_back({from, std::min(from + thickness, top), 0.0});
   }
   for (const GrainId p : world.grains()) {
+    if (c.clearance(world.position(p)) < 0.0) continue;
     const double volume = world.species(world.species_of(p)).shape.volume(), z = world.position(p).z();
     const double radius = std::cbrt(0.75 / std::numbers::pi * volume);
     const auto first = static_cast<std::size_t>(std::clamp((z - radius) / thickness, 0.0, static_cast<double>(count)));
@@ -56,11 +58,19 @@ std::vector<SolidLayer> solid_layers(const World& world, const Container& c, dou
   return layers;
 }
 
-/// Solid fraction of a bed between two heights (m).
+/// Solid fraction of a bed between two heights (m) above the floor, by the same rules. Throws Error unless the second
+/// is above the first and above the floor.
 template <class World>
 double solid_fraction_between(const World& world, const Container& c, double low, double high) {
+  if (!(high > low && high > 0.0 && std::isfinite(low) && std::isfinite(high))) {
+    fail(
+        "the solid fraction between the heights {:g} and {:g} m was asked for; the second must be above the first and "
+        "above the floor, 0",
+        low, high);
+  }
   double solid = 0.0;
   for (const GrainId p : world.grains()) {
+    if (c.clearance(world.position(p)) < 0.0) continue;
     const double volume = world.species(world.species_of(p)).shape.volume(), z = world.position(p).z();
     const double radius = std::cbrt(0.75 / std::numbers::pi * volume);
     solid += volume * (share_below((high - z) / radius) - share_below((low - z) / radius));

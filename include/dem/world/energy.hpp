@@ -217,7 +217,7 @@ GrainEnergy energy_of(const World<Model>& world) {
 /// Counts from now on, while the world runs, what contacts dissipate and what machine parts do on the grains; energy_of
 /// tells it. What a contact dissipates is the work that went into it, less what its springs store. The run itself is
 /// the same bits as without; the work is added up on one thread after each step. Changes by hand (set_velocity,
-/// set_position) are not counted. Throws Error as prepare() does.
+/// set_position, set_contact) are not counted: call it again after them. Throws Error as prepare() does.
 ///
 ///     count_energy(world);
 ///     world.run_for(1.0);

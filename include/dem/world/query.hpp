@@ -9,8 +9,16 @@
 namespace dem {
 
 /// The grains whose centres lie in a box (m, global axes), its faces included; in the order in which they were added.
+/// Throws Error for a box whose low corner is above its high one.
 template <class Model>
 std::vector<GrainId> grains_in(const World<Model>& world, const Vec3& low, const Vec3& high) {
+  if (!none_below(high, low)) {
+    fail(
+        "the box to look for grains in reaches from ({:g}, {:g}, {:g}) to ({:g}, {:g}, {:g}) m; the first corner must "
+        "be "
+        "the low one",
+        low.x(), low.y(), low.z(), high.x(), high.y(), high.z());
+  }
   std::vector<GrainId> found;
   for (const GrainId p : world.grains()) {
     const Vec3 x = world.position(p);
@@ -71,6 +79,22 @@ Mat3 fabric_of(const std::vector<Contact<Model>>& contacts) {
   }
   if (count > 0.0) sum *= 1.0 / count;
   return sum;
+}
+
+/// Mean stress (Pa, compression is positive) of the grains in a volume (m^3), by the contacts that contacts_of gave:
+/// the sum of F l^T over the volume, l from a grain's centre to the contact point and F the force that it exerts there
+/// (Love 1927, Weber 1966). Of all contacts of a specimen it is that within its walls; soil::averages has it by place,
+/// and with what moving grains carry.
+template <class Model>
+Mat3 stress_of(const std::vector<Contact<Model>>& contacts, double volume) {
+  require_positive(volume, "volume to take the stress of", "m^3");
+  Mat3 sum = Mat3::Zero();
+  for (const Contact<Model>& c : contacts) {
+    if (c.kind == ContactKind::bodies) continue;
+    sum -= c.force * (c.point - c.centre()).transpose();
+    if (c.kind == ContactKind::grains) sum -= c.force * (c.other_centre() - c.point).transpose();
+  }
+  return sum * (1.0 / volume);
 }
 
 }  // namespace dem

@@ -3,6 +3,7 @@
 
 #include <dem/soil/averages.hpp>
 #include <dem/soil/averages_file.hpp>
+#include <dem/world/query.hpp>
 
 #include "core/error_of.hpp"
 
@@ -118,6 +119,17 @@ TEST_CASE("mass and momentum of a field are those of the grains") {
     CHECK(grains == Approx(216.0).epsilon(error));
     CHECK((sum - momentum(w)).norm() < error * momentum(w).norm());
   }
+}
+
+TEST_CASE("the stress of a list of contacts is that of a box around all of them") {
+  auto w = moving_block(6);
+  w.add_surface(w.ground(), dem::surface::Plane{}, {.position = {0, 0, -0.9e-3}});
+  REQUIRE(w.run(3));
+  const Aabb box = {Vec3::Constant(-0.05), Vec3::Constant(0.05)};
+  const dem::Mat3 stress = average_in(w, box).contact_stress;
+  REQUIRE(stress.norm() > 0.0);
+  CHECK((dem::stress_of(contacts_of(w), 1e-3) - stress).norm() < 1e-12 * stress.norm());
+  CHECK_THAT(message_of([&] { dem::stress_of(contacts_of(w), 0.0); }), Catch::Matchers::ContainsSubstring("volume"));
 }
 
 TEST_CASE("momentum is balanced at every point") {

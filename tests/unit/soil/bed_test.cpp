@@ -76,6 +76,19 @@ TEST_CASE("containers have the sizes of what they are") {
   CHECK(box.clearance({0, 0, 0.01}) == Approx(0.01));
 }
 
+TEST_CASE("grains outside a container do not count in its layers, and a layer without height is refused") {
+  dem::World<Balls> w({.gravity = {0, 0, 0}, .time_step = 1e-5});
+  const auto ball = w.add_species(dem::shape::Sphere(1e-3));
+  w.add_grain({ball, {0, 0, 1e-3}});
+  w.add_grain({ball, {0.5, 0, 1e-3}});
+  const auto c = dem::soil::Container::cylinder(0.01);
+  const double all = 4.0 / 3 * M_PI * 1e-9 / c.volume(2e-3);
+  CHECK(dem::soil::solid_layers(w, c, 2e-3, 2e-3)[0].fraction == Approx(all).epsilon(1e-12));
+  CHECK(dem::soil::solid_fraction_between(w, c, 0.0, 1e-3) == Approx(all).epsilon(1e-12));
+  check_refused([&] { dem::soil::solid_fraction_between(w, c, 1e-3, 1e-3); }, "between the heights 0.001 and 0.001 m");
+  check_refused([&] { dem::soil::solid_fraction_between(w, c, -2e-3, -1e-3); }, "above the floor");
+}
+
 TEST_CASE("a bed fills a box, a trough and a cylinder to its height, level and at rest") {
   for (const Container& container :
        {Container::box(0.018, 0.014), Container::trough(0.018, 0.008, 0.4), Container::cylinder(0.0085)}) {

@@ -143,6 +143,9 @@ TEST_CASE("questions about grains in a box, momentum, one grain's contacts and t
   CHECK(dem::grains_in(w, {-1e-3, -1e-3, -1e-3}, {2e-3, 2e-3, 1e-3}) == std::vector{p[1], p[2], p[3]});
   CHECK(dem::grains_in(w, {0, 0, 0.1}, {0, 0, 0.1}) == std::vector{p[4]});
 
+  CHECK_THROWS_WITH(dem::grains_in(w, {0, 0, 0.1}, {0, 0, 0}),
+                    Catch::Matchers::ContainsSubstring("the first corner must be the low one"));
+
   const dem::Momentum sum = dem::momentum_of(w);
   const double m = w.species(ball).mass;
   CHECK(sum.mass == Approx(5 * m));

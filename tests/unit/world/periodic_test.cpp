@@ -333,6 +333,14 @@ TEST_CASE("contacts across a border count in lists, stresses and energies") {
     CHECK(a.contact_stress(2, 2) == Catch::Approx(0.0).margin(1e-9));
   }
   const auto whole = dem::soil::average_in(w, box);
+  for (const int axis : {0, 1}) {  // one period on either side is known
+    auto far = box;
+    far.low[axis] = -(axis == 0 ? length : width);
+    far.high[axis] = 2.0 * (axis == 0 ? length : width);
+    CHECK(dem::soil::average_in(w, far).density == Catch::Approx(whole.density));
+    far.high[axis] *= 1.05;
+    check_refused([&] { dem::soil::average_in(w, far); }, axis == 0 ? "along x, where" : "along y, where");
+  }
   const double stress = 4 * 2000.0 * depth / (pitch * high);
   CHECK(whole.stress()(0, 0) == Catch::Approx(stress).epsilon(1e-9));
   CHECK(whole.stress()(1, 1) == Catch::Approx(stress).epsilon(1e-9));

@@ -62,6 +62,24 @@ TEST_CASE("balls of any kind lie on two-sided sheets") {
   check(Mixed<Sphere, Polyhedron>(Sphere(sheet_half_edge)));
 }
 
+TEMPLATE_TEST_CASE("a ball that is too fast for a soft sheet or a thin box is reported before it has passed", "",
+                   TriangleMesh, dem::surface::Box) {
+  for (const double speed : {4.43, 10.0}) {  // at 3 m/s it is thrown back
+    dem::World<Balls> w({.gravity = {0, 0, 0}, .threads = 1});
+    auto soft = sand<Balls>();
+    soft.normal.stiffness = 100.0;
+    w.set_contact(soft);
+    const auto kind = w.add_species(Sphere(1e-3));
+    if constexpr (std::is_same_v<TestType, TriangleMesh>) w.add_surface(w.ground(), sheet(MeshSide::two_sided));
+    else w.add_surface(w.ground(), dem::surface::Box({0.1, 0.1, 1e-5}));
+    w.add_grain({.species = kind, .position = {0, 0, 2e-3}, .velocity = {0, 0, -speed}});
+    const auto report = w.run_for(0.01);
+    REQUIRE(!report);
+    CHECK(w.position(GrainId(0)).z() > 0.0);
+    CHECK_THAT(report.text, Catch::Matchers::ContainsSubstring("what a thin sheet or box holds, 0.4"));
+  }
+}
+
 TEST_CASE("bodies with points are refused on two-sided sheets; balls are held, and sheets lie on planes") {
   const auto body_on = [](const dem::Model::Surfaces& of_body, const dem::Model::Surfaces& of_ground) {
     dem::World<Balls> w(options({0, 0, -g}, 1e-5));
