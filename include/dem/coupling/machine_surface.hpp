@@ -31,6 +31,7 @@ struct MachineSurface {
   Vec3 low = Vec3::Zero(), high = Vec3::Zero();  ///< m, bounding box in global axes
   bool moved = true;  ///< where it is, or how fast its body goes, is not what it was in the evaluation before
   surface::Aabb swept = {Vec3::Zero(), Vec3::Zero()};  ///< m, around both places where it is and was
+  bool has_place = false;                              ///< it has followed its body before
   double went = 0.0;  ///< m, the farthest from one evaluation to the next, within this step
   surface::Aabb went_over = {Vec3::Zero(), Vec3::Zero()};  ///< m, around the places before and after that
 
@@ -83,8 +84,9 @@ struct MachineSurface {
     low = to_eigen(origin) + (middle - half);
     high = to_eigen(origin) + (middle + half);
     swept = {low.cwiseMin(before.low), high.cwiseMax(before.high)};
-    const double way = moved ? norm(origin - last_origin) : 0.0;
+    const double way = moved && has_place ? norm(origin - last_origin) : 0.0;
     if (way > went) went = way, went_over = swept;
+    has_place = true;
   }
 };
 
