@@ -8,6 +8,7 @@
 // prints a table, and writes it as CSV, plots, and the last rut as CSV, PGM picture and ParaView surface.
 
 #include <dem/io/csv.hpp>
+#include <dem/io/file.hpp>
 #include <dem/report/ascii_table.hpp>
 #include <dem/report/plot.hpp>
 #include <dem/rig/launcher.hpp>
@@ -20,6 +21,8 @@
 
 #include <array>
 #include <ctime>
+#include <string>
+#include <vector>
 
 using namespace dem;
 using namespace dem::terramechanics;
@@ -35,18 +38,21 @@ int main(int argc, char** argv) {
   app.add_option("--wheel", kind, "rough (soil shears on soil), smooth or grousers")
       ->capture_default_str()
       ->check(CLI::IsMember({"rough", "smooth", "grousers"}));
-  app.add_option("--grouser", grouser, "height of grousers [m]")->capture_default_str()->check(CLI::Range(1e-3, 0.1));
-  app.add_option("--friction", friction, "mu of a smooth rim on the soil")
-      ->capture_default_str()
-      ->check(CLI::Range(0.0, 2.0));
+  app.add_option("--grouser", grouser, "height of grousers [m], 0.001 to 0.1")->capture_default_str();
+  app.add_option("--friction", friction, "mu of a smooth rim on the soil, 0 to 2")->capture_default_str();
   app.add_flag("--halve", halve, "the same on columns half as wide, and how much that changes");
-  app.add_option("--load", s.load, "on the wheel [N]")->capture_default_str()->check(CLI::Range(20.0, 1e4));
-  app.add_option("--spacing", s.spacing, "of the columns [m]")->capture_default_str()->check(CLI::Range(1e-3, 0.05));
-  app.add_option("--travel", s.travel, "[m]")->capture_default_str()->check(CLI::Range(0.05, 10.0));
+  app.add_option("--load", s.load, "on the wheel [N], 20 to 10000")->capture_default_str();
+  app.add_option("--spacing", s.spacing, "of the columns [m], 0.001 to 0.05")->capture_default_str();
+  app.add_option("--travel", s.travel, "[m], 0.05 to 10")->capture_default_str();
   app.add_option("--output", output, "folder for the results")->capture_default_str();
   CLI11_PARSE(app, argc, argv);
   if (!dem::rig::may_run("soil_columns", argv[0])) return 1;
   try {
+    require_within(grouser, 1e-3, 0.1, "--grouser (m)");
+    require_within(friction, 0.0, 2.0, "--friction");
+    require_within(s.load, 20.0, 1e4, "--load (N)");
+    require_within(s.spacing, 1e-3, 0.05, "--spacing (m)");
+    require_within(s.travel, 0.05, 10.0, "--travel (m)");
     if (!soil_file.empty()) named = load_soil(soil_file);
     s.soil = named.soil;
     if (kind == "grousers") s.wheel.grouser_height = grouser;
@@ -73,9 +79,8 @@ int main(int argc, char** argv) {
         table.header.push_back(model == models[0] ? quantities[q] : model == models[1] ? "eqs." : "plain");
       }
     }
-    io::CsvWriter csv(output + "/wheel.csv",
-                      {"slip_1-v/(omega*r)", "pull_N", "eqs_pull_N", "plain_pull_N", "torque_Nm", "eqs_torque_Nm",
-                       "plain_torque_Nm", "sinkage_mm", "eqs_sinkage_mm", "plain_sinkage_mm"});
+    io::AtomicFile{output + "/wheel.csv"};  // can be written; it is gone again, for it is not committed
+    std::vector<std::vector<double>> rows;
     if (kind == "smooth") fmt::print("The equations know no smooth rim: theirs are of soil on soil.\n");
     const std::clock_t start = std::clock();
     double simulated = 0.0;
@@ -102,7 +107,7 @@ int main(int argc, char** argv) {
       const std::vector<double> row = {slip,     c.pull,   e.pull,          p.pull,          c.torque,
                                        e.torque, p.torque, 1e3 * c.sinkage, 1e3 * e.sinkage, 1e3 * p.sinkage};
       table.row(row[0], row[1], row[2], row[3], row[4], row[5], row[6], row[7], row[8], row[9]);
-      csv.row(row);
+      rows.push_back(row);
       for (std::size_t k = 0; k < 9; ++k) {
         plots[k / 3].series[k % 3].x.push_back(slip);
         plots[k / 3].series[k % 3].y.push_back(row[k + 1]);
@@ -123,6 +128,12 @@ int main(int argc, char** argv) {
       across.series[0].x.push_back(1e3 * field.grid.y(iy));
       across.series[0].y.push_back(1e3 * field.surface(field.grid.row(middle, iy)));
     }
+    // Results of an earlier run in the folder are replaced only now, all together.
+    io::CsvWriter csv(output + "/wheel.csv",
+                      {"slip_1-v/(omega*r)", "pull_N", "eqs_pull_N", "plain_pull_N", "torque_Nm", "eqs_torque_Nm",
+                       "plain_torque_Nm", "sinkage_mm", "eqs_sinkage_mm", "plain_sinkage_mm"});
+    for (const auto& row : rows) csv.row(row);
+    csv.flush();
     for (int q = 0; q < 3; ++q) io::render_plot(plots[q], output + std::array{"/pull", "/torque", "/sinkage"}[q]);
     io::render_plot(across, output + "/rut_across");
     write_rut_csv(output + "/rut.csv", field);

@@ -84,6 +84,10 @@ class PlateSinkage {
         result.samples.push_back(
             {world.time() - n.start, travel, not_known, pressure, force, -m.sensor(driven).mean().force.x});
         if (std::isnan(n.zero) && pressure >= s.threshold) n.zero = travel;
+        // A single push may pass the threshold long before the smoothed pressure does, by which sinkage is counted.
+        if (travel - n.zero >= s.sinkage) {
+          n.zero = plate_sinkage::zero_of(result, plate_sinkage::curve_of(result, s));
+        }
         look(std::as_const(world), travel);
         stages.update(std::isnan(n.zero) ? 0.0 : travel - n.zero, text("{:.1f} kPa", 1e-3 * pressure));
         if (travel > farthest) {

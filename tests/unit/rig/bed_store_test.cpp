@@ -82,6 +82,21 @@ TEST_CASE("a bed of a program that lacked an option is one whose option was left
   CHECK_THAT(refusal(session, slow, file), ContainsSubstring("was made with --fall-speed 0, but here it is 0.3"));
 }
 
+TEST_CASE("a bed that cannot be saved is told of, and the run goes on with it") {
+  struct Told : Stages {
+    void message(std::string_view text) override { words += text; }
+    std::string words;
+  } told;
+  TempFolder folder;
+  CheckpointFiles full = files;
+  full.write = [](const std::filesystem::path&, const StateColumns&) { dem::fail("the disk takes no more"); };
+  Session session(
+      {.program = "rig", .output = (folder / "out").string(), .checkpoints = {.files = full}, .within = &told});
+  session.begin_run(1);
+  save(session, {}, (folder / "bed.h5").string());
+  CHECK(told.words == "warning: the bed could not be saved, and the run goes on: the disk takes no more");
+}
+
 TEST_CASE("a state that no bed was saved to is no bed") {
   TempFolder folder;
   const std::string file = (folder / "run.h5").string();

@@ -3,6 +3,7 @@
 
 #include <dem/io/file.hpp>
 #include <dem/rig/program.hpp>
+#include <dem/rig/sand_pile/forming.hpp>
 #include <dem/rig/sand_pile/pile_rig.hpp>
 #include <dem/rig/settings_file.hpp>
 
@@ -67,7 +68,53 @@ TEST_CASE("settings of a sand pile that make no sense are refused") {
   CHECK_THROWS_WITH(refused([](Settings& s) { s.flank_low = 0.9; }), ContainsSubstring("--flank-low"));
   CHECK_THROWS_WITH(refused([](Settings& s) { s.sample_time = 0.1; }), ContainsSubstring("--sample-time"));
   CHECK_THROWS_WITH(refused([](Settings& s) { s.rolling_damping = -0.1; }), ContainsSubstring("--rolling-damping"));
+  CHECK_THROWS_WITH(refused([](Settings& s) { s.rolling_length = 1.0; }), Catch::StartsWith("--rolling-length"));
+  CHECK_THROWS_WITH(refused([](Settings& s) { s.plate_rolling_length = 1.0; }),
+                    ContainsSubstring("--plate-rolling-length"));
   CHECK_THROWS_WITH(refused([](Settings& s) { s.lift_speed = std::nan(""); }), ContainsSubstring("--lift-speed"));
+}
+
+TEST_CASE("a cylinder that is too wide for its grains is to be narrower, and one that is too narrow wider") {
+  Settings s;
+  s.size = "smoke";
+  s.cylinder_radius = 5.0;
+  sand_pile::resolve(s);
+  CHECK_THROWS_WITH(sand_pile::lattice(s, 1.4 * s.half_edge, 1),
+                    ContainsSubstring("--cylinder-radius is 5 m, so wide"));
+  s.cylinder_radius = 4.0 * s.half_edge;
+  CHECK_THROWS_WITH(sand_pile::lattice(s, 1.9 * s.half_edge, 1), ContainsSubstring("make it wider"));
+}
+
+TEST_CASE("what is no pile has no angle, and it is said why and what to change") {
+  Settings s;
+  s.size = "smoke";
+  sand_pile::resolve(s);
+  const double d = 2.0 * s.half_edge, radius = sphere_radius(s.half_edge);
+  PileResult r;
+  r.kind = kind_named("sphere");
+  /// Columns of grains within `reach` (m) of the axis, as high as layers(distance from the axis).
+  const auto pile_up = [&](double reach, auto&& layers) {
+    r.pile.clear();
+    const int n = static_cast<int>(reach / d);
+    for (int i = -n; i <= n; ++i) {
+      for (int j = -n; j <= n; ++j) {
+        const double out = std::hypot(i * d, j * d);
+        for (int k = 0; out <= reach && k < layers(out); ++k) {
+          r.pile.push_back({.position = {i * d, j * d, (k + 0.5) * d}});
+        }
+      }
+    }
+    r.flank = flank_of(r.pile, s, radius);
+    return no_angle_note(s, r);
+  };
+  CHECK(no_angle_note(s, r).empty());  // not measured
+  CHECK(pile_up(10.0 * d, [&](double out) { return 10.0 - out / d; }).empty());
+  CHECK(r.flank.angle * degrees == Approx(45.0).margin(5.0));
+  CHECK_THAT(pile_up(10.0 * d, [](double) { return 1.0; }), ContainsSubstring("pile sphere of seed 0 has no angle") &&
+                                                                ContainsSubstring("must be 18 mm, three grains") &&
+                                                                ContainsSubstring("a smaller --cylinder-radius"));
+  CHECK(std::isnan(r.flank.angle));
+  CHECK_THAT(pile_up(1.5 * d, [](double) { return 8.0; }), ContainsSubstring("fewer than 5 places in every sector"));
 }
 
 TEST_CASE("options of a sand pile that change nothing are named") {

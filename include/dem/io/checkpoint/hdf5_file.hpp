@@ -38,10 +38,13 @@ class Hdf5 {
   herr_t (*close_)(hid_t);
 };
 
-/// HDF5 prints its own errors to stderr; while this lives it does not.
+/// HDF5 prints its own errors to stderr; while this lives it does not. To be made before anything else of HDF5.
 class QuietHdf5 {
  public:
   QuietHdf5() {
+    // What could not be flushed to a full disk stays behind as a handle of freed memory, which HDF5 would close again
+    // at the exit of the program, and crash. Nothing else is left to it: all files here are closed by then.
+    [[maybe_unused]] static const herr_t never_at_exit = H5dont_atexit();
     H5Eget_auto2(H5E_DEFAULT, &function_, &data_);
     H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
   }

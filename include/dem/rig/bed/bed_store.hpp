@@ -23,7 +23,10 @@ class BedStore final : public PartStore {
   /// To be made before Session::begin_run(): what does not fit is refused here. Reads the state, if the bed is one.
   /// Throws Error.
   BedStore(Session& session, const BedSettings& bed, const GrainSettings& grains, const char* box)
-      : run_(session.parts()), files_(session.checkpoints().files), save_(bed.file.empty() ? bed.save : "") {
+      : session_(session),
+        run_(session.parts()),
+        files_(session.checkpoints().files),
+        save_(bed.file.empty() ? bed.save : "") {
     for (const std::string& file : {bed.file, save_}) {
       if (BedSettings::is_state(file)) check_place(file, session);
     }
@@ -38,7 +41,6 @@ class BedStore final : public PartStore {
   [[nodiscard]] bool writes() const override { return run_.writes(); }
   bool is_due(double& last) override { return run_.is_due(last); }
   io::StateColumns read(const std::string& part) override { return state_.empty() ? run_.read(part) : state_; }
-  /// Throws Error if the file of --save-bed cannot be written: the bed was asked for.
   std::string write(const std::string& part, io::StateColumns& columns) override {
     const auto done = columns.find("rig/part/done");
     const bool is_done = done != columns.end() && done->second.bytes()[0] != std::byte{0};
@@ -48,7 +50,11 @@ class BedStore final : public PartStore {
       v(settings_name, settings_);
       io::StateColumns all = columns;
       all.merge(own);
-      files_.write(save_, all);
+      try {
+        files_.write(save_, all);
+      } catch (const Error& problem) {
+        say_unsaved(problem);
+      }
     }
     return run_.is_on() ? run_.write(part, columns) : "";
   }
@@ -56,13 +62,22 @@ class BedStore final : public PartStore {
   /// Saves a bed that was made as places of grains, unless its state is saved.
   template <class Model>
   void save_places(const Bed<Model>& bed) const {
-    if (!save_.empty() && !saves()) soil::save_packing(packing_of(bed), save_);
+    if (save_.empty() || saves()) return;
+    try {
+      soil::save_packing(packing_of(bed), save_);
+    } catch (const Error& problem) {
+      say_unsaved(problem);
+    }
   }
 
  private:
   static constexpr const char* settings_name = "rig/bed_settings";
 
   [[nodiscard]] bool saves() const { return BedSettings::is_state(save_); }
+  /// The bed took long to make: the run goes on with it.
+  void say_unsaved(const Error& problem) const {
+    session_.message(text("warning: the bed could not be saved, and the run goes on: {}", problem.what()));
+  }
 
   /// Throws Error for a state that this program cannot have, or that the run would remove.
   void check_place(const std::string& file, const Session& session) const {
@@ -120,6 +135,7 @@ class BedStore final : public PartStore {
     }
   }
 
+  Session& session_;
   PartStore& run_;
   CheckpointFiles files_;
   std::string save_;

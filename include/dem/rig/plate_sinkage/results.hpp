@@ -6,6 +6,7 @@
 #include <dem/rig/samples.hpp>
 #include <dem/terramechanics/bevameter_fit.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <optional>
 #include <span>
@@ -17,7 +18,7 @@ namespace dem::rig::plate_sinkage {
 struct Sample {
   double time;      ///< s, since the plate started
   double travel;    ///< m, downwards, since the plate started
-  double sinkage;   ///< m, from where the pressure first is the threshold; set by evaluate()
+  double sinkage;   ///< m, from where the smoothed pressure first is the threshold; set by evaluate()
   double pressure;  ///< Pa, upward force of the grains on the plate over its area
   double force;     ///< N, that force
   double drive;     ///< N, of the plate's actuator, downwards: the cross-check
@@ -110,19 +111,29 @@ inline double unloading_slope(std::span<const Unloading> samples) {
   return n >= 3.0 && spread > 0.0 && slope > 0.0 ? slope : not_known;
 }
 
+/// The smoothed curve of the samples, from zero sinkage on; empty while they carry less than the threshold.
+inline terramechanics::PlateCurve curve_of(const PlateResult& r, const Settings& s) {
+  terramechanics::PlateCurve all{
+      .width = r.width,
+      .sinkage = {},
+      .pressure = smoothed<Sample>(r.samples, &Sample::travel, &Sample::pressure, s.smoothing * s.sinkage)};
+  for (const Sample& sample : r.samples) all.sinkage.push_back(sample.travel);
+  const auto carries = [&](double pressure) { return pressure >= s.threshold; };
+  if (std::none_of(all.pressure.begin(), all.pressure.end(), carries)) return {};
+  return terramechanics::zeroed(all, s.threshold);
+}
+
+/// The travel (m) at which sinkage begins on that curve; NaN while it is empty.
+inline double zero_of(const PlateResult& r, const terramechanics::PlateCurve& curve) {
+  return curve.sinkage.empty() ? not_known : r.samples.back().travel - curve.sinkage.back();
+}
+
 /// Finds where sinkage begins, the curve from there on, and k and n of p = k z^n (weighted logarithms).
 inline void evaluate(PlateResult& r, const Settings& s) {
   r.unloading_stiffness = unloading_slope(r.unloading);
-  const auto pressure = smoothed<Sample>(r.samples, &Sample::travel, &Sample::pressure, s.smoothing * s.sinkage);
-  terramechanics::PlateCurve raw{.width = r.width, .sinkage = {}, .pressure = pressure};
-  bool carries = false;
-  for (std::size_t i = 0; i < r.samples.size(); ++i) {
-    raw.sinkage.push_back(r.samples[i].travel);
-    carries = carries || pressure[i] >= s.threshold;
-  }
-  if (!carries) return;
-  r.curve = terramechanics::zeroed(raw, s.threshold);
-  const double zero = raw.sinkage.back() - r.curve.sinkage.back();
+  r.curve = curve_of(r, s);
+  if (r.curve.sinkage.empty()) return;
+  const double zero = zero_of(r, r.curve);
   for (Sample& sample : r.samples) sample.sinkage = sample.travel - zero;
   const auto part = fitted_part(r, s);
   if (part.sinkage.size() < 10 || part.sinkage.back() < 2.0 * part.sinkage.front()) return;

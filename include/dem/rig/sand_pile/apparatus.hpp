@@ -171,6 +171,12 @@ inline std::vector<soil::Placement> lattice(const Settings& s, double bounding_r
     grains.push_back(g);
   }
   if (grains.size() == s.grains) return grains;
+  if (all.back().position.z() < all.front().position.z() + bounding_radius) {
+    fail(
+        "--cylinder-radius is {:g} m, so wide that the lattice of {} grains of half-edge {:g} m is no layer on its "
+        "floor; lower it, or give more --grains",
+        s.cylinder_radius, s.grains, s.half_edge);
+  }
   fail("the container has no place for {} grains of half-edge {:g} m; make it wider, or the grains smaller", s.grains,
        s.half_edge);
 }

@@ -16,12 +16,19 @@
 
 namespace dem::rig::sand_pile {
 
-/// rad, of the flank of these grains, as the method has it.
+/// The flank of these grains, as the method has it. It has no angle where it does not fall, or where the heap is lower
+/// than least_height(): a step of one grain is then most of what the lines go through.
 inline soil::Flank flank_of(std::span<const soil::Placement> grains, const Settings& s, double radius) {
   soil::FlankOptions o{.low = s.flank_low, .high = s.flank_high, .directions = s.directions};
-  if (s.method != "drain") return soil::flank_of_heap(grains, radius, s.plate_radius, o);
-  o.directions = std::max<std::size_t>(1, s.directions / 3);
-  return soil::flank_of_slope(grains, radius, -s.box_length, 0.0, 0.5 * s.box_width, o);
+  soil::Flank flank;
+  if (s.method == "drain") {
+    o.directions = std::max<std::size_t>(1, s.directions / 3);
+    flank = soil::flank_of_slope(grains, radius, -s.box_length, 0.0, 0.5 * s.box_width, o);
+  } else {
+    flank = soil::flank_of_heap(grains, radius, s.plate_radius, o);
+  }
+  if (!(flank.angle > 0.0) || flank.height < least_height(s)) flank.angle = flank.scatter = not_known;
+  return flank;
 }
 
 /// What a stage of a pile has come to.

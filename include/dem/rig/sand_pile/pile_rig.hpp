@@ -73,7 +73,7 @@ class PileRig : public Rig {
     work_and_save([&] { side_by_side(piles.size(), threads.runs, session, make); },
                   [&] { std::erase_if(piles, [](const PileResult& r) { return r.poured == 0; }); });  // not begun
     std::string angles;
-    for (const PileResult& r : piles) angles += text("{}{:.1f}", angles.empty() ? "" : ", ", degrees * r.flank.angle);
+    for (const PileResult& r : piles) angles += (angles.empty() ? "" : ", ") + number(degrees * r.flank.angle);
     session.finish(angles + " deg");
   }
 

@@ -70,8 +70,10 @@ inline void write_results_csv(const std::filesystem::path& path, const Campaign&
   csv.flush();  // so that a full disk is noticed
 }
 
-inline io::Plot profiles_plot(const Campaign& c) {
-  io::Plot plot{.title = "Mean profiles", .x_label = "way down the slope [mm]", .y_label = "height [mm]"};
+inline io::Plot profiles_plot(const Settings& s, const Campaign& c) {
+  io::Plot plot{.title = "Mean profiles",
+                .x_label = s.method == "drain" ? "distance from the back wall [mm]" : "distance from the axis [mm]",
+                .y_label = "height [mm]"};
   int color = 0;
   for (const auto& piles : by_kind(c)) {
     io::Series line{.name = piles.front()->kind.name, .color = color++};
@@ -149,21 +151,24 @@ inline std::vector<std::pair<std::string, std::string>> list_settings(const Sett
 /// Writes results.csv, prints the results, and makes the plots and report.html with all settings. Shows what there is
 /// when the run ended early. Returns whether there are files for ParaView.
 inline bool report(Report& report, const Settings& s, const Campaign& c) {
-  const std::string zhou = zhou_text(s, c);
+  std::vector<std::string> words{fit_text(s)};
+  if (auto zhou = zhou_text(s, c); !zhou.empty()) words.push_back(std::move(zhou));
+  for (const PileResult& r : c.piles) {
+    if (auto note = no_angle_note(s, r); !note.empty()) words.push_back(std::move(note));
+  }
   report.part("results.csv", [&] { detail::write_results_csv(report.folder() / "results.csv", c); });
   report.part("the printed report", [&] {
     fmt::print("\n");
     io::print(angle_table(c));
-    fmt::print("{}\n", fit_text(s));
-    if (!zhou.empty()) fmt::print("{}\n", zhou);
+    for (const auto& line : words) fmt::print("{}\n", line);
   });
   report.page(detail::list_settings(s), [&](io::HtmlReport& page) {
-    page.table(angle_table(c)).paragraph(fit_text(s));
-    if (!zhou.empty()) page.paragraph(zhou);
+    page.table(angle_table(c));
+    for (const auto& line : words) page.paragraph(line);
     if (!c.piles.empty() && !c.piles.front().pile.empty()) {
       page.heading("Plots");
       report.plot(page, repose_plot(s, c), "repose", "Angle of repose of each kind of grain.");
-      report.plot(page, detail::profiles_plot(c), "profiles", "Mean profile of the first pile of each kind.");
+      report.plot(page, detail::profiles_plot(s, c), "profiles", "Mean profile of the first pile of each kind.");
       report.plot(page, detail::time_plot(c), "angle_over_time", "Angle of the flank while the pile is made.");
       report.plot(page, detail::angles_plot(c), "angles", "Angle of the flank in each direction.");
     }

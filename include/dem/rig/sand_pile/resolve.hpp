@@ -48,8 +48,9 @@ inline void check(const Settings& s) {
   check_contact_options(s);
   require_non_negative(s.plate_friction, "--plate-friction", "(no unit)");
   require_non_negative(s.container_friction, "--container-friction", "(no unit)");
-  require_non_negative(s.plate_rolling_length, "--plate-rolling-length", "m");
-  require_non_negative(s.rolling_length, "--rolling-length", "m");
+  const double radius = sphere_radius(s.half_edge);
+  require_within(s.rolling_length, 0.0, radius, "--rolling-length (m, at most the radius of a sphere)");
+  require_within(s.plate_rolling_length, 0.0, radius, "--plate-rolling-length (m, at most the radius of a sphere)");
   require_non_negative(s.rolling_damping, "--rolling-damping", "(no unit)");
   require_positive(s.settle_limit, "--settle-limit", "s");
   require_positive(s.rest_limit, "--rest-limit", "s (0: by size)");

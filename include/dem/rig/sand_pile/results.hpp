@@ -6,6 +6,7 @@
 #include <dem/rig/sand_pile/settings.hpp>
 #include <dem/soil/angle_of_repose.hpp>
 
+#include <cmath>
 #include <numbers>
 #include <optional>
 #include <string>
@@ -62,6 +63,34 @@ struct Campaign {
 };
 
 inline constexpr double degrees = 180.0 / std::numbers::pi;
+
+/// m, three grains: that is how high a heap must be for an angle. Of a lower one the flank, six tenths of the height as
+/// it is set, is less than two grains high.
+inline double least_height(const Settings& s) { return 6.0 * s.half_edge; }
+
+/// Why a pile that was measured has no angle, and what to change; empty of one that has.
+inline std::string no_angle_note(const Settings& s, const PileResult& r) {
+  if (r.pile.empty() || std::isfinite(r.flank.angle)) return {};
+  const bool drain = s.method == "drain";
+  std::string why, change;
+  if (r.flank.height < least_height(s)) {
+    why = text("it is {:.1f} mm high, but must be {:g} mm, three grains", 1e3 * r.flank.height, 1e3 * least_height(s));
+    change = text("more --grains{}", drain                ? " or a shorter --box-length"
+                                     : s.method == "lift" ? " or a smaller --cylinder-radius"
+                                                          : "");
+  } else if (r.flank.angles.empty()) {
+    why = text("its flank, from {:.1f} to {:.1f} mm, has fewer than 5 places in every {}", 1e3 * r.flank.from,
+               1e3 * r.flank.to, drain ? "strip" : "sector");
+    change = "fewer --directions, a lower --flank-low, or more --grains";
+  } else {
+    double sum = 0.0;
+    for (const double angle : r.flank.angles) sum += angle;
+    why = text("the lines through its flank fall by {:.1f} deg in the mean, but must fall by more than 0 deg",
+               degrees * sum / static_cast<double>(r.flank.angles.size()));
+    change = "more --grains";
+  }
+  return text("Note: the pile {} of seed {} has no angle: {}. Give {}.", r.kind.name, r.seed, why, change);
+}
 
 /// The piles of one kind, in the order in which they were made.
 inline std::vector<std::vector<const PileResult*>> by_kind(const Campaign& c) {
