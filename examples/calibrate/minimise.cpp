@@ -2,6 +2,8 @@
 
 #include <nlopt.hpp>
 
+#include <algorithm>
+
 std::vector<double> minimise(double (*function)(const double* x, const void* data), const void* data,
                              const std::vector<double>& start) {
   struct Call {
@@ -25,6 +27,7 @@ std::vector<double> minimise(double (*function)(const double* x, const void* dat
       search.optimize(x, least);
     } catch (const nlopt::roundoff_limited&) {  // as near as numbers go: x is what was found
     }
+    for (double& v : x) v = std::clamp(v, 0.0, 1.0);  // DIRECT-L may end one rounding outside, where BOBYQA refuses x
   }
   return x;
 }

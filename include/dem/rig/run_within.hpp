@@ -6,6 +6,7 @@
 
 #include <exception>
 #include <filesystem>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -56,7 +57,9 @@ inline std::string settings_as_they_are(Rig& rig) {
 /// Runs a rig, whose settings are resolved, in its own output folder as a stage of another run, and makes its report
 /// there. `session` has begun that stage with the total 1. What ends the run early is thrown here, after the report.
 /// It is kept and gone on with as the other run is; the files that it goes on from stay until forget_run_within().
-inline void run_within(Session& session, Rig& rig, const char* program, const char* title) {
+/// `words` are what the rig calls otherwise than the other run.
+inline void run_within(Session& session, Rig& rig, const char* program, const char* title,
+                       std::span<const OwnWord> words = {}) {
   std::vector<std::string> free_settings;
   Options options;
   rig.declare(options);
@@ -66,7 +69,9 @@ inline void run_within(Session& session, Rig& rig, const char* program, const ch
   const std::string config = settings_as_they_are(rig);
   CheckpointOptions checkpoints =
       checkpoints_within(session.checkpoints(), program, rig.output(), config, std::move(free_settings));
-  Session own({program, rig.output(), config, rig.results(), rig.words(), std::move(checkpoints),
+  std::vector<OwnWord> all_words(words.begin(), words.end());
+  for (const OwnWord& word : rig.words()) all_words.push_back(word);
+  Session own({program, rig.output(), config, rig.results(), std::move(all_words), std::move(checkpoints),
                static_cast<Stages*>(&session)});
   std::exception_ptr thrown;
   std::string problem;

@@ -124,8 +124,9 @@ class Session final : public Stages {
     if (progress_) progress_->finish(result);
   }
   void message(std::string_view text) override {
-    if (progress_) progress_->message(text);
-    else set_.within->message(text);
+    const std::string words = in_own_words(text);
+    if (progress_) progress_->message(words);
+    else set_.within->message(words);
   }
 
   /// Files for ParaView of `what` cannot be written: it is said, and noted for the report.

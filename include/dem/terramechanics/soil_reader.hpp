@@ -112,6 +112,15 @@ inline NamedSoil read_soil(std::string_view text, const std::string& where = "so
       fail("'{}', line {}: {} is '{}', but must be a finite number with a decimal point", where, line.line, line.name,
            line.value);
     }
+    const double value = *numbers.rows[k].value;
+    if (numbers.rows[k].value == &angles[0] && !(value >= 0.0 && value < 90.0)) {
+      fail("'{}', line {}: friction_angle is {:g} degrees, but must be at least 0 and less than 90; give it in degrees",
+           where, line.line, value);
+    }
+    if (numbers.rows[k].value == &angles[1] && !(value >= -90.0 && value <= 0.0)) {
+      fail("'{}', line {}: exit_angle is {:g} degrees, but must lie between -90 and 0; give it in degrees", where,
+           line.line, value);
+    }
     found[k] = true;
   }
   for (std::size_t k = 0; k < numbers.required; ++k) {

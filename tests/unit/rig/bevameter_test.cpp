@@ -98,7 +98,39 @@ TEST_CASE("a bevameter gives back the constants of a soil that obeys the laws") 
     CHECK(c.bekker_r_squared < c.reece_r_squared);
     CHECK_FALSE(c.has_cohesion);
     CHECK(c.cohesion.value == 0.0);
+    // Nobody takes its 0 for measured.
+    const auto path = std::filesystem::temp_directory_path() / ("dem_constants_" + std::to_string(::getpid()) + ".csv");
+    bevameter::write_constants(path, c, 0.95);
+    const std::string file = dem::io::read_file(path);
+    CHECK(file.find("Bekker k_c,0,nan,nan,0,kPa/m^(n-1),left out\n") != std::string::npos);
+    CHECK(file.find("cohesion c,0,nan,nan,0,kPa,left out\n") != std::string::npos);
+    CHECK(file.find("deg,measured\n") != std::string::npos);
+    CHECK(file.find("cohesion of the free line,") != std::string::npos);
+    std::filesystem::remove(path);
+    const std::string comments = bevameter::left_out_comments(c);
+    CHECK(comments.find("// Bekker_Kc is 0 because it was left out") == 0);
+    CHECK(comments.find("Mohr_cohesion") != std::string::npos);
+    CHECK(comments.find("Kphi") == std::string::npos);
   }
+}
+
+TEST_CASE("the line of the picture is the soil's, and strengths at the end of the travel are told") {
+  MadeSoil soil(mechanics::Bekker{.k_c = 2e4, .k_phi = 3e6, .n = 0.9}, dry);
+  soil.shear_settings.travel = 8.1e-3;
+  for (auto& r : soil.shear.loads) r.maximum += r.normal_stress > 3e4 ? -2e3 : 0.0;  // the free line has a cohesion
+  const auto c = soil.constants();
+  REQUIRE_FALSE(c.has_cohesion);
+  CHECK(c.free_cohesion.value > 100.0);
+  const auto line = bevameter::strength_plot(soil.shear, c).series.front();
+  CHECK(line.name ==
+        dem::text("the soil: {:.1f}°, c = 0.00 kPa, through the origin", mechanics::degrees(c.friction_angle.value)));
+  CHECK(line.y.at(0) == 0.0);
+  CHECK(line.y.at(1) == Approx(line.x.at(1) * std::tan(c.friction_angle.value)));
+  CHECK(c.rising.size() == 4);
+  CHECK(bevameter::constants_text(c, 0.95).find("At 5, 10, 20, 40 kPa the shear stress is largest in the last 5 %") !=
+        std::string::npos);
+  soil.shear_settings.travel = 9e-3;
+  CHECK(bevameter::rising_text(soil.constants()).empty());
 }
 
 TEST_CASE("two strengths tell the cohesion of their line without an error, and none is taken; three tell it with one") {
@@ -168,6 +200,18 @@ TEST_CASE(
   refuses([](auto& x) { x.pieces = 1.0; }, "--pieces");
   refuses([](auto& x) { x.shear_smoothing = 0.7; }, "--shear-smoothing");
   refuses([](auto& x) { x.grains.half_edge = -1.0; }, "--half-edge");
+  refuses([](auto& x) { x.sinkage = 2e-4; }, "--sinkage is 0.0002 m, which takes");
+  refuses(
+      [](auto& x) {
+        x.plate_speed = 2.0;
+        x.sinkage = 0.05;
+      },
+      "--plate-speed (m/s) is 2");
+  refuses([](auto& x) { x.shear_travel = 1.0; }, "--shear-travel (m, at most");
+  refuses([](auto& x) { x.normal_stresses = {1e4, 2e4, 1e4}; }, "10000 and 10000 Pa of --normal-stresses");
+  refuses([](auto& x) { x.path = 2.0; }, "give --wheel-bed-length");
+  CHECK(in_own_words("change --relative-density, --densify-time or --seed if", bevameter::shear_words) ==
+        "change --relative-density or --seed if");
 }
 
 TEST_CASE("the wheel stands beside Bekker, Reece and dynamic Bekker in the table, the file and the plot") {

@@ -2,6 +2,7 @@
 
 #include <dem/rig/calibrate/search.hpp>
 #include <dem/rig/calibrate/settings.hpp>
+#include <dem/rig/calibrate/tables.hpp>
 #include <dem/rig/calibrate/tried.hpp>
 
 #include <cmath>
@@ -135,6 +136,38 @@ TEST_CASE("a failed run is passed over, and what the goals do not determine has 
   CHECK(std::isinf(found.error[0]));  // one goal, two constants
 }
 
+TEST_CASE("of two places that fit, that between the tried points is found, and the other one is told") {
+  // 4 x (1 - x) is 0.75 at 0.25 and at 0.75.
+  const auto measure = [](double last) {
+    Measurements m{.dimensions = 1, .places = {}, .values = {{}}};
+    for (int k = 0; k < 12; ++k) {
+      const double x = 0.05 + (last - 0.05) * (k % 6) / 5.0;
+      m.places.push_back(x);
+      m.values[0].push_back(4.0 * x * (1.0 - x) + (k < 6 ? 0.01 : -0.01));
+    }
+    return m;
+  };
+  const auto from_right = [](double (*function)(const double*, const void*), const void* data,
+                             const std::vector<double>&) { return by_grids(function, data, {0.9}); };
+  Settings s;
+  s.phi = 0.75;
+  s.friction_range = {0.0, 1.0};
+  const std::vector<Goal> goals{{0.75, 1e-3}};
+  const auto left = find_constants(measure(0.6), goals, from_right);
+  CHECK(left.place[0] == Approx(0.25).margin(1e-4));
+  CHECK(left.other.at(0) == Approx(0.75).margin(1e-4));
+  CHECK_FALSE(left.is_beyond());
+  CHECK(found_text(s, left).find("; but friction 0.75 fits the target as well") != std::string::npos);
+  const auto both = find_constants(measure(0.95), goals, by_grids);
+  CHECK(both.place[0] + both.other.at(0) == Approx(1.0).margin(2e-3));
+  const auto short_of = find_constants(measure(0.2), goals, [](auto* function, const void* data, const auto&) {
+    return by_grids(function, data, {0.3});
+  });
+  CHECK(short_of.place[0] == Approx(0.25).margin(1e-4));
+  CHECK(short_of.is_beyond());
+  CHECK(found_text(s, short_of).find("beyond the points that were tried, 0.05 to 0.2") != std::string::npos);
+}
+
 TEST_CASE("new places stay near what is known, and in the cube") {
   Found sure;
   sure.place = {0.02};
@@ -174,6 +207,39 @@ TEST_CASE("the table of what was tried is read back the same, and refused where 
   std::filesystem::remove(path);
 }
 
+TEST_CASE("what a rig would refuse is refused before the search, by the names of its options") {
+  Settings s;
+  s.size = "smoke";
+  s.phi = 30.0;
+  s.pressure = 1e4;
+  CHECK_NOTHROW(check_rigs(s));
+  s.loads = {0.0};
+  CHECK_THROWS_WITH(check_rigs(s), Catch::Contains("a mass of --loads is 0"));
+  s.loads = {};
+  s.plates = {5.0};
+  CHECK_THROWS_WITH(check_rigs(s), Catch::Contains("a width of --plate (m, within the bed) is 5"));
+}
+
+TEST_CASE("options of rigs that measure no target are idle") {
+  const auto is_idle = [](const Settings& s, const char* name) {
+    dem::rig::IdleOptions idle;
+    find_idle(idle, s);
+    return idle.contains(name);
+  };
+  Settings s;
+  s.phi = 32.0;
+  CHECK_FALSE(is_idle(s, "--loads"));
+  CHECK(is_idle(s, "--plate"));
+  CHECK(is_idle(s, "--pile-kind"));
+  s.phi = 0.0;
+  s.known = {0.3};
+  CHECK_FALSE(is_idle(s, "--loads"));  // phi is what is made unless it is said
+  s.targets = "pressure,repose";
+  CHECK(is_idle(s, "--loads"));
+  CHECK_FALSE(is_idle(s, "--plate"));
+  CHECK_FALSE(is_idle(s, "--pile-kind"));
+}
+
 TEST_CASE("searches that cannot work are refused by the names of their options") {
   const auto refuses = [](auto&& change, const char* words) {
     Settings s;
@@ -190,6 +256,8 @@ TEST_CASE("searches that cannot work are refused by the names of their options")
   refuses([](auto& s) { s.known = {0.95}; }, "--known");
   refuses([](auto& s) { s.known = {0.3, 0.4}; }, "--known has 2 values");
   refuses([](auto& s) { s.trials = 2; }, "--trials");
+  refuses([](auto& s) { s.phi = std::nan(""); }, "--phi (deg) is nan");
+  refuses([](auto& s) { s.pressure = std::nan(""); }, "--pressure is nan");
   Settings fine;
   fine.known = {0.35};
   CHECK_NOTHROW(resolve(fine));

@@ -96,6 +96,7 @@ TEST_CASE("soil files with mistakes are refused with the line") {
   CHECK_THROWS_WITH(refused("name = 3")(), ContainsSubstring("name takes a text in quotes"));
   CHECK_THROWS_WITH(refused("a0 = \"3\"")(), ContainsSubstring("a0 takes a number"));
   CHECK_THROWS_WITH(refused("name = \"sand")(), ContainsSubstring("does not end in a quote"));
+  CHECK_THROWS_WITH(refused("exit_angle = 5")(), ContainsSubstring("line 7: exit_angle is 5 degrees"));
   CHECK_THROWS_WITH(refused("shear_displacement = -1")(), ContainsSubstring("K of the soil is -1 m"));
   CHECK_THROWS_WITH(read_soil("pressure = \"sand\""), ContainsSubstring("\"bekker\", \"reece\" or \"wong-reece\""));
   CHECK_THROWS_WITH(read_soil(""), ContainsSubstring("pressure is \"\""));

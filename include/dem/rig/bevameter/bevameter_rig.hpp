@@ -11,6 +11,7 @@
 
 #include <array>
 #include <optional>
+#include <span>
 #include <string>
 
 namespace dem::rig::bevameter {
@@ -43,16 +44,16 @@ class BevameterRig : public Rig {
     session.begin_run(s.has_wheel() ? 3 : 2);
     keep_begun(session, "bevameter");
     session.begin("plates", 1.0);
-    run_within(session, plates_, "plate_sinkage", "Plates of the bevameter");
+    run_in(plate_words, session, plates_, "plate_sinkage", "Plates of the bevameter");
     session.begin("shear", 1.0);
     shear_.settings = shear_of(s, bed_density());
-    run_within(session, shear_, "direct_shear", "Shear test of the bevameter");
+    run_in(shear_words, session, shear_, "direct_shear", "Shear test of the bevameter");
     constants = find_constants(plates(), shear_.campaign, shear_.settings, s.pieces, s.confidence);
     save_soils(session.folder());
     if (s.has_wheel()) {
       session.begin("wheel", 1.0);
       wheel_.settings = wheel_of(s, (session.folder() / "soil_bekker.toml").string());
-      run_within(session, wheel_, "rigid_wheel", "Wheel in the soil of the bevameter");
+      run_in(wheel_words, session, wheel_, "rigid_wheel", "Wheel in the soil of the bevameter");
     }
     for (const Rig* rig :
          {static_cast<const Rig*>(&plates_), static_cast<const Rig*>(&shear_), static_cast<const Rig*>(&wheel_)}) {
@@ -74,7 +75,8 @@ class BevameterRig : public Rig {
         report.part("predicted.csv",
                     [&] { write_predicted(report.folder() / "predicted.csv", predictions, wheel_.campaign); });
       }
-      report.part("constants.csv", [&] { write_constants(report.folder() / "constants.csv"); });
+      report.part("constants.csv",
+                  [&] { write_constants(report.folder() / "constants.csv", *constants, settings.confidence); });
     }
     report.part("the printed report", [&] {
       fmt::print("\n{}\n", words);
@@ -105,6 +107,10 @@ class BevameterRig : public Rig {
   std::optional<Constants> constants = {};
 
  private:
+  static void run_in(std::span<const OwnWord> words, Session& session, Rig& rig, const char* program,
+                     const char* title) {
+    in_words(words, [&] { run_within(session, rig, program, title, words); });
+  }
   [[nodiscard]] const plate_sinkage::VariantResult& plates() const { return plates_.campaign.variants.front(); }
   /// Relative density of the plates' bed; what was asked for where the bed is too flat to measure it.
   [[nodiscard]] double bed_density() const {
@@ -124,20 +130,12 @@ class BevameterRig : public Rig {
     terramechanics::save_soil((folder / "soil_bekker.toml").string(), {name, source, constants->bekker_soil});
     terramechanics::save_soil((folder / "soil_reece.toml").string(), {name, source, constants->reece_soil});
     try {
-      io::write_file(folder / "chrono_scm.txt",
-                     terramechanics::to_text(terramechanics::to_chrono(constants->bekker_soil)));
+      io::write_file(
+          folder / "chrono_scm.txt",
+          left_out_comments(*constants) + terramechanics::to_text(terramechanics::to_chrono(constants->bekker_soil)));
     } catch (const Error& problem) {  // as of a soil that gives way when it is unloaded
       chrono_problem_ = problem.what();
     }
-  }
-
-  void write_constants(const std::filesystem::path& path) const {
-    io::CsvWriter csv(path, {"constant", "value", "standard_error", "half_interval", "degrees_of_freedom", "unit"});
-    for (const NamedConstant& n : list(*constants)) {
-      csv.row(n.name, n.scale * n.estimate.value, n.scale * n.estimate.error,
-              n.scale * n.estimate.half_width(settings.confidence), n.estimate.freedom, n.unit);
-    }
-    csv.flush();
   }
 
   void add_plots(Report& report, io::HtmlReport& page, const Predictions& predictions) const {
@@ -148,8 +146,8 @@ class BevameterRig : public Rig {
     if (shear_.campaign.loads.empty()) return;
     report.plot(page, shear_plot(shear_.campaign, shear_.settings, constants), "shear",
                 "Shear stress; dashed: Janosi and Hanamoto with the soil's K and strength.");
-    report.plot(page, direct_shear::mohr_coulomb_plot(shear_.campaign, direct_shear::fit(shear_.campaign)),
-                "mohr_coulomb", "Strength over normal stress.");
+    report.plot(page, strength_plot(shear_.campaign, constants), "mohr_coulomb",
+                "Strength over normal stress; the line is that of the soil in the table and the files.");
     if (!has_rolled() || !constants) return;
     for (const Compared& q : compared) {
       report.plot(page, circle_plot(*constants, predictions, wheel_.campaign, wheel_.settings, q), q.name,

@@ -28,9 +28,10 @@ struct Constants {
   Estimate unloading = {};              ///< Pa/m
   double bekker_r_squared = 0.0, reece_r_squared = 0.0;
   bool has_cohesion = false;  ///< false: it does not differ from none, and the strength goes through the origin
-  Estimate free_cohesion =
-      {};                    ///< Pa, of the line that does not go through the origin; of two strengths without an error
-  double unit_weight = 0.0;  ///< N/m^3
+  /// Pa and rad, of the line that does not go through the origin; of two strengths without an error.
+  Estimate free_cohesion = {}, free_friction_angle = {};
+  std::vector<double> rising = {};  ///< Pa, normal stresses whose shear stress is largest at the end of the travel
+  double unit_weight = 0.0;         ///< N/m^3
   double relative_density = 0.0;
   std::vector<terramechanics::JanosiFit> shear_curves = {};
   terramechanics::Soil bekker_soil = {}, reece_soil = {};
@@ -89,13 +90,16 @@ inline void find_strength(Constants& c, const direct_shear::Campaign& shear, con
     tau.push_back(r.maximum);
     c.shear_curves.push_back(terramechanics::fit_janosi_below(shear_curve(r, s), r.maximum));
     bends.push_back(c.shear_curves.back().displacement);
+    // A mean over the smoothing can be largest no later than half of that before the end.
+    if (r.at_maximum > 0.95 * (s.travel - 0.5 * s.smoothing)) c.rising.push_back(r.normal_stress);
   }
   if (sigma.size() > 1) {
     const auto line = terramechanics::fit_mohr_coulomb(sigma, tau, Intercept::free);
     c.free_cohesion = {line.cohesion, line.cohesion_error, sigma.size() - 2};
     c.has_cohesion = line.cohesion > c.free_cohesion.half_width(confidence);
+    c.free_friction_angle = {line.friction_angle, line.friction_angle_error, sigma.size() - 2};
     c.cohesion = c.free_cohesion;
-    c.friction_angle = {line.friction_angle, line.friction_angle_error, sigma.size() - 2};
+    c.friction_angle = c.free_friction_angle;
   }
   if (!c.has_cohesion) {
     const auto line = terramechanics::fit_mohr_coulomb(sigma, tau, Intercept::zero);

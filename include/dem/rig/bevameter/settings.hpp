@@ -2,10 +2,13 @@
 // The settings of a bevameter, and what they make of those of its apparatus.
 
 #include <dem/rig/direct_shear/resolve.hpp>
+#include <dem/rig/own_words.hpp>
 #include <dem/rig/plate_sinkage/settings.hpp>
 #include <dem/rig/rigid_wheel/settings.hpp>
+#include <dem/rig/stages.hpp>
 
 #include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -97,6 +100,43 @@ inline void find_idle(IdleOptions& idle, const Settings& s) {
   idle.unless(
       rolls, "with a --wheel",
       {"--slips", "--load", "--spin", "--path", "--wheel-bed-length", "--wheel-bed-width", "--wheel-bed-depth"});
+}
+
+/// What the apparatus call otherwise than the bevameter, each for its own.
+inline constexpr OwnWord plate_words[] = {{"--speed", "--plate-speed"},
+                                          {"raise --stage-limit or --damping", "raise --damping"}};
+inline constexpr OwnWord shear_words[] = {
+    {"--travel", "--shear-travel"},
+    {"--smoothing", "--shear-smoothing"},
+    {"--relative-density, --densify-time or --seed", "--relative-density or --seed"},
+    {"raise --consolidation-limit, --rest-speed or --damping", "raise --damping"},
+    {"raise --settle-limit or --damping", "raise --damping"},
+    {"; take more --grains or a smaller --half-edge if that matters", ""},
+    {"take more --grains or a smaller --half-edge, or let", "let"}};
+inline constexpr OwnWord wheel_words[] = {
+    {"--width (m, within the bed)", "width of the wheel (m, within --wheel-bed-width)"},
+    {"--bed-length", "--wheel-bed-length"},
+    {"--bed-width", "--wheel-bed-width"},
+    {"--bed-depth", "--wheel-bed-depth"},
+    {"raise --stage-limit or --damping", "raise --damping"}};
+
+/// Calls what an apparatus does. What it throws is said in the bevameter's words.
+template <class F>
+auto in_words(std::span<const OwnWord> words, F&& act) {
+  try {
+    return act();
+  } catch (const Error& problem) {
+    throw Error(in_own_words(problem.what(), words));
+  } catch (const Stopped& problem) {
+    throw Stopped(in_own_words(problem.what(), words));
+  }
+}
+
+/// Throws Error where a way (m) ends before its smooth start (s) does.
+inline void require_start(double way, double speed, double start, const char* way_option, const char* speed_option) {
+  if (!(way > 0.0 && speed > 0.0 && way < start * speed)) return;
+  fail("{} is {:g} m, which takes {:.3g} s, but the smooth start takes {:g} s; raise it to {:.3g} m, or lower {}",
+       way_option, way, way / speed, start, 1.01 * start * speed, speed_option);
 }
 
 /// The bed of an apparatus.
@@ -275,10 +315,23 @@ inline void resolve(Settings& s) {
         "four are usual",
         s.normal_stresses.size());
   }
-  for (const double sigma : s.normal_stresses) require_within(sigma, 10.0, 1e7, "a stress of --normal-stresses (Pa)");
-  plates_of(s);
-  shear_of(s, s.relative_density);
-  if (s.has_wheel()) wheel_of(s, "");
+  for (std::size_t k = 0; k < s.normal_stresses.size(); ++k) {
+    const double sigma = require_within(s.normal_stresses[k], 10.0, 1e7, "a stress of --normal-stresses (Pa)");
+    for (std::size_t other = 0; other < k; ++other) {
+      if (text("{:.1f}", 1e-3 * s.normal_stresses[other]) != text("{:.1f}", 1e-3 * sigma)) continue;
+      fail("{:g} and {:g} Pa of --normal-stresses are the same to 0.1 kPa; leave one out", s.normal_stresses[other],
+           sigma);
+    }
+  }
+  require_start(s.sinkage, s.plate_speed, plate_sinkage::Settings{}.ramp_time, "--sinkage", "--plate-speed");
+  require_start(s.shear_travel, s.shear_speed, direct_shear::Settings{}.ramp_time, "--shear-travel", "--shear-speed");
+  in_words(plate_words, [&] { plates_of(s); });
+  in_words(shear_words, [&] { shear_of(s, s.relative_density); });
+  if (!s.has_wheel()) return;
+  rigid_wheel::Settings wheel;
+  wheel.spin_deg = s.spin_deg;
+  require_start(s.path, wheel.rim_speed(), wheel.ramp_time, "--path", "--spin");
+  in_words(wheel_words, [&] { wheel_of(s, ""); });
 }
 
 /// Names and values for the report.

@@ -1,11 +1,14 @@
 #pragma once
 // What a bevameter found of the soil, as tables and plots.
 
+#include <dem/io/csv.hpp>
 #include <dem/report/plot_data.hpp>
 #include <dem/report/table.hpp>
 #include <dem/rig/bevameter/constants.hpp>
+#include <dem/rig/direct_shear/plots.hpp>
 #include <dem/rig/plate_sinkage/tables.hpp>
 
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
@@ -20,6 +23,8 @@ struct NamedConstant {
   const char* unit;
   Estimate estimate;
   double scale;
+  /// One that was left out is 0, without an error: nothing measured that.
+  [[nodiscard]] bool is_left_out() const { return estimate.error == 0.0 && estimate.value == 0.0; }
 };
 inline std::vector<NamedConstant> list(const Constants& c) {
   return {{"Bekker k_c", "kPa/m^(n-1)", c.bekker[0], 1e-3},
@@ -30,6 +35,8 @@ inline std::vector<NamedConstant> list(const Constants& c) {
           {"Reece n", "", c.reece[2], 1.0},
           {"cohesion c", "kPa", c.cohesion, 1e-3},
           {"friction angle phi", "deg", c.friction_angle, degrees(1.0)},
+          {"cohesion of the free line", "kPa", c.free_cohesion, 1e-3},
+          {"phi of the free line", "deg", c.free_friction_angle, degrees(1.0)},
           {"shear displacement K", "mm", c.displacement, 1e3},
           {"unloading stiffness", "MPa/m", c.unloading, 1e-6}};
 }
@@ -38,13 +45,47 @@ inline io::Table constants_table(const Constants& c, double confidence) {
   io::Table t{.caption = text("Constants of the soil, with intervals of {:g} % confidence", 100.0 * confidence),
               .header = {"constant", "value", "± interval", "standard error", "deg. of freedom", "unit"}};
   for (const NamedConstant& n : list(c)) {
-    // A constant that was left out is 0, without an error.
-    const bool is_given = n.estimate.error == 0.0 && n.estimate.value == 0.0;
-    const auto cell = [&](double value) { return is_given ? "left out" : number(n.scale * value, "{:.4g}"); };
+    const bool is_left_out = n.is_left_out();
+    const auto cell = [&](double value) { return is_left_out ? "left out" : number(n.scale * value, "{:.4g}"); };
     t.row(n.name, number(n.scale * n.estimate.value, "{:.4g}"), cell(n.estimate.half_width(confidence)),
-          cell(n.estimate.error), is_given ? "-" : text("{}", n.estimate.freedom), n.unit);
+          cell(n.estimate.error), is_left_out ? "-" : text("{}", n.estimate.freedom), n.unit);
   }
   return t;
+}
+
+/// The same as a file. What was left out has the value that the soil has, 0, and no error.
+inline void write_constants(const std::filesystem::path& path, const Constants& c, double confidence) {
+  io::CsvWriter csv(path,
+                    {"constant", "value", "standard_error", "half_interval", "degrees_of_freedom", "unit", "state"});
+  for (const NamedConstant& n : list(c)) {
+    const Estimate e = n.is_left_out() ? Estimate{.value = 0.0} : n.estimate;
+    csv.row(n.name, n.scale * e.value, n.scale * e.error, n.scale * e.half_width(confidence), e.freedom, n.unit,
+            n.is_left_out() ? "left out" : "measured");
+  }
+  csv.flush();
+}
+
+/// What Bekker's soil has as 0 because it was left out, as comments above the call that gives it to Project Chrono.
+inline std::string left_out_comments(const Constants& c) {
+  std::string lines;
+  const auto add = [&](bool is_left_out, const char* name, const char* why) {
+    if (is_left_out) lines += text("// {} is 0 because it was left out, as {}: it was not measured.\n", name, why);
+  };
+  add(c.bekker[0].value == 0.0, "Bekker_Kc", "it came out negative");
+  add(c.bekker[1].value == 0.0, "Bekker_Kphi", "it came out negative");
+  add(!c.has_cohesion, "Mohr_cohesion", "it could not be told from none");
+  return lines;
+}
+
+/// That strengths were read where the shear stress may still have risen; empty where it had not.
+inline std::string rising_text(const Constants& c) {
+  if (c.rising.empty()) return "";
+  std::string stresses;
+  for (const double sigma : c.rising) stresses += (stresses.empty() ? "" : ", ") + number(1e-3 * sigma, "{:g}");
+  return text(
+      " At {} kPa the shear stress is largest in the last 5 % of the shear travel, and may still rise: the strength, "
+      "phi and K depend on --shear-travel; make it longer.",
+      stresses);
 }
 
 /// Which line the strengths have, and why.
@@ -68,11 +109,12 @@ inline std::string constants_text(const Constants& c, double confidence) {
       "Unit weight {:.2f} kN/m³, relative density {:.2f}. R² of Bekker's pressure {:.3f}, of Reece's {:.3f}. Errors of "
       "the "
       "moduli are those of the jackknife over pieces of the curves, as neighbouring points err alike; of phi, those of "
-      "the line through the strengths; of K and of the unloading, the scatter between the curves. {}{}",
+      "the line through the strengths; of K and of the unloading, the scatter between the curves. {}{}{}",
       1e-3 * c.unit_weight, c.relative_density, c.bekker_r_squared, c.reece_r_squared, cohesion_text(c, confidence),
       c.bekker[0].value == 0.0   ? " Bekker's k_c came out negative, as the wider plates carried more: it is left out."
       : c.bekker[1].value == 0.0 ? " Bekker's k_phi came out negative: it is left out."
-                                 : "");
+                                 : "",
+      rising_text(c));
 }
 
 /// Janosi's fit of each load.
@@ -141,6 +183,21 @@ inline io::Plot shear_plot(const direct_shear::Campaign& d, const direct_shear::
     plot.series.push_back(std::move(line));
     if (c) plot.series.push_back(std::move(law));
   }
+  return plot;
+}
+
+/// Strengths over normal stress, and the line that the soil has through them.
+inline io::Plot strength_plot(const direct_shear::Campaign& d, const std::optional<Constants>& c) {
+  io::Plot plot = direct_shear::mohr_coulomb_plot(d, {});
+  if (!c) return plot;
+  const auto& soil = c->bekker_soil.shear;
+  const double end = plot.series.back().x.back();
+  plot.series.insert(plot.series.begin(),
+                     {.name = text("the soil: {:.1f}°, c = {:.2f} kPa{}", degrees(soil.friction_angle),
+                                   1e-3 * soil.cohesion, c->has_cohesion ? "" : ", through the origin"),
+                      .x = {0.0, end},
+                      .y = {1e-3 * soil.strength(0.0), 1e-3 * soil.strength(1e3 * end)},
+                      .color = 0});
   return plot;
 }
 

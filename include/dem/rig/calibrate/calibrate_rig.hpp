@@ -26,7 +26,10 @@ class CalibrateRig : public Rig {
 
   void declare(Options& options) override { calibrate::declare(options, settings); }
   void find_idle(IdleOptions& idle) const override { calibrate::find_idle(idle, settings); }
-  void resolve() override { calibrate::resolve(settings); }
+  void resolve() override {
+    calibrate::resolve(settings);
+    check_rigs(settings);
+  }
   [[nodiscard]] std::string output() const override { return settings.output; }
   [[nodiscard]] ResultNames results() const override {
     ResultNames names{.files = {"found.csv"},

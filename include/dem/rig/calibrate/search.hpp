@@ -51,6 +51,16 @@ struct Found {
   std::vector<double> place = {};  ///< in the unit cube
   std::vector<double> error = {};  ///< standard errors there; infinite where the goals do not determine a constant
   std::size_t freedom = 0;         ///< of the errors
+  std::vector<double> low = {}, high = {};  ///< in the unit cube: between these places runs were tried
+  std::vector<double> other = {};           ///< a place apart from this one that fits as well; empty: none is known
+  /// Whether the place lies where nothing was tried: the surfaces are extrapolated there.
+  [[nodiscard]] bool is_beyond(std::size_t k) const { return place[k] < low[k] - 1e-6 || place[k] > high[k] + 1e-6; }
+  [[nodiscard]] bool is_beyond() const {
+    for (std::size_t k = 0; k < place.size(); ++k) {
+      if (is_beyond(k)) return true;
+    }
+    return false;
+  }
   std::vector<Surrogate> surrogates = {};
 };
 
@@ -59,13 +69,19 @@ namespace detail {
 struct Misfit {
   const std::vector<Surrogate>* surrogates;
   std::span<const Goal> goals;
-  std::size_t dimensions;
+  std::vector<double> low, high;  // of the box that is looked through
+
+  [[nodiscard]] std::vector<double> place(const double* x) const {
+    std::vector<double> at(low.size());
+    for (std::size_t k = 0; k < at.size(); ++k) at[k] = low[k] + x[k] * (high[k] - low[k]);
+    return at;
+  }
 };
 
-/// Squares of what the surrogates miss the goals by, over their variances.
+/// Squares of what the surrogates miss the goals by, over their variances. `x` is a share of the box.
 inline double misfit(const double* x, const void* data) {
   const auto& m = *static_cast<const Misfit*>(data);
-  const std::span<const double> place(x, m.dimensions);
+  const std::vector<double> place = m.place(x);
   double sum = 0.0;
   for (std::size_t q = 0; q < m.goals.size(); ++q) {
     const double rest = (*m.surrogates)[q].value(place) - m.goals[q].value, scatter = (*m.surrogates)[q].scatter();
@@ -89,13 +105,53 @@ inline std::size_t distinct_places(const std::vector<double>& places, std::size_
   return count;
 }
 
+/// Whether places are so far from each other that they are two answers.
+inline bool are_apart(const std::vector<double>& a, const std::vector<double>& b) {
+  for (std::size_t k = 0; k < a.size(); ++k) {
+    if (std::abs(a[k] - b[k]) > 0.02) return true;
+  }
+  return false;
+}
+
+/// Looks for the place of the least misfit: that between the tried points goes before another that fits as well.
+inline void find_place(Found& found, std::span<const Goal> goals, Minimise* minimise) {
+  const std::size_t d = found.low.size();
+  const std::vector<double> middle(d, 0.5);
+  const Misfit whole{&found.surrogates, goals, std::vector<double>(d, 0.0), std::vector<double>(d, 1.0)};
+  const Misfit tried{&found.surrogates, goals, found.low, found.high};
+  found.place = minimise(&misfit, &whole, middle);
+  const double least = misfit(found.place.data(), &whole);
+  if (found.is_beyond()) {
+    const std::vector<double> x = minimise(&misfit, &tried, middle), within = tried.place(x.data());
+    if (misfit(x.data(), &tried) <= least + 1e-3 && are_apart(within, found.place)) {
+      found.other = found.place;
+      found.place = within;
+    }
+  }
+  if (d != 1 || !found.other.empty()) return;
+  // A parabola may cross its target twice.
+  constexpr int steps = 1000;
+  const auto at = [&](int k) {
+    const double x = static_cast<double>(k) / steps;
+    return misfit(&x, &whole);
+  };
+  for (int k = 1; k < steps; ++k) {
+    const std::vector<double> x = {static_cast<double>(k) / steps};
+    if (at(k) > at(k - 1) || at(k) > at(k + 1) || at(k) > least + 1.0 || !are_apart(x, found.place)) continue;
+    if (found.other.empty() || at(k) < misfit(found.other.data(), &whole)) found.other = x;
+  }
+}
+
 }  // namespace detail
 
-/// Surfaces through the measurements, and the constants at which they are nearest to the goals. Errors are those of the
+/// Surfaces through the measurements, and the constants at which they are nearest to the goals; those between the
+/// tried points go before others that fit as well. Errors are those of the
 /// surfaces and of the goals, carried over by the surfaces' slopes. Throws Error for too few measurements.
 inline Found find_constants(const Measurements& m, std::span<const Goal> goals, Minimise* minimise) {
   Found found;
   const std::size_t d = m.dimensions;
+  found.low.assign(d, 1.0);
+  found.high.assign(d, 0.0);
   for (const auto& values : m.values) {
     std::vector<double> places, known;
     for (std::size_t i = 0; i < values.size(); ++i) {
@@ -103,11 +159,14 @@ inline Found find_constants(const Measurements& m, std::span<const Goal> goals, 
       places.insert(places.end(), m.places.begin() + static_cast<std::ptrdiff_t>(i * d),
                     m.places.begin() + static_cast<std::ptrdiff_t>((i + 1) * d));
       known.push_back(values[i]);
+      for (std::size_t k = 0; k < d; ++k) {
+        found.low[k] = std::min(found.low[k], m.places[i * d + k]);
+        found.high[k] = std::max(found.high[k], m.places[i * d + k]);
+      }
     }
     found.surrogates.emplace_back(places, known, d, detail::distinct_places(places, d));
   }
-  const detail::Misfit data{&found.surrogates, goals, d};
-  found.place = minimise(&detail::misfit, &data, std::vector<double>(d, 0.5));
+  detail::find_place(found, goals, minimise);
   // (G^T W G)^-1, and the least freedom of the surfaces.
   std::vector<double> information(d * d, 0.0);
   found.freedom = found.surrogates.front().freedom();

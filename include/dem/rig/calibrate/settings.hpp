@@ -1,6 +1,7 @@
 #pragma once
 
 #include <dem/rig/contact_options.hpp>
+#include <dem/rig/own_words.hpp>
 #include <dem/rig/sizes.hpp>
 
 #include <algorithm>
@@ -156,17 +157,42 @@ inline void find_idle(IdleOptions& idle, const Settings& s) {
   idle.unless(!made, "without --known, by which targets are made",
               {"--phi", "--phi-error", "--repose", "--repose-error", "--pressure", "--pressure-error"});
   idle.unless(made, "with --known", {"--targets"});
+  idle.unless(s.phi != 0.0, "with --phi", {"--phi-error"});
+  idle.unless(s.repose != 0.0, "with --repose", {"--repose-error"});
+  idle.unless(s.pressure != 0.0, "with --pressure", {"--pressure-error"});
+  const auto aims = [&](double target, const char* name) {
+    return made ? has(s.targets.empty() ? "phi" : s.targets, name) : target != 0.0;
+  };
+  idle.unless(aims(s.phi, "phi"), "with the target phi", {"--loads"});
+  idle.unless(aims(s.pressure, "pressure"), "with the target pressure", {"--plate"});
+  idle.unless(aims(s.repose, "repose"), "with the target repose", {"--pile-kind"});
   idle.unless(has(s.find, "friction"), "with --find friction", {"--friction-range"});
   idle.unless(has(s.find, "stiffness"), "with --find stiffness", {"--stiffness-range"});
   idle.unless(has(s.find, "relative-density"), "with --find relative-density", {"--relative-density-range"});
   idle.unless(has(s.find, "rolling"), "with --find rolling", {"--rolling-range"});
 }
 
+/// What the rigs call otherwise than these options.
+inline constexpr OwnWord own_words[] = {
+    {"; change --relative-density, --densify-time or --seed if that matters", ""},
+    {"; take more --grains or a smaller --half-edge if that matters", "; take another --size if that matters"},
+    {"lower --shear-speed to", "it would be slow below"},
+    {"raise --consolidation-limit, --rest-speed or --damping", "change the ranges of the constants"},
+    {"raise --settle-limit or --damping", "change the ranges of the constants"},
+    {"raise --stage-limit or --damping", "change the ranges of the constants"},
+    {"--relative-density", "--relative-density-range"},
+    {"--friction", "--friction-range"},
+    {"--stiffness", "--stiffness-range"},
+    {"--plates", "--plate"}};
+
 /// Fills in what depends on the size, and checks every option. Throws Error.
 inline void resolve(Settings& s) {
   const Size size = size_named(s.size);
   if (!s.known.empty() && s.targets.empty()) s.targets = "phi";
   if (s.trials == 0) s.trials = BySize<std::uint64_t>{.smoke = 9, .quick = 12, .full = 15}[size];
+  require_within(s.phi, 0.0, 89.0, "--phi (deg)");
+  require_within(s.repose, 0.0, 89.0, "--repose (deg)");
+  require_non_negative(s.pressure, "--pressure", "Pa");
   const auto constants = constants_of(s);
   const auto quantities = quantities_of(s);
   if (quantities.empty()) fail("there is no target; give --phi, --repose or --pressure, or make one with --known");
@@ -198,9 +224,6 @@ inline void resolve(Settings& s) {
     const auto& range = range_of(s, constants[k]);
     require_within(s.known[k], range[0], range[1], "a value of --known (within the range of its constant)");
   }
-  require_within(s.phi, 0.0, 89.0, "--phi (deg)");
-  require_within(s.repose, 0.0, 89.0, "--repose (deg)");
-  require_non_negative(s.pressure, "--pressure", "Pa");
   require_non_negative(s.phi_error, "--phi-error", "deg");
   require_non_negative(s.repose_error, "--repose-error", "deg");
   require_non_negative(s.pressure_error, "--pressure-error", "Pa");

@@ -49,8 +49,21 @@ inline std::string found_text(const Settings& s, const Found& f) {
     words += text("{}{} {} ± {}", words.empty() ? "" : ", ", names_of_constants[static_cast<int>(constants[k])],
                   number(e.value), number(e.half_width(), "{:.2g}"));
     if (f.place[k] < 1e-3 || f.place[k] > 1.0 - 1e-3) words += " (at the end of its range)";
+    if (f.is_beyond(k)) {
+      words += text(" (beyond the points that were tried, {} to {}: extrapolated; try more with --go-on and --trials)",
+                    number(value_at(s, constants[k], f.low[k])), number(value_at(s, constants[k], f.high[k])));
+    }
     if (!s.known.empty()) words += text(" (made with {:g})", s.known[k]);
   }
+  if (f.other.empty()) return words;
+  words += "; but ";
+  for (std::size_t k = 0; k < constants.size(); ++k) {
+    words += text("{}{} {}", k > 0 ? ", " : "", names_of_constants[static_cast<int>(constants[k])],
+                  number(value_at(s, constants[k], f.other[k])));
+  }
+  words += text(" fit{} the target{} as well: narrow the range, as by --{}-range, to the one that is meant",
+                constants.size() > 1 ? "" : "s", quantities_of(s).size() > 1 ? "s" : "",
+                names_of_constants[static_cast<int>(constants.front())]);
   return words;
 }
 

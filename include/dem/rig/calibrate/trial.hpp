@@ -11,6 +11,7 @@
 #include <dem/rig/session.hpp>
 
 #include <cmath>
+#include <iterator>
 #include <string>
 #include <vector>
 
@@ -63,7 +64,8 @@ inline void set_density(double& density, const std::vector<Constant>& constants,
   }
 }
 
-inline double measure_phi(const Settings& s, const Trial& t, const Worlds& worlds, Session& session) {
+/// The settings of a rig for a trial. Throws Error for what the rig refuses.
+inline direct_shear::Settings shear_settings(const Settings& s, const Trial& t, const std::string& output) {
   direct_shear::Settings d;
   d.size = s.size;
   d.loads = s.loads;
@@ -72,15 +74,20 @@ inline double measure_phi(const Settings& s, const Trial& t, const Worlds& world
   d.seed = t.seed;
   d.threads = 1;
   d.replay = d.vtk = false;
-  d.output = session.folder().string();
+  d.output = output;
   direct_shear::resolve(d);
+  return d;
+}
+
+inline double measure_phi(const Settings& s, const Trial& t, const Worlds& worlds, Session& session) {
+  const auto d = shear_settings(s, t, session.folder().string());
   direct_shear::Campaign campaign;
   worlds.shear(d, campaign, session);
   const auto line = direct_shear::fit(campaign).origin;
   return line ? terramechanics::degrees(line->friction_angle) : std::nan("");
 }
 
-inline double measure_pressure(const Settings& s, const Trial& t, const Worlds& worlds, Session& session) {
+inline plate_sinkage::Settings plate_settings(const Settings& s, const Trial& t, const std::string& output) {
   plate_sinkage::Settings p;
   p.size = s.size;
   p.widths = s.plates.empty() ? std::vector{size_named(s.size) == Size::smoke ? 0.03 : 0.05} : s.plates;
@@ -89,14 +96,19 @@ inline double measure_pressure(const Settings& s, const Trial& t, const Worlds& 
   p.bed.seed = t.seed;
   p.bed.threads = 1;
   p.replay = p.vtk = false;
-  p.output = session.folder().string();
+  p.output = output;
   plate_sinkage::resolve(p);
+  return p;
+}
+
+inline double measure_pressure(const Settings& s, const Trial& t, const Worlds& worlds, Session& session) {
+  const auto p = plate_settings(s, t, session.folder().string());
   plate_sinkage::Campaign campaign;
   worlds.press(p, campaign, session);
   return plate_sinkage::mean_pressure(campaign.variants.front().plates.front(), p);
 }
 
-inline double measure_repose(const Settings& s, const Trial& t, const Worlds& worlds, Session& session) {
+inline sand_pile::Settings pile_settings(const Settings& s, const Trial& t, const std::string& output) {
   sand_pile::Settings p;
   p.size = s.size;
   p.kinds = s.kind;
@@ -105,12 +117,17 @@ inline double measure_repose(const Settings& s, const Trial& t, const Worlds& wo
   p.seed = t.seed;
   p.threads = 1;
   p.replay = p.vtk = false;
-  p.output = session.folder().string();
+  p.output = output;
   p.creep_time = 0.01;
   sand_pile::resolve(p);
   for (std::size_t k = 0; k < constants.size(); ++k) {
     if (constants[k] == Constant::rolling) p.rolling_length = p.plate_rolling_length = t.values[k] * p.half_edge;
   }
+  return p;
+}
+
+inline double measure_repose(const Settings& s, const Trial& t, const Worlds& worlds, Session& session) {
+  const auto p = pile_settings(s, t, session.folder().string());
   sand_pile::PileResult result;
   result.kind = sand_pile::kind_named(s.kind);
   result.seed = t.seed;
@@ -136,6 +153,23 @@ inline std::filesystem::path folder_of(const std::filesystem::path& folder, cons
 
 }  // namespace detail
 
+/// Throws Error, in the words of these options, where a rig refuses what it is given at an end of the ranges.
+inline void check_rigs(const Settings& s) {
+  for (const std::size_t end : {0U, 1U}) {
+    Trial t;
+    for (const Constant c : constants_of(s)) t.values.push_back(range_of(s, c)[end]);
+    try {
+      for (const Quantity q : quantities_of(s)) {
+        if (q == Quantity::phi) detail::shear_settings(s, t, s.output);
+        else if (q == Quantity::repose) detail::pile_settings(s, t, s.output);
+        else detail::plate_settings(s, t, s.output);
+      }
+    } catch (const Error& problem) {
+      throw Error(in_own_words(problem.what(), own_words));
+    }
+  }
+}
+
 /// Runs the rigs of a trial one after the other, each on one thread and in a folder of its own, and fills in its
 /// results. They are kept as `checkpoints` says; the files that they go on from stay until forget_trial(). A run that
 /// the simulation stops leaves NaN, and a message says why. Throws Error where such a file is damaged.
@@ -148,7 +182,8 @@ inline void run_trial(const Settings& s, Trial& t, const Worlds& worlds, const s
     const auto own = detail::folder_of(folder, t, quantities[q]);
     const std::string config = detail::values_text(s, t);
     const CheckpointOptions kept = checkpoints_within(checkpoints, "calibrate", own, config);
-    Session session({"calibrate", own.string(), config, {}, {}, kept, &share});
+    Session session(
+        {"calibrate", own.string(), config, {}, {std::begin(own_words), std::end(own_words)}, kept, &share});
     try {
       t.results[q] = quantities[q] == Quantity::phi      ? detail::measure_phi(s, t, worlds, session)
                      : quantities[q] == Quantity::repose ? detail::measure_repose(s, t, worlds, session)
@@ -158,7 +193,8 @@ inline void run_trial(const Settings& s, Trial& t, const Worlds& worlds, const s
       throw;
     } catch (const std::exception& problem) {
       if (kept.resume && !session.has_begun()) throw;  // what it was to go on from is damaged
-      stages.message(text("warning: run {} found nothing: {}", own.filename().string(), problem.what()));
+      stages.message(
+          text("warning: run {} found nothing: {}", own.filename().string(), session.in_own_words(problem.what())));
     }
   }
 }
