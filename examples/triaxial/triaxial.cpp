@@ -18,6 +18,7 @@
 #include <dem/soil/solid_layers.hpp>
 #include <dem/world/query.hpp>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <numbers>
@@ -137,6 +138,7 @@ void simulate(Arguments& arguments) {
   arguments.check();
   require_positive(pressure, "--pressure", "Pa");
   require_within(side, 4.0, 60.0, "--side");
+  if (side != std::floor(side)) fail("--side is {:g}, but must be a whole number of beads", side);
   require_within(strain, 0.01, 0.6, "--strain");
 
   io::Plot strength{.x_label = "axial strain", .y_label = "ratio of axial to lateral stress"};

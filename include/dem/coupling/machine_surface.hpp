@@ -31,8 +31,9 @@ struct MachineSurface {
   Vec3 low = Vec3::Zero(), high = Vec3::Zero();  ///< m, bounding box in global axes
   bool moved = true;  ///< where it is, or how fast its body goes, is not what it was in the evaluation before
   surface::Aabb swept = {Vec3::Zero(), Vec3::Zero()};  ///< m, around both places where it is and was
-  bool has_place = false;                              ///< it has followed its body before
-  double went = 0.0;  ///< m, the farthest from one evaluation to the next, within this step
+  bool has_place = false;                              ///< `place` is known, and nobody moved the body by hand since
+  Vector3<double> place = {0, 0, 0};  ///< m, of its origin in the newest evaluation or at the end of the newest step
+  double went = 0.0;                  ///< m, the farthest from one of these to the next, within this step
   surface::Aabb went_over = {Vec3::Zero(), Vec3::Zero()};  ///< m, around the places before and after that
 
   PartnerView view = {};  ///< of the body
@@ -64,13 +65,31 @@ struct MachineSurface {
     return std::visit(fingerprint_of, geometry) == std::visit(fingerprint_of, other.geometry);
   }
 
+  Vector3<double> place_on(const Body& b) const { return b.motion.position + b.motion.rotation * from_eigen(position); }
+  /// What was moved by hand since the newest step is no way that it went.
+  void begin_step(const Body& b) {
+    const Vector3<double> off = place_on(b) - place;
+    if (dot(off, off) != 0.0) has_place = false;
+  }
+  /// Notes how far its body went since the newest evaluation.
+  void end_step(const Body& b) {
+    const Vector3<double> end = place_on(b);
+    const Vec3 shift = to_eigen(end) - to_eigen(origin);
+    note_way(end, {low.cwiseMin(Vec3(low + shift)), high.cwiseMax(Vec3(high + shift))});
+  }
+  void note_way(const Vector3<double>& to, const surface::Aabb& over) {
+    const double way = has_place ? norm(to - place) : 0.0;
+    place = to;
+    has_place = true;
+    if (way > went) went = way, went_over = over;
+  }
   void follow(const Body& b) {
     const PartnerView last_view = view;
     view = {b.motion.position, 0.0, b.motion.velocity, b.fixed ? 0.0 : 1.0 / b.mass,
             b.motion.rotation * b.motion.angular_velocity};
     const Vector3<double> last_origin = origin;
     const Matrix3<double> last_axes = axes;
-    origin = b.motion.position + b.motion.rotation * from_eigen(position);
+    origin = place_on(b);
     axes = b.motion.rotation * from_eigen(rotation);
     const auto differ = [](const auto& x, const auto& y) { return std::memcmp(&x, &y, sizeof(x)) != 0; };
     moved = differ(origin, last_origin) || differ(axes, last_axes) || differ(view.velocity, last_view.velocity) ||
@@ -84,9 +103,7 @@ struct MachineSurface {
     low = to_eigen(origin) + (middle - half);
     high = to_eigen(origin) + (middle + half);
     swept = {low.cwiseMin(before.low), high.cwiseMax(before.high)};
-    const double way = moved && has_place ? norm(origin - last_origin) : 0.0;
-    if (way > went) went = way, went_over = swept;
-    has_place = true;
+    note_way(origin, swept);
   }
 };
 

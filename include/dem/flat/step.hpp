@@ -46,6 +46,7 @@ struct Step {
     check_flat(w);
     Kept& kept = kept_of(w);
     if (!w.executor.holds_grains()) leave(w);
+    begin_step_of_surfaces(w);
     for (int stage = 0; stage < Integrator::stages; ++stage) {
       const bool last = stage + 1 == Integrator::stages;
       w.move = {.stage = stage,
@@ -64,6 +65,7 @@ struct Step {
       w.move = {};
       if (last) w.body_contacts.commit(), sample_surface_sensors(w);
     }
+    end_step_of_surfaces(w);
     w.time += w.time_step;
     ++w.step;
     look_at_skin(w);

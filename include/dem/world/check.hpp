@@ -192,7 +192,9 @@ StepReport find_passed_grain(const WorldState<Model>& w) {
     for (std::size_t c = first; c < last; ++c) {
       if (!coupling::may_meet(w.domain, w.chunks[c].low, w.chunks[c].high, s.went_over, w.largest_radius)) continue;
       for (std::size_t i = c * chunk_size, end = std::min(i + chunk_size, p.count); i < end; ++i) {
-        const double radius = w.species[p.species[i]].shape.bounding_radius();
+        const auto& kind = w.species[p.species[i]];
+        if (kind.is_held()) continue;  // it meets no surface
+        const double radius = kind.shape.bounding_radius();
         const Vec3 x = to_eigen(p.position[i]);
         if (radius >= s.went || p.row_of[p.id[i]] == p.gone || !coupling::may_meet(w.domain, x, x, s.went_over, radius))
           continue;

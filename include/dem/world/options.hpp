@@ -25,7 +25,9 @@ struct WorldOptions {
   double time_step_safety = 0.5;          ///< in (0, 1]
   bool allow_unstable_time_step = false;  ///< accept a time step above the stable one
   double skin = 0.0;                      ///< m, reach of the neighbour lists; 0: chosen while it runs (grain/skin.hpp)
-  double overlap_limit = 0.5;  ///< overlap, in effective diameters 2 Ri Rj/(Ri + Rj), that is reported as a problem
+  /// Overlap, in effective diameters 2 Ri Rj/(Ri + Rj), that is reported as a problem; on two-sided sheets and very
+  /// thin boxes 0.4 at most.
+  double overlap_limit = 0.5;
   std::optional<surface::Aabb> domain = {};           ///< where grains are expected; none: anywhere
   BeyondDomain beyond_domain = BeyondDomain::report;  ///< what becomes of a grain whose centre leaves it
   PeriodicAxes periodic = {};              ///< in which the domain repeats itself; for models with a periodic Domain

@@ -228,6 +228,16 @@ void place_surfaces(WorldState<Model>& w) {
   for (auto& s : w.surfaces) s.follow(w.machine.bodies()[s.body.index()]);
 }
 
+/// Surfaces note how far they go within a step: see MachineSurface::went.
+template <class Model>
+void begin_step_of_surfaces(WorldState<Model>& w) {
+  for (auto& s : w.surfaces) s.begin_step(w.machine.bodies()[s.body.index()]);
+}
+template <class Model>
+void end_step_of_surfaces(WorldState<Model>& w) {
+  for (auto& s : w.surfaces) s.end_step(w.machine.bodies()[s.body.index()]);
+}
+
 /// Hands the surfaces' loads of a step, by grains and by surfaces of other bodies, to the sensors.
 template <class Model>
 void sample_surface_sensors(WorldState<Model>& w) {

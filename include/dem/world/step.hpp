@@ -78,6 +78,7 @@ template <class Model>
 void advance(WorldState<Model>& w) {
   using Integrator = typename Model::Integrator;
   w.sleepers.measuring = w.options.sleep && (w.step + 1) % static_cast<std::uint64_t>(w.options.sleep->window) == 0;
+  begin_step_of_surfaces(w);
   for (int stage = 0; stage < Integrator::stages; ++stage) {
     const bool last = stage + 1 == Integrator::stages;
     // What grains bear goes to the parts that hold some before they are moved.
@@ -116,6 +117,7 @@ void advance(WorldState<Model>& w) {
     if (last) w.body_contacts.commit(), sample_surface_sensors(w);
     w.stopwatch.stop(Phase::grains);
   }
+  end_step_of_surfaces(w);
   if (w.carry_held) w.carry_held(w);
   if (w.count_energy) [[unlikely]]
     w.count_energy(w);
@@ -157,7 +159,7 @@ void initialise(WorldState<Model>& w) {
     gather_forces(w, c);
     grain::initialise_chunk<Model>(c, w.grains, w.inertia, w.options.gravity);
   });
-  for (auto& s : w.surfaces) s.went = 0.0;  // by hand, not within a step
+  for (auto& s : w.surfaces) s.has_place = false, s.went = 0.0;  // by hand, not within a step
   if constexpr (Model::Domain::has_ranks) gather_rows(w);
 }
 

@@ -22,7 +22,8 @@ inline double off_hold(const Parts& parts, PrescribedMotion& p, double time) {
   const integrator::Motion<double>& m = parts.bodies[p.spec.body.index()].motion;
   if (p.spec.target == MotionSpec::Target::pose) {
     const Pose pose = p.spec.pose(time);
-    return norm(centre_at(p, pose) - m.position) + std::sqrt(squared_norm(rotation_at(p, pose) - m.rotation));
+    const double turned = std::sqrt(squared_norm(rotation_at(p, pose) - m.rotation));  // rad; 1e-3 is allowed
+    return norm(centre_at(p, pose) - m.position) + allowed_off(parts, p) / 1e-3 * turned;
   }
   p.drive.value = p.spec.motion(time).value;
   if (p.spec.target == MotionSpec::Target::position) return p.start + p.drive.value - dot(m.position, p.axis);
