@@ -1,8 +1,6 @@
 #pragma once
 
 #include <dem/coupling/surface_contacts.hpp>
-#include <dem/geometry/box/box.hpp>
-#include <dem/geometry/surface_traits.hpp>
 #include <dem/world/report.hpp>
 #include <dem/world/state.hpp>
 
@@ -95,40 +93,6 @@ std::string misfit_in_period(const WorldState<Model>& w, std::size_t number,
     }
   }
   return {};
-}
-
-/// Whether points (radius 0) pass a surface unseen.
-template <class Surface>
-bool lets_points_through(const Surface& s) {
-  return std::visit(
-      []<class G>(const G& geometry) {
-        if constexpr (surface::MayLetPointsThrough<G>) return geometry.lets_points_through();
-        return false;
-      },
-      s.geometry);
-}
-
-/// Whether a grain of this radius (m) that comes into a surface with its centre is pushed out on the other side: a
-/// sheet, or a box that is thin beside it.
-template <class Surface>
-bool is_thin(const Surface& s, double radius) {
-  return lets_points_through(s) || std::visit(
-                                       [&]<class G>(const G& geometry) {
-                                         if constexpr (std::is_same_v<G, surface::Box>)
-                                           return geometry.edges().minCoeff() < 0.2 * radius;
-                                         return false;
-                                       },
-                                       s.geometry);
-}
-
-/// The overlap beyond which a contact is reported. What is thin holds a ball up to half of its effective diameter,
-/// where its centre changes the side. A step may end before that, so less is allowed there.
-template <class Model>
-double overlap_limit_of(const WorldState<Model>& w, const DeepestContact& contact) {
-  const double limit = w.options.overlap_limit;
-  if (!contact.with_surface || !(contact.overlap > 0.4)) return limit;
-  const double radius = w.species[w.grains.species[contact.i]].shape.bounding_radius();
-  return is_thin(w.surfaces[contact.partner], radius) ? std::min(limit, 0.4) : limit;
 }
 
 /// "grain 4 at (0, 0, 0.1) m overlaps surface 'wheel' by 0.3 of their effective diameter".
@@ -250,12 +214,10 @@ StepReport find_problem_of_grains(WorldState<Model>& w) {
                       p.id[i], when(), x.x(), x.y(), x.z(), w.time_step));
       }
     }
-    if (const DeepestContact& deepest = chunk.deepest; deepest.overlap > overlap_limit_of(w, deepest)) [[unlikely]] {
-      const double limit = overlap_limit_of(w, deepest);
-      const char* whose = limit < w.options.overlap_limit ? "what a thin sheet or box holds," : "overlap_limit";
+    if (const DeepestContact& deepest = chunk.deepest; deepest.overlap > w.options.overlap_limit) [[unlikely]] {
       return problem(StepReport::Problem::overlap, deepest.i,
-                     dem::text("{} {}, more than {} {:g}; {}", overlap_in_words(w, deepest), when(), whose, limit,
-                               overlap_remedy(w, deepest)));
+                     dem::text("{} {}, more than overlap_limit {:g}; {}", overlap_in_words(w, deepest), when(),
+                               w.options.overlap_limit, overlap_remedy(w, deepest)));
     }
   }
   return find_passed_grain(w);

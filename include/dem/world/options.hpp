@@ -25,8 +25,8 @@ struct WorldOptions {
   double time_step_safety = 0.5;          ///< in (0, 1]
   bool allow_unstable_time_step = false;  ///< accept a time step above the stable one
   double skin = 0.0;                      ///< m, reach of the neighbour lists; 0: chosen while it runs (grain/skin.hpp)
-  /// Overlap, in effective diameters 2 Ri Rj/(Ri + Rj), that is reported as a problem; on two-sided sheets and very
-  /// thin boxes 0.4 at most.
+  /// Overlap, in effective diameters 2 Ri Rj/(Ri + Rj), that is reported as a problem. A ball passes a two-sided sheet
+  /// or a very thin box at 0.5: give 0.4 to be told before.
   double overlap_limit = 0.5;
   std::optional<surface::Aabb> domain = {};           ///< where grains are expected; none: anywhere
   BeyondDomain beyond_domain = BeyondDomain::report;  ///< what becomes of a grain whose centre leaves it

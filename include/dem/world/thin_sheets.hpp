@@ -1,10 +1,22 @@
 #pragma once
 
+#include <dem/geometry/surface_traits.hpp>
 #include <dem/world/check.hpp>
 
 #include <algorithm>
 
 namespace dem {
+
+/// Whether points (radius 0) pass a surface unseen.
+template <class Surface>
+bool lets_points_through(const Surface& s) {
+  return std::visit(
+      []<class G>(const G& geometry) {
+        if constexpr (surface::MayLetPointsThrough<G>) return geometry.lets_points_through();
+        return false;
+      },
+      s.geometry);
+}
 
 /// Whether a grain meets surfaces with points of its boundary, which have no radius.
 template <class Shape>
