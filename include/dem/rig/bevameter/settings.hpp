@@ -1,14 +1,12 @@
 #pragma once
 // The settings of a bevameter, and what they make of those of its apparatus.
 
+#include <dem/rig/bevameter/apparatus_words.hpp>
 #include <dem/rig/direct_shear/resolve.hpp>
-#include <dem/rig/own_words.hpp>
 #include <dem/rig/plate_sinkage/settings.hpp>
 #include <dem/rig/rigid_wheel/settings.hpp>
-#include <dem/rig/stages.hpp>
 
 #include <cstdint>
-#include <span>
 #include <string>
 #include <vector>
 
@@ -100,36 +98,6 @@ inline void find_idle(IdleOptions& idle, const Settings& s) {
   idle.unless(
       rolls, "with a --wheel",
       {"--slips", "--load", "--spin", "--path", "--wheel-bed-length", "--wheel-bed-width", "--wheel-bed-depth"});
-}
-
-/// What the apparatus call otherwise than the bevameter, each for its own.
-inline constexpr OwnWord plate_words[] = {{"--speed", "--plate-speed"},
-                                          {"raise --stage-limit or --damping", "raise --damping"}};
-inline constexpr OwnWord shear_words[] = {
-    {"--travel", "--shear-travel"},
-    {"--smoothing", "--shear-smoothing"},
-    {"--relative-density, --densify-time or --seed", "--relative-density or --seed"},
-    {"raise --consolidation-limit, --rest-speed or --damping", "raise --damping"},
-    {"raise --settle-limit or --damping", "raise --damping"},
-    {"; take more --grains or a smaller --half-edge if that matters", ""},
-    {"take more --grains or a smaller --half-edge, or let", "let"}};
-inline constexpr OwnWord wheel_words[] = {
-    {"--width (m, within the bed)", "width of the wheel (m, within --wheel-bed-width)"},
-    {"--bed-length", "--wheel-bed-length"},
-    {"--bed-width", "--wheel-bed-width"},
-    {"--bed-depth", "--wheel-bed-depth"},
-    {"raise --stage-limit or --damping", "raise --damping"}};
-
-/// Calls what an apparatus does. What it throws is said in the bevameter's words.
-template <class F>
-auto in_words(std::span<const OwnWord> words, F&& act) {
-  try {
-    return act();
-  } catch (const Error& problem) {
-    throw Error(in_own_words(problem.what(), words));
-  } catch (const Stopped& problem) {
-    throw Stopped(in_own_words(problem.what(), words));
-  }
 }
 
 /// Throws Error where a way (m) ends before its smooth start (s) does.
