@@ -68,15 +68,6 @@ inline void resolve(GrainSettings& s, double half_edge_by_size) {
   require_positive(s.half_edge, "--half-edge", "m (0: by size)");
   require_positive(s.density, "--density", "kg/m^3");
   check_contact_options(s);
-  // Beyond these no run comes to an end, or a length was given in another unit.
-  require_within(s.stiffness, 1.0, 1e12, "--stiffness (N/m)");
-  require_within(s.damping, 0.0, 1e12, "--damping (N s/m)");
-  require_within(s.friction_stiffness, 0.0, 1e12, "--friction-stiffness (N/m)");
-  require_within(s.velocity_stiffness, 0.0, 1e12, "--velocity-stiffness (N s/m)");
-  if (s.scale_contacts) {
-    require_within(s.constants_for, 0.01 * s.half_edge, 100.0 * s.half_edge,
-                   "--constants-for (m, from a hundredth of --half-edge to a hundred times it)");
-  }
   require_non_negative(s.wall_friction, "--wall-friction", "(no unit)");
 }
 
