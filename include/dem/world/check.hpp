@@ -176,8 +176,7 @@ StepReport find_passed_grain(const WorldState<Model>& w) {
 }
 
 /// Looks for grains of this process's chunks that are not finite, lost, pressed too deep into something, or passed by a
-/// surface. Costs a
-/// look at each chunk; only when something is wrong the grain is searched.
+/// surface. Costs a look at each chunk; only when something is wrong the grain is searched.
 template <class Model>
 StepReport find_problem_of_grains(WorldState<Model>& w) {
   const auto& p = w.grains;

@@ -13,11 +13,8 @@ namespace dem {
 template <class Model>
 std::vector<GrainId> grains_in(const World<Model>& world, const Vec3& low, const Vec3& high) {
   if (!none_below(high, low)) {
-    fail(
-        "the box to look for grains in reaches from ({:g}, {:g}, {:g}) to ({:g}, {:g}, {:g}) m; the first corner must "
-        "be "
-        "the low one",
-        low.x(), low.y(), low.z(), high.x(), high.y(), high.z());
+    fail("the box to look for grains in reaches from ({:g}, {:g}, {:g}) to ({:g}, {:g}, {:g}) m; swap its corners",
+         low.x(), low.y(), low.z(), high.x(), high.y(), high.z());
   }
   std::vector<GrainId> found;
   for (const GrainId p : world.grains()) {

@@ -144,7 +144,7 @@ TEST_CASE("questions about grains in a box, momentum, one grain's contacts and t
   CHECK(dem::grains_in(w, {0, 0, 0.1}, {0, 0, 0.1}) == std::vector{p[4]});
 
   CHECK_THROWS_WITH(dem::grains_in(w, {0, 0, 0.1}, {0, 0, 0}),
-                    Catch::Matchers::ContainsSubstring("the first corner must be the low one"));
+                    Catch::Matchers::ContainsSubstring("(0, 0, 0.1) to (0, 0, 0) m; swap its corners"));
 
   const dem::Momentum sum = dem::momentum_of(w);
   const double m = w.species(ball).mass;

@@ -179,6 +179,7 @@ TEMPLATE_TEST_CASE("a part that jumps past grains within a step is reported, one
   w.set_contact(sand<TestType>());
   w.add_species(Sphere(1e-3));
   const auto grain = add(w, {0, 0, 0});
+  w.add_grain({w.add_species(Sphere(1e-3), {.held = true}), Vec3(-0.01, 0, 0)});  // held grains meet no surface
   auto& m = w.machine();
   const auto plate = m.add_body(dem::mbd::fixed_body("plate", {-0.02, 0, 0}));
   const auto paddle = w.add_surface(plate, dem::surface::Box({2e-4, 0.02, 0.02}), {.name = "paddle"});

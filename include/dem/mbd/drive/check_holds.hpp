@@ -45,13 +45,15 @@ inline bool differs_from_saved(const PrescribedMotion& p, double time, double to
 inline void check_holds(Parts& parts, double time) {
   for (PrescribedMotion& p : parts.motions) {
     if (!p.spec.on) continue;
-    const double tolerance = detail::allowed_off(parts, p);
     if (p.spec.by_speed) {  // it starts from where its coordinate is
       p.drive.start = p.drive.reached = detail::coordinate_of_drive(parts, p);
       p.drive.time = time;
       p.drive.moves = false;
       p.has_hold = true;
     }
+    if (p.has_hold && !p.was_loaded) [[likely]]
+      continue;
+    const double tolerance = detail::allowed_off(parts, p);
     if (std::exchange(p.was_loaded, false) && p.has_hold && !p.spec.by_speed) {
       p.has_hold = !detail::differs_from_saved(p, time, tolerance);
     }

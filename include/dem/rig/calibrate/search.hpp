@@ -145,8 +145,8 @@ inline void find_place(Found& found, std::span<const Goal> goals, Minimise* mini
 }  // namespace detail
 
 /// Surfaces through the measurements, and the constants at which they are nearest to the goals; those between the
-/// tried points go before others that fit as well. Errors are those of the
-/// surfaces and of the goals, carried over by the surfaces' slopes. Throws Error for too few measurements.
+/// tried points go before others that fit as well. Errors are those of the surfaces and of the goals, carried over by
+/// the surfaces' slopes. Throws Error for too few measurements.
 inline Found find_constants(const Measurements& m, std::span<const Goal> goals, Minimise* minimise) {
   Found found;
   const std::size_t d = m.dimensions;
