@@ -19,27 +19,27 @@ void add_contact_options(Options& options, Settings& s) {
 }
 
 /// Checks the options that all rigs have for contacts of grains with the default laws, under the names that they have
-/// in all of them, where the half-edge of the grains is known. `stiffness_unit` is told with the stiffness. Throws
+/// in all of them. `stiffness_unit` is told with the stiffness. Beyond the upper ends no run comes to an end. Throws
 /// Error.
 template <class Settings>
 void check_contact_options(const Settings& s, const char* stiffness_unit = "N/m") {
   require_positive(s.stiffness, "--stiffness", stiffness_unit);
-  require_non_negative(s.damping, "--damping", "N s/m");
-  require_within(s.separation_factor, 0.0, 1.0, "--separation-factor");
-  require_non_negative(s.friction, "--friction", "(no unit)");
-  require_non_negative(s.friction_stiffness, "--friction-stiffness", "N/m");
-  require_non_negative(s.velocity_stiffness, "--velocity-stiffness", "N s/m");
-  require_within(s.breaking_factor, 0.0, 1.0, "--breaking-factor");
-  require_positive(s.constants_for, "--constants-for", "m");
-  // Beyond these no run comes to an end, or a length was given in another unit.
   require_within(s.stiffness, 1.0, 1e12, "--stiffness (N/m)");
   require_within(s.damping, 0.0, 1e12, "--damping (N s/m)");
+  require_within(s.separation_factor, 0.0, 1.0, "--separation-factor");
+  require_non_negative(s.friction, "--friction", "(no unit)");
   require_within(s.friction_stiffness, 0.0, 1e12, "--friction-stiffness (N/m)");
   require_within(s.velocity_stiffness, 0.0, 1e12, "--velocity-stiffness (N s/m)");
-  if (s.scale_contacts) {
-    require_within(s.constants_for, 0.01 * s.half_edge, 100.0 * s.half_edge,
-                   "--constants-for (m, from a hundredth of --half-edge to a hundred times it)");
-  }
+  require_within(s.breaking_factor, 0.0, 1.0, "--breaking-factor");
+  require_positive(s.constants_for, "--constants-for", "m");
+}
+
+/// Checks the size that the constants are for beside that of the grains: in another unit it is far off. Throws Error.
+template <class Settings>
+void check_constants_for(const Settings& s) {
+  if (!s.scale_contacts) return;
+  require_within(s.constants_for, 0.01 * s.half_edge, 100.0 * s.half_edge,
+                 "--constants-for (m, from a hundredth of --half-edge to a hundred times it)");
 }
 
 /// Names the option by which grains may sleep.

@@ -68,6 +68,8 @@ TEST_CASE("settings of a sand pile that make no sense are refused") {
   CHECK_THROWS_WITH(refused([](Settings& s) { s.flank_low = 0.9; }), ContainsSubstring("--flank-low"));
   CHECK_THROWS_WITH(refused([](Settings& s) { s.sample_time = 0.1; }), ContainsSubstring("--sample-time"));
   CHECK_THROWS_WITH(refused([](Settings& s) { s.rolling_damping = -0.1; }), ContainsSubstring("--rolling-damping"));
+  CHECK_THROWS_WITH(refused([](Settings& s) { s.stiffness = 1e300; }), Catch::StartsWith("--stiffness"));
+  CHECK_THROWS_WITH(refused([](Settings& s) { s.constants_for = 0.9; }), Catch::StartsWith("--constants-for"));  // mm
   CHECK_THROWS_WITH(refused([](Settings& s) { s.rolling_length = 1.0; }), Catch::StartsWith("--rolling-length"));
   CHECK_THROWS_WITH(refused([](Settings& s) { s.plate_rolling_length = 1.0; }),
                     ContainsSubstring("--plate-rolling-length"));

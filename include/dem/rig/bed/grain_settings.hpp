@@ -68,6 +68,7 @@ inline void resolve(GrainSettings& s, double half_edge_by_size) {
   require_positive(s.half_edge, "--half-edge", "m (0: by size)");
   require_positive(s.density, "--density", "kg/m^3");
   check_contact_options(s);
+  check_constants_for(s);
   require_non_negative(s.wall_friction, "--wall-friction", "(no unit)");
 }
 

@@ -46,6 +46,7 @@ inline void check(const Settings& s) {
   require_within(s.box_width, 5.0 * d, 4e3 * d, "--box-width (m, from five grains up)");
   require_within(s.slot_width, 2.0 * d, 1e3 * d, "--slot-width (m, from two grains up)");
   check_contact_options(s);
+  check_constants_for(s);
   require_non_negative(s.plate_friction, "--plate-friction", "(no unit)");
   require_non_negative(s.container_friction, "--container-friction", "(no unit)");
   const double radius = sphere_radius(s.half_edge);
