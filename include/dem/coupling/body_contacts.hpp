@@ -35,7 +35,6 @@ struct BodyKey {
     return {std::uint64_t{pair % pairs_of_a_block} << 52 | std::uint64_t{back} << 51 | std::uint64_t{point} << 28 |
             feature};
   }
-  constexpr auto operator<=>(const BodyKey&) const = default;
 };
 
 /// Contacts of machine parts with each other and with the ground: their pairs, their histories, and lists for a step.

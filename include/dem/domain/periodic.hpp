@@ -93,7 +93,7 @@ class Periodic {
   double wrapped(double x, std::size_t k) const {
     if (period_[k] == 0.0 || (x >= low_[k] && x < low_[k] + period_[k])) return x;
     const double inside = x - period_[k] * std::floor((x - low_[k]) / period_[k]);
-    return inside < low_[k] + period_[k] ? inside : low_[k];  // where rounding leads to the upper border
+    return inside >= low_[k] + period_[k] ? low_[k] : inside;  // where rounding leads to the upper border
   }
   double nearest(double x, std::size_t k, const Vec3& low, const Vec3& high, double reach) const {
     const double l = low.data()[k], h = high.data()[k];

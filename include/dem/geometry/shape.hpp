@@ -27,7 +27,7 @@ struct AnySamplePoint {
 ///                        features ascending, where separation leads from a's centre to b's;
 ///   mirrored(feature)    the feature number of the same contact when a and b change places;
 ///   sample_points(pose, callback)   calls callback(index, contact::SamplePoint) for each sphere or point that the
-///                        shape shows to surfaces, indices ascending, below 4095.
+///                        shape shows to surfaces, indices ascending, below 4080.
 /// It may also have
 ///   patch(), surface_patch()   where it touches with many points at once (see patch_of);
 ///   has_shares(), shares_fit   true if the points that it shows to a surface are shares of one contact, and a

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <compare>
 #include <cstddef>
 #include <cstdint>
 
@@ -18,7 +17,6 @@ struct PairKey {
   }
   constexpr std::size_t candidate() const { return value >> 32; }
   constexpr std::uint32_t feature() const { return static_cast<std::uint32_t>(value); }
-  constexpr auto operator<=>(const PairKey&) const = default;
 };
 
 /// Key of a surface contact: surface, grain in the chunk, sample point of the grain, feature of the surface.
@@ -46,7 +44,6 @@ struct SurfaceKey {
   static constexpr SurfaceKey whole(std::uint32_t upper, std::uint32_t lower) {
     return {std::uint64_t{upper} << 32 | lower};
   }
-  constexpr auto operator<=>(const SurfaceKey&) const = default;
 };
 
 }  // namespace dem::grain

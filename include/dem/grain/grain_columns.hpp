@@ -75,6 +75,8 @@ struct GrainColumns {
   static constexpr std::uint32_t gone = 0xffffffffu;
 
   std::uint32_t number_of(std::uint32_t of) const { return number.empty() ? of : number[of]; }
+  /// The same by row: which of the grains that were added it is. Messages say this one.
+  std::uint32_t number_at(std::size_t row) const { return number_of(id[row]); }
   /// What the grain of an id is called outside.
   GrainId name(std::uint32_t of) const { return GrainId(number_of(of), of); }
   /// The id of a grain, which may be gone; `gone` if its id has another grain now, or it never was.

@@ -31,7 +31,8 @@ concept Number = std::same_as<T, double> || std::same_as<T, int>;
 inline double dot3(const double* a, int stride, const double* b) {
   return a[0] * b[0] + (a[stride] * b[1] + a[2 * stride] * b[2]);
 }
-/// Column `k` of a matrix (stored by columns), or its row.
+/// a b of two matrices stored by columns; `row_step` and `stride` (1, 3, or 3, 1) lead from row to row of a, and along
+/// one: exchanged, they give a^T b.
 inline Mat3 product(const double* a, int row_step, int stride, const double* b) {
   Mat3 r;
   double* p = r.data();

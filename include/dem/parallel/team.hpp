@@ -1,11 +1,13 @@
 #pragma once
 
+#include <dem/core/error.hpp>
 #include <dem/parallel/help.hpp>
 
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <system_error>
 #include <thread>
 #include <vector>
 
@@ -18,18 +20,23 @@ namespace dem::exec {
 /// Each member has a range of the pieces, so that it meets the same memory in each phase of a step; who is done with
 /// its own range helps with the others'. Nobody waits for a member that has not begun: where another program has its
 /// processor, the rest do its share. Where members cost more than they save, the caller works alone for a while (Help).
-/// Members busy-wait for a tenth of a millisecond for the next work, and sleep after that.
+/// Members busy-wait for a tenth of a millisecond for the next work, and sleep after that. A call may want fewer
+/// members than there are: calls with many and few pieces take turns within a step.
 class Team {
  public:
   using Piece = void (*)(void* work, std::size_t piece, int thread);
 
-  /// The calling thread is member 0.
-  explicit Team(int members)
-      : ranges_(new Range[static_cast<std::size_t>(members)]),
-        members_(members),
-        busy_waits_(static_cast<unsigned>(members) <= std::thread::hardware_concurrency() ? 4000 : 0) {
-    for (int k = 1; k < members; ++k) {
-      threads_.emplace_back([this, k] { serve(k); });
+  /// The calling thread is member 0. Throws Error if the system gives no more threads.
+  explicit Team(int size)
+      : ranges_(new Range[static_cast<std::size_t>(size)]),
+        size_(size),
+        busy_waits_(static_cast<unsigned>(size) <= std::thread::hardware_concurrency() ? 4000 : 0) {
+    try {
+      for (int k = 1; k < size; ++k) threads_.emplace_back([this, k] { serve(k); });
+    } catch (const std::exception& e) {
+      dismiss();
+      fail("thread {} of {} could not be started ({}); ask for fewer: set_threads, OMP_NUM_THREADS",
+           threads_.size() + 2, size, e.what());
     }
   }
   ~Team() {
@@ -37,30 +44,29 @@ class Team {
       for (std::thread& t : threads_) t.detach();
       return;
     }
-    stop_ = true;
-    call();
-    for (std::thread& t : threads_) t.join();
+    dismiss();
   }
   Team(const Team&) = delete;
   Team& operator=(const Team&) = delete;
 
-  int members() const { return members_; }
+  int size() const { return size_; }
   /// False in a process that was forked off: threads stay behind.
   bool is_of_this_process() const { return process_ == getpid(); }
 
-  /// Calls `piece` for 0 ... n-1; `piece` must not throw. Returns when all are done.
-  void run(std::size_t n, Piece piece, void* work) {
+  /// Calls `piece` for 0 ... n-1 on the first `members`; `piece` must not throw. Returns when all are done.
+  void run(std::size_t n, int members, Piece piece, void* work) {
     const Help::Time called = Help::Clock::now();
     if (!help_.is_worth_it(called)) {
       for (std::size_t k = 0; k < n; ++k) piece(work, k, 0);
       return;
     }
-    const auto m = static_cast<std::size_t>(members_);
+    const auto m = static_cast<std::size_t>(members);
     for (std::size_t k = 0; k < m; ++k) {
       ranges_[k].next.store(n * k / m, std::memory_order_relaxed);
       ranges_[k].end = n * (k + 1) / m;
       ranges_[k].share = {};
     }
+    members_ = members;
     piece_ = piece;
     work_ = work;
     call();
@@ -105,6 +111,12 @@ class Team {
     __builtin_ia32_pause();
 #endif
   }
+  /// Ends the threads.
+  void dismiss() {
+    stop_ = true;
+    call();
+    for (std::thread& t : threads_) t.join();
+  }
   void call() {
     gate_.store(open);
     call_.fetch_add(1);
@@ -113,8 +125,9 @@ class Team {
   void take_part(int member) {
     const Help::Time began = Help::Clock::now();
     std::size_t done = 0;
-    for (int k = 0; k < members_; ++k) {
-      Range& range = ranges_[static_cast<std::size_t>((member + k) % members_)];
+    const int members = members_;
+    for (int k = 0; k < members; ++k) {
+      Range& range = ranges_[static_cast<std::size_t>((member + k) % members)];
       // Looked at first: adding to what is used up already would only take it from others' caches.
       while (range.next.load(std::memory_order_relaxed) < range.end) {
         const std::size_t piece = range.next.fetch_add(1, std::memory_order_relaxed);
@@ -135,6 +148,7 @@ class Team {
       }
       seen = call_.load();
       if (stop_) return;
+      if (member >= members_.load()) continue;
       // In through the gate, if it is still open.
       std::uint32_t gate = gate_.load();
       while ((gate & open) != 0 && !gate_.compare_exchange_weak(gate, gate + 1)) {
@@ -146,9 +160,10 @@ class Team {
   }
 
   std::unique_ptr<Range[]> ranges_;
-  int members_;
-  int busy_waits_;  // looks before a member sleeps; none where there are more members than processors
-  Help help_;       // has no account there: who wants more members than processors gets them
+  int size_;
+  std::atomic<int> members_ = 0;  // of the call; a member that is late may read it as the next call begins
+  int busy_waits_;                // looks before a member sleeps; none where there are more members than processors
+  Help help_;                     // has no account there: who wants more members than processors gets them
   Piece piece_ = nullptr;
   void* work_ = nullptr;
   std::atomic<bool> stop_ = false;

@@ -35,9 +35,11 @@ class Threads {
   Threads& operator=(Threads&&) = default;
 
   int threads() const { return threads_; }
-  /// Exactly n threads. Throws Error unless n >= 1.
+  /// Exactly n threads. Throws Error unless n >= 1. They start with the first work; where the system has none left,
+  /// for_each throws Error.
   void set_threads(int n) {
     if (n < 1) fail("number of threads is {}, but must be at least 1", n);
+    if (n != threads_) team_.reset();
     threads_ = n;
     least_pieces_ = 1;
   }
@@ -49,10 +51,10 @@ class Threads {
       for (std::size_t k = 0; k < n; ++k) call_piece(f, k, 0);
       return;
     }
-    if (!team_ || team_->members() != members || !team_->is_of_this_process()) team_ = std::make_unique<Team>(members);
+    if (!team_ || team_->size() < members || !team_->is_of_this_process()) team_ = std::make_unique<Team>(members);
     Work<std::remove_reference_t<F>> work{&f};
     busy_ = true;
-    team_->run(n, &Work<std::remove_reference_t<F>>::call, &work);
+    team_->run(n, members, &Work<std::remove_reference_t<F>>::call, &work);
     busy_ = false;
     if (work.exception) std::rethrow_exception(work.exception);
   }

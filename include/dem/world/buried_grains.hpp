@@ -13,7 +13,7 @@ void check_buried_grains(WorldState<Model>& w) {
   const bool some_placed = w.placed.at == w.step;
   for (std::size_t s = 0; s < w.surfaces.size(); ++s) {
     if (w.is_buried[s] == nullptr || !w.surfaces[s].active) continue;
-    const bool is_new = s >= w.surfaces_looked_into;
+    const bool is_new = w.new_surfaces.has(s);
     if (!is_new && !some_placed) continue;
     auto surface = w.surfaces[s];
     surface.follow(w.machine.bodies()[surface.body.index()]);
@@ -25,7 +25,7 @@ void check_buried_grains(WorldState<Model>& w) {
       if (!coupling::is_buried_in<Model>(w.is_buried[s], surface, w.domain, p.position[i],
                                          kind.shape.bounding_radius()))
         continue;
-      if (count == 0 || p.id[i] < p.id[first]) first = i;
+      if (count == 0 || p.number_at(i) < p.number_at(first)) first = i;
       ++count;
     }
     if (count == 0) continue;
@@ -33,10 +33,10 @@ void check_buried_grains(WorldState<Model>& w) {
     fail(
         "grain {} at ({:.4g}, {:.4g}, {:.4g}) m lies within {}, so deep that it would not be felt{}; put it or the "
         "surface elsewhere, or remove it",
-        p.id[first], x.x(), x.y(), x.z(), surface_in_words(w, s),
+        p.number_at(first), x.x(), x.y(), x.z(), surface_in_words(w, s),
         count > 1 ? dem::text(" ({} grains do)", count) : std::string());
   }
-  w.surfaces_looked_into = w.surfaces.size();
+  w.new_surfaces = {};
 }
 
 }  // namespace dem

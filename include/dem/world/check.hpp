@@ -101,9 +101,9 @@ std::string overlap_in_words(const WorldState<Model>& w, const DeepestContact& d
   const auto& p = w.grains;
   const Vec3 x = to_eigen(p.position[deepest.i]);
   const std::string partner =
-      deepest.with_surface ? surface_in_words(w, deepest.partner) : dem::text("grain {}", p.id[deepest.partner]);
+      deepest.with_surface ? surface_in_words(w, deepest.partner) : dem::text("grain {}", p.number_at(deepest.partner));
   return dem::text("grain {} at ({:.4g}, {:.4g}, {:.4g}) m overlaps {} by {:.3g} of their effective diameter",
-                   p.id[deepest.i], x.x(), x.y(), x.z(), partner, deepest.overlap);
+                   p.number_at(deepest.i), x.x(), x.y(), x.z(), partner, deepest.overlap);
 }
 
 /// Whether a contact is of something that was put somewhere by hand just before the newest step: then it is as deep as
@@ -167,7 +167,7 @@ StepReport find_passed_grain(const WorldState<Model>& w) {
             "there, {:.3g} m, which it may have passed without touching it; let its motion go without a "
             "jump (Signal::smooth_step), let it touch nothing meanwhile (set_active), or lower time_step "
             "(now {:g} s)",
-            surface_in_words(w, k), s.went, w.time, w.step, p.id[i], radius, w.time_step);
+            surface_in_words(w, k), s.went, w.time, w.step, p.number_at(i), radius, w.time_step);
         return {StepReport::Problem::machine, w.time, w.step, p.name(p.id[i]), std::move(text), {}};
       }
     }
@@ -196,7 +196,7 @@ StepReport find_problem_of_grains(WorldState<Model>& w) {
         return problem(StepReport::Problem::not_finite, i,
                        dem::text("grain {} has a position or velocity that is not a number {}: the simulation blew up; "
                                  "lower time_step (now {:g} s) or the stiffness, or raise the damping",
-                                 p.id[i], when(), w.time_step));
+                                 p.number_at(i), when(), w.time_step));
       }
     }
     if (const auto& domain = w.borders; domain && w.options.beyond_domain == BeyondDomain::report &&
@@ -210,7 +210,7 @@ StepReport find_problem_of_grains(WorldState<Model>& w) {
             StepReport::Problem::lost, i,
             dem::text("grain {} left the domain {} and is at ({:.4g}, {:.4g}, {:.4g}) m; close the walls, lower "
                       "time_step (now {:g} s), or enlarge domain",
-                      p.id[i], when(), x.x(), x.y(), x.z(), w.time_step));
+                      p.number_at(i), when(), x.x(), x.y(), x.z(), w.time_step));
       }
     }
     if (const DeepestContact& deepest = chunk.deepest; deepest.overlap > w.options.overlap_limit) [[unlikely]] {

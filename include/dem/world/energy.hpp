@@ -6,16 +6,6 @@
 
 namespace dem {
 
-/// Whether a law tells what it stores (its optional function `energy`).
-template <class Model>
-inline constexpr bool tells_energy = requires(const ContactParameters<Model>& p, const ContactHistory<Model, double>& h,
-                                              const contact::NormalState<double>& s) {
-  Model::Normal::energy(p.normal, s, h.normal);
-  Model::Friction::energy(p.friction, h.friction);
-  Model::Rolling::energy(p.rolling, 1.0, h.rolling);
-  Model::Cohesion::energy(p.cohesion, s, h.cohesion);
-};
-
 /// The energies of a world's grains, in J. Those of a machine are mbd::energy_of.
 struct GrainEnergy {
   double translation = 0.0, rotation = 0.0;  ///< of motion
@@ -185,9 +175,9 @@ void count_step(WorldState<Model>& w) {
 }  // namespace detail
 
 /// The energies of the grains as they stand, and what was dissipated since count_energy(). Springs count where their
-/// laws tell what they store (`energy`, see tells_energy): the work on others counts as dissipated. Contacts of machine
-/// parts with each other are not the grains'. The world is not changed; it costs what contacts_of() does. Where ranks
-/// share the grains, all ranks call it at once.
+/// laws tell what they store (their optional function `energy`): the work on others counts as dissipated. Contacts of
+/// machine parts with each other are not the grains'. The world is not changed; it costs what contacts_of() does. Where
+/// ranks share the grains, all ranks call it at once.
 template <class Model>
 GrainEnergy energy_of(const World<Model>& world) {
   const WorldState<Model>& w = world.state();

@@ -64,8 +64,18 @@ void check_region(const WorldState<Model>& w, const surface::Aabb& region, const
   }
 }
 
-/// Refuses a periodic cell that is so small that a grain would meet itself or another grain twice, and a surface that
-/// neither fills the cell nor leaves room for grains between its images. Throws Error.
+/// Refuses a surface that neither fills a periodic cell nor leaves room for grains between its images. Throws Error.
+template <class Model>
+void check_surface_in_period(const WorldState<Model>& w, std::size_t number) {
+  if constexpr (Model::Domain::has_images) {
+    auto surface = w.surfaces[number];
+    surface.follow(w.machine.bodies()[surface.body.index()]);
+    if (const std::string why = misfit_in_period(w, number, surface); !why.empty()) fail("{}", why);
+  }
+}
+
+/// Refuses a periodic cell that is so small that a grain would meet itself or another grain twice, and surfaces that do
+/// not fit it. Throws Error.
 template <class Model>
 void check_period(const WorldState<Model>& w) {
   if constexpr (Model::Domain::has_images) {
@@ -89,11 +99,7 @@ void check_period(const WorldState<Model>& w) {
              w.surfaces.empty() ? "leave WorldOptions::sleep empty" : "take domain::Periodic");
       }
     }
-    for (std::size_t s = 0; s < w.surfaces.size(); ++s) {
-      auto surface = w.surfaces[s];
-      surface.follow(w.machine.bodies()[surface.body.index()]);
-      if (const std::string why = misfit_in_period(w, s, surface); !why.empty()) fail("{}", why);
-    }
+    for (std::size_t s = 0; s < w.surfaces.size(); ++s) check_surface_in_period(w, s);
   }
 }
 

@@ -3,15 +3,23 @@
 #include <algorithm>
 #include <cstdint>
 #include <iterator>
-#include <limits>
 #include <vector>
 
 namespace dem {
 
+/// Some of a world's surfaces: few at a time.
+struct SurfaceSet {
+  std::vector<std::size_t> all;
+
+  bool has(std::size_t s) const { return std::find(all.begin(), all.end(), s) != all.end(); }
+  void add(std::size_t s) {
+    if (!has(s)) all.push_back(s);
+  }
+};
+
 /// What was last put somewhere by hand, between two steps.
 struct Placed {
   std::uint64_t at = ~0ull;  ///< the step before
-  std::size_t first_surface = std::numeric_limits<std::size_t>::max();
 
   void grain(std::uint64_t step, std::uint32_t id) {
     begin(step);
@@ -22,13 +30,13 @@ struct Placed {
       ids_.insert(next, {id, id + 1});
     }
   }
-  void surface(std::uint64_t step, std::size_t s) { begin(step), first_surface = std::min(first_surface, s); }
+  void surface(std::uint64_t step, std::size_t s) { begin(step), surfaces_.add(s); }
 
   bool has_grain(std::uint32_t id) const {
     const auto ranges = ranges_from(id);
     return ranges > 0 && id < ids_[static_cast<std::size_t>(ranges - 1)].end;
   }
-  bool has_surface(std::size_t s) const { return s >= first_surface; }
+  bool has_surface(std::size_t s) const { return surfaces_.has(s); }
   std::size_t bytes() const { return ids_.capacity() * sizeof(Range); }
 
  private:
@@ -45,6 +53,7 @@ struct Placed {
            ids_.begin();
   }
 
+  SurfaceSet surfaces_;
   std::vector<Range> ids_;  // ascending: most grains are added one after the other
 };
 

@@ -54,7 +54,7 @@ SpeciesId held_twin(World& world, SpeciesId s) {
   for (std::size_t k = 0; k < all.size(); ++k) {
     const auto& o = all[k];
     if (o.is_held() && o.material == kind.material && o.mass == kind.mass && o.inertia == kind.inertia &&
-        o.shape.bounding_radius() == kind.shape.bounding_radius()) {
+        shape::fingerprint(o.shape) == shape::fingerprint(kind.shape)) {
       return SpeciesId(k);
     }
   }

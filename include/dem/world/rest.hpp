@@ -25,10 +25,17 @@ template <class Model>
 mbd::RestReport find_rest(World<Model>& world, const mbd::RestOptions& options = {}) {
   WorldState<Model>& w = world.state();
   require_grains_here(w, "the machine's rest");
-  mbd::detail::stop_for_rest(w.machine.parts());
-  world.prepare();
+  auto& parts = w.machine.parts();
+  const auto bodies = parts.bodies;
+  mbd::detail::stop_for_rest(parts);
+  try {
+    world.prepare();
+  } catch (...) {
+    for (std::size_t k = 0; k < bodies.size(); ++k) parts.bodies[k].motion = bodies[k].motion;
+    throw;
+  }
   const mbd::RestReport report = together(w, domain::Call::rest, "in find_rest", [&] {
-    return mbd::detail::search_rest<typename Model::Joints>(w.machine.parts(), w.options.gravity, w.time,
+    return mbd::detail::search_rest<typename Model::Joints>(parts, w.options.gravity, w.time,
                                                             w.time_step / w.machine.substeps, options, [&w] {
                                                               w.sleepers.all_work = true;
                                                               evaluate_contacts(w);

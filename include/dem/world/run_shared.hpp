@@ -52,9 +52,24 @@ domain::CallHashes hashes_of(const WorldState<Model>& world, const Compared& com
   }
   for (const auto& inlet : w.inlets) size.mix(std::uint64_t{inlet.is_open()});
   const Vec3& g = w.options.gravity;
-  for (const double x : std::initializer_list<double>{w.options.time_step, w.options.skin, g.x(), g.y(), g.z()})
+  const auto& o = w.options;
+  for (const double x :
+       std::initializer_list<double>{o.time_step, o.time_step_safety, o.skin, o.overlap_limit, g.x(), g.y(), g.z()}) {
     options.mix(x);
-  options.mix(std::uint64_t{w.options.sleep.has_value()});
+  }
+  for (const std::uint64_t x :
+       std::initializer_list<std::uint64_t>{o.sleep.has_value(), o.domain.has_value(),
+                                            static_cast<std::uint64_t>(o.beyond_domain), o.allow_unstable_time_step}) {
+    options.mix(x);
+  }
+  if (o.sleep) {
+    for (const double x :
+         std::initializer_list<double>{o.sleep->balance, o.sleep->change, o.sleep->jolt, o.sleep->motion,
+                                       double(o.sleep->window), double(o.sleep->mean)}) {
+      options.mix(x);
+    }
+  }
+  for (int k = 0; k < 3 && o.domain; ++k) options.mix(o.domain->low[k]), options.mix(o.domain->high[k]);
   if constexpr (Model::Domain::has_images) {
     for (std::size_t k = 0; k < 3; ++k) {
       for (const double x : {w.domain.low(k), w.domain.period()[k]}) options.mix(x);

@@ -114,7 +114,7 @@ struct WorldState {
   std::vector<Surface> surfaces;
   std::vector<coupling::FindHits<Model>> find_hits;  ///< of the surfaces: the code for their kinds
   std::vector<coupling::IsBuried<Model>> is_buried;  ///< the same; null of most kinds
-  std::size_t surfaces_looked_into = 0;              ///< for grains in them
+  SurfaceSet new_surfaces;  ///< added or switched on since they were last compared with the cell and the grains
   std::vector<SurfaceSensor> surface_sensors;
   coupling::BodyContacts<Model> body_contacts;
   void (*find_body_contacts)(WorldState&) = nullptr;  ///< set with the first pair: other programs are without that code

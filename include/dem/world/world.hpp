@@ -45,28 +45,10 @@ class World : public WorldGrains<M> {
                        .grains = !initialised_ || state_.grains_added,
                        .steered = true});
     }
-    if (!checked_ || !machine_is_initialised()) {
-      state_.materials.check_complete();
-      state_.materials.check_names(used_materials());
-      check_thin_sheets(state_);
-      const double range = state_.materials.range();
-      state_.materials.find_range(state_.largest_radius);
-      check_period(state_);
-      find_points_deep_enough(state_);
-      if (state_.materials.range() > range) state_.list_valid = false;
-      for (const auto& pair : state_.body_contacts.pairs) {
-        state_.materials.check_pair(state_.surfaces[pair.a.index()].material, state_.surfaces[pair.b.index()].material);
-      }
-      coupling::list_pairs(state_.body_contacts, std::span(std::as_const(state_.surfaces)), state_.materials);
-      choose_time_step(state_, initialised_);
-      checked_ = true;
-      state_.twins_note = note_of_twins(state_);
-      state_.time_step_note.reset();
-    }
+    if (!is_set_up()) check_set_up();
     if (!state_.time_step_note) state_.time_step_note = note_of_time_step(state_);
-    if (state_.surfaces_looked_into < state_.surfaces.size() || state_.placed.at == state_.step) {
-      check_buried_grains(state_);
-    }
+    for (const std::size_t s : state_.new_surfaces.all) check_surface_in_period(state_, s);
+    if (!state_.new_surfaces.all.empty() || state_.placed.at == state_.step) check_buried_grains(state_);
     // A step that has begun must not be refused: motions that were added or changed are looked at before it.
     state_.machine.parts().allowed_jump = 0.1 * state_.smallest_radius;
     state_.machine_solver.check_motions(state_.machine);
@@ -242,7 +224,7 @@ class World : public WorldGrains<M> {
               state_.domain.largest(std::array<double, 2>{goes ? 0.0 : 1.0, stays ? 0.0 : 1.0});
           goes = ends == 0.0, stays = changed == 0.0;
         }
-        if (!goes) left = 0;
+        if (!goes) left = 0, owed_steps_ = 0.0;
         if (!goes || !stays) break;
         state_.machine_solver.check_motions(state_.machine);
       }
@@ -282,6 +264,27 @@ class World : public WorldGrains<M> {
       if (inlet.is_short()) add(inlet.note());
     }
     return r;
+  }
+
+  /// What was set up fits together; finds what follows from it. Throws Error.
+  void check_set_up() {
+    auto& materials = state_.materials;
+    materials.check_complete();
+    materials.check_names(used_materials());
+    check_thin_sheets(state_);
+    const double range = materials.range();
+    materials.find_range(state_.largest_radius);
+    if (materials.range() > range) state_.list_valid = false;
+    check_period(state_);
+    find_points_deep_enough(state_);
+    for (const auto& pair : state_.body_contacts.pairs) {
+      materials.check_pair(state_.surfaces[pair.a.index()].material, state_.surfaces[pair.b.index()].material);
+    }
+    coupling::list_pairs(state_.body_contacts, std::span(std::as_const(state_.surfaces)), materials);
+    choose_time_step(state_, initialised_);
+    checked_ = true;
+    state_.twins_note = note_of_twins(state_);
+    state_.time_step_note.reset();
   }
 
   double owed_steps_ = 0.0;  // by run_for: less than one

@@ -225,7 +225,7 @@ class WorldSetup {
     if (surface.active != active) wake_all(state_);
     if (active && !surface.active) {
       state_.placed.surface(state_.step, s.index());
-      state_.surfaces_looked_into = std::min(state_.surfaces_looked_into, s.index());
+      state_.new_surfaces.add(s.index());
     }
     surface.active = active;
   }
@@ -254,6 +254,7 @@ class WorldSetup {
     state_.find_hits.push_back(code.find_hits);
     state_.is_buried.push_back(code.is_buried);
     state_.placed.surface(state_.step, state_.surfaces.size() - 1);
+    state_.new_surfaces.add(state_.surfaces.size() - 1);
     state_.sleepers.all_work = true;  // it may stand still in grains that sleep
     checked_ = false;
     return SurfaceId(state_.surfaces.size() - 1);

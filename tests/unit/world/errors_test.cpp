@@ -187,6 +187,10 @@ TEST_CASE("time spans that are no whole steps are run in the long run") {
   dem::World<Balls> w(options({0, 0, 0}, 1e-3));
   for (int k = 0; k < 100; ++k) CHECK(w.run_for(0.4e-3));
   CHECK(w.steps() == 40);
+  // A span that was broken off owes nothing.
+  CHECK(w.run_for(10.4e-3, [] { return false; }));
+  CHECK(w.run_for(1.2e-3));
+  CHECK(w.steps() == 42);
 }
 
 TEST_CASE("a material that nothing is made of is refused, with those that are there") {

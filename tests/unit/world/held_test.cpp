@@ -3,7 +3,10 @@
 #include "core/error_of.hpp"
 #include "scenes.hpp"
 
+#include <dem/world/relist.hpp>
+
 #include <tuple>
+#include <vector>
 
 using Catch::Approx;
 
@@ -190,6 +193,20 @@ TEST_CASE("a bed on a rough base falls asleep") {
   }
   REQUIRE(w.run_for(0.3));
   CHECK(w.asleep_count() == w.grain_count());
+}
+
+TEST_CASE("the held twin of a species has its shape, not only its mass") {
+  // Four balls on four corners of a box and on the other four are mirror images.
+  const double a = 1e-3, b = 1.5e-3, c = 2e-3, r = 1.8e-3;
+  std::vector<dem::Ball> left, right;
+  for (const Vec3& corner : {Vec3(a, b, c), Vec3(-a, -b, c), Vec3(a, -b, -c), Vec3(-a, b, -c)}) {
+    left.push_back({corner, r}), right.push_back({-corner, r});
+  }
+  dem::World<Cubes> w(options({0, 0, 0}, 1e-5));
+  const auto l = w.add_species(Cubes::Shape(left)), m = w.add_species(Cubes::Shape(right));
+  const auto twin = held_twin(w, l);
+  CHECK(held_twin(w, l) == twin);
+  CHECK(held_twin(w, m) != twin);
 }
 
 TEST_CASE("what cannot be held or moved is refused") {

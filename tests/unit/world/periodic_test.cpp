@@ -315,6 +315,11 @@ TEST_CASE("a cell that cannot be is refused in words") {
   set_up(long_part);
   long_part.add_surface(long_part.ground(), dem::surface::Box({0.029, 1, 0.01}), {.name = "slab"});
   check_refused([&] { long_part.prepare(); }, "surface 'slab' reaches from -0.0145 to 0.0145 m in x");
+  // What touches nothing need not fit until it is switched on.
+  long_part.set_active(dem::SurfaceId(0), false);
+  REQUIRE(long_part.run(1));
+  long_part.set_active(dem::SurfaceId(0), true);
+  check_refused([&] { (void)long_part.run(1); }, "surface 'slab' reaches from -0.0145 to 0.0145 m in x");
 }
 
 TEST_CASE("contacts across a border count in lists, stresses and energies") {

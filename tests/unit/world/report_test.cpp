@@ -62,6 +62,22 @@ TEST_CASE("a grain that leaves the domain is named") {
   }
 }
 
+TEST_CASE("a grain that takes the place of a removed one is named by its own number") {
+  dem::WorldOptions o = options({0, 0, 0}, 2e-5);
+  o.domain = dem::surface::Aabb{Vec3(-1, -1, -1), Vec3(1, 1, 1)};
+  auto w = make(o);
+  const auto first = add(w, {0, 0, 0});
+  add(w, {0.1, 0, 0});
+  w.remove_grain(first);
+  REQUIRE(w.run(2));
+  const auto flier = add(w, {0, 0.5, 0}, {0, 100, 0});
+  REQUIRE(flier.value == 2);
+  const dem::StepReport report = w.run(1000);
+  REQUIRE(!report);
+  CHECK(report.grain == flier);
+  CHECK_THAT(report.text, ContainsSubstring("grain 2 left the domain"));
+}
+
 TEST_CASE("a lost grain does not stop a run that goes on, nor the contacts of others") {
   dem::WorldOptions o = options({0, 0, -9.81}, 1e-5);
   o.domain = dem::surface::Aabb{Vec3(-1, -1, -1), Vec3(1, 1, 1)};
@@ -171,6 +187,22 @@ TEST_CASE("an overlap with a surface is reported too") {
   CHECK(report.grain == deep);
   CHECK_THAT(report.text, ContainsSubstring("0.15"));
   CHECK_THAT(report.text, ContainsSubstring("overlaps surface 0 of body 'ground'"));
+}
+
+TEST_CASE("a surface that is switched on does not make others ones that were just placed") {
+  dem::WorldOptions o = options({0, 0, 0}, 1e-6);
+  o.overlap_limit = 0.01;
+  auto w = make(o);
+  const auto far = w.add_surface(w.ground(), dem::surface::Plane{}, {.position = {0, 0, -1}});
+  w.add_surface(w.ground(), dem::surface::Plane{}, {.name = "floor"});
+  add(w, {0, 0, 0.95e-3});
+  REQUIRE_FALSE(w.run(1));
+  w.set_active(far, false);
+  w.set_active(far, true);
+  const dem::StepReport report = w.run(1);
+  REQUIRE(!report);
+  CHECK_THAT(report.text,
+             ContainsSubstring("overlaps surface 'floor'") && ContainsSubstring("raise the normal stiffness"));
 }
 
 TEMPLATE_TEST_CASE("a part that jumps past grains within a step is reported, one that touches nothing is not", "",

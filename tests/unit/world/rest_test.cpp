@@ -6,6 +6,8 @@
 #include <dem/dem.hpp>
 #include <dem/world/rest.hpp>
 
+#include "core/error_of.hpp"
+
 namespace {
 
 using models::Balls, models::VerletBalls;
@@ -74,4 +76,16 @@ TEMPLATE_TEST_CASE("velocities that a world's machine is given later move all th
   REQUIRE(world.run(2000));
   CHECK(m.speed(in) == Approx(w).epsilon(1e-6));
   CHECK(m.speed(out) == Approx(2.0 * w).epsilon(1e-6));
+}
+
+TEST_CASE("a search for rest that is refused leaves the machine as it was") {
+  dem::World<Balls> world;
+  world.set_contact("grain", "grain",
+                    {.normal = {.stiffness = 2e3, .damping = 0, .separation_factor = 1}, .friction = {}});
+  world.add_species(dem::shape::Sphere(1e-3));
+  const dem::Vec3 edges(4e-3, 4e-3, 1e-3);
+  const dem::BodyId block = world.machine().add_body(dem::mbd::box_body("block", edges, 1000).moving({3, 0, 0}));
+  world.add_surface(block, dem::surface::Box(edges));
+  check_refused([&] { (void)find_rest(world); }, "no contact constants");
+  CHECK(world.machine().bodies()[block.index()].motion.velocity.x == 3.0);
 }

@@ -16,9 +16,6 @@ class Power {
     if (exponent == std::floor(exponent) && exponent <= 64.0) whole_ = static_cast<int>(exponent);
   }
 
-  double exponent() const { return exponent_; }
-  bool is_whole() const { return whole_ >= 0; }
-
   template <class T>
   DEM_HOT T operator()(T m) const {
     if (whole_ >= 0) {

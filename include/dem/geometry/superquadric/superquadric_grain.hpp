@@ -43,7 +43,6 @@ class SuperquadricGrain {
   const SuperquadricSolid& solid() const { return solid_; }
   const PointTable& points() const { return points_; }
   /// Points on a cube's edge, less one.
-  int divisions() const { return divisions_; }
   std::uint64_t fingerprint() const { return fingerprint_of(solid_.radius(), solid_.exponent(), divisions_, area_); }
   double bounding_radius() const { return bounding_radius_; }
   double volume() const { return mass_.volume; }

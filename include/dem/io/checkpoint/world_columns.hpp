@@ -248,7 +248,8 @@ template <class Model>
 void settle_restored(WorldState<Model>& w, bool is_checked) {
   w.placed = {};
   for (auto& motion : w.machine.parts().motions) motion.was_loaded = true;
-  w.surfaces_looked_into = is_checked ? w.surfaces.size() : 0;
+  w.new_surfaces = {};
+  for (std::size_t s = 0; s < w.surfaces.size() && !is_checked; ++s) w.new_surfaces.add(s);
   if (is_checked) {
     find_points_deep_enough(w);
     coupling::list_pairs(w.body_contacts, std::span(std::as_const(w.surfaces)), w.materials);
