@@ -6,7 +6,6 @@
 #include <dem/mbd/body/body.hpp>
 
 #include <algorithm>
-#include <cmath>
 
 namespace dem::coupling {
 

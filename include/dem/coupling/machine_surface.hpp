@@ -5,7 +5,6 @@
 #include <dem/grain/partner_view.hpp>
 #include <dem/mbd/body/body.hpp>
 
-#include <algorithm>
 #include <cstring>
 #include <string>
 #include <type_traits>

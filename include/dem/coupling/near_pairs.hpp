@@ -4,7 +4,6 @@
 #include <dem/math/vector.hpp>
 
 #include <algorithm>
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <span>

@@ -4,7 +4,6 @@
 
 #include <dem/core/text.hpp>
 
-#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>

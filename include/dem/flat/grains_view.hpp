@@ -9,7 +9,6 @@
 #include <bit>
 #include <cstddef>
 #include <cstdint>
-#include <type_traits>
 
 // What kernels see of a world are views: structs of pointers and numbers, which are copied to the device by their
 // bytes.

@@ -5,7 +5,6 @@
 #include <dem/world/state.hpp>
 
 #include <array>
-#include <span>
 #include <vector>
 
 namespace dem::flat {

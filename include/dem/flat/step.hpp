@@ -4,8 +4,6 @@
 #include <dem/flat/surface_loads.hpp>
 #include <dem/world/step.hpp>
 
-#include <utility>
-
 namespace dem::flat {
 
 /// The step of a world whose executor has memory of its own. The grains are there while a run lasts; the machine stays

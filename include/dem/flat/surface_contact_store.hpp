@@ -5,7 +5,6 @@
 #include <dem/world/state.hpp>
 
 #include <algorithm>
-#include <array>
 #include <numeric>
 #include <utility>
 #include <vector>

@@ -3,7 +3,6 @@
 #include <dem/geometry/mesh/bounding_volume_tree.hpp>
 
 #include <array>
-#include <cmath>
 #include <vector>
 
 namespace dem::surface {

@@ -5,8 +5,6 @@
 #include <dem/geometry/shape.hpp>
 #include <dem/math/vector.hpp>
 
-#include <vector>
-
 namespace dem {
 
 /// The numbers of a species that the integration loop reads.

@@ -7,7 +7,6 @@
 
 #include <dem/core/macros.hpp>
 
-#include <bit>
 #include <cmath>
 #include <cstdint>
 

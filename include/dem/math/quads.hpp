@@ -3,7 +3,6 @@
 #include <dem/math/pack.hpp>
 
 #include <array>
-#include <bit>
 #include <cstddef>
 #include <cstring>
 

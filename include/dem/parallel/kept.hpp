@@ -3,7 +3,6 @@
 #include <dem/core/error.hpp>
 
 #include <memory>
-#include <utility>
 
 namespace dem::exec {
 

@@ -7,7 +7,6 @@
 #include <dem/world/state.hpp>
 
 #include <algorithm>
-#include <cstdint>
 #include <span>
 #include <utility>
 #include <vector>

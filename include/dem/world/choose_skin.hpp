@@ -3,7 +3,6 @@
 #include <dem/world/state.hpp>
 
 #include <algorithm>
-#include <cmath>
 #include <cstddef>
 #include <vector>
 

@@ -2,8 +2,6 @@
 
 #include <dem/parallel/executor.hpp>
 
-#include <type_traits>
-
 namespace dem::flat {
 
 /// The step of worlds whose executor has memory of its own, which <dem/flat/cuda.hpp> and <dem/flat/flat.hpp> define:

@@ -3,7 +3,6 @@
 #include <dem/world/contact.hpp>
 
 #include <algorithm>
-#include <cmath>
 #include <vector>
 
 namespace dem {

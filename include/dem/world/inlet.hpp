@@ -8,7 +8,6 @@
 #include <dem/world/mixture.hpp>
 
 #include <algorithm>
-#include <cmath>
 #include <cstdint>
 #include <optional>
 #include <string>

@@ -11,7 +11,6 @@
 #include <dem/world/row_order.hpp>
 
 #include <algorithm>
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -294,12 +293,9 @@ double list_part(WorldState<Model>& w) {
   // Sums in another order may be larger in the last bit.
   const detail::NearRows near = detail::find_near_rows(w, std::max(reach, 2.0 * w.largest_radius + range), reach);
   const broadphase::Positions at = {near.position.x.data(), near.position.y.data(), near.position.z.data(), near.count};
-  if constexpr (requires { w.broad_phase.build(at, reach, w.executor); }) w.broad_phase.build(at, reach, w.executor);
-  else w.broad_phase.build(at, reach);
-  if (!sleepers_last) {  // near rows are in the order of space, as all rows are
-    if constexpr (requires { w.broad_phase.reordered(w.executor); }) w.broad_phase.reordered(w.executor);
-    else w.broad_phase.reordered();
-  }
+  broadphase::build(w.broad_phase, at, reach, w.executor);
+  if (!sleepers_last)
+    broadphase::reordered(w.broad_phase, w.executor);  // near rows are in the order of space, as all are
   const auto [begin, end] = w.own_chunks();
   w.executor.for_each(end - begin, [&, first = begin](std::size_t k) {
     Chunk<Model>& chunk = w.chunks[first + k];

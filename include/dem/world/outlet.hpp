@@ -6,10 +6,8 @@
 #include <dem/math/eager.hpp>
 #include <dem/mbd/sensor/sensor.hpp>
 
-#include <cmath>
 #include <cstdint>
 #include <string>
-#include <utility>
 
 namespace dem {
 

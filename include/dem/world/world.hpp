@@ -96,13 +96,17 @@ class World : public WorldGrains<M> {
     });
   }
 
+  /// s, since the world was made.
   double time() const { return state_.time; }
   std::uint64_t steps() const { return state_.step; }
+  /// s; 0 until it is chosen, by prepare() or the first step, if WorldOptions::time_step is 0.
   double time_step() const { return state_.time_step; }
   /// Largest stable time step of grains and machine, and what limits it.
   StableTimeStep stable_time_step() const { return dem::stable_time_step(state_); }
+  /// Throws Error unless n >= 1. Results do not depend on it.
   void set_threads(int n) { state_.executor.set_threads(n); }
   int threads() const { return state_.executor.threads(); }
+  /// m/s^2, from the next step on. Throws Error unless it is finite.
   void set_gravity(const Vec3& g) {
     require_finite(g, "gravity");
     state_.options.gravity = g;

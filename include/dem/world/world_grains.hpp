@@ -7,7 +7,8 @@
 
 namespace dem {
 
-/// What is asked of the grains of a world one by one, and set by hand.
+/// What is asked of the grains of a world one by one, and set by hand. Each call throws Error for a grain or species
+/// that is not there or was removed, and where ranks share the grains, within a run.
 template <class M>
 class WorldGrains : public WorldSetup<M> {
   using Setup = WorldSetup<M>;
@@ -20,6 +21,7 @@ class WorldGrains : public WorldSetup<M> {
   using Shape = typename M::Shape;
   using Setup::Setup;
 
+  /// How many are there; those that are about to be removed no longer count.
   std::size_t grain_count() const { return state_.grains.count - state_.to_remove.size(); }
   /// All grains that are there, in the order in which they were added.
   std::vector<GrainId> grains() const {
@@ -31,9 +33,13 @@ class WorldGrains : public WorldSetup<M> {
     if (!state_.grains.number.empty()) std::sort(ids.begin(), ids.end());
     return ids;
   }
+  /// m, of the centre of mass.
   Vec3 position(GrainId p) const { return to_eigen(state_.grains.position[row(p)]); }
+  /// m/s, of the centre of mass.
   Vec3 velocity(GrainId p) const { return to_eigen(state_.grains.velocity[row(p)]); }
+  /// rad/s, global axes.
   Vec3 angular_velocity(GrainId p) const { return to_eigen(state_.grains.angular_velocity(row(p))); }
+  /// From the grain's frame, that of its shape, to global axes.
   Mat3 rotation(GrainId p) const { return to_eigen(state_.grains.rotation(row(p))); }
   /// Contact force (N) and torque (N m) on a grain in the last force evaluation.
   Vec3 force(GrainId p) const { return to_eigen(state_.grains.force[row(p)]); }
@@ -55,6 +61,7 @@ class WorldGrains : public WorldSetup<M> {
   SpeciesId species_of(GrainId p) const { return SpeciesId(state_.grains.species[row(p)]); }
   const Species<Shape>& species(SpeciesId s) const { return known(state_.species, s, "species"); }
 
+  /// m/s. Throws Error for a held grain too, and unless v is finite, as the other set_... do.
   void set_velocity(GrainId p, const Vec3& v) {
     require_finite(v, "velocity of a grain");
     wake_around(state_, row_that_moves(p));

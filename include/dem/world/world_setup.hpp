@@ -10,7 +10,6 @@
 #include <algorithm>
 #include <cstdint>
 #include <initializer_list>
-#include <utility>
 
 namespace dem {
 
@@ -69,7 +68,7 @@ class WorldSetup {
     wake_all(state_);
     checked_ = false;
   }
-  /// Contact constants for one pair of materials.
+  /// Contact constants for one pair of materials, named. Throws Error if one makes no sense.
   void set_contact(std::string_view a, std::string_view b, const Parameters& p) {
     require_grains_here("a change of contact constants");
     state_.materials.set(a, b, p);
@@ -178,7 +177,8 @@ class WorldSetup {
   BodyId ground() { return state_.machine.ground(); }
 
   /// Gives a body a surface that grains feel. Its place is by default that in the body's reference frame, that of the
-  /// drawing or the mesh that the body was made from.
+  /// drawing or the mesh that the body was made from. Throws Error for an unknown body, a rotation that is none, and
+  /// more than 65,535 surfaces.
   template <class Kind>
   requires surface::is_one_of<Kind, typename Model::Surfaces> SurfaceId add_surface(BodyId body, const Kind& geometry,
                                                                                     const SurfaceOptions& o = {}) {
@@ -219,7 +219,7 @@ class WorldSetup {
     return SurfaceSensorId(state_.surface_sensors.size() - 1);
   }
 
-  /// Lets a surface touch grains and bodies, or not.
+  /// Lets a surface touch grains and bodies, or not. Throws Error for an unknown surface.
   void set_active(SurfaceId s, bool active) {
     auto& surface = known(state_.surfaces, s, "surface");
     if (surface.active != active) wake_all(state_);

@@ -4,7 +4,6 @@
 #include <dem/geometry/mesh/mesh_data.hpp>
 
 #include <algorithm>
-#include <cmath>
 #include <numeric>
 #include <vector>
 

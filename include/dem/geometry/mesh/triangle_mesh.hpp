@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <memory>
 #include <numbers>
-#include <vector>
 
 namespace dem::surface {
 

@@ -4,8 +4,6 @@
 #include <dem/geometry/surface.hpp>
 #include <dem/math/fingerprint.hpp>
 
-#include <cmath>
-
 namespace dem::surface {
 
 /// On which side of a closed surface the grains are.

@@ -6,7 +6,6 @@
 #include <concepts>
 #include <cstdint>
 #include <span>
-#include <vector>
 
 namespace dem::broadphase {
 
@@ -67,6 +66,22 @@ concept FindsRuns = requires(Finder& f) {
   { f.has_runs() } -> std::convertible_to<bool>;
   f.for_each_run(std::size_t{0}, FunctionLike<void(std::uint32_t, std::uint32_t)>{});
 };
+
+/// Lets a broad phase take note of grains; threads share the work where it can. `how_far` is a reach (m) or Sizes.
+template <class B, class HowFar, class Executor>
+void build(B& b, const Positions& at, const HowFar& how_far, Executor& executor) {
+  if constexpr (requires { b.build(at, how_far, executor); }) b.build(at, how_far, executor);
+  else b.build(at, how_far);
+}
+
+/// Tells a broad phase that the grains were put in its order(). False if it has to be built anew.
+template <class B, class Executor>
+bool reordered(B& b, Executor& executor) {
+  if constexpr (requires { b.reordered(executor); }) b.reordered(executor);
+  else if constexpr (requires { b.reordered(); }) b.reordered();
+  else return false;
+  return true;
+}
 
 template <class B>
 constexpr void check_broad_phase() {

@@ -3,8 +3,6 @@
 #include <dem/core/error.hpp>
 #include <dem/law/normal/normal_law.hpp>
 
-#include <cmath>
-
 namespace dem::contact {
 
 /// Linear hysteretic contact (Walton and Braun 1986, doi:10.1122/1.549893): plastic flow as a stiffer spring on the way
