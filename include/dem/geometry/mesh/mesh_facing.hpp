@@ -3,6 +3,7 @@
 #include <dem/geometry/mesh/mesh_topology.hpp>
 
 #include <cmath>
+#include <numbers>
 #include <utility>
 
 namespace dem {
@@ -37,7 +38,7 @@ DEM_LAZY inline double winding_number(const IndexedMesh& mesh, const std::vector
     if (std::abs(volume) <= 1e-12 * la * lb * lc) continue;  // seen edge on, or the point lies on it
     sum += std::atan2(volume, la * lb * lc + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb);
   }
-  return sum / (2.0 * M_PI);
+  return sum / (2.0 * std::numbers::pi);
 }
 
 /// Whether closed piece b, which does not cross closed piece a, lies in it. Pieces may touch, so the middle of the

@@ -17,10 +17,6 @@ struct Placing {
   DEM_HOT Vector3<double> operator()(const Vector3<double>& p) const { return turn * p + shift; }
 };
 
-DEM_HOT Matrix3<double> transposed(const Matrix3<double>& m) {
-  return {{m.row0.x, m.row1.x, m.row2.x}, {m.row0.y, m.row1.y, m.row2.y}, {m.row0.z, m.row1.z, m.row2.z}};
-}
-
 DEM_HOT void place_corners(const PolyhedronTables& y, const Placing& at, SeenCorners& seen) {
   const Matrix3<double>& r = at.turn;
   for (int k = 0; k < y.corner_lanes; k += pack_width) {

@@ -3,6 +3,8 @@
 #include <dem/core/error.hpp>
 #include <dem/law/cohesion/cohesion_law.hpp>
 
+#include <numbers>
+
 namespace dem::cohesion {
 
 /// A constant adhesive stress on a whole contact: s times the area pi R* d of Hertz's circle. The pull grows with the
@@ -36,7 +38,7 @@ struct ContactStress {
   static void check(const Parameters<double>& p) { require_non_negative(p.stress, "adhesive stress", "Pa"); }
 
  private:
-  static constexpr double pi = 3.14159265358979323846;
+  static constexpr double pi = std::numbers::pi;
 };
 
 }  // namespace dem::cohesion

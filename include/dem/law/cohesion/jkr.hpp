@@ -5,6 +5,7 @@
 #include <dem/law/normal/hertz.hpp>
 
 #include <cmath>
+#include <numbers>
 
 namespace dem::cohesion {
 
@@ -92,7 +93,7 @@ struct JKR {
   }
 
  private:
-  static constexpr double pi = 3.14159265358979323846;
+  static constexpr double pi = std::numbers::pi;
   static constexpr double last_overlap = -0.472470393710577;  ///< -3/4^(4/3), where dD/dx = 0
 
   template <class T>

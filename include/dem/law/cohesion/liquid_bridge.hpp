@@ -4,6 +4,7 @@
 #include <dem/law/cohesion/cohesion_law.hpp>
 
 #include <cmath>
+#include <numbers>
 
 namespace dem::cohesion {
 
@@ -61,7 +62,7 @@ struct LiquidBridge {
   }
 
  private:
-  static constexpr double pi = 3.14159265358979323846;
+  static constexpr double pi = std::numbers::pi;
 };
 
 }  // namespace dem::cohesion

@@ -4,6 +4,7 @@
 #include <dem/law/friction/friction_law.hpp>
 
 #include <algorithm>
+#include <numbers>
 
 namespace dem::friction {
 
@@ -44,7 +45,7 @@ struct Varying {
   template <class T>
   static DEM_HOT Vector3<T> force(const Parameters<T>& p, const TangentialState<T>& s, History<T>& h) {
     typename Law::template Parameters<T> law = p.law;
-    const T circle = T(3.14159265358979323846) * s.effective_radius * max(s.overlap, T(0));
+    const T circle = T(std::numbers::pi) * s.effective_radius * max(s.overlap, T(0));
     const T area = select(p.mean_pressure > T(0), max(circle, T(1e-30)), T(1));  // across a gap: pressed to the utmost
     law.coefficient = law.coefficient * factor(p, norm(s.velocity), s.normal_force / area);
     return Law::force(law, s, h);

@@ -3,6 +3,7 @@
 #include <dem/core/error.hpp>
 
 #include <cmath>
+#include <numbers>
 
 namespace dem::contact {
 
@@ -68,8 +69,8 @@ inline double stiffness_of_equal_energy(const ElasticPair& pair, const Impact& i
 /// Stiffness (N/m) of the linear spring whose contact lasts as long as Hertz's: t = 2 d/v times the integral of
 /// dx/sqrt(1 - x^(5/2)) from 0 to 1, which is sqrt(pi) Gamma(7/5)/Gamma(9/10) = 1.4716.
 inline double stiffness_of_equal_time(const ElasticPair& pair, const Impact& impact) {
-  const double time = 2.0 * std::sqrt(M_PI) * std::tgamma(1.4) / std::tgamma(0.9);  // in units of d/v
-  return M_PI * M_PI / (time * time) * stiffness_of_equal_energy(pair, impact);
+  const double time = 2.0 * std::sqrt(std::numbers::pi) * std::tgamma(1.4) / std::tgamma(0.9);  // in units of d/v
+  return std::numbers::pi * std::numbers::pi / (time * time) * stiffness_of_equal_energy(pair, impact);
 }
 
 }  // namespace dem::contact

@@ -3,6 +3,7 @@
 #include <dem/core/error.hpp>
 
 #include <cmath>
+#include <numbers>
 
 namespace dem::contact {
 
@@ -22,7 +23,7 @@ namespace dem::contact {
 inline double restitution_of(double damping_ratio, bool may_pull = false) {
   const double b = require_non_negative(damping_ratio, "damping ratio", "(no unit)");
   const double rest = std::sqrt(std::abs(1.0 - b * b));
-  if (may_pull) return b < 1.0 ? std::exp(-M_PI * b / rest) : 0.0;
+  if (may_pull) return b < 1.0 ? std::exp(-std::numbers::pi * b / rest) : 0.0;
   if (std::abs(1.0 - b) < 1e-6) return std::exp(-2.0 * b * (1.0 + (1.0 - b) / 3.0));  // acos(b)/sqrt(1 - b^2)
   return std::exp(-2.0 * b * (b < 1.0 ? std::acos(b) : std::acosh(b)) / rest);
 }
@@ -31,7 +32,7 @@ inline double restitution_of(double damping_ratio, bool may_pull = false) {
 inline double damping_ratio_of(double restitution, bool may_pull = false) {
   require_within(restitution, 0.01, 1.0, "coefficient of restitution");
   const double loss = -std::log(restitution);
-  if (may_pull) return loss / std::sqrt(M_PI * M_PI + loss * loss);
+  if (may_pull) return loss / std::sqrt(std::numbers::pi * std::numbers::pi + loss * loss);
   // e falls with b, and at b = 1 + 1/(2 sqrt(e)) it is lower than asked: halve what is between until nothing is left.
   double low = 0.0, high = 1.0 + 0.5 / std::sqrt(restitution);
   for (int k = 0; k < 80; ++k) {
