@@ -30,7 +30,7 @@ using namespace dem::mbd;
 Machine<dem::integrator::PredictorCorrector> m;  // gravity is 9.81 m/s^2 along -z
 const dem::BodyId arm = m.add_body(box_body("arm", {1, 0.1, 0.1}, 2700).at({0.5, 0, 0}));
 const dem::JointId hinge = m.add_joint(revolute("hinge", m.ground(), arm, {0, 0, 0}, {0, 1, 0}));
-m.add_actuator(joint_actuator("servo", hinge, 2e4, 2e3, Signal::smooth_step(0, -0.5, 0, 1)));
+m.add_actuator(joint_actuator("servo", hinge, 2e4, 2e3, Signal::smooth_step(0, -0.5, 0, 1)));  // -0.5 about y is up
 if (const auto report = m.run(2.0, 1e-4); !report) return fmt::print("{}\n", report.text), 1;
 fmt::print("angle {:.4f} rad, the hinge carries {:.1f} N\n", m.coordinate(hinge), m.reaction(hinge).force.z);
   // clang-format on
