@@ -32,9 +32,12 @@ void check_buried_grains(WorldState<Model>& w) {
     const Vec3 x = to_eigen(p.position[first]);
     fail(
         "grain {} at ({:.4g}, {:.4g}, {:.4g}) m lies within {}, so deep that it would not be felt{}; put it or the "
-        "surface elsewhere, or remove it",
+        "surface elsewhere, or remove it{}",
         p.number_at(first), x.x(), x.y(), x.z(), surface_in_words(w, s),
-        count > 1 ? dem::text(" ({} grains do)", count) : std::string());
+        count > 1 ? dem::text(" ({} grains do)", count) : std::string(),
+        2 * count > p.count ? dem::text(". The surface is {:.3g} m long; is that in another unit? Lengths are in m",
+                                        (surface.high - surface.low).norm())
+                            : std::string());
   }
   w.new_surfaces = {};
 }

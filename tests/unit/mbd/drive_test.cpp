@@ -148,6 +148,24 @@ TEST_CASE("a motor in reverse is the mirror image of itself forward") {
   CHECK(m.actuator(e).force == Approx(-15.0).epsilon(1e-4));
 }
 
+TEST_CASE("a speed actuator drives to the speed that it is told, which may change") {
+  // I w' = -c (w - w_set): w = w_set (1 - exp(-c t/I)); behind a ramp of rate a it lags by a I/c.
+  Machine<PredictorCorrector> m;
+  const BodyId rotor = m.add_body(ball("rotor", 1.0, 0.2));
+  const JointId axle = m.add_joint(revolute("axle", m.ground(), rotor, {0, 0, 0}, Z));
+  const ActuatorId e = m.add_actuator(speed_actuator("motor", axle, 0.5, 3.0));
+  REQUIRE(m.run(0.6, 1e-4));
+  CHECK(m.speed(axle) == Approx(3.0 * (1.0 - std::exp(-0.6 * 0.5 / 0.2))).epsilon(1e-4));
+  REQUIRE(m.run(6.0, 1e-4));
+  CHECK(m.speed(axle) == Approx(3.0).epsilon(1e-5));
+  CHECK(std::abs(m.actuator(e).force) < 1e-4);
+
+  const JointId other = m.add_joint(revolute("other", m.ground(), m.add_body(ball("wheel", 1.0, 0.2)), {0, 0, 0}, Z));
+  m.add_actuator(speed_actuator("start", other, 0.5, Signal::ramp(0.0, 2.0, m.time())));
+  REQUIRE(m.run(4.0, 1e-4));
+  CHECK(m.speed(other) == Approx(2.0 * (4.0 - 0.2 / 0.5)).epsilon(1e-3));
+}
+
 TEST_CASE("set points, loads and motions that are no numbers are refused where they are given") {
   Machine<PredictorCorrector> m;
   const double nan = std::nan(""), inf = HUGE_VAL;
@@ -171,6 +189,8 @@ TEST_CASE("set points, loads and motions that are no numbers are refused where t
   check_refused([&] { m.set_target(engine, 1.0); }, "actuator 'engine' is a motor", "use set_throttle");
   check_refused([&] { m.set_load(push, nan); }, "is nan, but must be finite");
   check_refused([&] { prescribed_joint("drive", guide, nan); }, "is nan, but must be finite");
+  check_refused([&] { m.add_actuator(joint_actuator("lost", JointId(), 1.0, 0.0)); },
+                "was given no joint and no bodies");
   check_refused([&] { Signal::ramp(0.0, nan); }, "ramp is nan");
   check_refused([&] { Signal::sine(1.0, inf); }, "sine is inf");
   check_refused([&] { Signal::table({}); }, "has no points");

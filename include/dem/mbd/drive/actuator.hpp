@@ -18,7 +18,7 @@ namespace dem::mbd {
 /// What an actuator is made from. Gains as in eqs. 34 and 38: force = -position_gain (l - l_set) - speed_gain (l' -
 /// l'_set), positive where it makes the coordinate l grow (pushes two points apart, drives b forward along or about a
 /// joint). A gain of zero switches that part off: position_gain = 0 is a speed controller, which
-/// follows the rate of its set point: Signal::ramp(0, speed).
+/// follows the rate of its set point, not its value: see speed_actuator.
 struct ActuatorSpec {
   std::string name;
   JointId joint = {};  ///< acts on this joint's coordinate; if not valid, between two points
@@ -77,6 +77,11 @@ DEM_COLD inline ActuatorSpec joint_actuator(std::string name, JointId joint, dou
           .position_gain = position_gain,
           .speed_gain = speed_gain,
           .set_point = std::move(set_point)};
+}
+/// A speed controller on the coordinate of a joint: force (N) or torque (N m) = -gain (speed - wanted speed). The
+/// wanted speed (m/s or rad/s) may change with time: Signal::smooth_step(0, 2, 0, 0.2) is a soft start.
+DEM_COLD inline ActuatorSpec speed_actuator(std::string name, JointId joint, double gain, const Signal& speed) {
+  return joint_actuator(std::move(name), joint, 0.0, gain, speed.as_rate());
 }
 /// On three points (section 2.4.2): the angle at `corner` from `toward_a` on body a to `toward_b` on body b, counted
 /// positive about a x b at assembly. It is the turn of a free joint about that normal: give the bodies a joint that

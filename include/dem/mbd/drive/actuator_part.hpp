@@ -71,7 +71,9 @@ DEM_COLD inline void refuse_constant_speed(const ActuatorSpec& spec, const Signa
   if (value == 0.0) return;
   fail(
       "{} has no position_gain, so it follows the rate of its set point alone, and that of the constant {:g} is 0: it "
-      "would brake; to drive at this speed give it Signal::ramp(0, {:g}); to brake, leave the set point out",
+      "would brake; to drive at this speed give it Signal::ramp(0, {:g}) or use speed_actuator; to brake, leave the "
+      "set "
+      "point out",
       who, value, value);
 }
 
@@ -87,6 +89,9 @@ DEM_COLD inline ActuatorId add_actuator(Parts& parts, ActuatorSpec spec) {
     u.a = j.a;
     u.b = j.b;
   } else {
+    if (!spec.a.valid() && !spec.b.valid()) {
+      fail("{} was given no joint and no bodies; use the JointId that add_joint returned, or two BodyIds", who);
+    }
     attach_points(parts, u, spec, who);
     u.a = spec.a.value;
     u.b = spec.b.value;

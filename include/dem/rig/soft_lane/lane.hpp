@@ -53,9 +53,9 @@ std::array<SpeciesId, 2> add_soils(World<Model>& world, const Settings& s, const
     ContactParameters<Model> c = grain_contact<Model>(s.grains, friction);
     const double weight = 9.81 * s.grains.density * shape.volume();
     if constexpr (requires { c.cohesion.force; }) {
-      // It comes on over a depth in which it does not make the contact much stiffer.
-      const double force = cohesion * weight, most = 0.1 * s.grains.scale() * s.grains.stiffness;
-      c.cohesion = {.force = force, .depth = std::max(1e-3 * s.grains.edge(), force / most)};
+      // Over half of the depth at which spring and pull balance, so that grains hold each other.
+      const double force = cohesion * weight, stiffness = s.grains.scale() * s.grains.stiffness;
+      c.cohesion = {.force = force, .depth = 0.5 * force / stiffness};
     } else if (cohesion > 0.0) {
       fail("--second-cohesion is {:g}, but the grains of this model have no cohesion; it must be 0", cohesion);
     }
