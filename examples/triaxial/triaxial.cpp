@@ -143,8 +143,8 @@ void simulate(Arguments& arguments) {
 
   io::Plot strength{.x_label = "axial strain", .y_label = "ratio of axial to lateral stress"};
   io::Plot density{.x_label = "axial strain", .y_label = "solid fraction"};
-  io::CsvWriter csv(folder + "/curves.csv", {"loose", "strain", "axial_stress [Pa]", "lateral_stress [Pa]",
-                                             "stress_ratio", "solid_fraction", "coordination"});
+  io::CsvWriter csv(folder + "/curves.csv", {"loose", "strain", "axial_stress_Pa", "lateral_stress_Pa", "stress_ratio",
+                                             "solid_fraction", "coordination"});
   for (const bool loose : {false, true}) {
     Specimen specimen(pressure, static_cast<int>(side), loose ? friction : 0.0);
     specimen.run(0.15);

@@ -65,6 +65,11 @@ TEST_CASE("a patch goes on from a file in every bit") {
   go(first, of_first, 0, 7);
   dem::save(first, folder / "state.h5", of_first);
   dem::load(second, folder / "state.h5", of_second);
+  Tile other = settled_tile();
+  other.grains.back().position.z += 1e-9;
+  dem::World<OpenCubes> third = open_ground(1);
+  MovingPatch<OpenCubes> of_third(third, other, o);
+  check_refused([&] { dem::load(third, folder / "state.h5", of_third); }, "its tile in this program differs");
   CHECK(difference(first, second) == "");
   go(second, of_second, 7, 14);
   CHECK(difference(whole, second) == "");

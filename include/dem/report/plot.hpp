@@ -31,8 +31,8 @@ struct PlotResult {
 
 namespace detail {
 
-[[nodiscard]] inline std::string first_line_of_errors(std::string_view errors) {
-  // gnuplot repeats the line it stumbled over and marks the place; the last line says what is wrong.
+/// gnuplot repeats the line it stumbled over and marks the place; the last line says what is wrong.
+[[nodiscard]] inline std::string last_line_of_errors(std::string_view errors) {
   while (!errors.empty() && (errors.back() == '\n' || errors.back() == ' ')) errors.remove_suffix(1);
   const auto start = errors.rfind('\n');
   return one_line(start == std::string_view::npos ? errors : errors.substr(start + 1));
@@ -46,10 +46,6 @@ namespace detail {
   const auto last = bytes.find_last_not_of(" \r\n");
   return last != std::string::npos && std::string_view(bytes).substr(0, last + 1).ends_with(end);
 }
-
-}  // namespace detail
-
-namespace detail {
 
 /// The base name of a plot's files. Throws Error for one that cannot name them.
 inline std::string checked_name(const std::string& title, const std::filesystem::path& base) {
@@ -90,7 +86,7 @@ inline PlotResult render_script(const std::string& script, bool any_data, const 
   const auto run = run_program(*program, {"--default-settings", "./" + name + ".gp"}, base.parent_path());
   const bool drawn = detail::is_whole(svg, "</svg>") && detail::is_whole(png, "IEND\xAE\x42\x60\x82");
   if (run.exit_code != 0 || !drawn) {
-    const std::string words = detail::first_line_of_errors(run.errors);
+    const std::string words = detail::last_line_of_errors(run.errors);
     result.reason = run.exit_code != 0 || !words.empty()
                         ? fmt::format("gnuplot ended with code {}: {}", run.exit_code, words)
                         : "gnuplot left no whole pictures; check that the disk is not full";

@@ -56,7 +56,7 @@ struct ReplayShape {
 struct ReplayGrain {
   std::size_t number = 0;            ///< which grain it is, the same in all frames
   std::size_t shape = 0;             ///< what add_shape returned, the same in all frames
-  Vec3 position = Vec3::Zero();      ///< m; a grain whose numbers are not all finite is not drawn
+  Vec3 position = Vec3::Zero();      ///< m
   Mat3 rotation = Mat3::Identity();  ///< from the grain's frame to the world
   double speed = 0.0;                ///< m/s
   double force = 0.0;                ///< N, the size of the net contact force
@@ -77,7 +77,7 @@ struct ReplayForce {
   bool on_surface = false;   ///< what `partner` is
   Vec3 from = Vec3::Zero();  ///< m, where the line begins: in the grain's centre
   Vec3 to = Vec3::Zero();    ///< m, where it ends: in the other grain's centre, or where the grain touches the surface
-  double force = 0.0;        ///< N, its size; a line whose numbers are not all finite is not drawn
+  double force = 0.0;        ///< N, its size
 };
 
 /// A part of a machine.

@@ -13,6 +13,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <iterator>
+#include <limits>
 #include <span>
 #include <string>
 #include <type_traits>
@@ -71,9 +72,10 @@ class Replay {
   [[nodiscard]] bool due(double time) const { return frames_.empty() || (time > last_time_ && ticks_.due(time)); }
 
   /// Makes a frame, if one is due, of all grains that are there, of all parts, a pose each, and of the forces at
-  /// contacts, one for each pair that touches; of these the largest are kept. Returns whether one was made; a time that
-  /// was recorded before is passed over. Throws dem::Error for a time that is not finite or goes back, a shape that was
-  /// never added or is not that of earlier frames, and another number of poses than parts.
+  /// contacts, one for each pair that touches; of these the largest are kept. What has a number that is not finite in
+  /// single precision is not drawn. Returns whether a frame was made; a time that was recorded before is passed over.
+  /// Throws dem::Error for a time that is not finite or goes back, a shape that was never added or is not that of
+  /// earlier frames, and another number of poses than parts.
   bool record(double time, std::span<const ReplayGrain> grains, std::span<const ReplayPose> poses = {},
               std::span<const ReplayForce> forces = {}) {
     check_frame(time, grains, poses);
@@ -166,7 +168,7 @@ class Replay {
     double count = 0.0;
     const auto add = [&](const auto& items) {
       for (const auto& item : items) {
-        if (!item.position.allFinite()) continue;
+        if (!fits_single(item.position)) continue;
         sum += item.position;
         count += 1.0;
       }
@@ -179,8 +181,8 @@ class Replay {
   /// The largest forces, by their pairs. Of several of one pair, as two grains have in a narrow periodic cell, the
   /// largest one.
   [[nodiscard]] std::vector<ReplayForce> strongest(std::span<const ReplayForce> forces) const {
-    const auto is_known = [](const ReplayForce& f) {
-      return f.from.allFinite() && f.to.allFinite() && std::isfinite(f.force) && f.force > 0.0;
+    const auto is_known = [this](const ReplayForce& f) {
+      return fits_single(f.from - origin_) && fits_single(f.to - origin_) && fits_single(f.force) && f.force > 0.0;
     };
     const auto same_pair = [](const ReplayForce& a, const ReplayForce& b) {
       return a.grain == b.grain && a.on_surface == b.on_surface && a.partner == b.partner;
@@ -218,7 +220,7 @@ class Replay {
     for (const ReplayGrain& g : grains) {
       if (!sample_.draws(g.number)) continue;
       const Vec3 x = g.position - origin_;
-      if (!x.allFinite() || !g.rotation.allFinite() || !std::isfinite(g.speed) || !std::isfinite(g.force)) continue;
+      if (!fits_single(x) || !g.rotation.allFinite() || !fits_single(g.speed) || !fits_single(g.force)) continue;
       KeptGrain& kept = frame.grains.emplace_back();
       kept.number = static_cast<std::uint32_t>(g.number) & 0x7fffffffU;
       kept.is_asleep = g.is_asleep ? 1 : 0;
@@ -229,15 +231,23 @@ class Replay {
     }
     for (const ReplayPose& p : poses) {
       const Vec3 x = p.position - origin_;
-      const auto q = quaternion_of(p.rotation);
+      KeptPose& kept = frame.poses.emplace_back();
+      if (!p.shown || !fits_single(x) || !p.rotation.allFinite()) continue;
       const auto [a, b, c] = single(x);
-      const bool shown = p.shown && x.allFinite() && p.rotation.allFinite();
-      frame.poses.push_back(shown ? KeptPose{a, b, c, static_cast<float>(q[0]), static_cast<float>(q[1]),
-                                             static_cast<float>(q[2]), static_cast<float>(q[3])}
-                                  : KeptPose{});
+      const auto q = quaternion_of(p.rotation);
+      kept = {a,
+              b,
+              c,
+              static_cast<float>(q[0]),
+              static_cast<float>(q[1]),
+              static_cast<float>(q[2]),
+              static_cast<float>(q[3])};
     }
     frames_.push_back(std::move(frame));
   }
+  /// Whether a number is finite in single precision, in which frames are kept.
+  static bool fits_single(double x) { return std::abs(x) <= static_cast<double>(std::numeric_limits<float>::max()); }
+  static bool fits_single(const Vec3& x) { return fits_single(x.x()) && fits_single(x.y()) && fits_single(x.z()); }
   static std::array<float, 3> single(const Vec3& x) {
     return {static_cast<float>(x.x()), static_cast<float>(x.y()), static_cast<float>(x.z())};
   }

@@ -6,8 +6,8 @@
 namespace dem::soil {
 
 /// Writes averages for ParaView as points, one in the middle of each cell, with the arrays "density" [kg/m^3],
-/// "solid_fraction", "coordination", "velocity" [m/s], "stress" (nine numbers by rows) and "pressure" [Pa],
-/// "temperature" [(m/s)^2]. Throws dem::Error as write_vtk_points does.
+/// "solid_fraction", "coordination", "velocity" [m/s], "stress" [Pa] (nine numbers by rows),
+/// "pressure" [Pa] and "temperature" [(m/s)^2]. Throws dem::Error as write_vtk_points does.
 inline void write_vtk_averages(const std::filesystem::path& path, const Averages& field,
                                const io::VtkOptions& options = {}) {
   std::vector<double> places, density, solid, coordination, velocity, stress, pressure, temperature;

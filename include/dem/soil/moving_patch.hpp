@@ -165,6 +165,7 @@ class MovingPatch {
     v.group("moving_patch", [&] {
       const std::uint64_t grains = tile_.grains.size();
       v.given("grains_of_the_tile", grains), v.given("tile_along_x", tile_.period[0], "m");
+      v.fingerprint("tile", tile_.fingerprint());
       v.given("tiles_at_the_start", options_.tiles), v.given("tiles_along_y", options_.along_y);
       v.given("rim", options_.rim, "m"), v.given("rut_cell", options_.rut_cell, "m");
       v("tiles", tiles_), v("ahead", ahead_, "m"), v("begin", begin_), v("end", end_), v("shifts", shifts_);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <dem/core/type_name.hpp>
+#include <dem/math/fingerprint.hpp>
 #include <dem/world/contacts.hpp>
 
 #include <algorithm>
@@ -93,6 +94,15 @@ struct Tile {
     const auto fit = [](std::size_t numbers, std::size_t of) { return of == 0 ? numbers == 0 : numbers % of == 0; };
     if (!fit(histories.size(), contacts.size()) || !fit(surface_histories.size(), on_surfaces.size()))
       wrong("histories are missing");
+  }
+  /// 64 bits that tell tiles apart by their grains and what their contacts remember.
+  std::uint64_t fingerprint() const {
+    std::uint64_t hash = fingerprint_of(period, histories, surface_histories);
+    for (const TileGrain& g : grains) {
+      mix(hash, fingerprint_of(g.position, g.rotation.row0, g.rotation.row1, g.rotation.row2, g.velocity,
+                               g.local_angular_velocity, g.species));
+    }
+    return hash;
   }
   /// One line: what it is made of.
   std::string in_words() const {

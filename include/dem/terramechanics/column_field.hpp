@@ -5,12 +5,18 @@
 #include <dem/terramechanics/column_shape.hpp>
 #include <dem/terramechanics/column_shear.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
 
 namespace dem::terramechanics {
+
+/// Columns of a grid: files from_x to to_x of the rows from_y to to_y.
+struct ColumnRange {
+  std::size_t from_x, to_x, from_y, to_y;
+};
 
 /// A field of soil columns on a square grid; column (ix, iy) has its middle at low + (ix + 1/2, iy + 1/2) spacing.
 struct ColumnGrid {
@@ -29,6 +35,25 @@ struct ColumnGrid {
       return static_cast<double>((k & 1) << 2 | (k & 2) | (k & 4) >> 2) / 8.0 - 7.0 / 16.0;
     };
     return {x(ix), y(iy), spacing, x(ix) + fraction(iy) * spacing, y(iy) + fraction(ix) * spacing};
+  }
+  double high_x() const { return low_x + spacing * static_cast<double>(nx); }  ///< m, the other corner
+  double high_y() const { return low_y + spacing * static_cast<double>(ny); }  ///< m
+  /// Whether a rectangle of the ground lies on the field as a whole, and in part.
+  bool holds(const PlanBox& box) const {
+    return !(box.low_x < low_x || box.high_x > high_x() || box.low_y < low_y || box.high_y > high_y());
+  }
+  bool meets(const PlanBox& box) const {
+    return !(box.high_x < low_x || box.low_x > high_x() || box.high_y < low_y || box.low_y > high_y());
+  }
+  /// The columns with their points in a rectangle, and some more: a column whose middle is a spacing away holds a point
+  /// half of one away.
+  ColumnRange around(const PlanBox& box) const {
+    const auto index = [&](double at, double low, std::size_t n) {
+      return static_cast<std::size_t>(std::clamp(std::floor((at - low) / spacing), 0.0, static_cast<double>(n - 1)));
+    };
+    const double h = 0.5 * spacing;
+    return {index(box.low_x - h, low_x, nx), index(box.high_x + h, low_x, nx), index(box.low_y - h, low_y, ny),
+            index(box.high_y + h, low_y, ny)};
   }
   double area() const { return spacing * spacing; }  ///< m^2, of a column
 };

@@ -62,6 +62,9 @@ class ColumnMesh final : public ColumnShape {
     return hits > 0 && contact.point.z < top;
   }
   double width() const override { return width_; }
+  std::string set_up() const override {
+    return fmt::format("mesh {:016x} of width {} m with {} rays", mesh_.fingerprint(), width_, rays_);
+  }
 
  private:
   double reach(const Vector3<double>& row) const {

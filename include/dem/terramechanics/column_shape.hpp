@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
 
 namespace dem::terramechanics {
 
@@ -50,6 +51,8 @@ class ColumnShape {
                               ColumnContactPoint& contact) const = 0;
   /// b of the pressure law, m: the smaller side of what presses on the soil; 0 if the shape does not tell.
   virtual double width() const = 0;
+  /// What it is, in words that differ where it differs: a saved state is only loaded where they are the same.
+  virtual std::string set_up() const = 0;
 };
 
 namespace detail {

@@ -32,6 +32,7 @@ class ColumnBall final : public ColumnShape {
     return true;
   }
   double width() const override { return 0.0; }
+  std::string set_up() const override { return fmt::format("ball of radius {} m", radius_); }
 
  private:
   double radius_;
@@ -92,6 +93,9 @@ class ColumnCylinder final : public ColumnShape {
     return on_side(pose, a, q, top, contact);
   }
   double width() const override { return std::min(2.0 * half_, 2.0 * radius_); }
+  std::string set_up() const override {
+    return fmt::format("cylinder of radius {} m and width {} m", radius_, 2.0 * half_);
+  }
 
  private:
   static Vector3<double> axis(const ShapePose& pose) {
@@ -163,6 +167,9 @@ class ColumnBox final : public ColumnShape {
   }
   /// The smaller of the edges along x and y of the box.
   double width() const override { return 2.0 * std::min(half_.x, half_.y); }
+  std::string set_up() const override {
+    return fmt::format("box{} of {} x {} x {} m", row_ ? " in a row" : "", 2.0 * half_.x, 2.0 * half_.y, 2.0 * half_.z);
+  }
 
  private:
   using Axes = std::array<Vector3<double>, 3>;

@@ -35,15 +35,21 @@ struct ColumnWheelRun {
 
 /// Rolls the wheel at a slip below 1. It sits on a hub that slides up and down on a carriage, which is moved along.
 /// Joints are springs as stiff as the masses at them and the time step allow: so nearly all of the load is the hub's.
-/// Throws Error for a wheel that makes no sense, and where the soil does not carry it.
+/// Throws Error for a wheel that makes no sense, a way of less than a time step, and where the soil does not carry it.
 inline ColumnWheelRun roll_on_columns(const ColumnWheel& w, double slip) {
+  check_wheel(w.wheel);
   require_within(slip, -10.0, 0.99, "the slip of a wheel on columns, 1 - v/(omega r)");
   require_positive(w.spin, "spin of a wheel on columns", "rad/s");
   require_positive(w.travel, "travel of a wheel on columns", "m");
+  require_positive(w.time_step, "time step of a wheel on columns", "s");
   require_within(9.81 * w.wheel_mass, 1e-6 * w.load, 0.9 * w.load, "weight of a wheel on columns (N, of its load)");
   const double hub_edge = 0.3;  // m; only its mass counts
   // With grousers the soil shears off at their tips: the columns meet a wheel of that radius.
   const double rim = w.wheel.radius, r = w.wheel.shear_radius(), v = w.spin * rim * (1.0 - slip);
+  if (!(w.travel >= v * w.time_step)) {
+    fail("a wheel on columns travels {:g} m, but goes {:g} m in a time step of {:g} s; raise travel or lower time_step",
+         w.travel, v * w.time_step, w.time_step);
+  }
   mbd::Machine<integrator::VelocityVerlet> machine;
   const BodyId carriage = machine.add_fixed_body("carriage", {0, 0, 3 * r});
   const double hub_density = (w.load / 9.81 - w.wheel_mass) / (hub_edge * hub_edge * hub_edge);

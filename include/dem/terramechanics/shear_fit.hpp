@@ -4,6 +4,10 @@
 #include <dem/terramechanics/mohr_coulomb.hpp>
 #include <dem/terramechanics/shear.hpp>
 
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -27,40 +31,68 @@ struct JanosiFit {
   std::size_t points = 0;
 };
 
-/// Fits K and tau_max to a curve that bends towards a strength, all points of equal weight. Throws Error for fewer than
-/// 2 points, numbers that are not finite, no positive displacement or stress, and a curve that does not bend: K above
-/// 10 times the largest displacement.
-inline JanosiFit fit_janosi(const ShearCurve& curve) {
+namespace detail {
+
+/// How far a shear curve goes.
+struct ShearReach {
+  double displacement = 0.0, stress = 0.0;  ///< m, Pa; the largest, or 0
+};
+
+/// Throws Error unless a curve has a displacement with each stress, and all are finite.
+inline ShearReach reach_of(const ShearCurve& curve) {
   const std::size_t n = curve.displacement.size();
   if (n != curve.stress.size()) {
     fail("shear curve at {:g} Pa: {} displacements and {} stresses; give as many of both", curve.normal_stress, n,
          curve.stress.size());
   }
-  double furthest = 0.0, largest = 0.0;
+  ShearReach reach;
   for (std::size_t i = 0; i < n; ++i) {
     if (!std::isfinite(curve.displacement[i]) || !std::isfinite(curve.stress[i])) {
       fail("shear curve at {:g} Pa: point {} is ({:g} m, {:g} Pa), but must be finite", curve.normal_stress, i,
            curve.displacement[i], curve.stress[i]);
     }
-    furthest = std::fmax(furthest, curve.displacement[i]);
-    largest = std::fmax(largest, curve.stress[i]);
+    reach.displacement = std::fmax(reach.displacement, curve.displacement[i]);
+    reach.stress = std::fmax(reach.stress, curve.stress[i]);
   }
+  return reach;
+}
+
+/// A point of tau = tau_max (1 - exp(-j/K)), with its slopes by tau_max and by ln K: fitted by its logarithm, K stays
+/// positive.
+struct JanosiPoint {
+  double stress, by_strength, by_log_k;
+
+  JanosiPoint(double displacement, double strength, double log_k) {
+    const double ratio = displacement / std::exp(log_k);
+    by_strength = -std::expm1(-ratio);
+    by_log_k = -strength * ratio * std::exp(-ratio);
+    stress = strength * by_strength;
+  }
+};
+
+}  // namespace detail
+
+/// Fits K and tau_max to a curve that bends towards a strength, all points of equal weight. Throws Error for fewer than
+/// 2 points, numbers that are not finite, no positive displacement or stress, and a curve that does not bend: K above
+/// 10 times the largest displacement.
+inline JanosiFit fit_janosi(const ShearCurve& curve) {
+  const auto [furthest, largest] = detail::reach_of(curve);
   if (!(furthest > 0.0 && largest > 0.0)) {
     fail("shear curve at {:g} Pa: no displacement or no stress is positive; give both in the direction of shearing",
          curve.normal_stress);
   }
   // Start: the strength at the top, and K where 63 % of it is passed.
+  const std::size_t n = curve.displacement.size();
   double reached = furthest;
   for (std::size_t i = n; i-- > 0;) {
     if (curve.stress[i] >= 0.632 * largest && curve.displacement[i] > 0.0) {
       reached = std::fmin(reached, curve.displacement[i]);
     }
   }
-  // By the logarithm of K, which so stays positive.
   const auto model = [&](std::size_t i, const std::array<double, 2>& values, std::array<double, 2>& slopes) {
-    const double ratio = curve.displacement[i] / std::exp(values[1]), rest = std::exp(-ratio);
-    slopes = {-std::expm1(-ratio), -values[0] * ratio * rest};
-    return values[0] * slopes[0];
+    const detail::JanosiPoint p(curve.displacement[i], values[0], values[1]);
+    slopes = {p.by_strength, p.by_log_k};
+    return p.stress;
   };
   const auto fit = least_squares<2>(
       "fit of a shear curve", n, {largest, std::log(reached)}, model, [&](std::size_t i) { return curve.stress[i]; },
@@ -83,14 +115,12 @@ inline JanosiFit fit_janosi(const ShearCurve& curve) {
 
 /// The same with a strength (Pa) that is known, as the greatest stress that was measured: K alone is fitted. A curve
 /// that still rises at its end then has a K of the size of its displacements, and not one from beyond them. Throws
-/// Error for a strength that is not positive, and as fit_janosi does but for curves that do not bend.
+/// Error for a strength that is not positive, numbers that are not finite, and a curve that does not reach 63 % of the
+/// strength.
 inline JanosiFit fit_janosi_below(const ShearCurve& curve, double strength) {
   require_positive(strength, "strength that a shear curve is fitted below", "Pa");
+  detail::reach_of(curve);
   const std::size_t n = curve.displacement.size();
-  if (n != curve.stress.size()) {
-    fail("shear curve at {:g} Pa: {} displacements and {} stresses; give as many of both", curve.normal_stress, n,
-         curve.stress.size());
-  }
   double reached = 0.0;  // where 63 % are first passed
   for (std::size_t i = n; i-- > 0;) {
     if (curve.displacement[i] > 0.0 && curve.stress[i] >= 0.632 * strength) reached = curve.displacement[i];
@@ -100,9 +130,9 @@ inline JanosiFit fit_janosi_below(const ShearCurve& curve, double strength) {
          curve.normal_stress, strength);
   }
   const auto model = [&](std::size_t i, const std::array<double, 1>& values, std::array<double, 1>& slopes) {
-    const double ratio = curve.displacement[i] / std::exp(values[0]);
-    slopes = {-strength * ratio * std::exp(-ratio)};
-    return -strength * std::expm1(-ratio);
+    const detail::JanosiPoint p(curve.displacement[i], strength, values[0]);
+    slopes = {p.by_log_k};
+    return p.stress;
   };
   const auto fit = least_squares<1>(
       "fit of a shear curve", n, {std::log(reached)}, model, [&](std::size_t i) { return curve.stress[i]; },

@@ -1,12 +1,11 @@
 #pragma once
 
-#include <dem/core/output.hpp>
+#include <dem/io/file.hpp>
 #include <dem/terramechanics/soil_text.hpp>
 
 #include <charconv>
 #include <cmath>
 #include <cstddef>
-#include <cstdio>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -134,31 +133,10 @@ inline NamedSoil read_soil(std::string_view text, const std::string& where = "so
 }
 
 /// Reads a soil file. Throws Error as read_soil does, and if the file cannot be read.
-inline NamedSoil load_soil(const std::string& path) {
-  std::FILE* file = std::fopen(path.c_str(), "rb");
-  std::string text;
-  char part[4096];
-  for (std::size_t n = 1; file && n > 0;) {
-    n = std::fread(part, 1, sizeof part, file);
-    text.append(part, n);
-  }
-  const bool bad = !file || std::ferror(file) != 0;
-  if (file) std::fclose(file);
-  if (bad) fail("cannot read the soil file '{}'; check that it exists and may be read", path);
-  return read_soil(text, path);
-}
+inline NamedSoil load_soil(const std::string& path) { return read_soil(io::read_file(path), path); }
 
-/// Writes a soil file, complete or not at all. Throws Error for a soil that check_soil refuses, and if the file cannot
-/// be written.
-inline void save_soil(const std::string& path, const NamedSoil& named) {
-  const std::string text = to_text(named), part = path + ".part";
-  if (!process_writes_files) return;
-  std::FILE* file = std::fopen(part.c_str(), "wb");
-  const bool written = file && std::fwrite(text.data(), 1, text.size(), file) == text.size();
-  const bool closed = file && std::fclose(file) == 0;
-  const bool named_so = written && closed && std::rename(part.c_str(), path.c_str()) == 0;
-  if (file && !named_so) std::remove(part.c_str());
-  if (!named_so) fail("cannot write the soil file '{}'; check that the folder exists and has room", path);
-}
+/// Writes a soil file, complete or not at all; its folder is made when it is missing. Throws Error for a soil that
+/// check_soil refuses, and if the file cannot be written.
+inline void save_soil(const std::string& path, const NamedSoil& named) { io::write_file(path, to_text(named)); }
 
 }  // namespace dem::terramechanics

@@ -26,7 +26,10 @@ struct Wheel {
 inline void check_wheel(const Wheel& wheel) {
   require_positive(wheel.radius, "wheel radius", "m");
   require_positive(wheel.width, "wheel width", "m");
-  require_within(wheel.grouser_height, 0.0, wheel.radius, "height of the wheel's grousers in m (0: none)");
+  if (!(wheel.grouser_height >= 0.0 && wheel.grouser_height < wheel.radius)) {
+    fail("the wheel's grousers are {:g} m high, but must be at least 0 (none) and below the wheel's radius, {:g} m",
+         wheel.grouser_height, wheel.radius);
+  }
   require_within(wheel.grouser_share, 0.0, 1.0, "share of the grousers' height that counts");
 }
 

@@ -55,6 +55,9 @@ TEST_CASE("a mesh survives STL files, binary and ascii, and OBJ files") {
   CHECK(volume(parse_stl(binary_stl(wheel), "b.stl")) == Approx(exact).epsilon(1e-6));  // floats
   CHECK(volume(parse_obj(obj(wheel), "c.obj")) == Approx(exact).epsilon(1e-14));
   CHECK(parse_obj(obj(wheel), "c.obj").triangles == wheel.triangles);
+  const TempFolder folder;
+  dem::io::write_file(folder / "wheel.obj", obj(wheel));
+  CHECK(dem::io::read_obj(folder / "wheel.obj").triangles == wheel.triangles);
   CHECK(dem::repaired(parse_stl(binary_stl(wheel), "b.stl")).report.closed());
 }
 
@@ -63,7 +66,9 @@ TEST_CASE("the solids of an STL file are told apart by their names") {
   std::string text = ascii_stl(box) + "solid \n endsolid\n" + ascii_stl(box.moved({5, 0, 0}).scaled(2));
   text.replace(text.rfind("solid part of"), 13, "solid lid of");  // behind "end"
   text.replace(text.rfind("\nsolid part of") + 1, 13, "solid lid of");
-  const auto solids = dem::io::parse_stl_solids(text, "two.stl");
+  const TempFolder folder;
+  dem::io::write_file(folder / "two.stl", text);
+  const auto solids = dem::io::read_stl_solids(folder / "two.stl");
   REQUIRE(solids.size() == 2);  // one has no facets
   CHECK(solids[0].name == "part of a machine");
   CHECK(solids[1].name == "lid of a machine");

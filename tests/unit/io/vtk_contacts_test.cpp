@@ -1,6 +1,7 @@
 #include "catch.hpp"
 #include "files.hpp"
-#include "io/vtk_reader.hpp"
+#include "sleeping_bed.hpp"
+#include "vtk_reader.hpp"
 
 #include <dem/io/vtk_contacts.hpp>
 
@@ -43,6 +44,22 @@ TEST_CASE("force chains are written as lines with their forces at both ends") {
     if (tag.name == "DataArray") names += tag.at("Name") + " ";
   }
   CHECK(names == "force normal_force friction overlap points on_surface grain Points connectivity offsets ");
+}
+
+TEST_CASE("the force chains of a world are those of its contacts, by the numbers of its grains") {
+  const TempFolder folder;
+  const SleepingBed bed;
+  dem::io::write_vtk_contacts(folder / "chains.vtp", bed.world);
+  const auto lines = dem::force_lines(dem::contacts_of(bed.world));
+  REQUIRE(lines.size() == 8);  // under each cube of the towers
+  const VtkContent file = read_vtk(folder / "chains.vtp");
+  const auto grain = file.values<std::uint32_t>("grain");
+  const auto force = file.values<double>("force");
+  REQUIRE(grain.size() == 2 * lines.size());
+  for (std::size_t k = 0; k < grain.size(); ++k) {
+    CHECK(grain[k] == lines[k / 2].grain.value);
+    CHECK(force[k] == lines[k / 2].force.norm());
+  }
 }
 
 TEST_CASE("lines that are none, and arrays that do not fit them, are refused") {

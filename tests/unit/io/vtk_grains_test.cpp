@@ -93,7 +93,9 @@ TEST_CASE("a frame of a bed in which grains sleep says which of them do") {
   dem::io::write_vtk_grains(folder / "grains.vtp", bed.world, 1);
   const VtkContent file = read_vtk(folder / "grains.vtp");
   const auto body = file.values<std::int32_t>("body"), asleep = file.values<std::int32_t>("asleep");
+  const auto numbers = file.values<std::uint32_t>("grain");
   REQUIRE(asleep.size() == body.size());
+  REQUIRE(numbers.size() == body.size());
   CHECK(file.array("asleep").at("type") == "Int32");
   const auto grains = bed.world.grains();
   std::vector<std::size_t> faces(grains.size(), 0);
@@ -102,6 +104,7 @@ TEST_CASE("a frame of a bed in which grains sleep says which of them do") {
     REQUIRE(row < grains.size());
     ++faces[row];
     CHECK(asleep[k] == (grains[row] == bed.flier ? 0 : 1));
+    CHECK(numbers[k] == grains[row].value);
   }
   for (const std::size_t count : faces) CHECK(count == body.size() / grains.size());
   // Where none may sleep the column is not there.

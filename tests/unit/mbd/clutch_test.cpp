@@ -84,7 +84,7 @@ TEMPLATE_TEST_CASE("a clutch brings two shafts to one speed, and the heat is tha
   Recorder rows(m);
   rows.add(c);
   CHECK(rows.columns() ==
-        std::vector<std::string>{"dry clutch_capacity", "dry clutch_torque", "dry clutch_slip_speed"});
+        std::vector<std::string>{"dry clutch_capacity_Nm", "dry clutch_torque_Nm", "dry clutch_slip_speed_rad_per_s"});
   CHECK(rows.sample()[1] == Approx(T));  // drives the output, which lags
   REQUIRE(m.run(0.6 * together, dt));
   const double common = I1 * w1 / (I1 + I2), reduced = I1 * I2 / (I1 + I2);
@@ -148,13 +148,25 @@ TEST_CASE(
   const BrakeId grip = m.add_brake(brake("grip", r, 1e5));
   const LoadId engine = m.add_load(applied_torque("engine", shaft, X, torque));
   REQUIRE(m.run(0.2, dt));
-  // The left wheel spins alone, with S/4 of the outputs' S = f (torque - I_in a_in) and a_in = f/2 a.
-  const double S = f * torque / (1.0 + f * f * I_in / (2.0 * (1.0 + bias) * I)), a = S / ((1.0 + bias) * I);
-  const double before = m.speed(l);  // the gears were not under load at once
-  REQUIRE(m.run(0.2, dt));
-  CHECK(m.speed(l) - before == Approx(0.2 * a).epsilon(1e-3));
-  CHECK(-m.brake(grip).torque == Approx(bias / (1.0 + bias) * S).epsilon(1e-3));
-  CHECK(m.clutch(plates).is_slipping());
+  // The left wheel spins alone, with S/4 of the outputs' S = f (torque - I_in a_in) and a_in = f/2 a. So it does after
+  // the gears were given another ratio.
+  const auto check_bias = [&](double ratio) {
+    const double S = ratio * torque / (1.0 + ratio * ratio * I_in / (2.0 * (1.0 + bias) * I)),
+                 a = S / ((1.0 + bias) * I);
+    const double before = m.speed(l);  // the gears were not under load at once
+    REQUIRE(m.run(0.2, dt));
+    CHECK(m.speed(l) - before == Approx(0.2 * a).epsilon(1e-3));
+    CHECK(-m.brake(grip).torque == Approx(bias / (1.0 + bias) * S).epsilon(1e-3));
+    CHECK(m.clutch(plates).is_slipping());
+  };
+  const auto shift = [&](double ratio) {
+    for (const std::size_t output : {1, 2}) m.set_ratio(gears, -0.5 * ratio, output);
+    REQUIRE(m.run(0.2, dt));
+  };
+  check_bias(f);
+  shift(0.5 * f);
+  check_bias(0.5 * f);
+  shift(f);
   // Both wheels free: they turn together, as an open differential's would.
   m.set_load(engine, 0.0);
   m.set_capacity(grip, 0.0);

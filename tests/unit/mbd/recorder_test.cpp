@@ -14,8 +14,9 @@ TEST_CASE("a recorder samples joints, bodies and the user's own numbers") {
   const ActuatorId servo = m.add_actuator(joint_actuator("servo", hinge, 10.0, 1.0));
   recorder.add("time_s", [&] { return m.time(); }).add(hinge).add(b).add(servo);
   REQUIRE(recorder.columns().size() == 1 + 8 + 6 + 3);
-  CHECK(recorder.columns()[15] == "servo_coordinate");
-  CHECK(recorder.columns()[17] == "servo_force");
+  CHECK(recorder.columns()[15] == "servo_coordinate_rad");
+  CHECK(recorder.columns()[16] == "servo_speed_rad_per_s");
+  CHECK(recorder.columns()[17] == "servo_torque_Nm");
   check_refused([&] { recorder.add(ActuatorId(1)); }, "an actuator that the machine does not have");
   CHECK(recorder.columns()[1] == "hinge_turn_rad");
   CHECK(recorder.columns()[3] == "hinge_force_x_N");
@@ -34,6 +35,20 @@ TEST_CASE("a recorder samples joints, bodies and the user's own numbers") {
   });
   REQUIRE(report);
   CHECK(rows == 10);
+}
+
+TEST_CASE("columns of what slides end in other units than those of what turns") {
+  Machine<PredictorCorrector> m;
+  const BodyId b = m.add_body(brick("rod", {1, 0, 0}));
+  const JointId guide = m.add_joint(prismatic("guide", m.ground(), b, {0, 0, 0}, X));
+  const ActuatorId on_joint = m.add_actuator(joint_actuator("ram", guide, 10.0, 1.0));
+  const ActuatorId on_points = m.add_actuator(linear_actuator("jack", m.ground(), {2, 0, 0}, b, {1, 0, 0}, 10.0, 1.0));
+  const BrakeId shoe = m.add_brake(brake("shoe", guide, 5.0));
+  Recorder recorder(m);
+  recorder.add(on_joint).add(on_points).add(shoe);
+  CHECK(recorder.columns() == std::vector<std::string>{"ram_coordinate_m", "ram_speed_m_per_s", "ram_force_N",
+                                                       "jack_coordinate_m", "jack_speed_m_per_s", "jack_force_N",
+                                                       "shoe_capacity_N", "shoe_force_N", "shoe_slip_speed_m_per_s"});
 }
 
 TEST_CASE("a recorder's rows begin at the start where it is asked there, and else after the first step") {

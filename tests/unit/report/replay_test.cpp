@@ -240,19 +240,38 @@ TEST_CASE("faces with many corners become triangles") {
   CHECK(mesh.triangles == std::vector<std::uint32_t>{0, 1, 2, 0, 1, 2, 0, 2, 3, 0, 1, 2, 0, 2, 3, 0, 3, 4});
 }
 
-TEST_CASE("a grain whose numbers are not finite is not drawn, and the others are") {
+TEST_CASE("what has a number that is not finite in single precision is not drawn, and the rest is") {
+  constexpr double huge = 1e39;
   Replay replay;
   replay.add_shape(ball(0.1));
-  std::vector<ReplayGrain> grains(4);
-  for (std::size_t n = 0; n < 4; ++n) grains[n].number = n;
+  for (int k = 0; k < 4; ++k) replay.add_part("", dem::io::box_mesh({1, 1, 1}));
+  std::vector<ReplayGrain> grains(7);
+  for (std::size_t n = 0; n < grains.size(); ++n) grains[n].number = n;
+  grains[0].position.x() = -1e200;  // the middle of the first frame is not drawn off by it
   grains[1].position.x() = kNan;
   grains[2].rotation(0, 0) = kNan;
   grains[3].force = std::numeric_limits<double>::infinity();
-  replay.record(0.0, grains);
-  REQUIRE(replay.frames().at(0).grains.size() == 1);
-  CHECK(replay.frames()[0].grains[0].number == 0);
-  CHECK(replay_table(replay).numbers == std::vector<std::uint32_t>{0});
-  CHECK(encode(replay).bytes.size() > 100);
+  grains[4].speed = huge;
+  grains[5].force = huge;
+  std::vector<ReplayPose> poses(4);
+  poses[1].position.z() = huge;
+  poses[2].rotation(1, 2) = kNan;
+  poses[3].position.y() = 2.0;
+  const std::vector<ReplayForce> forces = {{.grain = 6, .partner = 1, .force = 1.0},
+                                           {.grain = 6, .partner = 2, .force = huge},
+                                           {.grain = 6, .partner = 3, .to = Vec3(0, 0, -huge), .force = 2.0}};
+  replay.record(0.0, grains, poses, forces);
+  const KeptFrame& frame = replay.frames().at(0);
+  REQUIRE(frame.grains.size() == 1);
+  CHECK(frame.grains[0].number == 6);
+  CHECK(frame.poses == std::vector<KeptPose>{{0, 0, 0, 1, 0, 0, 0}, KeptPose{}, KeptPose{}, {0, 2, 0, 1, 0, 0, 0}});
+  REQUIRE(frame.forces.size() == 1);
+  CHECK(frame.forces[0].partner == 1);
+  CHECK(replay_table(replay).numbers == std::vector<std::uint32_t>{6});
+  const EncodedReplay encoded = encode(replay);
+  CHECK(encoded.bytes.size() > 100);
+  CHECK(encoded.head.find("inf") == std::string::npos);
+  CHECK(encoded.head.find("nan") == std::string::npos);
 }
 
 TEST_CASE("of too many grains those that are drawn are in all frames, old ones too") {

@@ -105,4 +105,6 @@ TEST_CASE(
   CHECK(fit_janosi_below(rising, 7e3).displacement == Approx(0.6143 * 4e-3).epsilon(0.01));
   CHECK_THROWS_WITH(fit_janosi_below(exact, 2e4), Catch::Contains("does not reach two thirds"));
   CHECK_THROWS_WITH(fit_janosi_below(exact, 0.0), Catch::Contains("strength"));
+  exact.stress[150] = std::nan("");
+  CHECK_THROWS_WITH(fit_janosi_below(exact, 7e3), Catch::Contains("point 150") && Catch::Contains("must be finite"));
 }

@@ -4,6 +4,7 @@
 #include <clocale>
 #include <cmath>
 #include <cstdio>
+#include <filesystem>
 #include <string>
 
 #include "catch.hpp"
@@ -70,8 +71,18 @@ TEST_CASE("soil files may be kept on disk") {
   save_soil(path, {"sand", "D. Melanz", melanz_sand});
   check_same(load_soil(path).soil, melanz_sand);
   std::remove(path.c_str());
-  CHECK_THROWS_WITH(load_soil(path), ContainsSubstring("cannot read the soil file"));
-  CHECK_THROWS_WITH(save_soil("no/such/folder/soil.toml", {"", "", melanz_sand}), ContainsSubstring("cannot write"));
+  CHECK_THROWS_WITH(load_soil(path), ContainsSubstring("cannot read the file 'soil_file_test.toml'"));
+  // The folder is made, and a file that another writer has begun is none of ours.
+  const std::filesystem::path folder = "soil_file_test", file = folder / "new" / "soil.toml";
+  save_soil(file.string(), {"sand", "", melanz_sand});
+  const std::filesystem::path other = file.string() + ".part";
+  dem::io::write_file(other, "half a soi");
+  save_soil(file.string(), {"clay", "", clay});
+  check_same(load_soil(file.string()).soil, clay);
+  CHECK(dem::io::read_file(other) == "half a soi");
+  CHECK_THROWS_WITH(save_soil((file / "soil.toml").string(), {"", "", melanz_sand}),
+                    ContainsSubstring("cannot make the folder"));
+  std::filesystem::remove_all(folder);
 }
 
 TEST_CASE("comments, blank lines, other ends of lines and what has a default are no matter") {

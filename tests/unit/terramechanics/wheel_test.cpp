@@ -243,7 +243,10 @@ TEST_CASE("wheels, sinkages and loads out of range are refused in words") {
   const double nan = std::nan("");
   CHECK_THROWS_WITH(wheel_forces({0.0, 0.1}, melanz_sand, {0.0}, 0.01), ContainsSubstring("wheel radius is 0 m"));
   CHECK_THROWS_WITH(wheel_forces({0.1, -0.1}, melanz_sand, {0.0}, 0.01), ContainsSubstring("wheel width"));
-  CHECK_THROWS_WITH(wheel_forces({0.1, 0.1, 0.2}, melanz_sand, {0.0}, 0.01), ContainsSubstring("grousers"));
+  for (const double height : {-0.01, 0.1}) {
+    CHECK_THROWS_WITH(wheel_forces({0.1, 0.1, height}, melanz_sand, {0.0}, 0.01),
+                      ContainsSubstring("below the wheel's radius, 0.1 m"));
+  }
   CHECK_THROWS_WITH(wheel_forces({0.1, 0.1, 0.01, 1.5}, melanz_sand, {0.0}, 0.01),
                     ContainsSubstring("share of the grousers"));
   CHECK_THROWS_WITH(wheel_forces(wheel, melanz_sand, {0.0}, 0.14),

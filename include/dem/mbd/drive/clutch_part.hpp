@@ -23,13 +23,24 @@ inline void keep_torque(Clutch& u, double k) {
   u.history.stretch = stretch;
 }
 
+/// Capacity (N m) of a limited-slip differential's plates per N m of its coupling's multiplier. The outputs get
+/// S = (|r1| + |r2|) lambda together. T moves over from one to the other: (S/2 + T) = bias_ratio (S/2 - T).
+inline double plate_bias(const Coupling& differential, double bias_ratio) {
+  const Terms& t = differential.spec.terms;
+  return 0.5 * (std::abs(t[1].ratio) + std::abs(t[2].ratio)) * (bias_ratio - 1.0) / (bias_ratio + 1.0);
+}
+
 inline constexpr PartKind clutch_kind = {
     .rank = 8,  // after the couplings, of which a limited-slip differential takes its capacity
     .add_forces =
         [](Parts& m, const Evaluation& now) {
           for (Clutch& u : m.clutches) {
-            const CouplingId of = u.spec.differential;
-            const double multiplier = of.valid() ? m.couplings[of.index()].multiplier : 0.0;
+            double multiplier = 0.0;
+            if (u.spec.differential.valid()) {
+              const Coupling& g = m.couplings[u.spec.differential.index()];
+              u.bias = plate_bias(g, u.spec.bias_ratio);  // its ratios may change
+              multiplier = g.multiplier;
+            }
             apply_clutch(u, m.joints, m.bodies, now.time, now.dt, multiplier, now.is_last_stage);
           }
         },
@@ -83,7 +94,7 @@ inline constexpr PartKind clutch_kind = {
       return {};
     }};
 
-/// The two outputs of a differential, and the bias of its plates.
+/// The two outputs of a differential.
 DEM_COLD inline void take_differential(const Parts& parts, Clutch& u, const std::string& who) {
   const Coupling& g = known(parts.couplings, u.spec.differential, ("coupling of " + who).c_str());
   const auto& t = g.spec.terms;
@@ -95,8 +106,7 @@ DEM_COLD inline void take_differential(const Parts& parts, Clutch& u, const std:
          u.spec.bias_ratio);
   }
   u.spec.terms = {{t[1].joint, 1.0, t[1].dof}, {t[2].joint, -1.0, t[2].dof}};
-  // The outputs get 2 |r| lambda together. T moves over from one to the other: (S/2 + T) = bias (S/2 - T).
-  u.bias = std::abs(t[1].ratio) * (u.spec.bias_ratio - 1.0) / (u.spec.bias_ratio + 1.0);
+  u.bias = plate_bias(g, u.spec.bias_ratio);
 }
 
 DEM_COLD inline ClutchId add_clutch(Parts& parts, ClutchSpec spec) {

@@ -71,25 +71,26 @@ class Recorder {
     }
     return *this;
   }
-  /// Coordinate, speed and force of an actuator.
+  /// Coordinate, speed and force of an actuator; a torque, where its coordinate is a rotation.
   Recorder& add(ActuatorId id) {
     const Mechanism* m = machine_;
     if (id.index() >= m->parts().actuators.size()) fail("a recorder names an actuator that the machine does not have");
-    const std::string name = m->actuator(id).spec.name;
-    for (const auto& [what, value] : {std::pair("_coordinate", &Actuator::coordinate),
-                                      std::pair("_speed", &Actuator::speed), std::pair("_force", &Actuator::force)}) {
-      add(name + what, [m, id, value = value] { return m->actuator(id).*value; });
-    }
-    return *this;
+    const ActuatorSpec& spec = m->actuator(id).spec;
+    const Units units(spec.joint.valid() && is_rotation(spec.dof));
+    add(dem::text("{}_coordinate_{}", spec.name, units.way), [m, id] { return m->actuator(id).coordinate; });
+    add(dem::text("{}_speed_{}_per_s", spec.name, units.way), [m, id] { return m->actuator(id).speed; });
+    return add(dem::text("{}_{}_{}", spec.name, units.effort_name, units.effort),
+               [m, id] { return m->actuator(id).force; });
   }
 
-  /// Capacity and torque (N m, or N) of a clutch or brake, and the rate of its slip (rad/s, or m/s).
+  /// Capacity and torque of a clutch or brake, and the rate of its slip; a force, where its first coordinate slides.
   Recorder& add(ClutchId id) {
     const Mechanism* m = machine_;
-    const std::string name = m->clutch(id).spec.name;
-    add(name + "_capacity", [m, id] { return m->clutch(id).capacity; });
-    add(name + "_torque", [m, id] { return m->clutch(id).torque; });
-    return add(name + "_slip_speed", [m, id] { return m->slip_speed(id); });
+    const ClutchSpec& spec = m->clutch(id).spec;
+    const Units units(is_rotation(spec.terms[0].dof));
+    add(dem::text("{}_capacity_{}", spec.name, units.effort), [m, id] { return m->clutch(id).capacity; });
+    add(dem::text("{}_{}_{}", spec.name, units.effort_name, units.effort), [m, id] { return m->clutch(id).torque; });
+    return add(dem::text("{}_slip_speed_{}_per_s", spec.name, units.way), [m, id] { return m->slip_speed(id); });
   }
 
   const std::vector<std::string>& columns() const { return columns_; }
@@ -109,6 +110,15 @@ class Recorder {
   }
 
  private:
+  /// How columns of a coordinate and of what drives it end.
+  struct Units {
+    const char *way, *effort_name, *effort;
+    explicit Units(bool is_a_rotation)
+        : way(is_a_rotation ? "rad" : "m"),
+          effort_name(is_a_rotation ? "torque" : "force"),
+          effort(is_a_rotation ? "Nm" : "N") {}
+  };
+
   const Mechanism* machine_;
   std::vector<std::string> columns_;
   std::vector<Function<double()>> values_;

@@ -118,13 +118,11 @@ class Mechanism {
     return body(c.body).point(c.point);
   }
 
-  /// A coordinate and its speed, one of dofs_of(the joint's kind). Without a name the joint's own: the rotation (rad,
-  /// over whole turns) of one that turns, the slide (m) of one that slides, the length (m) of a distance joint.
+  /// A coordinate and its speed, one of dofs_of(the joint's kind), as Dof::slide of a cylindrical joint. Without a name
+  /// the joint's own: the rotation (rad, over whole turns) of one that turns, the slide (m) of one that slides, the
+  /// length (m) of a distance joint.
   double coordinate(JointId id, Dof dof = Dof::own) const { return coordinate_now(parts_, id, dof).value; }
   double speed(JointId id, Dof dof = Dof::own) const { return coordinate_now(parts_, id, dof).speed; }
-  /// The slide along z (m, m/s), e.g. the second coordinate of a cylindrical joint.
-  double slide(JointId id) const { return coordinate(id, Dof::slide); }
-  double slide_speed(JointId id) const { return speed(id, Dof::slide); }
   /// What a joint would be strained by (m, rad) if it were switched on without taking the bodies as they are.
   Violation gap(JointId id) const {
     const Joint& j = joint(id);
