@@ -114,7 +114,8 @@ class PlateSinkage {
     const auto stage = stages.enter(
         world, n, [&] { m.set_target(drive, smooth_start(s.unload_speed, s.ramp_time, n.start, -n.zero)); });
     if (!stage) return;
-    for (double pressure = first; pressure > 0.05 * first && n.travel > -0.25 * s.sinkage;) {
+    double pressure = result.unloading.empty() ? first : result.unloading.back().pressure;
+    while (pressure > 0.05 * first && n.travel > -0.25 * s.sinkage) {
       run(world, s.sample_interval());
       n.travel = -m.coordinate(slide) - n.zero;
       pressure = m.sensor(grains).mean().force.z / area;

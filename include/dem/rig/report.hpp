@@ -72,6 +72,10 @@ class Report {
       tell(stderr, "{}: {}\n", session_.program(), frames_text());
       is_complete_ = false;
     }
+    if (!outcome().report_problem.empty()) {
+      tell(stderr, "{}: {}\n", session_.program(), outcome().report_problem);
+      is_complete_ = false;
+    }
     if (is_complete_) {
       tell(stdout, "Report, {}tables{}: {}\n", has_plots_ && not_drawn_.empty() ? "plots, " : "",
            has_frames ? " and ParaView files" : "", folder().string());
@@ -102,6 +106,7 @@ class Report {
     if (!o.problem.empty()) return "The run ended early: " + o.problem;
     if (o.interrupted) return "The run was interrupted; this is what was there by then.";
     if (!o.frames_problem.empty()) return frames_text();
+    if (!o.report_problem.empty()) return o.report_problem + ".";
     return {};
   }
 

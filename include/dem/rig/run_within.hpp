@@ -56,8 +56,9 @@ inline std::string settings_as_they_are(Rig& rig) {
 
 /// Runs a rig, whose settings are resolved, in its own output folder as a stage of another run, and makes its report
 /// there. `session` has begun that stage with the total 1. What ends the run early is thrown here, after the report.
-/// It is kept and gone on with as the other run is; the files that it goes on from stay until forget_run_within().
-/// `words` are what the rig calls otherwise than the other run.
+/// Parts of the report that are missing are noted in the outcome of `session`. The run is kept and gone on with as the
+/// other one is; the files that it goes on from stay until forget_run_within(). `words` are what the rig calls
+/// otherwise than the other run.
 inline void run_within(Session& session, Rig& rig, const char* program, const char* title,
                        std::span<const OwnWord> words = {}) {
   std::vector<std::string> free_settings;
@@ -77,6 +78,7 @@ inline void run_within(Session& session, Rig& rig, const char* program, const ch
   std::string problem;
   try {
     rig.run(own);
+    if (!own.has_begun()) fail("the rig of {} has run no stage: run() did not call begin_run()", program);
   } catch (const Interrupted&) {
     thrown = std::current_exception();
     own.outcome.interrupted = true;
@@ -91,7 +93,11 @@ inline void run_within(Session& session, Rig& rig, const char* program, const ch
     Report report(own, title);
     bool has_frames = false;
     report.part("the report", [&] { has_frames = rig.report(report); });
-    report.finish(has_frames);
+    if (!report.finish(has_frames)) {
+      std::string& problem_of_all = session.outcome.report_problem;
+      problem_of_all +=
+          text("{}Parts of the report in '{}' are missing", problem_of_all.empty() ? "" : ". ", rig.output());
+    }
   }
   if (all_ended) processes.of_first(0);  // the others wait for the report
   if (thrown) std::rethrow_exception(thrown);

@@ -114,6 +114,18 @@ TEST_CASE("a bevameter gives back the constants of a soil that obeys the laws") 
   }
 }
 
+TEST_CASE("a bed that is too small to measure has the density that was asked for, which is said") {
+  MadeSoil soil(mechanics::Bekker{.k_c = 2e4, .k_phi = 3e6, .n = 0.9}, dry);
+  CHECK(bevameter::constants_text(soil.constants(), 0.95).find("as asked for") == std::string::npos);
+  soil.plates.solid_fraction = std::nan("");
+  const auto c = soil.constants();
+  CHECK(c.unit_weight == Approx(9.81 * 2650.0 * dem::soil::cube8_limits.loosest));
+  CHECK(c.relative_density == 0.0);
+  CHECK(bevameter::constants_text(c, 0.95).find("relative density 0.00, as asked for: the bed of the plates is too") !=
+        std::string::npos);
+  CHECK(bevameter::bed_density(soil.plates).relative_density == 0.0);
+}
+
 TEST_CASE("the line of the picture is the soil's, and strengths at the end of the travel are told") {
   MadeSoil soil(mechanics::Bekker{.k_c = 2e4, .k_phi = 3e6, .n = 0.9}, dry);
   soil.shear_settings.travel = 8.1e-3;
@@ -188,6 +200,11 @@ TEST_CASE(
   CHECK(shear.normal_stress(shear.loads.front()) == Approx(5e3));
   CHECK(shear.relative_density == 0.2);
   CHECK(plates.unload);
+  CHECK(plates.output == "bevameter_output/plates");
+  s.output.clear();  // here, and not at the root of the disk
+  CHECK(bevameter::plates_of(s).output == "plates");
+  CHECK(bevameter::shear_of(s, 0.2).output == "shear");
+  CHECK(bevameter::wheel_of(s, "").output == "wheel");
   const auto refuses = [](auto&& change, const char* option) {
     bevameter::Settings wrong;
     change(wrong);

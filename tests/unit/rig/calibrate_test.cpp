@@ -253,6 +253,11 @@ TEST_CASE("searches that cannot work are refused by the names of their options")
   refuses([](auto& s) { s.find = "colour"; }, "'colour'");
   refuses([](auto& s) { s.find = "friction,friction", s.repose = 20.0; }, "twice");
   refuses([](auto& s) { s.friction_range = {0.5, 0.2}; }, "--friction-range");
+  refuses(
+      [](auto& s) {
+        s.find = "rolling", s.repose = 20.0, s.rolling_range = {0.02, 5.0};
+      },
+      "--rolling-range (half-edges, at most the radius of a sphere) is 5");
   refuses([](auto& s) { s.known = {0.95}; }, "--known");
   refuses([](auto& s) { s.known = {0.3, 0.4}; }, "--known has 2 values");
   refuses([](auto& s) { s.trials = 2; }, "--trials");

@@ -259,6 +259,7 @@ TEST_CASE("shapes whose faces touch once get the constants of the four spheres t
   CHECK(given.stiffness == 3.0);
   CHECK(given.damping == 0.0);
   CHECK(given.velocity_stiffness == 5.0);
+  CHECK(read({"--shape=polyhedron", "--damping=0.2"}).settings.velocity_stiffness == 0.2);
 }
 
 TEST_CASE("a packing is as dense as its shape needs, unless it is told") {

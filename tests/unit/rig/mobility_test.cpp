@@ -41,6 +41,47 @@ TEST_CASE("a study has the drives that its lists ask for, each with a name of it
   CHECK(mobility::cases_of(resolved_study("drawbar"))[0].is_held);
 }
 
+TEST_CASE("a study of one slope takes one, drives of one name are refused, and so are steps that do not fill 0.01 s") {
+  const auto refused = [](const char* study, auto&& change) {
+    mobility::Settings s;
+    s.study = study;
+    change(s);
+    mobility::resolve(s, nullptr);
+    return mobility::cases_of(s);
+  };
+  using S = mobility::Settings;
+  CHECK_THROWS_WITH(refused("drive",
+                            [](S& s) {
+                              s.slopes = {20, -10};
+                            }),
+                    ContainsSubstring("--slopes has 2 values, but the study drive drives on one; give"));
+  CHECK_THROWS_WITH(refused("slopes", [](S& s) { s.side_slopes = {0, 10}; }), ContainsSubstring("--side-slopes has 2"));
+  CHECK(refused("drive", [](S& s) { s.slopes = {-10}; })[0].slope == -10.0);
+  CHECK_THROWS_WITH(refused("loads",
+                            [](S& s) {
+                              s.loads = {4430, 4430};
+                            }),
+                    ContainsSubstring("two drives of the name 'sandy-loam_4430_kg'"));
+  CHECK_THROWS_WITH(refused("loads", [](S& s) { s.soils = "snow,hard,snow"; }), ContainsSubstring("'snow_"));
+  CHECK_THROWS_WITH(refused("slopes", [](S& s) { s.slopes = {10, 10.0000001}; }), ContainsSubstring("'slope_10'"));
+  CHECK_THROWS_WITH(refused("drive", [](S& s) { s.time_step = 3e-5; }),
+                    ContainsSubstring("--machine-step is 3e-05 s, but must fill 0.01 s evenly"));
+}
+
+TEST_CASE("pull over slip stands beside wheels at the slips at which the soil carries them") {
+  mobility::Settings s;
+  s.study = "drawbar", s.soil = "snow", s.tyre = "ring";
+  mobility::resolve(s, nullptr);
+  const mobility::Case of = mobility::cases_of(s)[0];
+  const mobility::Result r{.weight = 8e3, .pulls = {{.slip = 0.1, .pull = 2e3}}};
+  const auto plot = mobility::pull_plot(of, r, mobility::wheel_of(s, of));
+  REQUIRE(plot.series.size() == 2);
+  CHECK(!plot.series[1].x.empty());
+  CHECK(plot.series[1].x.size() < 16);
+  CHECK_THAT(plot.series[1].name, ContainsSubstring("wheels on snow"));
+  CHECK(mobility::pull_plot(of, {.weight = 48.36e3}, mobility::wheel_of(s, of)).series.size() == 1);
+}
+
 TEST_CASE("a lane of stretches is as long as they are, and one that cannot be read is refused in words") {
   const auto s = resolved_study("drive", "hard:8,dry-sand:12.5");
   REQUIRE(s.stretches_.size() == 2);
@@ -84,6 +125,17 @@ TEST_CASE("means of a drive are those of its second half, and resistance is the 
   CHECK(r.resistance == Approx(4.0 * 600.0));  // 485/0.485 - 400 a wheel
   CHECK(r.energy_per_metre == Approx(2e3));    // 4 kW at 2 m/s
   CHECK(r.cost_of_transport == Approx(2e3 / 5e4));
+}
+
+TEST_CASE("means of a car that slid back are those of the second half of its way back") {
+  std::vector<mobility::Sample> samples(101);
+  for (std::size_t k = 0; k < samples.size(); ++k) {
+    samples[k].way = -0.003 * static_cast<double>(k);
+    samples[k].car.speed = k < 50 ? -0.1 : -0.5;
+  }
+  mobility::Result r{.way = samples.back().way, .time = 1.0, .weight = 5e4};
+  mobility::evaluate(r, samples, 0.485);
+  CHECK(r.speed == Approx(-0.5));
 }
 
 TEST_CASE("a map shows what arrived, and the word of what did not") {

@@ -85,6 +85,7 @@ TEST_CASE("settings of plates that make no sense are refused by the names of the
   refuses([](auto& s) { s.sinkage = 0.02; }, "--sinkage");
   refuses([](auto& s) { s.widths = {0.07}; }, "--plates");
   refuses([](auto& s) { s.widths = {0.03, 0.0301}; }, "--plates");
+  refuses([](auto& s) { s.widths = {0.0295, 0.0305}; }, "both would be called plate_30mm");
   refuses([](auto& s) { s.length = 0.07; }, "--plate-length");
   refuses([](auto& s) { s.plate_density = 0.0; }, "--plate-density");
   refuses([](auto& s) { s.drive_stiffness = -1e7; }, "--drive-stiffness");
@@ -95,6 +96,35 @@ TEST_CASE("settings of plates that make no sense are refused by the names of the
   refuses([](auto& s) { s.grains.stiffness = 1e300; }, "--stiffness");
   refuses([](auto& s) { s.grains.damping = 1e300; }, "--damping");
   refuses([](auto& s) { s.grains.constants_for = 1.86; }, "--constants-for");  // mm
+}
+
+TEST_CASE("relative densities count between the limits of the grains' shape, and so does the number of grains") {
+  GrainSettings grains{.half_edge = 5e-3};
+  BedSettings bed;
+  bed.length = bed.width = bed.depth = 0.1;
+  CHECK(grains_in(bed, grains, 1e-7) == 7620);
+  CHECK(grains.relative_density(0.762) == Approx(0.0).margin(1e-12));
+  grains.limits = dem::soil::sharp_cube_limits;
+  CHECK(grains_in(bed, grains, 1e-7) == 5300);
+  CHECK(grains.relative_density(0.893) == Approx(1.0));
+  CHECK(std::isnan(grains.relative_density(std::nan(""))));
+}
+
+TEST_CASE("the line of a fit is drawn where points were fitted") {
+  plate_sinkage::VariantResult v;
+  auto& s = v.variant.settings;
+  s.sinkage = 0.02;
+  s.threshold = 1e-3;
+  s.smoothing = 0.0;
+  s.fit_from = 0.25;
+  auto& r = v.plates.emplace_back(plate_sinkage::PlateResult{.width = 0.03});
+  for (int i = 0; i <= 450; ++i) r.samples.push_back({0.0, 5e-5 * i, 0.0, 1e6 * 5e-5 * i, 0.0, 0.0});
+  plate_sinkage::evaluate(r, s);
+  REQUIRE(r.fit);
+  const auto plot = plate_sinkage::fit_plot(v);
+  CHECK(plot.series.at(0).x.front() < 0.5);  // mm
+  CHECK(plot.series.at(1).x.front() == Approx(5.0).margin(0.1));
+  CHECK(plot.series.at(1).x.back() == Approx(20.0).margin(0.1));
 }
 
 TEST_CASE("a bed whose grains fall slowly takes longer to make, and says so") {
@@ -284,6 +314,12 @@ TEST_CASE(
   CHECK(off == Approx(0.0).margin(0.15));
   CHECK(first.samples.back().time > 0.05);
 
+  // A test that goes on after its last moment draws the plate up no farther.
+  Stages quiet;
+  plate_sinkage::PlateResult drawn{.width = 0.03, .unloading = {second.unloading.back()}};
+  drawing_up.press(bed, drawn, quiet, [](const auto&, double) {});
+  CHECK(drawn.unloading.size() == 1);
+
   // Where the smoothed pressure passes the threshold after a single push does, the plate goes on to the sinkage that
   // is counted from there.
   settings = small();
@@ -306,7 +342,6 @@ TEST_CASE(
   const PlateSinkage<models::VerletCubes> light(settings, [](double h) { return dem::shape::cube8(h); });
   plate_sinkage::PlateResult result{.width = 0.03};
   double mass = 0.0, stiffness = 0.0;
-  Stages quiet;
   light.press(bed, result, quiet, [&](const auto& world, double) {
     mass = world.machine().bodies().back().mass;
     stiffness = world.machine().parts().actuators.back().spec.position_gain;

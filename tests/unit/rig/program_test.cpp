@@ -2,6 +2,7 @@
 
 #include <dem/io/file.hpp>
 #include <dem/rig/program.hpp>
+#include <dem/rig/run_within.hpp>
 
 #include <csignal>
 #include <cstdlib>
@@ -183,6 +184,28 @@ TEST_CASE("a part that cannot be made costs no other") {
   CHECK(p.run() == 1);
   CHECK_FALSE(p.has("rows.csv"));
   CHECK_THAT(p.page(), ContainsSubstring("Rows."));
+}
+
+TEST_CASE("parts of the report of a run within another one that are missing are missed there, and it goes on") {
+  Program p;
+  Scripted inner;
+  inner.folder = (p.path / "inner").string();
+  bool goes_on = false;
+  p.rig.script = [&](Session& session) {
+    session.begin_run(1);
+    session.begin("inner", 1.0);
+    run_within(session, inner, "inner", "A script within");
+    goes_on = true;
+  };
+  CHECK(p.run() == 0);
+  inner.rows_fail = true;
+  goes_on = false;
+  CHECK(p.run() == 1);
+  CHECK(goes_on);
+  CHECK_THAT(p.page(), ContainsSubstring("Parts of the report in ") && ContainsSubstring("are missing."));
+  inner.script = [](Session&) {};  // never begins
+  CHECK(p.run() == 1);
+  CHECK_THAT(p.page(), ContainsSubstring("the rig of inner has run no stage"));
 }
 
 TEST_CASE("frames that cannot be written cost no results, but are missed") {

@@ -3,10 +3,16 @@
 #include "worlds.hpp"
 
 #include <dem/io/file.hpp>
+#include <dem/rig/bed/kept_bed.hpp>
+#include <dem/rig/program.hpp>
 #include <dem/rig/rigid_wheel.hpp>
 #include <dem/rig/rigid_wheel/study.hpp>
+#include <dem/rig/rigid_wheel/wheel_rig.hpp>
+#include <dem/terramechanics/soil_reader.hpp>
 
 #include <cmath>
+#include <filesystem>
+#include <iterator>
 
 namespace rigid_wheel_test {
 
@@ -115,6 +121,53 @@ TEST_CASE("settings of wheels that make no sense are refused by the names of the
   refuses([](auto& s) { s.motor_stiffness = -1.0; }, "--motor-stiffness");
   CHECK(rigid_wheel::slip_name(-0.3) == "slip_m30");
   CHECK(rigid_wheel::slip_name(0.3) == "slip_30");
+}
+
+TEST_CASE("a soil that the grains stand beside is read before the run begins, and not again") {
+  rigid_wheel::WheelRig rig([](const rigid_wheel::Settings& s, rigid_wheel::Campaign& campaign, Session& session) {
+    session.begin_run(1);
+    std::filesystem::remove(s.soil);
+    rigid_wheel::SlipResult& r = campaign.slips.emplace_back();
+    r.slip = 0.3;
+    for (int i = 0; i < 2; ++i) r.samples.push_back({0.1 * i, 0.3, 0, 1.0, 1.0, 0.0, 0, 0, 0});
+    r.print.set_up(s.radius, s.width, s.grains.edge());
+    r.print.moments = 1.0;
+  });
+  const TempFolder folder;
+  const std::string output = (folder / "wheel").string(), soil = (folder / "found.toml").string();
+  const char* const words[] = {"rigid_wheel", "--size",     "smoke",    "--output",   output.c_str(),
+                               "--soil",      soil.c_str(), "--no-vtk", "--no-replay"};
+  const auto run = [&] {
+    return run_program({.name = "rigid_wheel", .title = "Wheel"}, rig, static_cast<int>(std::size(words)), words);
+  };
+  CHECK(run() == 2);  // there is none
+  CHECK_FALSE(std::filesystem::exists(output + "/settings.toml"));
+  dem::terramechanics::save_soil(soil, {"found", "a test", dem::terramechanics::melanz_sand});
+  CHECK(run() == 0);
+  CHECK_THAT(dem::io::read_file(output + "/report.html"), Catch::Contains("found.toml, dynamic Bekker"));
+}
+
+TEST_CASE("a bed that is too small to tell its density says so, and one that was not made says nothing of it") {
+  rigid_wheel::Campaign c;
+  CHECK_THAT(rigid_wheel::bed_text(small(), c), Catch::Contains("solid fraction - (relative density -)"));
+  c.level = 0.02;
+  CHECK_THAT(rigid_wheel::bed_text(small(), c), Catch::Contains("too small to tell its density"));
+  CHECK(level_text(0.0271, std::nan("")) == "27.1 mm deep, too small to tell its solid fraction");
+  c.solid_fraction = 0.762;
+  CHECK_THAT(rigid_wheel::bed_text(small(), c), Catch::Contains("solid fraction 0.762 (relative density 0.00)"));
+  CHECK(level_text(0.0271, 0.762) == "27.1 mm deep, solid fraction 0.762");
+}
+
+TEST_CASE("one run alone is named in the title of a plot of all runs, and several in its legend") {
+  rigid_wheel::Campaign c;
+  for (const double slip : {0.1, 0.3}) c.slips.push_back({.slip = slip, .samples = {{}}});
+  auto plot = rigid_wheel::time_plot(c, &rigid_wheel::Sample::pull, 1.0, "Pull over time", "pull [N]");
+  CHECK(plot.title == "Pull over time");
+  CHECK(plot.series.at(1).name == "s = 0.3");
+  c.slips.pop_back();
+  plot = rigid_wheel::time_plot(c, &rigid_wheel::Sample::pull, 1.0, "Pull over time", "pull [N]");
+  CHECK(plot.title == "Pull over time, s = 0.1");
+  CHECK(plot.series.at(0).name.empty());
 }
 
 TEST_CASE("a study of a wheel changes the box, the speed or the seed, and nothing else") {

@@ -1,9 +1,10 @@
 #include "catch.hpp"
 #include "io/files.hpp"
+#include "worlds.hpp"
 
 #include <dem/io/file.hpp>
 #include <dem/rig/program.hpp>
-#include <dem/rig/sand_pile/forming.hpp>
+#include <dem/rig/sand_pile.hpp>
 #include <dem/rig/sand_pile/pile_rig.hpp>
 #include <dem/rig/settings_file.hpp>
 
@@ -80,7 +81,13 @@ TEST_CASE("a cylinder that is too wide for its grains is to be narrower, and one
   Settings s;
   s.size = "smoke";
   s.cylinder_radius = 5.0;
+  CHECK_THROWS_WITH(sand_pile::resolve(s), ContainsSubstring("--cylinder-radius is 5 m, but must be at most 0.237 m"));
+  s.cylinder_radius = 0.236;
   sand_pile::resolve(s);
+  for (const double radius : {sphere_radius(s.half_edge), std::sqrt(3.0) * s.half_edge}) {
+    CHECK(sand_pile::lattice(s, radius, 1).size() == s.grains);
+  }
+  s.cylinder_radius = 5.0;
   CHECK_THROWS_WITH(sand_pile::lattice(s, 1.4 * s.half_edge, 1),
                     ContainsSubstring("--cylinder-radius is 5 m, so wide"));
   s.cylinder_radius = 4.0 * s.half_edge;
@@ -119,6 +126,43 @@ TEST_CASE("what is no pile has no angle, and it is said why and what to change")
   CHECK_THAT(pile_up(1.5 * d, [](double) { return 8.0; }), ContainsSubstring("fewer than 5 places in every sector"));
 }
 
+TEST_CASE("a flank has an angle once the cylinder holds no grain any more") {
+  Settings s;
+  s.size = "smoke";
+  s.half_edge = 5e-3;
+  s.grains = 90;
+  s.cylinder_radius = 0.025;
+  s.damping = 0.1;  // comes to rest soon
+  s.separation_factor = 1.0;
+  s.lift_speed = 0.3;
+  s.creep_time = 0.01;
+  s.rest_limit = 0.05;
+  s.threads = 1;
+  sand_pile::resolve(s);
+  using Cubes = models::VerletCubes;
+  const SandPile<Cubes> pile(s, grains_of<Cubes>(s, kind_named("cube8"), shape::cube8(s.half_edge)));
+  PileResult r;
+  r.kind = kind_named("cube8");
+  r.seed = 1;
+  Stages quiet;
+  double half_length = 0.0;
+  int steep = 0, free = 0;
+  bool none_while_held = true;
+  pile.make(r, quiet, [&](const auto& world) {
+    const double z = world.machine().bodies().back().position().z();
+    if (half_length == 0.0) half_length = z - 1.2 * s.half_edge;
+    const auto grains = soil::placements(world);
+    const bool is_held = soil::height_percentile(grains, 1.0) > z - half_length;
+    if (is_held) steep += std::isfinite(flank_of(grains, s, equal_radius(shape::cube8(s.half_edge))).angle) ? 1 : 0;
+    none_while_held &= !is_held || std::isnan(r.samples.back().angle);
+    free += std::isfinite(r.samples.back().angle) ? 1 : 0;
+  });
+  CHECK(none_while_held);
+  CHECK(steep > 0);  // the grains in the cylinder would have one
+  CHECK(free > 0);
+  CHECK(r.finished);
+}
+
 TEST_CASE("options of a sand pile that change nothing are named") {
   Settings s;
   Options options;
@@ -131,6 +175,14 @@ TEST_CASE("options of a sand pile that change nothing are named") {
     CHECK(idle.contains("--lift-speed") == (s.method != "lift"));
     CHECK(idle.contains("--orifice-radius") == (s.method != "funnel"));
     CHECK(idle.contains("--slot-width") == (s.method != "drain"));
+  }
+  for (const bool vtk : {true, false}) {
+    for (const bool replay : {true, false}) {
+      s.vtk = vtk, s.replay = replay;
+      IdleOptions idle;
+      sand_pile::find_idle(idle, s);
+      CHECK(idle.contains("--frame-time") == (!vtk && !replay));
+    }
   }
   s.kinds = "sphere";
   IdleOptions idle;

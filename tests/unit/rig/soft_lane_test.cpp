@@ -101,7 +101,7 @@ TEST_CASE("the lane of the thesis has 331,890 grains, and grains overlap below t
   s.size = "full";
   soft_lane::resolve(s);
   const double volume = dem::soil::cube_volume(s.grains.half_edge);
-  const auto rained = static_cast<double>(grains_in(s.bed, volume));
+  const auto rained = static_cast<double>(grains_in(s.bed, s.grains, volume));
   CHECK(2.0 * (rained - std::floor(s.bed.strike_off * rained)) == Approx(331890.0).margin(4.0));
   const double weight = 48.36e3;  // N
   CHECK(s.overlap(weight) < 0.02);
@@ -210,6 +210,13 @@ TEST_CASE(
   CHECK(c.means.energy_per_metre == Approx(4000.0));
   CHECK(c.means.cost_of_transport == Approx(4000.0 / 48e3));
   CHECK(c.drift == Approx(0.02));
+  // A car that slid back: of its way back.
+  for (std::size_t k = 0; k < c.samples.size(); ++k) {
+    c.samples[k].way = -0.002 * static_cast<double>(k);
+    c.samples[k].car.speed = k <= 100 ? -0.1 : -0.3;
+  }
+  soft_lane::evaluate(c, s);
+  CHECK(c.means.speed == Approx(-0.3));
 }
 
 TEST_CASE("each option of a lane has a name of its own, and grains sleep unless they are asked not to") {

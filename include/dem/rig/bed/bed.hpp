@@ -76,9 +76,6 @@ class Bed {
     return soil::inner_fraction(soil::placements(world), grains_.half_edge, grain_volume_, bed_.length, bed_.width,
                                 margin(), surface);
   }
-  [[nodiscard]] static double relative_density(double solid_fraction) {
-    return std::isfinite(solid_fraction) ? soil::relative_density(solid_fraction, soil::cube8_limits) : solid_fraction;
-  }
 
   /// Puts a lid over the grains (level() of make_bed.hpp lowers it), by a slide and a drive. The drive is a damper
   /// under which the lid's weight sinks at the lid speed, ever slower as the grains take up the load.

@@ -121,9 +121,8 @@ inline void resolve(BedSettings& s, const BedBySize& by_size, const std::string&
 
 /// How many grains of `volume` (m^3) fill the box to its depth as they settle. Throws Error for none, and for more than
 /// 10^8.
-inline std::uint64_t grains_in(const BedSettings& s, double volume) {
-  const double count =
-      std::round(s.length * s.width * s.depth * soil::solid_fraction_at(0.0, soil::cube8_limits) / volume);
+inline std::uint64_t grains_in(const BedSettings& s, const GrainSettings& grains, double volume) {
+  const double count = std::round(s.length * s.width * s.depth * soil::solid_fraction_at(0.0, grains.limits) / volume);
   if (count >= 1.0 && count <= 1e8) return static_cast<std::uint64_t>(count);
   fail(
       "{:.4g} grains fill a bed of {:g} x {:g} x {:g} m, but there must be 1 to 10^8; change --half-edge, "

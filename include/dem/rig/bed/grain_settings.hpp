@@ -29,10 +29,17 @@ struct GrainSettings {
   double constants_for = 0.9e-3;     ///< m
   bool scale_contacts = true;        ///< K, kt ~ size and C, cv ~ size^2
 
+  /// Of the grains' shape; relative densities count between them.
+  soil::DensityLimits limits = soil::cube8_limits;
+
   /// What K is multiplied by. Overlap/size under a stress P is P d/K, and the damping ratio is C/sqrt(K m): K ~ d and
   /// C ~ d^2 keep both.
   [[nodiscard]] double scale() const { return scale_contacts ? half_edge / constants_for : 1.0; }
   [[nodiscard]] double edge() const { return 2.0 * half_edge; }  ///< m
+  /// The relative density of a solid fraction; NaN where that is.
+  [[nodiscard]] double relative_density(double solid_fraction) const {
+    return std::isfinite(solid_fraction) ? soil::relative_density(solid_fraction, limits) : solid_fraction;
+  }
 };
 
 /// The constants of a contact with a coefficient of friction, for a Model with the thesis's laws: penalty springs and

@@ -31,7 +31,7 @@ template <class Model>
 void densify(Bed<Model>& bed, Stages& stages) {
   const BedSettings& s = bed.settings();
   auto& world = bed.world;
-  const double wanted = soil::solid_fraction_at(s.relative_density, soil::cube8_limits);
+  const double wanted = soil::solid_fraction_at(s.relative_density, bed.grains().limits);
   stages.begin("densify", 1.0);
   soil::Densifying n;
   const auto stage = stages.enter(world, n, [&] { bed.set_friction(n.share); });
@@ -144,7 +144,7 @@ soil::Packing packing_of(const Bed<Model>& bed) {
 /// The grains of a bed before they are rained. Throws Error if they do not fit into the box or the machine.
 inline soil::Packing bed_grains(const BedSettings& s, const GrainSettings& grains, double volume,
                                 double bounding_radius) {
-  const std::uint64_t count = grains_in(s, volume);
+  const std::uint64_t count = grains_in(s, grains, volume);
   require_memory(1000.0 * static_cast<double>(count), text("{} grains", count).c_str(),
                  "take larger grains (--half-edge) or a smaller bed");
   soil::Packing p{grains.half_edge, s.length, s.width, {}, {}, "cube8"};

@@ -46,7 +46,7 @@ class BevameterRig : public Rig {
     session.begin("plates", 1.0);
     run_in(plate_words, session, plates_, "plate_sinkage", "Plates of the bevameter");
     session.begin("shear", 1.0);
-    shear_.settings = shear_of(s, bed_density());
+    shear_.settings = shear_of(s, bed_density(plates()).relative_density);
     run_in(shear_words, session, shear_, "direct_shear", "Shear test of the bevameter");
     constants = find_constants(plates(), shear_.campaign, shear_.settings, s.pieces, s.confidence);
     save_soils(session.folder());
@@ -55,6 +55,7 @@ class BevameterRig : public Rig {
       wheel_.settings = wheel_of(s, (session.folder() / "soil_bekker.toml").string());
       run_in(wheel_words, session, wheel_, "rigid_wheel", "Wheel in the soil of the bevameter");
     }
+    if (!session.outcome.report_problem.empty()) return;  // a run that goes on makes what is missing
     for (const Rig* rig :
          {static_cast<const Rig*>(&plates_), static_cast<const Rig*>(&shear_), static_cast<const Rig*>(&wheel_)}) {
       forget_run_within(*rig);
@@ -112,11 +113,6 @@ class BevameterRig : public Rig {
     in_words(words, [&] { run_within(session, rig, program, title, words); });
   }
   [[nodiscard]] const plate_sinkage::VariantResult& plates() const { return plates_.campaign.variants.front(); }
-  /// Relative density of the plates' bed; what was asked for where the bed is too flat to measure it.
-  [[nodiscard]] double bed_density() const {
-    const double solid = plates().solid_fraction;
-    return std::isfinite(solid) ? soil::relative_density(solid, soil::cube8_limits) : settings.relative_density;
-  }
   [[nodiscard]] bool has_rolled() const {
     for (const auto& r : wheel_.campaign.slips) {
       if (std::isfinite(r.pull.mean)) return true;

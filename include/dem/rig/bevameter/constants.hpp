@@ -33,6 +33,7 @@ struct Constants {
   std::vector<double> rising = {};  ///< Pa, normal stresses whose shear stress is largest at the end of the travel
   double unit_weight = 0.0;         ///< N/m^3
   double relative_density = 0.0;
+  bool is_density_measured = true;  ///< false: the plates' bed is too small for that, and it is what was asked for
   std::vector<terramechanics::JanosiFit> shear_curves = {};
   terramechanics::Soil bekker_soil = {}, reece_soil = {};
 };
@@ -133,16 +134,32 @@ inline void find_moduli(Constants& c, std::span<const terramechanics::PlateCurve
   c.reece_r_squared = fit_reece(curves, cohesion, c.unit_weight, kind).r_squared;
 }
 
+/// How dense the plates' bed is; what was asked for where it is too small to measure that.
+struct BedDensity {
+  double solid_fraction, relative_density;
+  bool is_measured;
+};
+inline BedDensity bed_density(const plate_sinkage::VariantResult& plates) {
+  const plate_sinkage::Settings& s = plates.variant.settings;
+  const double solid = plates.solid_fraction, asked = s.bed.relative_density;
+  if (std::isfinite(solid)) return {solid, s.grains.relative_density(solid), true};
+  return {soil::solid_fraction_at(asked, s.grains.limits), asked, false};
+}
+
 /// All constants. Throws Error where plates or shear curves are too few.
 inline Constants find_constants(const plate_sinkage::VariantResult& plates, const direct_shear::Campaign& shear,
                                 const direct_shear::Settings& shear_settings, double pieces, double confidence) {
   using namespace terramechanics;
   Constants c;
-  c.unit_weight = 9.81 * plates.variant.settings.grains.density * plates.solid_fraction;
-  c.relative_density = soil::relative_density(plates.solid_fraction, soil::cube8_limits);
+  const BedDensity density = bed_density(plates);
+  c.unit_weight = 9.81 * plates.variant.settings.grains.density * density.solid_fraction;
+  c.relative_density = density.relative_density;
+  c.is_density_measured = density.is_measured;
   find_strength(c, shear, shear_settings, confidence);
   const auto curves = plate_sinkage::fitted_curves(plates);
-  if (curves.size() < 2) fail("{} plates can be fitted, but two are needed; raise --sinkage", curves.size());
+  if (curves.size() < 2) {
+    fail("{} of {} plates can be fitted, but two are needed; raise --sinkage", curves.size(), plates.plates.size());
+  }
   find_moduli(c, curves, static_cast<std::size_t>(pieces));
   std::vector<double> slopes;
   for (const auto& r : plates.plates) slopes.push_back(r.unloading_stiffness);

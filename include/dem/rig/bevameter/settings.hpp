@@ -7,6 +7,7 @@
 #include <dem/rig/rigid_wheel/settings.hpp>
 
 #include <cstdint>
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -118,6 +119,11 @@ inline BedSettings bed_of(const Settings& s, double length, double width, double
   return bed;
 }
 
+/// The folder of an apparatus.
+inline std::string folder_in(const Settings& s, const char* apparatus) {
+  return (std::filesystem::path(s.output) / apparatus).string();
+}
+
 /// The plates, drawn up again at the end.
 inline plate_sinkage::Settings plates_of(const Settings& s) {
   plate_sinkage::Settings p;
@@ -129,7 +135,7 @@ inline plate_sinkage::Settings plates_of(const Settings& s) {
   p.speed = s.plate_speed;
   p.sinkage = s.sinkage;
   p.unload = true;
-  p.output = s.output + "/plates";
+  p.output = folder_in(s, "plates");
   p.replay = s.replay;
   p.replay_forces = s.replay_forces;
   p.vtk = s.vtk;
@@ -165,7 +171,7 @@ inline direct_shear::Settings shear_of(const Settings& s, double relative_densit
   for (const double sigma : s.normal_stresses) d.loads.push_back(sigma * d.area() / 9.81);
   d.seed = s.seed;
   d.threads = s.threads;
-  d.output = s.output + "/shear";
+  d.output = folder_in(s, "shear");
   d.replay = s.replay;
   d.replay_forces = s.replay_forces;
   d.vtk = s.vtk;
@@ -185,7 +191,7 @@ inline rigid_wheel::Settings wheel_of(const Settings& s, const std::string& soil
   w.slips = s.slips;
   w.path = s.path;
   w.soil = soil;
-  w.output = s.output + "/wheel";
+  w.output = folder_in(s, "wheel");
   w.replay = s.replay;
   w.replay_forces = s.replay_forces;
   w.vtk = s.vtk;

@@ -50,7 +50,7 @@ class CalibrateRig : public Rig {
       if (!std::filesystem::exists(earlier) || !std::filesystem::exists(table_)) {
         fail("there is no search in '{}' to go on with; leave out --go-on to begin one", s.output);
       }
-      require_same_settings(io::read_file(earlier), session.config(), {"threads", "output", "trials"}, s.output);
+      require_same_settings(io::read_file(earlier), session.config(), session.checkpoints().free_settings, s.output);
       tried = load_tried(table_, s);
     }
     const std::size_t batches = (s.trials + batch - 1) / batch;

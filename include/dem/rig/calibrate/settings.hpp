@@ -1,7 +1,9 @@
 #pragma once
 
 #include <dem/rig/contact_options.hpp>
+#include <dem/rig/names_in.hpp>
 #include <dem/rig/own_words.hpp>
+#include <dem/rig/sand_pile/settings.hpp>
 #include <dem/rig/sizes.hpp>
 
 #include <algorithm>
@@ -63,9 +65,7 @@ struct Settings {
 template <class E, std::size_t n>
 std::vector<E> named_in(const std::string& names, const char* const (&known)[n], const char* option) {
   std::vector<E> list;
-  for (std::size_t from = 0; from <= names.size();) {
-    const std::size_t to = std::min(names.find(',', from), names.size());
-    const std::string name = names.substr(from, to - from);
+  for (const std::string& name : names_in(names)) {
     const auto at = std::find(std::begin(known), std::end(known), name);
     if (at == std::end(known)) {
       std::string all;
@@ -74,7 +74,6 @@ std::vector<E> named_in(const std::string& names, const char* const (&known)[n],
     }
     list.push_back(static_cast<E>(at - std::begin(known)));
     if (std::count(list.begin(), list.end(), list.back()) > 1) fail("{} names '{}' twice; leave one out", option, name);
-    from = to + 1;
   }
   return list;
 }
@@ -210,6 +209,10 @@ inline void resolve(Settings& s) {
     const auto measures = [&](Quantity q) { return std::count(quantities.begin(), quantities.end(), q) > 0; };
     if (c == Constant::rolling && !(measures(Quantity::repose) && s.kind == "sphere-rolling")) {
       fail("no target depends on the rolling length; aim at --repose, with --pile-kind sphere-rolling");
+    }
+    if (c == Constant::rolling) {
+      require_within(range[1], 0.0, sand_pile::sphere_radius(1.0),
+                     "the greatest of --rolling-range (half-edges, at most the radius of a sphere)");
     }
     if (c == Constant::density && !measures(Quantity::phi) && !measures(Quantity::pressure)) {
       fail("no target depends on the relative density; aim at --phi or --pressure");

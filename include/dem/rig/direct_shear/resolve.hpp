@@ -103,7 +103,7 @@ inline void resolve(Settings& s) {
   if (s.damping < 0.0) s.damping = kind.damping;
   if (s.relative_density < 0.0) s.relative_density = kind.relative_density;
   if (s.strike_off < 0.0) s.strike_off = kind.strike_off;
-  if (s.velocity_stiffness < 0.0) s.velocity_stiffness = kind.damping;
+  if (s.velocity_stiffness < 0.0) s.velocity_stiffness = s.damping;
   if (s.wall_friction < 0.0) s.wall_friction = s.friction;
   if (s.friction_stiffness < 0.0) s.friction_stiffness = s.stiffness;
   if (s.packing_only) s.loads.clear();

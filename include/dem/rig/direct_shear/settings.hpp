@@ -14,7 +14,7 @@ struct GrainKind {
   std::string name = {};                            ///< one word: of --shape and of packing files
   std::string plural = "grains";                    ///< for the report
   double stiffness = 2e4;                           ///< K, N/m, of what grains_of() makes
-  double damping = 0.015;                           ///< C and cv, N s/m, likewise
+  double damping = 0.015;                           ///< C, N s/m, likewise
   double relative_density = 0.0;                    ///< of a packing
   double strike_off = 0.0;                          ///< share of the highest grains that are taken off
   soil::DensityLimits limits = soil::cube8_limits;  ///< that relative densities are counted between
@@ -49,7 +49,7 @@ struct Settings {
   double friction = 0.4;             ///< mu, grain on grain
   double wall_friction = -1.0;       ///< mu, grain on wall; negative: as grain on grain
   double friction_stiffness = -1.0;  ///< kt, N/m; negative: as K
-  double velocity_stiffness = -1.0;  ///< cv, N s/m; negative: by shape
+  double velocity_stiffness = -1.0;  ///< cv, N s/m; negative: as C
   double breaking_factor = 0.975;    ///< share of the friction that a broken asperity keeps
   double density = 2650.0;           ///< kg/m^3, of a grain
   double constants_for = 0.9e-3;     ///< m

@@ -18,7 +18,7 @@ template <class Model>
 void press(const PlateSinkage<Model>& test, const Bed<Model>& bed, int threads, const Variant& variant, PlateResult& r,
            report::Replay* replay, Session& session, Stages& stages) {
   const Settings& s = test.settings();
-  const std::string plate = text("plate_{:.0f}mm", 1e3 * r.width), file = variant.prefix() + plate;
+  const std::string plate = plate_name(r.width), file = variant.prefix() + plate;
   const auto save = [&] {
     evaluate(r, s);
     if (r.samples.empty()) return;
@@ -112,7 +112,7 @@ void run_campaign(const Settings& settings, ShapeOf&& shape_of, Campaign& campai
     result.solid_fraction = bed->solid_fraction(bed->level);
     result.grains = bed->world.grain_count();
     result.time_step = bed->world.time_step();
-    session.finish(text("{:.1f} mm deep, solid fraction {:.3f}", 1e3 * result.level, result.solid_fraction));
+    session.finish(level_text(result.level, result.solid_fraction));
     detail::press_all(variant, *bed, result, campaign.replay, session);
   }
 }

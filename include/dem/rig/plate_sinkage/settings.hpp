@@ -45,6 +45,9 @@ struct Settings {
 
 using Variant = rig::Variant<Settings>;
 
+/// What the files of a plate of a width (m) are called.
+inline std::string plate_name(double width) { return text("plate_{:.0f}mm", 1e3 * width); }
+
 /// Names every option and the place of its value.
 inline void declare(Options& options, Settings& s) {
   const auto add = [&](const char* name, auto& value, const char* text) { return options.add(name, value, text); };
@@ -102,9 +105,11 @@ inline void resolve(Settings& s) {
   std::sort(s.widths.begin(), s.widths.end());
   for (const double w : s.widths) require_within(w, 1e-3, s.bed.width, "a width of --plates (m, within the bed)");
   for (std::size_t k = 1; k < s.widths.size(); ++k) {
-    if (s.widths[k] - s.widths[k - 1] >= 1e-3) continue;
-    fail("two --plates have widths of {:g} and {:g} m, but must differ by a millimetre; leave one out", s.widths[k - 1],
-         s.widths[k]);
+    if (plate_name(s.widths[k]) != plate_name(s.widths[k - 1])) continue;
+    fail(
+        "the widths {:g} and {:g} m of --plates are the same to a millimetre, and both would be called {}; leave one "
+        "out",
+        s.widths[k - 1], s.widths[k], plate_name(s.widths[k]));
   }
   require_within(s.thickness, 1e-3, 1.0, "--plate-thickness (m)");
   require_within(s.plate_density, 1.0, 1e5, "--plate-density (kg/m^3)");

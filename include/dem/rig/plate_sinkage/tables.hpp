@@ -94,8 +94,7 @@ inline io::Table runs_table(const Campaign& c) {
   io::Table t{.caption = "Mean pressure over the second half of the sinkage",
               .header = {"run", "grains", "solid fraction", "rel. density", "plate [mm]", "pressure [kPa]"}};
   for (const VariantResult& v : c.variants) {
-    const double density =
-        std::isfinite(v.solid_fraction) ? soil::relative_density(v.solid_fraction, soil::cube8_limits) : not_known;
+    const double density = v.variant.settings.grains.relative_density(v.solid_fraction);
     for (const PlateResult& r : v.plates) {
       t.row(v.variant.text, v.grains, number(v.solid_fraction, "{:.3f}"), number(density),
             number(1e3 * r.width, "{:.0f}"), number(1e-3 * mean_pressure(r, v.variant.settings)));
@@ -154,7 +153,7 @@ inline io::Plot pressure_plot(const VariantResult& v) {
   return plot;
 }
 
-/// Pressure over sinkage of all plates in both logarithms, with the fits.
+/// Pressure over sinkage of all plates in both logarithms, with the fits where points were fitted.
 inline io::Plot fit_plot(const VariantResult& v) {
   const Settings& s = v.variant.settings;
   io::Plot plot{
@@ -168,7 +167,7 @@ inline io::Plot fit_plot(const VariantResult& v) {
       if (!(z > 0.02 * s.sinkage && r.curve.pressure[i] > 0.0)) continue;
       points.x.push_back(1e3 * z);
       points.y.push_back(1e-3 * r.curve.pressure[i]);
-      if (!r.fit) continue;
+      if (!r.fit || z < s.fit_from * s.sinkage || z > s.sinkage) continue;
       line.x.push_back(1e3 * z);
       line.y.push_back(1e-3 * r.fit->curve.pressure(z));
     }

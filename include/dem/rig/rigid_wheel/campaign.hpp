@@ -103,8 +103,7 @@ void run_campaign(const Settings& settings, ShapeOf&& shape_of, Campaign& campai
     result.solid_fraction = bed->solid_fraction(bed->level);
     result.grains = bed->world.grain_count();
     result.time_step = bed->world.time_step();
-    if (needs_bed(k))
-      session.finish(text("{:.1f} mm deep, solid fraction {:.3f}", 1e3 * result.level, result.solid_fraction));
+    if (needs_bed(k)) session.finish(level_text(result.level, result.solid_fraction));
     const bool is_last = k + 1 == all.size() || needs_bed(k + 1);  // that this bed serves
     const auto stand = detail::set_down(variant, is_last ? std::move(*bed) : *bed, result, session);
     detail::roll(variant, stand, result, campaign.replay, session);

@@ -55,8 +55,7 @@ inline io::Table runs_table(const Campaign& c) {
               .header = {"run", "grains", "solid fraction", "rel. density", "slip", "pull [N]", "±", "torque [N m]",
                          "sinkage [mm]", "done"}};
   for (const VariantResult* v : all_runs(c)) {
-    const double density =
-        std::isfinite(v->solid_fraction) ? soil::relative_density(v->solid_fraction, soil::cube8_limits) : not_known;
+    const double density = v->variant.settings.grains.relative_density(v->solid_fraction);
     for (const SlipResult& r : v->slips) {
       t.row(v->variant.text, v->grains, number(v->solid_fraction, "{:.3f}"), number(density), number(r.slip),
             number(r.pull.mean), number(r.pull_error), number(r.torque.mean), number(1e3 * r.sinkage.mean, "{:.1f}"),

@@ -98,13 +98,22 @@ io::Plot slip_plot(const Settings& s, const Campaign& c, std::span<const Referen
   return plot;
 }
 
+/// The title of a plot of all runs: where there is one run alone, with its slip.
+inline std::string title_of_runs(const char* title, const Campaign& c) {
+  return c.slips.size() == 1 ? text("{}, s = {:g}", title, c.slips.front().slip) : title;
+}
+/// What tells a run from the others in a plot of all runs; empty where there is one alone.
+inline std::string name_of_run(const SlipResult& r, const Campaign& c) {
+  return c.slips.size() == 1 ? "" : text("s = {:g}", r.slip);
+}
+
 /// A value over the time of every run: what the steady windows were found in.
 inline io::Plot time_plot(const Campaign& c, double Sample::*value, double scale, const char* title,
                           const char* label) {
-  io::Plot plot{.title = title, .x_label = "time [s]", .y_label = label};
+  io::Plot plot{.title = title_of_runs(title, c), .x_label = "time [s]", .y_label = label};
   int color = 0;
   for (const SlipResult& r : c.slips) {
-    io::Series line{.name = text("s = {:g}", r.slip), .color = color++};
+    io::Series line{.name = name_of_run(r, c), .color = color++};
     const double window = r.samples.empty() ? 0.0 : 0.02 * r.samples.back().time;
     const auto y = smoothed<Sample>(r.samples, &Sample::time, value, window);
     for (std::size_t i = 0; i < y.size(); ++i) {
@@ -117,10 +126,12 @@ inline io::Plot time_plot(const Campaign& c, double Sample::*value, double scale
 }
 
 inline io::Plot rut_plot(const Campaign& c) {
-  io::Plot plot{.title = "Surface behind the wheel", .x_label = "across [mm]", .y_label = "above the level [mm]"};
+  io::Plot plot{.title = title_of_runs("Surface behind the wheel", c),
+                .x_label = "across [mm]",
+                .y_label = "above the level [mm]"};
   int color = 0;
   for (const SlipResult& r : c.slips) {
-    io::Series line{.name = text("s = {:g}", r.slip), .style = io::SeriesStyle::LinePoints, .color = color++};
+    io::Series line{.name = name_of_run(r, c), .style = io::SeriesStyle::LinePoints, .color = color++};
     for (std::size_t k = 0; k < r.rut_y.size(); ++k) {
       line.x.push_back(1e3 * r.rut_y[k]);
       line.y.push_back(1e3 * (r.rut_z[k] - c.level));
@@ -150,7 +161,7 @@ inline constexpr const char* print_text =
     "width. Angles count from the lowest point, forward.";
 
 /// Pressure and shear stress along the rim of a run, beside the soils by Bekker and Wong at this slip.
-inline io::Plot print_plot(const Settings& s, const SlipResult& r) {
+inline io::Plot print_plot(const Settings& s, std::span<const Reference> soils, const SlipResult& r) {
   io::Plot plot{.title = text("Stress under the wheel, s = {:g}", r.slip),
                 .x_label = "angle from the lowest point, forward [deg]",
                 .y_label = "stress [kPa]"};
@@ -164,7 +175,7 @@ inline io::Plot print_plot(const Settings& s, const SlipResult& r) {
   }
   plot.series = {pressure, shear};
   int color = 1;  // the soils' colours over slip
-  for (const auto& [name, soil, on_columns] : references(s)) {
+  for (const auto& [name, soil, on_columns] : soils) {
     const auto f = reference_at(soil, r.slip, s);
     if (!f) continue;
     using namespace terramechanics;
@@ -200,13 +211,15 @@ inline io::HeatMap print_map(const SlipResult& r) {
 
 inline std::string bed_text(const Settings& s, const Campaign& c) {
   const double fraction = c.solid_fraction;
-  const double density = std::isfinite(fraction) ? soil::relative_density(fraction, soil::cube8_limits) : not_known;
+  const bool is_small = std::isfinite(c.level) && !std::isfinite(fraction);
+  const std::string density = is_small ? "too small to tell its density"
+                                       : text("solid fraction {} (relative density {})", number(fraction, "{:.3f}"),
+                                              number(s.grains.relative_density(fraction)));
   return text(
       "Bed: {} grains of half-edge {:g} mm, {} mm deep to its mean surface, from which sinkages and ruts are measured; "
-      "solid fraction {} (relative density {}). Time step {:.3g} s. The wheel, set down by the load servo, rests {} mm "
-      "deep.",
-      c.grains, 1e3 * s.grains.half_edge, number(1e3 * c.level, "{:.1f}"), number(fraction, "{:.3f}"), number(density),
-      c.time_step, number(1e3 * c.set_down_sinkage));
+      "{}. Time step {:.3g} s. The wheel, set down by the load servo, rests {} mm deep.",
+      c.grains, 1e3 * s.grains.half_edge, number(1e3 * c.level, "{:.1f}"), density, c.time_step,
+      number(1e3 * c.set_down_sinkage));
 }
 
 inline constexpr const char* window_text =

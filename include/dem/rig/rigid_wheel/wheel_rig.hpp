@@ -19,10 +19,7 @@ class WheelRig : public Rig {
 
   void declare(Options& options) override { rigid_wheel::declare(options, settings); }
   void find_idle(IdleOptions& idle) const override { rigid_wheel::find_idle(idle, settings); }
-  void resolve() override {
-    rigid_wheel::resolve(settings);
-    references(settings);  // refuses a soil that cannot be read before anything runs
-  }
+  void resolve() override { rigid_wheel::resolve(settings); }
   [[nodiscard]] std::string output() const override { return settings.output; }
   [[nodiscard]] ResultNames results() const override {
     ResultNames names{
@@ -38,13 +35,16 @@ class WheelRig : public Rig {
   }
   [[nodiscard]] bool can_resume() const override { return true; }
   [[nodiscard]] std::vector<OwnWord> words() const override { return bed_words(); }
-  void run(Session& session) override { run_(settings, campaign, session); }
+  void run(Session& session) override {
+    soils_ = references(settings);
+    run_(settings, campaign, session);
+  }
 
   bool report(Report& report) const override {
     const Settings& s = settings;
     report.part("results.csv", [&] { write_results(report.folder() / "results.csv"); });
-    std::vector<Reference> soils = references(s);
-    roll_on_columns(soils, campaign, s);
+    std::vector<Reference> soils = soils_;
+    report.part("the wheel on soil columns", [&] { roll_on_columns(soils, campaign, s); });
     std::vector<io::Table> tables{slip_table(campaign), reference_table(s, campaign, soils), rut_table(campaign),
                                   print_table(campaign)};
     report.part("rut.csv", [&] { write_ruts(report.folder() / "rut.csv"); });
@@ -119,7 +119,7 @@ class WheelRig : public Rig {
     }
     const SlipResult& shown = c.slips[std::min(shown_slip(s.slips), c.slips.size() - 1)];
     if (shown.print.empty()) return;
-    report.plot(page, print_plot(s, shown), "stress", "Stress along the rim, a mean across the wheel's width.");
+    report.plot(page, print_plot(s, soils, shown), "stress", "Stress along the rim, a mean across the wheel's width.");
     report.map(page, print_map(shown), "print", "Pressure under the wheel, unrolled.");
   }
 
@@ -153,6 +153,7 @@ class WheelRig : public Rig {
   }
 
   Run* run_;
+  std::vector<Reference> soils_ = {};
 };
 
 }  // namespace dem::rig::rigid_wheel

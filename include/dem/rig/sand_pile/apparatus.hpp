@@ -56,6 +56,12 @@ class Apparatus {
   double lift_time(double way) const { return 1.875 * way / settings_.lift_speed; }
   /// Opens the funnel or the slot.
   void open() { world.set_active(gate_, false); }
+  /// Whether a grain is higher than the lower edge of the cylinder, which holds it in.
+  bool cylinder_holds_grains() const {
+    const double low = world.machine().body(cylinder_).position().z() - 0.5 * cylinder_length_;
+    const auto grains = world.grains();
+    return std::any_of(grains.begin(), grains.end(), [&](GrainId p) { return world.position(p).z() > low; });
+  }
   /// Takes away the grains that have fallen far below the plate; returns how many.
   std::size_t remove_fallen() {
     std::size_t count = 0;
@@ -92,11 +98,13 @@ class Apparatus {
   void build_cylinder(double top) {
     const double r = settings_.cylinder_radius, t = wall(), low = 1.2 * settings_.half_edge, length = top - low;
     const Vec3 middle(0.0, 0.0, low + 0.5 * length);
-    const BodyId body =
+    cylinder_length_ = length;
+    cylinder_ =
         world.machine().add_body(mbd::box_body("cylinder", {2.0 * (r + t), 2.0 * (r + t), length}, 1000.0).at(middle));
-    world.add_surface(body, surface::Cylinder::tube(r, r + t, length), {.material = "container", .name = "cylinder"});
+    world.add_surface(cylinder_, surface::Cylinder::tube(r, r + t, length),
+                      {.material = "container", .name = "cylinder"});
     const JointId slide =
-        world.machine().add_joint(mbd::prismatic("slide", world.ground(), body, middle, Vec3::UnitZ()));
+        world.machine().add_joint(mbd::prismatic("slide", world.ground(), cylinder_, middle, Vec3::UnitZ()));
     lift_ = world.machine().add_motion(mbd::prescribed_joint("lift", slide, 0.0));
   }
 
@@ -143,6 +151,8 @@ class Apparatus {
 
   Settings settings_;
   SurfaceId gate_;
+  BodyId cylinder_;
+  double cylinder_length_ = 0.0;  // m
   MotionId lift_;
 };
 

@@ -77,6 +77,7 @@ class Forming {
 
   /// Lifts the cylinder over the grains, or opens the funnel or the slot until nothing flows out of it any more.
   void let_go() {
+    is_let_go_ = true;
     if (s_.method == "lift") return lift();
     stages_.begin(result_.kind.name + ": flow");
     // As long as it takes a grain to fall from the orifice, or out of sight, and a little more.
@@ -162,8 +163,9 @@ class Forming {
     if (rig_.world.grain_count() == 0) throw Stopped("no grain is left");
     const auto grains = soil::placements(rig_.world);
     const soil::Flank flank = flank_of(grains, s_, radius_);
-    result_.samples.push_back({rig_.world.time(), flank.angle * 180.0 / std::numbers::pi, flank.height,
-                               soil::rms_speed(rig_.world), static_cast<double>(grains.size())});
+    const bool is_free = is_let_go_ && !(s_.method == "lift" && rig_.cylinder_holds_grains());
+    result_.samples.push_back({rig_.world.time(), is_free ? flank.angle * 180.0 / std::numbers::pi : not_known,
+                               flank.height, soil::rms_speed(rig_.world), static_cast<double>(grains.size())});
     look_(rig_.world);
   }
   /// Goes on until the grains are slow for 50 ms; whether they are, by the time `longest` (s).
@@ -196,6 +198,7 @@ class Forming {
   PileResult& result_;
   Stages& stages_;
   Look& look_;
+  bool is_let_go_ = false;
   double lift_start_ = 0.0, lift_way_ = 0.0;  // s, m
   std::vector<GrainId> ids_;                  // of the pile as it was measured
 };

@@ -64,7 +64,7 @@ inline void declare(Options& options, Settings& s) {
       .changes_no_result();
   add_sleep_option(options, s.sleep);
   add_output_options(options, s, "the first pile");
-  add("--frame-time", s.frame_time, "between two frames for ParaView [s]");
+  add("--frame-time", s.frame_time, "between two frames for ParaView, or of the replay [s]");
 }
 
 /// Those that change nothing with these settings, which need not be resolved.
@@ -81,7 +81,8 @@ inline void find_idle(IdleOptions& idle, const Settings& s) {
   idle.unless(s.kinds.empty() || piles("sphere-rolling"), "with --kinds sphere-rolling", {"--rolling-damping"});
   find_idle_replay(idle, s);
   idle.unless(s.scale_contacts, "with --scale-contacts true", {"--constants-for"});
-  idle.unless(s.vtk, "with files for ParaView, without --no-vtk", {"--frame-time"});
+  idle.unless(s.vtk || s.replay, "with files for ParaView or a replay, not with both --no-vtk and --no-replay",
+              {"--frame-time"});
 }
 
 /// What the library calls otherwise than these options.

@@ -36,6 +36,14 @@ inline void check(const Settings& s) {
   require_positive(s.density, "--density", "kg/m^3");
   const double d = 2.0 * s.half_edge;
   require_within(s.cylinder_radius, 2.0 * d, 1e3 * d, "--cylinder-radius (m, from two grains to a thousand)");
+  // On a wider floor the rows of the lattice that grains fall from may end before enough of them lie in the cylinder.
+  const double widest = 2.5 * d * std::sqrt(static_cast<double>(s.grains));
+  if (s.method != "drain" && s.cylinder_radius > widest) {
+    fail(
+        "--cylinder-radius is {:g} m, but must be at most {:.3g} m, for {} grains of half-edge {:g} m to cover a "
+        "twentieth of its floor; lower it, or give more --grains",
+        s.cylinder_radius, widest, s.grains, s.half_edge);
+  }
   require_within(s.plate_radius, s.cylinder_radius, 4e3 * d, "--plate-radius (m, from the cylinder's up)");
   require_within(s.lift_speed, 1e-3, 10.0, "--lift-speed (m/s)");
   require_within(s.orifice_radius, 1.5 * d, 0.9 * s.cylinder_radius,

@@ -17,7 +17,7 @@ namespace dem::rig::sand_pile {
 /// A pile at one time.
 struct Sample {
   double time;    ///< s
-  double angle;   ///< deg, of the flank; NaN while there is none
+  double angle;   ///< deg, of the flank; NaN while there is none, and while the container holds grains up
   double height;  ///< m, of the mean profile's top
   double speed;   ///< m/s, root mean square of the grains'
   double grains;  ///< that are still there

@@ -1,8 +1,8 @@
 #pragma once
 
 #include <dem/core/error.hpp>
+#include <dem/rig/names_in.hpp>
 
-#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -118,13 +118,11 @@ inline Kind kind_named(const std::string& name) {
 /// The kinds in a text with commas. Throws Error for an unknown kind, or one that stands there twice.
 inline std::vector<Kind> kinds_in(const std::string& names) {
   std::vector<Kind> kinds;
-  for (std::size_t from = 0; from <= names.size();) {
-    const std::size_t to = std::min(names.find(',', from), names.size());
-    kinds.push_back(kind_named(names.substr(from, to - from)));
+  for (const std::string& name : names_in(names)) {
+    kinds.push_back(kind_named(name));
     for (std::size_t k = 0; k + 1 < kinds.size(); ++k) {
       if (kinds[k].name == kinds.back().name) fail("--kinds names '{}' twice; leave one out", kinds[k].name);
     }
-    from = to + 1;
   }
   return kinds;
 }
