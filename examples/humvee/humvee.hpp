@@ -72,10 +72,11 @@ class Car {
     }
   }
 
-  /// Mean of the load on the front axle and on the rear one, N.
-  double load(std::size_t axle) const {
-    return vehicle.wheels[2 * axle].tyre->load + vehicle.wheels[2 * axle + 1].tyre->load;
+  const dem::vehicle::TyreState& tyre(std::size_t corner) const {
+    return dem::vehicle::tyre_of(machine, vehicle.wheels[corner]);
   }
+  /// Load on the front axle (0) or the rear one (1), N.
+  double load(std::size_t axle) const { return tyre(2 * axle).load + tyre(2 * axle + 1).load; }
   double speed() const { return dem::vehicle::speed_of(machine, vehicle); }
   Vec3 position() const { return dem::vehicle::point_of(machine, vehicle, Vec3::Zero()); }
   double weight() const { return dem::vehicle::weight_of(machine); }
@@ -152,7 +153,7 @@ class Car {
     std::vector<double> row;
     dem::vehicle::add_values(row, dem::vehicle::sample_of(machine, vehicle, now, machine.time()));
     for (std::size_t k = 0; k < 4; ++k) {
-      const auto& t = *vehicle.wheels[k].tyre;
+      const dem::vehicle::TyreState& t = tyre(k);
       for (const double x : {t.load, t.pull, t.side, t.slip, t.slip_angle, travel_of(machine, vehicle, k),
                              -machine.actuator(vehicle.wheels[k].brake).force}) {
         row.push_back(x);

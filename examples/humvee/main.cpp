@@ -1,7 +1,7 @@
 // The Humvee of the thesis by itself on hard ground: at rest, driving off, braking, turning, held on a slope.
 //
 //   humvee                    # all scenes, results in the folder humvee
-//   humvee brake out/brake    # one scene; the folder may also follow --output
+//   humvee brake out/brake    # one scene; the folder may also follow --output, with a scene or without
 //   humvee tyres              # pneumatic tyres on a plate: load over deflection
 //
 // Scenes: rest; launch (0 to 60 km/h), launch_gears (with the diesel and its gears), launch_actuator (with the single
@@ -52,8 +52,8 @@ Lines rest(Car& car) {
   settle(car, 5.0);
   const auto& m = car.machine;
   double moment = 0.0;  // of the weights about the contacts of the rear wheels
-  const double rear = 0.5 * (car.vehicle.wheels[2].tyre->contact.x() + car.vehicle.wheels[3].tyre->contact.x());
-  const double front = 0.5 * (car.vehicle.wheels[0].tyre->contact.x() + car.vehicle.wheels[1].tyre->contact.x());
+  const double rear = 0.5 * (car.tyre(2).contact.x() + car.tyre(3).contact.x());
+  const double front = 0.5 * (car.tyre(0).contact.x() + car.tyre(1).contact.x());
   for (const dem::Body& b : m.bodies()) moment += b.mass * 9.81 * (b.position().x() - rear);
   const double on_front = moment / (front - rear);
   return {{"load on the front axle", car.load(0), on_front, "N"},
@@ -106,7 +106,7 @@ Lines launch(Car& car) {
   for (const dem::Body& b : m.bodies()) mass += b.mass;
   const double ratio = v.spec.driveline.front.ratio;
   double radius = v.spec.tyre.radius;
-  for (const auto& w : v.wheels) radius -= 0.25 * w.tyre->deflection;
+  for (std::size_t k = 0; k < 4; ++k) radius -= 0.25 * car.tyre(k).deflection;
   turning += 4.0 * (v.spec.wheel.mass.inertia.y() + v.spec.driveline.front.half_shaft.inertia.y() +
                     v.spec.driveline.front.side_shaft.inertia.y());
   turning +=
@@ -168,10 +168,9 @@ Lines turn(Car& car) {
         // Ackermann: the cotangent of the middle is the mean of both.
         const double left = steer_of(c.machine, c.vehicle, 0), right = steer_of(c.machine, c.vehicle, 1);
         steer += 2.0 / (1.0 / std::tan(left) + 1.0 / std::tan(right));
-        const auto& w = c.vehicle.wheels;
-        front += 0.5 * (w[0].tyre->slip_angle + w[1].tyre->slip_angle);
-        rear += 0.5 * (w[2].tyre->slip_angle + w[3].tyre->slip_angle);
-        for (std::size_t axle : {0, 1}) pulls[axle] += w[2 * axle].tyre->pull + w[2 * axle + 1].tyre->pull;
+        front += 0.5 * (c.tyre(0).slip_angle + c.tyre(1).slip_angle);
+        rear += 0.5 * (c.tyre(2).slip_angle + c.tyre(3).slip_angle);
+        for (std::size_t axle : {0, 1}) pulls[axle] += c.tyre(2 * axle).pull + c.tyre(2 * axle + 1).pull;
         samples += 1.0;
       }
       return true;
@@ -211,8 +210,7 @@ Lines understeer(Car& car) {
         const double left = steer_of(c.machine, c.vehicle, 0), right = steer_of(c.machine, c.vehicle, 1);
         steer += std::atan(2.0 / (1.0 / std::tan(left) + 1.0 / std::tan(right)));
         behind += 0.5 * (steer_of(c.machine, c.vehicle, 2) + steer_of(c.machine, c.vehicle, 3));
-        const auto& w = c.vehicle.wheels;
-        drift += 0.5 * (w[2].tyre->slip_angle + w[3].tyre->slip_angle - w[0].tyre->slip_angle - w[1].tyre->slip_angle);
+        drift += 0.5 * (c.tyre(2).slip_angle + c.tyre(3).slip_angle - c.tyre(0).slip_angle - c.tyre(1).slip_angle);
         samples += 1.0;
       }
       return true;
@@ -304,15 +302,48 @@ struct Scene {
   Lines (*run)(Car&);
 };
 
+/// What the command line asks for.
+struct Request {
+  std::string scene = "all", folder = "humvee";
+};
+
+/// A scene and a folder, or the folder after --output. Throws Error for other options and further words.
+Request request_of(const std::vector<std::string>& words) {
+  Request r;
+  bool has_scene = false, has_folder = false;
+  const auto take_folder = [&](const std::string& folder) {
+    if (has_folder) dem::fail("'{}' is a second folder; give one, as a second word or after --output", folder);
+    r.folder = folder, has_folder = true;
+  };
+  for (std::size_t k = 0; k < words.size(); ++k) {
+    if (words[k] == "--output") {
+      if (k + 1 == words.size()) dem::fail("--output has no folder; give one, as --output humvee");
+      take_folder(words[++k]);
+    } else if (words[k] == "--help") {
+      return {.scene = words[k]};
+    } else if (words[k].starts_with("-")) {
+      dem::fail("there is no option '{}'; give a scene, and --output with a folder", words[k]);
+    } else if (!has_scene) {
+      r.scene = words[k], has_scene = true;
+    } else {
+      take_folder(words[k]);
+    }
+  }
+  return r;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
   if (!dem::rig::may_run("humvee", argv[0])) return 1;
-  std::vector<std::string> words;
-  for (int k = 1; k < argc; ++k) {
-    if (std::string(argv[k]) != "--output") words.emplace_back(argv[k]);
+  Request request;
+  try {
+    request = request_of({argv + 1, argv + argc});
+  } catch (const dem::Error& e) {
+    fmt::print(stderr, "{}\n", e.what());
+    return 2;
   }
-  const std::string wanted = !words.empty() ? words[0] : "all", folder = words.size() > 1 ? words[1] : "humvee";
+  const std::string &wanted = request.scene, &folder = request.folder;
   using Kind = dem::vehicle::EngineSpec::Kind;
   const std::vector<Scene> scenes = {
       {"rest", {}, rest},

@@ -5,13 +5,15 @@
 //   soil_columns --wheel grousers --grouser 0.01        also smooth; rough is the default
 //   soil_columns --halve                                how much the results change with columns half as wide
 //
-// prints a table, and writes it as CSV, plots, and the last rut as CSV, PGM picture and ParaView surface.
+// prints a table, and writes it as CSV, plots, and the last rut as CSV, PGM picture and ParaView surface. A slip at
+// which the soil does not carry the wheel has a gap.
 
 #include <dem/io/csv.hpp>
 #include <dem/io/file.hpp>
 #include <dem/report/ascii_table.hpp>
 #include <dem/report/plot.hpp>
 #include <dem/rig/launcher.hpp>
+#include <dem/rig/number.hpp>
 #include <dem/terramechanics/column_wheel.hpp>
 #include <dem/terramechanics/rut_files.hpp>
 #include <dem/terramechanics/rut_vtk.hpp>
@@ -20,7 +22,9 @@
 #include <CLI/CLI.hpp>
 
 #include <array>
+#include <cmath>
 #include <ctime>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -38,8 +42,10 @@ int main(int argc, char** argv) {
   app.add_option("--wheel", kind, "rough (soil shears on soil), smooth or grousers")
       ->capture_default_str()
       ->check(CLI::IsMember({"rough", "smooth", "grousers"}));
-  app.add_option("--grouser", grouser, "height of grousers [m], 0.001 to 0.1")->capture_default_str();
-  app.add_option("--friction", friction, "mu of a smooth rim on the soil, 0 to 2")->capture_default_str();
+  const auto* grouser_option =
+      app.add_option("--grouser", grouser, "height of grousers [m], 0.001 to 0.1")->capture_default_str();
+  const auto* friction_option =
+      app.add_option("--friction", friction, "mu of a smooth rim on the soil, 0 to 2")->capture_default_str();
   app.add_flag("--halve", halve, "the same on columns half as wide, and how much that changes");
   app.add_option("--load", s.load, "on the wheel [N], 20 to 10000")->capture_default_str();
   app.add_option("--spacing", s.spacing, "of the columns [m], 0.001 to 0.05")->capture_default_str();
@@ -48,6 +54,12 @@ int main(int argc, char** argv) {
   CLI11_PARSE(app, argc, argv);
   if (!dem::rig::may_run("soil_columns", argv[0])) return 1;
   try {
+    const auto require_kind = [&](const CLI::Option* option, const char* name, const char* of) {
+      if (option->count() > 0 && kind != of)
+        fail("{} is of --wheel {}, but the wheel is {}; leave it out", name, of, kind);
+    };
+    require_kind(grouser_option, "--grouser", "grousers");
+    require_kind(friction_option, "--friction", "smooth");
     require_within(grouser, 1e-3, 0.1, "--grouser (m)");
     require_within(friction, 0.0, 2.0, "--friction");
     require_within(s.load, 20.0, 1e4, "--load (N)");
@@ -85,43 +97,68 @@ int main(int argc, char** argv) {
     const std::clock_t start = std::clock();
     double simulated = 0.0;
     ColumnField field;
+    double field_slip = rig::not_known;
+    std::string refused;  // why the newest gap is one
+    const auto carried = [&](const auto& find) -> std::optional<decltype(find())> {
+      try {
+        return find();
+      } catch (const Error& error) {
+        refused = error.what();
+        return {};
+      }
+    };
     double largest[3] = {}, changed[3] = {};  // of each quantity, and by how much columns half as wide change it
     for (const double slip : {-0.7, -0.5, -0.3, -0.2, -0.1, -0.05, 0.0, 0.05, 0.1, 0.2, 0.3, 0.5, 0.7}) {
-      const ColumnWheelRun c = roll_on_columns(s, slip);
-      field = c.field;
-      simulated += s.travel / (s.spin * s.wheel.radius * (1.0 - slip));
-      if (halve) {
+      const auto roll = [&](const ColumnWheel& w) {
+        const auto found = carried([&] { return roll_on_columns(w, slip); });
+        if (found) simulated += w.travel / (w.spin * w.wheel.radius * (1.0 - slip));
+        return found;
+      };
+      const std::optional<ColumnWheelRun> c = roll(s);
+      if (c) field = c->field, field_slip = slip;
+      if (c && halve) {
         ColumnWheel half = s;
         half.spacing *= 0.5;
-        simulated += s.travel / (s.spin * s.wheel.radius * (1.0 - slip));
-        const ColumnWheelRun f = roll_on_columns(half, slip);
-        field = f.field;
-        const double pairs[3][2] = {{c.pull, f.pull}, {c.torque, f.torque}, {c.sinkage, f.sinkage}};
-        for (int q = 0; q < 3; ++q) {
-          largest[q] = std::max(largest[q], std::abs(pairs[q][0]));
-          changed[q] = std::max(changed[q], std::abs(pairs[q][0] - pairs[q][1]));
+        if (const std::optional<ColumnWheelRun> f = roll(half)) {
+          field = f->field;
+          const double pairs[3][2] = {{c->pull, f->pull}, {c->torque, f->torque}, {c->sinkage, f->sinkage}};
+          for (int q = 0; q < 3; ++q) {
+            largest[q] = std::max(largest[q], std::abs(pairs[q][0]));
+            changed[q] = std::max(changed[q], std::abs(pairs[q][0] - pairs[q][1]));
+          }
         }
       }
-      const WheelForces e = wheel_under_load(s.wheel, s.soil, {slip}, s.load),
-                        p = wheel_under_load(s.wheel, plain, {slip}, s.load, one_path);
-      const std::vector<double> row = {slip,     c.pull,   e.pull,          p.pull,          c.torque,
-                                       e.torque, p.torque, 1e3 * c.sinkage, 1e3 * e.sinkage, 1e3 * p.sinkage};
-      table.row(row[0], row[1], row[2], row[3], row[4], row[5], row[6], row[7], row[8], row[9]);
+      std::vector<double> row(10, rig::not_known);
+      row[0] = slip;
+      const auto put = [&](std::size_t model, const auto& found) {
+        if (found) row[model] = found->pull, row[model + 3] = found->torque, row[model + 6] = 1e3 * found->sinkage;
+      };
+      put(1, c);
+      put(2, carried([&] { return wheel_under_load(s.wheel, s.soil, {slip}, s.load); }));
+      put(3, carried([&] { return wheel_under_load(s.wheel, plain, {slip}, s.load, one_path); }));
       rows.push_back(row);
+      std::vector<std::string> cells;
+      for (const double x : row) cells.push_back(std::isfinite(x) ? io::format_number(x, table.digits) : "-");
+      table.rows.push_back(cells);
       for (std::size_t k = 0; k < 9; ++k) {
+        if (!std::isfinite(row[k + 1])) continue;
         plots[k / 3].series[k % 3].x.push_back(slip);
         plots[k / 3].series[k % 3].y.push_back(row[k + 1]);
       }
     }
+    if (!std::isfinite(field_slip)) fail("the wheel rolls at no slip: {}", refused);
     const double seconds = static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
     fmt::print("{}{:.0f} s of rolling took {:.2f} s of one core: {:.1f} times real time; results in {}\n",
                io::to_text(table), simulated, seconds, simulated / seconds, output);
+    if (!refused.empty()) fmt::print("Gaps are where the soil does not carry the wheel: {}\n", refused);
     for (int q = 0; q < 3 && halve; ++q) {
       fmt::print("columns half as wide change the {} by {:.2f} % of its largest at most\n", quantities[q],
                  100.0 * changed[q] / largest[q]);
     }
     // The last rut, across its middle.
-    io::Plot across{.title = "Rut behind the wheel at slip 0.7", .x_label = "across [mm]", .y_label = "height [mm]"};
+    io::Plot across{.title = fmt::format("Rut behind the wheel at slip {:g}", field_slip),
+                    .x_label = "across [mm]",
+                    .y_label = "height [mm]"};
     across.series.push_back({.name = "surface"});
     const std::size_t middle = field.grid.nx / 2;
     for (std::size_t iy = 0; iy < field.grid.ny; ++iy) {
@@ -132,7 +169,11 @@ int main(int argc, char** argv) {
     io::CsvWriter csv(output + "/wheel.csv",
                       {"slip_1-v/(omega*r)", "pull_N", "eqs_pull_N", "plain_pull_N", "torque_Nm", "eqs_torque_Nm",
                        "plain_torque_Nm", "sinkage_mm", "eqs_sinkage_mm", "plain_sinkage_mm"});
-    for (const auto& row : rows) csv.row(row);
+    for (const auto& r : rows) {
+      using rig::cell;
+      csv.row(cell(r[0]), cell(r[1]), cell(r[2]), cell(r[3]), cell(r[4]), cell(r[5]), cell(r[6]), cell(r[7]),
+              cell(r[8]), cell(r[9]));
+    }
     csv.flush();
     for (int q = 0; q < 3; ++q) io::render_plot(plots[q], output + std::array{"/pull", "/torque", "/sinkage"}[q]);
     io::render_plot(across, output + "/rut_across");

@@ -37,7 +37,7 @@ struct ColumnCarSpec {
   double side_grade = 0.0;                ///< of the left side over the right one
   double tyre_friction = 0.8;             ///< mu of the tyres on the soil
   std::optional<RingTyreSpec> ring = {};  ///< pneumatic tyres instead of rigid ones, with their radius and width
-  double time_step = 5e-5;                ///< s
+  double time_step = 5e-5;                ///< s, a whole number of times in ColumnCar::interval
   double set_down_speed = 0.5;            ///< m/s, of the crane
   double hitch_height = 0.6;              ///< m, over the ground, of the hitch behind the rear axle
 };
@@ -54,7 +54,8 @@ class ColumnCar {
   using Machine = mbd::Machine<integrator::VelocityVerlet>;
   static constexpr double interval = 0.01;  ///< s, of advance()
 
-  /// Throws Error for a lane that is none, and what check_columns refuses.
+  /// Throws Error for a lane that is none, numbers beyond their range, a time step that does not divide the interval,
+  /// and what check_columns refuses.
   explicit ColumnCar(const ColumnCarSpec& given) : spec_(on_its_tyres(given)), soil_(machine, columns(spec_)) {
     const ColumnCarSpec& spec = spec_;
     const TyreSpec& tyre = spec.car.tyre;
@@ -94,11 +95,22 @@ class ColumnCar {
     }
   }
 
+  /// Steps of a length (s) in an interval. Throws Error, which names them as `what`, for those that do not fill it
+  /// evenly, or are more than 100,000.
+  static long steps_of(double time_step, const char* what = "time step of a car on soil columns") {
+    const double steps = interval / time_step, whole = std::round(steps);
+    if (!(steps <= 1e5) || !(whole >= 1.0) || !(std::abs(steps - whole) <= 1e-9 * whole)) {
+      fail("{} is {:g} s, but must fill {:g} s evenly in at most 100000 steps, as 5e-05 s does", what, time_step,
+           interval);
+    }
+    return static_cast<long>(whole);
+  }
+
   /// Ten milliseconds with these controls. Nothing moves on once something has failed.
   void advance(const Controls& controls) {
     const double dt = spec_.time_step;
     controls_ = controls;
-    for (long k = std::lround(interval / dt); k > 0 && failed.empty(); --k) {
+    for (long k = steps_of(dt); k > 0 && failed.empty(); --k) {
       drive(machine, car, controls, dt);
       if (const auto report = machine.step(dt); !report) failed = report.text;
     }
@@ -161,7 +173,14 @@ class ColumnCar {
     BodyId body;
   };
 
+  /// Throws Error for numbers beyond their range.
   static ColumnCarSpec on_its_tyres(ColumnCarSpec s) {
+    steps_of(s.time_step);
+    require_within(s.margin, 1.0, 1e3, "margin of a lane of soil columns (m)");
+    require_within(s.grade, -1.0, 1.0, "grade of a lane of soil columns (rise over run)");
+    require_within(s.side_grade, -1.0, 1.0, "side grade of a lane of soil columns (rise over run)");
+    require_within(s.set_down_speed, 0.05, 5.0, "speed at which a car is set down on soil columns (m/s)");
+    require_within(s.hitch_height, 0.0, 5.0, "height of a hitch over soil columns (m)");
     if (!s.ring) return s;
     s.car = on_ring_tyres(s.car, *s.ring, s.time_step);
     return s;

@@ -2,6 +2,7 @@
 
 #include <dem/vehicle/assembly.hpp>
 
+#include <cmath>
 #include <string>
 
 namespace dem::vehicle {
@@ -24,11 +25,19 @@ struct RackSteering {
   double largest_angle = 0.0;  ///< rad
 };
 
+/// `arm` (m): how far the outer ends of the rods are ahead of the axes about which the knuckles steer, negative where
+/// they are behind. Throws Error for less than a millimetre.
 DEM_COLD inline RackSteering add_rack_steering(const Assembly& in, BodyId chassis, BodyId left_knuckle,
-                                               BodyId right_knuckle, const RackSteeringSpec& s) {
+                                               BodyId right_knuckle, const RackSteeringSpec& s, double arm) {
   using namespace mbd;
   require_positive(s.pinion_radius, "radius of the steering pinion", "m");
   require_positive(s.largest_angle, "largest angle of the steering pinion", "rad");
+  if (!(std::abs(arm) >= 1e-3)) {
+    fail(
+        "the arm of the steering is {:g} m, but its tie rods must end 0.001 m or more from the kingpins; move "
+        "rod_outer",
+        arm);
+  }
   Mechanism& m = in.mechanism();
   const Vec3 middle(s.rod_inner.x(), 0, s.rod_inner.z());
   const Vec3 on_pinion = middle + Vec3(0, 0, s.pinion_radius);
@@ -36,10 +45,9 @@ DEM_COLD inline RackSteering add_rack_steering(const Assembly& in, BodyId chassi
   r.largest_angle = s.largest_angle;
   r.rack = in.body("steering rack", s.rack, middle);
   r.pinion = in.body("steering pinion", s.pinion, on_pinion);
-  // A rack behind the axle moves to the right to steer to the left.
-  const bool is_behind = s.rod_outer.x() < 0.0 || s.rod_inner.x() < s.rod_outer.x();
+  // Rods behind the kingpins move to the right to steer to the left.
   r.rack_slide =
-      in.joint(JointKind::prismatic, "steering slide", chassis, r.rack, middle, Vec3(0, is_behind ? -1.0 : 1.0, 0));
+      in.joint(JointKind::prismatic, "steering slide", chassis, r.rack, middle, Vec3(0, arm < 0.0 ? -1.0 : 1.0, 0));
   r.pinion_turn = in.joint(JointKind::revolute, "steering pinion", chassis, r.pinion, on_pinion, Vec3::UnitX());
   r.gear = m.add_coupling(rack_and_pinion(in.name("steering gear"), r.pinion_turn, r.rack_slide, s.pinion_radius));
   const auto rod = [&](const char* side, double y, BodyId knuckle, BodyId& body, JointId& inner, JointId& outer) {

@@ -1,12 +1,16 @@
 #pragma once
 
 #include <dem/core/error.hpp>
+#include <dem/core/text.hpp>
 #include <dem/math/matrix3.hpp>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <memory>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -64,6 +68,14 @@ class RoadHeights {
     const auto [j, v] = cell_of((y - y0_) / spacing_, across_);
     const double* h = &heights_[i * across_ + j];
     return (1.0 - u) * ((1.0 - v) * h[0] + v * h[1]) + u * ((1.0 - v) * h[across_] + v * h[across_ + 1]);
+  }
+
+  /// Words that differ where heights differ.
+  std::string in_words() const {
+    std::uint64_t hash = 14695981039346656037u;  // FNV-1a, of the numbers' bits
+    for (const double h : heights_) hash = (hash ^ std::bit_cast<std::uint64_t>(h)) * 1099511628211u;
+    return text("{} heights in rows of {} every {} m from ({}, {}) m, hash {}", heights_.size(), across_, spacing_, x0_,
+                y0_, hash);
   }
 
  private:

@@ -4,6 +4,7 @@
 #include <dem/vehicle/vehicle.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <string>
 #include <vector>
@@ -194,6 +195,22 @@ void add_columns(std::vector<std::string>& names, const Sample& sample, const st
 template <class Sample>
 void add_values(std::vector<double>& row, const Sample& sample) {
   sample.each([&](const char*, double value) { row.push_back(value); });
+}
+
+/// Mean of a value over the four wheels.
+inline double mean_of(const std::array<WheelSample, 4>& wheels, double WheelSample::*value) {
+  return 0.25 * (wheels[0].*value + wheels[1].*value + wheels[2].*value + wheels[3].*value);
+}
+/// The columns of all corners, one corner after the other: of its wheel, then of its suspension.
+inline void add_corner_columns(std::vector<std::string>& names) {
+  for (const char* corner : corner_letters) {
+    add_columns(names, WheelSample{}, std::string(corner) + "_");
+    add_columns(names, SuspensionSample{}, std::string(corner) + "_");
+  }
+}
+inline void add_corner_values(std::vector<double>& row, const std::array<WheelSample, 4>& wheels,
+                              const std::array<SuspensionSample, 4>& suspension) {
+  for (std::size_t k = 0; k < 4; ++k) add_values(row, wheels[k]), add_values(row, suspension[k]);
 }
 
 }  // namespace dem::vehicle

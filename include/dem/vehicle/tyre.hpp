@@ -66,6 +66,13 @@ struct TyreState {
   double work = 0.0;                        ///< J, on the wheel so far
   Vec3 contact = Vec3::Zero();              ///< m, global
   double time = -1.0;                       ///< s, of the newest evaluation
+
+  /// f(number) for all of them.
+  template <class F>
+  void each(F&& f) {
+    f(deflection), f(load), f(pull), f(side), f(slip), f(slip_angle), f(stretch_x), f(stretch_y);
+    f(elastic_energy), f(work), f(contact.x()), f(contact.y()), f(contact.z()), f(time);
+  }
 };
 
 namespace detail {

@@ -32,6 +32,13 @@ struct VehicleSpec {
 
   double wheelbase() const { return front.points.wheel.x() - rear.points.wheel.x(); }
   double track() const { return 2.0 * front.points.wheel.y(); }
+  /// m, by which the outer ends of the tie rods are ahead of the lines through both ball joints, seen from above.
+  double steering_arm() const {
+    const WishbonePoints& p = front.points;
+    const Vec3 kingpin = p.upper_ball - p.lower_ball;
+    const double share = (steering.rod_outer.z() - p.lower_ball.z()) / kingpin.z();
+    return steering.rod_outer.x() - p.lower_ball.x() - share * kingpin.x();
+  }
 };
 
 /// The parts of a vehicle and what steers them.
@@ -77,7 +84,9 @@ DEM_COLD inline Vehicle add_vehicle(const Assembly& in, const VehicleSpec& s, co
       v.toe_links[k - 2] = add_toe_link(in, corner_names[k], v.chassis, v.suspension[k].knuckle, corner.points);
     }
   }
-  v.steering = add_rack_steering(in, v.chassis, v.suspension[0].knuckle, v.suspension[1].knuckle, s.steering);
+  const double arm = s.steering_arm();
+  v.steering = add_rack_steering(in, v.chassis, v.suspension[0].knuckle, v.suspension[1].knuckle, s.steering, arm);
+  v.pinion_per_steer = std::abs(arm) / s.steering.pinion_radius;
   v.driveline = add_driveline(in, v.chassis, wheels, s.driveline, spin);
   if (road) {
     for (std::size_t k = 0; k < 4; ++k) add_tyre(in, corner_names[k], v.wheels[k], s.tyre, *road);
@@ -90,12 +99,6 @@ DEM_COLD inline Vehicle add_vehicle(const Assembly& in, const VehicleSpec& s, co
       v.joint_forces[k][j] = in.mechanism().add_sensor(mbd::joint_sensor(name, joints[j], telemetry_window));
     }
   }
-  // The arm of the tie rod about the line through both ball joints, seen from above.
-  const WishbonePoints& p = s.front.points;
-  const Vec3 kingpin = p.upper_ball - p.lower_ball;
-  const double share = (s.steering.rod_outer.z() - p.lower_ball.z()) / kingpin.z();
-  const double arm = std::abs(s.steering.rod_outer.x() - p.lower_ball.x() - share * kingpin.x());
-  v.pinion_per_steer = arm / s.steering.pinion_radius;
   return v;
 }
 

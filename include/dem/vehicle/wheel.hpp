@@ -1,7 +1,7 @@
 #pragma once
 
 #include <dem/vehicle/assembly.hpp>
-#include <dem/vehicle/tyre.hpp>
+#include <dem/vehicle/road_tyre.hpp>
 
 #include <algorithm>
 #include <memory>
@@ -22,8 +22,8 @@ struct Wheel {
   BodyId body;
   JointId turn;  ///< of the wheel on the knuckle; positive drives forward
   ActuatorId brake;
-  LoadId road;  ///< of the tyre on hard ground, if there is one
-  std::shared_ptr<TyreState> tyre = {};
+  LoadId road;                 ///< of the tyre on hard ground, if there is one
+  TerrainId tyre;              ///< likewise; see tyre_of()
   double largest_brake = 0.0;  ///< N m
   double brake_angle = 0.0;    ///< rad, which the brake holds
   double brake_torque = 0.0;   ///< N m, asked for
@@ -54,16 +54,20 @@ DEM_COLD inline Wheel add_wheel(const Assembly& in, const std::string& corner, B
 DEM_COLD inline void add_tyre(const Assembly& in, const std::string& corner, Wheel& w, const TyreSpec& tyre,
                               const Road& road) {
   check_tyre(tyre);
-  w.tyre = std::make_shared<TyreState>();
   require_positive(road.print, "print of a road under a tyre", "m");
   Road ground = road;
   ground.normal = road.normal.normalized();
-  const Body& b = in.mechanism().body(w.body);
-  const Vec3 axis = b.rotation().transpose() * in.direction(Vec3::UnitY());
-  const auto law = [tyre, ground, axis, state = w.tyre](double time, const Body& body) {
-    return tyre_wrench(tyre, ground, body, axis, time, *state);
-  };
-  w.road = in.mechanism().add_load(mbd::custom_load(in.name(corner + " tyre"), w.body, law));
+  mbd::Mechanism& m = in.mechanism();
+  const Vec3 axis = m.body(w.body).rotation().transpose() * in.direction(Vec3::UnitY());
+  const std::string name = in.name(corner + " tyre");
+  w.road = m.add_load(mbd::terrain_load(name, w.body));
+  w.tyre = mbd::add_terrain(m, name, std::make_unique<RoadTyre>(tyre, ground, w.body, axis, w.road));
+}
+
+/// What a wheel's tyre on hard ground did in the newest evaluation of the forces. Throws Error if it has none.
+inline const TyreState& tyre_of(const mbd::Mechanism& m, const Wheel& w) {
+  if (!w.tyre.valid()) fail("body '{}' has no tyre on hard ground; give add_vehicle a road", m.body(w.body).name);
+  return static_cast<const RoadTyre&>(mbd::terrain_of(m, w.tyre)).state();
 }
 
 /// Sets the brake, 0 to 1 of its largest torque. To be called before every step: a brake that slips moves the angle

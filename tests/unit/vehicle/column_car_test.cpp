@@ -126,7 +126,7 @@ TEST_CASE("a governor keeps the rims at a speed on soil without switching the en
   CHECK(largest < 1.3 * mean);  // a switch gives all of its torque for as much of the time as it takes
 }
 
-TEST_CASE("lanes that are none, soils that are not known, and a lane narrower than the car are refused in words") {
+TEST_CASE("lanes that are none, unknown soils, and numbers that no car on columns can have are refused in words") {
   auto spec = car_on("dry-sand", 4.0);
   spec.half_width = 0.9;
   CHECK_THROWS_WITH(ColumnCar(spec), ContainsSubstring("1.8 m wide, but the car is 2.074 m wide"));
@@ -135,5 +135,16 @@ TEST_CASE("lanes that are none, soils that are not known, and a lane narrower th
   CHECK_THROWS_WITH(ColumnCar(spec), ContainsSubstring("length of the stretch of hard is 0 m"));
   spec.lane.clear();
   CHECK_THROWS_WITH(ColumnCar(spec), ContainsSubstring("has no stretch"));
+  spec = car_on("dry-sand", 4.0);
+  for (const double step : {3e-4, 0.03, 0.0, -1e-4}) {
+    spec.time_step = step;
+    CHECK_THROWS_WITH(ColumnCar(spec), ContainsSubstring("fill 0.01 s evenly"));
+  }
+  spec.time_step = 5e-5;
+  spec.set_down_speed = 0.0;
+  CHECK_THROWS_WITH(ColumnCar(spec), ContainsSubstring("is set down on soil columns (m/s) is 0, but"));
+  spec.set_down_speed = 0.5;
+  spec.grade = std::nan("");
+  CHECK_THROWS_WITH(ColumnCar(spec), ContainsSubstring("grade of a lane of soil columns (rise over run) is nan"));
   CHECK_THROWS_WITH(known_soil("mud"), ContainsSubstring("there is no soil 'mud'; these are known: dry-sand"));
 }

@@ -54,6 +54,43 @@ TEST_CASE("a tyre rolls on a tilted plane of heights as on the plane itself") {
   CHECK(on_heights.load > 1000.0);
 }
 
+TEST_CASE(
+    "a copy of a machine has tyres of its own, and a machine that takes a saved memory goes on with their stretch") {
+  using Machine = mbd::Machine<integrator::VelocityVerlet>;
+  const double dt = 1e-4;
+  const auto lay = [](Machine& m) {
+    Wheel w;
+    w.body = m.add_body(
+        mbd::given_body("wheel", 50.0, Vec3(3, 5, 3)).at(Vec3(0, 0, 0.484)).moving(Vec3(2, 0.1, 0), Vec3(0, 1, 0)));
+    add_tyre(Assembly(m), "test", w, TyreSpec{}, Road{});
+    return w;
+  };
+  Machine first;
+  const Wheel w = lay(first);
+  REQUIRE(first.run(0.1, dt));
+  const TyreState then = tyre_of(first, w);
+  CHECK(std::abs(then.stretch_x) > 1e-5);
+  Machine second = first;
+  REQUIRE(second.run(0.1, dt));
+  CHECK(tyre_of(second, w).time == Approx(0.2));
+  CHECK(tyre_of(first, w).time == then.time);
+  CHECK(tyre_of(first, w).stretch_x == then.stretch_x);
+  REQUIRE(first.run(0.1, dt));
+  CHECK(first.body(w.body).position() == second.body(w.body).position());
+
+  Machine third;
+  const Wheel same = lay(third);
+  Wheel bare;
+  bare.body = same.body;
+  mbd::Terrain &saved = mbd::terrain_of(first, w.tyre), &loaded = mbd::terrain_of(third, same.tyre);
+  CHECK(saved.set_up() == loaded.set_up());
+  loaded.set_memory(saved.memory());
+  CHECK(tyre_of(third, same).stretch_x == tyre_of(first, w).stretch_x);
+  CHECK(loaded.memory() == saved.memory());
+  CHECK_THAT(message_of([&] { loaded.set_memory({1.0}); }), Contains("memory of a tyre has 1 numbers, but needs 28"));
+  CHECK_THAT(message_of([&] { tyre_of(third, bare); }), Contains("has no tyre on hard ground"));
+}
+
 TEST_CASE("a car stands on a road of heights, and the forces that telemetry tells hold each knuckle and wheel") {
   // A dip of 0.1 m under the front left wheel, wide enough for the tyre's print.
   mbd::Machine<integrator::VelocityVerlet> m;
@@ -70,7 +107,7 @@ TEST_CASE("a car stands on a road of heights, and the forces that telemetry tell
     REQUIRE(m.step(dt));
   }
   CHECK(m.body(car.wheels[0].body).position().z() < m.body(car.wheels[1].body).position().z() - 0.05);
-  CHECK(car.wheels[1].tyre->load > 1.3 * car.wheels[0].tyre->load);
+  CHECK(tyre_of(m, car.wheels[1]).load > 1.3 * tyre_of(m, car.wheels[0]).load);
 
   const CarSample now = sample_of(m, car, brakes, m.time());
   CHECK(now.roll < -0.01);  // to the left
@@ -84,7 +121,7 @@ TEST_CASE("a car stands on a road of heights, and the forces that telemetry tell
     const Vec3 knuckle = s.upper_ball + s.lower_ball + s.bearing + s.rod + spec.front.knuckle.mass * gravity;
     const Vec3 ground = to_chassis * to_eigen(m.load(car.wheels[k].road).wrench.force);
     const Vec3 wheel = ground - s.bearing + spec.wheel.mass.mass * gravity;
-    const double load = car.wheels[k].tyre->load;
+    const double load = tyre_of(m, car.wheels[k]).load;
     CHECK(load > 3.0 * weight);
     CHECK(knuckle.norm() < 0.01 * load);
     CHECK(wheel.norm() < 0.01 * load);

@@ -47,7 +47,7 @@ Drive drive_on(const Mat3& tilt, bool tilts_ground) {
   Drive d{.place = ground.transpose() * chassis.position(),
           .velocity = ground.transpose() * chassis.velocity(),
           .spin = ground.transpose() * chassis.angular_velocity()};
-  for (std::size_t k = 0; k < 4; ++k) d.load[k] = car.wheels[k].tyre->load;
+  for (std::size_t k = 0; k < 4; ++k) d.load[k] = tyre_of(machine, car.wheels[k]).load;
   return d;
 }
 

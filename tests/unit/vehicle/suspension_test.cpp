@@ -84,6 +84,29 @@ TEST_CASE("wheel travel, camber and toe over bump are those of the points") {
   }
 }
 
+TEST_CASE("a rack steers to where it is told, with rods behind the kingpins and ahead of them") {
+  for (const bool is_ahead : {false, true}) {
+    VehicleSpec spec = humvee({.rubber_rear = false});
+    Vec3 &inner = spec.steering.rod_inner, &outer = spec.steering.rod_outer;
+    if (is_ahead) outer.x() -= 2.0 * spec.steering_arm(), inner.x() = outer.x() - 0.05;
+    CHECK((spec.steering_arm() > 0.0) == is_ahead);
+    Machine m;
+    m.joint_tolerance = 0.5;  // m: light shafts wind up
+    Vehicle car = add_vehicle(Assembly(m, "car", Vec3(0, 0, 0.46 - spec.front.points.wheel.z())), spec, Road{});
+    const double dt = 5e-5;
+    design_for(m, dt);
+    for (long k = std::lround(0.6 / dt); k > 0; --k) {
+      drive(m, car, {.steer = 0.2}, dt);
+      REQUIRE(m.step(dt));
+    }
+    for (const std::size_t k : {0, 1}) CHECK(steer_of(m, car, k) == Approx(0.2).margin(0.05));
+  }
+  VehicleSpec spec = humvee();
+  spec.steering.rod_outer.x() -= spec.steering_arm();
+  Machine m;
+  CHECK_THROWS_WITH(add_vehicle(Assembly(m), spec), Catch::Matchers::Contains("tie rods must end 0.001 m or more"));
+}
+
 TEST_CASE("at rest the car stands where its energy is least, and its axles carry its weight") {
   const VehicleSpec spec = plain_humvee();
   Car car(spec);
@@ -102,12 +125,12 @@ TEST_CASE("at rest the car stands where its energy is least, and its axles carry
     weight += 9.81 * b.mass;
     moment += 9.81 * b.mass * b.position().x();
   }
-  const auto& w = v.wheels;
-  const double front = w[0].tyre->load + w[1].tyre->load, rear = w[2].tyre->load + w[3].tyre->load;
+  const auto tyre = [&](std::size_t k) { return tyre_of(m, v.wheels[k]); };
+  const double front = tyre(0).load + tyre(1).load, rear = tyre(2).load + tyre(3).load;
   CHECK(front + rear == Approx(weight).epsilon(1e-3));
-  CHECK(front * w[0].tyre->contact.x() + rear * w[2].tyre->contact.x() == Approx(moment).margin(1e-3 * weight));
+  CHECK(front * tyre(0).contact.x() + rear * tyre(2).contact.x() == Approx(moment).margin(1e-3 * weight));
   // 1.5e-6 was seen; what is left of the swing after 8 s need not be the same on both sides.
-  CHECK(w[0].tyre->load == Approx(w[1].tyre->load).epsilon(1e-5));
+  CHECK(tyre(0).load == Approx(tyre(1).load).epsilon(1e-5));
 }
 
 TEST_CASE("bounce, pitch and roll have the frequencies of the linear model") {

@@ -2,13 +2,14 @@
 
 #include <dem/rig/mobility/drive.hpp>
 
+#include <algorithm>
 #include <string>
 #include <vector>
 
 namespace dem::rig::mobility {
 
 /// The drives of a study, in the order of its table. Those of `passes` follow each other in one lane, all others start
-/// on soil of their own.
+/// on soil of their own. Throws Error for two of one name: their results could not be told from each other.
 inline std::vector<Case> cases_of(const Settings& s) {
   const Case plain = {.name = "drive",
                       .slope = s.slopes.front(),
@@ -47,6 +48,13 @@ inline std::vector<Case> cases_of(const Settings& s) {
     }
   } else {
     add("drive");
+  }
+  for (auto c = cases.begin(); c != cases.end(); ++c) {
+    if (std::none_of(cases.begin(), c, [&](const Case& other) { return other.name == c->name; })) continue;
+    fail(
+        "the study {} has two drives of the name '{}'; give each slope, mass and soil once, and numbers that differ in "
+        "their first six digits",
+        s.study, c->name);
   }
   return cases;
 }

@@ -3,6 +3,7 @@
 #include <dem/rig/mobility/settings.hpp>
 #include <dem/rig/number.hpp>
 #include <dem/rig/stages.hpp>
+#include <dem/terramechanics/wheel_forces.hpp>
 #include <dem/vehicle/ending.hpp>
 #include <dem/vehicle/lane_driver.hpp>
 
@@ -72,24 +73,19 @@ struct Sample {
   std::array<vehicle::WheelSample, 4> wheels;
   std::array<vehicle::SuspensionSample, 4> suspension = {};
 
-  [[nodiscard]] double mean(double vehicle::WheelSample::*value) const {
-    return 0.25 * (wheels[0].*value + wheels[1].*value + wheels[2].*value + wheels[3].*value);
-  }
+  [[nodiscard]] double mean(double vehicle::WheelSample::*value) const { return vehicle::mean_of(wheels, value); }
   [[nodiscard]] std::vector<std::string> columns() const {
     std::vector<std::string> names;
     vehicle::add_columns(names, car);
     names.insert(names.end(), {"way_m", "hitch_N"});
-    for (std::size_t k = 0; k < 4; ++k) {
-      vehicle::add_columns(names, wheels[k], std::string(vehicle::corner_letters[k]) + "_");
-      vehicle::add_columns(names, suspension[k], std::string(vehicle::corner_letters[k]) + "_");
-    }
+    vehicle::add_corner_columns(names);
     return names;
   }
   [[nodiscard]] std::vector<double> row() const {
     std::vector<double> row;
     vehicle::add_values(row, car);
     row.insert(row.end(), {way, hitch});
-    for (std::size_t k = 0; k < 4; ++k) vehicle::add_values(row, wheels[k]), vehicle::add_values(row, suspension[k]);
+    vehicle::add_corner_values(row, wheels, suspension);
     return row;
   }
 };
@@ -114,6 +110,13 @@ inline vehicle::ColumnCarSpec car_of(const Settings& s, const Case& c) {
           .tyre_friction = s.tyre_friction,
           .ring = s.tyre == "ring" ? std::optional(vehicle::RingTyreSpec{.pressure = s.tyre_pressure}) : std::nullopt,
           .time_step = s.time_step};
+}
+
+/// A wheel of a case's car, as the semi-empirical equations know it.
+inline terramechanics::Wheel wheel_of(const Settings& s, const Case& c) {
+  const vehicle::ColumnCarSpec spec = car_of(s, c);
+  if (spec.ring) return {.radius = spec.ring->radius, .width = spec.ring->width};
+  return {.radius = spec.car.tyre.radius, .width = spec.car.tyre.width};
 }
 
 /// Who drives a car along the lane, to begin with as on its slope.
@@ -169,8 +172,9 @@ inline void evaluate(Result& r, const std::vector<Sample>& samples, double radiu
   double n = 0.0, energy = 0.0, work = 0.0, from = 0.0, begin = 0.0;
   double speed = 0.0, slip = 0.0, sinkage = 0.0, pull = 0.0, torque = 0.0;
   using W = vehicle::WheelSample;
+  const double ahead = r.way < 0.0 ? -1.0 : 1.0;  // the way that the car went
   for (const Sample& x : samples) {
-    if (!(x.way >= 0.5 * r.way)) continue;
+    if (!(ahead * x.way >= 0.5 * ahead * r.way)) continue;
     if (n == 0.0) begin = x.car.time, from = x.way, work = x.car.engine_work;
     energy = x.car.engine_work - work;
     n += 1.0;

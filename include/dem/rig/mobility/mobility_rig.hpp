@@ -95,78 +95,94 @@ class MobilityRig : public Rig {
 
   void add_plots(Report& report, io::HtmlReport& page) const {
     const Settings& s = settings;
-    const Campaign& c = campaign;
     page.heading("Plots");
-    const auto add = [&](const io::Plot& plot, const char* name, const char* caption) {
-      report.plot(page, plot, name, caption);
-    };
-    const auto add_map = [&](const io::HeatMap& map, const char* name, const char* caption) {
-      report.map(page, map, name, caption);
-    };
-    const auto over = [&](const char* x_label, auto&& x) {
-      add(plot_over(c, "Speed", x_label, "speed [m/s]", x, [](const Result& r) { return r.speed; }), "speed",
-          "Mean speed over the second half of the way; words where the car did not arrive.");
-      add(plot_over(c, "Slip", x_label, "slip", x, [](const Result& r) { return r.slip; }), "slip", "Mean slip.");
-      add(plot_over(c, "Sinkage", x_label, "sinkage [mm]", x, [](const Result& r) { return 1e3 * r.sinkage; }),
-          "sinkage", "Mean sinkage of the wheels.");
-      add(plot_over(c, "Energy", x_label, "energy [kJ/m]", x,
-                    [](const Result& r) { return 1e-3 * r.energy_per_metre; }),
-          "energy", "Energy of the engine for a metre.");
-      add(plot_over(c, "Resistance", x_label, "resistance [kN]", x,
-                    [](const Result& r) { return 1e-3 * r.resistance; }),
-          "resistance", "What the soil takes of the thrust.");
-      add(plot_over(c, "Drift", x_label, "to the left [mm]", x, [](const Result& r) { return 1e3 * r.drift; }), "drift",
-          "Drift of the car at the end of its way.");
-    };
-    if (s.study == "slopes") over("slope [%]", [](const Case& of, std::size_t) { return of.slope; });
-    if (s.study == "side-slopes") over("side slope [%]", [](const Case& of, std::size_t) { return of.side_slope; });
-    if (s.study == "passes") over("pass", [](const Case&, std::size_t k) { return static_cast<double>(k + 1); });
+    const auto sweep = [&](const char* x_label, auto&& x) { add_sweep(report, page, x_label, x); };
+    if (s.study == "slopes") sweep("slope [%]", [](const Case& of, std::size_t) { return of.slope; });
+    if (s.study == "side-slopes") sweep("side slope [%]", [](const Case& of, std::size_t) { return of.side_slope; });
+    if (s.study == "passes") sweep("pass", [](const Case&, std::size_t k) { return static_cast<double>(k + 1); });
     if (is_held()) {
-      add(pull_plot(c.cases[0], c.results[0], vehicle::humvee().tyre), "pull", "Pull on the load cell over slip.");
+      const Case& of = campaign.cases[0];
+      report.plot(page, pull_plot(of, campaign.results[0], wheel_of(s, of)), "pull",
+                  "Pull on the load cell over slip, and of single wheels where their soil carries them.");
     }
-    const auto words = [](const Result& r) {
-      return text("{:.1f} m/s\n{:.1f} kJ/m", r.speed, 1e-3 * r.energy_per_metre);
-    };
-    // Cells of one size, whatever the steps of their axes are.
-    const auto add_table_map = [&](io::HeatMap map, const char* caption) {
-      map.width = 240 + 130 * static_cast<int>(map.x.size());
-      map.height = 140 + 80 * static_cast<int>(map.y.size());
-      add_map(map, "map", caption);
-    };
-    if (s.study == "map") {
-      auto map = map_of(
-          c, "Where the car goes on " + ground_of(c.cases[0]), numbers_to(s.slopes.size()),
-          numbers_to(s.side_slopes.size()), [](const Result& r) { return r.speed; }, words);
-      map.x_label = "slope", map.y_label = "side slope", map.c_label = "speed [m/s]";
-      for (const double slope : s.slopes) map.x_ticks.push_back(text("{:g} %", slope));
-      for (const double side : s.side_slopes) map.y_ticks.push_back(text("{:g} %", side));
-      map.range = {0.0, s.speed};
-      add_table_map(std::move(map), "Speed and energy for a metre over slope and side slope; grey: it does not go.");
-    }
-    if (s.study == "loads") {
-      auto map = map_of(
-          c, "Energy for a metre over load and soil", numbers_to(s.loads.size()), numbers_to(s.soils_of_loads_.size()),
-          [](const Result& r) { return 1e-3 * r.energy_per_metre; }, words);
-      map.x_label = "sprung mass", map.y_label = "soil", map.c_label = "energy [kJ/m]";
-      for (const double mass : s.loads) map.x_ticks.push_back(text("{:g} kg", mass));
-      for (const auto& soil : s.soils_of_loads_) map.y_ticks.push_back(soil.name);
-      add_table_map(std::move(map), "Energy for a metre and speed over soil and load; grey: it does not go.");
-    }
-    if (c.shown.samples.size() > 2) {
-      using W = vehicle::WheelSample;
-      if (s.is_drive()) {
-        io::Plot speed{.title = "Speed", .x_label = "way [m]", .y_label = "speed [m/s]"};
-        speed.series = {line_of(c.shown, "car", 0, [](const Sample& x) { return x.car.speed; })};
-        add(speed, "speed", "Speed of the car.");
-        add(wheel_plot(c.shown, &W::slip, 1.0, "Slip", "slip"), "slip", "Slip of the wheels.");
-        add(wheel_plot(c.shown, &W::sinkage, 1e3, "Sinkage", "sinkage [mm]"), "sinkage", "Sinkage of the wheels.");
-        add(wheel_plot(c.shown, &W::load, 1e-3, "Load", "load [kN]"), "load", "Load of the wheels.");
-        add(wheel_plot(c.shown, &W::pull, 1e-3, "Pull", "pull [kN]"), "pull", "Net forward force on the wheels.");
-      }
-      add_map(rut_map(c.shown.field), "ruts", "Height of the soil at the end.");
-    }
+    if (s.study == "map") add_slope_map(report, page);
+    if (s.study == "loads") add_load_map(report, page);
+    if (campaign.shown.samples.size() > 2) add_shown(report, page);
   }
 
+  /// What the drives found, over what differs between them: x(case, number).
+  template <class X>
+  void add_sweep(Report& report, io::HtmlReport& page, const char* x_label, X&& x) const {
+    const auto add = [&](const char* title, const char* y_label, const char* name, const char* caption, auto&& y) {
+      report.plot(page, plot_over(campaign, title, x_label, y_label, x, y), name, caption);
+    };
+    add("Speed", "speed [m/s]", "speed",
+        "Mean speed over the second half of the way; words where the car did not arrive.",
+        [](const Result& r) { return r.speed; });
+    add("Slip", "slip", "slip", "Mean slip.", [](const Result& r) { return r.slip; });
+    add("Sinkage", "sinkage [mm]", "sinkage", "Mean sinkage of the wheels.",
+        [](const Result& r) { return 1e3 * r.sinkage; });
+    add("Energy", "energy [kJ/m]", "energy", "Energy of the engine for a metre.",
+        [](const Result& r) { return 1e-3 * r.energy_per_metre; });
+    add("Resistance", "resistance [kN]", "resistance", "What the soil takes of the thrust.",
+        [](const Result& r) { return 1e-3 * r.resistance; });
+    add("Drift", "to the left [mm]", "drift", "Drift of the car at the end of its way.",
+        [](const Result& r) { return 1e3 * r.drift; });
+  }
+
+  void add_slope_map(Report& report, io::HtmlReport& page) const {
+    const Settings& s = settings;
+    auto map = map_of(
+        campaign, "Where the car goes on " + ground_of(campaign.cases[0]), numbers_to(s.slopes.size()),
+        numbers_to(s.side_slopes.size()), [](const Result& r) { return r.speed; }, words_of);
+    map.x_label = "slope", map.y_label = "side slope", map.c_label = "speed [m/s]";
+    for (const double slope : s.slopes) map.x_ticks.push_back(text("{:g} %", slope));
+    for (const double side : s.side_slopes) map.y_ticks.push_back(text("{:g} %", side));
+    map.range = {0.0, s.speed};
+    add_map(report, page, std::move(map),
+            "Speed and energy for a metre over slope and side slope; grey: it does not go.");
+  }
+
+  void add_load_map(Report& report, io::HtmlReport& page) const {
+    const Settings& s = settings;
+    auto map = map_of(
+        campaign, "Energy for a metre over load and soil", numbers_to(s.loads.size()),
+        numbers_to(s.soils_of_loads_.size()), [](const Result& r) { return 1e-3 * r.energy_per_metre; }, words_of);
+    map.x_label = "sprung mass", map.y_label = "soil", map.c_label = "energy [kJ/m]";
+    for (const double mass : s.loads) map.x_ticks.push_back(text("{:g} kg", mass));
+    for (const auto& soil : s.soils_of_loads_) map.y_ticks.push_back(soil.name);
+    add_map(report, page, std::move(map), "Energy for a metre and speed over soil and load; grey: it does not go.");
+  }
+
+  /// The drive that is shown, and the ruts that it leaves.
+  void add_shown(Report& report, io::HtmlReport& page) const {
+    const Driven& d = campaign.shown;
+    using W = vehicle::WheelSample;
+    if (settings.is_drive()) {
+      io::Plot speed{.title = "Speed", .x_label = "way [m]", .y_label = "speed [m/s]"};
+      speed.series = {line_of(d, "car", 0, [](const Sample& x) { return x.car.speed; })};
+      report.plot(page, speed, "speed", "Speed of the car.");
+      const auto add = [&](double W::*value, double scale, const char* title, const char* label, const char* name,
+                           const char* caption) {
+        report.plot(page, wheel_plot(d, value, scale, title, label), name, caption);
+      };
+      add(&W::slip, 1.0, "Slip", "slip", "slip", "Slip of the wheels.");
+      add(&W::sinkage, 1e3, "Sinkage", "sinkage [mm]", "sinkage", "Sinkage of the wheels.");
+      add(&W::load, 1e-3, "Load", "load [kN]", "load", "Load of the wheels.");
+      add(&W::pull, 1e-3, "Pull", "pull [kN]", "pull", "Net forward force on the wheels.");
+    }
+    report.map(page, rut_map(d.field), "ruts", "Height of the soil at the end.");
+  }
+
+  /// Cells of one size, whatever the steps of their axes are.
+  static void add_map(Report& report, io::HtmlReport& page, io::HeatMap map, const char* caption) {
+    map.width = 240 + 130 * static_cast<int>(map.x.size());
+    map.height = 140 + 80 * static_cast<int>(map.y.size());
+    report.map(page, map, "map", caption);
+  }
+  static std::string words_of(const Result& r) {
+    return text("{:.1f} m/s\n{:.1f} kJ/m", r.speed, 1e-3 * r.energy_per_metre);
+  }
   static std::vector<double> numbers_to(std::size_t n) {
     std::vector<double> numbers;
     for (std::size_t k = 0; k < n; ++k) numbers.push_back(static_cast<double>(k));

@@ -23,7 +23,7 @@ struct Settings {
   std::string soil = "dry-sand";    ///< name of a soil
   std::string soil_file;            ///< a soil's file instead
   std::string lane;                 ///< stretches, "hard:8,dry-sand:12"; empty: one of the soil
-  std::vector<double> slopes;       ///< percent, of slopes and map; the first one of the other studies
+  std::vector<double> slopes;       ///< percent, of slopes and map; one of the other studies
   std::vector<double> side_slopes;  ///< percent, of side-slopes and map; likewise
   std::vector<double> loads;        ///< kg, sprung masses of loads
   std::string soils;                ///< of loads: names, with commas
@@ -51,8 +51,6 @@ struct Settings {
   bool replay = true;
 
   [[nodiscard]] bool is_drive() const { return study == "drive"; }
-  [[nodiscard]] std::vector<vehicle::LaneStretch> stretches() const { return stretches_; }
-  [[nodiscard]] std::vector<terramechanics::NamedSoil> soils_of_loads() const { return soils_of_loads_; }
 
   std::vector<vehicle::LaneStretch> stretches_;  ///< by resolve()
   std::vector<terramechanics::NamedSoil> soils_of_loads_;
@@ -69,8 +67,8 @@ inline void declare(Options& options, Settings& s) {
   add("--soil", s.soil, "dry-sand, sandy-loam, lete-sand, clayey, snow, hard, p1 or p3");
   add("--soil-file", s.soil_file, "a soil's file (TOML), as the bevameter writes it; instead of --soil");
   add("--lane", s.lane, "stretches of soils with their lengths [m], e.g. hard:8,dry-sand:12; instead of --soil");
-  add("--slopes", s.slopes, "percent, up the lane: of slopes and map; the first one counts elsewhere");
-  add("--side-slopes", s.side_slopes, "percent, the left side is high: of side-slopes and map; likewise");
+  add("--slopes", s.slopes, "percent, up the lane: several of slopes and map, one elsewhere");
+  add("--side-slopes", s.side_slopes, "percent, the left side is high: several of side-slopes and map, one elsewhere");
   add("--soils", s.soils, "of loads, e.g. dry-sand,clayey; empty: five soils");
   add("--loads", s.loads, "sprung masses of the study of that name [kg]; empty: by size");
   add("--passes", s.passes, "of the study of that name: each in the ruts of the one before");
@@ -93,7 +91,7 @@ inline void declare(Options& options, Settings& s) {
       "CSV file that drives in place of the driver: time_s, throttle, brake (0 to 1), steer_rad (to the left); the "
       "drive ends with its last row");
   add("--path", s.path, "that the car drives [m]; 0: by size");
-  add("--machine-step", s.time_step, "time step of the car [s]");
+  add("--machine-step", s.time_step, "time step of the car, a whole number of times in 0.01 s [s]");
   options.group("Output");
   add("--threads", s.threads, "drives side by side; 0: as many as there are processors").changes_no_result();
   add("--output", s.output, "folder; results of an earlier run in it are replaced").changes_no_result();
@@ -172,6 +170,13 @@ inline void resolve(Settings& s, ReadSoil* read_soil) {
     list->erase(std::unique(list->begin(), list->end()), list->end());
     for (const double percent : *list) require_within(percent, -100.0, 100.0, "a slope (percent)");
   }
+  const auto require_one = [&](const List& list, const char* option, const char* study) {
+    if (list.size() == 1 || s.study == study || s.study == "map") return;
+    fail("{} has {} values, but the study {} drives on one; give one, or --study {} or map", option, list.size(),
+         s.study, study);
+  };
+  require_one(s.slopes, "--slopes", "slopes");
+  require_one(s.side_slopes, "--side-slopes", "side-slopes");
   if (s.loads.empty())
     s.loads = BySize<List>{.smoke = {4430},
                            .quick = {2500, 3500, 4430, 6000, 8000},
@@ -200,6 +205,7 @@ inline void resolve(Settings& s, ReadSoil* read_soil) {
   require_within(s.half_width, 1.6, 10.0,
                  "--half-width (m; the wheels stand at 0.9 m, soil ends 0.5 m beyond the lane)");
   require_within(s.time_step, 1e-6, 1e-4, "--machine-step (s)");
+  vehicle::ColumnCar::steps_of(s.time_step, "--machine-step");
   require_within(s.threads, 0, 1000, "--threads");
   if (s.lane.empty())
     s.stretches_ = {{s.soil_file.empty() ? terramechanics::known_soil(s.soil) : read_soil(s.soil_file), s.path}};

@@ -78,18 +78,25 @@ io::Plot plot_over(const Campaign& c, const char* title, const char* x_label, co
   return plot;
 }
 
-/// Pull over slip, beside four wheels of the semi-empirical equations on a quarter of the weight each.
-inline io::Plot pull_plot(const Case& of, const Result& r, const vehicle::TyreSpec& tyre) {
+/// Pull over slip, beside four wheels of the semi-empirical equations on a quarter of the weight each, on the first
+/// soil of the lane, at the slips at which it carries them.
+inline io::Plot pull_plot(const Case& of, const Result& r, const terramechanics::Wheel& wheel) {
+  const terramechanics::NamedSoil& soil = of.lane[0].soil;
   io::Plot plot{.title = "Drawbar pull on " + ground_of(of), .x_label = "slip 1 - v/(ωr)", .y_label = "pull [kN]"};
   io::Series car{.name = "car on a load cell", .style = io::SeriesStyle::LinePoints};
   for (const PullPoint& p : r.pulls) car.x.push_back(p.slip), car.y.push_back(1e-3 * p.pull);
-  io::Series wheels{.name = "four single wheels, equations of Bekker and Wong", .style = io::SeriesStyle::Dashed};
+  io::Series wheels{.name = "four single wheels on " + soil.name + ", equations of Bekker and Wong",
+                    .style = io::SeriesStyle::Dashed};
   for (double slip = 0.05; slip < 0.81; slip += 0.05) {
-    const auto w = terramechanics::wheel_under_load({.radius = tyre.radius, .width = tyre.width}, of.lane[0].soil.soil,
-                                                    {slip}, 0.25 * r.weight);
-    wheels.x.push_back(slip), wheels.y.push_back(4e-3 * w.pull);
+    try {
+      const auto w = terramechanics::wheel_under_load(wheel, soil.soil, {slip}, 0.25 * r.weight);
+      wheels.x.push_back(slip), wheels.y.push_back(4e-3 * w.pull);
+    } catch (const Error&) {
+      // The soil does not carry the wheel at this slip.
+    }
   }
-  plot.series = {std::move(car), std::move(wheels)};
+  plot.series = {std::move(car)};
+  if (!wheels.x.empty()) plot.series.push_back(std::move(wheels));
   return plot;
 }
 

@@ -33,25 +33,20 @@ struct Sample {
   std::array<WheelSample, 4> wheels = {};
   std::array<vehicle::SuspensionSample, 4> suspension = {};
 
-  [[nodiscard]] double mean(double WheelSample::*value) const {
-    return 0.25 * (wheels[0].*value + wheels[1].*value + wheels[2].*value + wheels[3].*value);
-  }
+  [[nodiscard]] double mean(double WheelSample::*value) const { return vehicle::mean_of(wheels, value); }
   [[nodiscard]] std::vector<std::string> columns() const {
     std::vector<std::string> names;
     vehicle::add_columns(names, car);
     names.insert(names.end(), {"way_m", "acceleration_m_per_s2", "cost_of_transport", "hitch_N", "widest_joint_m",
                                "deepest_overlap_of_edge", "asleep"});
-    for (std::size_t k = 0; k < 4; ++k) {
-      vehicle::add_columns(names, wheels[k], std::string(vehicle::corner_letters[k]) + "_");
-      vehicle::add_columns(names, suspension[k], std::string(vehicle::corner_letters[k]) + "_");
-    }
+    vehicle::add_corner_columns(names);
     return names;
   }
   [[nodiscard]] std::vector<double> row() const {
     std::vector<double> row;
     vehicle::add_values(row, car);
     row.insert(row.end(), {way, acceleration, cost_of_transport, hitch, widest_joint, overlap, asleep});
-    for (std::size_t k = 0; k < 4; ++k) vehicle::add_values(row, wheels[k]), vehicle::add_values(row, suspension[k]);
+    vehicle::add_corner_values(row, wheels, suspension);
     return row;
   }
   template <class V>
@@ -150,8 +145,8 @@ struct Campaign {
   std::optional<report::Replay> replay = {};
 
   // Of the samples, by evaluate()
-  /// Over the second half of the way; where the car brakes or coasts from half of the path on, over the quarter of the
-  /// path before.
+  /// Over the second half of the way, which may be one back; where the car brakes or coasts from half of the path on,
+  /// over the quarter of the path before.
   Means means = {};
   /// Where the ground changes: with all wheels on the first ground, with the front wheels on the other one, with all.
   std::array<Means, 3> stretches = {};
@@ -215,7 +210,7 @@ inline Means means_between(const Campaign& c, double radius, double from, double
 inline void evaluate_turn(Campaign& c, double wheelbase) {
   double n = 0.0, steer = 0.0, yaw = 0.0, speed = 0.0;
   for (const Sample& x : c.samples) {
-    if (!(x.way >= c.means.from_way)) continue;
+    if (!(x.way >= c.means.from_way) || x.way >= c.means.to_way) continue;
     n += 1.0, speed += x.car.speed, steer += x.car.steer, yaw += x.car.yaw_rate;
   }
   if (n < 3.0 || yaw == 0.0) return;
@@ -261,8 +256,9 @@ inline void evaluate(Campaign& c, const Settings& s) {
   c.drift = last.car.position.y() - c.samples.front().car.position.y();
 
   const bool slows = s.scene == "brake" || s.scene == "coast";
-  c.means = slows ? means_between(c, radius, 0.25 * s.path, 0.5 * s.path)
-                  : means_between(c, radius, 0.5 * last.way, not_known);
+  c.means = slows            ? means_between(c, radius, 0.25 * s.path, 0.5 * s.path)
+            : last.way < 0.0 ? means_between(c, radius, -HUGE_VAL, 0.5 * last.way)
+                             : means_between(c, radius, 0.5 * last.way, not_known);
   if (s.has_border()) {
     const double half = 0.5 * s.border, rear = s.border + s.car.wheelbase();
     c.stretches = {means_between(c, radius, half, s.border), means_between(c, radius, s.border, rear),

@@ -14,7 +14,10 @@
 namespace dem::rig::soft_lane {
 
 inline io::Table drive_table(const Settings& s, const Campaign& c) {
-  io::Table t{.caption = "The drive; means over the second half of the way",
+  const char* caption = s.scene == "brake" || s.scene == "coast"
+                            ? "The drive; means over the quarter of the path before the driver lets go"
+                            : "The drive; means over the second half of the way";
+  io::Table t{.caption = caption,
               .header = {"scene", "ended", "way [m]", "time [s]", "speed [m/s]", "slip", "sinkage [mm]", "pull [kN]",
                          "torque [kN m]", "resistance [kN]", "of the weight", "drift [mm]"}};
   const bool any = !c.samples.empty();

@@ -1,0 +1,71 @@
+#pragma once
+// A tyre on hard ground as part of a machine.
+
+#include <dem/mbd/load/terrain_part.hpp>
+#include <dem/vehicle/tyre.hpp>
+
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace dem::vehicle {
+
+/// A tyre on a road as a terrain of a machine: its stretch is copied and saved with the machine.
+class RoadTyre final : public mbd::Terrain {
+ public:
+  /// `axis` of the wheel is a unit vector to the left, body frame. The force goes into `load`.
+  RoadTyre(const TyreSpec& spec, const Road& road, BodyId wheel, const Vec3& axis, LoadId load)
+      : spec_(spec), road_(road), wheel_(wheel), axis_(axis), load_(load) {}
+
+  /// In the newest evaluation of the forces.
+  const TyreState& state() const { return newest_; }
+
+  std::unique_ptr<mbd::Terrain> copy() const override { return std::make_unique<RoadTyre>(*this); }
+
+  void evaluate(const std::vector<Body>& bodies, std::vector<mbd::Load>& loads, const mbd::TerrainStep& step) override {
+    newest_ = kept_;
+    loads[load_.index()].wrench = tyre_wrench(spec_, road_, bodies[wheel_.index()], axis_, step.time, newest_);
+    if (step.is_kept || kept_.time < 0.0) kept_ = newest_;  // the first evaluation starts the clock
+  }
+
+  std::string set_up() const override {
+    const TyreSpec& t = spec_;
+    const Vec3 &p = road_.point, &n = road_.normal;
+    const std::string ground = road_.heights ? road_.heights->in_words()
+                                             : text("a plane through ({}, {}, {}) m across ({}, {}, {})", p.x(), p.y(),
+                                                    p.z(), n.x(), n.y(), n.z());
+    return text(
+        "tyre of {} m x {} m, stiffness {}, damping {}, friction {}, tread stiffness {} and {}, tread damping {}, "
+        "relaxation length {}, axis ({}, {}, {}), of body {} on {}, friction {}, print {} m",
+        t.radius, t.width, t.stiffness, t.damping, t.friction, t.tread_stiffness, t.lateral_stiffness, t.tread_damping,
+        t.relaxation_length, axis_.x(), axis_.y(), axis_.z(), wheel_.value, ground, road_.friction, road_.print);
+  }
+  std::vector<double> memory() const override {
+    std::vector<double> numbers;
+    for (const TyreState* s : {&kept_, &newest_}) {
+      TyreState copy = *s;
+      copy.each([&](double x) { numbers.push_back(x); });
+    }
+    return numbers;
+  }
+  void set_memory(const std::vector<double>& numbers) override {
+    std::size_t count = 0;
+    for (TyreState* s : {&kept_, &newest_}) {
+      s->each([&](double& x) {
+        if (count < numbers.size()) x = numbers[count];
+        ++count;
+      });
+    }
+    if (count != numbers.size()) fail("the saved memory of a tyre has {} numbers, but needs {}", numbers.size(), count);
+  }
+
+ private:
+  TyreSpec spec_;
+  Road road_;
+  BodyId wheel_;
+  Vec3 axis_;
+  LoadId load_;
+  TyreState kept_, newest_;  ///< of the newest step, of the newest evaluation
+};
+
+}  // namespace dem::vehicle
