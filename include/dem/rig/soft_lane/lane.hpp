@@ -53,9 +53,7 @@ std::array<SpeciesId, 2> add_soils(World<Model>& world, const Settings& s, const
     ContactParameters<Model> c = grain_contact<Model>(s.grains, friction);
     const double weight = 9.81 * s.grains.density * shape.volume();
     if constexpr (requires { c.cohesion.force; }) {
-      // Over half of the depth at which spring and pull balance, so that grains hold each other.
-      const double force = cohesion * weight, stiffness = s.grains.scale() * s.grains.stiffness;
-      c.cohesion = {.force = force, .depth = 0.5 * force / stiffness};
+      c.cohesion = {.force = cohesion * weight};  // at once: what comes on over a depth needs a smaller time step
     } else if (cohesion > 0.0) {
       fail("--second-cohesion is {:g}, but the grains of this model have no cohesion; it must be 0", cohesion);
     }
