@@ -129,7 +129,10 @@ TEST_CASE("a state of other soil columns is refused in words, and a part that le
   short_bed.length_x = 0.31;  // the runners end at 0.3
   SledgeWorld<models::VerletBalls> leaving(1, short_bed);
   REQUIRE(leaving.world.run(1).note.empty());
-  const StepReport report = leaving.world.run_for(0.3);
+  const StepReport left = leaving.world.run_for(0.3);
+  CHECK(left.problem == StepReport::Problem::machine);
+  CHECK_THAT(left.text, ContainsSubstring("body 'sledge' leaves the soil"));
+  const StepReport report = leaving.world.run_for(0.1);
   CHECK(report);  // it goes on, without soil
   CHECK_THAT(report.note, ContainsSubstring("leaves the soil"));
   CHECK_FALSE(leaving.soil.report().ok);

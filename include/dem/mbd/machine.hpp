@@ -3,6 +3,7 @@
 #include <dem/mbd/solver/solver.hpp>
 
 #include <cmath>
+#include <string>
 #include <type_traits>
 
 namespace dem::mbd {
@@ -32,8 +33,9 @@ class Machine : public Mechanism {
     return report();
   }
 
-  /// Steps of dt (s) for a duration (s; the number of steps is rounded). Stops at the first body that blows up. Throws
-  /// Error as step does, between two steps, and for more steps than 9e15.
+  /// Steps of dt (s) for a duration (s; the number of steps is rounded). Stops at the first body that blows up, and at
+  /// what goes wrong with a terrain, such as a wheel that leaves the soil: each such thing ends one run, and the next
+  /// goes on after it. Throws Error as step does, between two steps, and for more steps than 9e15.
   [[nodiscard]] MachineReport run(double duration, double dt) {
     return run(duration, dt, [] {});
   }
@@ -48,7 +50,8 @@ class Machine : public Mechanism {
       fail("time to run is {:g} s, {:g} steps of {:g} s, but must be at most 9e15 steps", duration, whole, dt);
     }
     const auto steps = static_cast<long long>(whole);
-    for (long long s = 0; s < steps && !solver_.has_blown_up(); ++s) {
+    terrain_problem_.clear();
+    for (long long s = 0; s < steps && !solver_.has_blown_up() && terrain_problem_.empty(); ++s) {
       if (s > 0) prepare(dt);  // after_step may have changed something
       advance(dt);
       if constexpr (std::is_same_v<std::invoke_result_t<F&>, bool>) {
@@ -72,11 +75,12 @@ class Machine : public Mechanism {
     gravity = g;
     solver_.initialise(*this, time, g, [] {});
   }
-  /// All is well; or which body blew up, when, and what to change; or which joint stood open beyond joint_tolerance
-  /// with most_substeps since the machine was last laid out, and the time step that keeps it closed. The run went on to
-  /// its end with it.
+  /// All is well; or which body blew up, when, and what to change; or what went wrong with a terrain in the newest
+  /// step; or which joint stood open beyond joint_tolerance with most_substeps since the machine was last laid out, and
+  /// the time step that keeps it closed. An open joint does not end a run.
   MachineReport report() const {
     MachineReport report = solver_.report(*this);
+    if (report && !terrain_problem_.empty()) report = {false, time(), {}, {}, terrain_problem_, {}};
     if (report) report = solver_.report_of(*this, open_);
     report.note = solver_.note(*this);
     return report;
@@ -110,6 +114,7 @@ class Machine : public Mechanism {
     solver_.step(*this, dt, gravity);
     const JointOpening open = solver_.close_joints(*this, false);
     if (open.share > open_.share) open_ = open;
+    if (!parts().terrains.empty()) terrain_problem_ = take_terrain_problem(parts());
   }
   /// Lays the machine out for steps of dt (s), as far as that is due. Throws Error if they are too large.
   DEM_COLD void accept(double dt) {
@@ -139,7 +144,8 @@ class Machine : public Mechanism {
   }
 
   Solver<I, Joints> solver_;
-  JointOpening open_;  // farthest, of those that more sub-steps did not close
+  JointOpening open_;            // farthest, of those that more sub-steps did not close
+  std::string terrain_problem_;  // of the newest step, in words
   bool is_designed_ = false;
   double accepted_dt_ = 0.0;  // s, that was compared with the stable time step
 };

@@ -18,8 +18,12 @@ namespace dem::terramechanics {
 ///
 /// This is a handle: the machine has the columns. of() makes one for a copy of the machine. Grains do not feel the
 /// columns, only machine parts do. The force on each body is a load, "soil under <body>", which can be switched off and
-/// is counted as work like any other. The stable time step does not know the soil: a step below sqrt(m/k) with
-/// k = loads()[part].stiffness is safe.
+/// is counted as work like any other. terramechanics/rut_vtk.hpp writes ruts for ParaView: add_vtk_frame(series, time,
+/// soil.soil().field()).
+///
+/// The stable time step does not know the soil: a step below sqrt(m/k) with k = loads()[part].stiffness is safe. A step
+/// at which the soil throws a body up ends the run once, with a problem that names the body; so does a part that leaves
+/// the field.
 class MachineColumns {
  public:
   /// Throws Error for a field that cannot be (check_columns), or a name that another terrain of the machine has.
@@ -69,6 +73,7 @@ class MachineColumns {
     ColumnTerrain& t = terrain();
     t.parts.push_back(part);
     t.body_of.push_back(body);
+    t.name_of.push_back(machine_->body(body).name);
     t.load_of.push_back(load);
     return t.parts.size() - 1;
   }
@@ -95,7 +100,7 @@ class MachineColumns {
   /// What each part feels, in the newest evaluation of the forces.
   const std::vector<ColumnLoad>& loads() const { return soil().loads(); }
   /// What became of the newest evaluation: a part that leaves the soil is told here, and in the notes of the reports of
-  /// machine and world.
+  /// machine and world. The first time it ends their run as a problem.
   const ColumnsReport& report() const { return terrain().report; }
   TerrainId id() const { return id_; }
 

@@ -136,6 +136,8 @@ class SoilColumns {
     ColumnLoad load;
   };
 
+  void take(std::span<const ColumnPart> parts);
+  void add_strips(const ColumnPart& part, std::int32_t number, ColumnsReport& report);
   bool lay_out(std::span<const ColumnPart> parts, ColumnsReport& report);
   void look(const ColumnPart& part, Strip& strip) const;
   void claim(std::size_t parts);
@@ -160,15 +162,12 @@ class SoilColumns {
   std::vector<std::size_t> rows_;
 };
 
-/// Strips of columns that may be under the parts. False if nothing can be computed.
-inline bool SoilColumns::lay_out(std::span<const ColumnPart> parts, ColumnsReport& report) {
-  const ColumnGrid& g = field_.grid;
-  strip_count_ = 0;
+/// The laws of the soils under the parts, and the parts' velocities.
+inline void SoilColumns::take(std::span<const ColumnPart> parts) {
   laws_.clear();
   slopes_.clear();
   for (const Soil& soil : soils_) slopes_.push_back(std::tan(soil.shear.friction_angle));
   velocity_.clear();
-  loads_.assign(parts.size(), {});
   for (std::size_t p = 0; p < parts.size(); ++p) {
     const ColumnPart& part = parts[p];
     if (!part.shape) fail("part {} on soil columns has no shape; give it one, such as a ColumnCylinder", p);
@@ -178,56 +177,56 @@ inline bool SoilColumns::lay_out(std::span<const ColumnPart> parts, ColumnsRepor
     }
     for (const Soil& soil : soils_) laws_.emplace_back(soil, width, spec_.thickness);
     velocity_.push_back(part.body.velocity);
-    const std::int32_t owner = part.continues >= 0 ? part.continues : static_cast<std::int32_t>(p);
+    if (part.continues < 0) continue;
     if (part.continues >= static_cast<std::int32_t>(p))
       fail("part {} on soil columns goes on with part {}, but can only with one before it", p, part.continues);
-    if (part.continues >= 0) {  // the mean of the pieces: a tread turns about its axle
-      Vector3<double>& mean = velocity_[static_cast<std::size_t>(owner)];
-      const double pieces = static_cast<double>(p - static_cast<std::size_t>(owner)) + 1.0;
-      mean += (1.0 / pieces) * (part.body.velocity - mean);
-    }
-    const ShapePose pose = part.pose();
-    const Vector3<double> spin = part.body.rotation * part.body.angular_velocity;
-    const Matrix3<double>& r = pose.rotation;
-    const double axes = dot(r.row0, r.row0) + dot(r.row1, r.row1) + dot(r.row2, r.row2);  // 3 but for rounding
-    const double sum =
-        dot(pose.position, pose.position) + dot(part.body.velocity, part.body.velocity) + dot(spin, spin);
-    if (!(sum < 1e300 && std::abs(axes - 3.0) < 1e-3)) {
+    // The mean of the pieces: a tread turns about its axle.
+    const auto owner = static_cast<std::size_t>(part.continues);
+    const double pieces = static_cast<double>(p - owner) + 1.0;
+    velocity_[owner] += (1.0 / pieces) * (part.body.velocity - velocity_[owner]);
+  }
+}
+
+/// The strips of columns that may be under a part. What of it is not over the field is told of.
+inline void SoilColumns::add_strips(const ColumnPart& part, std::int32_t number, ColumnsReport& report) {
+  const ColumnGrid& g = field_.grid;
+  const PlanBox box = part.shape->shadow(part.pose(), top_);
+  if (box.empty()) return;
+  if (!g.holds(box)) {
+    loads_[static_cast<std::size_t>(number)].leaves = true;
+    report.ok = false;
+    report.part = number;
+    report.text = leaving_in_words(fmt::format("part {} on soil columns", number), part, g);
+    if (!g.meets(box)) return;
+  }
+  const ColumnRange under = g.around(box);
+  for (std::size_t iy = under.from_y; iy <= under.to_y; ++iy) {
+    if (strip_count_ == strips_.size()) strips_.emplace_back();
+    Strip& s = strips_[strip_count_++];
+    s.part = number;
+    s.owner = part.continues >= 0 ? part.continues : number;
+    s.iy = iy;
+    s.from = under.from_x;
+    s.to = under.to_x;
+  }
+}
+
+/// Strips of columns that may be under the parts. False if nothing can be computed.
+inline bool SoilColumns::lay_out(std::span<const ColumnPart> parts, ColumnsReport& report) {
+  strip_count_ = 0;
+  loads_.assign(parts.size(), {});
+  take(parts);
+  for (std::size_t p = 0; p < parts.size(); ++p) {
+    if (!parts[p].is_somewhere()) {
       report.ok = false;
+      report.part = static_cast<std::int32_t>(p);
       report.text = fmt::format(
           "part {} on soil columns is nowhere: its position or velocity is not finite, or its rotation is none; lower "
           "the time step",
           p);
       return false;
     }
-    const PlanBox box = part.shape->shadow(pose, top_);
-    if (box.empty()) continue;
-    const auto index = [&](double at, double low, std::size_t n) {
-      return static_cast<std::size_t>(std::clamp(std::floor((at - low) / g.spacing), 0.0, static_cast<double>(n - 1)));
-    };
-    const double high_x = g.low_x + g.spacing * static_cast<double>(g.nx),
-                 high_y = g.low_y + g.spacing * static_cast<double>(g.ny);
-    if (box.low_x < g.low_x || box.high_x > high_x || box.low_y < g.low_y || box.high_y > high_y) {
-      report.ok = false;
-      report.text = fmt::format(
-          "part {} on soil columns leaves the soil at ({:g}, {:g}) m: there is none outside of x {:g} to {:g} and y "
-          "{:g} "
-          "to {:g} m; enlarge the field",
-          p, pose.position.x, pose.position.y, g.low_x, high_x, g.low_y, high_y);
-      if (box.high_x < g.low_x || box.low_x > high_x || box.high_y < g.low_y || box.low_y > high_y) continue;
-    }
-    const double h = 0.5 * g.spacing;  // a column whose middle is a spacing away holds a point half of one away
-    const std::size_t x0 = index(box.low_x - h, g.low_x, g.nx), x1 = index(box.high_x + h, g.low_x, g.nx);
-    const std::size_t y0 = index(box.low_y - h, g.low_y, g.ny), y1 = index(box.high_y + h, g.low_y, g.ny);
-    for (std::size_t iy = y0; iy <= y1; ++iy) {
-      if (strip_count_ == strips_.size()) strips_.emplace_back();
-      Strip& s = strips_[strip_count_++];
-      s.part = static_cast<std::int32_t>(p);
-      s.owner = owner;
-      s.iy = iy;
-      s.from = x0;
-      s.to = x1;
-    }
+    add_strips(parts[p], static_cast<std::int32_t>(p), report);
   }
   return true;
 }
@@ -278,6 +277,7 @@ inline void SoilColumns::press(const ColumnPart& part, double dt, bool shared, S
     s.load.force += f.force;
     s.load.torque += cross(arm, f.force);
     s.load.stiffness += f.stiffness;
+    s.load.area += field_.grid.area() * hit.contact.share;
     ++s.load.columns;
   }
 }
@@ -301,6 +301,7 @@ inline ColumnsReport SoilColumns::evaluate(std::span<const ColumnPart> parts, do
     load.force += s.load.force;
     load.torque += s.load.torque;
     load.stiffness += s.load.stiffness;
+    load.area += s.load.area;
     load.columns += s.load.columns;
     report.columns += s.load.columns;
     for (const ColumnChange& change : s.changes) report.on_base += change.on_base ? 1 : 0;

@@ -277,6 +277,10 @@ StepReport find_problem(WorldState<Model>& w) {
   if (const auto report = w.machine_solver.newly_opened(w.machine); !report) {
     return problem(StepReport::Problem::joint, report.text);
   }
+  if (!w.machine.parts().terrains.empty()) [[unlikely]] {
+    if (std::string text = mbd::take_terrain_problem(w.machine.parts()); !text.empty())
+      return problem(StepReport::Problem::machine, text + " (" + when() + ")");
+  }
   return {StepReport::Problem::none, w.time, w.step, {}, {}, {}};
 }
 

@@ -65,9 +65,9 @@ class World : public WorldGrains<M> {
   /// Runs one step. Where ranks share the grains each call tells all ranks all grains, as each run() does: run(n) costs
   /// less than n calls.
   [[nodiscard]] StepReport step() { return run(1); }
-  /// Runs n steps, or fewer if a problem shows. A lost grain is reported once: a run may go on without it. An exception
-  /// of a law, a shape or a function of your own arrives here, from whichever thread; the world may then be looked at,
-  /// but not run on.
+  /// Runs n steps, or fewer if a problem shows. A lost grain, or a body that leaves soil columns, is reported once: a
+  /// run may go on without it. An exception of a law, a shape or a function of your own arrives here, from whichever
+  /// thread; the world may then be looked at, but not run on.
   [[nodiscard]] StepReport run(std::uint64_t n) { return run(n, always); }
   /// The same, asking `goes_on()` after each step: false ends the run there, with all well. What it changes of the
   /// set-up (bodies, joints, surfaces, contact constants, species) is prepared for before the next step, as between

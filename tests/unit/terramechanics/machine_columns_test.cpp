@@ -4,8 +4,11 @@
 #include <dem/mbd/machine.hpp>
 #include <dem/terramechanics/column_wheel.hpp>
 
+#include <array>
 #include <cmath>
+#include <memory>
 #include <numbers>
+#include <string>
 
 #include "catch.hpp"
 #include "rolling_wheel.hpp"
@@ -101,6 +104,11 @@ TEST_CASE("a wheel of the library's rig on columns feels what the wheel alone do
   }
   CHECK_THROWS_WITH(roll_on_columns({}, 1.0), ContainsSubstring("slip of a wheel on columns"));
   CHECK_THROWS_WITH(roll_on_columns({.load = 10.0}, 0.1), ContainsSubstring("weight of a wheel on columns"));
+  CHECK_THROWS_WITH(roll_on_columns({.wheel = {.radius = 0.13, .width = 0.16, .grouser_share = 2.0}}, 0.1),
+                    ContainsSubstring("share of the grousers"));
+  CHECK_THROWS_WITH(roll_on_columns({.travel = 1e-6}, 0.0),
+                    ContainsSubstring("travels 1e-06 m") && ContainsSubstring("time step of 0.00025 s"));
+  CHECK_THROWS_WITH(roll_on_columns({.time_step = 0.0}, 0.0), ContainsSubstring("time step of a wheel on columns"));
 }
 
 TEST_CASE("a block comes to rest on columns and weighs what it weighs") {
@@ -113,12 +121,93 @@ TEST_CASE("a block comes to rest on columns and weighs what it weighs") {
   const auto foot = std::make_shared<ColumnBox>(Vector3<double>{0.03, 0.1, 0.01});
   soil.add(block, foot, {-0.035, 0, 0.006});
   soil.add(block, foot, {0.035, 0, 0.006});
+  const SensorId contacts = machine.add_sensor(mbd::contact_sensor("under the block", block, 0.0));
   REQUIRE(machine.run(1.0, 2e-4).ok);
+  CHECK(machine.sensor(contacts).latest().force.z == Approx(19.62).epsilon(1e-3));
   CHECK(soil.loads()[0].force.z == Approx(9.81).epsilon(1e-3));
   CHECK(soil.loads()[1].force.z == Approx(9.81).epsilon(1e-3));
   CHECK(machine.body(block).velocity().norm() < 1e-4);
   const double p = 9.81 / (0.03 * 0.1);
   CHECK(0.001 - machine.body(block).position().z() + 0.05 > 0.99 * under(melanz_sand.pressure, 0.03).sinkage(p));
+}
+
+TEST_CASE("a step that is too large for the soil, and a part that leaves it, end a run once, with the body's name") {
+  const auto hull_on = [](mbd::Machine<integrator::VelocityVerlet>& machine, const Vec3& velocity) {
+    const BodyId hull = machine.add_body(mbd::box_body("hull", {0.1, 0.1, 0.1}, 500.0).at({0, 0, 0.051}));
+    machine.body(hull).motion.velocity = from_eigen(velocity);
+    MachineColumns soil(
+        machine, {.low_x = -0.2, .low_y = -0.2, .length_x = 0.4, .length_y = 0.4, .soil = melanz_sand, .damping = 1e4});
+    soil.add(hull, std::make_shared<ColumnBox>(Vector3<double>{0.1, 0.1, 0.1}), {0, 0, 0.051});
+    return soil;
+  };
+  mbd::Machine<integrator::VelocityVerlet> coarse, fine, leaving;
+  const MachineColumns there = hull_on(coarse, {0, 0, 0});
+  const mbd::MachineReport thrown = coarse.run(1.0, 1e-2);
+  CHECK_FALSE(thrown.ok);
+  CHECK(thrown.time < 0.5);
+  CHECK_THAT(thrown.text, ContainsSubstring("the soil under body 'hull' asks for steps below 0.00") &&
+                              ContainsSubstring("but they are 0.01 s"));
+  CHECK(coarse.run(0.5, 1e-2).ok);
+  CHECK(there.report().ok);
+  hull_on(fine, {0, 0, 0});
+  const mbd::MachineReport rests = fine.run(1.0, 1e-3);
+  CHECK(rests.ok);
+  CHECK(rests.note.empty());
+
+  const MachineColumns left = hull_on(leaving, {2.0, 0, -0.2});
+  const mbd::MachineReport gone = leaving.run(1.0, 1e-3);
+  CHECK_FALSE(gone.ok);
+  CHECK(gone.time == Approx(0.075).margin(0.03));
+  CHECK_THAT(gone.text, ContainsSubstring("body 'hull' leaves the soil at (0.1"));
+  const mbd::MachineReport on = leaving.run(0.01, 1e-3);
+  CHECK(on.ok);
+  CHECK_THAT(on.note, ContainsSubstring("body 'hull': part 0 on soil columns leaves the soil"));
+  CHECK_FALSE(left.report().ok);
+}
+
+TEST_CASE("columns without damping under a free body, and a wheel below its axle, are noted") {
+  mbd::Machine<integrator::VelocityVerlet> machine;
+  const BodyId wheel = machine.add_body(mbd::sphere_body("wheel", 0.1, 2000.0).at({0, 0, 0.1}));
+  MachineColumns soil(
+      machine, {.low_x = -0.3,
+                .low_y = -0.3,
+                .length_x = 0.6,
+                .length_y = 0.6,
+                .soil = {.pressure = Bekker{.k_c = 1.4, .k_phi = 820.0, .n = 1.0}, .shear = {.displacement = 0.01}}});
+  soil.add(wheel, std::make_shared<ColumnCylinder>(0.1, 0.1), {0, 0, 0.1});
+  const mbd::MachineReport report = machine.run(0.3, 1e-3);
+  CHECK(report.ok);
+  CHECK_THAT(report.note, ContainsSubstring("body 'wheel' has its axle") && ContainsSubstring("below the ground"));
+  CHECK_THAT(report.note, ContainsSubstring("columns without damping"));
+}
+
+TEST_CASE("the set-up of columns tells shapes, their places on bodies, and soils apart, wherever the bodies are") {
+  struct Wheel {
+    std::shared_ptr<const ColumnShape> shape = std::make_shared<ColumnCylinder>(0.13, 0.16);
+    double aside = 0.05;  // m
+    double angle = 0.3;   // rad, about the axle
+    double border = 0.5;  // m, from where on there is another soil
+    Vec3 body = {0, 0, 0};
+  };
+  const auto set_up = [](const Wheel& w) {
+    mbd::Machine<integrator::VelocityVerlet> machine;
+    const Mat3 turn = to_eigen(rotation_from_vector(Vector3<double>{0.1, 0.7, w.body.x()}));
+    const BodyId hub = machine.add_body(mbd::box_body("hub", {0.1, 0.1, 0.1}, 2000.0).at(w.body, turn));
+    MachineColumns soil(machine, {.soil = melanz_sand});
+    const std::array<Soil, 1> other = {mojave_martian_simulant};
+    soil.soil().lay_soils(other, [&](double x, double) { return x > w.border; });
+    const Mat3 place = to_eigen(rotation_from_vector(Vector3<double>{0, w.angle, 0}));
+    soil.add(hub, w.shape, w.body + turn * Vec3(0.1, w.aside, 0.2), turn * place);
+    return mbd::terrain_of(machine, soil.id()).set_up();
+  };
+  const std::string one = set_up({});
+  CHECK_THAT(one, ContainsSubstring("cylinder of radius 0.13 m and width 0.16 m at (0.1, 0.05, 0.2) m"));
+  CHECK(set_up({.body = {5.3, -2.7, 0.9}}) == one);
+  CHECK(set_up({.shape = std::make_shared<ColumnCylinder>(0.13, 0.17)}) != one);
+  CHECK(set_up({.shape = std::make_shared<ColumnCylinder>(0.131, 0.16)}) != one);
+  CHECK(set_up({.aside = 0.0501}) != one);
+  CHECK(set_up({.angle = 0.31}) != one);
+  CHECK(set_up({.border = 0.52}) != one);
 }
 
 TEST_CASE("bodies that are not there, and shapes without a width, are refused") {

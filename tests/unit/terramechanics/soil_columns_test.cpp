@@ -225,6 +225,7 @@ TEST_CASE("soil has the shape that it is given, and hard ground below") {
   const std::array<ColumnPart, 1> deep = {part(plate, {0.1, 0, 0.005 + 0.02 - 0.011})};
   const ColumnsReport report = soil.apply(deep, 1e-3);
   CHECK(report.on_base == 100);
+  CHECK(soil.loads()[0].area == Approx(0.01));
   CHECK(soil.loads()[0].force.z == Approx(0.01 * (2e6 * 0.01 + 5e7 * 0.001)));
   CHECK_THROWS_WITH(soil.shape_ground([](double x, double) { return 1.0 / (x > 0.0 ? 0.0 : 1.0); }),
                     ContainsSubstring("must be finite"));
@@ -254,7 +255,9 @@ TEST_CASE("parts that leave the soil or are nowhere are reported, not thrown") {
   const ColumnsReport half = soil.apply(edge, 1e-3);
   CHECK(!half.ok);
   CHECK_THAT(half.text, ContainsSubstring("part 0 on soil columns leaves the soil at (0.29, 0) m"));
+  CHECK(half.part == 0);
   CHECK(soil.loads()[0].force.z > 0.0);
+  CHECK(soil.loads()[0].leaves);
   CHECK(!soil.apply(gone, 1e-3).ok);
   CHECK(soil.loads()[0].force.z == 0.0);
   CHECK(soil.apply(above, 1e-3).ok);

@@ -32,8 +32,11 @@ class Terrain {
   virtual std::vector<double> memory() const = 0;
   /// Takes them back. Throws Error if they are not as many as memory() has.
   virtual void set_memory(const std::vector<double>& numbers) = 0;
-  /// What has gone wrong in the newest step, in words; empty if nothing.
-  virtual std::string problem() const { return {}; }
+  /// What has gone wrong since this was asked last, in words; empty if nothing. It ends the run, and the next one goes
+  /// on after it: so each thing is told once.
+  virtual std::string take_problem() { return {}; }
+  /// What is odd about the newest step, in words, for the notes of reports; empty if nothing.
+  virtual std::string note() const { return {}; }
 };
 
 /// The force of a terrain on a body, one for each body that it acts on: the terrain writes it before loads are applied.

@@ -71,8 +71,9 @@ class WindowAverage {
 
 /// What a sensor measures.
 enum class SensorTarget {
-  contacts,  ///< force and torque on a body from outside the machine (the grains), about its centre of mass
-  total,     ///< force and torque on a body from everything but gravity, about its centre of mass
+  contacts,  ///< force and torque on a body from grains, surfaces of other bodies, and terrains (soil columns), about
+             ///< its centre of mass, global axes
+  total,     ///< force and torque on a body from everything but gravity, about its centre of mass, global axes
   joint,     ///< force and torque of a joint on its body b with its limits and friction, about the joint's point
   actuator,  ///< force (N) or, where it turns something, torque (N m) of an actuator, in force.x: see drive_effort
   drive      ///< the same of a prescribed motion's drive
@@ -85,6 +86,7 @@ struct SensorSpec {
   double window = 0.0;  ///< s, over which the mean is taken
 };
 
+/// What a body feels of what it touches: grains, surfaces of other bodies of the machine, and terrains.
 DEM_COLD inline SensorSpec contact_sensor(std::string name, BodyId body, double window) {
   return {std::move(name), SensorTarget::contacts, body.index(), window};
 }

@@ -7,13 +7,23 @@
 
 namespace dem::mbd::detail {
 
+/// What touches a body: grains and surfaces of other bodies, and terrains.
+inline Wrench contacts_of(const Parts& m, std::size_t body) {
+  Wrench w = m.outside[body];
+  if (m.terrains.empty()) return w;
+  for (const Load& load : m.loads) {
+    if (load.spec.by_terrain && load.spec.body.index() == body) w = w + load.wrench;
+  }
+  return w;
+}
+
 /// Hands every sensor what it measures, for the dt (s) that it held.
 inline void sample_sensors(Parts& m, double dt) {
   for (Sensor& s : m.sensors) {
     const std::size_t i = s.spec.index;
     Wrench w;
     switch (s.spec.target) {
-      case SensorTarget::contacts: w = m.outside[i]; break;
+      case SensorTarget::contacts: w = contacts_of(m, i); break;
       case SensorTarget::total: w = {m.bodies[i].force, m.bodies[i].torque}; break;
       case SensorTarget::joint: w = reaction_of(m, i); break;
       case SensorTarget::actuator: w.force.x = m.actuators[i].force; break;

@@ -16,7 +16,7 @@ struct MachineReport {
   BodyId body = {};    ///< the body that went wrong
   JointId joint = {};  ///< the joint that opened beyond joint_tolerance
   std::string text;    ///< what happened and which setting to change; empty if all is well
-  std::string note;    ///< what the library changed of what was given, in words; empty if nothing
+  std::string note;    ///< what the library changed of what was given, or finds odd, in words; empty if nothing
   explicit operator bool() const { return ok; }
 };
 
@@ -43,12 +43,22 @@ DEM_COLD inline MachineReport report_of_opening(const Parts& m, const JointOpeni
   return {false, time, {}, worst.joint, text, {}};
 }
 
-/// What was changed of what the user gave: velocities at the start, sub-steps (`from` 0: not). Empty if nothing.
+/// What has newly gone wrong with the terrains, in words; empty if nothing.
+DEM_COLD inline std::string take_terrain_problem(Parts& m) {
+  std::string text;
+  for (TerrainPart& t : m.terrains) {
+    if (const std::string problem = t->take_problem(); !problem.empty()) text += (text.empty() ? "" : "; ") + problem;
+  }
+  return text;
+}
+
+/// What was changed of what the user gave: velocities at the start, sub-steps (`from` 0: not); and what the terrains
+/// have to say. Empty if nothing.
 DEM_COLD inline std::string note_of(const Parts& m, const AssemblyReport& assembly, const JointWatch& joints, int from,
                                     int to) {
   std::string text = assembly.has_changed() ? assembly.text() : "";
   for (const TerrainPart& t : m.terrains) {
-    if (const std::string problem = t->problem(); !problem.empty()) text += (text.empty() ? "" : " ") + problem;
+    if (const std::string note = t->note(); !note.empty()) text += (text.empty() ? "" : " ") + note;
   }
   if (from == 0) return text;
   text += dem::text("{}The machine takes {} substeps instead of {}, to keep its joints within joint_tolerance.",
