@@ -53,7 +53,8 @@ class Team {
   /// False in a process that was forked off: threads stay behind.
   bool is_of_this_process() const { return process_ == getpid(); }
 
-  /// Calls `piece` for 0 ... n-1 on the first `members`; `piece` must not throw. Returns when all are done.
+  /// Calls `piece` for 0 ... n-1 on the first `members`, and on one that is late from a call with more; `piece` must
+  /// not throw. Returns when all are done.
   void run(std::size_t n, int members, Piece piece, void* work) {
     const Help::Time called = Help::Clock::now();
     if (!help_.is_worth_it(called)) {

@@ -27,6 +27,7 @@ class Threads {
   Threads() = default;
   Threads(const Threads& other) : threads_(other.threads_), least_pieces_(other.least_pieces_) {}
   Threads& operator=(const Threads& other) {
+    if (threads_ != other.threads_) team_.reset();
     threads_ = other.threads_;
     least_pieces_ = other.least_pieces_;
     return *this;
@@ -51,7 +52,10 @@ class Threads {
       for (std::size_t k = 0; k < n; ++k) call_piece(f, k, 0);
       return;
     }
-    if (!team_ || team_->size() < members || !team_->is_of_this_process()) team_ = std::make_unique<Team>(members);
+    if (!team_ || team_->size() < members || !team_->is_of_this_process()) {
+      team_.reset();  // its threads end before those of the larger one start
+      team_ = std::make_unique<Team>(members);
+    }
     Work<std::remove_reference_t<F>> work{&f};
     busy_ = true;
     team_->run(n, members, &Work<std::remove_reference_t<F>>::call, &work);

@@ -159,6 +159,12 @@ TEST_CASE("a speed actuator drives to the speed that it is told, which may chang
   REQUIRE(m.run(6.0, 1e-4));
   CHECK(m.speed(axle) == Approx(3.0).epsilon(1e-5));
   CHECK(std::abs(m.actuator(e).force) < 1e-4);
+  m.set_target(e, -1.0);
+  REQUIRE(m.run(6.0, 1e-4));
+  CHECK(m.speed(axle) == Approx(-1.0).epsilon(1e-5));
+  m.set_target(e, Signal::smooth_step(-1.0, 2.0, m.time(), m.time() + 0.2));
+  REQUIRE(m.run(6.0, 1e-4));
+  CHECK(m.speed(axle) == Approx(2.0).epsilon(1e-5));
 
   const JointId other = m.add_joint(revolute("other", m.ground(), m.add_body(ball("wheel", 1.0, 0.2)), {0, 0, 0}, Z));
   m.add_actuator(speed_actuator("start", other, 0.5, Signal::ramp(0.0, 2.0, m.time())));

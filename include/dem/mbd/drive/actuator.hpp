@@ -29,6 +29,7 @@ struct ActuatorSpec {
   double position_gain = 0.0;            ///< K, N/m or N m/rad
   double speed_gain = 0.0;               ///< c, N s/m or N m s/rad
   std::optional<Signal> set_point = {};  ///< m or rad, with its rate; if none is given, the coordinate when it is added
+  bool by_speed = false;                 ///< set_target gives speeds (m/s or rad/s), whose rates do not count
   double max_force = std::numeric_limits<double>::infinity();  ///< N or N m; the force is cut at +- this
   Curve torque_curve = {};  ///< a motor: N m over rad/s (or N over m/s) at full throttle
   double throttle = 0.0;    ///< -1 .. 1; below 0 the motor runs the other way, with the mirrored curve
@@ -79,9 +80,12 @@ DEM_COLD inline ActuatorSpec joint_actuator(std::string name, JointId joint, dou
           .set_point = std::move(set_point)};
 }
 /// A speed controller on the coordinate of a joint: force (N) or torque (N m) = -gain (speed - wanted speed). The
-/// wanted speed (m/s or rad/s) may change with time: Signal::smooth_step(0, 2, 0, 0.2) is a soft start.
+/// wanted speed (m/s or rad/s) may change with time: Signal::smooth_step(0, 2, 0, 0.2) is a soft start. set_target
+/// gives it another one.
 DEM_COLD inline ActuatorSpec speed_actuator(std::string name, JointId joint, double gain, const Signal& speed) {
-  return joint_actuator(std::move(name), joint, 0.0, gain, speed.as_rate());
+  ActuatorSpec s = joint_actuator(std::move(name), joint, 0.0, gain, speed.as_rate());
+  s.by_speed = true;
+  return s;
 }
 /// On three points (section 2.4.2): the angle at `corner` from `toward_a` on body a to `toward_b` on body b, counted
 /// positive about a x b at assembly. It is the turn of a free joint about that normal: give the bodies a joint that
@@ -127,7 +131,7 @@ struct Actuator {
         v.given("idle_speed", spec.idle_speed), v("throttle", spec.throttle);
     v.given("idle_gain", spec.idle_gain), v.given("point_on_a", spec.at_a, "m"), v.given("point_on_b", spec.at_b, "m");
     v.given("toward_a", spec.toward_a, "m"), v.given("toward_b", spec.toward_b, "m");
-    v.given("has_set_point", spec.set_point.has_value()), v("on", spec.on);
+    v.given("has_set_point", spec.set_point.has_value()), v.given("by_speed", spec.by_speed), v("on", spec.on);
     if (spec.set_point) v("set_point", *spec.set_point);
     v("point_a", point_a, "m"), v("point_b", point_b, "m"), v("coordinate", coordinate), v("speed", speed);
     v("force", force), v("target", target.value), v("target_rate", target.rate);

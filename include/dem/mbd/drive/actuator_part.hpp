@@ -65,7 +65,8 @@ DEM_COLD inline JointId joint_on_three_points(Parts& parts, const ActuatorSpec& 
 
 /// A number is no speed: without a position gain the rate of the set point counts alone.
 DEM_COLD inline void refuse_constant_speed(const ActuatorSpec& spec, const Signal& set_point, const std::string& who) {
-  const bool follows_rate = spec.joint.valid() && spec.on && spec.position_gain == 0.0 && spec.speed_gain > 0.0;
+  const bool follows_rate =
+      spec.joint.valid() && spec.on && spec.position_gain == 0.0 && spec.speed_gain > 0.0 && !spec.by_speed;
   if (!follows_rate || !set_point.is_constant()) return;
   const double value = set_point(0.0).value;
   if (value == 0.0) return;

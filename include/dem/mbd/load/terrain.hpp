@@ -16,8 +16,9 @@ struct TerrainStep {
   bool is_kept;  ///< the state is that of a step: what the terrain remembers goes on to it. Else it only answers
 };
 
-/// Ground that gives way and remembers it, as columns of soil do: outside of the machine, but part of its state. It is
-/// copied and saved with the machine. A class of the user's own may stand beside SoilColumns.
+/// Ground that remembers, as columns of soil do their ruts and a tyre on a road its stretch: outside of the machine,
+/// but part of its state. It is copied and saved with the machine. A class of the user's own may stand beside
+/// SoilColumns.
 class Terrain {
  public:
   virtual ~Terrain() = default;

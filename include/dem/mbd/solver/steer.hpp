@@ -23,7 +23,7 @@ DEM_COLD inline void set_friction_preload(Parts& parts, JointId id, double newto
 DEM_COLD inline void set_target(ActuatorSpec& s, Signal signal, bool lasts = true) {
   if (s.has_throttle()) fail("actuator '{}' is a motor, which has no set point; use set_throttle", s.name);
   if (lasts) refuse_constant_speed(s, signal, dem::text("actuator '{}'", s.name));
-  s.set_point = std::move(signal);
+  s.set_point = s.by_speed ? signal.as_rate() : std::move(signal);
 }
 DEM_COLD inline void set_throttle(ActuatorSpec& s, double throttle) {
   if (!s.has_throttle()) fail("actuator '{}' is no motor, so it has no throttle; use set_target", s.name);
