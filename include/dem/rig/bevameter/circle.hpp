@@ -1,5 +1,5 @@
 #pragma once
-// The circle closed: the wheel in the grains beside what the constants of their soil predict.
+// The wheel in the grains beside what the constants of their soil predict.
 
 #include <dem/io/csv.hpp>
 #include <dem/report/plot_data.hpp>
