@@ -31,7 +31,7 @@ class Report {
       make();
     } catch (const std::exception& error) {
       tell(stderr, "{}: {} could not be made: {}\n", session_.program(), name, error.what());
-      is_complete_ = false;
+      has_failed_ = true;
     }
   }
 
@@ -61,26 +61,25 @@ class Report {
     show(html, io::render_map(map, folder() / name), caption);
   }
 
-  /// Says what there is and what is missing. `has_frames`: there are files for ParaView. Returns whether all parts were
-  /// made; that gnuplot is not there is no failure.
+  /// Whether no part failed, of the reports of runs within this one neither. Files for ParaView are no parts.
+  [[nodiscard]] bool has_all_parts() const { return !has_failed_ && outcome().report_problem.empty(); }
+
+  /// Says what there is and what is missing. `has_frames`: there are files for ParaView. Returns whether nothing is
+  /// missing; that gnuplot is not there is no failure.
   bool finish(bool has_frames) {
     if (!not_drawn_.empty()) {
       tell(stderr, "{}: the plots were not drawn ({}); their data and gnuplot scripts are there\n", session_.program(),
            not_drawn_);
     }
-    if (!outcome().frames_problem.empty()) {
-      tell(stderr, "{}: {}\n", session_.program(), frames_text());
-      is_complete_ = false;
-    }
-    if (!outcome().report_problem.empty()) {
-      tell(stderr, "{}: {}\n", session_.program(), outcome().report_problem);
-      is_complete_ = false;
-    }
-    if (is_complete_) {
+    const Outcome& o = outcome();
+    if (!o.frames_problem.empty()) tell(stderr, "{}: {}\n", session_.program(), frames_text());
+    if (!o.report_problem.empty()) tell(stderr, "{}: {}\n", session_.program(), o.report_problem);
+    const bool is_complete = has_all_parts() && o.frames_problem.empty();
+    if (is_complete) {
       tell(stdout, "Report, {}tables{}: {}\n", has_plots_ && not_drawn_.empty() ? "plots, " : "",
            has_frames ? " and ParaView files" : "", folder().string());
     }
-    return is_complete_;
+    return is_complete;
   }
 
  private:
@@ -113,7 +112,7 @@ class Report {
   const Session& session_;
   std::string title_;
   std::string not_drawn_;  // why; empty if all plots were
-  bool has_plots_ = false, is_complete_ = true;
+  bool has_plots_ = false, has_failed_ = false;
 };
 
 }  // namespace dem::rig

@@ -56,9 +56,9 @@ inline std::string settings_as_they_are(Rig& rig) {
 
 /// Runs a rig, whose settings are resolved, in its own output folder as a stage of another run, and makes its report
 /// there. `session` has begun that stage with the total 1. What ends the run early is thrown here, after the report.
-/// Parts of the report that are missing are noted in the outcome of `session`. The run is kept and gone on with as the
-/// other one is; the files that it goes on from stay until forget_run_within(). `words` are what the rig calls
-/// otherwise than the other run.
+/// Parts of the report and files for ParaView that are missing are noted in the outcome of `session`. The run is kept
+/// and gone on with as the other one is; the files that it goes on from stay until forget_run_within(). `words` are
+/// what the rig calls otherwise than the other run.
 inline void run_within(Session& session, Rig& rig, const char* program, const char* title,
                        std::span<const OwnWord> words = {}) {
   std::vector<std::string> free_settings;
@@ -93,7 +93,9 @@ inline void run_within(Session& session, Rig& rig, const char* program, const ch
     Report report(own, title);
     bool has_frames = false;
     report.part("the report", [&] { has_frames = rig.report(report); });
-    if (!report.finish(has_frames)) {
+    report.finish(has_frames);
+    if (!own.outcome.frames_problem.empty()) session.outcome.frames_problem = own.outcome.frames_problem;
+    if (!report.has_all_parts()) {
       std::string& problem_of_all = session.outcome.report_problem;
       problem_of_all +=
           text("{}Parts of the report in '{}' are missing", problem_of_all.empty() ? "" : ". ", rig.output());

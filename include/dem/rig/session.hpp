@@ -26,7 +26,7 @@ namespace dem::rig {
 struct Outcome {
   bool interrupted = false;
   std::string problem = {};         ///< why it ended early; empty if it did not
-  std::string frames_problem = {};  ///< why files for ParaView are missing; empty if none are
+  std::string frames_problem = {};  ///< why files for ParaView are missing, also of runs within; empty if none are
   std::string report_problem = {};  ///< which runs within this one have reports without parts; empty if none do
   double wall_time = 0.0;           ///< s
 };

@@ -2,13 +2,12 @@
 
 #include <dem/core/error.hpp>
 #include <dem/core/text.hpp>
+#include <dem/math/fingerprint.hpp>
 #include <dem/math/matrix3.hpp>
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <cstddef>
-#include <cstdint>
 #include <memory>
 #include <string>
 #include <utility>
@@ -72,10 +71,8 @@ class RoadHeights {
 
   /// Words that differ where heights differ.
   std::string in_words() const {
-    std::uint64_t hash = 14695981039346656037u;  // FNV-1a, of the numbers' bits
-    for (const double h : heights_) hash = (hash ^ std::bit_cast<std::uint64_t>(h)) * 1099511628211u;
-    return text("{} heights in rows of {} every {} m from ({}, {}) m, hash {}", heights_.size(), across_, spacing_, x0_,
-                y0_, hash);
+    return text("{} heights in rows of {} every {} m from ({}, {}) m, hash {:016x}", heights_.size(), across_, spacing_,
+                x0_, y0_, fingerprint_of(heights_));
   }
 
  private:

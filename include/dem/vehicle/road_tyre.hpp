@@ -49,14 +49,12 @@ class RoadTyre final : public mbd::Terrain {
     return numbers;
   }
   void set_memory(const std::vector<double>& numbers) override {
-    std::size_t count = 0;
+    const std::size_t count = memory().size();
+    if (numbers.size() != count) fail("the saved memory of a tyre has {} numbers, but needs {}", numbers.size(), count);
+    auto next = numbers.begin();
     for (TyreState* s : {&kept_, &newest_}) {
-      s->each([&](double& x) {
-        if (count < numbers.size()) x = numbers[count];
-        ++count;
-      });
+      s->each([&](double& x) { x = *next++; });
     }
-    if (count != numbers.size()) fail("the saved memory of a tyre has {} numbers, but needs {}", numbers.size(), count);
   }
 
  private:

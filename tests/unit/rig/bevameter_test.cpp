@@ -114,16 +114,19 @@ TEST_CASE("a bevameter gives back the constants of a soil that obeys the laws") 
   }
 }
 
-TEST_CASE("a bed that is too small to measure has the density that was asked for, which is said") {
+TEST_CASE("a bed that is too small to measure has the density that was asked for, or the loosest, which is said") {
   MadeSoil soil(mechanics::Bekker{.k_c = 2e4, .k_phi = 3e6, .n = 0.9}, dry);
-  CHECK(bevameter::constants_text(soil.constants(), 0.95).find("as asked for") == std::string::npos);
+  CHECK(bevameter::density_text(soil.constants()).empty());
   soil.plates.solid_fraction = std::nan("");
   const auto c = soil.constants();
   CHECK(c.unit_weight == Approx(9.81 * 2650.0 * dem::soil::cube8_limits.loosest));
   CHECK(c.relative_density == 0.0);
-  CHECK(bevameter::constants_text(c, 0.95).find("relative density 0.00, as asked for: the bed of the plates is too") !=
-        std::string::npos);
+  CHECK(bevameter::constants_text(c, 0.95).find(
+            "relative density 0.00, taken as the loosest: the bed of the plates is too small") != std::string::npos);
   CHECK(bevameter::bed_density(soil.plates).relative_density == 0.0);
+  soil.plates.variant.settings.bed.relative_density = 0.4;
+  CHECK(bevameter::constants_text(soil.constants(), 0.95).find("relative density 0.40, as asked for: the bed") !=
+        std::string::npos);
 }
 
 TEST_CASE("the line of the picture is the soil's, and strengths at the end of the travel are told") {

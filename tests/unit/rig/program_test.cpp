@@ -219,6 +219,26 @@ TEST_CASE("frames that cannot be written cost no results, but are missed") {
   CHECK_THAT(p.page(), ContainsSubstring("Files for ParaView are missing: no place"));
 }
 
+TEST_CASE("frames of a run within another one that cannot be written are missed there, as no parts of a report") {
+  Program p;
+  Scripted inner;
+  inner.folder = (p.path / "inner").string();
+  inner.script = [](Session& session) {
+    session.begin_run(1);
+    session.begin("press");
+    session.give_up_frames("no place", "this load");
+  };
+  p.rig.script = [&](Session& session) {
+    session.begin_run(1);
+    session.begin("inner", 1.0);
+    run_within(session, inner, "inner", "A script within");
+    CHECK(session.outcome.frames_problem == "no place");
+    CHECK(session.outcome.report_problem.empty());
+  };
+  CHECK(p.run() == 1);
+  CHECK_THAT(p.page(), ContainsSubstring("Files for ParaView are missing: no place"));
+}
+
 TEST_CASE("a folder that another run holds is refused") {
   Program p;
   fs::create_directories(p.path);

@@ -9,6 +9,7 @@
 
 #include <cmath>
 #include <memory>
+#include <vector>
 
 using namespace dem;
 using namespace dem::vehicle;
@@ -29,6 +30,15 @@ TEST_CASE("heights of a road are straight between their points, and level beyond
   CHECK_THAT(message_of([] { RoadHeights(0, 0, 0.5, 3, {1, 2, 3, 4}); }), Contains("4 heights in rows of 3"));
   CHECK_THAT(message_of([] { RoadHeights(0, 0, 0.0, 2, {1, 2, 3, 4}); }), Contains("spacing of the heights of a road"));
   CHECK_THAT(message_of([] { RoadHeights(0, 0, 1.0, 2, {1, 2, 3, std::nan("")}); }), Contains("height 3 of a road"));
+}
+
+TEST_CASE("words of a road tell heights from their negative") {
+  std::vector<double> heights{0, 0, 0.05, 0.1, 0.1, 0.05, 0, 0};
+  const RoadHeights hump(0, 0, 0.5, 2, heights), same(0, 0, 0.5, 2, heights);
+  for (double& h : heights) h = -h;
+  const RoadHeights ditch(0, 0, 0.5, 2, heights);
+  CHECK(hump.in_words() == same.in_words());
+  CHECK(hump.in_words() != ditch.in_words());
 }
 
 TEST_CASE("a tyre rolls on a tilted plane of heights as on the plane itself") {
@@ -88,6 +98,7 @@ TEST_CASE(
   CHECK(tyre_of(third, same).stretch_x == tyre_of(first, w).stretch_x);
   CHECK(loaded.memory() == saved.memory());
   CHECK_THAT(message_of([&] { loaded.set_memory({1.0}); }), Contains("memory of a tyre has 1 numbers, but needs 28"));
+  CHECK(loaded.memory() == saved.memory());
   CHECK_THAT(message_of([&] { tyre_of(third, bare); }), Contains("has no tyre on hard ground"));
 }
 

@@ -60,6 +60,7 @@ class BevameterRig : public Rig {
          {static_cast<const Rig*>(&plates_), static_cast<const Rig*>(&shear_), static_cast<const Rig*>(&wheel_)}) {
       forget_run_within(*rig);
     }
+    session.parts().clear();  // without those of the runs within there is nothing to go on with
   }
 
   bool report(Report& report) const override {

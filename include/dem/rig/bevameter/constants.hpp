@@ -33,7 +33,7 @@ struct Constants {
   std::vector<double> rising = {};  ///< Pa, normal stresses whose shear stress is largest at the end of the travel
   double unit_weight = 0.0;         ///< N/m^3
   double relative_density = 0.0;
-  bool is_density_measured = true;  ///< false: the plates' bed is too small for that, and it is what was asked for
+  bool is_density_measured = true;  ///< false: the plates' bed is too small for that (bed_density())
   std::vector<terramechanics::JanosiFit> shear_curves = {};
   terramechanics::Soil bekker_soil = {}, reece_soil = {};
 };
@@ -134,7 +134,8 @@ inline void find_moduli(Constants& c, std::span<const terramechanics::PlateCurve
   c.reece_r_squared = fit_reece(curves, cohesion, c.unit_weight, kind).r_squared;
 }
 
-/// How dense the plates' bed is; what was asked for where it is too small to measure that.
+/// How dense the plates' bed is. Where it is too small to measure that, it is what was asked for, or the loosest where
+/// nothing was.
 struct BedDensity {
   double solid_fraction, relative_density;
   bool is_measured;

@@ -104,14 +104,20 @@ inline std::string cohesion_text(const Constants& c, double confidence) {
               c.has_cohesion ? "" : ", which is no more than none: it goes through the origin");
 }
 
+/// Where a density comes from that was not measured; empty where it was.
+inline std::string density_text(const Constants& c) {
+  if (c.is_density_measured) return "";
+  return text(", {}: the bed of the plates is too small to measure it",
+              c.relative_density > 0.0 ? "as asked for" : "taken as the loosest");
+}
+
 inline std::string constants_text(const Constants& c, double confidence) {
   return text(
       "Unit weight {:.2f} kN/m³, relative density {:.2f}{}. R² of Bekker's pressure {:.3f}, of Reece's {:.3f}. Errors "
       "of the moduli are those of the jackknife over pieces of the curves, as neighbouring points err alike; of phi, "
       "those of the line through the strengths; of K and of the unloading, the scatter between the curves. {}{}{}",
-      1e-3 * c.unit_weight, c.relative_density,
-      c.is_density_measured ? "" : ", as asked for: the bed of the plates is too small to measure it",
-      c.bekker_r_squared, c.reece_r_squared, cohesion_text(c, confidence),
+      1e-3 * c.unit_weight, c.relative_density, density_text(c), c.bekker_r_squared, c.reece_r_squared,
+      cohesion_text(c, confidence),
       c.bekker[0].value == 0.0   ? " Bekker's k_c came out negative, as the wider plates carried more: it is left out."
       : c.bekker[1].value == 0.0 ? " Bekker's k_phi came out negative: it is left out."
                                  : "",

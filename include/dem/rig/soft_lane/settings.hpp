@@ -166,10 +166,9 @@ inline void find_idle(IdleOptions& idle, const Settings& s) {
 }
 
 /// Depth (m) of a trough that so many grains fill as they settle, when `strike_off` of them is taken off.
-inline double depth_of(double grains, double strike_off, double half_edge, double length, double width) {
-  const double rained = std::ceil(grains / (1.0 - strike_off));
-  return rained * 8.0 * half_edge * half_edge * half_edge / soil::solid_fraction_at(0.0, soil::cube8_limits) /
-         (length * width);
+inline double depth_of(double count, double strike_off, const GrainSettings& grains, double length, double width) {
+  const double rained = std::ceil(count / (1.0 - strike_off)), h = grains.half_edge;
+  return rained * 8.0 * h * h * h / soil::solid_fraction_at(0.0, grains.limits) / (length * width);
 }
 
 /// Throws Error unless the lane holds the car and its path.
@@ -246,7 +245,7 @@ inline void resolve(Settings& s) {
   fill(s.bed.lid_pressure, s.is_bed() ? 1000.0 : 5000.0);
   require_positive(s.bed.length, "--bed-length", "m (0: by size)");
   require_positive(s.bed.width, "--bed-width", "m (0: by size)");
-  const double full_depth = depth_of(331'890.0 / s.troughs(), s.bed.strike_off, s.grains.half_edge,
+  const double full_depth = depth_of(331'890.0 / s.troughs(), s.bed.strike_off, s.grains,
                                      s.goes_along() ? by_size.length : s.bed.length, s.bed.width);
   rig::resolve(s.bed, {s.bed.length, s.bed.width, by_size.depth > 0.0 ? by_size.depth : full_depth}, s.output);
   fill(s.speed, is_held ? 0.5 * by_size.speed : by_size.speed);
