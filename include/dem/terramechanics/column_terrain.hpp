@@ -9,6 +9,7 @@
 
 #include <cmath>
 #include <memory>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -57,13 +58,20 @@ class ColumnTerrain final : public mbd::Terrain {
   }
   std::vector<double> memory() const override {
     std::vector<double> numbers = {kept_};
+    watch_.collect(own_loads.size(), numbers);
     soil.collect(numbers);
     return numbers;
   }
   void set_memory(const std::vector<double>& numbers) override {
-    if (numbers.empty()) fail("the saved memory of soil columns is empty");
+    const std::size_t watched = ColumnWatch::of_body * own_loads.size();
+    if (numbers.size() < 1 + watched) {
+      fail("the saved memory of soil columns has {} numbers, but the {} bodies on them alone have {}", numbers.size(),
+           own_loads.size(), 1 + watched);
+    }
+    const std::span<const double> all(numbers);
+    soil.restore(all.subspan(1 + watched));
+    watch_.restore(body_of, all.subspan(1, watched));
     kept_ = numbers[0];
-    soil.restore(std::span(numbers).subspan(1));
   }
   std::string take_problem() override { return watch_.take(); }
   std::string note() const override {
@@ -99,11 +107,14 @@ class ColumnTerrain final : public mbd::Terrain {
 
  private:
   std::string body_in_words(std::size_t part) const { return "body '" + name_of[part] + "'"; }
-  /// m, of a wheel's axle below the ground that the wheel has not pressed; 0 or less for parts that do not press.
+  /// m, of a wheel's axle below the ground that the wheel has not pressed; 0 or less for parts that do not press, and
+  /// for discs that lie flat.
   double depth_of_axle(std::size_t part) const {
     if (soil.loads().size() <= part || soil.loads()[part].columns == 0) return 0.0;
     if (dynamic_cast<const ColumnCylinder*>(parts[part].shape.get()) == nullptr) return 0.0;
-    const Vector3<double> at = parts[part].pose().position;
+    const ShapePose pose = parts[part].pose();
+    if (std::abs(pose.rotation.row2.y) >= 0.7) return 0.0;  // as in ColumnCylinder::shadow
+    const Vector3<double>& at = pose.position;
     const PlanBox middle = {at.x, at.x, at.y, at.y};
     if (!soil.field().grid.holds(middle)) return 0.0;
     const ColumnRange there = soil.field().grid.around(middle);

@@ -85,7 +85,7 @@ struct ColumnLoad {
   double stiffness = 0.0;              ///< N/m, of the soil under it against rising and sinking
   double area = 0.0;                   ///< m^2, of the soil that it presses on, seen from above
   std::size_t columns = 0;             ///< that press
-  bool leaves = false;                 ///< it reaches beyond the field, where there is no soil
+  bool leaves = false;                 ///< its shadow reaches beyond the field, where there is no soil
 };
 
 /// That a part reaches beyond the field.

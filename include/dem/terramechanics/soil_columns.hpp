@@ -106,6 +106,7 @@ class SoilColumns {
   const std::vector<ColumnLoad>& loads() const { return loads_; }
   const ColumnField& field() const { return field_; }
   const ColumnsSpec& spec() const { return spec_; }
+  double top() const { return top_; }  ///< m, no column is higher
   /// Steps that were kept.
   std::uint32_t steps() const { return step_; }
 
