@@ -106,9 +106,9 @@ inline int report_run(const ProgramText& program, const Rig& rig, Session& sessi
     if (!session.parts().parts().empty()) tell(stderr, "{}: --resume goes on with the run\n", program.name);
     return 130;
   }
-  if (!is_complete || !outcome.problem.empty()) return 1;
-  session.parts().clear();
-  return 0;
+  if (!report.has_all_parts() || !outcome.problem.empty()) return 1;
+  session.parts().clear();  // frames that could not be written are not made anew by going on
+  return is_complete ? 0 : 1;
 }
 
 }  // namespace detail
