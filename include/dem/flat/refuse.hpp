@@ -46,6 +46,7 @@ void check_flat(const WorldState<Model>& w) {
   if (w.borders && w.options.beyond_domain == BeyondDomain::remove) {
     fail("grains that leave the domain cannot be removed where the executor is exec::Cuda or exec::Flat{}", instead);
   }
+  if (w.grain_load) fail("grains can have no load law where the executor is exec::Cuda or exec::Flat{}", instead);
   if (w.count_energy) fail("energy cannot be counted where the executor is exec::Cuda or exec::Flat{}", instead);
   for (std::size_t s = 0; s < w.surfaces.size(); ++s) {
     if (is_taken(w.surfaces[s].geometry)) continue;

@@ -6,6 +6,7 @@
 // and everything still works.
 
 #include <dem/core/macros.hpp>
+#include <dem/core/pack_widths.hpp>
 
 #include <cmath>
 #include <cstdint>
@@ -168,5 +169,13 @@ DEM_HOT std::uint32_t bits(bool mask) { return mask ? 1u : 0u; }
 
 /// n rounded up to whole packs.
 constexpr int round_up_to_pack(int n) { return (n + pack_width - 1) / pack_width * pack_width; }
+
+#if !defined(__CUDACC__)
+// Each source of a program says its width: functions that are the same to the linker must be the same. A world refuses
+// to be made of sources that differ.
+namespace {
+[[maybe_unused]] const bool pack_width_is_told = detail::pack_widths.add(pack_width);
+}
+#endif
 
 }  // namespace dem

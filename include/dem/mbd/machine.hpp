@@ -35,7 +35,8 @@ class Machine : public Mechanism {
 
   /// Steps of dt (s) for a duration (s; the number of steps is rounded). Stops at the first body that blows up, and at
   /// what goes wrong with a terrain, such as a wheel that leaves the soil: each such thing ends one run, and the next
-  /// goes on after it. Throws Error as step does, between two steps, and for more steps than 9e15.
+  /// goes on after it. Throws Error as step does, between two steps, for more steps than 9e15, and for a time of less
+  /// than half a step.
   [[nodiscard]] MachineReport run(double duration, double dt) {
     return run(duration, dt, [] {});
   }
@@ -48,6 +49,10 @@ class Machine : public Mechanism {
     const double whole = std::round(duration / dt);
     if (!(whole <= 0x1.0p53)) {  // beyond it time stands still: t + dt = t
       fail("time to run is {:g} s, {:g} steps of {:g} s, but must be at most 9e15 steps", duration, whole, dt);
+    }
+    if (whole == 0.0 && duration > 1e-6 * dt) {  // less is what rounding leaves of a time that is over
+      fail("time to run is {:g} s, less than half of a time step of {:g} s: run(duration, dt) would take no step",
+           duration, dt);
     }
     const auto steps = static_cast<long long>(whole);
     terrain_problem_.clear();
@@ -83,6 +88,7 @@ class Machine : public Mechanism {
     if (report && !terrain_problem_.empty()) report = {false, time(), {}, {}, terrain_problem_, {}};
     if (report) report = solver_.report_of(*this, open_);
     report.note = solver_.note(*this);
+    if (!falls_.empty()) report.note += (report.note.empty() ? "" : " ") + falls_;
     return report;
   }
   /// What was changed of the velocities that were given, at the start: see given_velocities.
@@ -111,7 +117,10 @@ class Machine : public Mechanism {
     solver_.check_motions(*this);
   }
   void advance(double dt) {
-    solver_.step(*this, dt, gravity);
+    {
+      const Stepping stepping(parts());
+      solver_.step(*this, dt, gravity);
+    }
     const JointOpening open = solver_.close_joints(*this, false);
     if (open.share > open_.share) open_ = open;
     if (!parts().terrains.empty()) terrain_problem_ = take_terrain_problem(parts());
@@ -125,6 +134,7 @@ class Machine : public Mechanism {
       initialise(time(), gravity);
       accepted_dt_ = 0.0;
       open_ = {};
+      falls_ = gravity.isZero() ? "" : note_of_loose(parts(), loose_bodies(parts()));
     }
     if (dt != accepted_dt_) {
       check_time_step(dt);
@@ -146,6 +156,7 @@ class Machine : public Mechanism {
   Solver<I, Joints> solver_;
   JointOpening open_;            // farthest, of those that more sub-steps did not close
   std::string terrain_problem_;  // of the newest step, in words
+  std::string falls_;            // that a body is held by nothing, in words
   bool is_designed_ = false;
   double accepted_dt_ = 0.0;  // s, that was compared with the stable time step
 };

@@ -1,12 +1,14 @@
 #pragma once
 
 #include <dem/coupling/surface_contacts.hpp>
+#include <dem/mbd/solver/odd_parts.hpp>
 #include <dem/world/report.hpp>
 #include <dem/world/state.hpp>
 
 #include <array>
 #include <string>
 #include <utility>
+#include <vector>
 
 namespace dem {
 
@@ -35,6 +37,17 @@ std::string note_of_twins(const WorldState<Model>& w) {
     }
   }
   return {};
+}
+
+/// Of bodies that nothing holds and that have nothing to lie on, in words; else empty.
+template <class Model>
+std::string note_of_loose_bodies(const WorldState<Model>& w) {
+  if (w.options.gravity.isZero() || !w.held.empty()) return {};
+  std::vector<std::uint32_t> loose = mbd::loose_bodies(w.machine.parts());
+  std::erase_if(loose, [&](std::uint32_t body) {
+    return std::any_of(w.surfaces.begin(), w.surfaces.end(), [&](const auto& s) { return s.body.index() == body; });
+  });
+  return mbd::note_of_loose(w.machine.parts(), loose);
 }
 
 /// Of densities that hardly any solid has, as those in g/cm^3 or t/mm^3, in words; else empty.

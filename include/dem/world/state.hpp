@@ -5,6 +5,7 @@
 #include <dem/coupling/buried.hpp>
 #include <dem/coupling/machine_surface.hpp>
 #include <dem/grain/energy_ledger.hpp>
+#include <dem/grain/grain_load.hpp>
 #include <dem/grain/held.hpp>
 #include <dem/grain/materials.hpp>
 #include <dem/grain/neighbours.hpp>
@@ -68,8 +69,10 @@ struct WorldState {
   WorldOptions options;
   double time = 0.0;
   double time_step = 0.0;
+  double time_of_forces = 0.0;                ///< s, that the present evaluation is of
   std::optional<std::string> time_step_note;  ///< of a machine that makes it small; none where it is not known yet
   std::uint64_t step = 0;
+  enum class Standing { between_steps, within_a_step, broken_off } standing = Standing::between_steps;
 
   Materials<Model> materials;
   std::vector<Species<Shape>> species;
@@ -90,7 +93,7 @@ struct WorldState {
   bool list_valid = false;        ///< false after grains were added or moved by hand
   bool grains_added = false;      ///< by hand, and are in no list yet: see World::prepare
   Placed placed;
-  std::string twins_note;                ///< in words, of surfaces that are there twice
+  std::string odd_note;                  ///< in words, of surfaces that are there twice, or a body that nothing holds
   std::string placed_note;               ///< in words, of a deep overlap of what was placed before or within this run
   std::uint64_t rebuilds = 0;            ///< neighbour lists made
   std::set<std::uint32_t> known_lost;    ///< ids of grains that were reported as lost
@@ -121,6 +124,8 @@ struct WorldState {
   std::vector<ContactScratch<Model>> scratch;  ///< of the executor's threads
   Stopwatch stopwatch;
 
+  GrainLoadLaw grain_load;  ///< on each grain; usually none
+
   grain::EnergyLedger ledger;
   void (*record_contacts)(WorldState&, std::size_t, ContactScratch<Model>&) = nullptr;  ///< set by count_energy()
   void (*count_energy)(WorldState&) = nullptr;                                          ///< at the end of a step
@@ -146,6 +151,7 @@ struct WorldState {
     v.given("beyond_domain", options.beyond_domain), v.list("outlets", outlets, "outlet");
     v("beyond", beyond_domain), v("energy", ledger), v.list("inlets", inlets, "inlet"), v("put_in_at", put_in_at);
     v("held", held);
+    if (grain_load) v.given("has_grain_load", true);
   }
 
   /// The chunks that this process works on, from first to second: all, unless ranks share them.

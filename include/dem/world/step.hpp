@@ -4,6 +4,7 @@
 #include <dem/world/border_step.hpp>
 #include <dem/world/chunk_contacts.hpp>
 #include <dem/world/flat_step.hpp>
+#include <dem/world/grain_loads.hpp>
 #include <dem/world/neighbours.hpp>
 #include <dem/world/sleep.hpp>
 
@@ -17,6 +18,8 @@ void gather_forces(WorldState<Model>& w, std::size_t c) {
   } else {
     grain::gather_forces<Model>(c, w.chunks, w.grains, w.incoming_first, w.incoming);
   }
+  if (w.grain_load) [[unlikely]]
+    add_grain_loads(w, c);
 }
 
 /// What moves the grains in the present stage.
@@ -86,9 +89,8 @@ void advance(WorldState<Model>& w) {
               .last = last,
               .cleans_rotations = last && w.step % grain::steps_between_orthonormalisations == 0,
               .at_once = !w.load_by_held};
-    if constexpr (domain::IsSheared<typename Model::Domain>) {
-      w.domain.move_to(w.time + (Integrator::predicts_before_forces || stage > 0 ? w.time_step : 0.0));
-    }
+    w.time_of_forces = w.time + (Integrator::predicts_before_forces || stage > 0 ? w.time_step : 0.0);
+    if constexpr (domain::IsSheared<typename Model::Domain>) w.domain.move_to(w.time_of_forces);
     if constexpr (Integrator::predicts_before_forces) {
       w.forget_moved2();
       if constexpr (Model::Domain::has_ranks)
@@ -146,6 +148,7 @@ template <class Model>
 void initialise(WorldState<Model>& w) {
   w.sleepers.all_work = true;
   w.move = {};
+  w.time_of_forces = w.time;
   w.forget_moved2();
   const auto for_each_own_chunk = [&](auto&& f) {
     const auto [begin, end] = w.own_chunks();

@@ -16,7 +16,8 @@
 namespace dem {
 
 /// A simulation: grains, machine, and the laws between them, specialised at compile time for a Model. What is put into
-/// it is in WorldSetup, what is asked and set of single grains in WorldGrains.
+/// it is in WorldSetup, what is asked and set of single grains in WorldGrains. Worlds are values: copies go on with the
+/// same bits. One that was moved from has to be assigned before it is used again.
 template <class M>
 class World : public WorldGrains<M> {
   using Setup = WorldGrains<M>;
@@ -32,7 +33,8 @@ class World : public WorldGrains<M> {
   /// Throws Error if contact constants are missing, the time step is too large, points would pass a two-sided sheet, a
   /// grain lies unseen within a solid mesh, or a prescribed motion would have to jump.
   void prepare() {
-    if (unfinished_) {
+    this->require_no_step("run");
+    if (state_.standing == Standing::broken_off) {
       fail(
           "the step after t = {:g} s was broken off by an exception, so this world stands between two steps: make a "
           "new one",
@@ -53,7 +55,9 @@ class World : public WorldGrains<M> {
     state_.machine.parts().allowed_jump = 0.1 * state_.smallest_radius;
     state_.machine_solver.check_motions(state_.machine);
     if (!initialised_ || !machine_is_initialised()) {
-      together(state_, domain::Call::first_forces, "as the first forces were found", [&] { initialise(state_); });
+      within_step(Standing::between_steps, [&] {
+        together(state_, domain::Call::first_forces, "as the first forces were found", [&] { initialise(state_); });
+      });
       initialised_ = true;
       state_.grains_added = false;
     } else if (state_.grains_added) {
@@ -74,6 +78,7 @@ class World : public WorldGrains<M> {
   /// runs. What it changes of grains and gravity the next step takes as it is.
   template <std::predicate F>
   [[nodiscard]] StepReport run(std::uint64_t n, F&& goes_on) {
+    if (n > std::uint64_t{1} << 53) fail("{} steps are to be run, but at most 9e15 can be; is the number negative?", n);
     return run_on(n, goes_on, [](std::uint64_t left, double) { return left; });
   }
   /// Runs for a time span (s) in whole steps; what a span leaves of a step counts in the next one. Throws Error for
@@ -114,6 +119,20 @@ class World : public WorldGrains<M> {
     initialised_ = false;
   }
 
+  /// Puts a load of your own on each grain from now on, such as the drag of a fluid; none ends it:
+  ///
+  ///     world.set_grain_load([&](const GrainNow& g) { return GrainLoad{.force = -drag * (g.velocity - wind)}; });
+  ///
+  /// See GrainLoadLaw for what the law may do. Attached grains have none. The stable time step does not know it: a drag
+  /// c (N s/m) asks for steps well below m/c. count_energy does not count its work. A saved state asks for a law where
+  /// it had one. Throws Error where grains may sleep.
+  void set_grain_load(GrainLoadLaw law) {
+    this->require_no_step("set_grain_load");
+    if (law && state_.options.sleep) fail("grains that may sleep can have no load law; leave WorldOptions::sleep out");
+    state_.grain_load = std::move(law);
+    initialised_ = false;
+  }
+
   /// 1/s, dv_x/dz of a sheared cell from now on (domain::Sheared). Grains keep their velocities.
   void set_shear_rate(double rate) requires domain::IsSheared<typename Model::Domain> {
     require_within(rate, -1e9, 1e9, "shear rate (1/s)");
@@ -124,6 +143,7 @@ class World : public WorldGrains<M> {
   /// Lets grains at rest sleep from now on, or wakes all for good. Throws Error if a setting makes no sense.
   void set_sleep(const std::optional<SleepOptions>& sleep) {
     if (sleep) check_sleep(*sleep);
+    if (sleep && state_.grain_load) fail("grains that have a load law (set_grain_load) cannot sleep");
     if (domain::IsSheared<typename Model::Domain> && sleep) fail("grains of a sheared cell cannot sleep");
     wake_all(state_);
     state_.sleepers = {};  // what is known is of the rows that were listed last
@@ -155,16 +175,19 @@ class World : public WorldGrains<M> {
   const WorldState<Model>& state() const { return state_; }
   WorldState<Model>& state() { return state_; }
 
-  /// The state, for <dem/io/checkpoint.hpp>. Throws Error for a world whose last step was broken off.
+  /// The state, for <dem/io/checkpoint.hpp>. Throws Error within a step, and for a world whose last one was broken off.
   template <class V>
   void fields(V& v) {
-    if (unfinished_)
+    this->require_no_step("save, load or a restore");
+    if (state_.standing == Standing::broken_off)
       fail("a world whose last step was broken off by an exception has no state to be saved or restored");
     this->require_grains_here("a state");
     v("", state_), v("owed_steps", owed_steps_), v("checked", checked_), v("initialised", initialised_);
   }
 
  private:
+  using Standing = typename WorldState<Model>::Standing;
+
   /// What goes on to the end.
   struct Always {
     constexpr bool operator()() const { return true; }
@@ -208,13 +231,13 @@ class World : public WorldGrains<M> {
     const double step = time_step();
     while (left > 0) {
       --left;
-      unfinished_ = true;
-      list_added();  // goes_on() may have added some
-      if (state_.put_in) state_.put_in(state_);
-      take_step(state_);
-      release_ids(state_);
-      take_out(state_);
-      unfinished_ = false;
+      within_step(Standing::broken_off, [&] {
+        list_added();  // goes_on() may have added some
+        if (state_.put_in) state_.put_in(state_);
+        take_step(state_);
+        release_ids(state_);
+        take_out(state_);
+      });
       state_.machine_solver.close_joints(state_.machine);
       if (StepReport report = find_problem(state_); !report) return report;
       if constexpr (!Model::Domain::has_ranks) {
@@ -234,6 +257,19 @@ class World : public WorldGrains<M> {
       }
     }
     return ok();
+  }
+  /// Calls f(), within which nothing may be added, and stands as is said where it throws.
+  template <class F>
+  void within_step(Standing broken, F&& f) {
+    state_.standing = Standing::within_a_step;
+    try {
+      const mbd::Stepping stepping(state_.machine.parts());
+      f();
+    } catch (...) {
+      state_.standing = broken;
+      throw;
+    }
+    state_.standing = Standing::between_steps;
   }
   /// Lists grains that were added by hand since the last step.
   void list_added() {
@@ -263,7 +299,7 @@ class World : public WorldGrains<M> {
     add(state_.placed_note);
     add(note_of_density(state_));
     add(note_of_free_fall(state_));
-    add(state_.twins_note);
+    add(state_.odd_note);
     for (const Inlet& inlet : state_.inlets) {
       if (inlet.is_short()) add(inlet.note());
     }
@@ -287,12 +323,12 @@ class World : public WorldGrains<M> {
     coupling::list_pairs(state_.body_contacts, std::span(std::as_const(state_.surfaces)), materials);
     choose_time_step(state_, initialised_);
     checked_ = true;
-    state_.twins_note = note_of_twins(state_);
+    state_.odd_note = note_of_twins(state_);
+    if (state_.odd_note.empty()) state_.odd_note = note_of_loose_bodies(state_);
     state_.time_step_note.reset();
   }
 
   double owed_steps_ = 0.0;  // by run_for: less than one
-  bool unfinished_ = false;  // while a step is under way
 };
 
 }  // namespace dem

@@ -31,6 +31,12 @@ class WorldSetup {
   explicit WorldSetup(std::initializer_list<NoOptions>) : WorldSetup() {}
   /// Throws Error if an option is out of range.
   explicit WorldSetup(const WorldOptions& options = {}) {
+    if (const detail::PackWidths& widths = detail::pack_widths; widths.other != 0) {
+      fail(
+          "the sources of this program were compiled for different processors: packs hold {} numbers in one, {} in "
+          "another; compile all with the same flags (link all to dem::native, or none)",
+          widths.first, widths.other);
+    }
     require_non_negative(options.time_step, "time step", "s (0 chooses one)");
     require_within(options.time_step_safety, 1e-6, 1.0, "time step safety");
     require_non_negative(options.skin, "skin", "m (0 chooses one)");
@@ -50,6 +56,7 @@ class WorldSetup {
   /// A kind of grain. Throws Error unless the density, and the volume and radius of the shape, are positive, and for
   /// moments of inertia that no body has.
   SpeciesId add_species(const Shape& shape, const SpeciesOptions& o = {}) {
+    require_no_step("add_species");
     Species<Shape> s = make_species(shape, o.density, o.held);
     s.material = state_.materials.id(o.material);
     state_.materials.mark_as_grain(s.material);
@@ -63,6 +70,7 @@ class WorldSetup {
 
   /// Contact constants for every pair of materials that has none of its own. Throws Error if one makes no sense.
   void set_contact(const Parameters& p) {
+    require_no_step("set_contact");
     require_grains_here("a change of contact constants");
     state_.materials.set_default(p);
     wake_all(state_);
@@ -70,6 +78,7 @@ class WorldSetup {
   }
   /// Contact constants for one pair of materials, named. Throws Error if one makes no sense.
   void set_contact(std::string_view a, std::string_view b, const Parameters& p) {
+    require_no_step("set_contact");
     require_grains_here("a change of contact constants");
     state_.materials.set(a, b, p);
     wake_all(state_);
@@ -80,6 +89,7 @@ class WorldSetup {
   /// what it touches already acts on it from the next evaluation on. Throws Error for an unknown species, a position
   /// that is not finite, or a rotation that is none.
   GrainId add_grain(const NewGrain& n) {
+    require_no_step("add_grain");
     require_between_runs("a new grain");
     auto& p = state_.grains;
     const std::uint32_t id = p.given;
@@ -114,6 +124,7 @@ class WorldSetup {
   /// ground() it stands still, as one that is not attached does, and loads the ground. Throws Error for an unknown
   /// body, and for a species of grains that move.
   void attach(GrainId p, BodyId body) {
+    require_no_step("attach");
     if (!state_.species[state_.grains.species[row(p)]].is_held()) {
       fail("grain {} is to be attached to a body, but moves by itself; make its species with SpeciesOptions::held",
            p.value);
@@ -125,6 +136,7 @@ class WorldSetup {
   }
   /// Takes a grain out of the world; its number is not given again. The ids of others stay.
   void remove_grain(GrainId p) {
+    require_no_step("remove_grain");
     const std::size_t at = row(p);
     take_out_row(state_, at, state_.grains.id[at]);
     touched();
@@ -135,6 +147,7 @@ class WorldSetup {
   /// that crosses the box within a step is not taken: make the box thicker than the fastest goes in a step. Throws
   /// Error for a box that is none.
   OutletId add_outlet(const surface::Aabb& region, const OutletOptions& o = {}) {
+    require_no_step("add_outlet");
     require_grains_here("a new outlet");
     state_.outlets.emplace_back(region, o);
     return OutletId(state_.outlets.size() - 1);
@@ -146,6 +159,7 @@ class WorldSetup {
   ///
   ///     world.add_inlet(InletRegion::disc({0, 0, 0.3}, {0, 0, -1}, 0.02), {.grains = sand, .mass_flow = 0.1});
   InletId add_inlet(const InletRegion& region, const InletOptions& o) {
+    require_no_step("add_inlet");
     require_grains_here("a new inlet");
     const auto mass_of = [&](SpeciesId s) {
       const auto& kind = known(state_.species, s, "species");
@@ -194,6 +208,7 @@ class WorldSetup {
   /// its points (corners, vertices, rims) to the other; a plane has none. Throws Error for surfaces of one body, of two
   /// fixed bodies without mass (which cannot be set free), or that both have no points.
   BodyContactId add_body_contact(SurfaceId a, SurfaceId b) {
+    require_no_step("add_body_contact");
     const BodyContactId pair = detail::add_body_contact(state_, a, b);
     checked_ = initialised_ = false;
     return pair;
@@ -203,6 +218,7 @@ class WorldSetup {
   /// are known already are not added again. Any number of pairs costs little: only those whose bounding boxes meet are
   /// looked at. Returns how many pairs were added.
   std::size_t add_body_contacts() {
+    require_no_step("add_body_contacts");
     checked_ = initialised_ = false;  // first: some may be added before one is refused
     return detail::add_body_contacts(state_);
   }
@@ -233,6 +249,7 @@ class WorldSetup {
  protected:
   SurfaceId place_surface(BodyId body, const typename Model::Surfaces& geometry, const SurfaceOptions& o,
                           const coupling::SurfaceCode<Model>& code) {
+    require_no_step("add_surface");
     mbd::known_body(state_.machine.parts(), body, text("surface '{}'", o.name));
     // Written such that a NaN fails as well: a wall whose place is not known would let everything through.
     if (!is_finite(o.position) || !(distance_from_rotation(o.rotation) <= 1e-6)) {
@@ -279,6 +296,16 @@ class WorldSetup {
     require_grains_here(what);
   }
   void require_grains_here(const char* what) const { dem::require_grains_here(state_, what); }
+  /// Throws Error where a step is under way.
+  void require_no_step(const char* call) const {
+    if (state_.standing != WorldState<Model>::Standing::within_a_step) [[likely]]
+      return;
+    fail(
+        "{} is called within a step of this world, from a load, a signal or a law, or by another thread; call it "
+        "between "
+        "steps, or in goes_on() of run(n, goes_on)",
+        call);
+  }
   static void require_finite(const Vec3& v, const char* what) {
     if (!is_finite(v)) fail("{} is ({:g}, {:g}, {:g}), but must be finite", what, v.x(), v.y(), v.z());
   }

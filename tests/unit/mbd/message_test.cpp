@@ -107,3 +107,45 @@ TEST_CASE("a blow-up that follows from a folded joint says so") {
   CHECK_THAT(report.text, Contains("body 'rod' blew up") && Contains("revolute joint 'hinge' had folded: at t = ") &&
                               Contains("deg apart") && Contains("substeps (now 1)"));
 }
+
+TEST_CASE("what is hardly meant is noted, and stops nothing") {
+  Machine<VelocityVerlet> m;
+  const BodyId a = m.add_body(box_body("rod", {1, 0.1, 0.1}, 100).at({0.5, 0, 0}));
+  const JointId hinge = m.add_joint(revolute("hinge", m.ground(), a, {0, 0, 0}, Y));
+  m.add_actuator(joint_actuator("idle", hinge, 0.0, 0.0));
+  CHECK_THAT(m.run(1e-2, 1e-3).note, Contains("Actuator 'idle' has no gain and is no motor: it does nothing."));
+
+  m.add_joint(revolute("again", m.ground(), a, {0, 0, 0}, Y));
+  m.add_motion(prescribed_joint("turn", hinge, Signal(m.coordinate(hinge))));
+  m.add_motion(prescribed_joint("second", hinge, Signal(m.coordinate(hinge))));
+  m.add_actuator(joint_actuator("motor", hinge, 10.0, 1.0));
+  const MachineReport report = m.run(1e-2, 1e-3);
+  CHECK(report);
+  CHECK_THAT(report.note, Contains("Joints 'hinge' and 'again' hold the same bodies at the same point"));
+  CHECK_THAT(report.note, Contains("Motions 'turn' and 'second' prescribe the same coordinate of joint 'hinge'"));
+  CHECK_THAT(report.note,
+             Contains("Actuator 'motor' acts on joint 'hinge', whose coordinate motion 'turn' prescribes"));
+}
+
+TEST_CASE("a body that nothing holds is noted where there is gravity") {
+  for (const double g : {0.0, -9.81}) {
+    Machine<VelocityVerlet> m;
+    m.gravity = {0, 0, g};
+    m.add_body(ball("first"));
+    m.add_body(ball("second").at({3, 0, 0}));
+    const std::string note = m.run(1e-2, 1e-3).note;
+    if (g == 0.0) CHECK(note.empty());
+    else CHECK_THAT(note, Contains("Nothing holds body 'first' and 1 more: it falls freely."));
+    m.add_spring(spring("rope", m.ground(), {0, 0, 1}, BodyId{1}, {0, 0, 0}, 1e3, 10.0));
+    m.add_load(applied_force("lift", BodyId{2}, {3, 0, 0}, Z, 1.0));
+    CHECK_THAT(m.run(1e-2, 1e-3).note, !Contains("Nothing holds"));
+  }
+}
+
+TEST_CASE("a time to run of less than half a step is refused") {
+  Machine<VelocityVerlet> m;
+  m.add_body(ball("ball"));
+  check_refused([&] { (void)m.run(1e-4, 1.0); }, "time to run is 0.0001 s", "time step of 1 s");
+  CHECK(m.run(0.0, 1e-3));
+  CHECK(m.run(1e-12, 1e-3));  // what rounding leaves of a time that is over
+}

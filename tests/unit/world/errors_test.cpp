@@ -223,3 +223,14 @@ TEST_CASE("ids that are not there are refused") {
   check_refused([&] { w.set_active(SurfaceId(2), false); }, "surface 2");
   check_refused([&] { (void)w.species(SpeciesId(1)); }, "species 1");
 }
+
+TEST_CASE("a world of sources that were compiled for different processors is refused") {
+  dem::detail::PackWidths& widths = dem::detail::pack_widths;
+  CHECK(widths.first == dem::pack_width);
+  REQUIRE(widths.other == 0);
+  widths.add(dem::pack_width);
+  CHECK_NOTHROW(dem::World<Balls>(options({0, 0, 0})));
+  widths.add(dem::pack_width + 1);
+  check_refused([] { dem::World<Balls> w(options({0, 0, 0})); }, "compiled for different processors", "dem::native");
+  widths.other = 0;
+}

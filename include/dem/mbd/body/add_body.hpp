@@ -7,6 +7,7 @@ namespace dem::mbd::detail {
 
 DEM_COLD inline BodyId add_body(Parts& parts, BuiltBody built, bool is_ground = false) {
   settle_name(built.body.name, parts.bodies, "body", "bodies", [](const Body& b) { return b.name; });
+  require_no_step(parts);
   is_ground ? parts.bodies.add_ground(built.body) : parts.bodies.add(built.body);
   return keep<BodyId>(parts, parts.built, std::move(built));
 }

@@ -94,6 +94,7 @@ struct Parts {
   double allowed_jump = HUGE_VAL;  ///< m, of a motion that takes hold: what the grains of a world stand
 
   bool couplings_changed = false;  ///< added, switched on or given another ratio since a lock was looked for
+  bool is_stepping = false;        ///< loads, signals and laws are being asked
   std::uint64_t revision = 0;      ///< grows with each body, joint, coupling ... that is added, set free or fixed
 
   template <class V>
@@ -183,9 +184,31 @@ inline const JointFrictionState* friction_of(const Parts& parts, JointId id) {
   return nullptr;
 }
 
+/// While it lives, a step is under way, in which nothing can be added.
+class Stepping {
+ public:
+  explicit Stepping(Parts& parts) : parts_(parts) { parts_.is_stepping = true; }
+  Stepping(const Stepping&) = delete;
+  Stepping& operator=(const Stepping&) = delete;
+  ~Stepping() { parts_.is_stepping = false; }
+
+ private:
+  Parts& parts_;
+};
+
+/// Throws Error where a step is under way: lists of parts that are being gone through must stay what they are.
+inline void require_no_step(const Parts& parts) {
+  if (parts.is_stepping) {
+    fail(
+        "a part is added to a machine within a step, from a load, a signal or a law; add it between steps, or in what "
+        "run() calls after each");
+  }
+}
+
 /// Keeps a part; structural ones make what was derived and initialised before out of date.
 template <class Id, class Part>
 Id keep(Parts& parts, std::vector<Part>& list, Part&& part, bool structural = true) {
+  require_no_step(parts);
   list.push_back(std::move(part));
   if (structural) ++parts.revision;
   return Id(list.size() - 1);

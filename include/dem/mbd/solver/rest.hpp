@@ -16,7 +16,9 @@
 namespace dem::mbd {
 
 struct RestOptions {
-  double tolerance = 1e-9;  ///< of the residuals, as a share of the weight of the machine or of its largest force
+  /// Of the residuals, as a share of the weight of the machine or of its largest force. Where rounding keeps them from
+  /// falling further, a thousand times as much is taken for rest.
+  double tolerance = 1e-9;
   int most_iterations = 300;
 };
 
@@ -68,9 +70,13 @@ class RestSearch {
 
   DEM_COLD RestReport run(const RestOptions& o) {
     RestReport report;
-    double tau = 0.1, last = residual();
+    double tau = 0.1, last = residual(), least = 1e300;
+    int stalled = 0;  // iterations since the residual was halved
     for (; std::isfinite(last) && report.iterations < o.most_iterations; ++report.iterations) {
-      if (worst_share(report) <= o.tolerance) {
+      const double share = worst_share(report);
+      stalled = share < 0.5 * least ? 0 : stalled + 1;
+      if (stalled == 0) least = share;
+      if (share <= o.tolerance || (stalled >= 20 && share <= 1e3 * o.tolerance)) {
         report.ok = true;
         break;
       }
@@ -232,8 +238,10 @@ class RestSearch {
 DEM_COLD inline void stop_for_rest(Parts& parts) {
   for (const PrescribedMotion& p : parts.motions) {
     if (p.spec.on && !parts.bodies[p.spec.body.index()].fixed) {
-      fail("find_rest knows nothing of prescribed motion '{}'; switch it off, or hold the coordinate with an actuator",
-           p.spec.name);
+      fail(
+          "find_rest knows nothing of prescribed motion '{}'; switch it off (switch_on(motion, false)) and on again "
+          "afterwards, or hold the coordinate with an actuator",
+          p.spec.name);
     }
   }
   for (Body& b : parts.bodies) b.motion.velocity = b.motion.angular_velocity = {0, 0, 0};

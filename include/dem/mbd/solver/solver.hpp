@@ -6,6 +6,7 @@
 #include <dem/mbd/solver/close_joints.hpp>
 #include <dem/mbd/solver/derive.hpp>
 #include <dem/mbd/solver/machine_report.hpp>
+#include <dem/mbd/solver/odd_parts.hpp>
 #include <dem/mbd/solver/raised_substeps.hpp>
 #include <dem/mbd/solver/stages.hpp>
 
@@ -123,6 +124,7 @@ class Solver {
     stages_.start(parts, step, gravity, goes_on);
     stages_.watches.watch_joints(m);
     note_stable_step(m);
+    odd_ = odd_parts(parts);
     start(m);
   }
 
@@ -171,9 +173,11 @@ class Solver {
     if (!(worst.share > 1.0)) return {true, time(), {}, {}, {}, {}};
     return report_of_opening(m.parts(), worst, m.joint_tolerance, stages_.newest_step(), m.substeps, time());
   }
-  /// What was changed of what the user gave: sub-steps, velocities at the start. Empty if nothing.
+  /// What was changed of what the user gave (sub-steps, velocities at the start), and what of it is odd. Empty if
+  /// nothing.
   DEM_COLD std::string note(const Mechanism& m) const {
-    return note_of(m.parts(), assembly_, joints(), raised_.given(m.substeps), m.substeps);
+    const std::string changed = note_of(m.parts(), assembly_, joints(), raised_.given(m.substeps), m.substeps);
+    return odd_ + (odd_.empty() || changed.empty() ? "" : " ") + changed;
   }
   /// What became of the velocities that were given, at the start.
   const AssemblyReport& assembly() const { return assembly_; }
@@ -223,6 +227,7 @@ class Solver {
   StiffnessRamp ramp_;
   RaisedSubsteps raised_;
   AssemblyReport assembly_;
+  std::string odd_;  // parts that are hardly meant as they were given
   bool is_assembled_ = false;
   double design_dt_ = 0.0;  // s, with all sub-steps
   int substeps_ = 0;        // of the newest initialise, as is the revision
