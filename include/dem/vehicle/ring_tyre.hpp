@@ -28,7 +28,7 @@ struct RingTyreSpec {
   int segments = 48;
   double mass = 20.0;                  ///< kg, of the belt
   double thickness = 0.02;             ///< m, of belt and tread
-  double pressure = 2.0e5;             ///< Pa, above that of the air around
+  double pressure = 2.0e5;             ///< Pa, above that of the air around: 0 (none), or 1e3 to 2e6
   double belt_stiffness = 1.5e6;       ///< EA, N
   double sidewall_stiffness = 1e4;     ///< N/m for a metre of belt, radial, without pressure
   double sidewall_by_pressure = 1.65;  ///< m/m, what a pressure (Pa) adds to that
@@ -69,6 +69,10 @@ DEM_COLD inline void check_ring_tyre(const RingTyreSpec& s) {
         "raise "
         "belt_stiffness",
         s.pressure, s.pressure * s.width * s.radius / s.belt_stiffness);
+  }
+  if (s.pressure > 0.0 && !(s.pressure >= 1e3 && s.pressure <= 2e6)) {
+    fail("the pressure of a ring tyre is {:g} Pa, but must be 0 or lie between 1e3 and 2e6; 1 bar is 1e5 Pa",
+         s.pressure);
   }
 }
 

@@ -88,10 +88,10 @@ class RoadHeights {
   std::vector<double> heights_;
 };
 
-/// Hard ground under tyres: a plane, or heights over x and y.
+/// Hard ground under tyres: a plane, or heights over x and y. Give one of them: add_tyre() refuses both.
 struct Road {
   Vec3 point = Vec3::Zero();                        ///< m, of the plane
-  Vec3 normal = Vec3::UnitZ();                      ///< out of the plane
+  Vec3 normal = Vec3::UnitZ();                      ///< out of the plane, of any length
   double friction = 1.0;                            ///< times the friction of a tyre
   std::shared_ptr<const RoadHeights> heights = {};  ///< in place of the plane, where given
   double print = 0.2;  ///< m, between points ahead and behind, left and right, that make the plane: a tyre does not
@@ -117,5 +117,24 @@ struct Road {
             .friction = friction};
   }
 };
+
+/// Throws Error for a road that cannot be.
+DEM_COLD inline void check_road(const Road& road) {
+  const Vec3 &p = road.point, &n = road.normal;
+  require_non_negative(road.friction, "friction of a road", "(no unit)");
+  require_positive(road.print, "print of a road under a tyre", "m");
+  if (road.heights) {
+    if (p == Vec3::Zero() && n == Vec3::UnitZ()) return;
+    fail(
+        "a road has heights, and a plane through ({:g}, {:g}, {:g}) m with the normal ({:g}, {:g}, {:g}) as well; give "
+        "the heights alone, or the plane alone",
+        p.x(), p.y(), p.z(), n.x(), n.y(), n.z());
+  }
+  if (!p.allFinite()) fail("a road goes through ({:g}, {:g}, {:g}) m; give a finite point", p.x(), p.y(), p.z());
+  if (!n.allFinite() || !(n.norm() > 1e-9)) {
+    fail("the normal of a road is ({:g}, {:g}, {:g}); give a finite direction out of the ground, such as (0, 0, 1)",
+         n.x(), n.y(), n.z());
+  }
+}
 
 }  // namespace dem::vehicle

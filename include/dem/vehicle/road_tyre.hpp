@@ -2,10 +2,11 @@
 // A tyre on hard ground as part of a machine.
 
 #include <dem/mbd/load/terrain_part.hpp>
-#include <dem/vehicle/tyre.hpp>
+#include <dem/vehicle/tyre_watch.hpp>
 
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace dem::vehicle {
@@ -13,9 +14,15 @@ namespace dem::vehicle {
 /// A tyre on a road as a terrain of a machine: its stretch is copied and saved with the machine.
 class RoadTyre final : public mbd::Terrain {
  public:
-  /// `axis` of the wheel is a unit vector to the left, body frame. The force goes into `load`.
-  RoadTyre(const TyreSpec& spec, const Road& road, BodyId wheel, const Vec3& axis, LoadId load)
-      : spec_(spec), road_(road), wheel_(wheel), axis_(axis), load_(load) {}
+  /// `axis` of the wheel is a unit vector to the left, body frame. The force goes into `load`. The name is the wheel's.
+  RoadTyre(const TyreSpec& spec, const Road& road, BodyId wheel, const Vec3& axis, LoadId load, std::string name)
+      : spec_(spec), road_(road), wheel_(wheel), axis_(axis), load_(load), name_(std::move(name)) {}
+
+  /// Another tyre from now on, between two steps. The stretch of its tread goes on.
+  DEM_COLD void set_spec(const TyreSpec& spec) {
+    check_tyre(spec);
+    spec_ = spec;
+  }
 
   /// In the newest evaluation of the forces.
   const TyreState& state() const { return newest_; }
@@ -24,7 +31,13 @@ class RoadTyre final : public mbd::Terrain {
 
   void evaluate(const std::vector<Body>& bodies, std::vector<mbd::Load>& loads, const mbd::TerrainStep& step) override {
     newest_ = kept_;
-    loads[load_.index()].wrench = tyre_wrench(spec_, road_, bodies[wheel_.index()], axis_, step.time, newest_);
+    const Body& wheel = bodies[wheel_.index()];
+    loads[load_.index()].wrench = tyre_wrench(spec_, road_, wheel, axis_, step.time, newest_);
+    if (kept_.time < 0.0) watch_.begin(wheel, newest_);
+    if (step.is_kept) {
+      const double dt = kept_.time >= 0.0 && step.time > kept_.time ? step.time - kept_.time : 0.0;
+      watch_.look(spec_, road_, wheel, axis_, newest_, dt);
+    }
     if (step.is_kept || kept_.time < 0.0) kept_ = newest_;  // the first evaluation starts the clock
   }
 
@@ -46,6 +59,8 @@ class RoadTyre final : public mbd::Terrain {
       TyreState copy = *s;
       copy.each([&](double x) { numbers.push_back(x); });
     }
+    TyreWatch copy = watch_;
+    copy.each([&](double x) { numbers.push_back(x); });
     return numbers;
   }
   void set_memory(const std::vector<double>& numbers) override {
@@ -55,7 +70,10 @@ class RoadTyre final : public mbd::Terrain {
     for (TyreState* s : {&kept_, &newest_}) {
       s->each([&](double& x) { x = *next++; });
     }
+    watch_.each([&](double& x) { x = *next++; });
   }
+  std::string take_problem() override { return watch_.take(); }
+  std::string note() const override { return watch_.note(name_, spec_.radius); }
 
  private:
   TyreSpec spec_;
@@ -63,6 +81,8 @@ class RoadTyre final : public mbd::Terrain {
   BodyId wheel_;
   Vec3 axis_;
   LoadId load_;
+  std::string name_;  ///< of the wheel
+  TyreWatch watch_;
   TyreState kept_, newest_;  ///< of the newest step, of the newest evaluation
 };
 

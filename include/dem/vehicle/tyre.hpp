@@ -20,6 +20,9 @@ namespace dem::vehicle {
 /// So a tyre that stands holds like a spring. One that rolls has the slip stiffness kx L and the cornering stiffness
 /// ky L. With an infinite L it is the thesis's rigid wheel with asperity friction. The model is the single contact
 /// point transient model of Pacejka, Tire and Vehicle Dynamics, doi 10.1016/C2010-0-68548-8.
+///
+/// A machine's stable_time_step() does not know the tyre: steps h need K h^2 + 2 C h < 4 m, for a wheel of mass m. A
+/// step that is too large is told when the tyre throws the wheel up (tyre_watch.hpp).
 struct TyreSpec {
   double radius = 0.485;           ///< m, unloaded
   double width = 0.254;            ///< m
@@ -84,7 +87,27 @@ inline double stretched(double s, double v, double rolling, double length, doubl
   return end;
 }
 
+/// Unit vector from the middle of a wheel to its lowest point over a road with a normal n; a: axis of the wheel.
+inline Vec3 down_of(const Vec3& a, const Vec3& n) {
+  Vec3 down = a.dot(n) * a - n;  // in the plane of the wheel
+  down /= std::max(1e-9, down.norm());
+  return down;
+}
+
+/// m, by which that point is below a plane; negative above it.
+inline double depth_below(const Road& plane, double radius, const Vec3& centre, const Vec3& down) {
+  const double height = (centre - plane.point).dot(plane.normal);
+  const double free = -down.dot(plane.normal) * radius;  // height of the centre of a wheel that just touches
+  return free - height;
+}
+
 }  // namespace detail
+
+/// m, by which a wheel that turns about `axis` (unit vector to the left, body frame) is in a road; negative above it.
+inline double depth_in(const Road& road, double radius, const Body& wheel, const Vec3& axis) {
+  const Road plane = road.under(wheel.position(), radius);
+  return detail::depth_below(plane, radius, wheel.position(), detail::down_of(wheel.rotation() * axis, plane.normal));
+}
 
 /// Force and torque of the road on a wheel that turns about `axis` (unit vector to the left, body frame). Moves the
 /// state on to `time`; a second call at the same time adds nothing to it.
@@ -93,13 +116,8 @@ inline Wrench tyre_wrench(const TyreSpec& tyre, const Road& ground, const Body& 
   const Road road = ground.under(wheel.position(), tyre.radius);
   const double dt = s.time < 0.0 ? 0.0 : std::max(0.0, time - s.time);
   const Vec3 n = road.normal, a = wheel.rotation() * axis;
-  const double lean = a.dot(n);
-  Vec3 down = lean * a - n;  // in the plane of the wheel
-  down /= std::max(1e-9, down.norm());
-  const Vec3 centre = wheel.position();
-  const double height = (centre - road.point).dot(n);
-  const double free = -down.dot(n) * tyre.radius;  // height of the centre of a wheel that just touches
-  s.deflection = free - height;
+  const Vec3 down = detail::down_of(a, n), centre = wheel.position();
+  s.deflection = detail::depth_below(road, tyre.radius, centre, down);
   s.time = time;
   if (!(s.deflection > 0.0)) {
     const double work = s.work;

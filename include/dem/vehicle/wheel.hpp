@@ -50,24 +50,51 @@ DEM_COLD inline Wheel add_wheel(const Assembly& in, const std::string& corner, B
   return w;
 }
 
-/// Puts a tyre on a hard road. Not for worlds where the wheel has a surface that touches ground.
+/// Puts a tyre on a hard road. Not for worlds where the wheel has a surface that touches ground. Throws Error for a
+/// tyre or road that cannot be, a wheel that has a tyre already, or one that is too deep in the road where it is. The
+/// tyre is as given here until set_tyre().
 DEM_COLD inline void add_tyre(const Assembly& in, const std::string& corner, Wheel& w, const TyreSpec& tyre,
                               const Road& road) {
   check_tyre(tyre);
-  require_positive(road.print, "print of a road under a tyre", "m");
+  check_road(road);
+  mbd::Mechanism& m = in.mechanism();
+  const Body& wheel = m.body(w.body);
+  const std::string name = in.name(corner + " tyre"), wheel_name = wheel.name;
+  if (w.tyre.valid()) fail("body '{}' has a tyre already, but is given another one, '{}'; give one", wheel_name, name);
   Road ground = road;
   ground.normal = road.normal.normalized();
-  mbd::Mechanism& m = in.mechanism();
-  const Vec3 axis = m.body(w.body).rotation().transpose() * in.direction(Vec3::UnitY());
-  const std::string name = in.name(corner + " tyre");
+  const Vec3 axis = wheel.rotation().transpose() * in.direction(Vec3::UnitY()), up = in.direction(Vec3::UnitZ());
+  if (const Vec3& n = road.normal; n.dot(up) < 0.0) {
+    fail("the normal of the road under body '{}' is ({:g}, {:g}, {:g}), into the ground; give its opposite", wheel_name,
+         n.x(), n.y(), n.z());
+  }
+  if (const double depth = depth_in(ground, tyre.radius, wheel, axis); depth > deepest(tyre)) {
+    fail(
+        "body '{}' starts {:.3g} m deep in the road, but its tyre of radius {:g} m may be at most half of that deep; "
+        "place it higher by {:.3g} m, or lower the road",
+        wheel_name, depth, tyre.radius, depth);
+  }
   w.road = m.add_load(mbd::terrain_load(name, w.body));
-  w.tyre = mbd::add_terrain(m, name, std::make_unique<RoadTyre>(tyre, ground, w.body, axis, w.road));
+  w.tyre = mbd::add_terrain(m, name, std::make_unique<RoadTyre>(tyre, ground, w.body, axis, w.road, wheel_name));
 }
 
-/// What a wheel's tyre on hard ground did in the newest evaluation of the forces. Throws Error if it has none.
-inline const TyreState& tyre_of(const mbd::Mechanism& m, const Wheel& w) {
+namespace detail {
+
+inline RoadTyre& road_tyre_of(const mbd::Mechanism& m, const Wheel& w) {
   if (!w.tyre.valid()) fail("body '{}' has no tyre on hard ground; give add_vehicle a road", m.body(w.body).name);
-  return static_cast<const RoadTyre&>(mbd::terrain_of(m, w.tyre)).state();
+  return static_cast<RoadTyre&>(mbd::terrain_of(m, w.tyre));
+}
+
+}  // namespace detail
+
+/// What a wheel's tyre on hard ground did in the newest evaluation of the forces. Throws Error if it has none.
+inline const TyreState& tyre_of(const mbd::Mechanism& m, const Wheel& w) { return detail::road_tyre_of(m, w).state(); }
+
+/// Gives a wheel's tyre on hard ground other numbers, between two steps: less friction on ice, less stiffness for less
+/// air. VehicleSpec::tyre stays as it was built. A saved state is only loaded where tyres were changed the same way.
+/// Throws Error if the wheel has none, or for one that cannot be.
+DEM_COLD inline void set_tyre(mbd::Mechanism& m, const Wheel& w, const TyreSpec& tyre) {
+  detail::road_tyre_of(m, w).set_spec(tyre);
 }
 
 /// Sets the brake, 0 to 1 of its largest torque. To be called before every step: a brake that slips moves the angle

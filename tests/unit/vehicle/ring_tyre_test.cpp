@@ -86,6 +86,15 @@ TEST_CASE("ring tyres that cannot be are refused in words") {
   RingTyreSpec s;
   s.pressure = 3e6;
   CHECK_THROWS_WITH(check_ring_tyre(s), ContainsSubstring("would stretch the belt"));
+  s.pressure = 2.0;  // bar
+  CHECK_THROWS_WITH(check_ring_tyre(s), ContainsSubstring("is 2 Pa, but must be 0 or lie between 1e3 and 2e6"));
+  s.pressure = 3e6;
+  s.belt_stiffness = 1e8;
+  CHECK_THROWS_WITH(check_ring_tyre(s), ContainsSubstring("is 3e+06 Pa, but must be 0 or lie between 1e3 and 2e6"));
+  for (const double pressure : {0.0, 1e3, 2e6}) {
+    s.pressure = pressure;
+    CHECK_NOTHROW(check_ring_tyre(s));
+  }
   s = {};
   s.rim_radius = 0.5;
   CHECK_THROWS_WITH(check_ring_tyre(s), ContainsSubstring("rim of a ring tyre has a radius of 0.5 m"));

@@ -97,7 +97,7 @@ TEST_CASE(
   loaded.set_memory(saved.memory());
   CHECK(tyre_of(third, same).stretch_x == tyre_of(first, w).stretch_x);
   CHECK(loaded.memory() == saved.memory());
-  CHECK_THAT(message_of([&] { loaded.set_memory({1.0}); }), Contains("memory of a tyre has 1 numbers, but needs 28"));
+  CHECK_THAT(message_of([&] { loaded.set_memory({1.0}); }), Contains("memory of a tyre has 1 numbers, but needs 39"));
   CHECK(loaded.memory() == saved.memory());
   CHECK_THAT(message_of([&] { tyre_of(third, bare); }), Contains("has no tyre on hard ground"));
 }
