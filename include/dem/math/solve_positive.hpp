@@ -26,12 +26,12 @@ inline void factorise_positive(std::vector<double>& A, std::size_t n, double tol
 }
 
 /// Solves A x = b in place (b becomes x) by Cholesky's factors; A as in factorise_positive, overwritten. A row that
-/// depends on rows before it is left out, its x is 0. Rows may have any units.
-inline void solve_positive(std::vector<double>& A, std::vector<double>& b) {
+/// depends on rows before it is left out, its x is 0. Rows may have any units. Rounding leaves some (n + 10) 1e-16 of a
+/// row that depends: a tenth of the default tolerance for 90 rows.
+inline void solve_positive(std::vector<double>& A, std::vector<double>& b, double tolerance = 1e-13) {
   const std::size_t n = b.size();
   const auto at = [&](std::size_t i, std::size_t k) -> double& { return A[i * n + k]; };
-  // Rounding leaves some (n + 10) 1e-16 of a row that depends: a tenth of this for 90 rows.
-  factorise_positive(A, n, 1e-13);
+  factorise_positive(A, n, tolerance);
   for (std::size_t i = 0; i < n; ++i) {
     for (std::size_t k = 0; k < i; ++k) {
       if (at(i, k) != 0.0) b[i] -= at(i, k) * b[k];  // what is no number stays with the rows that it belongs to

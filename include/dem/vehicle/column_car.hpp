@@ -27,7 +27,10 @@ struct LaneStretch {
 /// A car on soil columns, as it is asked for. x runs along the lane, up a grade; y to the left.
 struct ColumnCarSpec {
   VehicleSpec car;
-  std::vector<LaneStretch> lane;          ///< one after the other from x = 0
+  /// One after the other from x = 0. A named soil without a known unloading stiffness k0 springs back by up to a tenth
+  /// of its sinkage: a wheel may pull more on it than by the equations with a0 = a1 = 0, a small one by half
+  /// (examples/soil_columns/RESULTS.md).
+  std::vector<LaneStretch> lane;
   double margin = 4.0;                    ///< m, of soil before the lane's start and beyond its end
   double half_width = 1.6;                ///< m, of soil on either side of the middle
   double spacing = 0.05;                  ///< m, of the columns

@@ -54,11 +54,11 @@ struct BallJoint {
 struct DoubleWishboneSpec {
   WishbonePoints points;
   PartMass upper_arm, lower_arm, knuckle;
-  double spring_free_length = 0.0;   ///< m
-  mbd::Curve spring_force = {};      ///< N over compression in m
-  double shock = 0.0;                ///< N s/m
-  BallJoint upper_ball, lower_ball;  ///< between the arms and the knuckle
-  double lower_angle = 0.45;         ///< rad, stops of the lower arm, both ways from where it is drawn
+  double spring_free_length = 0.0;             ///< m
+  mbd::Curve spring_force = {};                ///< N over compression in m
+  double shock = 0.0;                          ///< N s/m
+  BallJoint upper_ball = {}, lower_ball = {};  ///< between the arms and the knuckle
+  double lower_angle = 0.45;                   ///< rad, stops of the lower arm, both ways from where it is drawn
 
   DoubleWishboneSpec mirrored() const {
     DoubleWishboneSpec s = *this;

@@ -24,8 +24,13 @@ struct Controls {
   double ease_from = no_limit, ease_to = no_limit;  ///< m/s, of the rims' mean, as the drive shaft turns
 
   static constexpr double no_limit = 1e300;
-  /// Throws Error unless both limits are given or none, the first not above the second.
+  static constexpr double largest_steer = 0.8;  ///< rad
+  /// Throws Error for a throttle or brake that is not from 0 to 1, a steer beyond largest_steer either way, or unless
+  /// both limits of the governor are given or none, the first not above the second. Rounding is let pass.
   void check() const {
+    require(throttle, 0.0, 1.0, "throttle", "");
+    require(brake, 0.0, 1.0, "brake", "");
+    require(steer, -largest_steer, largest_steer, "steer", " rad, positive to the left");
     if ((ease_from < no_limit) == (ease_to < no_limit) && ease_from <= ease_to) return;
     fail(
         "the governor is to ease off from {:g} to {:g} m/s of the rims; give both ease_from and ease_to, the first not "
@@ -36,6 +41,13 @@ struct Controls {
   double governed(double rims) const {
     if (rims <= ease_from) return 1.0;
     return rims < ease_to ? (ease_to - rims) / (ease_to - ease_from) : 0.0;
+  }
+
+ private:
+  static void require(double value, double lowest, double highest, const char* what, const char* unit) {
+    constexpr double rounding = 1e-9;
+    if (value >= lowest - rounding && value <= highest + rounding) return;
+    fail("a driver's {} is {:g}, but must be from {:g} to {:g}{}", what, value, lowest, highest, unit);
   }
 };
 
@@ -72,7 +84,7 @@ struct SpeedHold {
 /// over some reach/trim of way: the steering angle grows with the sum of the car's offset from the path over the way.
 struct PathFollower {
   std::vector<Vec3> path;      ///< m, global; straight lines between the points
-  double wheelbase = 3.378;    ///< m
+  double wheelbase = 0.0;      ///< m, of the car, to be given: VehicleSpec::wheelbase()
   double preview = 5.0;        ///< m, at rest
   double preview_time = 0.6;   ///< s, of driving added to it
   double largest_steer = 0.6;  ///< rad
@@ -84,9 +96,13 @@ struct PathFollower {
   bool has_last = false, is_near_end = false;
 
   /// Angle of the wheels (rad) at a position (m, of the rear axle), a heading (unit vector) and a speed (m/s). Throws
-  /// Error for a path of less than two points.
+  /// Error for a path of less than two points, and without a wheelbase.
   double operator()(const Vec3& at, const Vec3& heading, double speed) {
     const double reach = preview + preview_time * std::abs(speed), beside_path = offset(at);
+    if (!(wheelbase > 0.0)) {
+      fail("the wheelbase of a path follower is {:g} m, but must be that of its car; give it VehicleSpec::wheelbase()",
+           wheelbase);
+    }
     next = std::max(next, beside + 1);
     while (next + 1 < path.size() && distance(path[next], at) < reach) ++next;
     is_near_end = next + 1 == path.size() && distance(path[next], at) < reach;

@@ -31,7 +31,7 @@ struct EngineSpec {
   // Geared only. The clutch lets go at the idling speed, of the rotor or of the gearbox's input, whichever is faster,
   // and holds clutch_torque from clutch_speed on. So a car rolls freely while both are slower.
   mbd::Curve drag = {};  ///< N m over rad/s, with closed throttle: below 0
-  PartMass rotor;
+  PartMass rotor = {};
   Vec3 rotor_at = Vec3(0.5, 0, 0.4);            ///< m, middle of the rotor from that of the drive shaft
   double idle = 84.0;                           ///< rad/s
   double clutch_speed = 140.0;                  ///< rad/s

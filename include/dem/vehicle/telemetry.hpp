@@ -31,7 +31,7 @@ inline Vec3 attitude_of(const mbd::Mechanism& m, const Vehicle& v) {
   return {std::atan2(r(2, 1), r(2, 2)), std::asin(std::clamp(-r(2, 0), -1.0, 1.0)), std::atan2(r(1, 0), r(0, 0))};
 }
 
-/// N, of all bodies of a mechanism that are not fixed, under 9.81 m/s^2.
+/// N, of all bodies of a mechanism that are not fixed, under 9.81 m/s^2, whatever the gravity of its machine or world.
 inline double weight_of(const mbd::Mechanism& m) {
   double mass = 0.0;
   for (const Body& b : m.bodies()) mass += b.fixed ? 0.0 : b.mass;

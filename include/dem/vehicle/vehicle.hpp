@@ -20,7 +20,8 @@ inline constexpr std::array<const char*, 4> corner_names = {"front left", "front
 
 inline constexpr double telemetry_window = 0.01;  ///< s, over which a vehicle's sensors take means
 
-/// A vehicle with two axles: double wishbones all round, front wheels that steer, all wheels driven.
+/// A vehicle with two axles: double wishbones all round, front wheels that steer, all wheels driven. What each point
+/// is, and how to build what this does not describe: README.md beside this file.
 struct VehicleSpec {
   PartMass chassis;
   Vec3 chassis_centre = Vec3::Zero();  ///< m
@@ -49,6 +50,8 @@ struct Vehicle {
   std::array<JointId, 2> toe_links;  ///< of the rear wheels
   RackSteering steering;
   Driveline driveline;
+  /// As it was built. To change it later changes no part; drive() and the telemetry read the tyre's radius, the front
+  /// axle's ratio, the chassis' centre and the middles of the wheels. The engine works by driveline.engine.spec.
   VehicleSpec spec;
   double pinion_per_steer = 1.0;  ///< rad of the pinion for a rad of the mean of both wheels, about straight ahead
   std::array<std::array<SensorId, 4>, 4> joint_forces;  ///< by corner, in the order of knuckle_joints()
@@ -66,9 +69,37 @@ struct Vehicle {
   }
 };
 
+namespace detail {
+
+/// Throws Error for a vehicle whose left wheels are not on the left, or whose front wheels are not in front.
+DEM_COLD inline void check_drawing(const VehicleSpec& s) {
+  const Vec3 &front = s.front.points.wheel, &rear = s.rear.points.wheel;
+  if (!(front.y() > 0.0 && rear.y() > 0.0)) {
+    fail(
+        "the middles of the wheels are drawn at y = {:g} m (front) and {:g} m (rear), but must be at positive y: draw "
+        "the left side, y points to the left",
+        front.y(), rear.y());
+  }
+  if (!(s.wheelbase() > 0.0)) {
+    fail(
+        "the middle of the front wheel is drawn at x = {:g} m and that of the rear one at {:g} m, but the front one "
+        "must be ahead: x points forward",
+        front.x(), rear.x());
+  }
+}
+
+}  // namespace detail
+
 /// Adds a vehicle to a mechanism. With a road it has tyres on hard ground; without, its wheels need surfaces that touch
-/// what there is. It starts with the assembly's speed, wheels rolling.
+/// what there is. It starts with the assembly's speed, wheels rolling. Throws Error for a left side that is drawn on
+/// the right, and for axles that are swapped.
+///
+/// Its light parts (shafts, splines, the rack) give way under their loads: by default the machine raises its sub-steps
+/// for them, and is many times slower. So give it a large joint_tolerance (0.5 m, say) before its first step. Nothing
+/// watches the suspension then: halve the step once, compare, and look at violation() of its joints. See README.md
+/// beside this file.
 DEM_COLD inline Vehicle add_vehicle(const Assembly& in, const VehicleSpec& s, const std::optional<Road>& road = {}) {
+  detail::check_drawing(s);
   Vehicle v;
   v.spec = s;
   v.chassis = in.body("chassis", s.chassis, s.chassis_centre);
@@ -151,7 +182,7 @@ inline double travel_of(const mbd::Mechanism& m, const Vehicle& v, std::size_t c
 // ------------------------------------------------------------------------------------------------------ steering
 
 /// For a vehicle that was built anew and whose fields were restored: brakes and an engine that is an actuator are set
-/// as the controls had set them, so that the mechanism is the one that was saved.
+/// as the controls had set them. load() of a world restores this with its machine.
 inline void take_controls(mbd::Mechanism& m, const Vehicle& v) {
   for (const Wheel& w : v.wheels) {
     if (w.brake_torque > 0.0) m.parts().actuators[w.brake.index()].spec.max_force = w.brake_torque;
@@ -163,9 +194,12 @@ inline void take_controls(mbd::Mechanism& m, const Vehicle& v) {
 /// Passes a driver's controls on, to be called before every step: `dt` is the time (s) to the next call. The steering
 /// turns no faster than `steer_rate` (rad/s of the wheels). An engine that is an actuator holds the speed in the middle
 /// of the governor's limits with the throttle's share of its torque; without limits it gives that torque at any speed.
-/// Sums what engine and brakes do. Throws Error for a governor's limits that make no sense.
+/// Sums what engine and brakes do. Throws Error for controls out of range and for times and rates that are not
+/// positive.
 inline void drive(mbd::Mechanism& m, Vehicle& v, const Controls& c, double dt, double steer_rate = 0.5) {
   c.check();
+  require_positive(dt, "time from one call of drive to the next", "s");
+  require_positive(steer_rate, "rate at which the wheels are steered", "rad/s");
   Engine& e = v.driveline.engine;
   e.work += dt * m.actuator(e.drive).power();
   for (Wheel& w : v.wheels) {

@@ -182,6 +182,7 @@ TEST_CASE("a driver holds a speed, and follows a circle") {
   // A kinematic car on a circle of 20 m, drawn with pieces of 0.5 m; with the trim as well, as there is no offset.
   for (const double trim : {0.0, 1.0}) {
     PathFollower path;
+    path.wheelbase = 3.378;
     path.preview = 3.0, path.preview_time = 0.0, path.trim = trim;
     const double r = 20.0;
     for (int k = 0; k <= 400; ++k) {
@@ -210,6 +211,7 @@ TEST_CASE("a car that drifts off a side slope comes back to its path with trim, 
   for (const double trim : {0.0, 1.0}) {
     PathFollower follow;
     follow.path = {Vec3(-10, 0, 0), Vec3(1000, 0, 0)};
+    follow.wheelbase = 3.378;
     follow.preview = 4.0, follow.preview_time = 0.0, follow.trim = trim;
     Vec3 at = Vec3::Zero();
     double yaw = 0.0;
@@ -227,6 +229,7 @@ TEST_CASE("a path with a sharp corner and doubled points is followed to its end,
   for (const double trim : {0.0, 1.0}) {
     CAPTURE(trim);
     PathFollower follow{.path = {Vec3(-10, 0, 0), Vec3(30, 0, 0), Vec3(30, 0, 0), Vec3(0, 20, 0), Vec3(-60, 60, 0)},
+                        .wheelbase = 3.378,
                         .preview = 3.0,
                         .preview_time = 0.0,
                         .trim = trim};
@@ -243,10 +246,13 @@ TEST_CASE("a path with a sharp corner and doubled points is followed to its end,
     CHECK(std::abs(follow.offset(at)) < 0.3);
     CHECK((at - Vec3(-60, 60, 0)).norm() < 3.1);
   }
-  PathFollower straight{.path = {Vec3(0, 0, 0), Vec3(100, 0, 0)}};
+  PathFollower straight{.path = {Vec3(0, 0, 0), Vec3(100, 0, 0)}, .wheelbase = 3.378};
   straight(Vec3::Zero(), Vec3::UnitX(), 1.0);
   CHECK(!straight.at_end());
   CHECK_THAT(message_of([] { PathFollower{}.offset({0, 0, 0}); }), Contains("a path has 0 points"));
+  straight.wheelbase = 0.0;
+  check_refused([&] { straight(Vec3::Zero(), Vec3::UnitX(), 1.0); }, "wheelbase of a path follower is 0 m",
+                "VehicleSpec::wheelbase()");
 }
 
 TEST_CASE("a motor's governor takes the throttle back between two speeds of the rims") {

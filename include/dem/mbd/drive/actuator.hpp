@@ -123,11 +123,12 @@ struct Actuator {
   double speed = 0.0;                          ///< m/s or rad/s
   double force = 0.0;                          ///< N or N m, positive where it makes the coordinate grow
   Signal::Sample target = {};                  ///< the set point
+  /// The largest force is state: brakes and engines set it while they run.
   template <class V>
   void fields(V& v) {
     v.given("name", spec.name), v.given("joint", spec.joint), v.given("a", a), v.given("b", b);
     v.given("dof", spec.dof), v.given("position_gain", spec.position_gain), v.given("speed_gain", spec.speed_gain);
-    v.given("max_force", spec.max_force), v("torque_curve", spec.torque_curve), v.given("engine_map", spec.engine_map),
+    v("max_force", spec.max_force), v("torque_curve", spec.torque_curve), v.given("engine_map", spec.engine_map),
         v.given("idle_speed", spec.idle_speed), v("throttle", spec.throttle);
     v.given("idle_gain", spec.idle_gain), v.given("point_on_a", spec.at_a, "m"), v.given("point_on_b", spec.at_b, "m");
     v.given("toward_a", spec.toward_a, "m"), v.given("toward_b", spec.toward_b, "m");

@@ -6,6 +6,7 @@
 #include <dem/mbd/ids.hpp>
 
 #include <array>
+#include <cstddef>
 #include <string>
 #include <utility>
 
@@ -37,8 +38,8 @@ class WindowAverage {
   Wrench mean() const {
     Wrench sum;
     double time = 0.0;
-    for (int k = 0; k < ring_size && time < window_; ++k) {
-      const Bin& bin = bins_[static_cast<std::size_t>((head_ + ring_size - k) % ring_size)];
+    for (std::size_t k = 0; k < ring_size && time < window_; ++k) {
+      const Bin& bin = bins_[(head_ + ring_size - k) % ring_size];
       sum = sum + bin.sum;
       time += bin.time;
     }
@@ -61,7 +62,7 @@ class WindowAverage {
       v("sum", sum), v("time", time, "s");
     }
   };
-  static constexpr int bin_count = 64, ring_size = bin_count + 1;
+  static constexpr std::size_t bin_count = 64, ring_size = bin_count + 1;
 
   double window_;
   Wrench latest_;

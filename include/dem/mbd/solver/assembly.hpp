@@ -40,8 +40,10 @@ struct AssemblyReport {
 };
 
 /// Changes the bodies' velocities to what joints with derived stiffness, couplings and prescribed motions allow. Those
-/// of given stiffness may move, and are left alone. Throws Error if they are to be refused.
-DEM_LAZY DEM_COLD inline AssemblyReport joined_velocities(Parts& m, GivenVelocities how = GivenVelocities::project) {
+/// of given stiffness may move, and are left alone. Joints whose directions differ by less than the root of `tolerance`
+/// (rad) hold one direction. Throws Error if they are to be refused.
+DEM_LAZY DEM_COLD inline AssemblyReport joined_velocities(Parts& m, GivenVelocities how = GivenVelocities::project,
+                                                          double tolerance = 1e-13) {
   using namespace detail;
   AssemblyReport report;
   const std::vector<HeldRow> rows = held_rows(m);
@@ -64,7 +66,7 @@ DEM_LAZY DEM_COLD inline AssemblyReport joined_velocities(Parts& m, GivenVelocit
   std::vector<double> rates(rows.size());
   for (int pass = 0; pass < 3; ++pass) {  // the first does it, the others take what rounding left
     for (std::size_t k = 0; k < rows.size(); ++k) rates[k] = rows[k].rate - speed_of(m, rows[k]);
-    solve_held(m, rows, rates, response);
+    solve_held(m, rows, rates, response, tolerance);
     for (std::size_t k = 0; k < rows.size(); ++k) {
       for (const HeldRow::Side& s : rows[k].sides) {
         if (!gives_way(m, s.body)) continue;
@@ -109,11 +111,14 @@ DEM_LAZY DEM_COLD inline AssemblyReport joined_velocities(Parts& m, GivenVelocit
 /// clutches go on with the torque that they have.
 DEM_LAZY DEM_COLD inline void close_openings(Parts& m, double part) {
   using namespace detail;
+  // Joints stand open, so two that hold a shaft differ in direction by some 1e-4 rad. Taken for two directions they
+  // would hold its turn.
+  constexpr double as_open = 1e-5;
   const std::vector<HeldRow> rows = held_rows(m);
   std::vector<double> errors;
   for (const HeldRow& row : rows) errors.push_back((part - 1.0) * row.error);
   const auto response = [&](std::size_t i, const Wrench& impulse) { return response_of(m.bodies[i], impulse); };
-  solve_held(m, rows, errors, response);
+  solve_held(m, rows, errors, response, as_open);
   std::vector<Wrench> by(m.bodies.size());
   for (std::size_t k = 0; k < rows.size(); ++k) {
     for (const HeldRow::Side& s : rows[k].sides) {
@@ -133,7 +138,7 @@ DEM_LAZY DEM_COLD inline void close_openings(Parts& m, double part) {
   }
   const std::vector<double> after = slips();
   for (std::size_t i = 0; i < m.clutches.size(); ++i) m.clutches[i].history.anchor += after[i] - before[i];
-  joined_velocities(m);
+  joined_velocities(m, GivenVelocities::project, as_open);
 }
 
 }  // namespace dem::mbd

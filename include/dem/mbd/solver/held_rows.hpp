@@ -129,9 +129,11 @@ inline double speed_of(const Parts& m, const HeldRow& row) {
 }
 
 /// The impulses along the rows that give them `rates`, in place. `response(body, impulse)` is the change of velocity
-/// that an impulse gives a body, of those that give way. Rows that others make up get none.
+/// that an impulse gives a body, of those that give way. Rows that others make up but for a share below `tolerance` get
+/// none (solve_positive).
 template <class Response>
-void solve_held(const Parts& m, const std::vector<HeldRow>& rows, std::vector<double>& rates, Response&& response) {
+void solve_held(const Parts& m, const std::vector<HeldRow>& rows, std::vector<double>& rates, Response&& response,
+                double tolerance = 1e-13) {
   struct On {
     std::size_t row;
     const Wrench* push;
@@ -151,7 +153,7 @@ void solve_held(const Parts& m, const std::vector<HeldRow>& rows, std::vector<do
       }
     }
   }
-  solve_positive(A, rates);
+  solve_positive(A, rates, tolerance);
 }
 
 }  // namespace dem::mbd::detail
