@@ -3,6 +3,7 @@
 /// What a program usually needs: worlds of spheres and clusters, all laws, machines. Other shapes are
 /// <dem/geometry/shapes.hpp>. Single headers may be included instead; each stands alone.
 
+#include <dem/core/compiler.hpp>
 #include <dem/core/version.hpp>
 #include <dem/geometry/cluster/sphere_cluster.hpp>
 #include <dem/grain/broadphase/all_pairs.hpp>

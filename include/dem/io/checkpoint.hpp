@@ -3,6 +3,9 @@
 // Stop and go on, bit for bit. Needs HDF5: link dem::hdf5. These are free functions, and dem.hpp does not include them,
 // so that programs which save nothing need neither the library nor the seconds that its headers take to compile. What
 // the columns of a file mean, for other programs: checkpoint/README.md.
+//
+// A program that has HDF5 files of its own closes them before it ends: where save or load is the first to use HDF5, it
+// does not close them at the exit, and one that is left open cannot be read. Or the program calls H5open() first.
 
 #include <dem/io/checkpoint/hdf5_file.hpp>
 #include <dem/io/checkpoint/world_columns.hpp>
@@ -55,9 +58,9 @@ void save(const World<Model>& world, const std::filesystem::path& path, const Ot
 /// only functions know is not compared.
 ///
 /// Restored, whatever the program set: the state, and what was steered while it ran. These are targets, sizes of loads
-/// (applied_force) that are numbers, throttles, switches, brakes' capacities, preloads of friction, ratios of gears,
-/// set_fixed, gravity, sub-steps, and whether grains may sleep. So what is to be another one from now on is set after
-/// loading: set_load for another pressure, set_sleep for a bed that was saved awake.
+/// (applied_force) that are numbers, throttles, switches, brakes' capacities, largest forces of actuators, preloads of
+/// friction, ratios of gears, set_fixed, gravity, sub-steps, and whether grains may sleep. So what is to be another one
+/// from now on is set after loading: set_load for another pressure, set_sleep for a bed that was saved awake.
 ///
 /// To be set before loading, because the file has it to compare only or not at all:
 /// - contact constants that set_contact changed during the run, as they were when it was saved;

@@ -125,6 +125,10 @@ class CsvWriter {
     }
     const std::string old = read_file(path), names = header();
     if (old.empty()) return WriteFrom::start;
+    if (old.starts_with(names.substr(0, names.size() - 1) + "\r\n")) {
+      fail("csv file '{}' cannot go on: its lines end with CR LF, not LF; convert it, or give it another name",
+           path.string());
+    }
     if (!old.starts_with(names)) {
       fail("csv file '{}' cannot go on: its columns are '{}', not '{}'; give it another name, or move it away",
            path.string(), old.substr(0, old.find('\n')), names.substr(0, names.size() - 1));

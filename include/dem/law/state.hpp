@@ -2,6 +2,7 @@
 
 #include <dem/math/vector.hpp>
 
+#include <cstddef>
 #include <type_traits>
 
 namespace dem::contact {
@@ -40,7 +41,7 @@ template <class Struct>
 inline constexpr int field_count = std::is_empty_v<Struct> ? 0 : static_cast<int>(sizeof(Struct) / sizeof(double));
 
 /// Stands for a T where sizes are counted.
-template <int Bytes>
+template <std::size_t Bytes>
 struct SizedNumber {
   unsigned char bytes[Bytes];
 };

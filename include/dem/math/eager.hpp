@@ -4,6 +4,8 @@
 // expression types are made: each of these costs a compiler some milliseconds, and three numbers gain nothing by them.
 // Products add in Eigen's order, first + (second + third), so results are the same bits.
 
+#include <dem/core/compiler.hpp>
+
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 

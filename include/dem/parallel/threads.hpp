@@ -17,8 +17,8 @@ namespace dem::exec {
 
 /// Threads of its own, that share the work as it comes and sleep when there is none. The other programs of a machine
 /// hardly slow it down, nor does it them. Unless a number is set, it uses as many threads as OpenMP offers (so
-/// OMP_NUM_THREADS counts; without OpenMP, as many as the machine has processors), but gives each at least a few pieces
-/// of work: waking a thread costs more than a small piece.
+/// OMP_NUM_THREADS counts; one in a parallel region of the program; without OpenMP, as many as the machine has
+/// processors), but gives each at least a few pieces of work: waking a thread costs more than a small piece.
 ///
 /// An exception of a piece is thrown on when the others are done; of several, that of the lowest piece. A piece that
 /// calls for_each itself runs the inner one alone. A copy makes threads of its own.
@@ -92,7 +92,8 @@ class Threads {
 
   static int offered() {
 #if defined(_OPENMP)
-    return omp_get_max_threads();
+    // Each thread of an OpenMP region that makes a world has it alone: its siblings have the other processors.
+    return omp_in_parallel() ? 1 : omp_get_max_threads();
 #else
     return static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
 #endif

@@ -150,6 +150,12 @@ TEST_CASE("a csv file goes on after a time, whatever an earlier run wrote later"
         }) == "csv file '" + path.string() +
                   "' cannot go on: its columns are 'time_s,force_N', not 'time_s,pull_N'; give it another name, or "
                   "move it away");
+  dem::io::write_file(path, "time_s,force_N\r\n0,1\r\n");
+  CHECK(error_of([&] {
+          CsvWriter(path, {"time_s", "force_N"}, {.goes_on_after = 0});
+        }) == "csv file '" + path.string() +
+                  "' cannot go on: its lines end with CR LF, not LF; convert it, or give it another name");
+  CHECK(read_file(path) == "time_s,force_N\r\n0,1\r\n");
   dem::io::write_file(path, "time_s,force_N\nsand,1\n");
   CHECK(error_of([&] {
           CsvWriter(path, {"time_s", "force_N"}, {.goes_on_after = 0});

@@ -101,6 +101,27 @@ TEST_CASE("threads lose no piece and call none twice, however short the work is"
   CHECK(calls == std::vector<int>(calls.size(), 10000));
 }
 
+#if defined(_OPENMP)
+TEST_CASE("an executor that is made in an OpenMP region of the program has one thread, unless more are set") {
+  const int outside = dem::exec::Threads().threads();
+  CHECK(outside == omp_get_max_threads());
+  std::atomic<int> regions = 0, wrong = 0;
+#pragma omp parallel num_threads(3)
+  {
+    dem::exec::Threads executor;
+    if (executor.threads() != 1) ++wrong;
+    executor.set_threads(2);
+    std::atomic<int> calls = 0;
+    executor.for_each(100, [&](std::size_t) { ++calls; });
+    if (executor.threads() != 2 || calls != 100) ++wrong;
+    ++regions;
+  }
+  CHECK(regions == 3);
+  CHECK(wrong == 0);
+  CHECK(dem::exec::Threads().threads() == outside);
+}
+#endif
+
 TEST_CASE("calls with many and few pieces take turns on the same threads") {
   dem::exec::Threads executor;
   executor.set_threads(4);

@@ -163,10 +163,10 @@ class SphereCluster {
   }
 
   // Unused lanes hold points that no comparison finds near anything, each other included.
-  alignas(64) double x_[stride] = {};
-  alignas(64) double y_[stride] = {};
-  alignas(64) double z_[stride] = {};
-  alignas(64) double radius_[stride] = {};
+  alignas(64) double x_[std::size_t{stride}] = {};
+  alignas(64) double y_[std::size_t{stride}] = {};
+  alignas(64) double z_[std::size_t{stride}] = {};
+  alignas(64) double radius_[std::size_t{stride}] = {};
   int count_ = 0;
   double bounding_radius_ = 0.0;
   double volume_ = 0.0;

@@ -43,8 +43,8 @@ class QuietHdf5 {
  public:
   QuietHdf5() {
     // What could not be flushed to a full disk stays behind as a handle of freed memory, which HDF5 would close again
-    // at the exit of the program, and crash. All files here are closed by then; a program that opens HDF5 files itself
-    // has to close them.
+    // at the exit of the program, and crash. All files here are closed by then. A program that used HDF5 before keeps
+    // what HDF5 does at its exit.
     [[maybe_unused]] static const herr_t never_at_exit = H5dont_atexit();
     H5Eget_auto2(H5E_DEFAULT, &function_, &data_);
     H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);

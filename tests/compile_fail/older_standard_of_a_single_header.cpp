@@ -1,0 +1,5 @@
+// expect: dem needs C[+][+]20: compile with -std=c[+][+]20
+// options: -std=c++17
+#include <dem/math/vector.hpp>
+
+int main() {}

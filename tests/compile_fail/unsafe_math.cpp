@@ -1,0 +1,5 @@
+// expect: compile without -funsafe-math-optimizations, -fassociative-math
+// options: -funsafe-math-optimizations
+#include <dem/core/error.hpp>
+
+int main() {}
