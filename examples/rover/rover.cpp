@@ -25,6 +25,7 @@
 #include <dem/terramechanics/named_soils.hpp>
 #include <dem/terramechanics/rut_vtk.hpp>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <memory>
@@ -96,6 +97,7 @@ struct Rover {
         const JointId joint =
             machine.add_joint(revolute(wheel_name, k == 0 ? rocker[side] : bogie[side], wheel[side][k], axle, y));
         const Signal spin = Signal::smooth_step(0.0, speed / radius, start, start + 1.0);
+        // N m s/rad; as much torque as it takes: a motor that stalls would have with_max_force.
         motor[side][k] = machine.add_actuator(speed_actuator(wheel_name, joint, 100.0, spin));
       }
     }
@@ -117,8 +119,8 @@ MachineColumns lay_soil(Rover& rover, const Drive& drive) {
                                       .length_y = track + 0.5,
                                       .spacing = drive.spacing,
                                       .soil = drive.soil.soil,
-                                      .damping = 2e4,
-                                      .bulldozing = 0.3});
+                                      .damping = 2e4,       // Pa s/m: a tenth of the critical one under a wheel
+                                      .bulldozing = 0.3});  // of the compacted volume lies beside the ruts
   if (drive.rock > 0.0) {
     const double x = wheel_x[0] + 0.5, y = 0.5 * track, half = 0.3;  // m: its middle, and half its length
     const auto rise = [=](double at_x, double at_y) {
@@ -197,24 +199,25 @@ Drove run(const Drive& drive, const Files& files) {
   };
 
   Drove d;
-  double energy = 0.0, turned = 0.0, count = 0.0, rows = 0.0;
+  double energy = 0.0, turned = 0.0, count = 0.0;
+  int rows = 0;
   double half_x = 0.0, half_turned = 0.0, last_x = 0.0, last_turned = 0.0, next_look = 0.0;
   const double duration = set_down + tilted + 40.0 * drive.path / drive.speed;
   const auto report = machine.run(duration, dt, [&] {
     const double t = machine.time(), tilt = drive.slope * std::clamp((t - set_down) / tilted, 0.0, 1.0);
     machine.gravity = {-drive.gravity * std::sin(tilt), 0, -drive.gravity * std::cos(tilt)};
     const double x = x_of_rover();
-    for (std::size_t part = 0; t < set_down && part < 6; ++part) {
-      if (part < 3) d.standing[part] = 0.0;
-      d.standing[part % 3] += 0.5 * soil.loads()[part].force.z;
+    if (t < set_down) {
+      for (std::size_t k = 0; k < 3; ++k) d.standing[k] = 0.5 * (soil.loads()[k].force.z + soil.loads()[k + 3].force.z);
     }
     for (const auto& side : rover.motor) {
       for (const ActuatorId id : side) turned += dt * machine.actuator(id).speed * radius / 6.0;
     }
     if (recorder.is_due(t, 0.05)) {
-      csv.row(recorder.sample());
-      samples.row(recorder.sample());
-      if (frames && std::fmod(rows++, 10.0) == 0.0) draw();
+      const auto row = recorder.sample();
+      csv.row(row);
+      samples.row(row);
+      if (frames && rows++ % 10 == 0) draw();
     }
     if (x < 0.5 * drive.path) half_x = x, half_turned = turned;
     else {
@@ -226,7 +229,7 @@ Drove run(const Drive& drive, const Files& files) {
         d.sinkage[part % 3] += 0.5 * (radius - machine.body(rover.wheel[part / 3][part % 3]).position().z());
       }
     }
-    if (t > next_look) {  // each time the rims have turned by a quarter of a metre: does it go on?
+    if (t > next_look) {  // each time the rims should have gone 0.3 m: does it go on?
       if (turned - last_turned > 0.25 && x - last_x < 0.05 * (turned - last_turned)) return false;
       last_x = x, last_turned = turned;
       next_look = t + 0.3 / drive.speed;
@@ -313,9 +316,10 @@ int main(int argc, char** argv) {
         const double weight = Rover(drive.speed, 0.0).mass() * drive.gravity;
         fmt::print("Rover of {:.0f} N on {} ({}): {:.1f} N a wheel\n", weight, drive.soil.name, drive.soil.source,
                    weight / 6);
-        io::Table table = {.caption = "Means of the second half of the path; loads and sinkages of one wheel",
-                           .header = {"slope [deg]", "ended", "slip", "pull / weight", "sin(slope)", "energy [J/m]",
-                                      "front [N]", "middle [N]", "rear [N]", "front [mm]", "middle [mm]", "rear [mm]"}};
+        io::Table table = {
+            .caption = "Means of the second half of the path; loads of one wheel, and its depth below the level ground",
+            .header = {"slope [deg]", "ended", "slip", "pull / weight", "sin(slope)", "energy [J/m]", "front [N]",
+                       "middle [N]", "rear [N]", "front [mm]", "middle [mm]", "rear [mm]"}};
         io::CsvWriter csv(output + "/slopes.csv",
                           {"slope_deg", "arrived", "distance_m", "slip", "pull_N", "energy_J_per_m", "load_front_N",
                            "load_middle_N", "load_rear_N", "sinkage_front_m", "sinkage_middle_m", "sinkage_rear_m"});
@@ -332,8 +336,11 @@ int main(int argc, char** argv) {
             fmt::print("Standing on level ground: {:.1f} N on a front, {:.1f} on a middle, {:.1f} on a rear wheel\n\n",
                        d.standing[0], d.standing[1], d.standing[2]);
           }
-          csv.row(std::vector<double>{slope, d.arrived ? 1.0 : 0.0, d.distance, d.slip, d.pull, d.energy, d.load[0],
-                                      d.load[1], d.load[2], d.sinkage[0], d.sinkage[1], d.sinkage[2]});
+          std::vector<double> numbers = {
+              slope,     d.arrived ? 1.0 : 0.0, d.distance,   d.slip,      d.pull, d.energy, d.load[0], d.load[1],
+              d.load[2], d.sinkage[0],          d.sinkage[1], d.sinkage[2]};
+          if (!d.arrived) std::fill(numbers.begin() + 4, numbers.end(), std::nan(""));
+          csv.row(numbers);
           driven.x.push_back(slope), driven.y.push_back(d.slip);
           std::vector<std::string> row = {fmt::format("{:g}", slope), d.arrived ? "arrived" : "dug in",
                                           fmt::format("{:.2f}", d.slip)};

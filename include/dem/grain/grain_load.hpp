@@ -10,9 +10,9 @@ namespace dem {
 struct GrainNow {
   GrainId id;
   SpeciesId species;
-  double time;            ///< s
-  Vec3 position;          ///< m, of the centre of mass
-  Vec3 velocity;          ///< m/s
+  double time;            ///< s, of the position
+  Vec3 position;          ///< m, of the centre of mass; in a periodic cell it may lie a little outside of it
+  Vec3 velocity;          ///< m/s; by velocity Verlet that of half a step before
   Vec3 angular_velocity;  ///< rad/s, global axes
 };
 

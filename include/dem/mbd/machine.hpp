@@ -36,7 +36,7 @@ class Machine : public Mechanism {
   /// Steps of dt (s) for a duration (s; the number of steps is rounded). Stops at the first body that blows up, and at
   /// what goes wrong with a terrain, such as a wheel that leaves the soil: each such thing ends one run, and the next
   /// goes on after it. Throws Error as step does, between two steps, for more steps than 9e15, and for a time of less
-  /// than half a step.
+  /// than half a step that was not taken before.
   [[nodiscard]] MachineReport run(double duration, double dt) {
     return run(duration, dt, [] {});
   }
@@ -45,12 +45,14 @@ class Machine : public Mechanism {
   template <class F>
   [[nodiscard]] MachineReport run(double duration, double dt, F&& after_step) {
     require_non_negative(duration, "time to run", "s");
+    const bool is_new = dt != accepted_dt_;
     prepare(dt);
     const double whole = std::round(duration / dt);
     if (!(whole <= 0x1.0p53)) {  // beyond it time stands still: t + dt = t
       fail("time to run is {:g} s, {:g} steps of {:g} s, but must be at most 9e15 steps", duration, whole, dt);
     }
-    if (whole == 0.0 && duration > 1e-6 * dt) {  // less is what rounding leaves of a time that is over
+    // Of a step that was taken before, it is what is left of a time.
+    if (whole == 0.0 && duration > 0.0 && is_new) {
       fail("time to run is {:g} s, less than half of a time step of {:g} s: run(duration, dt) would take no step",
            duration, dt);
     }
@@ -78,6 +80,7 @@ class Machine : public Mechanism {
   /// to be derived and design_for was not called, or a prescribed motion would have to jump.
   DEM_COLD void initialise(double time, const Vec3& g) {
     gravity = g;
+    const Stepping stepping(parts());
     solver_.initialise(*this, time, g, [] {});
   }
   /// All is well; or which body blew up, when, and what to change; or what went wrong with a terrain in the newest
@@ -97,6 +100,7 @@ class Machine : public Mechanism {
   /// as it does at the machine's time. Later changes of velocities need another call: the first step asks once.
   DEM_COLD const AssemblyReport& assemble() {
     solver_.check_motions(*this);
+    const Stepping stepping(parts());
     if (parts().apply_motions) parts().apply_motions(parts(), time(), 0.0, false);
     solver_.assemble(*this);
     return solver_.assembly();

@@ -33,7 +33,7 @@ class RoadTyre final : public mbd::Terrain {
     newest_ = kept_;
     const Body& wheel = bodies[wheel_.index()];
     loads[load_.index()].wrench = tyre_wrench(spec_, road_, wheel, axis_, step.time, newest_);
-    if (kept_.time < 0.0) watch_.begin(wheel, newest_);
+    if (kept_.time < 0.0) watch_.begin(spec_, wheel, newest_);
     if (step.is_kept) {
       const double dt = kept_.time >= 0.0 && step.time > kept_.time ? step.time - kept_.time : 0.0;
       watch_.look(spec_, road_, wheel, axis_, newest_, dt);

@@ -11,7 +11,7 @@
 namespace dem::vehicle {
 
 /// m, the deepest that a tyre may be in the road. Real ones are on their rim before.
-inline double deepest(const TyreSpec& tyre) { return 0.5 * tyre.radius; }
+inline double deepest_deflection(const TyreSpec& tyre) { return 0.5 * tyre.radius; }
 
 /// Looks at a tyre in each step that is kept, and tells what has gone wrong, each thing once: a wheel that presses
 /// deeper into the road than a tyre can, one that began in the road and is thrown out of it, and a time step that is
@@ -23,12 +23,16 @@ inline double deepest(const TyreSpec& tyre) { return 0.5 * tyre.radius; }
 class TyreWatch {
  public:
   /// After the first evaluation.
-  void begin(const Body& wheel, const TyreState& s) { began_ = s.deflection, begun_ = wheel.velocity(), at_ = s.time; }
+  void begin(const TyreSpec& tyre, const Body& wheel, const TyreState& s) {
+    const bool can_throw = s.deflection > 0.0 && s.deflection * std::sqrt(tyre.stiffness / wheel.mass) > largest_throw;
+    began_ = can_throw ? s.deflection : 0.0;
+    begun_ = wheel.velocity(), at_ = s.time;
+  }
   /// After an evaluation that is kept, dt (s) on from the one before.
   void look(const TyreSpec& tyre, const Road& road, const Body& wheel, const Vec3& axis, const TyreState& s,
             double dt) {
     const bool presses = s.load > 0.0;
-    if (presses && s.deflection > deepest(tyre) && !is_told_deep_) tell_deep(tyre, wheel, s);
+    if (presses && s.deflection > deepest_deflection(tyre) && !is_told_deep_) tell_deep(tyre, wheel, s);
     has_touched_ = has_touched_ || presses;
     if (!has_touched_) gap_ = -depth_in(road, tyre.radius, wheel, axis);
     if (began_ > 0.0) follow_begin(tyre, road, wheel, s);
@@ -104,7 +108,7 @@ class TyreWatch {
   double speed_ = 0.0;         // m/s, out of the road, in the step before; of a tyre that is too stiff or damped
   double thrown_ = 0.0;        // m/s a step, likewise
   double gap_ = 0.0;           // m, to the road, of a tyre that has not touched it yet
-  double began_ = 0.0;         // m, in the road at the begin; 0 once that is over
+  double began_ = 0.0;         // m, in the road at the begin, where that can throw the wheel; 0 once that is over
   double at_ = 0.0;            // s, of the begin
   Vec3 begun_ = Vec3::Zero();  // m/s, of the wheel at the begin
   bool has_touched_ = false, is_told_deep_ = false, is_told_thrown_ = false;

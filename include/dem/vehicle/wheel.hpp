@@ -64,11 +64,11 @@ DEM_COLD inline void add_tyre(const Assembly& in, const std::string& corner, Whe
   Road ground = road;
   ground.normal = road.normal.normalized();
   const Vec3 axis = wheel.rotation().transpose() * in.direction(Vec3::UnitY()), up = in.direction(Vec3::UnitZ());
-  if (const Vec3& n = road.normal; n.dot(up) < 0.0) {
-    fail("the normal of the road under body '{}' is ({:g}, {:g}, {:g}), into the ground; give its opposite", wheel_name,
-         n.x(), n.y(), n.z());
-  }
-  if (const double depth = depth_in(ground, tyre.radius, wheel, axis); depth > deepest(tyre)) {
+  if (const double depth = depth_in(ground, tyre.radius, wheel, axis); depth > deepest_deflection(tyre)) {
+    if (const Vec3& n = road.normal; !road.heights && n.dot(up) < 0.0) {
+      fail("the normal of the road under body '{}' is ({:g}, {:g}, {:g}), into the ground; give its opposite",
+           wheel_name, n.x(), n.y(), n.z());
+    }
     fail(
         "body '{}' starts {:.3g} m deep in the road, but its tyre of radius {:g} m may be at most half of that deep; "
         "place it higher by {:.3g} m, or lower the road",

@@ -5,6 +5,7 @@
 #include <dem/world/report.hpp>
 #include <dem/world/state.hpp>
 
+#include <algorithm>
 #include <array>
 #include <string>
 #include <utility>

@@ -151,7 +151,7 @@ struct WorldState {
     v.given("beyond_domain", options.beyond_domain), v.list("outlets", outlets, "outlet");
     v("beyond", beyond_domain), v("energy", ledger), v.list("inlets", inlets, "inlet"), v("put_in_at", put_in_at);
     v("held", held);
-    if (grain_load) v.given("has_grain_load", true);
+    if (grain_load) v.given("set_grain_load", true);
   }
 
   /// The chunks that this process works on, from first to second: all, unless ranks share them.

@@ -41,7 +41,8 @@ class WorldGrains : public WorldSetup<M> {
   Vec3 angular_velocity(GrainId p) const { return to_eigen(state_.grains.angular_velocity(row(p))); }
   /// From the grain's frame, that of its shape, to global axes.
   Mat3 rotation(GrainId p) const { return to_eigen(state_.grains.rotation(row(p))); }
-  /// Contact force (N) and torque (N m) on a grain in the last force evaluation.
+  /// Force (N) and torque (N m) on a grain in the last force evaluation: of its contacts, and of a load law, without
+  /// its weight.
   Vec3 force(GrainId p) const { return to_eigen(state_.grains.force[row(p)]); }
   Vec3 torque(GrainId p) const { return to_eigen(state_.grains.torque[row(p)]); }
   /// Whether a grain sleeps (WorldOptions::sleep).

@@ -112,16 +112,19 @@ TEST_CASE("what is hardly meant is noted, and stops nothing") {
   Machine<VelocityVerlet> m;
   const BodyId a = m.add_body(box_body("rod", {1, 0.1, 0.1}, 100).at({0.5, 0, 0}));
   const JointId hinge = m.add_joint(revolute("hinge", m.ground(), a, {0, 0, 0}, Y));
+  m.add_joint(revolute("again", m.ground(), a, {0, 0, 0}, Y));
+  m.add_joint(point_on_plane("one way", m.ground(), a, {0.5, 0, 0}, X));
+  m.add_joint(point_on_plane("the other", m.ground(), a, {0.5, 0, 0}, Z));
   m.add_actuator(joint_actuator("idle", hinge, 0.0, 0.0));
   CHECK_THAT(m.run(1e-2, 1e-3).note, Contains("Actuator 'idle' has no gain and is no motor: it does nothing."));
 
-  m.add_joint(revolute("again", m.ground(), a, {0, 0, 0}, Y));
   m.add_motion(prescribed_joint("turn", hinge, Signal(m.coordinate(hinge))));
   m.add_motion(prescribed_joint("second", hinge, Signal(m.coordinate(hinge))));
   m.add_actuator(joint_actuator("motor", hinge, 10.0, 1.0));
   const MachineReport report = m.run(1e-2, 1e-3);
   CHECK(report);
   CHECK_THAT(report.note, Contains("Joints 'hinge' and 'again' hold the same bodies at the same point"));
+  CHECK_THAT(report.note, !Contains("'one way'"));  // they hold two directions
   CHECK_THAT(report.note, Contains("Motions 'turn' and 'second' prescribe the same coordinate of joint 'hinge'"));
   CHECK_THAT(report.note,
              Contains("Actuator 'motor' acts on joint 'hinge', whose coordinate motion 'turn' prescribes"));
@@ -131,13 +134,12 @@ TEST_CASE("a body that nothing holds is noted where there is gravity") {
   for (const double g : {0.0, -9.81}) {
     Machine<VelocityVerlet> m;
     m.gravity = {0, 0, g};
-    m.add_body(ball("first"));
-    m.add_body(ball("second").at({3, 0, 0}));
+    const BodyId first = m.add_body(ball("first")), second = m.add_body(ball("second").at({3, 0, 0}));
     const std::string note = m.run(1e-2, 1e-3).note;
     if (g == 0.0) CHECK(note.empty());
     else CHECK_THAT(note, Contains("Nothing holds body 'first' and 1 more: it falls freely."));
-    m.add_spring(spring("rope", m.ground(), {0, 0, 1}, BodyId{1}, {0, 0, 0}, 1e3, 10.0));
-    m.add_load(applied_force("lift", BodyId{2}, {3, 0, 0}, Z, 1.0));
+    m.add_spring(spring("rope", m.ground(), {0, 0, 1}, first, {0, 0, 0}, 1e3, 10.0));
+    m.add_load(applied_force("lift", second, {3, 0, 0}, Z, 1.0));
     CHECK_THAT(m.run(1e-2, 1e-3).note, !Contains("Nothing holds"));
   }
 }
@@ -147,5 +149,33 @@ TEST_CASE("a time to run of less than half a step is refused") {
   m.add_body(ball("ball"));
   check_refused([&] { (void)m.run(1e-4, 1.0); }, "time to run is 0.0001 s", "time step of 1 s");
   CHECK(m.run(0.0, 1e-3));
-  CHECK(m.run(1e-12, 1e-3));  // what rounding leaves of a time that is over
+  REQUIRE(m.run(0.1, 3e-4));
+  CHECK(m.run(0.1 - m.time(), 3e-4));  // a third of a step is left of the time
+}
+
+TEST_CASE("what a load adds to its machine is refused, and leaves nothing behind") {
+  for (const double at : {0.0, 5e-3}) {  // s: as the first forces are found, and within a step
+    Machine<VelocityVerlet> m;
+    const BodyId a = m.add_body(ball("a")), b = m.add_body(ball("b").at({1, 0, 0}));
+    std::vector<std::string> said;
+    m.add_load(custom_load("adds", a, [&](double t, const Body&) {
+      if (t >= at && said.empty()) {
+        said.push_back(message_of([&] { m.add_body(ball("c")); }));
+        said.push_back(message_of([&] { m.add_spring(spring("s", a, {0, 0, 0}, b, {1, 0, 0}, 10.0)); }));
+        said.push_back(message_of([&] {
+          m.add_joint(revolute("j", a, b, {0, 0, 0}, Y).with_limits({.lower = -1.0, .upper = 1.0}));
+        }));
+        said.push_back(message_of([&] { m.add_motion(prescribed_position("p", a, Y, Signal(0.0))); }));
+      }
+      return Wrench{};
+    }));
+    REQUIRE(m.run(1e-2, 1e-3));
+    REQUIRE(said.size() == 4);
+    for (const std::string& text : said) CHECK_THAT(text, Contains("added to a machine within a step"));
+    const Parts& parts = m.parts();
+    CHECK(parts.bodies.size() == parts.built.size());
+    CHECK(parts.joints.size() + parts.joint_specs.size() + parts.limits.size() + parts.springs.size() == 0);
+    CHECK(parts.motions.empty());
+    CHECK_NOTHROW(m.add_spring(spring("s", a, {0, 0, 0}, b, {1, 0, 0}, 10.0)));  // between steps
+  }
 }

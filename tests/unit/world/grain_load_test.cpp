@@ -5,6 +5,8 @@
 #include "core/error_of.hpp"
 #include "state_hash.hpp"
 
+#include <dem/io/checkpoint/world_columns.hpp>
+
 using Catch::Approx;
 using Catch::Matchers::Contains;
 using dem::GrainLoad;
@@ -86,6 +88,27 @@ TEST_CASE("a load law is refused where grains may sleep, and is part of what a s
   dem::World<Balls> awake(options({0, 0, -g}));
   awake.set_grain_load([](const GrainNow&) { return GrainLoad{}; });
   check_refused([&] { awake.set_sleep(dem::SleepOptions{}); }, "set_grain_load", "cannot sleep");
+  for (const bool had : {false, true}) {
+    for (const bool has : {false, true}) {
+      Alone<models::VerletBalls> from, to;
+      const auto lift = [](const GrainNow&) { return GrainLoad{.force = Vec3(0, 0, 1e-5)}; };
+      if (had) from.w.set_grain_load(lift);
+      if (has) to.w.set_grain_load(lift);
+      REQUIRE(from.w.run(10));
+      const auto restore = [&] {
+        dem::io::StateColumns state = dem::io::columns_of(from.w);
+        dem::io::restore(to.w, state);
+      };
+      if (had != has) {
+        check_refused(restore, "set_grain_load");
+        continue;
+      }
+      restore();
+      REQUIRE(from.w.run(10));
+      REQUIRE(to.w.run(10));
+      CHECK(hash_of(from.w) == hash_of(to.w));
+    }
+  }
 }
 
 TEST_CASE("what is called within a step says so, and a world that was broken off says that") {

@@ -114,6 +114,7 @@ inline constexpr PartKind joint_kind = {
         }};
 
 DEM_COLD inline JointId add_joint(Parts& parts, JointSpec spec) {
+  require_no_step(parts);  // before its limits and friction are kept
   settle_name(spec.name, parts.joint_specs, "joint", "joints", [](const JointSpec& s) { return s.name; });
   const Joint j = make_joint(parts, spec);
   const auto number = static_cast<std::uint32_t>(parts.joints.size());

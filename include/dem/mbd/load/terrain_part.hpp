@@ -22,6 +22,7 @@ inline constexpr PartKind terrain_kind = {
 /// Adds a terrain to a machine. Throws Error for none, or a name that another one has.
 DEM_COLD inline TerrainId add_terrain(Mechanism& m, std::string name, std::unique_ptr<Terrain> terrain) {
   Parts& parts = m.parts();
+  require_no_step(parts);
   settle_name(name, parts.terrains, "terrain", "terrains", [](const TerrainPart& t) { return t.name; });
   parts.terrains.emplace_back(std::move(name), std::move(terrain));
   detail::use(parts, detail::terrain_kind);

@@ -111,8 +111,8 @@ DEM_LAZY DEM_COLD inline AssemblyReport joined_velocities(Parts& m, GivenVelocit
 /// clutches go on with the torque that they have.
 DEM_LAZY DEM_COLD inline void close_openings(Parts& m, double part) {
   using namespace detail;
-  // Joints stand open, so two that hold a shaft differ in direction by some 1e-4 rad. Taken for two directions they
-  // would hold its turn.
+  // Joints stand open, so two that hold a shaft differ in direction by some 1e-4 rad, or ten times that where a load
+  // came at once. Taken for two directions they would hold its turn: within 3e-3 rad they are one.
   constexpr double as_open = 1e-5;
   const std::vector<HeldRow> rows = held_rows(m);
   std::vector<double> errors;

@@ -10,27 +10,30 @@
 namespace dem::mbd {
 
 /// What is hardly meant as it was given: joints that are there twice, coordinates that two drives hold, actuators that
-/// do nothing. In words; empty if there is nothing odd. Looked for where a machine is laid out.
+/// do nothing. In words; empty if there is nothing odd. Looked for where a machine is laid out, and told as it was
+/// then.
 DEM_COLD inline std::string odd_parts(const Parts& m) {
   std::string text;
   const auto tell = [&](const std::string& sentence) { text += (text.empty() ? "" : " ") + sentence; };
-  const auto are_one = [](const Vector3<double>& p, const Vector3<double>& q) {
-    return p.x == q.x && p.y == q.y && p.z == q.z;
-  };
+  const auto are_one = [](const Vector3<double>& p, const Vector3<double>& q) { return norm(p - q) < 1e-6; };
   const auto joint_name = [&](JointId id) { return m.joint_specs[id.index()].name; };
 
   for (std::size_t k = 0; k < m.joints.size(); ++k) {
     const Joint& j = m.joints[k];
+    if (!j.on || traits_of(j.kind).stiffness != Stiffness::derived) continue;
     for (std::size_t i = 0; i < k; ++i) {
       const Joint& other = m.joints[i];
-      const bool is_twin = j.on && other.on && j.kind == other.kind && j.a == other.a && j.b == other.b &&
-                           are_one(j.point_a, other.point_a) && are_one(j.point_b, other.point_b);
-      if (is_twin && traits_of(j.kind).stiffness != Stiffness::none) {
-        tell(dem::text("Joints '{}' and '{}' hold the same bodies at the same point: each tells half of the reaction.",
-                       m.joint_specs[i].name, m.joint_specs[k].name));
-      }
+      const bool is_twin = j.a == other.a && j.b == other.b && j.kind == other.kind && other.on &&
+                           are_one(j.point_a, other.point_a) && are_one(j.point_b, other.point_b) &&
+                           are_one(j.axes_a.z, other.axes_a.z) && are_one(j.axes_b.z, other.axes_b.z);
+      if (!is_twin) continue;
+      tell(dem::text("Joints '{}' and '{}' hold the same bodies at the same point: each tells half of the reaction.",
+                     m.joint_specs[i].name, m.joint_specs[k].name));
     }
   }
+  const auto does_nothing = [](const ActuatorSpec& s) {
+    return s.position_gain == 0.0 && s.speed_gain == 0.0 && !s.has_throttle();
+  };
   const auto is_of_joint = [](const PrescribedMotion& p) {
     return p.spec.on && p.spec.target == MotionSpec::Target::joint;
   };
@@ -45,7 +48,8 @@ DEM_COLD inline std::string odd_parts(const Parts& m) {
       }
     }
     for (const Actuator& u : m.actuators) {
-      if (u.spec.on && u.spec.joint == motion.joint && u.spec.joint.valid() && u.spec.dof == motion.dof) {
+      if (!u.spec.on || does_nothing(u.spec) || u.spec.max_force == 0.0) continue;
+      if (u.spec.joint.valid() && u.spec.joint == motion.joint && u.spec.dof == motion.dof) {
         tell(
             dem::text("Actuator '{}' acts on joint '{}', whose coordinate motion '{}' prescribes: the motion has to "
                       "overcome it.",
@@ -54,9 +58,8 @@ DEM_COLD inline std::string odd_parts(const Parts& m) {
     }
   }
   for (const Actuator& u : m.actuators) {
-    const ActuatorSpec& s = u.spec;
-    if (s.on && s.position_gain == 0.0 && s.speed_gain == 0.0 && !s.has_throttle())
-      tell(dem::text("Actuator '{}' has no gain and is no motor: it does nothing.", s.name));
+    if (u.spec.on && does_nothing(u.spec))
+      tell(dem::text("Actuator '{}' has no gain and is no motor: it does nothing.", u.spec.name));
   }
   return text;
 }
@@ -69,6 +72,12 @@ DEM_COLD inline std::vector<std::uint32_t> loose_bodies(const Parts& m) {
   };
   for (const Joint& j : m.joints) {
     if (traits_of(j.kind).stiffness != Stiffness::none) held[j.a] = held[j.b] = 1;
+  }
+  const auto hold_joint = [&](std::size_t k) { held[m.joints[k].a] = held[m.joints[k].b] = 1; };
+  for (const JointLimitState& e : m.limits) hold_joint(e.joint);
+  for (const Clutch& u : m.clutches) {
+    hold(u.spec.a), hold(u.spec.b);
+    for (const CouplingSpec::Term& term : u.spec.terms) hold_joint(term.joint.index());
   }
   for (const Spring& s : m.springs) held[s.a] = held[s.b] = 1;
   for (const Actuator& u : m.actuators) held[u.a] = held[u.b] = 1;

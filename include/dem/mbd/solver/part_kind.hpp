@@ -73,6 +73,7 @@ struct PartKind {
 
 /// Lets the solver call a kind of part; to be called with each part that is added.
 inline void use(Parts& parts, const PartKind& kind) {
+  require_no_step(parts);
   auto at = parts.kinds.begin();
   while (at != parts.kinds.end() && (*at)->rank < kind.rank) ++at;
   if (at == parts.kinds.end() || *at != &kind) parts.kinds.insert(at, &kind);

@@ -184,16 +184,17 @@ inline const JointFrictionState* friction_of(const Parts& parts, JointId id) {
   return nullptr;
 }
 
-/// While it lives, a step is under way, in which nothing can be added.
+/// While it lives, forces are found and bodies move: nothing can be added.
 class Stepping {
  public:
-  explicit Stepping(Parts& parts) : parts_(parts) { parts_.is_stepping = true; }
+  explicit Stepping(Parts& parts) : parts_(parts), was_(parts.is_stepping) { parts_.is_stepping = true; }
   Stepping(const Stepping&) = delete;
   Stepping& operator=(const Stepping&) = delete;
-  ~Stepping() { parts_.is_stepping = false; }
+  ~Stepping() { parts_.is_stepping = was_; }
 
  private:
   Parts& parts_;
+  bool was_;
 };
 
 /// Throws Error where a step is under way: lists of parts that are being gone through must stay what they are.

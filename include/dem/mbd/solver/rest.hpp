@@ -16,8 +16,8 @@
 namespace dem::mbd {
 
 struct RestOptions {
-  /// Of the residuals, as a share of the weight of the machine or of its largest force. Where rounding keeps them from
-  /// falling further, a thousand times as much is taken for rest.
+  /// Of the residuals, as a share of the weight of the machine or of its largest force. Where 20 iterations
+  /// do not halve them, a thousand times as much is taken for rest.
   double tolerance = 1e-9;
   int most_iterations = 300;
 };
@@ -274,6 +274,7 @@ RestReport search_rest(Parts& parts, const Vec3& gravity, double time, double dt
                        PutForces&& put_forces) {
   if constexpr (Joints::projects) put_springs_on(parts, dt);
   RestSearch<std::decay_t<PutForces>> search(parts, gravity, time, dt, put_forces);
+  const Stepping stepping(parts);
   const RestReport report = search.run(options);
   if (!report) search.put_back();
   Joints::State::take_springs_off(parts);
