@@ -18,7 +18,7 @@ namespace {
 
 using Machine = mbd::Machine<integrator::VelocityVerlet>;
 
-const TyreSpec small = {.radius = 0.35, .stiffness = 2e5, .damping = 1e3};
+const TyreSpec small_tyre = {.radius = 0.35, .stiffness = 2e5, .damping = 1e3};
 
 /// A wheel alone.
 struct Lone {
@@ -33,7 +33,7 @@ struct Lone {
 }  // namespace
 
 TEST_CASE("a tyre that is too soft for its wheel ends the run once, at half of its radius") {
-  TyreSpec soft = small;
+  TyreSpec soft = small_tyre;
   soft.stiffness = 200.0;  // kN/m typed for N/m
   Lone of(0.345);
   of.put(soft);
@@ -48,7 +48,7 @@ TEST_CASE("a tyre that is too soft for its wheel ends the run once, at half of i
 }
 
 TEST_CASE("what was told of a tyre is not told again by a machine that takes its saved memory") {
-  TyreSpec soft = small;
+  TyreSpec soft = small_tyre;
   soft.stiffness = 200.0;
   Lone first(0.345), second(0.345);
   first.put(soft);
@@ -65,7 +65,7 @@ TEST_CASE("a step that is too large for a tyre's stiffness or damping ends the r
   const double dt = 5e-5, m = 25.0;
   for (const bool is_damped : {false, true}) {
     CAPTURE(is_damped);
-    TyreSpec tyre = small;
+    TyreSpec tyre = small_tyre;
     (is_damped ? tyre.damping : tyre.stiffness) = is_damped ? 1e7 : 2e11;
     Lone of(0.351);
     of.put(tyre);
@@ -85,7 +85,7 @@ TEST_CASE("a step that is too large for a tyre's stiffness or damping ends the r
 }
 
 TEST_CASE("a stiff tyre that begins in the road ends the run when it throws its wheel out") {
-  TyreSpec stiff = small;
+  TyreSpec stiff = small_tyre;
   stiff.stiffness = 1e9;  // stable, but 12.5 kJ are in its first 5 mm
   Lone of(0.345);
   of.put(stiff);
@@ -95,7 +95,7 @@ TEST_CASE("a stiff tyre that begins in the road ends the run when it throws its 
                               ContainsSubstring("stiffness (1e+09 N/m)"));
   CHECK(of.m.run(0.1, 5e-5).ok);
   Lone usual(0.325);
-  usual.put(small);
+  usual.put(small_tyre);
   CHECK(usual.m.run(0.5, 5e-5).ok);
 }
 
@@ -103,7 +103,7 @@ TEST_CASE("a tyre that carries a load as it should tells nothing, also where its
   for (const double height : {0.33, 0.6}) {
     CAPTURE(height);
     Lone of(height, 325.0);
-    of.put(small);
+    of.put(small_tyre);
     const mbd::MachineReport report = of.m.run(4.0, 1e-4);
     INFO(report.text);
     CHECK(report.ok);
@@ -114,7 +114,7 @@ TEST_CASE("a tyre that carries a load as it should tells nothing, also where its
 
 TEST_CASE("a road more than a radius below a wheel is noted until the tyre touches it") {
   Lone of(0.345);
-  of.put(small, Road{.point = Vec3(0, 0, -0.5)});
+  of.put(small_tyre, Road{.point = Vec3(0, 0, -0.5)});
   const mbd::MachineReport falls = of.m.run(1e-3, 1e-4);
   CHECK(falls.ok);
   CHECK_THAT(falls.note,
@@ -123,20 +123,21 @@ TEST_CASE("a road more than a radius below a wheel is noted until the tyre touch
 }
 
 TEST_CASE("a wheel that starts deep in the road is refused") {
-  check_refused([] { Lone(0.0).put(small); }, "body 'front wheel' starts 0.35 m deep", "place it higher by 0.35 m");
-  check_refused([] { Lone(-1.0).put(small); }, "body 'front wheel' starts 1.35 m deep");
+  check_refused([] { Lone(0.0).put(small_tyre); }, "body 'front wheel' starts 0.35 m deep",
+                "place it higher by 0.35 m");
+  check_refused([] { Lone(-1.0).put(small_tyre); }, "body 'front wheel' starts 1.35 m deep");
   check_refused(
       [] {
         const auto step = RoadHeights::of(-2, -2, 4, 4, 0.1, [](double x, double) { return x > -1.0 ? 0.3 : 0.0; });
-        Lone(0.35).put(small, Road{.heights = std::make_shared<RoadHeights>(step)});
+        Lone(0.35).put(small_tyre, Road{.heights = std::make_shared<RoadHeights>(step)});
       },
       "starts 0.3 m deep");
-  CHECK_NOTHROW(Lone(0.2).put(small));
+  CHECK_NOTHROW(Lone(0.2).put(small_tyre));
 }
 
 TEST_CASE("roads that cannot be are refused in words") {
   const auto refused = [](const Road& road, const char* words) {
-    check_refused([&] { Lone(0.345).put(small, road); }, words);
+    check_refused([&] { Lone(0.345).put(small_tyre, road); }, words);
   };
   const double none = std::nan("");
   refused({.friction = -1.0}, "friction of a road is -1");
@@ -149,29 +150,29 @@ TEST_CASE("roads that cannot be are refused in words") {
   refused({.normal = Vec3(-0.3, 0, 1), .heights = level}, "a road has heights, and a plane through (0, 0, 0) m");
   refused({.point = Vec3(0, 0, 1), .heights = level}, "a road has heights, and a plane through (0, 0, 1) m");
   refused({.friction = none, .heights = level}, "friction of a road is nan");
-  CHECK_NOTHROW(Lone(0.345).put(small, {.normal = Vec3(0, 0, 1e-3), .friction = 0.0}));
+  CHECK_NOTHROW(Lone(0.345).put(small_tyre, {.normal = Vec3(0, 0, 1e-3), .friction = 0.0}));
 }
 
 TEST_CASE("a wheel takes one tyre") {
   Lone of(0.345);
-  of.put(small);
-  check_refused([&] { add_tyre(Assembly(of.m), "again", of.w, small, Road{}); },
+  of.put(small_tyre);
+  check_refused([&] { add_tyre(Assembly(of.m), "again", of.w, small_tyre, Road{}); },
                 "body 'front wheel' has a tyre already");
   CHECK(of.m.run(0.01, 1e-4).ok);
 }
 
 TEST_CASE("a tyre can be changed between steps") {
   Lone of(0.35 - 25.0 * 9.81 / 2e5);
-  check_refused([&] { set_tyre(of.m, of.w, small); }, "body 'front wheel' has no tyre on hard ground");
-  of.put(small);
+  check_refused([&] { set_tyre(of.m, of.w, small_tyre); }, "body 'front wheel' has no tyre on hard ground");
+  of.put(small_tyre);
   of.m.body(of.w.body).motion.velocity.x = 3.0;
   const auto braking = [&] {
     of.m.body(of.w.body).motion.angular_velocity = {0, 0, 0};
     REQUIRE(of.m.run(1e-2, 1e-4));
     return -tyre_of(of.m, of.w).pull / tyre_of(of.m, of.w).load;
   };
-  CHECK(braking() == Approx(small.friction));
-  TyreSpec icy = small;
+  CHECK(braking() == Approx(small_tyre.friction));
+  TyreSpec icy = small_tyre;
   icy.friction = 0.1;
   set_tyre(of.m, of.w, icy);
   CHECK(braking() == Approx(0.1));

@@ -13,7 +13,7 @@ namespace {
 using Smooth = Grains<Superquadric, dem::integrator::VelocityVerlet>;
 using Pointed = Grains<SuperquadricPoints, dem::integrator::VelocityVerlet>;
 using Any = Mixed<Sphere, Cube8, Superquadric>;
-using Mixture = Grains<Any, dem::integrator::VelocityVerlet>;
+using AnyShapes = Grains<Any, dem::integrator::VelocityVerlet>;
 using OneKind = Grains<Mixed<Superquadric>, dem::integrator::VelocityVerlet>;
 
 /// Grains that fly at each other from a lattice, without walls and weight.
@@ -174,8 +174,8 @@ TEST_CASE("superquadrics of points keep momentum and lose energy, whatever their
 }
 
 TEST_CASE("spheres, clusters and superquadrics in one world keep momentum and lose energy") {
-  dem::World<Mixture> w(options({0, 0, 0}, 1e-5));
-  w.set_contact(sand<Mixture>());
+  dem::World<AnyShapes> w(options({0, 0, 0}, 1e-5));
+  w.set_contact(sand<AnyShapes>());
   add_swarm(w,
             {w.add_species(Sphere(1.2e-3)), w.add_species(dem::shape::cube8(1.1e-3)),
              w.add_species(Superquadric({1.2e-3, 1.1e-3, 1e-3}, {8, 4, 3}, 1))},
