@@ -45,17 +45,17 @@ class Machine : public Mechanism {
   template <class F>
   [[nodiscard]] MachineReport run(double duration, double dt, F&& after_step) {
     require_non_negative(duration, "time to run", "s");
-    const bool is_new = dt != accepted_dt_;
-    prepare(dt);
+    require_positive(dt, "time step", "s");
     const double whole = std::round(duration / dt);
     if (!(whole <= 0x1.0p53)) {  // beyond it time stands still: t + dt = t
       fail("time to run is {:g} s, {:g} steps of {:g} s, but must be at most 9e15 steps", duration, whole, dt);
     }
     // Of a step that was taken before, it is what is left of a time.
-    if (whole == 0.0 && duration > 0.0 && is_new) {
+    if (whole == 0.0 && duration > 0.0 && dt != accepted_dt_) {
       fail("time to run is {:g} s, less than half of a time step of {:g} s: run(duration, dt) would take no step",
            duration, dt);
     }
+    prepare(dt);
     const auto steps = static_cast<long long>(whole);
     terrain_problem_.clear();
     for (long long s = 0; s < steps && !solver_.has_blown_up() && terrain_problem_.empty(); ++s) {

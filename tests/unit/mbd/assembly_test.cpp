@@ -219,6 +219,7 @@ TEST_CASE("a machine alone takes its substeps, and derives for them") {
   }
   m.substeps = 8;
   CHECK(m.step(1e-3));
+  check_refused([&] { (void)m.run(1.0, -1e-3); }, "time step", "-0.001");
   check_refused([&] { (void)m.run(-1.0, 1e-3); }, "time to run is -1 s");
   check_refused([&] { (void)m.run(std::nan(""), 1e-3); }, "time to run is nan s");
 }

@@ -105,14 +105,16 @@ TEST_CASE("a speed above the largest one is reported, turning or not") {
   }
 }
 
-TEST_CASE("a run of more steps than doubles count is refused") {
+TEST_CASE("a run of more steps than doubles count is refused, and of less than half of one") {
   Machine<VelocityVerlet> m;
   m.add_body(brick("a", {0, 0, 0}));
   for (const double time : {1e20, 1e300}) {
     check_refused([&] { (void)m.run(time, 1e-3); }, "time to run", "must be at most 9e15 steps");
   }
   check_refused([&] { (void)m.run(HUGE_VAL, 1e-3); }, "time to run is inf s");
+  check_refused([&] { (void)m.run(4e-4, 1e-3); }, "less than half of a time step of 0.001 s");
   CHECK(m.time() == 0.0);
+  CHECK_FALSE(m.is_initialised());  // not laid out for a step that is not taken
   REQUIRE(m.run(3e-3, 1e-3));
   CHECK(m.time() == Approx(3e-3));
 }
