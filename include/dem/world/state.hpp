@@ -72,7 +72,7 @@ struct WorldState {
   double time_of_forces = 0.0;                ///< s, that the present evaluation is of
   std::optional<std::string> time_step_note;  ///< of a machine that makes it small; none where it is not known yet
   std::uint64_t step = 0;
-  enum class Standing { between_steps, within_a_step, broken_off } standing = Standing::between_steps;
+  bool is_broken_off = false;  ///< an exception ended the newest step within it
 
   Materials<Model> materials;
   std::vector<Species<Shape>> species;

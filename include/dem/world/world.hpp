@@ -34,7 +34,7 @@ class World : public WorldGrains<M> {
   /// grain lies unseen within a solid mesh, or a prescribed motion would have to jump.
   void prepare() {
     this->require_no_step("run");
-    if (state_.standing == Standing::broken_off) {
+    if (state_.is_broken_off) {
       fail(
           "the step after t = {:g} s was broken off by an exception, so this world stands between two steps: make a "
           "new one",
@@ -55,9 +55,8 @@ class World : public WorldGrains<M> {
     state_.machine.parts().allowed_jump = 0.1 * state_.smallest_radius;
     state_.machine_solver.check_motions(state_.machine);
     if (!initialised_ || !machine_is_initialised()) {
-      within_step(Standing::between_steps, [&] {
-        together(state_, domain::Call::first_forces, "as the first forces were found", [&] { initialise(state_); });
-      });
+      const mbd::Stepping stepping(state_.machine.parts());
+      together(state_, domain::Call::first_forces, "as the first forces were found", [&] { initialise(state_); });
       initialised_ = true;
       state_.grains_added = false;
     } else if (state_.grains_added) {
@@ -179,15 +178,13 @@ class World : public WorldGrains<M> {
   template <class V>
   void fields(V& v) {
     this->require_no_step("save, load or a restore");
-    if (state_.standing == Standing::broken_off)
+    if (state_.is_broken_off)
       fail("a world whose last step was broken off by an exception has no state to be saved or restored");
     this->require_grains_here("a state");
     v("", state_), v("owed_steps", owed_steps_), v("checked", checked_), v("initialised", initialised_);
   }
 
  private:
-  using Standing = typename WorldState<Model>::Standing;
-
   /// What goes on to the end.
   struct Always {
     constexpr bool operator()() const { return true; }
@@ -231,7 +228,7 @@ class World : public WorldGrains<M> {
     const double step = time_step();
     while (left > 0) {
       --left;
-      within_step(Standing::broken_off, [&] {
+      within_step([&] {
         list_added();  // goes_on() may have added some
         if (state_.put_in) state_.put_in(state_);
         take_step(state_);
@@ -258,18 +255,13 @@ class World : public WorldGrains<M> {
     }
     return ok();
   }
-  /// Calls f(), within which nothing may be added, and stands as is said where it throws.
+  /// Calls f(), within which nothing may be added. What it throws leaves the world between two steps.
   template <class F>
-  void within_step(Standing broken, F&& f) {
-    state_.standing = Standing::within_a_step;
-    try {
-      const mbd::Stepping stepping(state_.machine.parts());
-      f();
-    } catch (...) {
-      state_.standing = broken;
-      throw;
-    }
-    state_.standing = Standing::between_steps;
+  void within_step(F&& f) {
+    const mbd::Stepping stepping(state_.machine.parts());
+    state_.is_broken_off = true;
+    f();
+    state_.is_broken_off = false;
   }
   /// Lists grains that were added by hand since the last step.
   void list_added() {

@@ -298,12 +298,11 @@ class WorldSetup {
   void require_grains_here(const char* what) const { dem::require_grains_here(state_, what); }
   /// Throws Error where a step is under way.
   void require_no_step(const char* call) const {
-    if (state_.standing != WorldState<Model>::Standing::within_a_step) [[likely]]
+    if (!state_.machine.parts().is_stepping) [[likely]]
       return;
     fail(
         "{} is called within a step of this world, from a load, a signal or a law, or by another thread; call it "
-        "between "
-        "steps, or in goes_on() of run(n, goes_on)",
+        "between steps, or in goes_on() of run(n, goes_on)",
         call);
   }
   static void require_finite(const Vec3& v, const char* what) {
