@@ -46,6 +46,7 @@ constexpr auto flow = []<class Model>() {
   run(world, 400);
   for (std::uint32_t k = 3; k < 1500; k += 7) world.remove_grain(dem::GrainId(k));
   world.add_grain({.species = dem::SpeciesId(0), .position = {0.01, 0.001, 0.08}, .velocity = {2, -1, -1}});
+  world.set_grain_load(drag_of_air);
   run(world, 500);
   const auto ids = world.grains();
   const auto crossed = std::count_if(ids.begin(), ids.end(), [&](dem::GrainId p) {

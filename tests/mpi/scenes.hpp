@@ -61,6 +61,11 @@ void pour(World& world, dem::SpeciesId grain, int n, int nx, int ny, double pitc
   }
 }
 
+/// A load of the user's own on each grain.
+inline dem::GrainLoad drag_of_air(const dem::GrainNow& now) {
+  return {.force = -1e-6 * now.velocity, .torque = -1e-12 * now.angular_velocity};
+}
+
 /// Ends the program, on all ranks, where something went wrong.
 inline void require(bool is_well, const std::string& what) {
   if (!is_well) dem::fail("{}", what);

@@ -18,6 +18,7 @@ constexpr auto changing = []<class Model>() {
   const auto ids = world.grains();
   for (std::size_t k = 0; k < ids.size(); k += 100) world.set_velocity(ids[k], {0, 0, 0.2});
   world.add_grain({.species = dem::SpeciesId(0), .position = {0.015, 0.01, 0.09}});
+  world.set_grain_load(drag_of_air);
   run(world, 300);
   require(bool(world.run(1000, [left = 50]() mutable { return --left > 0; })), "the run did not end");
   for (int k = 0; k < 4; ++k) {  // each before a run, which lists it first

@@ -29,6 +29,10 @@ TEST_CASE("what the flat path cannot do is refused in words") {
     w.set_sleep(dem::SleepOptions{});
     CHECK_THAT(refused(), ContainsSubstring("grains cannot sleep"));
   }
+  SECTION("loads on grains") {
+    w.set_grain_load([](const dem::GrainNow&) { return dem::GrainLoad{}; });
+    CHECK_THAT(refused(), ContainsSubstring("no load law"));
+  }
   SECTION("attached grains") {
     const auto held = w.add_species(Sphere(1e-3), {.held = true});
     w.attach(w.add_grain({.species = held, .position = {0, 0, 9e-3}}), w.ground());

@@ -80,6 +80,23 @@ TEST_CASE("grains under a load law have the same bits on any number of threads")
   CHECK(run(1) == run(3));
 }
 
+TEST_CASE("attached grains have no load of a law") {
+  Alone<Balls> a;
+  const SpeciesId held = a.w.add_species(dem::shape::Sphere(1e-3), {.density = 2650, .held = true});
+  const GrainId tooth = a.w.add_grain({held, Vec3(1, 0, 10)});
+  a.w.attach(tooth, a.w.ground());
+  int asked = 0;
+  a.w.set_grain_load([&](const GrainNow& now) {
+    ++asked;
+    CHECK(now.id == a.ball);
+    return GrainLoad{.force = Vec3(1, 0, 0)};
+  });
+  REQUIRE(a.w.run(5));
+  CHECK(asked == 6);  // and as the first forces were found
+  CHECK(a.w.force(tooth).norm() == 0.0);
+  CHECK(a.w.force(a.ball).x() == 1.0);
+}
+
 TEST_CASE("a load law is refused where grains may sleep, and is part of what a saved state asks for") {
   dem::WorldOptions sleeps = options({0, 0, -g});
   sleeps.sleep = dem::SleepOptions{};
