@@ -72,7 +72,7 @@ constexpr rig::Column<Sample> columns[] = {{"time_s", &Sample::time},
                                            {"soil_z_N", &Sample::soil_z}};
 
 class Blade : public rig::Rig {
-  std::string size = "quick", folder = "blade";
+  std::string size = "quick", folder = "blade_output";
   double depth = 0.012, speed = 0.1, travel = 0.0, frame_time = 0.02;
   bool vtk = true;
 

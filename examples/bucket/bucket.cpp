@@ -136,7 +136,7 @@ int simulate(Arguments& arguments) {
   const double half_edge = arguments.number("--half-edge", 2e-3, "of a grain [m]");
   const double seconds = arguments.number("--seconds", 0.6, "that the bucket turns [s]");
   Clock clock{arguments.number("--every", 0.0, "seconds between files to go on from; 0: at Ctrl-C alone")};
-  const fs::path folder = arguments.take("--output", "bucket", "folder for the results");
+  const fs::path folder = arguments.take("--output", "bucket_output", "folder for the results");
   arguments.check();
   const fs::path bed_file = folder / "bed.h5", dig_file = folder / "digging.h5";
   fs::create_directories(folder);

@@ -32,7 +32,7 @@ void simulate(Arguments& arguments) {
   const double angle = arguments.number("--angle", 24.0, "of the incline [deg]"),
                slope = angle * std::numbers::pi / 180;
   const double seconds = arguments.number("--seconds", 2.0, "to flow, and as long again to take means [s]");
-  const std::string folder = arguments.take("--output", "chute", "folder for the results");
+  const std::string folder = arguments.take("--output", "chute_output", "folder for the results");
   arguments.check();
 
   // Beads of about 1 mm whose weight presses them in by d/20,000. x leads down the incline: it is gravity that is

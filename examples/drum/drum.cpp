@@ -40,7 +40,7 @@ void simulate(Arguments& arguments) {
                restitution = arguments.number("--restitution", 0.6, "of beads"),
                given_stiffness =
                    arguments.number("--stiffness", 0, "of beads [N/m]; 0: 500 for 3 mm in 84 mm, more for larger ones");
-  const std::string folder = arguments.take("--output", "drum", "folder for the results");
+  const std::string folder = arguments.take("--output", "drum_output", "folder for the results");
   const int threads = static_cast<int>(arguments.number("--threads", 1, "that share the work"));
   arguments.check();
   require_non_negative(turns, "--turns", "turns");

@@ -257,7 +257,7 @@ int simulate(Arguments& arguments) {
   const auto first_seed = static_cast<int>(arguments.number("--seed", 1.0, "of the first of these tiles"));
   const bool compares = arguments.number("--compare", 0.0, "1: a bed as long as the way, too") != 0.0;
   const std::vector<double> laid = arguments.numbers("--lay", {0.0, 0.0}, "no wheel: tiles to lay along x and y");
-  const std::string folder = arguments.take("--output", "endless_bed", "folder for the results");
+  const std::string folder = arguments.take("--output", "endless_bed_output", "folder for the results");
   arguments.check();
   if (laid.size() != 2) fail("--lay has {} numbers, but must have two: tiles along x and y", laid.size());
   const bool lays = laid != std::vector<double>{0.0, 0.0};

@@ -304,7 +304,7 @@ struct Scene {
 
 /// What the command line asks for.
 struct Request {
-  std::string scene = "all", folder = "humvee";
+  std::string scene = "all", folder = "humvee_output";
 };
 
 /// A scene and a folder, or the folder after --output. Throws Error for other options and further words.
@@ -317,7 +317,7 @@ Request request_of(const std::vector<std::string>& words) {
   };
   for (std::size_t k = 0; k < words.size(); ++k) {
     if (words[k] == "--output") {
-      if (k + 1 == words.size()) dem::fail("--output has no folder; give one, as --output humvee");
+      if (k + 1 == words.size()) dem::fail("--output has no folder; give one, as --output humvee_output");
       take_folder(words[++k]);
     } else if (words[k] == "--help") {
       return {.scene = words[k]};

@@ -21,7 +21,7 @@
 
 int main(int argc, char** argv) {
   double dt = 1e-4, duration = 10.0;
-  std::string output = "pendulum";
+  std::string output = "pendulum_output";
   bool vtk = true;
   CLI::App app("A pendulum, released horizontal, against closed forms");
   app.add_option("--dt", dt, "time step in s")->capture_default_str();

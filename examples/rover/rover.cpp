@@ -297,7 +297,7 @@ int main(int argc, char** argv) {
   return run_example(
       argc, argv, "A rover on a rocker-bogie suspension drives up slopes of soil, or over a rock.", [](Arguments& a) {
         Drive drive;
-        const std::string output = a.take("--output", "rover", "folder for the results");
+        const std::string output = a.take("--output", "rover_output", "folder for the results");
         drive.soil =
             known_soil(a.take("--soil", "dry-sand", "dry-sand, sandy-loam, lete-sand, clayey, snow, p1 or p3"));
         drive.gravity = require_positive(a.number("--gravity", drive.gravity, "m/s^2"), "--gravity", "m/s^2");

@@ -27,7 +27,7 @@ struct Gravel : Model {
 
 int simulate(Arguments& arguments) {
   const double seconds = arguments.number("--seconds", 5.0, "to run [s]"), flow = 0.06;  // kg/s
-  const std::string folder = arguments.take("--output", "screw", "folder for the results");
+  const std::string folder = arguments.take("--output", "screw_output", "folder for the results");
   arguments.check();
   const double outer = 24e-3, shaft = 8e-3, pitch = 40e-3, length = 4 * pitch, wall = outer + 0.6e-3;  // m
   const double turns = 2.0, pi = std::numbers::pi;                                                     // 1/s

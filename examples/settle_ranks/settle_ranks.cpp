@@ -43,7 +43,7 @@ void settle(const typename Model::Shape& grain, Arguments& arguments) {
   const int threads = static_cast<int>(arguments.number("--threads", 0, "of each process; 0: all"));
   const double settle_gravity = arguments.number("--settle-gravity", 9.81, "while grains settle [m/s^2]");
   const std::filesystem::path bed = arguments.take("--bed", "", "file that the settled bed is taken from, or kept in");
-  const std::filesystem::path folder = arguments.take("--output", "settle_ranks", "folder for settled.csv");
+  const std::filesystem::path folder = arguments.take("--output", "settle_ranks_output", "folder for settled.csv");
   arguments.check();
 
   const double pitch = 2.2 * grain.bounding_radius();  // m

@@ -33,7 +33,7 @@ void simulate(Arguments& arguments) {
   const double wide = arguments.number("--hole", 6.0, "width, in grain diameters"),
                mu = arguments.number("--friction", 0.5, "coefficient of the beads"),
                beads = arguments.number("--beads", 3200, "how many fill it");
-  const std::string folder = arguments.take("--output", "silo", "folder for the results");
+  const std::string folder = arguments.take("--output", "silo_output", "folder for the results");
   arguments.check();
   const double d = 5e-3, density = 2500;                                                    // m, kg/m^3
   const double hole = wide * d, radius = 7.5 * d, high = 24 * d, bottom = 2 * d, g = 9.81;  // m; m/s^2

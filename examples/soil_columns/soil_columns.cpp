@@ -34,7 +34,7 @@ using namespace dem::terramechanics;
 int main(int argc, char** argv) {
   ColumnWheel s = {.spin = radians(17.0)};
   NamedSoil named = {"sand P1", "D. Melanz", melanz_sand};
-  std::string soil_file, output = "soil_columns", kind = "rough";
+  std::string soil_file, output = "soil_columns_output", kind = "rough";
   double grouser = 0.01, friction = 0.3;
   bool halve = false;
   CLI::App app("A rigid wheel on soil columns, beside the semi-empirical curves");

@@ -25,7 +25,7 @@
 
 int main(int argc, char** argv) {
   double dt = 5e-8;
-  std::string output = "squeezer";
+  std::string output = "squeezer_output";
   CLI::App app("Andrews' squeezer against its reference solution");
   app.add_option("--dt", dt, "time step in s; the joints get stiffer as it gets smaller")->capture_default_str();
   app.add_option("--output", output, "folder for the results")->capture_default_str();

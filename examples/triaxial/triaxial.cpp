@@ -134,7 +134,7 @@ void simulate(Arguments& arguments) {
   const double side = arguments.number("--side", 10.0, "beads along an edge of the specimen");
   const double strain = arguments.number("--strain", 0.4, "to which it is compressed");
   const double friction = arguments.number("--friction", 0.5, "coefficient while it is sheared");
-  const std::string folder = arguments.take("--output", "triaxial", "folder for the results");
+  const std::string folder = arguments.take("--output", "triaxial_output", "folder for the results");
   arguments.check();
   require_positive(pressure, "--pressure", "Pa");
   require_within(side, 4.0, 60.0, "--side");

@@ -170,8 +170,9 @@ class Mechanism {
   /// Sets the preload (N) of a joint's friction while running: a tighter bearing. Throws Error if the joint has no
   /// friction.
   void set_friction_preload(JointId id, double newtons) { detail::set_friction_preload(parts_, id, newtons); }
-  /// Sets the set point (m or rad) from outside, until another is given. Throws Error unless finite, for a motor, which
-  /// has a throttle instead, and for a number other than 0 where the actuator follows the rate alone.
+  /// Sets the set point (m or rad; of a speed_actuator m/s or rad/s) from outside, until another is given. Throws Error
+  /// unless finite, for a motor, which has a throttle instead, and for a number other than 0 where the actuator follows
+  /// the rate alone.
   void set_target(ActuatorId id, double value) { set_target(id, Signal(value)); }
   /// The set point and its rate, for instance every step. The rate may pass through 0. Throws Error unless finite, and
   /// for a motor.

@@ -2,12 +2,15 @@
 // Cubical grains and the thesis's constants of their contacts, as options of a rig.
 
 #include <dem/grain/materials.hpp>
+#include <dem/law/friction/asperity_spring.hpp>
+#include <dem/law/normal/penalty.hpp>
 #include <dem/rig/contact_options.hpp>
 #include <dem/rig/sizes.hpp>
 #include <dem/soil/relative_density.hpp>
 
 #include <cmath>
 #include <string>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -46,6 +49,10 @@ struct GrainSettings {
 /// springs of asperities.
 template <class Model>
 ContactParameters<Model> grain_contact(const GrainSettings& s, double friction) {
+  static_assert(std::is_same_v<typename Model::Normal, contact::Penalty> &&
+                    std::is_same_v<typename Model::Friction, friction::AsperitySpring>,
+                "a rig's settings are constants of contact::Penalty and friction::AsperitySpring: leave Normal and "
+                "Friction of your Model as they are");
   const double k = s.scale();
   return {.normal = {k * s.stiffness, k * k * s.damping, s.separation_factor},
           .friction = {friction, k * s.friction_stiffness, k * k * s.velocity_stiffness, s.breaking_factor}};

@@ -51,7 +51,7 @@ struct Settings {
   double friction_stiffness = -1.0;  ///< kt of asperities, N/m; negative: as K
   double velocity_stiffness = -1.0;  ///< cv, N s/m; negative: as C
   double breaking_factor = 0.975;    ///< share of the friction that a broken asperity keeps
-  double rolling_length = 0.0;       ///< m: rolling resists by this times the normal force; 0: a tenth of a diameter
+  double rolling_length = 0.0;       ///< m: rolling resists by this times the normal force; 0: a fifth of half_edge
   double rolling_damping = 0.3;      ///< of sphere-rolling: damping ratio of the springs that resist rolling
   double constants_for = 0.9e-3;     ///< m
   bool scale_contacts = true;        ///< K, kt ~ half-edge and C, cv ~ its square
