@@ -23,7 +23,7 @@
 namespace {
 
 constexpr const char* hash_of_spheres = "73bc636f971f6d70";
-constexpr const char* hash_of_cubes = "292d1dde455ec934";
+constexpr const char* hash_of_cubes = "cff38e1a82704f34";
 constexpr const char* hash_of_superquadrics = "6608de9defffe28c";
 
 /// Numbers from 0 to 1 that are the same with every library.

@@ -48,7 +48,7 @@ struct Step {
     for (int stage = 0; stage < Integrator::stages; ++stage) {
       const bool last = stage + 1 == Integrator::stages;
       w.move = {.stage = stage,
-                .last = last,
+                .keeps_histories = true,
                 .cleans_rotations = last && w.step % grain::steps_between_orthonormalisations == 0,
                 .at_once = true};
       kept.begin_stage();
@@ -61,7 +61,8 @@ struct Step {
       });
       w.stopwatch.stop(Phase::machine);
       w.move = {};
-      if (last) w.body_contacts.commit(), sample_surface_sensors(w);
+      w.body_contacts.commit();
+      if (last) sample_surface_sensors(w);
     }
     end_step_of_surfaces(w);
     w.time += w.time_step;
@@ -112,7 +113,7 @@ struct Step {
     kept.loads.sum(w, kept.at_surfaces.now().key, kept.at_surfaces.results(), kept.total(1));
     w.executor.wait();
     kept.take_summary(w);
-    if (w.move.last) kept.commit();
+    if (w.move.keeps_histories) kept.commit();
     w.stopwatch.stop(Phase::grains);
 
     w.stopwatch.start();

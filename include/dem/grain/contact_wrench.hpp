@@ -64,8 +64,10 @@ DEM_HOT NormalForce<T> normal_force(const contact::NormalState<T>& state, const 
   }
 }
 
-/// The laws applied to one contact (T = double) or to a pack of contacts: eqs. 20-30. Updates the history and returns
-/// the wrench and, in `overlap_ratio`, the overlap in effective diameters.
+/// The laws applied to one contact (T = double) or to a pack of contacts in a step of dt: eqs. 20-30. Updates the
+/// history and returns the wrench and, in `overlap_ratio`, the overlap in effective diameters. Each of the integrator's
+/// stages moves histories on by its share of the step. With two stages, at the step's start and end, that is the
+/// trapezoidal rule by which the partners move as well, so that springs stretch by what the partners slip.
 template <class Model, class T, class ContactPoint>
 DEM_HOT PairWrench<T> contact_wrench(const ContactPoint& point, const RelativeMotion<T>& e,
                                      const ContactParameters<Model, T>& parameters, T dt,
@@ -76,18 +78,20 @@ DEM_HOT PairWrench<T> contact_wrench(const ContactPoint& point, const RelativeMo
   const T approach = dot(velocity, g.normal);
   const Vector3<T> sliding = velocity - approach * g.normal;
   const T mass = T(1) / (e.inverse_mass * g.total_share);
+  const T followed = T(1.0 / Model::Integrator::stages) * dt;
 
   const NormalForce<T> normal = normal_force<Model>(
-      contact::NormalState<T>{g.overlap, approach, g.effective_radius, mass, dt}, parameters, history);
+      contact::NormalState<T>{g.overlap, approach, g.effective_radius, mass, followed}, parameters, history);
 
   // The history's vectors follow the contact: they turn with the mean twist of the partners about the normal and stay
   // in the tangent plane.
-  const T twist = T(0.5) * dt * dot(e.angular_velocity_i + e.angular_velocity_j, g.normal);
+  const T twist = T(0.5) * followed * dot(e.angular_velocity_i + e.angular_velocity_j, g.normal);
   const auto turn = [&](const Vector3<T>& v) { return v + twist * cross(g.normal, v) - dot(g.normal, v) * g.normal; };
   Model::Friction::carry(history.friction, turn);
   const Vector3<T> friction = Model::Friction::force(
       parameters.friction,
-      contact::TangentialState<T>{sliding, normal.pressing, g.overlap, g.effective_radius, mass, dt}, history.friction);
+      contact::TangentialState<T>{sliding, normal.pressing, g.overlap, g.effective_radius, mass, followed},
+      history.friction);
 
   const Vector3<T> force = g.weight * (friction - normal.repulsion * g.normal);
   overlap_ratio = T(0.5) * g.overlap / g.effective_radius;
@@ -97,10 +101,11 @@ DEM_HOT PairWrench<T> contact_wrench(const ContactPoint& point, const RelativeMo
     const T twisting = dot(turning, g.normal);
     Model::Rolling::carry(history.rolling, turn);
     const Vector3<T> torque =
-        g.weight * Model::Rolling::torque(parameters.rolling,
-                                          rolling::RollingState<T>{g.normal, turning - twisting * g.normal, twisting,
-                                                                   normal.pressing, g.effective_radius, mass, dt},
-                                          history.rolling);
+        g.weight *
+        Model::Rolling::torque(parameters.rolling,
+                               rolling::RollingState<T>{g.normal, turning - twisting * g.normal, twisting,
+                                                        normal.pressing, g.effective_radius, mass, followed, dt},
+                               history.rolling);
     wrench.torque_i += torque;
     wrench.torque_j -= torque;
   }

@@ -22,7 +22,7 @@ struct NormalState {
   T approach_speed;    ///< m/s, d' of eq. 26; positive while the bodies move together
   T effective_radius;  ///< m, 1/(1/Ri + 1/Rj)
   T effective_mass;    ///< kg, 1/(1/mi + 1/mj); over S for points whose shares add up to S < 1
-  T time_step;         ///< s
+  T time_step;         ///< s, by which the history moves on: a step over the integrator's stages
 };
 
 /// What a friction law may read.
@@ -33,7 +33,7 @@ struct TangentialState {
   T overlap;            ///< m
   T effective_radius;   ///< m
   T effective_mass;     ///< kg
-  T time_step;          ///< s
+  T time_step;          ///< s, as of NormalState
 };
 
 /// Number of doubles in a law's Parameters or History struct, which holds nothing but Ts; an empty struct has none.

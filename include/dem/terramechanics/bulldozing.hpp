@@ -11,10 +11,11 @@
 namespace dem::terramechanics {
 
 /// Soil that is pushed out of a rut, kept simple. A share of the volume by which columns sink for good appears at once
-/// as loose soil on the columns beside those that are touched, as much on each; beside a moving part, at its two sides
-/// only. It then rolls down wherever it lies steeper than its angle of repose, also back into the rut, near what is
-/// touched and one column a step. It is lifted without work. Where soil was never pressed it is soil like any other
-/// once it is driven over; in a rut it is pressed into what was compacted there, without resistance.
+/// as loose soil on the columns beside those that are touched, as much for each side by which a column meets one;
+/// beside a moving part, at its two sides only. It then rolls down wherever it lies steeper than its angle of repose,
+/// also back into the rut, near what is touched and one column a step. It is lifted without work. Where soil was never
+/// pressed it is soil like any other once it is driven over; in a rut it is pressed into what was compacted there,
+/// without resistance.
 struct Bulldozing {
   double share = 0.0;     ///< of the compacted volume; 0: none, 1: all, more: loosened soil takes more room
   double steepest = 0.7;  ///< tangent of the angle of repose

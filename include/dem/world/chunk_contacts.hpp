@@ -42,7 +42,7 @@ void add_surface_contacts(WorldState<Model>& w, std::size_t c, coupling::Surface
 }
 
 /// Contacts of one chunk's grains with each other and with surfaces. Their forces stay with the chunk, for
-/// gather_forces. In the last stage their histories are committed: the next step starts from them.
+/// gather_forces. Within a step their histories are committed: the next stage starts from them.
 template <class Model>
 void find_chunk_contacts(WorldState<Model>& w, std::size_t c, ContactScratch<Model>& scratch) {
   const std::size_t begin = c * chunk_size, end = std::min(begin + chunk_size, w.grains.count);
@@ -69,7 +69,7 @@ void find_chunk_contacts(WorldState<Model>& w, std::size_t c, ContactScratch<Mod
   }
   if (w.record_contacts) [[unlikely]]
     w.record_contacts(w, c, scratch);
-  if (w.move.last) {
+  if (w.move.keeps_histories) {
     chunk.commit_pairs(scratch.pairs.renews, scratch.pairs.merged);
     if (with_surfaces) chunk.surface_contacts.commit_copy();
   }

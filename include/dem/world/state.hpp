@@ -54,7 +54,7 @@ struct ContactScratch {
 /// How grains are moved when their forces are known.
 struct MoveStage {
   int stage = 0;                  ///< of the integrator
-  bool last = false;              ///< of its stages
+  bool keeps_histories = false;   ///< what contacts remember is what the next evaluation starts from
   bool cleans_rotations = false;  ///< rotation matrices are made orthonormal
   bool at_once = false;           ///< within the sweep that finds contacts
 };

@@ -86,7 +86,7 @@ void advance(WorldState<Model>& w) {
     const bool last = stage + 1 == Integrator::stages;
     // What grains bear goes to the parts that hold some before they are moved.
     w.move = {.stage = stage,
-              .last = last,
+              .keeps_histories = true,
               .cleans_rotations = last && w.step % grain::steps_between_orthonormalisations == 0,
               .at_once = !w.load_by_held};
     w.time_of_forces = w.time + (Integrator::predicts_before_forces || stage > 0 ? w.time_step : 0.0);
@@ -116,7 +116,8 @@ void advance(WorldState<Model>& w) {
       w.executor.for_each(w.sleepers.working.size(), [&](std::size_t k) { move_chunk(w, w.sleepers.working[k]); });
     }
     w.move = {};
-    if (last) w.body_contacts.commit(), sample_surface_sensors(w);
+    w.body_contacts.commit();
+    if (last) sample_surface_sensors(w);
     w.stopwatch.stop(Phase::grains);
   }
   end_step_of_surfaces(w);

@@ -111,3 +111,22 @@ TEST_CASE("the lever of a joint's friction turns the torque that it carries into
     CHECK(m.friction(guide)->force.x == Approx(-mu * normal).epsilon(1e-3));
   }
 }
+
+TEMPLATE_TEST_CASE("a guide that sticks swings on its asperities without loss", "", PredictorCorrector, VelocityVerlet,
+                   SymplecticEuler) {
+  // 1 kg on 1e4 N/m: 0.2 rad a step, ten swings. What the predictor-corrector loses of a spring, 8e-5 a step, is 2.5 %;
+  // samples meet the peaks within cos(0.1), 0.5 %. A spring that is stretched by the newest speed alone loses 1e-2 a
+  // step.
+  Machine<TestType> m;
+  m.gravity = Vec3::Zero();
+  const BodyId cart = m.add_body(given_body("cart", 1.0, Vec3(0.1, 0.1, 0.1)).moving(1e-3 * X, Vec3::Zero()));
+  const JointFriction rubbing = {.coefficient = 0.5, .preload = 1000.0, .stiffness = 1e4, .velocity_stiffness = 0.0};
+  const JointId guide = m.add_joint(prismatic("guide", m.ground(), cart, {0, 0, 0}, X).with_friction(rubbing));
+  double largest = 0.0;
+  for (int k = 0; k < 314; ++k) {
+    REQUIRE(m.step(2e-3));
+    if (k >= 282) largest = std::max(largest, std::abs(m.speed(guide)));
+  }
+  CHECK(largest > 0.95e-3);
+  CHECK(largest < 1.02e-3);
+}

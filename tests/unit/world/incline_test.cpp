@@ -139,3 +139,24 @@ TEST_CASE("a ball that is pushed goes from sliding to rolling at five sevenths o
   CHECK(mean == Approx(5.0 / 7.0 * u0).epsilon(2e-3));
   CHECK(mean_spin * r == Approx(mean).epsilon(2e-3));
 }
+
+TEMPLATE_TEST_CASE("a ball that sticks swings on its asperities without loss", "", models::CorrectedBalls,
+                   models::VerletBalls, Balls) {
+  // It lies on a plane as deep as its weight asks for. A push makes its contact point swing with 2/7 of its mass, by
+  // 0.2 rad a step. In ten swings the predictor-corrector loses 8e-5 of the amplitude a step, 2.5 %; samples meet the
+  // peaks within cos(0.1), 0.5 %. A spring that is stretched by the newest velocity alone loses 1e-2 a step.
+  const double r = 5e-3, k = 1000.0, kt = 500.0, m = 2650.0 * Sphere(r).volume();
+  dem::World<TestType> w(options({0, 0, -g}, 0.2 / std::sqrt(3.5 * kt / m)));
+  w.set_contact({{k, 0.0, 1.0}, {1.0, kt, 0.0, 1.0}});
+  w.add_surface(w.ground(), dem::surface::Plane{});
+  const SpeciesId s = w.add_species(Sphere(r));
+  const GrainId ball = w.add_grain({.species = s, .position = {0, 0, r - m * g / k}, .velocity = {1e-4, 0, 0}});
+  double largest = 0.0;
+  for (int n = 0; n < 314; ++n) {
+    REQUIRE(w.run(1));
+    const double slip = w.velocity(ball).x() - r * w.angular_velocity(ball).y();
+    if (n >= 282) largest = std::max(largest, std::abs(slip));
+  }
+  CHECK(largest > 0.95e-4);
+  CHECK(largest < 1.02e-4);
+}

@@ -10,13 +10,14 @@ namespace dem::rolling {
 /// What a law of rolling resistance or torsion may read about one contact (T = double) or a pack of contacts.
 template <class T>
 struct RollingState {
-  Vector3<T> normal;   ///< unit vector from i towards j
-  Vector3<T> rolling;  ///< rad/s, spin of i relative to j, without its part about the normal
-  T twisting;          ///< rad/s, spin of i relative to j about the normal
-  T normal_force;      ///< N, not negative: what friction is limited by
-  T effective_radius;  ///< m
-  T effective_mass;    ///< kg
-  T time_step;         ///< s
+  Vector3<T> normal;         ///< unit vector from i towards j
+  Vector3<T> rolling;        ///< rad/s, spin of i relative to j, without its part about the normal
+  T twisting;                ///< rad/s, spin of i relative to j about the normal
+  T normal_force;            ///< N, not negative: what friction is limited by
+  T effective_radius;        ///< m
+  T effective_mass;          ///< kg
+  T time_step;               ///< s, as of contact::NormalState
+  T whole_step = time_step;  ///< s, that the torque acts for
 };
 
 // Inertia of two partners against rolling and twisting over each other, in units of m* R*^2: exact for a solid ball on

@@ -41,9 +41,9 @@ constexpr Dofs friction_dofs(Bearing bearing) {
 
 }  // namespace detail
 
-/// Asperity friction on the joint's free motion. The spring is stretched from the committed history by the velocity
-/// times `slip_time` (0 in a stage at the start of the step); the history is committed only where `commit` says so.
-inline void apply_friction(JointFrictionState& e, const Joint& j, Body& a, Body& b, double slip_time, bool commit) {
+/// Asperity friction on the joint's free motion. The spring is stretched by the velocity times `slip_time` (s), the
+/// share of a step that one of the integrator's stages stands for; 0 outside of a step, where nothing is remembered.
+inline void apply_friction(JointFrictionState& e, const Joint& j, Body& a, Body& b, double slip_time) {
   using V = Vector3<double>;
   e.force = e.torque = {0, 0, 0};
   if (!j.on) {
@@ -74,7 +74,7 @@ inline void apply_friction(JointFrictionState& e, const Joint& j, Body& a, Body&
   }
   auto history = e.committed;
   const V f = friction::AsperitySpring::force(e.law, state, history);
-  if (commit) e.committed = history;
+  if (slip_time > 0.0) e.committed = history;
 
   V force = {0, 0, 0}, torque = {0, 0, 0};
   switch (bearing) {

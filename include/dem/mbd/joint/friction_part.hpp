@@ -31,7 +31,7 @@ inline constexpr PartKind friction_kind = {
         [](Parts& m, const Evaluation& now) {
           for (JointFrictionState& e : m.friction) {
             const Joint& j = m.joints[e.joint];
-            apply_friction(e, j, m.bodies[j.a], m.bodies[j.b], now.followed(), now.is_last_stage);
+            apply_friction(e, j, m.bodies[j.a], m.bodies[j.b], now.slip_time);
           }
         },
     .list_elements =

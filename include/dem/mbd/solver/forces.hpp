@@ -9,15 +9,16 @@ inline void clear_forces(Parts& m) {
 }
 
 /// All forces of the machine itself, added to what the bodies already carry (the grains' contact forces). `time` (s) is
-/// that of the state the forces are evaluated at, `dt` (s) the machine's time step.
-inline void add_forces(Parts& m, double time, double dt, bool is_last_stage, bool is_trial = false) {
+/// that of the state the forces are evaluated at, `dt` (s) the machine's time step; see Evaluation.
+inline void add_forces(Parts& m, double time, double dt, double slip_time = 0.0, bool is_last_stage = false,
+                       bool is_trial = false) {
   for (std::size_t i = 0; i < m.bodies.size(); ++i) {
     const Body& b = m.bodies[i];
     m.global_angular_velocity[i] = b.motion.rotation * b.motion.angular_velocity;
     m.outside[i] = {b.force, b.torque};
   }
   for (const detail::PartKind* kind : m.kinds) {
-    if (kind->add_forces) kind->add_forces(m, {time, dt, is_last_stage, is_trial});
+    if (kind->add_forces) kind->add_forces(m, {time, dt, slip_time, is_last_stage, is_trial});
   }
 }
 

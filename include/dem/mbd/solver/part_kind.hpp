@@ -40,10 +40,11 @@ struct Element {
   std::vector<Side> sides;
 };
 
-/// The time (s) of the state at which forces are evaluated, and the machine's time step (s). Joint friction is
-/// evaluated from the committed history, and committed, like turns, in the last stage of a step only.
+/// The time (s) of the state at which forces are evaluated, and the machine's time step (s). Each stage of a step
+/// stretches the springs of joint friction by its share of the step, slip_time (s); 0 outside of a step. Turns are
+/// followed in the last stage only.
 struct Evaluation {
-  double time, dt;
+  double time, dt, slip_time;
   bool is_last_stage;
   bool is_trial;  ///< sub-steps that are taken again: nothing is to be remembered
   double followed() const { return is_last_stage ? dt : 0.0; }

@@ -120,7 +120,7 @@ class RestSearch {
   void evaluate(std::vector<double>& f) {
     clear_forces(m_);
     put_forces_();
-    add_forces(m_, time_, dt_, false);
+    add_forces(m_, time_, dt_);
     f.resize(6 * free_.size());
     for (std::size_t k = 0; k < free_.size(); ++k) {
       const Body& b = m_.bodies[free_[k]];

@@ -44,7 +44,7 @@ class Stages {
     for (PrescribedMotion& p : m.motions) p.drive.impulse = 0.0;  // the speeds that it starts with
     const bool catches_up = goes_on && I::stages == 1;
     if (catches_up) held_.put_earlier_on(m.bodies);
-    add_forces(m, time_, h, false);
+    add_forces(m, time_, h);
     if (!catches_up) hold_contacts(m);
     motion_.initialise(m.bodies, from_eigen(gravity));
   }
@@ -114,7 +114,7 @@ class Stages {
   void complete(Mechanism& m, int stage, double start, double dt, const Vec3& gravity) {
     Parts& parts = m.parts();
     const bool last = stage == I::stages - 1;
-    add_forces(parts, stage_time(start, dt, stage), dt, last, !sampling_);
+    add_forces(parts, stage_time(start, dt, stage), dt, dt / I::stages, last, !sampling_);
     const auto sample = [&] {
       if (last && sampling_ && parts.sample_sensors) parts.sample_sensors(parts, dt);
     };
