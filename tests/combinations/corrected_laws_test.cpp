@@ -2,8 +2,8 @@
 
 #include <dem/geometry/mesh/mesh_shapes.hpp>
 
-// The predictor-corrector evaluates every contact twice a step, and what contacts remember is kept of the second time
-// only: with every kind of history, and every kind of grain that renames its points, it must tell the same as an
+// The predictor-corrector evaluates every contact twice a step, and what contacts remember moves on by half a step each
+// time: with every kind of history, and every kind of grain that renames its points, it must tell the same as an
 // integrator that evaluates once.
 
 namespace {
