@@ -54,7 +54,7 @@ struct BodyContacts {
   std::vector<contact::SurfaceContactPoint<double>> contact_points;
   grain::ContactForces forces;
 
-  /// What contacts remember of this step becomes what the next one starts from.
+  /// What contacts remember of this evaluation becomes what the next one starts from.
   void commit() {
     for (Histories& m : histories) m.commit();
   }

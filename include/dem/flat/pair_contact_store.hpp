@@ -9,8 +9,8 @@
 
 namespace dem::flat {
 
-/// The contacts of grains with each other in the executor's memory: those of this step, and those of the last one from
-/// which it starts.
+/// The contacts of grains with each other in the executor's memory: those of this evaluation, and those of the one
+/// before, from which it starts.
 template <class Model>
 class PairContactStore {
  public:
@@ -52,7 +52,7 @@ class PairContactStore {
     last_.first.upload_to(0, first.data(), candidates + 1);
     last_.histories.upload(columns);
   }
-  /// Hands the contacts of the last step to the chunks.
+  /// Hands the contacts of the last evaluation to the chunks.
   void bring_down(WorldState<Model>& w, const std::vector<std::uint32_t>& chunk_first) {
     const std::size_t candidates = chunk_first.back();
     std::vector<Bits> bits(candidates);
@@ -85,10 +85,10 @@ class PairContactStore {
     bit_.make_room(contacts);
     results_.make_room(contacts);
   }
-  /// The contacts of this step become those that the next one starts from.
+  /// The contacts of this evaluation become those that the next one starts from.
   void commit() { std::swap(now_, last_); }
 
-  /// Of the last step.
+  /// Of the evaluation before.
   std::size_t contacts() const { return last_.histories.contacts(); }
   PairContactsView<Model> now() { return view(now_); }
   PairContactsView<Model> last() { return view(last_); }

@@ -103,7 +103,8 @@ struct ListPairContacts {
   }
 };
 
-/// One thread a contact: the laws. Its history of the last step is found by the bits of the same candidate then.
+/// One thread a contact: the laws. Its history of the evaluation before is found by the bits of the same candidate
+/// then.
 template <class Model>
 struct EvaluatePairContacts {
   using Shape = typename Model::Shape;

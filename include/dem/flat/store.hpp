@@ -69,13 +69,13 @@ class Store {
     summary = summary_[0];
     if (!w.chunks.empty()) w.chunks.front().moved2 = summary.moved2;
   }
-  /// The contacts of this step become those that the next one starts from.
+  /// The contacts of this evaluation become those that the next one starts from.
   void commit() {
     pairs.commit();
     at_surfaces.commit();
     was_committed_ = true;
   }
-  /// A stage begins whose contacts are not those that the next step starts from yet.
+  /// A stage begins whose contacts are not those that the next evaluation starts from yet.
   void begin_stage() { was_committed_ = false; }
 
   Summary summary;

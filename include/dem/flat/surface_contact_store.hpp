@@ -43,7 +43,7 @@ class SurfaceContactStore {
     last_.key.upload_to(0, key.data(), contacts);
     last_.histories.upload(columns);
   }
-  /// Hands the contacts of the last step to the chunks.
+  /// Hands the contacts of the last evaluation to the chunks.
   void bring_down(WorldState<Model>& w) {
     std::vector<std::uint32_t> first(grains_ + 1);
     std::vector<std::uint64_t> key(contacts());
@@ -77,7 +77,7 @@ class SurfaceContactStore {
   }
   void commit() { std::swap(now_, last_); }
 
-  /// Of the last step.
+  /// Of the evaluation before.
   std::size_t contacts() const { return last_.histories.contacts(); }
   /// How many each grain has, and whose each is, in this step.
   std::uint32_t* count() { return count_.data(); }

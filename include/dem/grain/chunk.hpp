@@ -63,9 +63,9 @@ struct Chunk {
   std::vector<std::uint32_t> reached;  ///< other chunks of whose grains it has candidates
   std::vector<std::uint32_t> around;   ///< chunks with which it has candidates; listed where grains may sleep
 
-  /// The contact histories of pairs of this step become the ones that the next step starts from. To be called while the
-  /// chunk has the memory that they were written to (ContactScratch::lend).
-  /// If only some candidates were evaluated, `renews` says which, and `spare` is used on the way; else it is empty.
+  /// The contact histories of pairs of this evaluation become the ones that the next starts from. To be called while
+  /// the chunk has the memory that they were written to (ContactScratch::lend). If only some candidates were evaluated,
+  /// `renews` says which, and `spare` is used on the way; else it is empty.
   void commit_pairs(std::span<const std::uint8_t> renews, ContactHistories<history_size<Model>>& spare) {
     if (renews.empty()) pair_contacts.commit_copy();
     else pair_contacts.commit_some(renews, spare);

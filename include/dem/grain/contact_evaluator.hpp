@@ -38,9 +38,9 @@ struct ContactForces {
   }
 };
 
-/// Evaluates the laws for a list of contacts, a pack at a time, and finds each contact's history by walking along last
-/// step's in step: both lists ascend in their keys. What a contact gives does not depend on its neighbours in the pack.
-/// `Shape`: whose pairs these are, if they may be patches.
+/// Evaluates the laws for a list of contacts, a pack at a time, and finds each contact's history by walking along those
+/// of the evaluation before: both lists ascend in their keys. What a contact gives does not depend on its neighbours in
+/// the pack. `Shape`: whose pairs these are, if they may be patches.
 template <class Model, template <class> class ContactPoint, class Shape = void>
 class ContactEvaluator {
  public:
@@ -49,8 +49,8 @@ class ContactEvaluator {
 
   ContactEvaluator(const std::vector<Parameters>& table, double dt) : table_(table), dt_(dt) { set_uniform(0); }
 
-  /// Fills the contact histories of this step and the forces; contact_point_of(k) gives the raw numbers of contact k,
-  /// view_i(k) and view_j(k) its partners. Returns the deepest contact.
+  /// Fills the contact histories of this evaluation and the forces; contact_point_of(k) gives the raw numbers of
+  /// contact k, view_i(k) and view_j(k) its partners. Returns the deepest contact.
   template <class ContactPointOf, class ViewI, class ViewJ>
   Deepest run(std::span<const Hit> hits, Histories& histories, ContactForces& forces, ContactPointOf&& contact_point_of,
               ViewI&& view_i, ViewJ&& view_j) {
@@ -120,7 +120,7 @@ class ContactEvaluator {
   }
 
   /// The histories of the contacts from `at` on go to the lanes; zero where a contact is new. Mostly the contacts of
-  /// last step are there again, in the same order: then whole packs are copied.
+  /// the evaluation before are there again, in the same order: then whole packs are copied.
   template <class OverlapOf>
   DEM_HOT_HOST void recall(const Histories& histories, int at, int lanes, int& cursor, const OverlapOf& overlap_of) {
     const auto& last = histories.last;

@@ -65,13 +65,13 @@ struct ContactHistories {
   }
 };
 
-/// The histories of all contacts of one chunk with one kind of partner (grains or surfaces): those of this step and the
-/// last ones that were committed.
+/// The histories of all contacts of one chunk with one kind of partner (grains or surfaces): those of this evaluation
+/// and the last ones that were committed.
 template <int HistorySize>
 struct HistoriesOfSteps {
   ContactHistories<HistorySize> now, last;
 
-  /// The histories of this step become the committed ones.
+  /// The histories of this evaluation become the committed ones.
   void commit() { std::swap(now, last); }
   /// The same with `now` in memory that is used again for others: of the chunk itself only `last` is touched.
   void commit_copy() { last.copy(now); }
@@ -97,7 +97,7 @@ struct HistoriesOfSteps {
     spare.count = count;
     last.copy(spare);
   }
-  /// How many contacts the last committed step had: those of `last`.
+  /// How many contacts were committed: those of `last`.
   int committed() const { return last.count; }
 
  private:

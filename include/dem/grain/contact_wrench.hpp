@@ -81,7 +81,7 @@ DEM_HOT PairWrench<T> contact_wrench(const ContactPoint& point, const RelativeMo
   const T followed = T(1.0 / Model::Integrator::stages) * dt;
 
   const NormalForce<T> normal = normal_force<Model>(
-      contact::NormalState<T>{g.overlap, approach, g.effective_radius, mass, followed}, parameters, history);
+      contact::NormalState<T>{g.overlap, approach, g.effective_radius, mass, followed, dt}, parameters, history);
 
   // The history's vectors follow the contact: they turn with the mean twist of the partners about the normal and stay
   // in the tangent plane.
@@ -90,7 +90,7 @@ DEM_HOT PairWrench<T> contact_wrench(const ContactPoint& point, const RelativeMo
   Model::Friction::carry(history.friction, turn);
   const Vector3<T> friction = Model::Friction::force(
       parameters.friction,
-      contact::TangentialState<T>{sliding, normal.pressing, g.overlap, g.effective_radius, mass, followed},
+      contact::TangentialState<T>{sliding, normal.pressing, g.overlap, g.effective_radius, mass, followed, dt},
       history.friction);
 
   const Vector3<T> force = g.weight * (friction - normal.repulsion * g.normal);

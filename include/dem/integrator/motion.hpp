@@ -57,7 +57,8 @@ DEM_FN void turn(Matrix3<T>& rotation, const Vector3<T>& angle_body) {
 /// An integrator advances a motion by one step in `stages` force evaluations. In each stage the world calls
 /// before_forces (if predicts_before_forces), evaluates the forces, and calls after_forces. Memory<T> is what has to be
 /// kept per body between calls: a plain struct of Ts, empty if nothing is; initialise fills it from the acceleration of
-/// the initial state, before the first step.
+/// the initial state, before the first step. Each evaluation moves what contacts remember on by dt/stages, at its own
+/// velocities: stages must be such that these together are the rule by which after_forces moves positions.
 template <class I>
 concept Integrator = requires(int stage, double dt, Motion<double>& m, typename I::template Memory<double>& memory,
                               const Acceleration<double>& a) {

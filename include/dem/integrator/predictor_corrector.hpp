@@ -7,7 +7,7 @@ namespace dem::integrator {
 /// The thesis's explicit predictor-corrector (section 2.5): two iterations a step, each evaluates the forces at the
 /// newest state and applies the trapezoidal rule from the state at the start of the step (eqs. 14-16). Second order;
 /// the amplitude of an undamped spring decays by about (omega dt)^4/8 a step, which keeps stiff contacts quiet. Springs
-/// that slip stretches, as those of friction, move on by half a step in each iteration, and do the same.
+/// that slip stretches, as those of friction, move on by half a step in each iteration, and lose a quarter of that.
 /// Momentum is kept to rounding, angular momentum to second order in dt: see "Numbers" in ARCHITECTURE.md.
 struct PredictorCorrector {
   static constexpr int stages = 2;

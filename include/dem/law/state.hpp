@@ -18,22 +18,24 @@ namespace dem::contact {
 /// the asked share of the critical damping of S K and m, and the restitution is the one that was asked for.
 template <class T>
 struct NormalState {
-  T overlap;           ///< m, d of eq. 25; not negative where the bodies touch
-  T approach_speed;    ///< m/s, d' of eq. 26; positive while the bodies move together
-  T effective_radius;  ///< m, 1/(1/Ri + 1/Rj)
-  T effective_mass;    ///< kg, 1/(1/mi + 1/mj); over S for points whose shares add up to S < 1
-  T time_step;         ///< s, by which the history moves on: a step over the integrator's stages
+  T overlap;                 ///< m, d of eq. 25; not negative where the bodies touch
+  T approach_speed;          ///< m/s, d' of eq. 26; positive while the bodies move together
+  T effective_radius;        ///< m, 1/(1/Ri + 1/Rj)
+  T effective_mass;          ///< kg, 1/(1/mi + 1/mj); over S for points whose shares add up to S < 1
+  T time_step;               ///< s, by which the history moves on: a step over the integrator's stages
+  T whole_step = time_step;  ///< s, that the force acts for
 };
 
 /// What a friction law may read.
 template <class T>
 struct TangentialState {
-  Vector3<T> velocity;  ///< m/s, of i relative to j at the contact point, in the tangent plane (eq. 28)
-  T normal_force;       ///< N, not negative; of a whole contact, as in NormalState
-  T overlap;            ///< m
-  T effective_radius;   ///< m
-  T effective_mass;     ///< kg
-  T time_step;          ///< s, as of NormalState
+  Vector3<T> velocity;       ///< m/s, of i relative to j at the contact point, in the tangent plane (eq. 28)
+  T normal_force;            ///< N, not negative; of a whole contact, as in NormalState
+  T overlap;                 ///< m
+  T effective_radius;        ///< m
+  T effective_mass;          ///< kg
+  T time_step;               ///< s, as of NormalState
+  T whole_step = time_step;  ///< s, that the force acts for
 };
 
 /// Number of doubles in a law's Parameters or History struct, which holds nothing but Ts; an empty struct has none.

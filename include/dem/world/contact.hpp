@@ -50,8 +50,8 @@ struct ContactForce {
 /// A contact of a world with what its laws remember.
 template <class Model>
 struct Contact : ContactForce {
-  ContactHistory<Model, double> last;     ///< from the last step; zeros of a contact that is new
-  ContactHistory<Model, double> history;  ///< from which the force is: a step on
+  ContactHistory<Model, double> last;     ///< from the last evaluation; zeros of a contact that is new
+  ContactHistory<Model, double> history;  ///< from which the force is: on by a step over the stages
 };
 
 }  // namespace dem

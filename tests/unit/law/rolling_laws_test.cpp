@@ -55,6 +55,10 @@ TEST_CASE("the constant torque opposes rolling and never turns it round") {
   // A ball that nearly stands would be turned round by the whole torque; it is stopped by the step instead.
   const double inertia = 0.4 * mass * radius * radius, slow = 0.1 * 0.2 * radius / inertia * dt;
   CHECK(torque<ConstantTorque>(p, {slow, 0, 0}, 1.0, h).x() == Approx(-inertia * slow / dt));
+  // The torque acts for a whole step, also where histories move on by half of one.
+  RollingState<double> half = state({slow, 0, 0}, 1.0);
+  half.time_step = 0.5 * dt;
+  CHECK(ConstantTorque::torque(p, half, h).x == Approx(-inertia * slow / dt));
 }
 
 TEST_CASE("the twisting spring acts about the normal and slips at mu_t R Fn") {

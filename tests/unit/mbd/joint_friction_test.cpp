@@ -114,7 +114,7 @@ TEST_CASE("the lever of a joint's friction turns the torque that it carries into
 
 TEMPLATE_TEST_CASE("a guide that sticks swings on its asperities without loss", "", PredictorCorrector, VelocityVerlet,
                    SymplecticEuler) {
-  // 1 kg on 1e4 N/m: 0.2 rad a step, ten swings. What the predictor-corrector loses of a spring, 8e-5 a step, is 2.5 %;
+  // 1 kg on 1e4 N/m: 0.2 rad a step, ten swings. What the predictor-corrector loses of a spring, 5e-5 a step, is 1.6 %;
   // samples meet the peaks within cos(0.1), 0.5 %. A spring that is stretched by the newest speed alone loses 1e-2 a
   // step.
   Machine<TestType> m;

@@ -143,7 +143,7 @@ TEST_CASE("a ball that is pushed goes from sliding to rolling at five sevenths o
 TEMPLATE_TEST_CASE("a ball that sticks swings on its asperities without loss", "", models::CorrectedBalls,
                    models::VerletBalls, Balls) {
   // It lies on a plane as deep as its weight asks for. A push makes its contact point swing with 2/7 of its mass, by
-  // 0.2 rad a step. In ten swings the predictor-corrector loses 8e-5 of the amplitude a step, 2.5 %; samples meet the
+  // 0.2 rad a step. In ten swings the predictor-corrector loses 5e-5 of the amplitude a step, 1.6 %; samples meet the
   // peaks within cos(0.1), 0.5 %. A spring that is stretched by the newest velocity alone loses 1e-2 a step.
   const double r = 5e-3, k = 1000.0, kt = 500.0, m = 2650.0 * Sphere(r).volume();
   dem::World<TestType> w(options({0, 0, -g}, 0.2 / std::sqrt(3.5 * kt / m)));

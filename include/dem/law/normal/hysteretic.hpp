@@ -21,7 +21,7 @@ struct Hysteretic {
   template <class T>
   struct History {
     T largest_overlap;  ///< D, m
-    T overlap;          ///< d, m, of the last step
+    T overlap;          ///< d, m, of the evaluation before
   };
 
   /// Constants with the given coefficient of restitution e in [0.01, 1]: k2 = k1/e^2. Throws Error for another e.
