@@ -22,6 +22,7 @@ struct PressedColumn {
   double damping;   ///< Pa s/m, resists sinking and rising, but never pulls
   const ColumnContactPoint& contact;
   Vector3<double> velocity;  ///< m/s, of the part's material at the point
+  Vector3<double> slid;      ///< m/s, the mean of it since the last step
   bool in_contact;           ///< the part was in contact with it in the last step
 };
 
@@ -39,7 +40,7 @@ inline ColumnForce column_force(const ColumnField& field, const PressedColumn& c
   const double steep = std::max(-contact.normal.z, 0.1), normal_speed = dot(c.velocity, contact.normal);
   const double pulled = stress.pressure + c.damping * normal_speed / steep;
   const double pressure = pulled < 0.0 ? 0.0 : pulled;  // what is no number stays so, and is reported with the part
-  const Vector3<double> sliding = c.velocity - normal_speed * contact.normal;
+  const Vector3<double> sliding = c.slid - dot(c.slid, contact.normal) * contact.normal;
   change.deepest = stress.deepest;
   change.modulus = c.law.curve.modulus;
   change.sunk = stress.compacts ? stress.residual : field.sunk[row];

@@ -25,7 +25,11 @@ class ColumnTerrain final : public mbd::Terrain {
   std::unique_ptr<mbd::Terrain> copy() const override { return std::make_unique<ColumnTerrain>(*this); }
 
   void evaluate(const std::vector<Body>& bodies, std::vector<mbd::Load>& loads, const mbd::TerrainStep& step) override {
-    for (std::size_t k = 0; k < parts.size(); ++k) parts[k].body = bodies[body_of[k].index()].motion;
+    for (std::size_t k = 0; k < parts.size(); ++k) {
+      parts[k].before = parts[k].body;
+      parts[k].body = bodies[body_of[k].index()].motion;
+      parts[k].newest_share = step.newest_share;
+    }
     if (step.time < kept_) kept_ = step.time;  // the machine's clock was set back
     const double dt = kept_ >= 0.0 && step.time > kept_ ? step.time - kept_ : 0.0;
     report = soil.evaluate(parts, dt);

@@ -63,6 +63,10 @@ struct ColumnPart {
   double width = 0.0;                                      ///< b of the pressure law, m; 0: the shape's
   double friction = rough;                                 ///< mu of the part on the soil
   std::int32_t continues = -1;  ///< number of a part before it that it goes on with, as the pieces of a tyre's tread do
+  /// For `newest_share` of a step the part slides with its velocities of now; for the rest with those that it had at
+  /// `before`. Integrators that look at a step more than once have it so.
+  double newest_share = 1.0;
+  integrator::Motion<double> before = {};
 
   static constexpr double rough = 1e9;  ///< the soil shears in itself
 

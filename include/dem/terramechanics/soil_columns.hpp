@@ -262,16 +262,22 @@ inline void SoilColumns::press(const ColumnPart& part, double dt, bool shared, S
   s.changes.clear();
   s.load = {};
   const Vector3<double> spin = part.body.rotation * part.body.angular_velocity;
+  const Vector3<double> spun = part.before.rotation * part.before.angular_velocity;
   for (const Hit& hit : s.hits) {
     if (shared && claim_[hit.row] != s.part) continue;
     const Vector3<double> arm = hit.contact.point - part.body.position,
                           velocity = part.body.velocity + cross(spin, arm);
+    Vector3<double> slid = velocity;
+    if (part.newest_share < 1.0) {
+      const Vector3<double> back = hit.contact.point - part.before.position;
+      slid = part.newest_share * velocity + (1.0 - part.newest_share) * (part.before.velocity + cross(spun, back));
+    }
     // A column that passes from one piece of a tread to the next is still in contact.
     const bool in_contact = step_ > 0 && field_.touched[hit.row] == step_ && field_.touched_by[hit.row] == s.owner;
     ColumnChange change{.row = hit.row, .part = s.owner, .shear = {}};
     const std::size_t kind = field_.soil.empty() ? 0 : field_.soil[hit.row];
-    const PressedColumn column = {laws[kind],    soils_[kind].shear, slopes_[kind], part.friction,
-                                  spec_.damping, hit.contact,        velocity,      in_contact};
+    const PressedColumn column = {laws[kind],  soils_[kind].shear, slopes_[kind], part.friction, spec_.damping,
+                                  hit.contact, velocity,           slid,          in_contact};
     const ColumnForce f = column_force(field_, column, dt, change);
     if (!f.acts) continue;
     s.changes.push_back(change);

@@ -32,7 +32,9 @@ class RoadTyre final : public mbd::Terrain {
   void evaluate(const std::vector<Body>& bodies, std::vector<mbd::Load>& loads, const mbd::TerrainStep& step) override {
     newest_ = kept_;
     const Body& wheel = bodies[wheel_.index()];
-    loads[load_.index()].wrench = tyre_wrench(spec_, road_, wheel, axis_, step.time, newest_);
+    before_.newest_share = step.newest_share;
+    loads[load_.index()].wrench = tyre_wrench(spec_, road_, wheel, axis_, step.time, newest_, before_);
+    before_ = {1.0, wheel.velocity(), wheel.angular_velocity()};
     if (kept_.time < 0.0) watch_.begin(spec_, wheel, newest_);
     if (step.is_kept) {
       const double dt = kept_.time >= 0.0 && step.time > kept_.time ? step.time - kept_.time : 0.0;
@@ -84,6 +86,7 @@ class RoadTyre final : public mbd::Terrain {
   std::string name_;  ///< of the wheel
   TyreWatch watch_;
   TyreState kept_, newest_;  ///< of the newest step, of the newest evaluation
+  TreadSpeeds before_;       ///< in the evaluation before; of the same step, where they count
 };
 
 }  // namespace dem::vehicle

@@ -80,9 +80,10 @@ struct TyreState {
 
 namespace detail {
 
-/// The tread's stretch at the end of a time dt (s), and its rate; rolling (m/s) renews it.
-inline double stretched(double s, double v, double rolling, double length, double dt, double& rate) {
-  const double end = (s + dt * v) / (1.0 + dt * rolling / length);
+/// The tread's stretch at the end of a time dt (s) in which it slid at `slid` in the mean and slides at v now (m/s),
+/// and its rate; rolling (m/s) renews it.
+inline double stretched(double s, double slid, double v, double rolling, double length, double dt, double& rate) {
+  const double end = (s + dt * slid) / (1.0 + dt * rolling / length);
   rate = v - rolling / length * end;
   return end;
 }
@@ -109,10 +110,17 @@ inline double depth_in(const Road& road, double radius, const Body& wheel, const
   return detail::depth_below(plane, radius, wheel.position(), detail::down_of(wheel.rotation() * axis, plane.normal));
 }
 
+/// The speeds with which a tread slid until now: those of now for `newest_share` of the time, for the rest those of
+/// before, of the wheel's centre (m/s) and its spin (rad/s), global.
+struct TreadSpeeds {
+  double newest_share = 1.0;
+  Vec3 velocity = Vec3::Zero(), spin = Vec3::Zero();
+};
+
 /// Force and torque of the road on a wheel that turns about `axis` (unit vector to the left, body frame). Moves the
 /// state on to `time`; a second call at the same time adds nothing to it.
 inline Wrench tyre_wrench(const TyreSpec& tyre, const Road& ground, const Body& wheel, const Vec3& axis, double time,
-                          TyreState& s) {
+                          TyreState& s, const TreadSpeeds& before = {}) {
   const Road road = ground.under(wheel.position(), tyre.radius);
   const double dt = s.time < 0.0 ? 0.0 : std::max(0.0, time - s.time);
   const Vec3 n = road.normal, a = wheel.rotation() * axis;
@@ -138,8 +146,12 @@ inline Wrench tyre_wrench(const TyreSpec& tyre, const Road& ground, const Body& 
   const double turning = spin.dot(a) * loaded, rolling = std::abs(turning);
   const double travel = wheel.velocity().dot(ahead), drift = wheel.velocity().dot(left);
   double rate_x = 0.0, rate_y = 0.0;
-  s.stretch_x = detail::stretched(s.stretch_x, v.dot(ahead), rolling, tyre.relaxation_length, dt, rate_x);
-  s.stretch_y = detail::stretched(s.stretch_y, v.dot(left), rolling, tyre.relaxation_length, dt, rate_y);
+  Vec3 slid = v;
+  if (before.newest_share < 1.0)
+    slid = before.newest_share * v + (1.0 - before.newest_share) * (before.velocity + before.spin.cross(arm));
+  const double length = tyre.relaxation_length;
+  s.stretch_x = detail::stretched(s.stretch_x, slid.dot(ahead), v.dot(ahead), rolling, length, dt, rate_x);
+  s.stretch_y = detail::stretched(s.stretch_y, slid.dot(left), v.dot(left), rolling, length, dt, rate_y);
   const double limit = tyre.friction * road.friction * s.load;
   const double spring = std::hypot(tyre.tread_stiffness * s.stretch_x, tyre.lateral_stiffness * s.stretch_y);
   if (spring > limit) {

@@ -275,3 +275,31 @@ TEST_CASE("bodies that are not there, and shapes without a width, are refused") 
                     ContainsSubstring("tells no width"));
   CHECK_THROWS(soil.add(BodyId(7), std::make_shared<ColumnBall>(0.1), Vec3::Zero(), Mat3::Identity(), 0.1));
 }
+
+namespace {
+
+/// The share of the shear strength under a plate that is drawn over columns from rest at 0.1 m/s^2 for 0.1 s.
+double mobilised_by_a_start(double time_step) {
+  mbd::Machine<integrator::PredictorCorrector> machine;
+  const BodyId plate = machine.add_fixed_body("plate", {0, 0, 0});
+  machine.add_motion(mbd::prescribed_position(
+      "draw", plate, Vec3::UnitX(),
+      mbd::Signal::function([](double t) { return 0.05 * t * t; }, [](double t) { return 0.1 * t; })));
+  machine.most_substeps = 1;
+  MachineColumns soil(machine, lane(0.1));
+  soil.add(plate, std::make_shared<ColumnBox>(Vector3<double>{0.1, 0.1, 0.01}), {0, 0, 0});
+  REQUIRE(machine.run(0.1, time_step).ok);
+  const ColumnField& field = soil.soil().field();
+  const ColumnRange middle = field.grid.around({0.0, 0.0, 0.0, 0.0});
+  return norm(field.shear[field.grid.row(middle.to_x, middle.to_y)].mobilised);
+}
+
+}  // namespace
+
+TEST_CASE("the way that shears columns is of second order in the predictor-corrector's step") {
+  const double way = 0.5e-3, share = 1.0 - std::exp(-way / melanz_sand.shear.displacement);
+  // With the speeds at the end of each of 20 steps the way would be 5 % too long, and half of that in 40 steps.
+  const double coarse = mobilised_by_a_start(5e-3) - share, fine = mobilised_by_a_start(2.5e-3) - share;
+  CHECK(std::abs(coarse) < 2e-3 * share);
+  CHECK(coarse / fine == Approx(4.0).epsilon(0.1));
+}

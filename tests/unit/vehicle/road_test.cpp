@@ -6,9 +6,12 @@
 #include <dem/mbd/mbd.hpp>
 #include <dem/vehicle/humvee.hpp>
 #include <dem/vehicle/telemetry.hpp>
+#include <dem/vehicle/wheel.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <memory>
+#include <numbers>
 #include <vector>
 
 using namespace dem;
@@ -138,4 +141,28 @@ TEST_CASE("a car stands on a road of heights, and the forces that telemetry tell
     CHECK(wheel.norm() < 0.01 * load);
     CHECK(s.spring > 0.0);
   }
+}
+
+TEST_CASE("a wheel that swings on the tread of its tyre loses nothing, with either kind of integrator") {
+  const auto speed_left = []<class Integrator>(Integrator) {
+    mbd::Machine<Integrator> m;
+    TyreSpec tyre = TyreSpec{}.rigid();
+    tyre.damping = tyre.tread_damping = 0.0;
+    Wheel wheel;
+    const double mass = 30.0, rest = tyre.radius - 9.81 * mass / tyre.stiffness, speed = 0.01;  // m, m/s
+    // So much inertia that it does not turn.
+    wheel.body = m.add_body(mbd::given_body("wheel", mass, Vec3(1e9, 1e9, 1e9)).at(Vec3(0, 0, rest)));
+    m.body(wheel.body).motion.velocity = {0, speed, 0};
+    add_tyre(Assembly(m), "wheel", wheel, tyre, Road{});
+    // Ten half swings; the spring pulls with up to 0.01 m/s sqrt(k m) = 30 N, less than mu Fn = 235 N.
+    const double swing = std::numbers::pi * std::sqrt(mass / tyre.lateral_stiffness);
+    double fastest = 0.0;
+    REQUIRE(m.run(10.5 * swing, 1e-3, [&] {
+               if (m.time() > 9.5 * swing) fastest = std::max(fastest, m.body(wheel.body).velocity().norm());
+             }).ok);
+    return fastest / speed;
+  };
+  // omega dt = 0.1: with the newest speeds alone the predictor-corrector would lose exp(-10 pi 0.1/4), more than half.
+  CHECK(speed_left(integrator::PredictorCorrector{}) == Approx(1.0).epsilon(0.01));
+  CHECK(speed_left(integrator::VelocityVerlet{}) == Approx(1.0).epsilon(0.01));
 }

@@ -14,6 +14,9 @@ namespace dem::mbd {
 struct TerrainStep {
   double time;   ///< s, of the state that the bodies are in
   bool is_kept;  ///< the state is that of a step: what the terrain remembers goes on to it. Else it only answers
+  /// Of the way since the state that was kept last, the share that goes with the newest speeds; the rest goes with
+  /// those of the evaluation before. 1/2 in the second evaluation of an integrator that has two a step.
+  double newest_share = 1.0;
 };
 
 /// Ground that remembers, as columns of soil do their ruts and a tyre on a road its stretch: outside of the machine,

@@ -12,8 +12,9 @@ namespace detail {
 inline constexpr PartKind terrain_kind = {
     .rank = -1,  // before the loads, which apply what it finds
     .add_forces = [](Parts& m, const Evaluation& now) {
+      const double share = now.is_last_stage ? now.slip_time / now.dt : 1.0;
       for (const TerrainPart& t : m.terrains) {
-        t->evaluate(m.bodies, m.loads, {now.time, now.is_last_stage && !now.is_trial});
+        t->evaluate(m.bodies, m.loads, {now.time, now.is_last_stage && !now.is_trial, share});
       }
     }};
 
