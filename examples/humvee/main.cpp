@@ -170,7 +170,7 @@ Lines turn(Car& car) {
         steer += 2.0 / (1.0 / std::tan(left) + 1.0 / std::tan(right));
         front += 0.5 * (c.tyre(0).slip_angle + c.tyre(1).slip_angle);
         rear += 0.5 * (c.tyre(2).slip_angle + c.tyre(3).slip_angle);
-        for (std::size_t axle : {0, 1}) pulls[axle] += c.tyre(2 * axle).pull + c.tyre(2 * axle + 1).pull;
+        for (std::size_t axle : {0U, 1U}) pulls[axle] += c.tyre(2 * axle).pull + c.tyre(2 * axle + 1).pull;
         samples += 1.0;
       }
       return true;

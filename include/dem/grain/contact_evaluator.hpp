@@ -90,7 +90,7 @@ class ContactEvaluator {
   }
 
  private:
-  static constexpr int contact_point_size = contact::field_count<ContactPoint<double>>;
+  static constexpr std::size_t contact_point_size = contact::field_count<ContactPoint<double>>;
 
   using PackParameters = ContactParameters<Model, Pack>;
 

@@ -140,7 +140,7 @@ inline PackMask sleeping(std::size_t i, Wakefulness doing) {
 /// How many of them are awake.
 inline std::size_t count_awake(std::size_t i, Wakefulness doing) {
   std::size_t count = 0;
-  for (std::size_t lane = 0; lane < pack_width; ++lane) count += doing[i + lane] & awake;
+  for (std::size_t lane = 0; lane < pack_width; ++lane) count += static_cast<std::size_t>(doing[i + lane] & awake);
   return count;
 }
 

@@ -46,7 +46,7 @@ void for_each_awake_run(std::size_t begin, std::size_t end, Wakefulness doing, F
 /// candidates than to choose. Contacts between sleepers bear what they bore, as their grains do not move.
 inline bool evaluates_all(std::size_t begin, std::size_t end, Wakefulness doing) {
   std::size_t count = 0;
-  for (std::size_t row = begin; row < end; ++row) count += (doing[row] & (awake | watched)) != 0 ? 1 : 0;
+  for (std::size_t row = begin; row < end; ++row) count += (doing[row] & (awake | watched)) != 0 ? 1U : 0U;
   return 4 * count >= 3 * (end - begin);
 }
 
@@ -70,7 +70,7 @@ void list_evaluated(const Chunk<Model>& chunk, std::size_t begin, Wakefulness do
       const auto both = static_cast<std::uint8_t>(doing[begin + row] | doing[chunk.candidate[k]]);
       renews[k] = both & counts;
       listed[count] = k;
-      count += (both & (counts | recorded)) != 0 ? 1 : 0;
+      count += (both & (counts | recorded)) != 0 ? 1U : 0U;
     }
   }
   listed.resize(count);

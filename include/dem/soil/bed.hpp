@@ -172,7 +172,7 @@ class Bed {
  private:
   static void require_no_grains(const World<Model>& world) {
     std::size_t count = 0;
-    for (const GrainId p : world.grains()) count += world.species(world.species_of(p)).is_held() ? 0 : 1;
+    for (const GrainId p : world.grains()) count += world.species(world.species_of(p)).is_held() ? 0U : 1U;
     if (count == 0) return;
     fail(
         "a bed is made in a world that has {} grain{} already: its walls and its rain would be put into them; make the "

@@ -29,7 +29,7 @@ class UniformGrid {
     std::vector<std::uint32_t> cells_before(p.n / exec::block_size + 2, 0);  // of each block of grains
     exec::for_each_block(executor, p.n, [&](std::size_t first, std::size_t last) {
       std::uint32_t count = 0;
-      for (std::size_t k = first; k < last; ++k) count += begins_cell(k) ? 1 : 0;
+      for (std::size_t k = first; k < last; ++k) count += begins_cell(k) ? 1U : 0U;
       cells_before[first / exec::block_size + 1] = count;
     });
     std::partial_sum(cells_before.begin(), cells_before.end(), cells_before.begin());
