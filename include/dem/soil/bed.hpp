@@ -58,9 +58,11 @@ class Bed {
 
   const Container& container() const { return container_; }
   const std::vector<SurfaceId>& walls() const { return walls_; }  ///< floor first
-  double height() const { return options_.height; }               ///< m, of the levelled surface
-  SurfaceId lid() const { return lid_.surface(); }                ///< of no surface where there is none
-  InletId inlet() const { return filling_.inlet(); }              ///< of the rain; of no inlet where there is none
+  /// m, above which no grain stands. Coarse grains, and such that cohere, lie lower in the mean: height_field() of
+  /// ground_surface.hpp says where.
+  double height() const { return options_.height; }
+  SurfaceId lid() const { return lid_.surface(); }    ///< of no surface where there is none
+  InletId inlet() const { return filling_.inlet(); }  ///< of the rain; of no inlet where there is none
 
   /// Fills the container, lets the grains come to rest, makes them as dense as asked for, presses them, and levels
   /// them. `set_friction(share)` is called while a bed is made denser, with shares from 1 to 0 and at last 1 again: it

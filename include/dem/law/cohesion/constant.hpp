@@ -7,8 +7,8 @@ namespace dem::cohesion {
 
 /// A constant pull while the partners touch (the thesis's normal stiction force, a function of the penetration): F
 /// min(1, d/depth). With depth = 0 it is there at once; with a depth it comes on with the overlap d. Beside a normal
-/// spring k it holds partners together only where depth < F/k: else the spring always pushes more than F pulls, and F
-/// only softens the contact.
+/// spring k they part at a pull of F - k depth, so it holds them together only where depth < F/k: else the spring
+/// always pushes more than F pulls, and F only softens the contact.
 struct Constant {
   template <class T>
   struct Parameters {

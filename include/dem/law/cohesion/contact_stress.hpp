@@ -8,8 +8,10 @@
 namespace dem::cohesion {
 
 /// A constant adhesive stress on a whole contact: s times the area pi R* d of Hertz's circle. The pull grows with the
-/// overlap, so a linear spring must be stiffer than s pi R*, which the pull takes off it. Where contact points have
-/// areas in m^2, Constant is such a stress.
+/// overlap, so a linear spring must be stiffer than s pi R*, which the pull takes off it. Then it pushes at every
+/// overlap: beside a linear spring this law makes contacts softer and rougher, but never holds them together. Take it
+/// with contact::Hysteretic, which holds what was pressed, or with Hertz. Where contact points have areas in m^2,
+/// Constant is such a stress.
 ///
 /// It knows round contacts only: on flat faces (polyhedra, flat superquadrics) the circle of their radii may be
 /// thousands of times smaller than what touches. To stick face on face with a stress, take Constant with the force

@@ -51,8 +51,8 @@ struct JKR {
     return {h.joined * pull, h.joined * (T(2) * pull_off - pull)};
   }
 
-  /// What JKR's slope exceeds Hertz's by at the overlap of the state. Just before the pull-off the slope is steeper, at
-  /// forces too small to matter.
+  /// What JKR's slope exceeds Hertz's by at the overlap of the state. Across a gap wider than
+  /// that of the largest pull the slope is steeper, but negative: no spring on which partners could swing.
   static double stiffness(const Parameters<double>& p, const NormalState<double>& s) {
     if (!(p.work_of_adhesion > 0.0)) return 0.0;
     const double unit = unit_of_radius(p, s), z = root_of_radius(s.effective_radius * s.overlap / (unit * unit));
