@@ -170,8 +170,7 @@ int simulate(Arguments& arguments) {
       break;  // what was found by then is written
     }
     const auto& force = m.sensor(digger.soil).mean().force;
-    found.samples.push_back(
-        {world.time() - start, m.coordinate(digger.pin), force.x, force.z, m.drive_effort(digger.motor)});
+    found.samples.push_back({world.time(), m.coordinate(digger.pin), force.x, force.z, m.drive_effort(digger.motor)});
     if (found.samples.size() % 15 == 0) io::add_vtk_frame(frames, world, {.plane_size = length});
     clock.look([&] { save(world, dig_file, found, frames); });
   }

@@ -156,6 +156,7 @@ void simulate(Arguments& arguments) {
                    fmt::format("A drum at Froude number {:g}: beads from blue (at rest) to red (0.5 m/s)", froude));
     }
   }
+  csv.flush();
   io::render_plot({.x_label = "Froude number", .y_label = "slope [deg]", .series = {slope, low, high}, .log_x = true},
                   folder + "/slope");
 }

@@ -391,6 +391,7 @@ int main(int argc, char** argv) {
                  car.machine.time(), computed, seconds, computed / car.machine.time());
       dem::io::CsvWriter csv(folder + "/" + scene.name + ".csv", car.columns);
       for (const auto& row : car.rows) csv.row(row);
+      csv.flush();
       draw(car, folder, scene.name);
       if (!car.failed.empty() || !car.is_closed()) return 1;
     }

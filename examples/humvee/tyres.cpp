@@ -61,6 +61,7 @@ void press_tyres(const std::string& folder) {
   fmt::print("\n");
   dem::io::CsvWriter csv(folder + "/tyres.csv", columns);
   for (const auto& row : rows) csv.row(row);
+  csv.flush();
   dem::io::render_plot(plot, folder + "/tyres_load");
 }
 

@@ -70,6 +70,7 @@ int main(int argc, char** argv) {
       rows.row(recorder.sample());
       if (vtk && row++ % 5 == 0) io::add_vtk_frame(*frames, t, machine, {{rod, &rod_mesh}}, "rod");
     });
+    csv.flush();
     if (!report) {
       fmt::print(stderr, "{}\n", report.text);
       return 1;

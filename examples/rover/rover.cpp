@@ -236,6 +236,7 @@ Drove run(const Drive& drive, const Files& files) {
     }
     return x < drive.path;
   });
+  csv.flush();
   if (!report) fail("on a slope of {:.0f} deg: {}", degrees(drive.slope), report.text);
   d.distance = x_of_rover();
   d.arrived = d.distance >= drive.path;
@@ -354,6 +355,7 @@ int main(int argc, char** argv) {
           table.rows.push_back(row);
           fmt::print("{} deg: {}, {:.2f} m\n", slope, d.arrived ? "arrived" : "dug in", d.distance);
         }
+        csv.flush();
         fmt::print("\n{}", io::to_text(table));
         draw_slip(output, drive, weight, std::move(driven));
       });

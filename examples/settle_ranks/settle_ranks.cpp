@@ -128,11 +128,12 @@ void settle(const typename Model::Shape& grain, Arguments& arguments) {
   fmt::print("counted work of the busiest rank: {:.3f} of the mean\n", after.imbalance);
   fmt::print("state {:016x}\n", io::hash_of(io::columns_of(world)));
 
-  io::CsvWriter csv(folder / "settled.csv", {"x_m", "y_m", "z_m", "speed_m_s"});
+  io::CsvWriter csv(folder / "settled.csv", {"x_m", "y_m", "z_m", "speed_m_per_s"});
   for (const GrainId p : world.grains()) {
     const Vec3 x = world.position(p);
     csv.row(x.x(), x.y(), x.z(), world.velocity(p).norm());
   }
+  csv.flush();
 }
 
 void simulate(Arguments& arguments) {

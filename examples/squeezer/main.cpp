@@ -53,6 +53,7 @@ int main(int argc, char** argv) {
       rows.row(recorder.sample());
     });
     const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - clock).count();
+    csv.flush();
     if (!report) {
       fmt::print(stderr, "{}\n", report.text);
       return 1;

@@ -181,6 +181,7 @@ void simulate(Arguments& arguments) {
         peak, angle(peak), last, angle(last), specimen.solid_fraction(), 100.0 * off);
     strength.series.push_back(ratio), density.series.push_back(solid);
   }
+  csv.flush();
   io::render_plot(strength, folder + "/strength");
   io::render_plot(density, folder + "/density");
 }

@@ -222,8 +222,9 @@ struct Driven {
 };
 
 /// Drives a case: sets the car down, and drives until something ends it. `memory` is that of the columns before, if it
-/// is not empty, and becomes that after. look(car) is called with each sample, a hundredth of a second. `stages` are
-/// told `begun` to begun + share. Throws Interrupted after Ctrl-C. What fails is told in the result.
+/// is not empty, and becomes that after. look(car, time) is called with each sample, a hundredth of a second; the time
+/// (s) is from the start of the drive, as in the samples. `stages` are told `begun` to begun + share. Throws
+/// Interrupted after Ctrl-C. What fails is told in the result.
 template <class Look>
 Driven drive(const Settings& s, Case c, std::vector<double>& memory, Stages& stages, double begun, double share,
              Look&& look) {
@@ -253,7 +254,8 @@ Driven drive(const Settings& s, Case c, std::vector<double>& memory, Stages& sta
     };
     car.advance(drive());
     Sample x{.car = car.sample(), .way = car.way() - from, .hitch = car.hitch().force, .wheels = {}};
-    x.car.time = time;
+    const double now = car.machine.time() - start;  // of the sample; the controls were chosen before
+    x.car.time = now;
     for (std::size_t k = 0; k < 4; ++k) x.wheels[k] = car.wheel(k), x.suspension[k] = car.suspension(k);
     if (samples.size() % 50 == 0) {
       for (std::size_t j = 0; j < car.machine.parts().joints.size(); ++j) {
@@ -261,14 +263,14 @@ Driven drive(const Settings& s, Case c, std::vector<double>& memory, Stages& sta
       }
     }
     samples.push_back(x);
-    r.way = x.way, r.time = time;
+    r.way = x.way, r.time = now;
     if (!car.failed.empty()) r.ended = car.failed;
-    else if (c.is_held) r.ended = time >= hold_time ? vehicle::ending::held : "";
+    else if (c.is_held) r.ended = now >= hold_time ? vehicle::ending::held : "";
     else r.ended = judge(x, car);
-    look(std::as_const(car));
+    look(std::as_const(car), now);
     if (io::interrupted()) throw Interrupted{};
     if (samples.size() % 10 == 0) {
-      const double done = c.is_held ? time / hold_time : std::clamp(r.way / s.path, 0.0, 1.0);
+      const double done = c.is_held ? now / hold_time : std::clamp(r.way / s.path, 0.0, 1.0);
       stages.update(begun + share * std::min(done, 0.99), text("{}: {:.1f} m, {:.1f} m/s", c.name, r.way, x.car.speed));
     }
   }

@@ -34,8 +34,8 @@ class DriveReplay {
  public:
   explicit DriveReplay(report::Replay& replay) : replay_(replay) {}
 
-  void operator()(const vehicle::ColumnCar& car) {
-    const double time = car.machine.time();
+  /// A car at a time (s) from the start of its drive.
+  void operator()(const vehicle::ColumnCar& car, double time) {
     if (!replay_.due(time)) return replay_.pass(time);
     const auto& f = car.soil().soil().field();
     if (replay_.parts().empty()) meet(car);
@@ -109,8 +109,8 @@ inline void run_campaign(const Settings& s, Campaign& c, std::optional<report::R
   const bool is_chain = s.study == "passes", is_shown = s.is_drive() || is_chain;
   const int processors = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
   const auto one = [&](std::size_t k, Stages& own, double begun, double share, std::vector<double>& ruts) {
-    Driven driven = drive(s, c.cases[k], ruts, own, begun, share, [&](const vehicle::ColumnCar& car) {
-      if (recorder) (*recorder)(car);
+    Driven driven = drive(s, c.cases[k], ruts, own, begun, share, [&](const vehicle::ColumnCar& car, double time) {
+      if (recorder) (*recorder)(car, time);
     });
     c.results[k] = driven.result;
     if (is_shown) c.shown = std::move(driven);
