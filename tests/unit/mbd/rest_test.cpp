@@ -34,6 +34,21 @@ TEST_CASE("a quarter car comes to rest on its spring and its tyre") {
   CHECK((m.body(body).position() - at).norm() < 1e-9);
 }
 
+TEST_CASE("a belt stands while a rest is looked for, and runs on afterwards") {
+  // A weight of 1 kg hangs on a lift by a spring with a damper, which would hold 10 N of the 9.81 N if the lift ran.
+  Machine<VelocityVerlet> m;
+  const BodyId lift = m.add_body(fixed_body("lift").moving({0, 0, 1.0}, {0, 0, 0.5}));
+  const BodyId weight = m.add_body(ball("weight").at({0, 0, -1.0}));
+  m.add_spring(spring("rope", lift, {0, 0, 0}, weight, {0, 0, -1.0}, 1e3, 10.0));
+  const RestReport rest = find_rest(m, 1e-4);
+  INFO(rest.text);
+  REQUIRE(rest);
+  CHECK(m.body(weight).position().z() == Approx(-1.0 - 9.81 / 1e3).epsilon(1e-9));
+  CHECK(m.body(weight).velocity() == Vec3::Zero());
+  CHECK(m.body(lift).velocity() == Vec3(0, 0, 1.0));
+  CHECK(m.body(lift).angular_velocity() == Vec3(0, 0, 0.5));
+}
+
 TEST_CASE("a linkage finds the pose of least energy, and what has nothing to rest on says so") {
   // A pendulum of two rods, released sideways, hangs down: its hinges carry its weight.
   Machine<PredictorCorrector> m;

@@ -21,6 +21,17 @@ TEST_CASE("a window average forgets what is older than its window") {
   CHECK_THAT(message_of([] { WindowAverage(-1.0); }), Contains("averaging window is -1 s"));
 }
 
+TEST_CASE("a window of as many samples as fill it holds no more, however their times round") {
+  // Samples 0.01, 0.02 ... 10 that each held for 0.01 s: ten of them sum up to a hair less than 0.1 s. Fewer than 64
+  // samples have a bin each, so the mean is exact; 11 instead of 10 are 0.005 off.
+  for (const int n : {10, 20, 50, 64}) {
+    CAPTURE(n);
+    WindowAverage average(n * 0.01);
+    for (int k = 1; k <= 1000; ++k) average.add({{k * 0.01, 0, 0}, {}}, 0.01);
+    CHECK(average.mean().force.x == Approx(10.0 - 0.005 * (n - 1)).epsilon(1e-12));
+  }
+}
+
 TEST_CASE("a mean over an oscillation finds its middle") {
   WindowAverage average(0.5);
   for (int k = 0; k < 20000; ++k) average.add({{3.0 + std::sin(2 * pi * 40.0 * k * 1e-4), 0, 0}, {}}, 1e-4);
@@ -70,4 +81,23 @@ TEST_CASE("what a drive that turns something gives is a torque, and is called so
   const SensorId torque = m.add_sensor(drive_sensor("torque", drive, 0.05));
   REQUIRE(m.run(0.2, 1e-4));
   CHECK(m.drive_effort(torque) == Approx(0.5 * 2.0).epsilon(1e-6));  // the moment of inertia times 2 rad/s^2
+}
+
+TEMPLATE_TEST_CASE("the sensor of a drive has the force of the step that is over", "", PredictorCorrector,
+                   SymplecticEuler, VelocityVerlet) {
+  // 1 kg along t^3/6 takes t newtons; from t - dt to t the mean is t - dt/2, and no rounding comes near 1e-9 of it.
+  Machine<TestType> m;
+  m.gravity.setZero();
+  const BodyId cart = m.add_body(ball("cart"));
+  const JointId rail = m.add_joint(prismatic("rail", m.ground(), cart, {0, 0, 0}, X));
+  const MotionId drive = m.add_motion(prescribed_joint(
+      "drive", rail, Signal::function([](double t) { return t * t * t / 6; }, [](double t) { return t * t / 2; })));
+  const SensorId now = m.add_sensor(drive_sensor("now", drive, 0.0));
+  const SensorId mean = m.add_sensor(drive_sensor("mean", drive, 0.1));
+  const double dt = 0.01;
+  REQUIRE(m.run(1.0, dt, [&] {
+    CHECK(m.drive_effort(now) == Approx(m.time() - dt / 2).epsilon(1e-9));
+    CHECK(m.drive_effort(now) == m.motion(drive).drive.force);
+  }));
+  CHECK(m.drive_effort(mean) == Approx(1.0 - 0.05).epsilon(1e-9));
 }

@@ -26,10 +26,8 @@ inline double off_hold(const Parts& parts, PrescribedMotion& p, double time) {
     return norm(centre_at(p, pose) - m.position) + allowed_off(parts, p) / 1e-3 * turned;
   }
   p.drive.value = p.spec.motion(time).value;
-  if (p.spec.target == MotionSpec::Target::position) return p.start + p.drive.value - dot(m.position, p.axis);
   if (p.spec.target == MotionSpec::Target::rotation) return norm(rotation_off(p, m));
-  const Joint& j = parts.joints[p.spec.joint.index()];
-  return p.drive.value - coordinate_of(j, parts.bodies[j.a], parts.bodies[j.b], p.spec.dof).value;
+  return p.drive.value - coordinate_of_drive(parts, p);
 }
 
 /// Whether a motion that was loaded gives another value than it had when it was saved: it has to take hold again.
@@ -45,12 +43,13 @@ inline bool differs_from_saved(const PrescribedMotion& p, double time, double to
 inline void check_holds(Parts& parts, double time) {
   for (PrescribedMotion& p : parts.motions) {
     if (!p.spec.on) continue;
+    p.drive.time = time;
+    p.drive.moves = false;
     if (p.spec.by_speed) {  // it starts from where its coordinate is
       p.drive.start = p.drive.reached = detail::coordinate_of_drive(parts, p);
-      p.drive.time = time;
-      p.drive.moves = false;
       p.has_hold = true;
     }
+    if (p.drive.way.is_ahead()) p.drive.way.from = detail::coordinate_of_drive(parts, p);
     if (p.has_hold && !p.was_loaded) [[likely]]
       continue;
     const double tolerance = detail::allowed_off(parts, p);
@@ -70,6 +69,7 @@ inline void check_holds(Parts& parts, double time) {
                 "assembly");
     }
     p.has_hold = true;
+    if (p.spec.target == MotionSpec::Target::joint) p.drive.value = detail::coordinate_of_drive(parts, p);
   }
 }
 

@@ -54,22 +54,31 @@ inline void carry_fixed(const PrescribedMotion& p, integrator::Motion<double>& m
   }
 }
 
-/// Where a motion by speed is when it is not yet set, or has been set for a time.
+/// Where the coordinate of a motion, but not of a pose, is now (m or rad); a body's turn in the round of the value that
+/// was set last.
 inline double coordinate_of_drive(const Parts& parts, const PrescribedMotion& p) {
+  const integrator::Motion<double>& m = parts.bodies[p.spec.body.index()].motion;
+  if (p.spec.target == MotionSpec::Target::position) return dot(m.position, p.axis) - p.start;
+  if (p.spec.target == MotionSpec::Target::rotation) return p.drive.value + dot(rotation_off(p, m), p.axis);
   const Joint& j = parts.joints[p.spec.joint.index()];
   return coordinate_of(j, parts.bodies[j.a], parts.bodies[j.b], p.spec.dof).value;
 }
 
-/// The value of a motion by speed at the end of a step of dt (s): that at its start, and the integral of its speed. All
-/// stages of a step ask for the same time. The start is where the coordinate was, not where it should have been: what
-/// another drive or a user moved is not made up for.
-inline double integrated(PrescribedMotion& p, double time, double dt, double rate) {
+/// Notes where a step starts that ends at `time` (s). All its stages ask for the same time.
+inline void start_step(PrescribedMotion& p, double time) {
   PrescribedMotion::Drive& d = p.drive;
-  if (time != d.time) {
-    d.start = d.reached;
-    d.time = time;
-    d.moves = true;
-  }
+  if (time == d.time) return;
+  d.start = p.spec.by_speed ? d.reached : d.value;
+  d.start_rate = d.rate;
+  d.time = time;
+  d.moves = true;
+}
+
+/// The value of a motion by speed at the end of a step of dt (s): that at its start, and the integral of its speed. The
+/// start is where the coordinate was, not where it should have been: what another drive or a user moved is not made up
+/// for.
+inline double integrated(const PrescribedMotion& p, double time, double dt, double rate) {
+  const PrescribedMotion::Drive& d = p.drive;
   if (!d.moves || dt <= 0.0) return d.start;
   const double at_start = p.spec.motion(time - dt, dt).rate, half_way = p.spec.motion(time - 0.5 * dt, dt).rate;
   return d.start + dt / 6.0 * (at_start + 4.0 * half_way + rate);
@@ -84,9 +93,12 @@ inline void sample_motions(Parts& parts, double time, double dt) {
       carry(p, x.motion, time);
       continue;
     }
+    PrescribedMotion::Drive& d = p.drive;
     const Signal::Sample s = p.spec.motion(time, dt);
-    p.drive.rate = s.rate;
-    p.drive.value = p.spec.by_speed ? integrated(p, time, dt, s.rate) : s.value;
+    start_step(p, time);
+    d.rate = s.rate;
+    d.value = p.spec.by_speed ? integrated(p, time, dt, s.rate) : d.way.at(time, s);
+    d.expected = p.spec.by_speed ? d.value : d.start + 0.5 * dt * (d.start_rate + s.rate);
     if (x.fixed && p.spec.target != MotionSpec::Target::joint) carry_fixed(p, x.motion);
   }
 }
@@ -123,9 +135,38 @@ inline void report_forces(Parts& parts, const std::vector<double>& impulses, dou
   }
 }
 
+/// Moves bodies by what the rows' corrections give them; their spins stay.
+inline void shift_bodies(Parts& parts, std::vector<double>& corrections) {
+  using V = Vector3<double>;
+  solve_rows(parts, corrections);
+  push_bodies(parts, corrections, [](Body& b, const Wrench& by) {
+    b.motion.position += by.force;
+    const V spin = b.motion.rotation * b.motion.angular_velocity;  // global, unchanged
+    b.motion.rotation = rotation_from_vector(by.torque) * b.motion.rotation;
+    b.motion.angular_velocity = transpose_times(b.motion.rotation, spin);
+  });
+}
+
+/// Takes back how far forces moved driven coordinates within the step: as the impulses do that take back their speeds,
+/// whatever that does to the joints. If it were done about the joints' points, speeds and positions would not fit: a
+/// hinge beside a centre of mass would stand with a speed of its own, which its damper takes for slip.
+inline void take_back_moves(Parts& parts) {
+  fill_rows(parts, true);
+  std::vector<double>& x = parts.drive_errors;
+  x.clear();
+  bool turns_joints = false;  // all others are moved the same below
+  for (const JacobianRow& r : parts.rows) {
+    const PrescribedMotion::Drive& d = parts.motions[r.motion].drive;
+    const double off = r.value - r.now.value, by_forces = off - (r.is_reported ? d.value - d.expected : 0.0);
+    x.push_back(d.moves ? std::clamp(by_forces, std::min(off, 0.0), std::max(off, 0.0)) : 0.0);
+    turns_joints |= r.now.rotation && r.a != JacobianRow::no_body && x.back() != 0.0;
+  }
+  if (turns_joints) shift_bodies(parts, x);
+}
+
 /// Newton's iteration to the values: one is exact but for rotations, each squares what is left.
 inline void correct_values(Parts& parts) {
-  using V = Vector3<double>;
+  take_back_moves(parts);
   std::vector<double>&x = parts.drive_errors, &held = parts.drive_held;
   for (int k = 0; k < 5; ++k) {
     fill_rows(parts, false);
@@ -142,13 +183,7 @@ inline void correct_values(Parts& parts) {
       met &= std::abs(off) <= 1e-15 * std::max(1.0, std::abs(r.value));
     }
     if (met) break;
-    solve_rows(parts, x);
-    push_bodies(parts, x, [](Body& b, const Wrench& by) {
-      b.motion.position += by.force;
-      const V spin = b.motion.rotation * b.motion.angular_velocity;  // global, unchanged
-      b.motion.rotation = rotation_from_vector(by.torque) * b.motion.rotation;
-      b.motion.angular_velocity = transpose_times(b.motion.rotation, spin);
-    });
+    shift_bodies(parts, x);
   }
 }
 

@@ -99,6 +99,35 @@ DEM_COLD inline MotionSpec prescribed_pose(std::string name, BodyId body, PoseFu
           .frame = frame};
 }
 
+/// The way to a value that was set from outside with a rate: from where the coordinate is, straight through the step
+/// that comes next. So each of its sub-steps makes its share of it, and value and rate agree.
+struct WayToValue {
+  static constexpr double not_yet = 1e300;
+  double from = 0.0;                   ///< m or rad
+  double begin = 0.0, end = -not_yet;  ///< s; end: not_yet before the step begins
+
+  /// A value was set.
+  void set() { end = not_yet; }
+  void drop() { end = -not_yet; }
+  bool is_ahead() const { return end == not_yet; }
+  void begin_step(double start_of_step, double end_of_step) {
+    if (!is_ahead()) return;
+    begin = start_of_step;
+    end = end_of_step;
+  }
+  /// A rate of 0 asks for a jump, and one whose value stays is a belt's.
+  double at(double time, const Signal::Sample& wanted) const {
+    if (wanted.rate == 0.0 || end == -not_yet) return wanted.value;
+    if (is_ahead()) return from;
+    const double share = (time - begin) / (end - begin);
+    return share < 1.0 - 1e-9 ? from + share * (wanted.value - from) : wanted.value;
+  }
+  template <class V>
+  void fields(V& v) {
+    v("from", from), v("begin", begin, "s"), v("end", end, "s");
+  }
+};
+
 struct PrescribedMotion {
   MotionSpec spec;
   Vector3<double> axis = {};
@@ -110,12 +139,15 @@ struct PrescribedMotion {
   Matrix3<double> axes = Matrix3<double>::identity();  ///< body frame -> frame of the poses
   struct Drive {
     double value = 0.0, rate = 0.0;  ///< what was set last
-    double start = 0.0;              ///< of a motion by speed: its coordinate at the start of the step, m or rad
+    double start = 0.0;              ///< m or rad, at the start of the step; of a motion by speed its coordinate
+    double start_rate = 0.0;         ///< of a motion by its value, at the start of the step
+    double expected = 0.0;           ///< m or rad, at the end of the step if `value` does not jump
     double reached = 0.0;            ///< of a motion by speed: its coordinate when it was set last, m or rad
     double time = 0.0;               ///< s, that `value` belongs to
-    bool moves = false;              ///< of a motion by speed: `time` is that of the end of a step
-    double impulse = 0.0;            ///< N s or N m s, given since the force was reported
-    double force = 0.0;              ///< N or N m, makes the coordinate grow (not for a pose)
+    bool moves = false;              ///< `time` is that of the end of a step
+    WayToValue way;
+    double impulse = 0.0;  ///< N s or N m s, given since the force was reported
+    double force = 0.0;    ///< N or N m, makes the coordinate grow (not for a pose)
   } drive;
   template <class V>
   void fields(V& v) {
@@ -125,7 +157,7 @@ struct PrescribedMotion {
     v("motion", spec.motion), v("axis", axis), v("start", start, "m"), v("has_hold", has_hold);
     v("start_rotation", start_rotation), v("centre", centre, "m"), v("axes", axes), v("value", drive.value);
     v("rate", drive.rate), v("start_of_step", drive.start), v("reached", drive.reached), v("time_of_value", drive.time),
-        v("moves", drive.moves), v("impulse", drive.impulse), v("force", drive.force);
+        v("moves", drive.moves), v("way", drive.way), v("impulse", drive.impulse), v("force", drive.force);
   }
 };
 

@@ -82,7 +82,9 @@ class Signal {
     });
   }
   /// A value that stays, with a rate that is given: for set points that come from outside every step. A fixed body that
-  /// prescribed_position moves by held(0, v) is a belt: it stays, and its surfaces run at v (m/s).
+  /// prescribed_position moves by held(0, v) is a belt: it stays, and its surfaces run at v (m/s). What
+  /// Mechanism::set_motion(id, value, rate) sets holds at the end of the next step, and its sub-steps go there by and
+  /// by.
   static Signal held(double value, double rate) {
     Signal s(value);
     s.sample_.rate = finite(rate, "rate of a signal");

@@ -38,7 +38,8 @@ class WindowAverage {
   Wrench mean() const {
     Wrench sum;
     double time = 0.0;
-    for (std::size_t k = 0; k < ring_size && time < window_; ++k) {
+    const double full = (1.0 - 1e-9) * window_;  // s: times that sum up to the window but for rounding fill it
+    for (std::size_t k = 0; k < ring_size && time < full; ++k) {
       const Bin& bin = bins_[(head_ + ring_size - k) % ring_size];
       sum = sum + bin.sum;
       time += bin.time;

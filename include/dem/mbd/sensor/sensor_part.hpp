@@ -17,7 +17,8 @@ inline Wrench contacts_of(const Parts& m, std::size_t body) {
   return w;
 }
 
-/// Hands every sensor what it measures, for the dt (s) that it held.
+/// Hands sensors what they measure, for the dt (s) that it held; but those of drives, whose forces are known when the
+/// step is over (Stages).
 inline void sample_sensors(Parts& m, double dt) {
   for (Sensor& s : m.sensors) {
     const std::size_t i = s.spec.index;
@@ -27,7 +28,7 @@ inline void sample_sensors(Parts& m, double dt) {
       case SensorTarget::total: w = {m.bodies[i].force, m.bodies[i].torque}; break;
       case SensorTarget::joint: w = reaction_of(m, i); break;
       case SensorTarget::actuator: w.force.x = m.actuators[i].force; break;
-      case SensorTarget::drive: w.force.x = m.motions[i].drive.force; break;
+      case SensorTarget::drive: continue;
     }
     s.average.add(w, dt);
   }

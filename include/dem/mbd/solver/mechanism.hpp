@@ -216,7 +216,8 @@ class Mechanism {
   void set_motion(MotionId id, Signal motion) {
     detail::set_motion(known(parts_.motions, id, "prescribed motion"), std::move(motion));
   }
-  /// For values that come from outside every step: how far each is from the last is the caller's care, only the first
+  /// For values that come from outside every step. Where the rate is not 0 the value is reached at the end of the next
+  /// step, by all sub-steps. How far each is from the last is the caller's care, only the first
   /// one is compared with the coordinate. A motion prescribed by its speed takes that alone, set_motion(id, speed).
   void set_motion(MotionId id, double value, double rate) {
     detail::set_motion(known(parts_.motions, id, "prescribed motion"), value, rate);

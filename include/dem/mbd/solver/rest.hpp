@@ -234,7 +234,7 @@ class RestSearch {
   std::vector<double> force_, K_;
 };
 
-/// Throws Error for what a search for rest cannot hold, and stops all bodies.
+/// Throws Error for what a search for rest cannot hold, and stops all bodies that are not fixed.
 DEM_COLD inline void stop_for_rest(Parts& parts) {
   for (const PrescribedMotion& p : parts.motions) {
     if (p.spec.on && !parts.bodies[p.spec.body.index()].fixed) {
@@ -244,8 +244,32 @@ DEM_COLD inline void stop_for_rest(Parts& parts) {
           p.spec.name);
     }
   }
-  for (Body& b : parts.bodies) b.motion.velocity = b.motion.angular_velocity = {0, 0, 0};
+  for (Body& b : parts.bodies) {
+    if (!b.fixed) b.motion.velocity = b.motion.angular_velocity = {0, 0, 0};
+  }
 }
+
+/// While it lives, fixed bodies have no speed: belts, which run on afterwards.
+class StandStill {
+ public:
+  explicit StandStill(Parts& parts) : m_(parts) {
+    for (Body& b : parts.bodies) {
+      was_.push_back(b.motion);
+      if (b.fixed) b.motion.velocity = b.motion.angular_velocity = {0, 0, 0};
+    }
+  }
+  ~StandStill() {
+    for (std::size_t i = 0; i < was_.size(); ++i) {
+      if (m_.bodies[i].fixed) m_.bodies[i].motion = was_[i];
+    }
+  }
+  StandStill(const StandStill&) = delete;
+  StandStill& operator=(const StandStill&) = delete;
+
+ private:
+  Parts& m_;
+  std::vector<integrator::Motion<double>> was_;
+};
 
 /// What is held exactly gets springs for the search, so stiff that they hardly give way. All else (limits, brakes,
 /// friction) keeps the stiffness that it has in steps of dt (s): it is what the run goes on with.
@@ -273,6 +297,7 @@ template <class Joints, class PutForces>
 RestReport search_rest(Parts& parts, const Vec3& gravity, double time, double dt, const RestOptions& options,
                        PutForces&& put_forces) {
   if constexpr (Joints::projects) put_springs_on(parts, dt);
+  const StandStill belts(parts);
   RestSearch<std::decay_t<PutForces>> search(parts, gravity, time, dt, put_forces);
   const Stepping stepping(parts);
   const RestReport report = search.run(options);
@@ -288,7 +313,8 @@ RestReport search_rest(Parts& parts, const Vec3& gravity, double time, double dt
 /// balance, and stops them. Loads are asked at the machine's present time and at speed 0; friction, dampers and motors
 /// hold nothing. Joints stand open as they will in steps of dt (s), so the run that follows stays where it is. A
 /// direction in which nothing holds and nothing pulls, as a wheel about its axle, stays as it is. If no rest is found,
-/// the bodies are stopped where they were. Velocities that are given afterwards fit the joints by Machine::assemble.
+/// the bodies are stopped where they were. Fixed bodies that have a velocity (belts) stand during the search, and run
+/// on afterwards. Velocities that are given afterwards fit the joints by Machine::assemble.
 ///
 /// Throws Error for a prescribed motion of a body that is not fixed, and what Machine::run throws. Of a machine in a
 /// world: <dem/world/rest.hpp>.

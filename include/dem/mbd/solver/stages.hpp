@@ -55,6 +55,7 @@ class Stages {
   template <class PutForces>
   void stage(Mechanism& m, int stage, double dt, const Vec3& gravity, PutForces&& put_forces) {
     const int n = m.substeps;
+    if (stage == 0) begin_ways(m.parts(), dt);
     if (n == 1) return single_stage(m, stage, dt, gravity, put_forces);
     if constexpr (I::predicts_before_forces) take_substeps(m, n, stage, dt, gravity);
     clear_forces(m.parts());
@@ -66,6 +67,7 @@ class Stages {
   /// A step of dt (s), in the machine's sub-steps, without forces from outside.
   void step(Mechanism& m, double dt, const Vec3& gravity) {
     const int n = m.substeps;
+    begin_ways(m.parts(), dt);
     for (int s = 0; s < n; ++s) {
       for (int k = 0; k < I::stages; ++k) single_stage(m, k, dt / n, gravity, [] {});
     }
@@ -86,6 +88,11 @@ class Stages {
   }
 
  private:
+  /// Values of motions that were set since the last step are reached at the end of this one, of dt (s).
+  void begin_ways(Parts& m, double dt) {
+    for (PrescribedMotion& p : m.motions) p.drive.way.begin_step(time_, time_ + dt);
+  }
+
   /// The time of the state at which a stage's forces are evaluated, in a step of dt from `time`.
   static double stage_time(double time, double dt, int stage) {
     return I::predicts_before_forces || stage > 0 ? time + dt : time;
@@ -132,6 +139,7 @@ class Stages {
     } else {
       prescribe(m, start + dt, dt);
     }
+    if (last && sampling_) sample_drives(parts, dt);
   }
 
   /// Takes the machine's steps within one of the world's, with the grains' forces as HeldContacts has them.
@@ -167,6 +175,14 @@ class Stages {
     parts.apply_motions(parts, time_at_end_of_step, dt, true);
     for (const PrescribedMotion& p : parts.motions) {
       if (p.spec.on) watches.look(m, p.spec.body, time_);  // also a fixed one, which nothing else moves
+    }
+  }
+
+  /// The forces of drives, which are the mean ones of the step that is over.
+  static void sample_drives(Parts& parts, double dt) {
+    for (Sensor& s : parts.sensors) {
+      if (s.spec.target != SensorTarget::drive) continue;
+      s.average.add({{parts.motions[s.spec.index].drive.force, 0, 0}, {0, 0, 0}}, dt);
     }
   }
 

@@ -73,6 +73,7 @@ DEM_COLD inline void set_motion(PrescribedMotion& p, Signal motion) {
     fail("prescribed motion '{}' is a whole pose, which no signal gives; use set_pose", p.spec.name);
   }
   p.spec.motion = p.spec.by_speed ? motion.as_rate() : std::move(motion);
+  p.drive.way.drop();
   p.has_hold = false;
 }
 DEM_COLD inline void set_motion(PrescribedMotion& p, double value, double rate) {
@@ -82,6 +83,7 @@ DEM_COLD inline void set_motion(PrescribedMotion& p, double value, double rate) 
   }
   const bool has_hold = p.has_hold;
   set_motion(p, Signal::held(value, rate));
+  p.drive.way.set();
   p.has_hold = has_hold;
 }
 
