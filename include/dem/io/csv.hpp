@@ -54,14 +54,16 @@ template <class T>
 concept CsvCell = std::is_arithmetic_v<T> || std::convertible_to<T, std::string_view>;
 
 /// Writes a CSV file row by row: a header line, '\n' as line end, '.' as decimal point, "nan" and "inf" as they are.
-/// Rows are flushed every few seconds, so that an interrupted run keeps its data.
+/// Rows are flushed every few seconds, so that an interrupted run keeps its data. close() it at the end: a destructor
+/// cannot throw, and only warns on stderr of a full disk.
 ///
 ///     CsvWriter csv("out/shear.csv", {"time_s", "displacement_m", "stress_Pa"});
 ///     csv.row(t, u, stress);
+///     csv.close();
 ///
 /// Everything throws dem::Error: a file that cannot be opened or written (the folder is made when missing), no
-/// columns, an empty or repeated column name, a row whose length is not that of the header, a file to go on with that
-/// has other columns.
+/// columns, an empty or repeated column name, a row whose length is not that of the header or that comes after close(),
+/// a file to go on with that has other columns.
 class CsvWriter {
  public:
   CsvWriter(const std::filesystem::path& path, std::vector<std::string> columns, CsvOptions options = {})
@@ -92,6 +94,9 @@ class CsvWriter {
     file_.flush();
     flush_time_ = steady_seconds();
   }
+
+  /// Ends the file: throws if not all rows could be written.
+  void close() { file_.close(); }
 
   /// Rows in the file, without the header.
   [[nodiscard]] std::size_t rows() const { return rows_; }
@@ -165,6 +170,7 @@ class CsvWriter {
   /// As a cell. Not fmt::format_to, which would have every program compile fmt's own formatting anew.
   template <std::floating_point T>
   [[nodiscard]] std::string text_of(T number) const {
+    if (std::isnan(number)) return "nan";  // whatever its sign
     if (options_.digits > 0) return fmt::format("{:.{}g}", number, options_.digits);
     return fmt::format("{}", number);  // shortest text that reads back as the same number
   }

@@ -68,6 +68,24 @@ inline std::FILE* open_unnamed([[maybe_unused]] const std::filesystem::path& fol
 #endif
 }
 
+/// Whether there is something that is neither a file nor a folder.
+inline bool is_device(const std::filesystem::path& path) {
+  std::error_code ignored;
+  const auto status = std::filesystem::status(path, ignored);
+  return std::filesystem::is_other(status);
+}
+
+/// What a symbolic link leads to, whether that is there or not; else the path itself.
+inline std::filesystem::path behind_links(std::filesystem::path path) {
+  std::error_code error;
+  for (int links = 0; links < 40 && std::filesystem::is_symlink(path, error); ++links) {
+    const auto target = std::filesystem::read_symlink(path, error);
+    if (error) break;
+    path = path.parent_path() / target;  // an absolute target stays as it is
+  }
+  return path;
+}
+
 /// Gives an unnamed file its name, in place of an older one. False, with errno, if that is not possible.
 inline bool name_file(std::FILE* file, const std::filesystem::path& path) {
   const std::string unnamed = "/proc/self/fd/" + std::to_string(::fileno(file));
@@ -78,7 +96,8 @@ inline bool name_file(std::FILE* file, const std::filesystem::path& path) {
 }  // namespace detail
 
 /// A file that is written from its start, or from its end; its folder is made when it is missing. Every method throws
-/// dem::Error, with the path and the system's reason, when the file cannot be opened or written.
+/// dem::Error, with the path and the system's reason, when the file cannot be opened or written. A destructor cannot:
+/// it tells on stderr that the last bytes could not be written, unless that was thrown already. close() throws.
 class OutputFile {
  public:
   explicit OutputFile(std::filesystem::path path, WriteFrom from = WriteFrom::start) : path_(std::move(path)) {
@@ -89,20 +108,31 @@ class OutputFile {
            std::strerror(errno));
     }
   }
+  OutputFile(OutputFile&&) = default;
+  OutputFile& operator=(OutputFile&& other) noexcept {
+    std::swap(path_, other.path_), std::swap(file_, other.file_), std::swap(has_failed_, other.has_failed_);
+    return *this;
+  }
+  ~OutputFile() {
+    if (!file_ || std::fclose(file_.release()) == 0 || has_failed_) return;
+    std::fprintf(stderr, "warning: the end of '%s' is lost (%s); check that the disk is not full\n", path_.c_str(),
+                 std::strerror(errno));
+  }
 
   void write(const void* data, std::size_t bytes) {
+    if (!file_) fail("cannot write to '{}': it was closed; write before", path_.string());
     if (bytes != 0 && std::fwrite(data, 1, bytes, file_.get()) != bytes) fail_to_write();
   }
   void write(std::string_view text) { write(text.data(), text.size()); }
 
   /// Hands buffered bytes to the system, so that they outlive this process.
   void flush() {
-    if (std::fflush(file_.get()) != 0) fail_to_write();
+    if (file_ && std::fflush(file_.get()) != 0) fail_to_write();
   }
 
-  /// Closes and reports what a destructor could not: a full disk is often noticed only here.
+  /// Closes it and throws where a destructor could not: a full disk is often noticed only here.
   void close() {
-    if (std::fclose(file_.release()) != 0) fail_to_write();
+    if (file_ && std::fclose(file_.release()) != 0) fail_to_write();
   }
 
   [[nodiscard]] const std::filesystem::path& path() const { return path_; }
@@ -116,24 +146,31 @@ class OutputFile {
     void operator()(std::FILE* file) const { std::fclose(file); }
   };
 
-  [[noreturn]] void fail_to_write() const {
+  [[noreturn]] void fail_to_write() {
+    has_failed_ = true;
     fail("cannot write to '{}' ({}); check that the disk is not full", path_.string(), std::strerror(errno));
   }
 
   std::filesystem::path path_;
   std::unique_ptr<std::FILE, Closer> file_;
+  bool has_failed_ = false;  ///< which was thrown
 };
 
 /// A file that appears under its name only when it is complete. Until commit() its bytes have no name, or where the
 /// system knows no unnamed files that of `<path>.tmp`. Without commit() they are gone and an older file of this name
-/// stays, also when the process is killed (but for `<path>.tmp`). Throws as OutputFile does.
+/// stays, also when the process is killed (but for `<path>.tmp`). A symbolic link stays: the file that it leads to is
+/// written. What is there and is no file, as a device or a pipe, is written as it is. Throws as OutputFile does.
 class AtomicFile {
  public:
   explicit AtomicFile(const std::filesystem::path& path)
-      : path_(path), temporary_(std::filesystem::path(path) += ".tmp"), file_(open()) {}
+      : is_direct_(detail::is_device(path)),
+        path_(is_direct_ ? path : detail::behind_links(path)),
+        temporary_(std::filesystem::path(path_) += ".tmp"),
+        file_(open()) {}
   AtomicFile(const AtomicFile&) = delete;
   AtomicFile& operator=(const AtomicFile&) = delete;
   ~AtomicFile() {
+    file_.file_.reset();  // what was not committed may be lost
     std::error_code ignored;
     if (is_named_) std::filesystem::remove(temporary_, ignored);
   }
@@ -142,7 +179,7 @@ class AtomicFile {
   void write(std::string_view text) { file_.write(text); }
 
   void commit() {
-    if (!process_writes_files) return file_.close();
+    if (!process_writes_files || is_direct_) return file_.close();
     if (!is_named_) {
       file_.flush();
       if (!detail::name_file(file_.file_.get(), temporary_)) file_.fail_to_write();
@@ -162,11 +199,13 @@ class AtomicFile {
   OutputFile open() {
     make_folder_of(path_);
     if (!process_writes_files) return OutputFile(temporary_);
+    if (is_direct_) return OutputFile(path_);
     if (std::FILE* unnamed = detail::open_unnamed(path_.parent_path())) return {path_, unnamed};
     is_named_ = true;
     return OutputFile(temporary_);
   }
 
+  bool is_direct_;
   std::filesystem::path path_, temporary_;
   bool is_named_ = false;  ///< whether there is a file `temporary_`
   OutputFile file_;

@@ -11,8 +11,9 @@
 namespace dem::io {
 
 /// `value` with `digits` significant digits, without needless zeros, and without an exponent from 1e-4 up to 1e7:
-/// 12345.6 -> "12346", 0.25 -> "0.25", 2.5e9 -> "2.5e+09".
+/// 12345.6 -> "12346", 0.25 -> "0.25", 2.5e9 -> "2.5e+09". What is not a number is "nan", whatever its sign.
 [[nodiscard]] inline std::string format_number(double value, int digits = 4) {
+  if (std::isnan(value)) return "nan";
   const std::string text = fmt::format("{:.{}g}", value, std::max(1, digits));
   const bool exponent = text.find('e') != std::string::npos;
   const double size = std::abs(value);

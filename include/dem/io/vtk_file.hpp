@@ -52,11 +52,13 @@ inline float single_of(double x, const Rounding& r) {
 /// Gathers the XML and the arrays of one file, and writes them in one go.
 class VtkFile {
  public:
-  VtkFile(std::string_view type, const VtkOptions& options) : type_(type), options_(options) {
+  /// `attributes` of the data's own tag, each with a space in front.
+  VtkFile(std::string_view type, const VtkOptions& options, std::string_view attributes = {})
+      : type_(type), options_(options) {
     xml_ = fmt::format(
         "<?xml version=\"1.0\"?>\n"
-        "<VTKFile type=\"{0}\" version=\"1.0\" byte_order=\"{1}\" header_type=\"UInt64\"{2}>\n<{0}>\n",
-        type_, kVtkByteOrder, VtkPacker::attribute);
+        "<VTKFile type=\"{0}\" version=\"1.0\" byte_order=\"{1}\" header_type=\"UInt64\"{2}>\n<{0}{3}>\n",
+        type_, kVtkByteOrder, VtkPacker::attribute, attributes);
     if (std::isfinite(options.time_s)) {
       xml_ += fmt::format(
           "<FieldData>\n<DataArray type=\"Float64\" Name=\"TimeValue\" NumberOfTuples=\"1\" format=\"ascii\">{}"

@@ -3,6 +3,8 @@
 
 #include <dem/io/drawn_body.hpp>
 #include <dem/io/drawn_surface.hpp>
+#include <dem/io/vtk_contacts.hpp>
+#include <dem/io/vtk_grain_points.hpp>
 #include <dem/io/vtk_grains.hpp>
 #include <dem/io/vtk_series.hpp>
 #include <dem/mbd/solver/mechanism.hpp>
@@ -57,47 +59,57 @@ inline void write_vtk_machine(const std::filesystem::path& path, const mbd::Mech
 }
 
 /// Writes all active surfaces of a world where their bodies are now, with the cell arrays "body" (index of the drawn
-/// surface), "machine_part", "velocity_m_s" and "angular_velocity_rad_s" as above, and "force_of_grains_N" (on the
-/// surface). A plane has no end: a square of edge `plane_size` (m) is drawn. Throws dem::Error as write_vtk_bodies
-/// does.
+/// surface), "surface" (its number, which stays when others are not active), "machine_part", "velocity_m_s" and
+/// "angular_velocity_rad_s" as above, and "force_of_grains_N" (on the surface). A plane has no end: a square of edge
+/// `plane_size` (m) is drawn. Throws dem::Error as write_vtk_bodies does.
 template <class World>
 void write_vtk_surfaces(const std::filesystem::path& path, const World& world, const VtkOptions& options = {},
                         double plane_size = 1.0) {
   std::vector<SurfaceMesh> meshes;
   std::vector<BodyMesh> surfaces;
+  std::vector<std::int32_t> numbers;
   detail::MachineArrays data;
-  for (const auto& s : world.state().surfaces) {
+  const auto& all = world.state().surfaces;
+  for (std::size_t k = 0; k < all.size(); ++k) {
+    const auto& s = all[k];
     if (!s.active) continue;
+    numbers.push_back(static_cast<std::int32_t>(k));
     const Body& b = world.machine().body(s.body);
     meshes.push_back(drawn(s.geometry, plane_size));
     surfaces.push_back({nullptr, b.point(s.position), b.rotation() * s.rotation});
     data.add(s.body, b, to_eigen(s.force));
   }
   for (std::size_t k = 0; k < meshes.size(); ++k) surfaces[k].mesh = &meshes[k];
-  write_vtk_bodies(path, surfaces, data.arrays("force_of_grains_N"), options);
+  auto arrays = data.arrays("force_of_grains_N");
+  arrays.insert(arrays.begin(), {"surface", 1, std::span<const std::int32_t>(numbers)});
+  write_vtk_bodies(path, surfaces, arrays, options);
 }
 
-/// How a frame of a world is drawn.
+/// How a frame of a world is drawn, and what of it.
 struct FrameOptions {
   int divisions = 4;        ///< of grains, see write_vtk_grains
   double plane_size = 1.0;  ///< m, edge of the square that shows a plane
+  bool grains = true;       ///< as meshes, the part "grains": write_vtk_grains
+  bool points = false;      ///< grains as points, the part "points": write_vtk_grain_points
+  bool contacts = false;    ///< force chains, the part "contacts": write_vtk_contacts
 };
 
-/// Adds a world as it is now to a time series: its grains as "grains", its surfaces as "surfaces". Bodies without
-/// surfaces are added to the same series by the other add_vtk_frame, with world.time() and world.machine().
+/// Adds a world as it is now to a time series: its grains as "grains", its surfaces as "surfaces", and what else is
+/// asked for. Each frame has each part, also where there is nothing to show: files of one number are of one frame.
+/// Bodies without surfaces are added to the same series by the other add_vtk_frame, with world.time() and
+/// world.machine().
 template <class World>
 void add_vtk_frame(VtkSeries& series, const World& world, const FrameOptions& frame = {}) {
   const VtkOptions options{.single_precision = true, .time_s = world.time()};
-  if (world.grain_count() > 0) {
-    const auto path = series.next_path("grains");
-    write_vtk_grains(path, world, frame.divisions, options);
-    series.add(world.time(), path, "grains");
-  }
-  if (!world.state().surfaces.empty()) {
-    const auto path = series.next_path("surfaces");
-    write_vtk_surfaces(path, world, options, frame.plane_size);
-    series.add(world.time(), path, "surfaces");
-  }
+  const auto add = [&](const char* part, auto&& write) {
+    const auto path = series.next_path(part);
+    write(path);
+    series.add(world.time(), path, part);
+  };
+  if (frame.grains) add("grains", [&](const auto& path) { write_vtk_grains(path, world, frame.divisions, options); });
+  if (frame.points) add("points", [&](const auto& path) { write_vtk_grain_points(path, world, options); });
+  add("surfaces", [&](const auto& path) { write_vtk_surfaces(path, world, options, frame.plane_size); });
+  if (frame.contacts) add_vtk_contacts(series, world);
 }
 
 /// Adds bodies of a machine, with or without a world, as `part`.

@@ -4,11 +4,11 @@
 #include <dem/geometry/polyhedron/polyhedron.hpp>
 #include <dem/geometry/superquadric/superquadric.hpp>
 #include <dem/io/vtk.hpp>
+#include <dem/io/vtk_grain_points.hpp>
 #include <dem/io/vtk_machine.hpp>
 #include <dem/rig/session.hpp>
 #include <dem/soil/coordination.hpp>
 
-#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <exception>
@@ -19,45 +19,13 @@
 
 namespace dem::rig {
 
-/// Every grain as a point that knows how it moves and touches others and, where grains may sleep, whether it does. In
-/// single precision positions are good to a two-thousandth of a radius, turns to 0.03 degrees, speeds and forces to
-/// three digits: as much as is seen.
+/// Every grain as a point (io::write_vtk_grain_points), which also knows at how many points it touches others
+/// ("contact_points") and how many touch it ("coordination").
 template <class World>
 void write_grain_points(const std::filesystem::path& path, const World& world, const io::VtkOptions& options) {
-  const std::size_t n = world.grain_count();
-  std::vector<Vec3> position(n), velocity(n), spin(n), force(n);
-  std::vector<double> quaternion, radius(n);
-  quaternion.reserve(4 * n);
-  double largest = 1e-300;
-  const auto grains = world.grains();
-  for (std::size_t i = 0; i < n; ++i) {
-    const GrainId p = grains[i];
-    const Quaternion q(world.rotation(p));
-    position[i] = world.position(p);
-    velocity[i] = world.velocity(p);
-    spin[i] = world.angular_velocity(p);
-    force[i] = world.force(p);
-    radius[i] = world.species(world.species_of(p)).shape.bounding_radius();
-    largest = std::max(largest, radius[i]);
-    quaternion.insert(quaternion.end(), {q.w(), q.x(), q.y(), q.z()});
-  }
   const auto contacts = soil::coordination(world);
-  constexpr io::Rounding three_digits = {.bits = 10}, of_turn = {.step = 0x1p-11};
-  std::vector<io::PointData> data = {{"radius_m", 1, radius},
-                                     {"velocity_m_s", 3, io::flat(velocity), three_digits},
-                                     {"angular_velocity_rad_s", 3, io::flat(spin), three_digits},
-                                     {"quaternion_wxyz", 4, quaternion, of_turn},
-                                     {"net_contact_force_N", 3, io::flat(force), three_digits},
-                                     {"contact_points", 1, contacts.contacts},
-                                     {"coordination", 1, contacts.neighbours}};
-  std::vector<std::uint8_t> asleep(n);
-  if (world.state().options.sleep) {
-    for (std::size_t i = 0; i < n; ++i) asleep[i] = world.is_asleep(grains[i]) ? 1 : 0;
-    data.push_back({"asleep", 1, asleep});
-  }
-  io::VtkOptions own = options;
-  own.position_rounding.step = std::exp2(std::floor(std::log2(largest)) - 11.0);
-  io::write_vtk_points(path, io::flat(position), data, own);
+  io::write_vtk_grain_points(path, world, options,
+                             {{"contact_points", 1, contacts.contacts}, {"coordination", 1, contacts.neighbours}});
 }
 
 /// Every grain as its spheres: Point Gaussian, scaled by radius_m, shows the true shape.

@@ -23,6 +23,7 @@ inline void write_rut_csv(const std::filesystem::path& path, const ColumnField& 
               norm(field.shear[row].mobilised));
     }
   }
+  csv.close();
 }
 
 /// Writes the soil's surface as a grey picture (PGM, 16 bits a pixel, one pixel a column, y upwards): black at the

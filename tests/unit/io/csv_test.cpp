@@ -12,6 +12,8 @@
 #include <vector>
 
 #include <fcntl.h>
+#include <sys/resource.h>
+#include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -69,8 +71,9 @@ TEST_CASE("csv digits, separator and odd numbers") {
   const TempFolder folder;
   CsvWriter csv(folder / "a.csv", {"a", "b", "c"}, {.digits = 4, .separator = ';'});
   csv.row(1.0 / 3, std::nan(""), -std::numeric_limits<double>::infinity());
+  csv.row(std::copysign(std::nan(""), -1.0), -std::nanf(""), 1);
   csv.flush();
-  CHECK(read_file(csv.path()) == "a;b;c\n0.3333;nan;-inf\n");
+  CHECK(read_file(csv.path()) == "a;b;c\n0.3333;nan;-inf\nnan;nan;1\n");
 }
 
 TEST_CASE("csv rows are on disk while the writer still lives") {
@@ -111,6 +114,25 @@ TEST_CASE("a table of numbers is read back as it was written, and one that is no
   CHECK_THROWS_WITH(read("a,b\n1,\n"), ContainsSubstring("'' is no number"));
   CHECK_THROWS_WITH(read("a,b\n1\n"), ContainsSubstring("line 2: 1 numbers, but there are 2 columns"));
   CHECK_THROWS_WITH(read("a\n1,2\n"), ContainsSubstring("line 2: 2 numbers, but there are 1 columns"));
+}
+
+TEST_CASE("names of columns that hold commas, quotes and line ends are read back") {
+  const TempFolder folder;
+  const std::vector<std::string> names{"slip, mean", "the \"rut\"", "two\nlines", " outer", "5\" pipe", "\"", "plain"};
+  {
+    CsvWriter csv(folder / "t.csv", names);
+    csv.row(std::vector<double>{1, 2, 3, 4, 5, 6, 7});
+    csv.close();
+  }
+  const auto table = dem::io::read_csv(folder / "t.csv");
+  CHECK(table.columns == names);
+  CHECK(table.rows == std::vector<std::vector<double>>{{1, 2, 3, 4, 5, 6, 7}});
+  // Of other programs: quotes within a name, and spaces around quotes.
+  dem::io::write_file(folder / "t.csv", "5\" pipe, \"a, b\" ,c\r\n1,2,3\r\n");
+  CHECK(dem::io::read_csv(folder / "t.csv").columns == std::vector<std::string>{"5\" pipe", "a, b", "c"});
+  dem::io::write_file(folder / "t.csv", "a,\"b\n1,2\n");
+  CHECK(error_of([&] { (void)dem::io::read_csv(folder / "t.csv"); }).find("begins with a quote, but does not end") !=
+        std::string::npos);
 }
 
 TEST_CASE("a csv file goes on after a time, whatever an earlier run wrote later") {
@@ -202,6 +224,117 @@ TEST_CASE("a full disk is told") {
   if (!std::filesystem::exists("/dev/full")) return;
   CHECK(error_of([] { CsvWriter("/dev/full", {"a"}); }) ==
         "cannot write to '/dev/full' (No space left on device); check that the disk is not full");
+}
+
+namespace {
+
+/// What a process that runs `call`, and may write files of a thousand bytes only, says on stderr.
+template <class Call>
+std::string words_of(Call&& call) {
+  int ends[2];
+  REQUIRE(::pipe(ends) == 0);
+  const pid_t child = ::fork();
+  if (child == 0) {
+    const rlimit limit{1000, 1000};
+    ::setrlimit(RLIMIT_FSIZE, &limit);
+    std::signal(SIGXFSZ, SIG_IGN);
+    ::dup2(ends[1], STDERR_FILENO);
+    call();
+    ::_exit(0);
+  }
+  ::close(ends[1]);
+  std::string words;
+  char letter = 0;
+  while (::read(ends[0], &letter, 1) == 1) words += letter;
+  ::close(ends[0]);
+  int status = 0;
+  ::waitpid(child, &status, 0);
+  CHECK((WIFEXITED(status) && WEXITSTATUS(status) == 0));
+  return words;
+}
+
+}  // namespace
+
+TEST_CASE("rows that a full disk does not take are not lost without a word") {
+  const TempFolder folder;
+  const auto path = folder / "rows.csv";
+  const auto write = [&](CsvWriter& csv) {
+    for (int k = 0; k < 300; ++k) csv.row(k, 0.5 * k);
+  };
+  const std::string warning =
+      "warning: the end of '" + path.string() + "' is lost (File too large); check that the disk is not full\n";
+  CHECK(words_of([&] {
+          CsvWriter csv(path, {"row", "half"});
+          write(csv);
+        }) == warning);
+  CHECK(std::filesystem::file_size(path) == 1000);
+  // Also while another exception is on its way.
+  CHECK(words_of([&] {
+          try {
+            CsvWriter csv(path, {"row", "half"});
+            write(csv);
+            throw 1;
+          } catch (int) {
+          }
+        }) == warning);
+  // What was thrown is not told again.
+  const std::string thrown =
+      "cannot write to '" + path.string() + "' (File too large); check that the disk is not full";
+  CHECK(words_of([&] {
+          CsvWriter csv(path, {"row", "half"});
+          write(csv);
+          if (error_of([&] { csv.close(); }) != thrown) ::_exit(1);
+          csv.close();  // it is
+        }).empty());
+  CHECK(words_of([&] {
+          CsvWriter csv(path, {"row", "half"});
+          write(csv);
+          if (error_of([&] { csv.flush(); }) != thrown) ::_exit(1);
+        }).empty());
+  // A file that was not meant to stay.
+  CHECK(words_of([&] {
+          dem::io::AtomicFile file(path);
+          file.write(std::string(2000, 'x'));
+        }).empty());
+
+  CsvWriter csv(path, {"row", "half"});
+  write(csv);
+  csv.close();
+  CHECK(dem::io::read_csv(path).rows.size() == 300);
+  CHECK_THAT(error_of([&] { csv.row(1, 2); }), Catch::Matchers::Contains("it was closed"));
+}
+
+TEST_CASE("a link stays, and what it leads to is written") {
+  const TempFolder folder;
+  std::filesystem::create_directory(folder / "there");
+  dem::io::write_file(folder / "there/a.txt", "old");
+  std::filesystem::create_symlink("there/a.txt", folder / "link");
+  std::filesystem::create_symlink(folder / "link", folder / "second");
+  std::filesystem::create_symlink("there/new.txt", folder / "to_none");
+  dem::io::write_file(folder / "second", "new");
+  dem::io::write_file(folder / "to_none", "first");
+  CHECK(read_file(folder / "there/a.txt") == "new");
+  CHECK(read_file(folder / "there/new.txt") == "first");
+  for (const char* link : {"link", "second", "to_none"}) CHECK(std::filesystem::is_symlink(folder / link));
+  { dem::io::AtomicFile(folder / "link").write("half"); }
+  CHECK(read_file(folder / "link") == "new");
+  CHECK(std::distance(std::filesystem::directory_iterator(folder / "there"), {}) == 2);
+}
+
+TEST_CASE("what is no file is written as it is") {
+  const TempFolder folder;
+  REQUIRE(::mkfifo((folder / "pipe").c_str(), 0600) == 0);
+  const int reader = ::open((folder / "pipe").c_str(), O_RDONLY | O_NONBLOCK);
+  dem::io::write_file(folder / "pipe", "through");
+  CHECK(std::filesystem::is_fifo(folder / "pipe"));
+  char text[16] = {};
+  CHECK(::read(reader, text, sizeof text) == 7);
+  CHECK(std::string(text) == "through");
+  ::close(reader);
+  if (!std::filesystem::exists("/dev/full")) return;
+  CHECK(error_of([] { dem::io::write_file("/dev/full", "a"); }) ==
+        "cannot write to '/dev/full' (No space left on device); check that the disk is not full");
+  CHECK(!std::filesystem::is_regular_file("/dev/full"));
 }
 
 TEST_CASE("a process that is killed while it writes leaves nothing, and the older file") {

@@ -79,6 +79,7 @@ TEST_CASE("a frame of a world shows its grains, and its surfaces of every kind w
   // The plane's square and the six faces of the box; a surface that touches nothing is not shown.
   const auto part = file.values<std::int32_t>("machine_part");
   CHECK(part == std::vector<std::int32_t>{0, 1, 1, 1, 1, 1, 1});
+  CHECK(file.values<std::int32_t>("surface") == std::vector<std::int32_t>{0, 1, 1, 1, 1, 1, 1});
   const auto points = file.values<double>("Points");
   CHECK(points.size() == 3 * (4 + 8));
   CHECK(std::abs(points[0]) == Approx(0.1));
@@ -97,6 +98,42 @@ TEST_CASE("a frame of a world shows its grains, and its surfaces of every kind w
     return both.substr(at, both.find('"', at + 10) - at);
   };
   CHECK(time_of("lift_000000") == time_of("grains_000000"));
+}
+
+TEST_CASE("files of one number are of one frame, and a surface keeps its number") {
+  dem::World<models::CorrectedBalls> world({.gravity = {0, 0, -9.81}});
+  world.set_contact({{2000.0, 0.5, 1.0}, {0.4, 2000.0, 0.015, 0.975}});
+  const auto species = world.add_species(dem::shape::Sphere(1e-3));
+  const auto hidden = world.add_surface(world.ground(), dem::surface::Sphere(0.01));
+  world.add_surface(world.ground(), dem::surface::Plane{});
+  world.set_active(hidden, false);
+  const TempFolder folder;
+  dem::io::VtkSeries series(folder / "run.pvd");
+  const dem::io::FrameOptions all{.points = true, .contacts = true};
+  dem::io::add_vtk_frame(series, world, all);
+  world.add_grain({.species = species, .position = {0, 0, 0.9e-3}});
+  REQUIRE(world.run_for(1e-4));
+  dem::io::add_vtk_frame(series, world, all);
+  for (const char* part : {"grains", "points", "surfaces", "contacts"}) {
+    INFO(part);
+    const auto path_of = [&](int k) { return folder.path() / fmt::format("run/{}_{:06}.vtp", part, k); };
+    REQUIRE(std::filesystem::exists(path_of(1)));
+    const bool is_surfaces = std::string(part) == "surfaces";
+    CHECK((read_vtk(path_of(0)).tag("Piece").at("NumberOfPoints") == "0") != is_surfaces);
+    CHECK(read_vtk(path_of(1)).tag("Piece").at("NumberOfPoints") != "0");
+  }
+  const VtkContent surfaces = read_vtk(folder / "run/surfaces_000001.vtp");
+  CHECK(surfaces.values<std::int32_t>("body") == std::vector<std::int32_t>{0});
+  CHECK(surfaces.values<std::int32_t>("surface") == std::vector<std::int32_t>{1});
+  CHECK(read_vtk(folder / "run/contacts_000001.vtp").values<std::int32_t>("surface") ==
+        std::vector<std::int32_t>{1, 1});
+
+  // Parts that are not asked for are not written.
+  dem::io::VtkSeries points(folder / "points.pvd");
+  dem::io::add_vtk_frame(points, world, {.grains = false, .points = true});
+  CHECK(std::filesystem::exists(folder / "points/points_000000.vtp"));
+  CHECK(!std::filesystem::exists(folder / "points/grains_000000.vtp"));
+  CHECK(!std::filesystem::exists(folder / "points/contacts_000000.vtp"));
 }
 
 TEST_CASE("rows under named columns become curves") {

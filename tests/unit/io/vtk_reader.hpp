@@ -70,7 +70,7 @@ inline std::string read_array(const std::string& data, std::size_t& at, bool is_
   return all;
 }
 
-inline VtkContent read_vtk(const std::filesystem::path& path) {
+inline VtkContent read_vtk(const std::filesystem::path& path, const std::string& type = "PolyData") {
   const std::string file = dem::io::read_file(path);
   const std::string start = "<AppendedData encoding=\"raw\">\n_", end = "\n</AppendedData>\n</VTKFile>\n";
   const auto at = file.find(start);
@@ -97,7 +97,7 @@ inline VtkContent read_vtk(const std::filesystem::path& path) {
     content.bytes[tag.at("Name")] = read_array(data, next, is_compressed);
   }
   CHECK(next == data.size());
-  CHECK(content.tag("VTKFile").at("type") == "PolyData");
+  CHECK(content.tag("VTKFile").at("type") == type);
   CHECK(content.tag("VTKFile").at("header_type") == "UInt64");
   CHECK(content.tag("VTKFile").at("byte_order") == "LittleEndian");
   return content;

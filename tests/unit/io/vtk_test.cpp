@@ -18,6 +18,7 @@
 #include <cstring>
 #include <limits>
 #include <map>
+#include <numeric>
 #include <set>
 #include <stdexcept>
 #include <string>
@@ -340,8 +341,10 @@ TEST_CASE("a frame of grains as rigs write it takes less than 50 bytes a grain: 
   constexpr std::size_t n = 20000;  // in the order of a lattice, as grains have who were rained; all move and turn
   Random random(1);
   std::vector<Vec3> position, velocity, spin, force;
-  std::vector<double> quaternion, radius(n, 1.4e-3);
-  std::vector<std::int32_t> contacts, neighbours;
+  std::vector<double> quaternion, radius(n, 1.4e-3), mass(n, 2.3e-5);
+  std::vector<std::uint32_t> number(n);
+  std::vector<std::int32_t> contacts, neighbours, species(n);
+  std::iota(number.begin(), number.end(), 0U);
   for (std::size_t k = 0; k < n; ++k) {
     const Vec3 cell(static_cast<double>(k % 27), static_cast<double>(k / 27 % 27), static_cast<double>(k / 729));
     position.push_back(2.2e-3 * (cell + random.vector(0.3)));
@@ -354,7 +357,10 @@ TEST_CASE("a frame of grains as rigs write it takes less than 50 bytes a grain: 
   }
   const Rounding digits = {.bits = 10}, turn = {.step = 0x1p-11};
   write_vtk_points(folder / "grains.vtp", flat(position),
-                   {{"radius_m", 1, radius},
+                   {{"grain", 1, number},
+                    {"species", 1, species},
+                    {"mass_kg", 1, mass},
+                    {"bounding_radius_m", 1, radius},
                     {"velocity_m_s", 3, flat(velocity), digits},
                     {"angular_velocity_rad_s", 3, flat(spin), digits},
                     {"quaternion_wxyz", 4, quaternion, turn},

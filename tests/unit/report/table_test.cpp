@@ -3,6 +3,7 @@
 
 #include <dem/report/ascii_table.hpp>
 
+#include <cmath>
 #include <string>
 
 using dem::io::Align;
@@ -21,6 +22,7 @@ TEST_CASE("numbers are rounded for reading") {
   CHECK(format_number(2.5e9) == "2.5e+09");
   CHECK(format_number(1.23456e-5) == "1.235e-05");
   CHECK(format_number(1.0 / 3, 2) == "0.33");
+  CHECK(format_number(std::copysign(std::nan(""), -1.0)) == "nan");
 }
 
 TEST_CASE("numbers are told from texts") {

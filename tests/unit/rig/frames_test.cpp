@@ -22,4 +22,19 @@ TEST_CASE("the points of a frame say which grains sleep") {
   CHECK(read_vtk(folder / "awake.vtp").bytes.count("asleep") == 0);
 }
 
+TEST_CASE("the points of a frame say how many others they touch") {
+  const TempFolder folder;
+  const SleepingBed bed;
+  dem::rig::write_grain_points(folder / "grains.vtp", bed.world, {});
+  const VtkContent file = read_vtk(folder / "grains.vtp");
+  const auto grain = file.values<std::uint32_t>("grain");
+  const auto neighbours = file.values<std::int32_t>("coordination");
+  const auto contacts = file.values<std::int32_t>("contact_points");
+  REQUIRE(grain.size() == bed.world.grain_count());
+  for (std::size_t k = 0; k < grain.size(); ++k) {
+    CHECK(neighbours[k] == (grain[k] == bed.flier.value ? 0 : 1));  // towers of two
+    CHECK((contacts[k] > 0) == (neighbours[k] > 0));
+  }
+}
+
 }  // namespace frames_test

@@ -224,6 +224,20 @@ TEST_CASE("grids and kernels that are none are refused, and fields go into files
   CHECK(content.array("stress").at("NumberOfComponents") == "9");
   CHECK_FALSE(content.bytes.at("stress").empty());
   std::filesystem::remove(file);
+  // The cells themselves, with the same numbers.
+  const auto cells = std::filesystem::temp_directory_path() / "dem_averages_test.vti";
+  dem::soil::write_vtk_averages(cells, averages(w, {{Vec3(1e-3, 0, 0), Vec3(5e-3, 6e-3, 4e-3)}, {2, 3, 4}}));
+  const VtkContent image = read_vtk(cells, "ImageData");
+  CHECK(image.tag("ImageData").at("WholeExtent") == "0 2 0 3 0 4");
+  CHECK(image.tag("ImageData").at("Origin") == "0.001 0 0");
+  CHECK(image.tag("ImageData").at("Spacing") == "0.002 0.002 0.001");
+  CHECK(image.tag("Piece").at("Extent") == "0 2 0 3 0 4");
+  CHECK(image.array("density").parents == "VTKFile/ImageData/Piece/CellData/");
+  const auto again = averages(w, {{Vec3(1e-3, 0, 0), Vec3(5e-3, 6e-3, 4e-3)}, {2, 3, 4}});
+  const auto density = image.values<double>("density");
+  REQUIRE(density.size() == 24);
+  for (std::size_t c = 0; c < density.size(); ++c) CHECK(density[c] == again.values[c].density);
+  std::filesystem::remove(cells);
 }
 
 TEST_CASE("averages over time are means over moments, and velocities those of the mass") {

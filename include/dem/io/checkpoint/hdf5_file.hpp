@@ -82,11 +82,12 @@ inline hid_t type_in_memory(ColumnKind kind) {
   return H5T_NATIVE_UINT8;
 }
 
-/// Texts of a fixed length, padded with zeros: their bytes lie in the data set, where they are checksummed.
+/// Texts (UTF-8) of a fixed length, padded with zeros: their bytes lie in the data set, where they are checksummed.
 inline hid_t text_type(std::size_t length) {
   const hid_t type = H5Tcopy(H5T_C_S1);
   H5Tset_size(type, std::max<std::size_t>(length, 1));
   H5Tset_strpad(type, H5T_STR_NULLPAD);
+  H5Tset_cset(type, H5T_CSET_UTF8);
   return type;
 }
 
@@ -205,7 +206,8 @@ inline Column read_column(hid_t file, const std::string& name) {
 /// Error.
 inline void write_columns(const std::filesystem::path& path, const StateColumns& columns) {
   make_folder_of(path);
-  const std::filesystem::path temporary = std::filesystem::path(path) += ".tmp";
+  const std::filesystem::path file_itself = detail::behind_links(path);
+  const std::filesystem::path temporary = std::filesystem::path(file_itself) += ".tmp";
   const detail::QuietHdf5 quiet;
   try {
     detail::Hdf5 creation(H5Pcreate(H5P_FILE_CREATE), H5Pclose, "no memory");
@@ -219,8 +221,9 @@ inline void write_columns(const std::filesystem::path& path, const StateColumns&
     detail::write_attribute(file, "what", "state of a dem world, schema " + std::to_string(checkpoint_schema));
     if (H5Fflush(file, H5F_SCOPE_GLOBAL) < 0 || !file.close()) throw Error("the disk takes no more");
     detail::seal(temporary);
-    std::filesystem::rename(temporary, path);
-    detail::synchronise(path.has_parent_path() ? path.parent_path() : std::filesystem::path("."));
+    std::filesystem::rename(temporary, file_itself);
+    const auto folder = file_itself.parent_path();
+    detail::synchronise(folder.empty() ? std::filesystem::path(".") : folder);
   } catch (const std::exception& error) {
     std::error_code ignored;
     std::filesystem::remove(temporary, ignored);
