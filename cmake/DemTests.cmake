@@ -30,7 +30,8 @@ target_link_libraries(test_worlds PRIVATE test_main)
 target_precompile_headers(test_worlds REUSE_FROM test_headers)
 set_target_properties(test_worlds PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 8)
 
-# dem_add_catch_tests(<name> <label> <source>...): the program test_<name>, and a test per TEST_CASE in it. Sources are
+# dem_add_catch_tests(<name> <label> <source>...): the program test_<name>, and a test per TEST_CASE in it. Those tagged
+# [long], which take half a minute, are checks (and no test of the sanitizers, under which they take minutes). Sources are
 # compiled a few at a time, as most of the work is what they share. One whose names meet another's stands in a namespace.
 function(dem_add_catch_tests name label)
   add_executable(test_${name} ${ARGN})
@@ -39,7 +40,17 @@ function(dem_add_catch_tests name label)
   target_link_libraries(test_${name} PRIVATE test_worlds test_main)
   set_target_properties(test_${name} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 8)
   target_precompile_headers(test_${name} REUSE_FROM test_headers)
-  catch_discover_tests(test_${name} TEST_PREFIX "${name}." PROPERTIES LABELS ${label})
+  set(others)
+  foreach(source IN LISTS ARGN)
+    file(STRINGS "${source}" long REGEX "\"\\[long\\]\"")
+    if(long)
+      set(others TEST_SPEC "~[long]")
+    endif()
+  endforeach()
+  catch_discover_tests(test_${name} ${others} TEST_PREFIX "${name}." PROPERTIES LABELS ${label})
+  if(others)
+    catch_discover_tests(test_${name} TEST_SPEC "[long]" TEST_PREFIX "${name}." PROPERTIES LABELS checks)
+  endif()
 endfunction()
 
 # dem_drop(<package> <list>): takes those sources or headers out of the list that need the package.

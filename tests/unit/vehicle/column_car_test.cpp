@@ -60,7 +60,7 @@ TEST_CASE("a car is set down on soil columns with its weight on its wheels, as o
   CHECK(car.wheel(0).sinkage < 2.0 * curve.sinkage(12.5e3 / (0.254 * 0.485)));
 }
 
-TEST_CASE("columns half as wide change a car's sinkage, torque and pull by less than 3 %") {
+TEST_CASE("columns half as wide change a car's sinkage, torque and pull by less than 3 %", "[long]") {
   const auto driven = [](double spacing) {
     auto spec = car_on("dry-sand", 6.0);
     spec.spacing = spacing;
@@ -93,7 +93,8 @@ TEST_CASE("a car rolls from hard ground into soil, where it sinks; a sled that i
   CHECK(car.rut_depth(0, 4.7, 5.0) > 2.0 * on_hard);
 }
 
-TEST_CASE("a car on its brakes gives way on a side slope until the soil holds it, and its lower wheels carry more") {
+TEST_CASE("a car on its brakes gives way on a side slope until the soil holds it, and its lower wheels carry more",
+          "[long]") {
   auto spec = car_on("dry-sand", 4.0);
   spec.side_grade = 0.3;  // the left side is high; the soil's friction is 0.53
   ColumnCar car(spec);
@@ -107,7 +108,7 @@ TEST_CASE("a car on its brakes gives way on a side slope until the soil holds it
   CHECK(0.5 * (car.middle_of(2).y() + car.middle_of(3).y()) == Approx(before).margin(0.02));
 }
 
-TEST_CASE("a governor keeps the rims at a speed on soil without switching the engine on and off") {
+TEST_CASE("a governor keeps the rims at a speed on soil without switching the engine on and off", "[long]") {
   ColumnCar car(car_on("dry-sand", 6.0));
   car.set_down();
   car.hitch() = {.on = true, .speed = 0.5};

@@ -54,7 +54,7 @@ TEST_CASE("Rhyne's formula gives 35 kg/mm for a tyre of 317 mm on a rim of 419 m
   CHECK(rhyne_stiffness(2.5e5, 0.317, 0.2095 + 0.82 * 0.317, 0.2095) == Approx(9810.0 * 35.4).epsilon(0.005));
 }
 
-TEST_CASE("a car on ring tyres stands with its weight on them, and sinks less than on rigid ones") {
+TEST_CASE("a car on ring tyres stands with its weight on them, and sinks less than on rigid ones", "[long]") {
   ColumnCarSpec spec{.car = humvee({.rubber_rear = false}), .lane = {{terramechanics::known_soil("dry-sand"), 2.0}}};
   ColumnCar rigid(spec);
   rigid.set_down();
