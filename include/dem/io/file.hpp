@@ -18,6 +18,7 @@
 #include <utility>
 
 #include <fcntl.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 namespace dem::io {
@@ -51,8 +52,26 @@ inline std::FILE* stream_on(int descriptor) {
   return descriptor < 0 ? nullptr : ::fdopen(descriptor, "wb");
 }
 
+/// The open descriptor of this process that a path names (/dev/stdout, /dev/fd/3), or -1. What it is open on may be a
+/// file, which is written on where it is and not anew.
+inline int descriptor_of(const std::filesystem::path& path) {
+  const std::string text = path.string();
+  if (text == "/dev/stdout") return STDOUT_FILENO;
+  if (text == "/dev/stderr") return STDERR_FILENO;
+  for (const std::string_view folder : {"/dev/fd/", "/proc/self/fd/"}) {
+    if (!text.starts_with(folder) || text.size() == folder.size() || text.size() > folder.size() + 6) continue;
+    const auto digits = text.substr(folder.size());
+    if (digits.find_first_not_of("0123456789") == std::string::npos) return std::stoi(digits);
+  }
+  return -1;
+}
+
 inline std::FILE* open_for_writing(const std::filesystem::path& path, WriteFrom from = WriteFrom::start) {
   if (!process_writes_files) return stream_on(::open("/dev/null", O_WRONLY | O_CLOEXEC));
+  if (const int open = descriptor_of(path); open >= 0) {
+    std::fflush(nullptr);  // what was printed before stays before
+    return stream_on(::fcntl(open, F_DUPFD_CLOEXEC, STDERR_FILENO + 1));
+  }
   const int where = from == WriteFrom::start ? O_TRUNC : O_APPEND;
   return stream_on(::open(path.c_str(), O_WRONLY | O_CREAT | where | O_CLOEXEC, 0666));
 }
@@ -68,22 +87,32 @@ inline std::FILE* open_unnamed([[maybe_unused]] const std::filesystem::path& fol
 #endif
 }
 
-/// Whether there is something that is neither a file nor a folder.
+/// Whether there is something that is neither a file nor a folder, or an open descriptor of this process.
 inline bool is_device(const std::filesystem::path& path) {
   std::error_code ignored;
-  const auto status = std::filesystem::status(path, ignored);
-  return std::filesystem::is_other(status);
+  return std::filesystem::is_other(std::filesystem::status(path, ignored)) || descriptor_of(path) >= 0;
 }
 
-/// What a symbolic link leads to, whether that is there or not; else the path itself.
+/// What a symbolic link leads to, whether that is there or not; else the path itself. Throws Error for links in a
+/// circle.
 inline std::filesystem::path behind_links(std::filesystem::path path) {
+  const std::filesystem::path given = path;
   std::error_code error;
-  for (int links = 0; links < 40 && std::filesystem::is_symlink(path, error); ++links) {
+  for (int links = 0; std::filesystem::is_symlink(path, error); ++links) {
+    if (links == 40) fail("'{}' is a symbolic link that leads back to itself; choose another path", given.string());
     const auto target = std::filesystem::read_symlink(path, error);
     if (error) break;
     path = path.parent_path() / target;  // an absolute target stays as it is
   }
   return path;
+}
+
+/// Gives an open file the permissions of the one that it is to take the place of, if there is one and they can be
+/// given.
+inline void take_permissions_of(const std::filesystem::path& older, std::FILE* file) {
+  struct stat status;
+  if (::stat(older.c_str(), &status) != 0) return;
+  [[maybe_unused]] const int ignored = ::fchmod(::fileno(file), status.st_mode & 0777);
 }
 
 /// Gives an unnamed file its name, in place of an older one. False, with errno, if that is not possible.
@@ -159,7 +188,8 @@ class OutputFile {
 /// A file that appears under its name only when it is complete. Until commit() its bytes have no name, or where the
 /// system knows no unnamed files that of `<path>.tmp`. Without commit() they are gone and an older file of this name
 /// stays, also when the process is killed (but for `<path>.tmp`). A symbolic link stays: the file that it leads to is
-/// written. What is there and is no file, as a device or a pipe, is written as it is. Throws as OutputFile does.
+/// written, in a folder where files can be made. Permissions stay. What is there and is no file, as a device, a pipe or
+/// /dev/stdout, is written as it is. Throws as OutputFile does.
 class AtomicFile {
  public:
   explicit AtomicFile(const std::filesystem::path& path)
@@ -180,6 +210,7 @@ class AtomicFile {
 
   void commit() {
     if (!process_writes_files || is_direct_) return file_.close();
+    detail::take_permissions_of(path_, file_.file_.get());
     if (!is_named_) {
       file_.flush();
       if (!detail::name_file(file_.file_.get(), temporary_)) file_.fail_to_write();

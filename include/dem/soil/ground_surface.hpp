@@ -21,8 +21,8 @@ struct GroundPlan {
 };
 
 /// Heights (m) of the highest grains over the cells of a rectangle; NaN where there is none. Grains count as balls of
-/// their volume, so between those of a level bed it dips by up to a radius: compare with the field of before. Throws
-/// Error for a plan that has no cells, or more than 10^8.
+/// their volume, so between those of a level bed it dips by up to a radius: compare with the field of before. Grains
+/// that parts hold are no ground. Throws Error for a plan that has no cells, or more than 10^8.
 ///
 ///     soil::height_field(world, {.x0 = 0, .y0 = -0.1, .length = 0.4, .width = 0.2, .cell = 2e-3})
 template <class Model>
@@ -35,7 +35,9 @@ HeightField height_field(const World<Model>& world, const GroundPlan& plan) {
   HeightField field{.x0 = plan.x0, .y0 = plan.y0, .cell = plan.cell, .across = across};
   field.z.assign(along * across, std::numeric_limits<double>::quiet_NaN());
   for (const GrainId id : world.grains()) {
-    const double volume = world.species(world.species_of(id)).shape.volume();
+    const auto& kind = world.species(world.species_of(id));
+    if (kind.is_held()) continue;
+    const double volume = kind.shape.volume();
     const double radius = std::cbrt(0.75 * volume / std::numbers::pi);
     const Vec3 at = world.position(id);
     if (at.x() - radius > plan.x0 + plan.length) continue;  // the field would grow

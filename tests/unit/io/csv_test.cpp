@@ -319,6 +319,35 @@ TEST_CASE("a link stays, and what it leads to is written") {
   { dem::io::AtomicFile(folder / "link").write("half"); }
   CHECK(read_file(folder / "link") == "new");
   CHECK(std::distance(std::filesystem::directory_iterator(folder / "there"), {}) == 2);
+  // Links in a circle lead to nothing, and stay as they are.
+  std::filesystem::create_symlink("circle", folder / "circle");
+  CHECK_THAT(error_of([&] { dem::io::write_file(folder / "circle", "a"); }),
+             Catch::Matchers::Contains("is a symbolic link that leads back to itself"));
+  CHECK(std::filesystem::is_symlink(folder / "circle"));
+}
+
+TEST_CASE("a file that is written anew keeps its permissions") {
+  using std::filesystem::perms;
+  const TempFolder folder;
+  dem::io::write_file(folder / "private.txt", "old");
+  for (const perms mode : {perms::owner_read | perms::owner_write, perms::owner_all | perms::group_read}) {
+    std::filesystem::permissions(folder / "private.txt", mode);
+    dem::io::write_file(folder / "private.txt", "new");
+    CHECK(std::filesystem::status(folder / "private.txt").permissions() == mode);
+  }
+}
+
+TEST_CASE("what goes to an open descriptor stands between what was printed before and after") {
+  const TempFolder folder;
+  std::FILE* log = std::fopen((folder / "log").c_str(), "wb");
+  const std::string name = "/dev/fd/" + std::to_string(::fileno(log));
+  if (!std::filesystem::exists(name)) return;
+  std::fputs("before ", log);
+  dem::io::write_file(name, "written ");
+  { dem::io::OutputFile(name).write("twice "); }
+  std::fputs("after", log);
+  std::fclose(log);
+  CHECK(read_file(folder / "log") == "before written twice after");
 }
 
 TEST_CASE("what is no file is written as it is") {

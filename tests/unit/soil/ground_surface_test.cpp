@@ -41,6 +41,9 @@ TEST_CASE("the cross-section of a furrow and its ridge has the areas that grains
   CHECK(std::isnan(beside.z.back()));
   CHECK(dem::soil::cross_section(beside, 0.07, 0.08).z[0] == Approx(8e-3));
   CHECK(std::isnan(dem::soil::cross_section(beside, 0.081, 0.09).mean()));
+  // A tool's own grains above the furrow are no ground.
+  w.add_grain({w.add_species(Sphere(r), {.held = true}), Vec3(r, 9 * r, 0.05)});
+  CHECK(dem::soil::height_field(w, {.x0 = 0, .y0 = 0, .length = 0.08, .width = 0.04, .cell = 2 * r}).z == field.z);
   CHECK_THAT(message_of([&] { dem::soil::height_field(w, {.length = 1, .width = 1, .cell = 1e-5}); }),
              ContainsSubstring("width of a height field in cells"));
   CHECK_THAT(message_of([&] { dem::soil::height_field(w, {.length = 1, .width = 1}); }),

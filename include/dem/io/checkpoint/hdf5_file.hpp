@@ -205,8 +205,9 @@ inline Column read_column(hid_t file, const std::string& name) {
 /// Writes columns to a file, complete or not at all: to `<path>.tmp`, synchronised with the disk, then renamed. Throws
 /// Error.
 inline void write_columns(const std::filesystem::path& path, const StateColumns& columns) {
-  make_folder_of(path);
+  if (detail::is_device(path)) fail("cannot save '{}': it is a device; choose a file", path.string());
   const std::filesystem::path file_itself = detail::behind_links(path);
+  make_folder_of(file_itself);
   const std::filesystem::path temporary = std::filesystem::path(file_itself) += ".tmp";
   const detail::QuietHdf5 quiet;
   try {

@@ -30,9 +30,11 @@ inline double off_hold(const Parts& parts, PrescribedMotion& p, double time) {
   return p.drive.value - coordinate_of_drive(parts, p);
 }
 
-/// Whether a motion that was loaded gives another value than it had when it was saved: it has to take hold again.
+/// Whether a motion that was loaded gives another value than it had when it was saved: it has to take hold again. One
+/// whose value was set for the step that comes next is on its way there, as it was.
 inline bool differs_from_saved(const PrescribedMotion& p, double time, double tolerance) {
   if (p.spec.target == MotionSpec::Target::pose) return true;  // which is compared whole
+  if (p.drive.way.is_ahead()) return false;
   return std::abs(p.spec.motion(time).value - p.drive.value) > tolerance;
 }
 

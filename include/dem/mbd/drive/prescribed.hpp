@@ -109,6 +109,9 @@ struct WayToValue {
   /// A value was set.
   void set() { end = not_yet; }
   void drop() { end = -not_yet; }
+  void end_if_begun() {
+    if (!is_ahead()) drop();
+  }
   bool is_ahead() const { return end == not_yet; }
   void begin_step(double start_of_step, double end_of_step) {
     if (!is_ahead()) return;

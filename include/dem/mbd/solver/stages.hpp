@@ -27,9 +27,11 @@ class Stages {
   }
   /// Whether masses and inertias are those that begin() found.
   bool has_read(const std::vector<Body>& bodies) const { return motion_.has_read(bodies); }
-  /// Bodies are where they are, at `time` (s).
+  /// Bodies are where they are, at `time` (s), which may be earlier than before: ways of motions that were made are
+  /// over.
   void begin(Parts& m, double time) {
     time_ = time;
+    for (PrescribedMotion& p : m.motions) p.drive.way.end_if_begun();
     motion_.read(m.bodies);
     m.global_angular_velocity.assign(m.bodies.size(), {0, 0, 0});
     m.outside.assign(m.bodies.size(), {});
