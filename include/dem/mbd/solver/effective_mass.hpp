@@ -99,11 +99,4 @@ inline std::pair<double, double> inverse_mass_of_friction(const Joint& j, const 
   return most;
 }
 
-/// The same along the line between two points.
-inline std::pair<double, double> inverse_mass_of_line(const Vector3<double>& point_a, const Vector3<double>& point_b,
-                                                      const Body& a, const Body& b) {
-  const Coordinate q = distance_of(point_a, point_b, a, b);
-  return {inverse_mass_at(a, q.arm_a, q.axis), inverse_mass_at(b, q.arm_b, q.axis)};
-}
-
 }  // namespace dem::mbd::detail
