@@ -165,11 +165,16 @@ void load_pairs(std::span<const Surface> surfaces, const Materials<Model>& mater
   const auto body_of = [&](std::size_t hit, bool partner) -> Body& {
     return bodies[surface_of(hit, partner).body.index()];
   };
+  // Of two bodies that give no way, dampers take the masses that they have.
+  const auto view_of = [&](std::size_t hit, bool partner) -> const PartnerView& {
+    const Surface &one = surface_of(hit, partner), &other = surface_of(hit, !partner);
+    return one.view.inverse_mass + other.view.inverse_mass > 0.0 ? one.view : one.alone;
+  };
   grain::ContactEvaluator<Model, contact::SurfaceContactPoint> evaluator(materials.table(), dt);
   const grain::Deepest deepest = evaluator.run(
       c.hits, histories, c.forces, [&](std::size_t k) { return c.contact_points[k]; },
-      [&](std::size_t k) -> const PartnerView& { return surface_of(k, false).view; },
-      [&](std::size_t k) -> const PartnerView& { return surface_of(k, true).view; });
+      [&](std::size_t k) -> const PartnerView& { return view_of(k, false); },
+      [&](std::size_t k) -> const PartnerView& { return view_of(k, true); });
   if (deepest.overlap > c.worst_overlap) {
     c.worst_overlap = deepest.overlap;
     c.worst_pair = c.hits[deepest.hit].i;

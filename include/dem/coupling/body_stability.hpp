@@ -2,6 +2,7 @@
 
 #include <dem/coupling/body_contacts.hpp>
 #include <dem/grain/stable_time_step.hpp>
+#include <dem/mbd/drive/carried_bodies.hpp>
 
 namespace dem::coupling {
 
@@ -16,11 +17,11 @@ double reach_of(const Surface& s) {
   }
   return farthest;
 }
-/// The inverse effective mass of a body at the farthest point of its surface, 1/m + R^2/I (1/kg); 0 for a fixed one. An
-/// endless surface is touched at `lever` (m).
+/// The inverse effective mass of a body at the farthest point of its surface, 1/m + R^2/I (1/kg); 0 for one that gives
+/// no way. An endless surface is touched at `lever` (m).
 template <class Surface>
-double inverse_effective_mass_of(const Surface& s, const Body& body, double lever) {
-  if (body.fixed) return 0.0;
+double inverse_effective_mass_of(const Surface& s, const Body& body, bool gives_way, double lever) {
+  if (!gives_way) return 0.0;
   if (const double reach = reach_of(s); reach < 1e100) lever = reach;
   return 1.0 / body.mass + lever * lever / body.inertia.minCoeff();
 }
@@ -46,11 +47,12 @@ void check_body_cohesion(const Surface& a, const Surface& b, const Body& body_a,
 /// surface that is farthest from the centre of mass:
 ///   W = 1/m_a + 1/m_b + R_a^2/I_a + R_b^2/I_b in stable_step()
 /// The points of one side are one contact, but up to twice as stiff, as the deeper ones take over weight. There may be
-/// two sides, as in a groove. A ball touches with one point. Throws Error as check_body_cohesion() does.
+/// two sides, as in a groove. A ball touches with one point. Bodies that are fixed or carried give no way. Throws Error
+/// as check_body_cohesion() does.
 template <class Model, class Surface>
 StableTimeStep stable_time_step_of_bodies(std::span<const BodyPair> pairs, std::span<const Surface> surfaces,
-                                          std::span<const Body> bodies, const Materials<Model>& materials,
-                                          double overlap_limit) {
+                                          std::span<const Body> bodies, const mbd::CarriedBodies& carried,
+                                          const Materials<Model>& materials, double overlap_limit) {
   StableTimeStep result;
   for (const BodyPair& pair : pairs) {
     const Surface &a = surfaces[pair.a.index()], &b = surfaces[pair.b.index()];
@@ -58,11 +60,13 @@ StableTimeStep stable_time_step_of_bodies(std::span<const BodyPair> pairs, std::
     check_body_cohesion(a, b, body_a, body_b, materials);
     // An endless surface is touched where its partner is.
     const double smaller = std::min(reach_of(a), reach_of(b));
-    const double w = inverse_effective_mass_of(a, body_a, smaller) + inverse_effective_mass_of(b, body_b, smaller);
+    const bool moves_a = carried.gives_way(body_a, a.body), moves_b = carried.gives_way(body_b, b.body);
+    const double w =
+        inverse_effective_mass_of(a, body_a, moves_a, smaller) + inverse_effective_mass_of(b, body_b, moves_b, smaller);
     if (!(w > 0.0)) continue;
-    const auto turning_of = [](const Body& body) { return body.fixed ? 0.0 : 1.0 / body.inertia.minCoeff(); };
-    const double turning = turning_of(body_a) + turning_of(body_b);
-    const double inverse_mass = (body_a.fixed ? 0.0 : 1.0 / body_a.mass) + (body_b.fixed ? 0.0 : 1.0 / body_b.mass);
+    const auto turning_of = [](const Body& body, bool moves) { return moves ? 1.0 / body.inertia.minCoeff() : 0.0; };
+    const double turning = turning_of(body_a, moves_a) + turning_of(body_b, moves_b);
+    const double inverse_mass = (moves_a ? 1.0 / body_a.mass : 0.0) + (moves_b ? 1.0 / body_b.mass : 0.0);
     const double n = is_ball(a) || is_ball(b) ? 2.0 : 4.0;
     const double radius = pair_radius(a, b);
     const auto& parameters = materials.table()[materials.row(a.material, b.material)];

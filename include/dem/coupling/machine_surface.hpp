@@ -35,7 +35,8 @@ struct MachineSurface {
   double went = 0.0;                  ///< m, the farthest from one of these to the next, within this step
   surface::Aabb went_over = {Vec3::Zero(), Vec3::Zero()};  ///< m, around the places before and after that
 
-  PartnerView view = {};  ///< of the body
+  PartnerView view = {};   ///< of the body; one that gives no way has no inverse mass
+  PartnerView alone = {};  ///< the same with its own mass, for a partner that gives no way either
 
   // Sum over all grains of the last force evaluation.
   Vector3<double> force = {0, 0, 0};   ///< N, on the surface
@@ -82,10 +83,13 @@ struct MachineSurface {
     has_place = true;
     if (way > went) went = way, went_over = over;
   }
-  void follow(const Body& b) {
+  /// Goes where its body is. `gives_way`: forces move the body, unless it is fixed.
+  void follow(const Body& b, bool gives_way = true) {
     const PartnerView last_view = view;
-    view = {b.motion.position, 0.0, b.motion.velocity, b.fixed ? 0.0 : 1.0 / b.mass,
-            b.motion.rotation * b.motion.angular_velocity};
+    alone = {b.motion.position, 0.0, b.motion.velocity, b.fixed ? 0.0 : 1.0 / b.mass,
+             b.motion.rotation * b.motion.angular_velocity};
+    view = alone;
+    if (!gives_way) view.inverse_mass = 0.0;
     const Vector3<double> last_origin = origin;
     const Matrix3<double> last_axes = axes;
     origin = place_on(b);

@@ -34,7 +34,8 @@ template <class Model>
 class ContactFinder {
  public:
   explicit ContactFinder(const WorldState<Model>& w) : w_(w), surfaces_(w.surfaces) {
-    for (auto& s : surfaces_) s.follow(w.machine.bodies()[s.body.index()]);
+    const mbd::CarriedBodies carried(w.machine.parts());
+    for (auto& s : surfaces_) s.follow(w.machine.bodies()[s.body.index()], !carried.has(s.body));
   }
 
   std::vector<Contact<Model>> find() {

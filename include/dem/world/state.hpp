@@ -230,7 +230,8 @@ void find_points_deep_enough(WorldState<Model>& w) {
 /// Surfaces go where their bodies are.
 template <class Model>
 void place_surfaces(WorldState<Model>& w) {
-  for (auto& s : w.surfaces) s.follow(w.machine.bodies()[s.body.index()]);
+  const mbd::CarriedBodies carried(w.machine.parts());
+  for (auto& s : w.surfaces) s.follow(w.machine.bodies()[s.body.index()], !carried.has(s.body));
 }
 
 /// Surfaces note how far they go within a step: see MachineSurface::went.

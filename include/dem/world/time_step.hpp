@@ -15,15 +15,17 @@ namespace detail {
 /// Of grains with each other and with surfaces, and of bodies with each other.
 template <class Model>
 StableTimeStep stable_time_step_of_contacts(const WorldState<Model>& w) {
+  const mbd::CarriedBodies carried(w.machine.parts());
   std::vector<grain::SurfaceMatter> of_surfaces;
   for (const auto& s : w.surfaces) {
-    of_surfaces.push_back(
-        {s.material, coupling::inverse_effective_mass_of(s, w.machine.bodies()[s.body.index()], 0.0)});
+    const Body& body = w.machine.bodies()[s.body.index()];
+    const bool gives_way = carried.gives_way(body, s.body);
+    of_surfaces.push_back({s.material, coupling::inverse_effective_mass_of(s, body, gives_way, 0.0)});
   }
   auto limit = grain::stable_time_step<Model>(w.species, w.materials, of_surfaces, w.options.overlap_limit);
-  const auto bodies =
-      coupling::stable_time_step_of_bodies<Model>(w.body_contacts.pairs, std::span(w.surfaces),
-                                                  std::span(w.machine.bodies()), w.materials, w.options.overlap_limit);
+  const auto bodies = coupling::stable_time_step_of_bodies<Model>(w.body_contacts.pairs, std::span(w.surfaces),
+                                                                  std::span(w.machine.bodies()), carried, w.materials,
+                                                                  w.options.overlap_limit);
   if (bodies.dt < limit.dt) limit = bodies;
   return limit;
 }

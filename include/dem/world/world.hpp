@@ -43,9 +43,7 @@ class World : public WorldGrains<M> {
     this->require_grains_here("a world's preparation");
     if constexpr (Model::Domain::has_ranks) {
       check_agreement(state_, domain::Call::prepare,
-                      {.set_up = !checked_ || !machine_is_initialised(),
-                       .grains = !initialised_ || state_.grains_added,
-                       .steered = true});
+                      {.set_up = !is_set_up(), .grains = !initialised_ || state_.grains_added, .steered = true});
     }
     if (!is_set_up()) check_set_up();
     if (!state_.time_step_note) state_.time_step_note = note_of_time_step(state_);
@@ -181,7 +179,11 @@ class World : public WorldGrains<M> {
     if (state_.is_broken_off)
       fail("a world whose last step was broken off by an exception has no state to be saved or restored");
     this->require_grains_here("a state");
-    v("", state_), v("owed_steps", owed_steps_), v("checked", checked_), v("initialised", initialised_);
+    v("", state_), v("owed_steps", owed_steps_);
+    bool checked = is_checked();
+    v("checked", checked), v("initialised", initialised_);
+    if (checked != checked_) checked_ = checked;
+    if (checked) releases_ = state_.machine.parts().releases;
   }
 
  private:
@@ -281,7 +283,9 @@ class World : public WorldGrains<M> {
   }
   /// Whether nothing was changed since the last step but grains, their velocities, and gravity, which the next step
   /// takes as they are.
-  bool is_set_up() const { return checked_ && machine_is_initialised(); }
+  bool is_set_up() const { return is_checked() && machine_is_initialised(); }
+  /// A body that was let go is met with its mass from there on, which the time step must fit.
+  bool is_checked() const { return checked_ && releases_ == state_.machine.parts().releases; }
   bool machine_is_initialised() const { return state_.machine_solver.is_initialised(state_.machine); }
   StepReport ok() const {
     StepReport r{
@@ -315,12 +319,14 @@ class World : public WorldGrains<M> {
     coupling::list_pairs(state_.body_contacts, std::span(std::as_const(state_.surfaces)), materials);
     choose_time_step(state_, initialised_);
     checked_ = true;
+    releases_ = state_.machine.parts().releases;
     state_.odd_note = note_of_twins(state_);
     if (state_.odd_note.empty()) state_.odd_note = note_of_loose_bodies(state_);
     state_.time_step_note.reset();
   }
 
-  double owed_steps_ = 0.0;  // by run_for: less than one
+  double owed_steps_ = 0.0;     // by run_for: less than one
+  std::uint64_t releases_ = 0;  // of the machine's bodies, when it was checked
 };
 
 }  // namespace dem

@@ -130,3 +130,54 @@ TEMPLATE_TEST_CASE("a guide that sticks swings on its asperities without loss", 
   CHECK(largest > 0.95e-3);
   CHECK(largest < 1.02e-3);
 }
+
+TEST_CASE("friction in several directions limits the time step by all of them together") {
+  // The point is a = 0.1 m beside the centre of mass. A force across that arm moves it by 1/m + a^2/I = 2 m/s^2 per
+  // newton; a torque on the bearing of r = 0.1 m by r^2/I = 1, and the point by a r/I = 1 as well. Of the matrix of the
+  // two, the largest eigenvalue is (3 + sqrt 5)/2 = 2.618, not 2. The joint itself has next to no stiffness.
+  const double k = 1e4, arm = 0.1;
+  const auto make = [&](Machine<SymplecticEuler>& m, JointKind kind, const Vec3& axis) {
+    m.gravity.setZero();
+    const BodyId b = m.add_body(ball("b", 1.0, 0.01).at({-arm, 0, 0}).moving({0, 0, 0}, 1e-6 * axis));
+    m.add_joint(
+        joint(kind, "table", m.ground(), b, {0, 0, 0}, axis)
+            .with_stiffness(1e-3, 1e-3)
+            .with_damping(0, 0)
+            .with_friction(
+                {.coefficient = 1.0, .radius = arm, .preload = 1e6, .stiffness = k, .velocity_stiffness = 0.0}));
+    return b;
+  };
+  Machine<SymplecticEuler> m;
+  make(m, JointKind::planar, Z);
+  const StableTimeStep limit = m.stable_time_step();
+  CHECK_THAT(limit.limited_by, Contains("friction of planar joint 'table'"));
+  // 400 steps of the bisection end 1e-4 below the limit.
+  CHECK(limit.dt == Approx(2.0 / std::sqrt(k * 0.5 * (3.0 + std::sqrt(5.0)))).epsilon(1.5e-4));
+  for (const double share : {0.95, 1.05}) {
+    Machine<SymplecticEuler> run;
+    run.allow_unstable_time_step = true;
+    const BodyId b = make(run, JointKind::planar, Z);
+    double most = 0.0;
+    for (int step = 0; step < 1000 && run.step(share * limit.dt); ++step)
+      most = std::max(most, std::abs(run.body(b).motion.angular_velocity.z));
+    CHECK((share < 1.0 ? most < 1e-5 : most > 1e-3));
+  }
+  // A sleeve whose axis misses the centre of mass has its turn and its slide apart: the slide is 1/m + a^2/I = 2, and
+  // its torque is across the axis.
+  Machine<SymplecticEuler> sleeve;
+  make(sleeve, JointKind::cylindrical, Z);
+  CHECK(sleeve.stable_time_step().dt == Approx(2.0 / std::sqrt(2.0 * k)).epsilon(1.5e-4));
+  // With other moments about axes that lie askew the two are one: I^-1 has 1/2 (100 - 50) = 25 between z and y.
+  Machine<SymplecticEuler> askew;
+  askew.gravity.setZero();
+  const Mat3 pose = Eigen::AngleAxisd(0.25 * pi, X).toRotationMatrix();
+  const BodyId b = askew.add_body(given_body("b", 1.0, Vec3(0.02, 0.01, 0.02)).at({-arm, 0, 0}, pose));
+  askew.add_joint(
+      cylindrical("sleeve", askew.ground(), b, {0, 0, 0}, Z)
+          .with_stiffness(1e-3, 1e-3)
+          .with_damping(0, 0)
+          .with_friction(
+              {.coefficient = 1.0, .radius = arm, .preload = 1e6, .stiffness = k, .velocity_stiffness = 0.0}));
+  // Slide: 1 + a^2 75 = 1.75; turn: r^2 75 = 0.75; between them a r 25 = 0.25: eigenvalue 1.25 + sqrt(0.25 + 0.0625).
+  CHECK(askew.stable_time_step().dt == Approx(2.0 / std::sqrt(k * (1.25 + std::sqrt(0.3125)))).epsilon(1.5e-4));
+}

@@ -4,8 +4,17 @@
 
 #include <dem/core/macros.hpp>
 #include <dem/mbd/joint/joint_part.hpp>
+#include <dem/mbd/solver/line_element.hpp>
 
 namespace dem::mbd::detail {
+
+/// N, with which an actuator between two points pulls them together while they stand. A set point that it was not asked
+/// for yet (0, which is no length) is that at the start.
+inline double pull_of(const Actuator& u, double length) {
+  if (u.spec.position_gain == 0.0 || u.spec.has_throttle()) return 0.0;
+  const double target = u.target.value != 0.0 ? u.target.value : (*u.spec.set_point)(0.0).value;
+  return std::min(u.spec.position_gain * (length - target), u.spec.max_force);
+}
 
 inline constexpr PartKind actuator_kind = {
     .rank = 6,
@@ -18,12 +27,16 @@ inline constexpr PartKind actuator_kind = {
           for (std::size_t i = 0; i < m.actuators.size(); ++i) {
             const Actuator& u = m.actuators[i];
             const Body &a = m.bodies[u.a], &b = m.bodies[u.b];
-            const auto w = u.spec.joint.valid() ? inverse_mass_along(m.joints[u.spec.joint.index()], a, b, u.spec.dof)
-                                                : inverse_mass_of_line(u.point_a, u.point_b, a, b);
             const double c = !u.spec.engine_map.empty()    ? steepest_of_engine(u.spec)
                              : u.spec.torque_curve.empty() ? u.spec.speed_gain
                                                            : u.spec.torque_curve.steepest();
-            add_element(list, actuator_kind, i, u.a, u.b, w, u.spec.position_gain, c);
+            if (u.spec.joint.valid()) {
+              const auto w = inverse_mass_along(m.joints[u.spec.joint.index()], a, b, u.spec.dof);
+              add_element(list, actuator_kind, i, u.a, u.b, w, u.spec.position_gain, c);
+            } else {
+              const Coordinate q = distance_of(u.point_a, u.point_b, a, b);
+              add_line_element(list, m, actuator_kind, i, u.a, u.b, q, {u.spec.position_gain, c, pull_of(u, q.value)});
+            }
           }
         },
     .name_of = [](const Parts& m, std::size_t i) { return "actuator '" + m.actuators[i].spec.name + "'"; },

@@ -30,11 +30,11 @@ using PoseFunction = Function<Pose(double)>;  ///< of the time (s)
 /// A drive acts as a force would: along its axis at the joint's point, or as a torque, on one body and opposite on the
 /// other. So momentum is kept (of rotation to the order of the time step). Side effects of this force are carried by
 /// the joints. All drives are met at once. Where two repeat or contradict each other, the earlier one counts. A body
-/// that is fixed or whose pose is prescribed yields to no other drive; of two motions of such a body, the later one
-/// counts. A drive starts from the present value of its coordinate: a value that is more than 1 mm or 1 mrad off when
-/// the drive is added, switched on, loaded or given another signal is refused; in a world of grains also one that is
-/// more than a tenth of the smallest grain's radius off. A speed is set within one step, and the force of that step is
-/// the jolt that this takes.
+/// that is fixed or whose pose is prescribed yields to no other drive, and contacts meet it with an endless mass; of
+/// two motions of such a body, the later one counts. A drive starts from the present value of its coordinate: a value
+/// that is more than 1 mm or 1 mrad off when the drive is added, switched on, loaded or given another signal is
+/// refused; in a world of grains also one that is more than a tenth of the smallest grain's radius off. A speed is set
+/// within one step, and the force of that step is the jolt that this takes.
 ///
 /// Two coordinates of joints cannot be prescribed. A bend has no direction where the joint is straight; bend_x and
 /// bend_y of a universal joint have one. The length of a distance joint is held by the joint itself: drive the slide of

@@ -4,6 +4,7 @@
 
 #include <dem/core/macros.hpp>
 #include <dem/mbd/solver/effective_mass.hpp>
+#include <dem/mbd/solver/line_element.hpp>
 #include <dem/mbd/solver/part_kind.hpp>
 
 namespace dem::mbd::detail {
@@ -19,11 +20,16 @@ inline constexpr PartKind spring_kind = {
           for (std::size_t i = 0; i < m.springs.size(); ++i) {
             const Spring& s = m.springs[i];
             const Body &a = m.bodies[s.a], &b = m.bodies[s.b];
-            const auto w = s.spec.joint.valid() ? inverse_mass_along(m.joints[s.spec.joint.index()], a, b, s.spec.dof)
-                                                : inverse_mass_of_line(s.point_a, s.point_b, a, b);
             const auto steepest = [](const Curve& c) { return c.empty() ? 0.0 : c.steepest(); };
-            add_element(list, spring_kind, i, s.a, s.b, w, steepest(s.spec.force_over_length),
-                        steepest(s.spec.force_over_speed));
+            const double k = steepest(s.spec.force_over_length), c = steepest(s.spec.force_over_speed);
+            if (s.spec.joint.valid()) {
+              const auto w = inverse_mass_along(m.joints[s.spec.joint.index()], a, b, s.spec.dof);
+              add_element(list, spring_kind, i, s.a, s.b, w, k, c);
+            } else {
+              const Coordinate q = distance_of(s.point_a, s.point_b, a, b);
+              const double pull = s.spec.force_over_length.empty() ? 0.0 : -s.spec.force_over_length(q.value - s.start);
+              add_line_element(list, m, spring_kind, i, s.a, s.b, q, {k, c, pull});
+            }
           }
         },
     .name_of = [](const Parts& m, std::size_t i) { return "spring '" + m.springs[i].spec.name + "'"; },

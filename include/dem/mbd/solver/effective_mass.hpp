@@ -87,23 +87,33 @@ inline std::pair<double, double> inverse_mass_along(const Joint& j, const Body& 
   return {inverse_mass_at(a, q.arm_a, q.axis), inverse_mass_at(b, q.arm_b, q.axis)};
 }
 
-/// The same along the directions that a joint's friction acts in: the largest of them, as all have the same spring;
-/// rotations times the square of the bearing's radius, which turns sliding into rotation.
+/// The same where a joint's friction acts: the largest in whatever mixture of its directions, as all have the same
+/// spring. A force beside the centre of mass turns a body, so directions may be softer together than each of them
+/// alone. Rotations are times the bearing's radius, which turns sliding into rotation.
 inline std::pair<double, double> inverse_mass_of_friction(const Joint& j, const Body& a, const Body& b, double radius) {
-  std::pair<double, double> most = {0.0, 0.0};
-  for (const Dof dof : friction_dofs(traits_of(j.kind).bearing)) {
+  const Dofs dofs = friction_dofs(traits_of(j.kind).bearing);
+  std::pair<double, double> alone = {0.0, 0.0};
+  for (const Dof dof : dofs) {
     const double share = is_rotation(dof) ? radius * radius : 1.0;
     const auto [wa, wb] = inverse_mass_along(j, a, b, dof);
-    most = {std::max(most.first, share * wa), std::max(most.second, share * wb)};
+    alone = {std::max(alone.first, share * wa), std::max(alone.second, share * wb)};
   }
-  return most;
-}
-
-/// The same along the line between two points.
-inline std::pair<double, double> inverse_mass_of_line(const Vector3<double>& point_a, const Vector3<double>& point_b,
-                                                      const Body& a, const Body& b) {
-  const Coordinate q = distance_of(point_a, point_b, a, b);
-  return {inverse_mass_at(a, q.arm_a, q.axis), inverse_mass_at(b, q.arm_b, q.axis)};
+  if (dofs.end() - dofs.begin() < 2) return alone;  // of a bend it is the largest about any axis
+  const auto together = [&](const Body& x, Vector3<double> Coordinate::*arm, double most) {
+    if (x.fixed) return 0.0;
+    Vector3<double> force[3] = {}, torque[3] = {};  // on the body, per unit of each direction
+    for (std::size_t k = 0; const Dof dof : dofs) {
+      const Coordinate q = coordinate_of(j, a, b, dof);
+      if (!q.rotation) force[k] = q.axis;
+      torque[k++] = q.rotation ? radius * q.axis : cross(q.*arm, q.axis);
+    }
+    const Matrix3<double> F = from_columns(force[0], force[1], force[2]);
+    const Matrix3<double> T = from_columns(torque[0], torque[1], torque[2]);
+    const double all =
+        largest_eigenvalue((1.0 / x.mass) * (transposed(F) * F) + transposed(T) * inverse_inertia_of(x) * T);
+    return all > (1.0 + 1e-12) * most ? all : most;  // no more than rounding where they are independent
+  };
+  return {together(a, &Coordinate::arm_a, alone.first), together(b, &Coordinate::arm_b, alone.second)};
 }
 
 }  // namespace dem::mbd::detail

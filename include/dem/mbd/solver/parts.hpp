@@ -95,6 +95,7 @@ struct Parts {
 
   bool couplings_changed = false;  ///< added, switched on or given another ratio since a lock was looked for
   bool is_stepping = false;        ///< loads, signals and laws are being asked
+  std::uint64_t releases = 0;      ///< grows where a body that a motion carries is let go (CarriedBodies)
   std::uint64_t revision = 0;      ///< grows with each body, joint, coupling ... that is added, set free or fixed
 
   template <class V>

@@ -4,6 +4,7 @@
 
 #include <dem/core/macros.hpp>
 #include <dem/mbd/drive/actuator_part.hpp>
+#include <dem/mbd/drive/carried_bodies.hpp>
 #include <dem/mbd/joint/take_hold.hpp>
 #include <dem/mbd/solver/parts.hpp>
 
@@ -37,7 +38,9 @@ DEM_COLD inline void switch_on(Parts& parts, PrescribedMotion& p, bool on) {
     b.motion.velocity = b.motion.angular_velocity = {0, 0, 0};
   }
   p.has_hold &= on && p.spec.on;
+  const bool was_carried = !on && p.spec.on && CarriedBodies(parts).has(p.spec.body);
   p.spec.on = on;
+  if (was_carried && !CarriedBodies(parts).has(p.spec.body)) ++parts.releases;
 }
 
 /// A joint that is switched on holds the bodies as they are now; one that is off holds nothing.
