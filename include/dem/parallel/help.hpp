@@ -9,14 +9,14 @@ namespace dem::exec {
 /// What a member of a team did in one call.
 struct Share {
   std::size_t pieces = 0;
-  double seconds = 0.0;
+  double seconds = 0.0;  ///< s, in which it had a processor
 };
 
 /// Whether it is worth calling others to help: an account, in seconds, of the work that they save the caller and of
-/// what they cost it. A helper may lose its processor to another program in the middle of a piece. The caller then
-/// waits for some milliseconds, in which it could have done many pieces. Where helpers cost more than they save, they
-/// are not called for a tenth of a second, then tried again; each time that they fail, they are left out twice as long,
-/// at most a second.
+/// what they cost it. Where another program runs, a helper may lose its processor in the middle of a piece, and the
+/// caller waits for some milliseconds, in which it could have done many pieces; or the helper and the other program
+/// take the caller's. Where helpers cost more than they save, they are not called for a tenth of a second, then tried
+/// again; each time that they fail, they are left out twice as long, at most two seconds.
 class Help {
  public:
   using Clock = std::chrono::steady_clock;
@@ -32,7 +32,8 @@ class Help {
     return std::min(helper.seconds, 3.0 * alike);
   }
 
-  /// A call is over: what helpers saved, and what calling them and waiting for them took (s).
+  /// A call is over (s): what helpers saved, and how long the caller did not work, but called them, waited for them, or
+  /// had no processor.
   void account(double saved, double cost, Time now) {
     saved_ += saved;
     cost_ += cost;
@@ -51,7 +52,7 @@ class Help {
 
   // Several time slices of an operating system, so that one that was lost by chance does not decide.
   static constexpr double window = 0.02;  // s
-  static constexpr Seconds shortest_pause{0.1}, longest_pause{1.0};
+  static constexpr Seconds shortest_pause{0.1}, longest_pause{2.0};
 
   double saved_ = 0.0, cost_ = 0.0;  // s, since the last verdict
   Seconds pause_ = shortest_pause;

@@ -3,9 +3,11 @@
 #include <dem/core/error.hpp>
 #include <dem/parallel/help.hpp>
 
+#include <algorithm>
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
+#include <ctime>
 #include <memory>
 #include <system_error>
 #include <thread>
@@ -71,7 +73,6 @@ class Team {
     piece_ = piece;
     work_ = work;
     call();
-    const double calling = seconds_since(called);
     take_part(0);
     // All pieces are taken. Who has not begun need not, and the others end theirs.
     std::uint32_t inside = gate_.fetch_and(~open) & ~open;
@@ -82,7 +83,7 @@ class Team {
         gate_.wait(inside);
       }
     }
-    if (busy_waits_ > 0) keep_account(called, calling);
+    if (busy_waits_ > 0) keep_account(called);
   }
 
  private:
@@ -95,16 +96,20 @@ class Team {
     Share share;  // of the member whose range it is, in the call
   };
 
-  static double seconds_since(Help::Time t) { return std::chrono::duration<double>(Help::Clock::now() - t).count(); }
-  /// Of a call that took `calling` (s) to call.
-  void keep_account(Help::Time called, double calling) {
+  /// s, in which this thread had a processor so far.
+  static double processor_time() {
+    std::timespec t{};
+    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
+    return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
+  }
+  void keep_account(Help::Time called) {
     const Share& own = ranges_[0].share;
     if (own.pieces == 0) return;  // it is not known how long one takes
     double saved = 0.0;
     for (int k = 1; k < members_; ++k) saved += Help::saved_by(ranges_[static_cast<std::size_t>(k)].share, own);
     const Help::Time now = Help::Clock::now();
-    const double waiting = std::chrono::duration<double>(now - called).count() - calling - own.seconds;
-    help_.account(saved, calling + waiting, now);
+    const double took = std::chrono::duration<double>(now - called).count();
+    help_.account(saved, std::max(0.0, took - own.seconds), now);
   }
 
   static void pause() {
@@ -124,7 +129,7 @@ class Team {
     call_.notify_all();
   }
   void take_part(int member) {
-    const Help::Time began = Help::Clock::now();
+    const double began = processor_time();
     std::size_t done = 0;
     const int members = members_;
     for (int k = 0; k < members; ++k) {
@@ -135,7 +140,7 @@ class Team {
         if (piece < range.end) piece_(work_, piece, member), ++done;
       }
     }
-    ranges_[static_cast<std::size_t>(member)].share = {done, seconds_since(began)};
+    ranges_[static_cast<std::size_t>(member)].share = {done, processor_time() - began};
   }
   void serve(int member) {
     for (std::uint32_t seen = 0;;) {

@@ -164,9 +164,9 @@ TEST_CASE("helpers that cost more than they save are left out, longer each time,
   // Less than the 20 ms that a verdict takes.
   help.account(1e-3, 15e-3, start);
   CHECK(help.is_worth_it(start));
-  // Each pause is twice as long as the one before, up to a second.
+  // Each pause is twice as long as the one before, up to two seconds.
   Help::Time now = start;
-  for (const int pause : {100, 200, 400, 800, 1000, 1000}) {
+  for (const int pause : {100, 200, 400, 800, 1600, 2000, 2000}) {
     help.account(1e-3, 30e-3, now);
     CHECK_FALSE(help.is_worth_it(now + milliseconds(pause - 1)));
     now += milliseconds(pause + 1);
