@@ -7,12 +7,12 @@
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
-#include <ctime>
 #include <memory>
 #include <system_error>
 #include <thread>
 #include <vector>
 
+#include <time.h>
 #include <unistd.h>
 
 namespace dem::exec {
@@ -96,11 +96,20 @@ class Team {
     Share share;  // of the member whose range it is, in the call
   };
 
-  /// s, in which this thread had a processor so far.
-  static double processor_time() {
-    std::timespec t{};
-    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
+  static double seconds(const timespec& t) {
     return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
+  }
+  /// s, in which this thread had a processor so far. Where the system counts that coarsely or not at all, time goes by
+  /// as for all.
+  static double processor_time() {
+    timespec t{};
+    static const clockid_t clock = [&] {
+      const bool is_fine = clock_getres(CLOCK_THREAD_CPUTIME_ID, &t) == 0 && seconds(t) < 1e-5 &&
+                           clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t) == 0;
+      return is_fine ? CLOCK_THREAD_CPUTIME_ID : CLOCK_MONOTONIC;
+    }();
+    clock_gettime(clock, &t);
+    return seconds(t);
   }
   void keep_account(Help::Time called) {
     const Share& own = ranges_[0].share;

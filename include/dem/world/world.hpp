@@ -253,6 +253,8 @@ class World : public WorldGrains<M> {
         if (!goes) left = 0, owed_steps_ = 0.0;
         if (!goes || !stays) break;
         state_.machine_solver.check_motions(state_.machine);
+      } else if (!is_checked()) [[unlikely]] {
+        break;  // a law or signal has let a body go within the step
       }
     }
     return ok();

@@ -133,6 +133,16 @@ TEST_CASE("the stable time step of contacts knows which bodies are carried") {
     REQUIRE(chosen.world.run(2));
     CHECK(chosen.world.time_step() == 0.5 * of_free);
   }
+
+  // The same where a law lets it go within a run.
+  Drop in_run(Plate::posed, 0.0, 0.0);
+  const auto release = [&](double t, const dem::Body&) {
+    if (t > 2.5 * 0.5 * of_fixed) in_run.world.machine().switch_on(in_run.held, false);
+    return dem::Wrench{};
+  };
+  in_run.world.machine().add_load(dem::mbd::custom_load("release", in_run.ball, release));
+  REQUIRE(in_run.world.run(6));
+  CHECK(in_run.world.time_step() == 0.5 * of_free);
 }
 
 TEST_CASE("two bodies that are carried still feel each other") {
