@@ -39,7 +39,7 @@ void move_chunk(WorldState<Model>& w, std::size_t c) {
 /// moved at its end, by the thread that happens to find the last contacts: each thread moves its own after it.
 template <class Model>
 bool moves_at_once(const WorldState<Model>& w) {
-  constexpr std::size_t few = 16;  // chunks a thread; measured: 8 are moved faster after it, 31 are not
+  constexpr std::size_t few = 12;  // chunks a thread; measured with two: 8 each are moved faster after it, 16 are not
   const auto threads = static_cast<std::size_t>(w.executor.threads());
   return threads == 1 || w.sleepers.working.size() > few * threads;
 }
