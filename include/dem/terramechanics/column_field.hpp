@@ -9,6 +9,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 namespace dem::terramechanics {
@@ -87,6 +88,36 @@ struct ColumnField {
     shear.assign(n, {});
     touched.assign(n, 0);
     touched_by.assign(n, -1);
+  }
+  /// Gives the ground the heights height(x, y) in m, and returns the highest. Throws Error if one is not finite.
+  template <class F>
+  double shape(F&& height) {
+    double top = -1e300;
+    for (std::size_t iy = 0; iy < grid.ny; ++iy) {
+      for (std::size_t ix = 0; ix < grid.nx; ++ix) {
+        const double z = height(grid.x(ix), grid.y(iy));
+        if (!std::isfinite(z))
+          fail("the soil's height at ({:g}, {:g}) m is {:g}, but must be finite", grid.x(ix), grid.y(iy), z);
+        ground[grid.row(ix, iy)] = z;
+        top = std::max(top, z);
+      }
+    }
+    return top;
+  }
+  /// Numbers the columns' soils, 0 to `most`, by which(x, y) at their places (m). Throws Error for another number, and
+  /// leaves the field as it was.
+  template <class F>
+  void lay(std::size_t most, F&& which) {
+    std::vector<std::uint8_t> number(grid.size());
+    for (std::size_t iy = 0; iy < grid.ny; ++iy) {
+      for (std::size_t ix = 0; ix < grid.nx; ++ix) {
+        const auto k = static_cast<long long>(which(grid.x(ix), grid.y(iy)));
+        if (k < 0 || k > static_cast<long long>(most))
+          fail("soil {} is to lie at ({:g}, {:g}) m, but there are 0 to {}", k, grid.x(ix), grid.y(iy), most);
+        number[grid.row(ix, iy)] = static_cast<std::uint8_t>(k);
+      }
+    }
+    soil = std::move(number);
   }
 };
 

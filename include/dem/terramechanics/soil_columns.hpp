@@ -52,17 +52,7 @@ class SoilColumns {
   /// Gives the untouched soil a surface: height(x, y) in m. Throws Error if a height is not finite.
   template <class F>
   void shape_ground(F&& height) {
-    const ColumnGrid& g = field_.grid;
-    top_ = -1e300;
-    for (std::size_t iy = 0; iy < g.ny; ++iy) {
-      for (std::size_t ix = 0; ix < g.nx; ++ix) {
-        const double z = height(g.x(ix), g.y(iy));
-        if (!std::isfinite(z))
-          fail("the soil's height at ({:g}, {:g}) m is {:g}, but must be finite", g.x(ix), g.y(iy), z);
-        field_.ground[g.row(ix, iy)] = z;
-        top_ = std::max(top_, z);
-      }
-    }
+    top_ = field_.shape(height);
   }
 
   /// Lays other soils beside that of the spec, which is number 0: which(x, y) says the number of the soil at a place
@@ -72,19 +62,9 @@ class SoilColumns {
   void lay_soils(std::span<const Soil> others, F&& which) {
     if (others.size() > 254) fail("{} soils are to be laid, but at most 254 can be", others.size());
     for (const Soil& other : others) check_soil(other);
-    const ColumnGrid& g = field_.grid;
-    std::vector<std::uint8_t> number(g.size());
-    for (std::size_t iy = 0; iy < g.ny; ++iy) {
-      for (std::size_t ix = 0; ix < g.nx; ++ix) {
-        const auto k = static_cast<long long>(which(g.x(ix), g.y(iy)));
-        if (k < 0 || k > static_cast<long long>(others.size()))
-          fail("soil {} is to lie at ({:g}, {:g}) m, but there are 0 to {}", k, g.x(ix), g.y(iy), others.size());
-        number[g.row(ix, iy)] = static_cast<std::uint8_t>(k);
-      }
-    }
+    field_.lay(others.size(), which);
     soils_.resize(1);
     soils_.insert(soils_.end(), others.begin(), others.end());
-    field_.soil = std::move(number);
   }
   const std::vector<Soil>& soils() const { return soils_; }
 
