@@ -13,6 +13,8 @@
 #include <dem/law/normal/linear_spring_dashpot.hpp>
 #include <dem/mbd/mbd.hpp>
 #include <dem/parallel/serial.hpp>
+#include <dem/world/contacts.hpp>
+#include <dem/world/energy.hpp>
 #include <dem/world/world.hpp>
 
 namespace models {
@@ -59,16 +61,29 @@ struct HertzModel : Laws<dem::contact::Hertz, dem::friction::Mindlin> {
 
 }  // namespace models
 
-// What of a world takes the time: its class, and the functions of a step.
-#define TEST_WORLD(declare, M)                                                \
-  declare template void dem::evaluate_contacts<M>(dem::WorldState<M>&);       \
-  declare template void dem::advance<M>(dem::WorldState<M>&);                 \
-  declare template void dem::initialise<M>(dem::WorldState<M>&);              \
-  declare template void dem::rebuild_neighbours<M>(dem::WorldState<M>&);      \
-  declare template void dem::find_points_deep_enough<M>(dem::WorldState<M>&); \
-  declare template void dem::check_thin_sheets<M>(const dem::WorldState<M>&); \
-  declare template dem::StepReport dem::find_problem<M>(dem::WorldState<M>&); \
-  declare template class dem::WorldSetup<M>;                                  \
+// What of a world takes the time: its classes, the functions of a step, and what looks at contacts.
+#define TEST_WORLD(declare, M)                                                              \
+  declare template void dem::evaluate_contacts<M>(dem::WorldState<M>&);                     \
+  declare template void dem::advance<M>(dem::WorldState<M>&);                               \
+  declare template void dem::initialise<M>(dem::WorldState<M>&);                            \
+  declare template void dem::rebuild_neighbours<M>(dem::WorldState<M>&);                    \
+  declare template void dem::find_sleepers<M>(dem::WorldState<M>&);                         \
+  declare template void dem::watch_changed<M>(dem::WorldState<M>&);                         \
+  declare template void dem::choose_working_chunks<M>(dem::WorldState<M>&);                 \
+  declare template void dem::put_in<M>(dem::WorldState<M>&);                                \
+  declare template void dem::take_out<M>(dem::WorldState<M>&);                              \
+  declare template void dem::release_ids<M>(dem::WorldState<M>&);                           \
+  declare template void dem::note_deep<M>(dem::WorldState<M>&);                             \
+  declare template void dem::find_points_deep_enough<M>(dem::WorldState<M>&);               \
+  declare template void dem::check_thin_sheets<M>(const dem::WorldState<M>&);               \
+  declare template void dem::choose_time_step<M>(dem::WorldState<M>&, bool&);               \
+  declare template dem::StableTimeStep dem::stable_time_step<M>(const dem::WorldState<M>&); \
+  declare template dem::StepReport dem::find_problem<M>(dem::WorldState<M>&);               \
+  declare template std::vector<dem::Contact<M>> dem::contacts_of<M>(const dem::World<M>&);  \
+  declare template void dem::count_energy<M>(dem::World<M>&);                               \
+  declare template dem::GrainEnergy dem::energy_of<M>(const dem::World<M>&);                \
+  declare template class dem::WorldSetup<M>;                                                \
+  declare template class dem::WorldGrains<M>;                                               \
   declare template class dem::World<M>;
 
 // A machine with the solver of one integrator.

@@ -19,7 +19,7 @@ struct Parts : Balls {
   using Surfaces = surface::Set<Plane, Box, Cylinder, surface::Superquadric, surface::Sphere, TriangleMesh>;
 };
 
-constexpr double K = 1e5;
+constexpr double stiffness = 1e5;
 
 /// A surface on a body of its own at a place.
 struct BodyAt {
@@ -27,13 +27,14 @@ struct BodyAt {
   Vec3 at = Vec3::Zero();
   Mat3 turned = Mat3::Identity();
 };
-/// Force on a (over K: m) and torque on it about its place (over K: m^2) by b; both are held in place.
+/// Force on a (over the stiffness: m) and torque on it about its place (over the stiffness: m^2) by b; both are held in
+/// place.
 struct Push {
   Vec3 force, torque;
 };
 Push push(const BodyAt& a, const BodyAt& b) {
   World<Parts> w(options(Vec3::Zero(), 1e-6));
-  w.set_contact({{K, 0.0, 1.0}, {0.0, K, 0.0, 0.0}});
+  w.set_contact({{stiffness, 0.0, 1.0}, {0.0, stiffness, 0.0, 0.0}});
   const auto body = w.machine().add_body(box_body("a", {1, 1, 1}, 1e4).at(a.at, a.turned));
   SurfaceOptions o;
   o.position = b.at;
@@ -41,7 +42,7 @@ Push push(const BodyAt& a, const BodyAt& b) {
   w.add_body_contact(w.add_surface(body, a.geometry), w.add_surface(w.ground(), b.geometry, o));
   w.prepare();
   const auto& pair = w.state().body_contacts.pairs[0];
-  return {to_eigen(pair.force) / K, to_eigen(pair.torque_a) / K};
+  return {to_eigen(pair.force) / stiffness, to_eigen(pair.torque_a) / stiffness};
 }
 Mat3 about(const Vec3& axis, double angle) { return Eigen::AngleAxisd(angle, axis.normalized()).toRotationMatrix(); }
 Mat3 along(const Vec3& axis) { return dem::rotation_between(Vec3::UnitZ(), axis.normalized()); }
@@ -134,7 +135,7 @@ TEST_CASE("a rod rests across two rods, and on the narrow side of a plank") {
   for (const bool on_plank : {false, true}) {
     CAPTURE(on_plank);
     World<Parts> w(options({0, 0, -g}, 2e-5));
-    w.set_contact({{K, 300.0, 1.0}, {0.5, K, 100.0, 0.975}});
+    w.set_contact({{stiffness, 300.0, 1.0}, {0.5, stiffness, 100.0, 0.975}});
     const double top = on_plank ? 0.0 : R;
     const auto rod = w.machine().add_body(
         mbd::cylinder_body("rod", R, length, density).at({0.04, 0, top + R + 1e-3}, along({1, 0, 0})));
@@ -149,7 +150,7 @@ TEST_CASE("a rod rests across two rods, and on the narrow side of a plank") {
     }
     REQUIRE(w.run_for(1.0));
     const dem::Body& body = w.machine().body(rod);
-    const double weight = body.mass * g, depth = weight / (2 * K);
+    const double weight = body.mass * g, depth = weight / (2 * stiffness);
     CHECK(w.body_contact_force(contacts[0]).z() + w.body_contact_force(contacts[1]).z() ==
           Approx(weight).epsilon(1e-6));
     // The lever rule: 0.04 m off the middle.

@@ -14,7 +14,7 @@ struct ShearedBalls : models::LinearModel {
   using Domain = dem::domain::Sheared;
 };
 /// Goes back to the start of a step.
-struct CorrectedBalls : ShearedBalls {
+struct CorrectedShearedBalls : ShearedBalls {
   using Integrator = dem::integrator::PredictorCorrector;
 };
 
@@ -81,7 +81,7 @@ void check_beginnings() {
 
 TEST_CASE("a sheared cell flows the same wherever it is said to begin") {
   SECTION("velocity Verlet") { check_beginnings<ShearedBalls>(); }
-  SECTION("predictor-corrector") { check_beginnings<CorrectedBalls>(); }
+  SECTION("predictor-corrector") { check_beginnings<CorrectedShearedBalls>(); }
 }
 
 TEST_CASE("momentum across a sheared flow is kept, and along it changes by whole crossings of the border") {
