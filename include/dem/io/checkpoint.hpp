@@ -64,6 +64,7 @@ void save(const World<Model>& world, const std::filesystem::path& path, const Ot
 ///
 /// To be set before loading, because the file has it to compare only or not at all:
 /// - contact constants that set_contact changed during the run, as they were when it was saved;
+/// - a time step that set_time_step gave;
 /// - a function that has taken the place of a number since the set-up;
 /// - parts, species, materials and surfaces that were added during the run. A joint, spring or actuator has to be given
 ///   the same points again, so add it where it is assembled, and switch it on when it is needed.

@@ -81,7 +81,7 @@ class Machine : public Mechanism {
   DEM_COLD void initialise(double time, const Vec3& g) {
     gravity = g;
     const Stepping stepping(parts());
-    solver_.initialise(*this, time, g, [] {});
+    solver_.initialise(*this, time, solver_.design_step(), g, [] {});
   }
   /// All is well; or which body blew up, when, and what to change; or what went wrong with a terrain in the newest
   /// step; or which joint stood open beyond joint_tolerance with most_substeps since the machine was last laid out, and

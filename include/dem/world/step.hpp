@@ -168,7 +168,7 @@ void initialise(WorldState<Model>& w) {
   if (w.list_valid) {
     for_each_own_chunk([&](std::size_t c) { grain::refresh_chunk<Model>(c, w.chunks[c], w.grains, w.species); });
   }
-  w.machine_solver.initialise(w.machine, w.time, w.options.gravity, [&] { evaluate_contacts(w); });
+  w.machine_solver.initialise(w.machine, w.time, w.time_step, w.options.gravity, [&] { evaluate_contacts(w); });
   for_each_own_chunk([&](std::size_t c) {
     gather_forces(w, c);
     grain::initialise_chunk<Model>(c, w.grains, w.inertia, w.options.gravity);

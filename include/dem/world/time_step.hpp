@@ -34,14 +34,20 @@ StableTimeStep stable_time_step_of_machine(const WorldState<Model>& w) {
   return w.machine_solver.stable_time_step(w.machine);
 }
 
-/// What is derived depends on the pose. It changes with the machine or the time step, not with the grains, and where
-/// another pose has made it too stiff. Forces are out of date then: `initialised` becomes false.
+/// Whether what is derived serves steps of dt (s). It depends on the pose. It changes with the machine or a larger time
+/// step, not with the grains, and where another pose has made it too stiff. A smaller step goes on with it once the
+/// world has run.
+template <class Model>
+bool is_designed_for(const WorldState<Model>& w, double dt) {
+  const double design = w.machine_solver.design_step();
+  return (dt == design || (w.step > 0 && dt < design)) && w.machine_solver.is_designed_for(w.machine, design) &&
+         stable_time_step_of_machine(w).dt >= dt;
+}
+/// Where something is derived, forces are out of date: `initialised` becomes false.
 template <class Model>
 void design_machine(WorldState<Model>& w, double dt, bool& initialised) {
-  const bool is_designed = w.machine_solver.is_designed_for(w.machine, dt);
-  if (is_designed && stable_time_step_of_machine(w).dt >= dt) return;
-  w.machine_solver.design_for(w.machine, dt);
-  w.machine_solver.carry_weight(w.machine, w.options.gravity);
+  if (is_designed_for(w, dt)) return;
+  w.machine_solver.design(w.machine, dt, w.options.gravity, w.step > 0);
   initialised = false;
 }
 
@@ -71,21 +77,26 @@ void choose_time_step_automatically(WorldState<Model>& w, bool& initialised) {
   while (stable_time_step_of_machine(w).dt < w.time_step) design_machine(w, w.time_step *= 0.9, initialised);
 }
 
+/// Throws Error for a step above the stable one. The machine stays as it is.
+template <class Model>
+void refuse_unstable(const WorldState<Model>& w, double dt) {
+  mbd::MachineDesign design;
+  if (!is_designed_for(w, dt)) design = w.machine_solver.tried(w.machine, dt, w.options.gravity, w.step > 0);
+  StableTimeStep limit = stable_time_step_of_contacts(w);
+  if (dt <= std::min(limit.dt, design.limit.dt)) return;
+  const bool by_machine = design.limit.dt < dt && design.accepted.dt <= limit.dt;
+  if (by_machine) limit = design.accepted;
+  fail(
+      "time step {:g} s is above the largest stable one, {:g} s ({}); lower time_step{} or the stiffness, {}or set "
+      "allow_unstable_time_step",
+      dt, rounded_down(limit.dt), limit.limited_by, w.step > 0 ? " (World::set_time_step)" : "",
+      by_machine ? dem::text("raise machine().substeps above {}, ", design.substeps) : "");
+}
+
 template <class Model>
 void check_time_step(WorldState<Model>& w, double dt, bool& initialised) {
+  if (!w.options.allow_unstable_time_step) refuse_unstable(w, dt);
   design_machine(w, dt, initialised);
-  StableTimeStep limit = stable_time_step(w);
-  if (dt > limit.dt && !w.options.allow_unstable_time_step) {
-    // What is derived is derived anew for a smaller step: the one that is named is accepted when it is taken.
-    const StableTimeStep machine = w.machine_solver.accepted_time_step(w.machine, dt);
-    const bool by_machine = stable_time_step_of_machine(w).dt < dt && machine.dt <= stable_time_step_of_contacts(w).dt;
-    if (by_machine) limit = machine;
-    fail(
-        "time step {:g} s is above the largest stable one, {:g} s ({}); lower time_step or the stiffness, {}or set "
-        "allow_unstable_time_step",
-        dt, rounded_down(limit.dt), limit.limited_by,
-        by_machine ? dem::text("raise machine().substeps (now {}), ", w.machine.substeps) : "");
-  }
   w.time_step = dt;
 }
 
@@ -96,9 +107,10 @@ void check_time_step(WorldState<Model>& w, double dt, bool& initialised) {
 /// it.
 template <class Model>
 void choose_time_step(WorldState<Model>& w, bool& initialised) {
-  const double given = w.options.time_step;
+  const double given = w.options.time_step, before = w.time_step;
   given == 0.0 ? detail::choose_time_step_automatically(w, initialised)
                : detail::check_time_step(w, given, initialised);
+  if (w.time_step != before) w.machine_solver.note_stable_step(w.machine);
 }
 
 /// What makes a time step that was chosen less than a tenth of what the contacts allow, in words; else empty.

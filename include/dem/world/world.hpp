@@ -93,8 +93,8 @@ class World : public WorldGrains<M> {
   [[nodiscard]] StepReport run_for(double seconds, F&& goes_on) {
     prepare();
     require_non_negative(seconds, "time to run", "s");
-    return run_on(whole_steps(owed_steps_ + seconds / time_step()), goes_on, [this](std::uint64_t left, double step) {
-      return whole_steps((static_cast<double>(left) + owed_steps_) * step / time_step());
+    return run_on(whole_steps(owed_ + seconds), goes_on, [this](std::uint64_t left, double step) {
+      return whole_steps(owed_ + static_cast<double>(left) * step);
     });
   }
 
@@ -103,6 +103,16 @@ class World : public WorldGrains<M> {
   std::uint64_t steps() const { return state_.step; }
   /// s; 0 until it is chosen, by prepare() or the first step, if WorldOptions::time_step is 0.
   double time_step() const { return state_.time_step; }
+  /// s, from the next step on, as WorldOptions::time_step; 0: chosen anew, and 0 until then. Joints are as stiff as was
+  /// derived for the largest step so far; a still larger one makes them softer at once, and bodies sag. Sleep windows
+  /// count steps. Throws Error unless it is finite and not negative; prepare() refuses one that is too large.
+  void set_time_step(double dt) {
+    this->require_no_step("set_time_step");
+    if (dt == state_.options.time_step && dt > 0.0) return;
+    state_.options.time_step = require_non_negative(dt, "time step", "s (0 chooses one)");
+    if (dt == 0.0) state_.time_step = 0.0;
+    checked_ = false;
+  }
   /// Largest stable time step of grains and machine, and what limits it.
   StableTimeStep stable_time_step() const { return dem::stable_time_step(state_); }
   /// Throws Error unless n >= 1. Results do not depend on it.
@@ -179,7 +189,7 @@ class World : public WorldGrains<M> {
     if (state_.is_broken_off)
       fail("a world whose last step was broken off by an exception has no state to be saved or restored");
     this->require_grains_here("a state");
-    v("", state_), v("owed_steps", owed_steps_);
+    v("", state_), v("owed", owed_, "s");
     bool checked = is_checked();
     v("checked", checked), v("initialised", initialised_);
     if (checked != checked_) checked_ = checked;
@@ -193,14 +203,14 @@ class World : public WorldGrains<M> {
   };
   static constexpr Always always = {};
 
-  /// A number of steps to run; the part of one is owed to the next time span.
-  std::uint64_t whole_steps(double steps) {
+  /// The steps of a time span (s); what is left of it is owed to the next one.
+  std::uint64_t whole_steps(double seconds) {
+    const double steps = seconds / time_step();
     if (!(steps <= 0x1.0p53)) {  // beyond it time stands still: t + dt = t
-      fail("time to run is {:g} s, {:g} steps of {:g} s, but must be at most 9e15 steps", steps * time_step(), steps,
-           time_step());
+      fail("time to run is {:g} s, {:g} steps of {:g} s, but must be at most 9e15 steps", seconds, steps, time_step());
     }
     const double whole = std::max(0.0, std::round(steps));
-    owed_steps_ = steps - whole;
+    owed_ = (steps - whole) * time_step();
     return static_cast<std::uint64_t>(whole);
   }
 
@@ -250,7 +260,7 @@ class World : public WorldGrains<M> {
               state_.domain.largest(std::array<double, 2>{goes ? 0.0 : 1.0, stays ? 0.0 : 1.0});
           goes = ends == 0.0, stays = changed == 0.0;
         }
-        if (!goes) left = 0, owed_steps_ = 0.0;
+        if (!goes) left = 0, owed_ = 0.0;
         if (!goes || !stays) break;
         state_.machine_solver.check_motions(state_.machine);
       } else if (!is_checked()) [[unlikely]] {
@@ -327,7 +337,7 @@ class World : public WorldGrains<M> {
     state_.time_step_note.reset();
   }
 
-  double owed_steps_ = 0.0;     // by run_for: less than one
+  double owed_ = 0.0;           // s, by run_for: what a span leaves of a step
   std::uint64_t releases_ = 0;  // of the machine's bodies, when it was checked
 };
 

@@ -38,7 +38,7 @@ struct InWorld {
 
   void start(double dt, const Vec3& gravity = Vec3::Zero()) {
     solver.design_for(m, dt);
-    solver.initialise(m, 0.0, gravity, [] {});
+    solver.initialise(m, 0.0, dt, gravity, [] {});
   }
   template <class PutForces>
   void stage(int stage, double dt, const Vec3& gravity, PutForces&& put_forces) {

@@ -19,7 +19,7 @@
 namespace dem::io {
 
 /// The version of what is in such a file. It grows whenever a field comes, goes or changes its meaning.
-inline constexpr std::uint64_t checkpoint_schema = 12;
+inline constexpr std::uint64_t checkpoint_schema = 13;
 
 namespace detail {
 

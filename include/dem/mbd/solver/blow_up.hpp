@@ -40,8 +40,8 @@ std::string cause_of_blow_up(const Parts& parts, const StableTimeStep& at_start,
   if (const JointOpening& folded = joints.folded(); folded.joint.valid()) {
     return dem::text(
         "Before, {} had folded: at t = {:g} s its axes stood {:.0f} deg apart, where its springs no longer pull them "
-        "back. It was loaded beyond what it holds at a time step of {:g} s: take a smaller one or more substeps (now "
-        "{}), lower the load, or give the joint more room to bend.",
+        "back. It was loaded beyond what it holds at a time step of {:g} s: take a smaller one from the start or more "
+        "substeps (now {}), lower the load, or give the joint more room to bend.",
         detail::joint_in_words(parts, folded.joint.index()), folded.time, folded.violation.rotation * 57.29577951308232,
         dt, substeps);
   }

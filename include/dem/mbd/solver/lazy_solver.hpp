@@ -46,9 +46,11 @@ class LazySolver {
   void take_on() { calls_ = &calls; }
   Whole& whole() { return take_on(), solver_; }
 
-  void design_for(Mechanism& m, double dt) { calls_ ? calls_->design_for(solver_, m, dt) : solver_.design_bare(dt); }
-  void carry_weight(Mechanism& m, const Vec3& gravity) {
-    if (calls_) calls_->carry_weight(solver_, m, gravity);
+  void design(Mechanism& m, double dt, const Vec3& gravity, bool has_run) {
+    calls_ ? calls_->design(solver_, m, dt, gravity, has_run) : solver_.design_bare(dt);
+  }
+  MachineDesign tried(const Mechanism& m, double dt, const Vec3& gravity, bool has_run) const {
+    return calls_ ? calls_->tried(solver_, m, dt, gravity, has_run) : MachineDesign{};
   }
   void close_joints(Mechanism& m) {
     if (calls_) calls_->close_joints(solver_, m);
@@ -63,10 +65,11 @@ class LazySolver {
   StableTimeStep stable_time_step_of_given(const Mechanism& m) const {
     return calls_ ? calls_->stable_time_step_of_given(solver_, m) : StableTimeStep{};
   }
-  StableTimeStep accepted_time_step(const Mechanism& m, double dt) const {
-    return calls_ ? calls_->accepted_time_step(solver_, m, dt) : StableTimeStep{dt, {}};
-  }
 
+  double design_step() const { return solver_.design_step(); }
+  void note_stable_step(const Mechanism& m) {
+    if (calls_) calls_->note_stable_step(solver_, m);
+  }
   bool is_initialised(const Mechanism& m) const { return solver_.is_initialised(m); }
   bool is_designed_for(const Mechanism& m, double dt) const { return solver_.is_designed_for(m, dt); }
   void check_motions(Mechanism& m) const {
@@ -74,8 +77,8 @@ class LazySolver {
   }
 
   template <class F>
-  void initialise(Mechanism& m, double time, const Vec3& gravity, F&& put_forces) {
-    if (calls_) calls_->initialise(solver_, m, time, gravity, PutForces(put_forces));
+  void initialise(Mechanism& m, double time, double dt, const Vec3& gravity, F&& put_forces) {
+    if (calls_) calls_->initialise(solver_, m, time, dt, gravity, PutForces(put_forces));
     else solver_.initialise_bare(m, time, put_forces);
   }
   template <class F>
@@ -91,32 +94,34 @@ class LazySolver {
 
  private:
   struct Calls {
-    void (*design_for)(Whole&, Mechanism&, double);
-    void (*carry_weight)(Whole&, Mechanism&, const Vec3&);
+    void (*design)(Whole&, Mechanism&, double, const Vec3&, bool);
+    MachineDesign (*tried)(const Whole&, const Mechanism&, double, const Vec3&, bool);
     void (*close_joints)(Whole&, Mechanism&);
     MachineReport (*report)(const Whole&, const Mechanism&);
     MachineReport (*newly_opened)(Whole&, const Mechanism&);
     std::string (*note)(const Whole&, const Mechanism&);
     StableTimeStep (*stable_time_step)(const Whole&, const Mechanism&);
     StableTimeStep (*stable_time_step_of_given)(const Whole&, const Mechanism&);
-    StableTimeStep (*accepted_time_step)(const Whole&, const Mechanism&, double);
+    void (*note_stable_step)(Whole&, const Mechanism&);
     void (*check_motions)(const Whole&, Mechanism&);
-    void (*initialise)(Whole&, Mechanism&, double, const Vec3&, PutForces);
+    void (*initialise)(Whole&, Mechanism&, double, double, const Vec3&, PutForces);
     void (*stage)(Whole&, Mechanism&, int, double, const Vec3&, PutForces);
   };
   static constexpr Calls calls = {
-      .design_for = [](Whole& s, Mechanism& m, double dt) { s.design_for(m, dt); },
-      .carry_weight = [](Whole& s, Mechanism& m, const Vec3& gravity) { s.carry_weight(m, gravity); },
+      .design = [](Whole& s, Mechanism& m, double dt, const Vec3& gravity,
+                   bool has_run) { s.design(m, dt, gravity, has_run); },
+      .tried = [](const Whole& s, const Mechanism& m, double dt, const Vec3& gravity,
+                  bool has_run) { return s.tried(m, dt, gravity, has_run); },
       .close_joints = [](Whole& s, Mechanism& m) { s.close_joints(m); },
       .report = [](const Whole& s, const Mechanism& m) { return s.report(m); },
       .newly_opened = [](Whole& s, const Mechanism& m) { return s.newly_opened(m); },
       .note = [](const Whole& s, const Mechanism& m) { return s.note(m); },
       .stable_time_step = [](const Whole& s, const Mechanism& m) { return s.stable_time_step(m); },
       .stable_time_step_of_given = [](const Whole& s, const Mechanism& m) { return s.stable_time_step_of_given(m); },
-      .accepted_time_step = [](const Whole& s, const Mechanism& m, double dt) { return s.accepted_time_step(m, dt); },
+      .note_stable_step = [](Whole& s, const Mechanism& m) { s.note_stable_step(m); },
       .check_motions = [](const Whole& s, Mechanism& m) { s.check_motions(m); },
-      .initialise = [](Whole& s, Mechanism& m, double time, const Vec3& gravity,
-                       PutForces put_forces) { s.initialise(m, time, gravity, put_forces); },
+      .initialise = [](Whole& s, Mechanism& m, double time, double dt, const Vec3& gravity,
+                       PutForces put_forces) { s.initialise(m, time, dt, gravity, put_forces); },
       .stage = [](Whole& s, Mechanism& m, int stage, double dt, const Vec3& gravity,
                   PutForces put_forces) { s.stage(m, stage, dt, gravity, put_forces); },
   };

@@ -20,10 +20,15 @@ struct MachineReport {
   explicit operator bool() const { return ok; }
 };
 
-/// Which joint opened beyond joint_tolerance (`tolerance` in m; 0: by default), at steps of `step` (s) in sub-steps,
-/// and what keeps it closed.
+/// Time steps of a machine, with all sub-steps.
+struct MachineSteps {
+  double newest = 0.0;    ///< s
+  double designed = 0.0;  ///< s, for which was derived what was left open
+};
+
+/// Which joint opened beyond joint_tolerance (`tolerance` in m; 0: by default), and what keeps it closed.
 DEM_COLD inline MachineReport report_of_opening(const Parts& m, const JointOpening& worst, double tolerance,
-                                                double step, int substeps, double time) {
+                                                const MachineSteps& steps, int substeps, double time) {
   const int n = substeps_for(substeps, worst.share, 0.5, 1 << 30);  // half: what swings opens twice as far
   if (m.joints[worst.joint.index()].rigid) {
     return {false,
@@ -32,14 +37,14 @@ DEM_COLD inline MachineReport report_of_opening(const Parts& m, const JointOpeni
             worst.joint,
             dem::text("{}: no pose closes all joints; let parts that contradict each other go, or lower the time step "
                       "(now {:g} s)",
-                      in_words(m, worst), step),
+                      in_words(m, worst), steps.newest),
             {}};
   }
   const std::string text = dem::text(
       "{} (joint_tolerance, {}): the stiffness that is derived for the time step gives way under its load. A time step "
-      "of {:g} s, or {} substeps (now {}), keeps it; or raise joint_tolerance",
+      "of {:g} s from the start, or {} substeps (now {}), keeps it; or raise joint_tolerance",
       in_words(m, worst), tolerance > 0.0 ? dem::text("{:g} m", tolerance) : "1e-4 of the machine's size",
-      rounded_down(step * substeps / n), n, substeps);
+      rounded_down(steps.designed * substeps / n), n, substeps);
   return {false, time, {}, worst.joint, text, {}};
 }
 

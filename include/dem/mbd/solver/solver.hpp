@@ -17,11 +17,19 @@
 
 namespace dem::mbd {
 
+/// What a machine would be with what is derived for a step.
+struct MachineDesign {
+  StableTimeStep limit = {};
+  /// The largest step, up to that one, at which it is stable with what is derived for it.
+  StableTimeStep accepted = {};
+  int substeps = 1;
+};
+
 /// What moves a mechanism: a world calls it with the grains' forces, Machine without any. It belongs to one mechanism,
 /// which is handed to each call.
 ///
 ///     solver.design_for(mechanism, dt);
-///     solver.initialise(mechanism, time, gravity, forces_of_grains);
+///     solver.initialise(mechanism, time, dt, gravity, forces_of_grains);
 ///     for (int stage = 0; stage < I::stages; ++stage) solver.stage(mechanism, stage, dt, gravity, forces_of_grains);
 template <integrator::Integrator I, JointPolicy Joints = Penalty>
 class Solver {
@@ -47,6 +55,24 @@ class Solver {
     raised_.raise(m.substeps, n);
     m.substeps = n;
     design_for(m, design_dt_);
+  }
+
+  /// Both, for steps of dt (s) of a world. Strained joints that became stiffer at once would throw what they hold. So
+  /// where the world has run, what was derived for a larger step stays as soft, and what gets stiffer does so by and
+  /// by.
+  DEM_COLD void design(Mechanism& m, double dt, const Vec3& gravity, bool has_run) {
+    const std::vector<double> before = StiffnessRamp::stiffness_of(m.parts());
+    design_for(m, has_run && has_derived(m.parts()) ? std::max(dt, design_dt_) : dt);
+    carry_weight(m, gravity);
+    if (has_run) ramp_ = StiffnessRamp(m.parts(), before);
+  }
+  /// What that comes to, of copies.
+  DEM_COLD MachineDesign tried(const Mechanism& m, double dt, const Vec3& gravity, bool has_run) const {
+    Mechanism machine = m;
+    Solver solver = *this;
+    solver.design(machine, dt, gravity, has_run);
+    const StableTimeStep limit = solver.stable_time_step(machine);
+    return {limit, limit.dt < dt ? accepted_time_step(m, dt) : limit, machine.substeps};
   }
 
   /// To be called after a step: raises the sub-steps where joints open too far (close_joints.hpp). Bodies that touch
@@ -105,11 +131,11 @@ class Solver {
     if (m.parts().check_holds) m.parts().check_holds(m.parts(), time());
   }
 
-  /// Starts at `time` (s): the integrator's memory is filled from the forces at this state. `put_forces()` adds those
-  /// from outside (the grains) to the bodies. Throws Error if a stiffness has to be derived and no time step is known,
-  /// or a prescribed motion would have to jump.
+  /// Starts at `time` (s), for steps of dt (s; 0: not known): the integrator's memory is filled from the forces at this
+  /// state. `put_forces()` adds those from outside (the grains) to the bodies. Throws Error if a stiffness has to be
+  /// derived and no time step is known, or a prescribed motion would have to jump.
   template <class PutForces>
-  DEM_COLD void initialise(Mechanism& m, double time, const Vec3& gravity, PutForces&& put_forces) {
+  DEM_COLD void initialise(Mechanism& m, double time, double dt, const Vec3& gravity, PutForces&& put_forces) {
     Parts& parts = m.parts();
     const bool goes_on = is_initialised(m) && m.substeps > 1;
     if (design_dt_ <= 0.0) require_derived(parts);
@@ -117,7 +143,7 @@ class Solver {
     put_forces();
     stages_.begin(parts, time);
     check_motions(m);
-    const double step = design_dt_ / checked_substeps(m);  // 0 if none is known
+    const double step = dt / checked_substeps(m);
     if (parts.apply_motions) parts.apply_motions(parts, time, step, false);
     stages_.hold_joints(parts);
     if (!is_assembled_) assemble(m);
@@ -171,7 +197,8 @@ class Solver {
   /// All is well, or which joint stood open beyond joint_tolerance, and what keeps it closed.
   MachineReport report_of(const Mechanism& m, const JointOpening& worst) const {
     if (!(worst.share > 1.0)) return {true, time(), {}, {}, {}, {}};
-    return report_of_opening(m.parts(), worst, m.joint_tolerance, stages_.newest_step(), m.substeps, time());
+    return report_of_opening(m.parts(), worst, m.joint_tolerance, {stages_.newest_step(), design_dt_}, m.substeps,
+                             time());
   }
   /// What was changed of what the user gave (sub-steps, velocities at the start), and what of it is odd. Empty if
   /// nothing.
@@ -202,6 +229,13 @@ class Solver {
     substeps_ = m.substeps;
     revision_ = m.parts().revision;
     initialised_ = true;
+  }
+
+  /// Whether some stiffness was derived.
+  static bool has_derived(Parts& m) {
+    Parts given = without_derived(m);
+    const std::vector<double> now = StiffnessRamp::stiffness_of(m), of_given = StiffnessRamp::stiffness_of(given);
+    return !std::equal(now.begin(), now.end(), of_given.begin(), [](double a, double b) { return a <= 2.0 * b; });
   }
 
   static int checked_substeps(const Mechanism& m) {
