@@ -104,8 +104,9 @@ class World : public WorldGrains<M> {
   /// s; 0 until it is chosen, by prepare() or the first step, if WorldOptions::time_step is 0.
   double time_step() const { return state_.time_step; }
   /// s, from the next step on, as WorldOptions::time_step; 0: chosen anew, and 0 until then. Joints are as stiff as was
-  /// derived for the largest step so far; a still larger one makes them softer at once, and bodies sag. Sleep windows
-  /// count steps. Throws Error unless it is finite and not negative; prepare() refuses one that is too large.
+  /// derived for the largest step since there are any; a still larger one makes them softer at once, and bodies sag.
+  /// Sleep windows count steps. Throws Error unless it is finite and not negative; prepare() refuses one that is too
+  /// large.
   void set_time_step(double dt) {
     this->require_no_step("set_time_step");
     if (dt == state_.options.time_step && dt > 0.0) return;

@@ -172,6 +172,36 @@ TEST_CASE("the first joint of a world that has run is derived for the present ti
   CHECK(world.machine().substeps == grains.machine().substeps);
 }
 
+TEST_CASE("joints under load get stiffer by and by where parts that are added raise the sub-steps") {
+  dem::World<Balls> world;
+  set_sand(world, 0.4);
+  world.add_grain({.species = world.add_species(dem::shape::Sphere(1e-3)), .position = {0, 0, 10}});
+  auto& m = world.machine();
+  m.joint_tolerance = 1e-4;
+  const BodyId bob = m.add_body(dem::mbd::box_body("bob", {0.1, 0.1, 0.1}, 1000.0).at({0, 0, -1}));
+  const auto pin = m.add_joint(dem::mbd::fixed("pin", m.ground(), bob, {0, 0, -1}));
+  REQUIRE(world.run(1000));
+  const double first = m.joint(pin).k;
+  // A tonne that hangs from a hook of half a gram.
+  const BodyId hook = m.add_body(dem::mbd::given_body("hook", 5e-4, Vec3::Constant(1e-6)).at({5, 0, 0}));
+  m.add_joint(dem::mbd::fixed("eye", m.ground(), hook, {5, 0, 0}));
+  const BodyId block = m.add_body(dem::mbd::box_body("block", {1, 1, 1}, 1000.0).at({5, 0, -2}));
+  m.add_joint(dem::mbd::fixed("rope", hook, block, {5, 0, 0}));
+  double before = first;
+  for (int step = 0; step < 20; ++step) {
+    REQUIRE(world.run(1));
+    const double k = m.joint(pin).k;
+    CHECK(k <= (step == 0 ? 16.0 : 4.0) * 1.001 * before);  // it grows before the first step, too
+    // A spring that becomes four times as stiff pulls by three weights too much, until its body has moved. One that
+    // becomes 256 times as stiff throws it: at the end of the first step it pushes by five weights.
+    CHECK(std::abs(m.reaction(pin).force.z - 9.81) < 3.0 * 9.81);
+    before = k;
+  }
+  CHECK(m.substeps > 10);
+  CHECK(before > 100.0 * first);
+  CHECK(m.reaction(pin).force.z == Approx(9.81).epsilon(1e-3));
+}
+
 TEST_CASE("a given stiffness limits the automatic time step, together with what is derived on the same body") {
   // A block on a bushing of 1e4 N/m, without any margin: alone the bushing would be stable up to 2/omega, but the joint
   // that is derived on the same body adds to it.

@@ -58,8 +58,8 @@ class Solver {
   }
 
   /// Both, for steps of dt (s) of a world. Strained joints that became stiffer at once would throw what they hold. So
-  /// where the world has run, what was derived for a larger step stays as soft, and what gets stiffer does so by and
-  /// by.
+  /// where the world has run, what was derived for a larger step stays as soft, and what gets stiffer because
+  /// sub-steps are raised grows as StiffnessRamp says.
   DEM_COLD void design(Mechanism& m, double dt, const Vec3& gravity, bool has_run) {
     const std::vector<double> before = StiffnessRamp::stiffness_of(m.parts());
     design_for(m, has_run && has_derived(m.parts()) ? std::max(dt, design_dt_) : dt);
