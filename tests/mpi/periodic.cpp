@@ -1,6 +1,7 @@
 #include "scenes.hpp"
 
 #include <dem/domain/periodic_ranks.hpp>
+#include <dem/domain/sheared_ranks.hpp>
 #include <dem/geometry/cluster/sphere_cluster.hpp>
 #include <dem/integrator/velocity_verlet.hpp>
 
@@ -23,6 +24,13 @@ struct VerletAlone : dem::Model {
 };
 struct VerletShared : VerletAlone {
   using Domain = dem::domain::PeriodicRanks;
+};
+
+struct ShearedAlone : dem::Model {
+  using Domain = dem::domain::Sheared;
+};
+struct ShearedShared : ShearedAlone {
+  using Domain = dem::domain::ShearedRanks;
 };
 
 constexpr double length = 0.05, width = 0.01;  // m, of the cell
@@ -115,6 +123,28 @@ constexpr auto paddle = []<class Model>() {
   return world;
 };
 
+/// Balls in cells that go by each other, there and back.
+template <class Model>
+dem::World<Model> sheared_cell(int n) {
+  const double pitch = 1.7e-3;  // m
+  dem::World<Model> world({.gravity = dem::Vec3::Zero(),
+                           .domain = {{{0, 0, 0}, {25 * pitch, 5 * pitch, 10 * pitch}}},
+                           .periodic = {.x = true, .y = true, .z = true},
+                           .shear_rate = 400.0,
+                           .threads = threads_of<Model>()});
+  world.set_contact({.normal = {500, 0.2, 1.0}, .friction = {0.6, 500, 0.1, 0.975}});
+  pour(world, world.add_species(dem::shape::Sphere(0.8e-3)), n, 25, 5, pitch, 2.0);
+  return world;
+}
+constexpr auto shear = []<class Model>() {
+  auto world = sheared_cell<Model>(1250);
+  run(world, 600);
+  require(world.state().domain.offset() > 1.6e-3, "the cells did not go by");
+  world.set_shear_rate(-500.0);
+  run(world, 600);
+  return world;
+};
+
 }  // namespace
 
 bool periodic() {
@@ -127,7 +157,10 @@ bool periodic() {
   const bool goes = goes_on<PeriodicShared, PeriodicAlone>("periodic", []<class Model>(int n) {
     return cell<Model>(n, {6, 3, -9.81}, {}, 1.0);
   });
-  return flows && sleeps && changes && allows && rests && goes;
+  const bool shears = same_bits<ShearedShared, ShearedAlone>("shear", shear);
+  const bool shears_on = goes_on<ShearedShared, ShearedAlone>(
+      "shear", []<class Model>(int n) { return sheared_cell<Model>(n > 1000 ? 1250 : n); });
+  return shears && shears_on && flows && sleeps && changes && allows && rests && goes;
 }
 
 }  // namespace scenes

@@ -75,7 +75,8 @@ constexpr bool check_model() {
         { M::Domain::has_images } -> std::convertible_to<bool>;
         { M::Domain::has_ranks } -> std::convertible_to<bool>;
       },
-      "Domain: must be domain::Open, domain::Periodic, domain::Sheared, domain::Ranks or domain::PeriodicRanks");
+      "Domain: must be domain::Open, domain::Periodic, domain::Sheared, or what ranks share: domain::Ranks, "
+      "PeriodicRanks or ShearedRanks");
   integrator::check_integrator<typename M::Integrator>();
   exec::check_executor<typename M::Executor>();
   mbd::check_joint_policy<typename M::Joints>();

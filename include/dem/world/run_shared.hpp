@@ -74,6 +74,7 @@ domain::CallHashes hashes_of(const WorldState<Model>& world, const Compared& com
     for (std::size_t k = 0; k < 3; ++k) {
       for (const double x : {w.domain.low(k), w.domain.period()[k]}) options.mix(x);
     }
+    if constexpr (domain::IsSheared<typename Model::Domain>) options.mix(w.domain.shear_rate());
   }
   FieldHash materials, species, surfaces, machine;
   if (compared.set_up) {
