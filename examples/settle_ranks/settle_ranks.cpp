@@ -6,13 +6,17 @@
 // Writes settled.csv: positions and speeds of the grains, once, whatever the number of processes. With --bed bed.h5 the
 // settled bed is kept in that file (needs HDF5). If it is there the bed is taken from it and does not settle, with as
 // many processes as you like. All must see the file. --settle-gravity 98.1 (m/s^2) makes grains settle in fewer steps.
+// --tiles 100: a hundredth of the bed settles, repeating itself, and is laid a hundred times; a large bed is at rest
+// soon.
 
 #include "arguments.hpp"
 
 #include <dem/dem.hpp>
+#include <dem/domain/periodic_ranks.hpp>
 #include <dem/domain/ranks.hpp>
 #include <dem/io/checkpoint/world_columns.hpp>
 #include <dem/io/csv.hpp>
+#include <dem/soil/lay_tiles.hpp>
 
 #ifdef DEM_WITH_HDF5
 #include <dem/io/checkpoint.hpp>
@@ -36,50 +40,84 @@ struct Dice : Beads {
 };
 
 template <class Model>
+struct Repeated : Model {
+  using Domain = domain::PeriodicRanks;
+};
+
+template <class Model>
 void settle(const typename Model::Shape& grain, Arguments& arguments) {
   const int grains = static_cast<int>(arguments.number("--grains", 20000, "how many"));
   const int settle = static_cast<int>(arguments.number("--settle", 3000, "steps to settle"));
   const int steps = static_cast<int>(arguments.number("--steps", 300, "steps that are timed"));
   const int threads = static_cast<int>(arguments.number("--threads", 0, "of each process; 0: all"));
   const double settle_gravity = arguments.number("--settle-gravity", 9.81, "while grains settle [m/s^2]");
+  const int tiles =
+      static_cast<int>(arguments.number("--tiles", 0, "0, or how many tiles the bed is laid of, of which one settles"));
   const std::filesystem::path bed = arguments.take("--bed", "", "file that the settled bed is taken from, or kept in");
   const std::filesystem::path folder = arguments.take("--output", "settle_ranks_output", "folder for settled.csv");
   arguments.check();
 
   const double pitch = 2.2 * grain.bounding_radius();  // m
-  World<Model> world({.threads = threads});
-  world.set_contact({.normal = contact::LinearSpringDashpot::with_restitution(1000, 0.5), .friction = {0.4, 700, 0.1}});
   // Ten times as long as wide, some 20 grains deep.
   const int across = std::max(3, static_cast<int>(std::sqrt(grains / 200.0))), along = 10 * across;
   const double width = across * pitch, length = along * pitch;
-  const auto wall = [&](const Vec3& middle, const Vec3& edges) {
-    world.add_surface(world.ground(), surface::Box(edges), {.position = middle});
-  };
-  const double t = 0.01, h = 0.2;
-  wall({length / 2, width / 2, -t / 2}, {length + 2 * t, width + 2 * t, t});
-  for (const double side : {0.0, 1.0}) {
-    wall({side * length + (side - 0.5) * t, width / 2, h / 2}, {t, width + 2 * t, h});
-    wall({length / 2, side * width + (side - 0.5) * t, h / 2}, {length + 2 * t, t, h});
-  }
-  const SpeciesId species = world.add_species(grain, {.density = 2500});
-  for (int k = 0; k < grains; ++k) {
-    const int i = k % along, j = k / along % across, level = k / (along * across);
-    const double shake = 0.04 * std::sin(12.9898 * k);
-    world.add_grain({.species = species,
-                     .position = pitch * Vec3(i + 0.5 + shake, j + 0.5 - shake, level + 0.5),
-                     .rotation = Quaternion(1, 20 * shake, 0.3, -10 * shake).normalized().toRotationMatrix()});
+  if (tiles < 0 || (tiles > 0 && (along % tiles != 0 || grains % tiles != 0))) {
+    fail("--tiles {} must divide the length, {} grains, and --grains, {}", tiles, along, grains);
   }
 
-  const auto run = [&](int n) {
+  // Floor and walls; those at the ends only where the bed has no tiles, which hold themselves there.
+  const auto set_up = [&](auto& world) {
+    world.set_contact(
+        {.normal = contact::LinearSpringDashpot::with_restitution(1000, 0.5), .friction = {0.4, 700, 0.1}});
+    const auto wall = [&](const char* name, const Vec3& at, const Vec3& normal) {
+      const Mat3 rotation = Quaternion::FromTwoVectors(Vec3::UnitZ(), normal).toRotationMatrix();
+      world.add_surface(world.ground(), surface::Plane{}, {.name = name, .position = at, .rotation = rotation});
+    };
+    wall("floor", Vec3::Zero(), Vec3::UnitZ());
+    wall("right", Vec3::Zero(), Vec3::UnitY());
+    wall("left", {0, width, 0}, -Vec3::UnitY());
+    if (tiles == 0) {
+      wall("back", Vec3::Zero(), Vec3::UnitX());
+      wall("front", {length, 0, 0}, -Vec3::UnitX());
+    }
+    world.add_species(grain, {.density = 2500});
+  };
+  // n grains in layers of `row` times across.
+  const auto pour = [&](auto& world, int n, int row) {
+    for (int k = 0; k < n; ++k) {
+      const int i = k % row, j = k / row % across, level = k / (row * across);
+      const double shake = 0.04 * std::sin(12.9898 * k);
+      world.add_grain({.species = SpeciesId(0),
+                       .position = pitch * Vec3(i + 0.5 + shake, j + 0.5 - shake, level + 0.5),
+                       .rotation = Quaternion(1, 20 * shake, 0.3, -10 * shake).normalized().toRotationMatrix()});
+    }
+  };
+  const auto run = [](auto& world, int n) {
     const StepReport report = world.run(static_cast<std::uint64_t>(n));
     if (!report) fail("{}", report.text);
   };
   // More than the Earth's gravity saves steps; a fifth of them are done under that.
-  const auto come_to_rest = [&] {
+  const auto come_to_rest = [&](auto& world) {
     world.set_gravity({0, 0, -settle_gravity});
-    run(settle - settle / 5);
+    run(world, settle - settle / 5);
     world.set_gravity({0, 0, -9.81});
-    run(settle / 5);
+    run(world, settle / 5);
+  };
+  World<Model> world({.threads = threads});
+  set_up(world);
+  if (tiles > 0) held_twin(world, SpeciesId(0));  // of grains at both ends
+  const auto fill = [&] {
+    if (tiles == 0) {
+      pour(world, grains, along);
+      return come_to_rest(world);
+    }
+    World<Repeated<Model>> cell(
+        {.domain = {{{0, 0, -1}, {length / tiles, width, 1}}}, .periodic = {.x = true}, .threads = threads});
+    set_up(cell);
+    pour(cell, grains / tiles, along / tiles);
+    come_to_rest(cell);
+    soil::lay_tiles(world, soil::take_tile(cell), {.along_x = tiles, .rim = 2.0 * pitch});
+    run(world, 1);  // finds the first forces
   };
 #ifdef DEM_WITH_HDF5
   if (processes.of_first(!bed.empty() && exists(bed))) {
@@ -89,17 +127,17 @@ void settle(const typename Model::Shape& grain, Arguments& arguments) {
            world.grain_count());
     }
   } else {
-    come_to_rest();
+    fill();
     if (!bed.empty()) save(world, bed);
   }
 #else
   if (!bed.empty()) fail("--bed: this program was built without HDF5, which it needs to keep a bed");
-  come_to_rest();
+  fill();
 #endif
   const domain::Traffic before = world.state().domain.traffic();
   const std::uint64_t lists_before = world.state().rebuilds;
   const auto start = std::chrono::steady_clock::now();
-  run(steps);
+  run(world, steps);
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   const domain::Traffic after = world.state().domain.traffic();
   const auto& d = world.state().domain;

@@ -1,21 +1,10 @@
-#include "scenes.hpp"
-
-#include <dem/geometry/cluster/sphere_cluster.hpp>
-#include <dem/integrator/velocity_verlet.hpp>
+#include "cubes.hpp"
 
 #include <vector>
 
 namespace scenes {
 
 namespace {
-
-struct CubesAlone : dem::Model {
-  using Shape = dem::shape::SphereCluster<8>;
-  using Integrator = dem::integrator::VelocityVerlet;
-};
-struct CubesShared : CubesAlone {
-  using Domain = dem::domain::Ranks;
-};
 
 /// Cubes float and fall asleep. A block of triangles, which may have grains glued to it, flies into them, and a flap is
 /// pushed. Without glued grains chunks are moved in turn.

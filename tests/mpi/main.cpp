@@ -15,6 +15,7 @@ int main(int argc, char** argv) {
     if (scene == "spheres") same = scenes::spheres() && same;
     else if (scene == "cubes") same = scenes::cubes() && same;
     else if (scene == "periodic") same = scenes::periodic() && same;
+    else if (scene == "tiles") same = scenes::tiles() && same;
     else if (scene == "checkpoint") same = scenes::checkpoint() && same;
     else if (scene == "reports") same = scenes::reports() && same;
     else if (scene == "differ") same = scenes::differ() && same;
@@ -23,6 +24,7 @@ int main(int argc, char** argv) {
     else if (scene == "contacts_on_one") scenes::contacts_on_one();
     else if (scene == "columns_on_one") scenes::columns_on_one();
     else if (scene == "run_on_one") scenes::run_on_one();
+    else if (scene == "tiles_on_one") scenes::tiles_on_one();
     else if (scene == "mistake") scenes::mistake();
     else if (scene == "disagree") scenes::disagree();
     else if (scene == "steered") scenes::steered();

@@ -5,6 +5,7 @@ namespace scenes {
 bool spheres();   ///< fall into a box, are put in, taken out, added and removed by hand, also beside sleepers
 bool cubes();     ///< of eight spheres, with a machine, a mesh, grains that are held, and sleep
 bool periodic();  ///< cubes in a cell that repeats itself: they flow over its borders, sleep, and a paddle goes across
+bool tiles();     ///< beds of tiles, and a patch that goes along with a paddle, asleep and awake
 bool checkpoint();    ///< a state goes on from ranks to one process and back
 bool reports();       ///< what is reported of lost grains
 bool differ();        ///< ranks with different set-ups are told in what
@@ -18,5 +19,6 @@ bool caught();           ///< an exception on one rank, between steps, which is 
 void contacts_on_one();  ///< one rank looks at contacts
 void columns_on_one();   ///< one rank takes the state
 void run_on_one();       ///< one rank runs
+void tiles_on_one();     ///< one rank lays tiles
 
 }  // namespace scenes

@@ -14,7 +14,7 @@ namespace dem::domain {
 
 /// What ranks do together. Each of these begins with the same reduction, in which all ranks say what they do: ranks
 /// that do different things meet there, and would else wait for each other for ever.
-enum class Call : std::uint32_t { end, decide, prepare, first_forces, run, contacts, state, restore, rest };
+enum class Call : std::uint32_t { end, decide, prepare, first_forces, run, contacts, state, restore, rest, tiles };
 
 /// What a rank does, in words.
 constexpr const char* in_words(Call call) {
@@ -28,6 +28,7 @@ constexpr const char* in_words(Call call) {
     case Call::state: return "takes or saves a state";
     case Call::restore: return "loads a state";
     case Call::rest: return "looks for a machine's rest";
+    case Call::tiles: return "takes or lays tiles";
   }
   return "does something else";
 }

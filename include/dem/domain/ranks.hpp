@@ -30,11 +30,11 @@ namespace dem::domain {
 ///     }
 ///
 /// Calls that change or run a world are made on every rank, with the same arguments: prepare, step, run, run_for,
-/// find_rest, assemble, load and io::restore too. So are those that look at contacts or take the state: contacts_of,
-/// energy_of, averages of soil, files of contacts (write_vtk_contacts), replays with forces, save and io::columns_of.
-/// Ranks that make different ones of these calls, end the program, or have set up different worlds before the first
-/// step are all told so in words. What is steered later, set points and switches say, must be alike and is not
-/// compared. Queries of single grains work on any rank by itself, but only between runs.
+/// find_rest, assemble, lay_tiles, MovingPatch::follow, load and io::restore too. So are those that look at contacts or
+/// take the state: contacts_of, energy_of, take_tile, averages of soil, files of contacts (write_vtk_contacts), replays
+/// with forces, save and io::columns_of. Ranks that make different ones of these calls, end the program, or have set up
+/// different worlds before the first step are all told so in words. What is steered later, set points and switches say,
+/// must be alike and is not compared. Queries of single grains work on any rank by itself, but only between runs.
 ///
 /// At the end of step(), run() and run_for() every rank is told of all grains, which costs as much as a step or more.
 /// So give run() many steps.

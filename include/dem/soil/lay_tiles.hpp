@@ -90,8 +90,8 @@ TileLayer<Model> layer_of(World<Model>& world, const Tile& tile, const TileLayou
 /// about z, cut by the ground along x and y: a lane along x then meets the tile again only after sqrt(p^2 + q^2)
 /// periods of a square tile, with tan(turn) = p/q, or never.
 ///
-/// Several ranks cannot lay tiles. A bed for them is laid on one rank and saved; any number of ranks loads it
-/// (io/checkpoint.hpp). Where it has a rim, the program that loads it adds the held species as well: held_twin().
+/// Where ranks share the grains, all ranks call it at once, between runs. A bed that was laid and saved is loaded by a
+/// program that adds the held species of its rim as well: held_twin().
 ///
 /// Takes 40 bytes and a history a contact while it runs. Throws Error where tile, world and layout do not go together.
 template <class Model>

@@ -37,7 +37,7 @@ struct LengthEffect {
 /// they were. Grains of the rim at both ends are held: those at the front are laid so and let go when the next tile is
 /// laid before them, with what their contacts remember, those behind stand still where they are.
 ///
-/// It is of one process: ranks refuse it.
+/// Where ranks share the grains, every rank has the patch, and all make it follow at once, between runs.
 ///
 /// Ids of grains that left are given again to those that are laid; so an id is good as long as its grain is in the
 /// patch. Grains that left the world for other reasons give theirs too.
@@ -95,7 +95,7 @@ class MovingPatch {
   /// bed lies before `x` (m). To be called between steps, at least once a tile. Returns whether it did. Throws Error if
   /// the machine has run away from the patch.
   bool follow(World<Model>& world, double x) {
-    require_grains_here(world.state(), "a bed whose grains come or go");
+    require_between_runs(world.state(), "a bed whose grains come or go");
     const double length = tile_.period[0];
     if (!(x < front()))
       fail(

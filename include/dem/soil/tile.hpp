@@ -186,8 +186,9 @@ void measure_tile(Tile& t, const WorldState<Model>& w) {
 
 /// The grains of a world as a tile: of a world that repeats itself along x, y or both, but not along z. Where it does
 /// not, its walls belong to the bed: what is laid of the tile needs the same. Contacts with surfaces are known by the
-/// names of these. Grains that are held stay held. The world is not changed; it costs a copy of it. Throws Error for an
-/// open world or one without grains, and as World::prepare does.
+/// names of these. Grains that are held stay held. The world is not changed; it costs a copy of it. Where ranks share
+/// the grains, all ranks call it at once, between runs, and each gets the whole tile. Throws Error for an open world or
+/// one without grains, and as World::prepare does.
 ///
 ///     World<Sand> cell({.domain = surface::Aabb{{0, 0, -1}, {0.1, 0.1, 1}}, .periodic = {.x = true, .y = true}});
 ///     ...                                            // grains fall and come to rest
@@ -196,9 +197,8 @@ template <class Model>
 Tile take_tile(const World<Model>& world, const TileOptions& o = {}) {
   static_assert(Model::Domain::has_images && !domain::IsSheared<typename Model::Domain>,
                 "a tile is taken out of a world that repeats itself: domain::Periodic");
-  if constexpr (Model::Domain::has_ranks) {
-    if (world.state().domain.is_shared()) fail("a tile is asked for from a cell that ranks share: take it on one rank");
-  }
+  require_between_runs(world.state(), "a tile");
+  if constexpr (Model::Domain::has_ranks) check_agreement(world.state(), domain::Call::tiles);
   World<Model> copy = world;
   copy.prepare();
   WorldState<Model>& w = copy.state();
@@ -206,6 +206,7 @@ Tile take_tile(const World<Model>& world, const TileOptions& o = {}) {
   if (period[2] > 0.0) fail("a tile is asked for from a world that repeats itself along z, but a bed has a surface");
   if (copy.grain_count() == 0) fail("a tile is asked for from a world without grains; add some and let them settle");
   rebuild_neighbours(w);  // puts all grains into the cell
+  if constexpr (Model::Domain::has_ranks) complete_chunks(w);
   place_images(w);
   const auto& p = w.grains;
 

@@ -148,15 +148,17 @@ struct TileLayer {
     };
     std::vector<int> surface_of;  // of the tile's surfaces, in the world; -1: none
     for (const std::string& name : tile.surfaces) surface_of.push_back(find_surface(name));
+    std::size_t cell = 0;
     for (int b = ids.b0; b < ids.b0 + ids.nb; ++b) {
       for (int a = ids.a0; a < ids.a0 + ids.na; ++a) {
+        const bool is_told = is_told_here(w, cell++);
         for (std::size_t c = 0; c < tile.contacts.size(); ++c) {
           const TileContact& t = tile.contacts[c];
           const int to_a = next(0, a, t.x, ids.a0, ids.na), to_b = next(1, b, t.y, ids.b0, ids.nb);
           if (!ids.has(to_a, to_b)) continue;
           const std::size_t i = ids.at(a, b, t.i), j = ids.at(to_a, to_b, t.j);
           if (is_known(ids.is[i], ids.is[j])) continue;
-          carrier.add_pair(ids.id[i], ids.id[j], t.feature, turned(&tile.histories[c * size]));
+          if (is_told) carrier.add_pair(ids.id[i], ids.id[j], t.feature, turned(&tile.histories[c * size]));
           ++histories;
         }
         for (std::size_t c = 0; c < tile.on_surfaces.size(); ++c) {
@@ -166,7 +168,7 @@ struct TileLayer {
           if (surface < 0 || (ids.is[i] != InWorld::fresh && ids.is[i] != InWorld::held)) continue;
           if (w.species[w.grains.species[w.grains.row_of[ids.id[i]]]].is_held()) continue;  // feels no surface
           const grain::SurfaceKey key = grain::SurfaceKey::at_place(static_cast<std::size_t>(surface), 0, t.place);
-          carrier.add_surface(ids.id[i], key, turned(&tile.surface_histories[c * size]));
+          if (is_told) carrier.add_surface(ids.id[i], key, turned(&tile.surface_histories[c * size]));
           ++surface_histories;
         }
       }

@@ -2,6 +2,7 @@
 
 #include <dem/world/neighbours.hpp>
 #include <dem/world/release_ids.hpp>
+#include <dem/world/run_shared.hpp>
 #include <dem/world/sleep.hpp>
 
 namespace dem {
@@ -20,6 +21,16 @@ void list_between_steps(WorldState<Model>& w, List&& list) {
   w.stopwatch.stop(Phase::neighbours);
 }
 
+/// The same between two runs, after which every rank knows all grains and the bounds of all chunks.
+template <class Model, class List>
+void list_between_runs(WorldState<Model>& w, List&& list) {
+  list_between_steps(w, list);
+  if constexpr (Model::Domain::has_ranks) {
+    w.domain.is_whole = !w.domain.is_shared();
+    gather_rows(w);
+  }
+}
+
 /// What an integrator remembers of the grain of a new row: nothing touched it, so weight alone accelerates it.
 template <class Model>
 void begin_to_fall(WorldState<Model>& w, std::size_t row) {
@@ -30,19 +41,21 @@ void begin_to_fall(WorldState<Model>& w, std::size_t row) {
   p.set_memory(row, memory);
 }
 
-/// Lists neighbours anew between two steps, with grains that `change(histories)` puts in.
+/// Lists neighbours anew between two runs, with grains that `change(histories)` puts in: the same ones on every rank,
+/// which shares what they remember with the others (see is_told_here).
 template <class Model, class Change>
 void relist(WorldState<Model>& w, Change&& change) {
-  require_grains_here(w, "a bed whose grains come or go");
+  require_between_runs(w, "a bed whose grains come or go");
+  together(w, domain::Call::tiles, "as grains came or went",
+           [&] { list_between_runs(w, [&] { rebuild_neighbours(w, change); }); });
+}
+/// Whether this rank is the one that hands over what item number `n` of those that come remembers: each has its share.
+template <class Model>
+bool is_told_here([[maybe_unused]] const WorldState<Model>& w, [[maybe_unused]] std::size_t n) {
   if constexpr (Model::Domain::has_ranks) {
-    if (w.domain.is_shared()) {
-      fail(
-          "ranks do not share beds whose grains come or go with their contacts, as tiles do: lay tiles on one rank, "
-          "save "
-          "the world and load it on several; a moving patch stays on one");
-    }
+    return n % static_cast<std::size_t>(w.domain.ranks()) == static_cast<std::size_t>(w.domain.rank());
   }
-  list_between_steps(w, [&] { rebuild_neighbours(w, change); });
+  return true;
 }
 
 /// The species of grains that are held and are otherwise like those of `s`; made when the world has none.

@@ -195,6 +195,18 @@ void require_grains_here([[maybe_unused]] const WorldState<Model>& w, [[maybe_un
   }
 }
 
+/// Throws Error within a run that ranks share, when no rank knows all grains, or of an executor with memory of its own,
+/// which has them then.
+template <class Model>
+void require_between_runs(const WorldState<Model>& w, const char* what) {
+  if constexpr (Model::Domain::has_ranks) {
+    if (!w.domain.is_whole) {
+      fail("{} is asked for within a run, when no rank knows all grains; end the run first", what);
+    }
+  }
+  require_grains_here(w, what);
+}
+
 /// Whether the grain of this id sleeps, as far as this process knows.
 template <class Model>
 bool is_asleep(const WorldState<Model>& w, std::uint32_t id) {

@@ -282,11 +282,7 @@ class World : public WorldGrains<M> {
   void list_added() {
     if (!state_.grains_added) [[likely]]
       return;
-    list_between_steps(state_, [&] { rebuild_neighbours(state_); });
-    if constexpr (Model::Domain::has_ranks) {  // inlets look at the bounds of all chunks
-      state_.domain.is_whole = !state_.domain.is_shared();
-      gather_rows(state_);
-    }
+    list_between_runs(state_, [&] { rebuild_neighbours(state_); });  // inlets look at the bounds of all chunks
   }
   std::vector<MaterialId> used_materials() const {
     std::vector<MaterialId> used;

@@ -285,16 +285,7 @@ class WorldSetup {
     if (p.value >= grains.given) fail_unknown(p, grains.given, "grain");
     fail("grain {} is asked for, but it was removed", p.value);
   }
-  /// Throws Error within a run that ranks share, when no rank knows all grains, or of an executor with memory of its
-  /// own, which has them then.
-  void require_between_runs([[maybe_unused]] const char* what) const {
-    if constexpr (Model::Domain::has_ranks) {
-      if (!state_.domain.is_whole) {
-        fail("{} is asked for within a run, when no rank knows all grains; end the run first", what);
-      }
-    }
-    require_grains_here(what);
-  }
+  void require_between_runs(const char* what) const { dem::require_between_runs(state_, what); }
   void require_grains_here(const char* what) const { dem::require_grains_here(state_, what); }
   /// Throws Error where a step is under way.
   void require_no_step(const char* call) const {

@@ -31,13 +31,6 @@ void run_campaign(const Settings& settings, ShapeOf&& shape_of, Campaign& c, Ses
   const SoftLane<Model> test(settings, shape_of);
   const SoftLane<Repeating<Model>> of_tile(settings, shape_of);
   const Settings& s = test.settings();
-  if (Model::Domain::has_ranks && s.goes_along() && processes.count > 1) {
-    fail(
-        "--tiles is {}, but processes do not share a lane whose tiles come and go with the car; run this on one "
-        "process, "
-        "or give --tiles 0 and a --bed-length as long as the way",
-        s.tiles);
-  }
   const soil::Packing start =
       start_of_bed(s.bed, s.grains, test.shape().volume(), test.shape().bounding_radius(), s.goes_along());
   BedStore store(session, s.bed, s.grains, s.goes_along() ? BedStore::repeating : BedStore::fixed_box);

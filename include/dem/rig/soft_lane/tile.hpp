@@ -1,8 +1,8 @@
 #pragma once
 // A tile of a lane that goes along with the car.
 
-#include <dem/domain/periodic.hpp>
 #include <dem/rig/part_of.hpp>
+#include <dem/rig/processes.hpp>
 #include <dem/rig/soft_lane.hpp>
 
 namespace dem::rig::soft_lane {
@@ -10,7 +10,7 @@ namespace dem::rig::soft_lane {
 /// The same grains in a world that repeats itself.
 template <class Model>
 struct Repeating : Model {
-  using Domain = domain::Periodic;
+  using Domain = PeriodicDomain;
 };
 
 /// The levelled bed of one trough, which repeats itself, under both tracks, as they lie when they are at rest again; a
