@@ -2,6 +2,7 @@
 
 #include <dem/core/error.hpp>
 #include <dem/parallel/help.hpp>
+#include <dem/parallel/places.hpp>
 
 #include <algorithm>
 #include <atomic>
@@ -152,6 +153,7 @@ class Team {
     ranges_[static_cast<std::size_t>(member)].share = {done, processor_time() - began};
   }
   void serve(int member) {
+    use_all_places();
     for (std::uint32_t seen = 0;;) {
       int waited = 0;
       while (call_.load() == seen) {

@@ -4,6 +4,10 @@
 #include <dem/parallel/serial.hpp>
 #include <dem/parallel/threads.hpp>
 
+#if defined(_OPENMP) && defined(__linux__)
+#include <omp.h>
+#include <sched.h>
+#endif
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -119,6 +123,31 @@ TEST_CASE("an executor that is made in an OpenMP region of the program has one t
   CHECK(regions == 3);
   CHECK(wrong == 0);
   CHECK(dem::exec::Threads().threads() == outside);
+}
+#endif
+
+#if defined(_OPENMP) && defined(__linux__)
+// Run once more with OMP_PROC_BIND, which holds the first thread on one processor.
+TEST_CASE("a helper may use the processors of all of OpenMP's places") {
+  const auto count = [] {
+    cpu_set_t set;
+    return sched_getaffinity(0, sizeof(set), &set) == 0 ? CPU_COUNT(&set) : -1;
+  };
+  int expected = count();
+  if (omp_get_proc_bind() != omp_proc_bind_false) {
+    expected = 0;
+    for (int place = 0; place < omp_get_num_places(); ++place) expected += omp_get_place_num_procs(place);
+  }
+  dem::exec::Threads executor;
+  executor.set_threads(2);
+  std::atomic<int> of_helper = 0;
+  for (int call = 0; call < 1000 && of_helper == 0; ++call) {
+    executor.for_each(8, [&](std::size_t, int thread) {
+      if (thread != 0) of_helper = count();
+      std::this_thread::sleep_for(std::chrono::microseconds(200));
+    });
+  }
+  CHECK(of_helper == expected);
 }
 #endif
 
