@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # settle_ranks with a bed that is kept: one process settles it, two go on from the file to the state of a run that was not
-# broken off, and another number of grains is refused. What it refuses is told once, in words, and ends both with 1.
+# broken off, also where it is laid of tiles; another number of grains is refused. What it refuses is told once, in
+# words, and ends both with 1.
 #
 #   kept_bed.sh <mpiexec> <settle_ranks> <output folder>
 set -euo pipefail
@@ -23,6 +24,14 @@ if [ "$whole" != "$made" ] || [ "$whole" != "$taken" ]; then
   echo "unbroken: $whole; as the bed is kept: $made; on two processes from the file: $taken"
   exit 1
 fi
+# A bed of tiles that two processes lay is that of one, and goes on from the file.
+alone=$(on 1 alone --grains 1200 --tiles 5 --settle 2000)
+laid=$(on 2 laid --grains 1200 --tiles 5 --settle 2000 --bed "$output/tiles.h5")
+again=$(on 1 again --grains 1200 --tiles 5 --bed "$output/tiles.h5")
+if [ "$alone" != "$laid" ] || [ "$alone" != "$again" ]; then
+  echo "tiles of one process: $alone; of two: $laid; from the file: $again"
+  exit 1
+fi
 # refused <text> <options>...: two processes end in these words, with 1.
 refused() {
   local text=$1 status=0
@@ -35,6 +44,7 @@ refused() {
   fi
 }
 refused "has 600 grains, but --grains is 601" --grains 601 --bed "$output/bed.h5" --output "$output/refused"
+refused "tiles 7 must divide" --grains 1200 --tiles 7
 refused "settle_ranks: --grain is no option of this program" --grain 600
 # A file stands where the folder is to be, which the process that writes finds alone.
 touch "$output/file"
