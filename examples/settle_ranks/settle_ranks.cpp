@@ -6,8 +6,8 @@
 // Writes settled.csv: positions and speeds of the grains, once, whatever the number of processes. With --bed bed.h5 the
 // settled bed is kept in that file (needs HDF5). If it is there the bed is taken from it and does not settle, with as
 // many processes as you like. All must see the file. --settle-gravity 98.1 (m/s^2) makes grains settle in fewer steps.
-// --tiles 100: a hundredth of the bed settles, repeating itself, and is laid a hundred times; a large bed is at rest
-// soon.
+// --tiles 10: a tenth of the bed settles, repeating itself, and is laid ten times, so that a large bed is at rest soon.
+// A bed of tiles that was kept wants the same --tiles.
 
 #include "arguments.hpp"
 
@@ -61,8 +61,9 @@ void settle(const typename Model::Shape& grain, Arguments& arguments) {
   // Ten times as long as wide, some 20 grains deep.
   const int across = std::max(3, static_cast<int>(std::sqrt(grains / 200.0))), along = 10 * across;
   const double width = across * pitch, length = along * pitch;
-  if (tiles < 0 || (tiles > 0 && (along % tiles != 0 || grains % tiles != 0))) {
-    fail("--tiles {} must divide the length, {} grains, and --grains, {}", tiles, along, grains);
+  if (tiles < 0 || (tiles > 0 && (along % tiles != 0 || grains % tiles != 0 || along / tiles < 3))) {
+    fail("--tiles {} must divide the bed's length, {} grains, into tiles of 3 at least, and --grains, {}", tiles, along,
+         grains);
   }
 
   // Floor and walls; those at the ends only where the bed has no tiles, which hold themselves there.

@@ -20,5 +20,6 @@ void contacts_on_one();  ///< one rank looks at contacts
 void columns_on_one();   ///< one rank takes the state
 void run_on_one();       ///< one rank runs
 void tiles_on_one();     ///< one rank lays tiles
+void other_tiles();      ///< ranks lay different beds of tiles
 
 }  // namespace scenes

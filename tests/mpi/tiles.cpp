@@ -104,6 +104,13 @@ void tiles_on_one() {
   run(world, 10);
 }
 
+void other_tiles() {
+  const dem::soil::Tile tile = tile_of_cubes<CubesShared>();
+  dem::World<CubesShared> world;
+  set_up(world);
+  dem::soil::lay_tiles(world, tile, {.along_x = 4, .along_y = dem::processes.rank == 0 ? 3 : 4, .rim = 4e-3});
+}
+
 bool tiles() {
   ruts.clear();
   const bool goes = same_bits<CubesShared, CubesAlone>("patch", awake);

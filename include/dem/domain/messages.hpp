@@ -32,8 +32,8 @@ class Messages {
     MPI_Initialized(&is_running);
     if (!is_running) {
       fail(
-          "a world whose Domain is domain::Ranks or PeriodicRanks needs a domain::Session: make one at the start of "
-          "main()");
+          "a world whose Domain is domain::Ranks, PeriodicRanks or ShearedRanks needs a domain::Session: make one at "
+          "the start of main()");
     }
     rank_ = detail::rank_of_process();
     ranks_ = detail::count_of_ranks();

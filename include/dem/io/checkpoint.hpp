@@ -19,7 +19,7 @@ namespace dem {
 ///
 /// Where ranks share the grains, all ranks call it at once and rank 0 writes. The file does not tell how many ranks
 /// there were: any number of ranks goes on from it, and so does a world whose Domain is Open (Periodic after
-/// PeriodicRanks).
+/// PeriodicRanks, Sheared after ShearedRanks).
 ///
 /// `others` are what else the program needs to go on: structs with a member function `fields` (see io::Fields).
 ///

@@ -15,7 +15,8 @@ namespace dem::exec {
 
 /// Lets the calling thread use all of OpenMP's places. Where these are bound (OMP_PROC_BIND, OMP_PLACES), OpenMP holds
 /// the first thread of a program in one of them, and the threads that it starts inherit that: a whole team on one
-/// processor. Otherwise nothing is changed.
+/// processor. A thread that the program bound itself counts as bound by OpenMP then. Where OpenMP binds nothing,
+/// nothing is changed.
 inline void use_all_places() {
   if (omp_get_proc_bind() == omp_proc_bind_false) return;
   cpu_set_t processors;

@@ -90,8 +90,8 @@ TileLayer<Model> layer_of(World<Model>& world, const Tile& tile, const TileLayou
 /// about z, cut by the ground along x and y: a lane along x then meets the tile again only after sqrt(p^2 + q^2)
 /// periods of a square tile, with tan(turn) = p/q, or never.
 ///
-/// Where ranks share the grains, all ranks call it at once, between runs. A bed that was laid and saved is loaded by a
-/// program that adds the held species of its rim as well: held_twin().
+/// Where ranks share the grains, all ranks call it at once, between runs (not in goes_on() of one). A bed that was laid
+/// and saved is loaded by a program that adds the held species of its rim as well: held_twin().
 ///
 /// Takes 40 bytes and a history a contact while it runs. Throws Error where tile, world and layout do not go together.
 template <class Model>
@@ -116,7 +116,8 @@ LaidTiles lay_tiles(World<Model>& world, const Tile& tile, const TileLayout& o =
   w.materials.find_range(w.largest_radius);
   check_period(w);
   detail::TileIds ids(a0, a1 - a0, b0, b1 - b0, tile.grains.size());
-  relist(w, [&](grain::HistoryCarrier<Model>& histories) {
+  const auto asked = [&] { return detail::asked_of(tile, o.along_x, o.along_y, o.corner, o.turn, o.rim); };
+  relist(w, asked, [&](grain::HistoryCarrier<Model>& histories) {
     layer.lay(ids, a0, a1);
     layer.remember(ids, histories);
   });

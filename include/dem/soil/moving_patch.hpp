@@ -37,7 +37,8 @@ struct LengthEffect {
 /// they were. Grains of the rim at both ends are held: those at the front are laid so and let go when the next tile is
 /// laid before them, with what their contacts remember, those behind stand still where they are.
 ///
-/// Where ranks share the grains, every rank has the patch, and all make it follow at once, between runs.
+/// Where ranks share the grains, every rank has the patch, and all make it follow at once, between runs (not in
+/// goes_on() of one).
 ///
 /// Ids of grains that left are given again to those that are laid; so an id is good as long as its grain is in the
 /// patch. Grains that left the world for other reasons give theirs too.
@@ -274,7 +275,11 @@ class MovingPatch {
         for (std::size_t k = 0; k < tile_.grains.size(); ++k) let_go(w, layer, ids, first - 1, b, k);
       }
     }
-    relist(w, [&](grain::HistoryCarrier<Model>& histories) {
+    const auto asked = [&] {
+      return detail::asked_of(tile_, options_.corner, options_.along_y, options_.rim, tiles_, ahead_, begin_, end_,
+                              more);
+    };
+    relist(w, asked, [&](grain::HistoryCarrier<Model>& histories) {
       if (known > 0) {
         histories.forget_gone(p);
         release_ids(w);

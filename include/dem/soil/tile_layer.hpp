@@ -206,6 +206,15 @@ struct TileLayer {
   }
 };
 
+/// 64 bits that tell what is laid: the tile, and numbers that say where.
+template <class... Numbers>
+std::uint64_t asked_of(const Tile& tile, const Numbers&... where) {
+  std::uint64_t hash = fingerprint_of(tile.fingerprint(), tile.laws, tile.surfaces, where...);
+  for (const TileContact& c : tile.contacts) mix(hash, fingerprint_of(c.i, c.j, c.x, c.y, c.feature));
+  for (const TileSurfaceContact& c : tile.on_surfaces) mix(hash, fingerprint_of(c.grain, c.surface, c.place));
+  return hash;
+}
+
 /// Throws Error unless a world has the species that a tile's grains are of.
 template <class Model>
 void check_species(const WorldState<Model>& w, const Tile& tile) {

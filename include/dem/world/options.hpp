@@ -31,7 +31,7 @@ struct WorldOptions {
   std::optional<surface::Aabb> domain = {};           ///< where grains are expected; none: anywhere
   BeyondDomain beyond_domain = BeyondDomain::report;  ///< what becomes of a grain whose centre leaves it
   PeriodicAxes periodic = {};              ///< in which the domain repeats itself; for models with a periodic Domain
-  double shear_rate = 0.0;                 ///< 1/s, dv_x/dz; for models whose Domain is domain::Sheared
+  double shear_rate = 0.0;                 ///< 1/s, dv_x/dz; for models with a sheared Domain
   int threads = 0;                         ///< 0: as many as the executor offers
   std::optional<SleepOptions> sleep = {};  ///< lets grains at rest sleep, so that they cost next to nothing
 };

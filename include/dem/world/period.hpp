@@ -45,8 +45,8 @@ void set_period(WorldState<Model>& w) {
   if (!domain::IsSheared<typename Model::Domain> && w.options.shear_rate != 0.0) {
     fail(
         "WorldOptions::shear_rate is {:g} 1/s, but the world's model is not sheared: say `using Domain = "
-        "dem::domain::Sheared;` in the model",
-        w.options.shear_rate);
+        "dem::domain::{};` in the model",
+        w.options.shear_rate, Model::Domain::has_ranks ? "ShearedRanks" : "Sheared");
   }
 }
 

@@ -42,12 +42,16 @@ void begin_to_fall(WorldState<Model>& w, std::size_t row) {
 }
 
 /// Lists neighbours anew between two runs, with grains that `change(histories)` puts in: the same ones on every rank,
-/// which shares what they remember with the others (see is_told_here).
-template <class Model, class Change>
-void relist(WorldState<Model>& w, Change&& change) {
+/// which shares what they remember with the others (see is_told_here). `asked()` is a number that tells which: ranks
+/// compare it.
+template <class Model, class Asked, class Change>
+void relist(WorldState<Model>& w, [[maybe_unused]] Asked&& asked, Change&& change) {
   require_between_runs(w, "a bed whose grains come or go");
-  together(w, domain::Call::tiles, "as grains came or went",
-           [&] { list_between_runs(w, [&] { rebuild_neighbours(w, change); }); });
+  detail::Compared compared;
+  if constexpr (Model::Domain::has_ranks) compared = {.asked = asked(), .grains = w.grains_added};
+  together(
+      w, domain::Call::tiles, "as grains came or went",
+      [&] { list_between_runs(w, [&] { rebuild_neighbours(w, change); }); }, compared);
 }
 /// Whether this rank is the one that hands over what item number `n` of those that come remembers: each has its share.
 template <class Model>

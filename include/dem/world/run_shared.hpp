@@ -120,9 +120,10 @@ void check_agreement(const WorldState<Model>& w, domain::Call call, const detail
 /// f(), in which ranks that share a world tell each other things: all ranks begin it together, and exceptions end all
 /// of them. `where` they were, in words.
 template <class Model, class F>
-auto together(const WorldState<Model>& w, domain::Call call, const char* where, F&& f) {
+auto together(const WorldState<Model>& w, domain::Call call, const char* where, F&& f,
+              [[maybe_unused]] const detail::Compared& compared = {}) {
   if constexpr (Model::Domain::has_ranks) {
-    check_agreement(w, call);
+    check_agreement(w, call, compared);
     return w.domain.guarded(where, f);
   } else {
     return f();
