@@ -5,7 +5,7 @@ namespace scenes {
 bool spheres();   ///< fall into a box, are put in, taken out, added and removed by hand, also beside sleepers
 bool cubes();     ///< of eight spheres, with a machine, a mesh, grains that are held, and sleep
 bool periodic();  ///< cubes in a cell that repeats itself: they flow over its borders, sleep, and a paddle goes across
-bool tiles();     ///< beds of tiles, and a patch that goes along with a paddle, asleep and awake
+bool tiles();     ///< beds of tiles, and a patch that goes along with a plough, asleep and awake
 bool checkpoint();    ///< a state goes on from ranks to one process and back
 bool reports();       ///< what is reported of lost grains
 bool differ();        ///< ranks with different set-ups are told in what
