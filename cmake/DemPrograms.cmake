@@ -64,7 +64,7 @@ endfunction()
 
 # dem_needs_mpi(<out> <source>...): whether one of the sources includes a header that needs MPI.
 function(dem_needs_mpi out)
-  dem_includes(needs "mpi\\.h|dem/domain/(messages|periodic_ranks|ranks|session)\\.hpp" ${ARGN})
+  dem_includes(needs "mpi\\.h|dem/domain/(messages|periodic_ranks|ranks|session|sheared_ranks)\\.hpp" ${ARGN})
   set(${out} ${needs} PARENT_SCOPE)
 endfunction()
 
