@@ -26,6 +26,7 @@ int main(int argc, char** argv) {
     else if (scene == "run_on_one") scenes::run_on_one();
     else if (scene == "tiles_on_one") scenes::tiles_on_one();
     else if (scene == "other_tiles") scenes::other_tiles();
+    else if (scene == "added_before_tiles") scenes::added_before_tiles();
     else if (scene == "mistake") scenes::mistake();
     else if (scene == "disagree") scenes::disagree();
     else if (scene == "steered") scenes::steered();

@@ -15,11 +15,12 @@ void disagree();      ///< ranks that change different things
 void steered();       ///< ranks that give a motor different speeds between runs
 
 // Two ranks in different calls.
-bool caught();           ///< an exception on one rank, between steps, which is caught
-void contacts_on_one();  ///< one rank looks at contacts
-void columns_on_one();   ///< one rank takes the state
-void run_on_one();       ///< one rank runs
-void tiles_on_one();     ///< one rank lays tiles
-void other_tiles();      ///< ranks lay different beds of tiles
+bool caught();              ///< an exception on one rank, between steps, which is caught
+void contacts_on_one();     ///< one rank looks at contacts
+void columns_on_one();      ///< one rank takes the state
+void run_on_one();          ///< one rank runs
+void tiles_on_one();        ///< one rank lays tiles
+void other_tiles();         ///< ranks lay different beds of tiles
+void added_before_tiles();  ///< ranks have added grains at different places before
 
 }  // namespace scenes

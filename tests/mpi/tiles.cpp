@@ -111,6 +111,16 @@ void other_tiles() {
   dem::soil::lay_tiles(world, tile, {.along_x = 4, .along_y = dem::processes.rank == 0 ? 3 : 4, .rim = 4e-3});
 }
 
+void added_before_tiles() {
+  const dem::soil::Tile tile = tile_of_cubes<CubesShared>();
+  dem::World<CubesShared> world;
+  set_up(world);
+  world.add_grain({.species = dem::SpeciesId(0), .position = {0, 0, 0.1}});
+  run(world, 1);
+  world.add_grain({.species = dem::SpeciesId(0), .position = {0, 0, dem::processes.rank == 0 ? 0.2 : 0.21}});
+  dem::soil::lay_tiles(world, tile, {.along_x = 4, .along_y = 4, .rim = 4e-3});
+}
+
 bool tiles() {
   ruts.clear();
   const bool goes = same_bits<CubesShared, CubesAlone>("patch", awake);
