@@ -7,8 +7,8 @@ namespace scenes {
 namespace {
 
 /// Cubes float and fall asleep. A block of triangles, which may have grains glued to it, flies into them, and a flap is
-/// pushed. Without glued grains chunks are moved in turn.
-template <bool is_glued>
+/// pushed. Without glued grains chunks are moved in turn. Energy may be counted.
+template <bool is_glued, bool counts = false>
 constexpr auto machine_on_cubes = []<class Model>() {
   dem::World<Model> world(
       {.gravity = {0, 0, 0},
@@ -30,7 +30,13 @@ constexpr auto machine_on_cubes = []<class Model>() {
   world.add_surface(block, dem::surface::TriangleMesh(dem::mesh::box({8e-3, 8e-3, 8e-3})));
   for (const double x : is_glued ? std::vector{0.027, 0.033} : std::vector<double>{})
     world.attach(world.add_grain({held, {x, depth / 2, 0.0195}}), block);
+  if (counts) count_energy(world);
   run(world, 900);
+  if (counts) {
+    const dem::GrainEnergy e = energy_of(world);
+    require(e.by_surfaces > 0.0 && e.dissipated() > 0.0,
+            dem::text("energy was not counted: {:g} {:g} {:g} J", e.by_surfaces, e.dissipated(), e.dissipated_asleep));
+  }
   require(world.asleep_count() > 0, "no grain sleeps");
   require(world.asleep_count() < world.grain_count(), "all grains sleep");
   return world;
@@ -51,7 +57,8 @@ constexpr auto rain_of_cubes = []<class Model>() {
 bool cubes() {
   const bool glued = same_bits<CubesShared, CubesAlone>("glued", machine_on_cubes<true>);
   const bool free = same_bits<CubesShared, CubesAlone>("free", machine_on_cubes<false>);
-  return same_bits<CubesShared, CubesAlone>("rain", rain_of_cubes) && glued && free;
+  const bool counted = same_bits<CubesShared, CubesAlone>("counted", machine_on_cubes<true, true>);
+  return same_bits<CubesShared, CubesAlone>("rain", rain_of_cubes) && glued && free && counted;
 }
 
 }  // namespace scenes

@@ -30,6 +30,7 @@ int main(int argc, char** argv) {
     else if (scene == "mistake") scenes::mistake();
     else if (scene == "disagree") scenes::disagree();
     else if (scene == "steered") scenes::steered();
+    else if (scene == "other_shear") scenes::other_shear();
     else dem::fail("there is no scene '{}'", scene);
   }
   return same ? 0 : 1;

@@ -82,6 +82,14 @@ dem::World<Model> rest(int n, std::uint64_t steps) {
   require(steps == 0 || world.asleep_count() < world.grain_count(), "all grains sleep");
   return world;
 }
+/// Energy is counted as they come to rest: that of motion, which those that fall asleep lose, too.
+constexpr auto counted = []<class Model>() {
+  auto world = rest<Model>(1500, 0);
+  count_energy(world);
+  run(world, 3000);
+  require(energy_of(world).dissipated_asleep > 0.0, "no grain lost its motion as it fell asleep");
+  return world;
+};
 /// As it is before the next list is made.
 constexpr auto changed = []<class Model>() {
   auto world = rest<Model>(1500, 6000);
@@ -147,20 +155,34 @@ constexpr auto shear = []<class Model>() {
 
 }  // namespace
 
+void other_shear() {
+  auto world = sheared_cell<ShearedShared>(1250);
+  run(world, 10);
+  const auto& d = world.state().domain;
+  world.set_shear_rate(d.rank() == d.ranks() - 1 ? 401.0 : 402.0);
+  run(world, 10);
+}
+
 bool periodic() {
   const bool flows = same_bits<PeriodicShared, PeriodicAlone>("flow", flow);
   const bool sleeps = same_bits<PeriodicShared, PeriodicAlone>("paddle", paddle);
   const bool changes = same_bits<VerletShared, VerletAlone>("changed", changed);
   const bool allows = same_bits<VerletShared, VerletAlone>("allowed", allowed_again);
+  const bool counts = same_bits<VerletShared, VerletAlone>("counted", counted);
   const bool rests = goes_on<VerletShared, VerletAlone>(
       "rest", []<class Model>(int n) { return rest<Model>(n, n > 1000 ? 6000 : 0); });
+  const bool counts_on = goes_on<VerletShared, VerletAlone>("counted", []<class Model>(int n) {
+    auto world = rest<Model>(n, n > 1000 ? 6000 : 0);
+    count_energy(world);
+    return world;
+  });
   const bool goes = goes_on<PeriodicShared, PeriodicAlone>("periodic", []<class Model>(int n) {
     return cell<Model>(n, {6, 3, -9.81}, {}, 1.0);
   });
   const bool shears = same_bits<ShearedShared, ShearedAlone>("shear", shear);
   const bool shears_on = goes_on<ShearedShared, ShearedAlone>(
       "shear", []<class Model>(int n) { return sheared_cell<Model>(n > 1000 ? 1250 : n); });
-  return shears && shears_on && flows && sleeps && changes && allows && rests && goes;
+  return shears && shears_on && counts && counts_on && flows && sleeps && changes && allows && rests && goes;
 }
 
 }  // namespace scenes

@@ -2,6 +2,7 @@
 
 namespace scenes {
 
+// Some scenes of these count energy too.
 bool spheres();   ///< fall into a box, are put in, taken out, added and removed by hand, also beside sleepers
 bool cubes();     ///< of eight spheres, with a machine, a mesh, grains that are held, and sleep
 bool periodic();  ///< cubes in a cell that repeats itself: they flow over its borders, sleep, and a paddle goes across
@@ -13,6 +14,7 @@ bool differ_later();  ///< ranks that steer the machine differently between runs
 void mistake();       ///< an exception on one rank
 void disagree();      ///< ranks that change different things
 void steered();       ///< ranks that give a motor different speeds between runs
+void other_shear();   ///< ranks that shear a cell at different rates
 
 // Two ranks in different calls.
 bool caught();              ///< an exception on one rank, between steps, which is caught

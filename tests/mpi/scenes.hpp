@@ -9,10 +9,12 @@
 #include <dem/geometry/mesh/mesh_shapes.hpp>
 #include <dem/io/checkpoint/world_columns.hpp>
 #include <dem/world/contacts.hpp>
+#include <dem/world/energy.hpp>
 
 #include <cstdint>
 #include <cstdio>
 #include <string>
+#include <vector>
 
 namespace scenes {
 
@@ -113,6 +115,8 @@ bool same_bits(const char* name, const Scene& scene) {
   // Otherwise nothing was shared. A rank may be without work where most of the grains sleep.
   const double at_work = d.total(d.own().second > d.own().first ? 1.0 : 0.0);
   require(at_work > 1.0 || !d.is_shared(), "one rank has all chunks");
+  const std::uint64_t mine = dem::io::hash_of(columns);
+  for (const std::uint64_t other : d.gathered(std::vector{mine})) require(other == mine, "ranks have other states");
   if (d.rank() != 0) return true;
   const dem::World<Alone> alone = scene.template operator()<Alone>();
   const dem::io::StateColumns expected = dem::io::columns_of(alone);

@@ -31,13 +31,15 @@ constexpr auto changing = []<class Model>() {
 };
 
 /// Grains of two sizes float and fall asleep. A few are pushed, and wake others; some are taken out on the way. Later
-/// all are gone within a run, and new ones come.
+/// all are gone within a run, and new ones come. Energy may be counted.
+template <bool counts>
 constexpr auto emptied = []<class Model>() {
   auto world = box_of_spheres<Model>(900, 0.0);
   const auto small = world.add_species(dem::shape::Sphere(0.7e-3));
   pour(world, small, 600, 14, 9, 2.1e-3, 0.0, 0.018);
   world.set_gravity({0, 0, 0});
   world.set_sleep(dem::SleepOptions{.balance = 0.2, .change = 0.2, .jolt = 0.2, .motion = 0.01, .window = 20});
+  if (counts) count_energy(world);
   run(world, 100);
   require(world.asleep_count() > 1000, "hardly a grain sleeps");
   for (std::uint32_t k = 5; k < 1500; k += 100) world.set_velocity(dem::GrainId(k), {2, 1, k < 900 ? 1.0 : -3.0});
@@ -102,7 +104,8 @@ bool reports() {
 }
 
 bool spheres() {
-  const bool same = same_bits<Shared, Alone>("emptied", emptied) && same_bits<Shared, Alone>("beside", beside);
+  const bool same = same_bits<Shared, Alone>("emptied", emptied<false>) && same_bits<Shared, Alone>("beside", beside) &&
+                    same_bits<Shared, Alone>("counted", emptied<true>);
   return same_bits<Shared, Alone>("spheres", changing) && same;
 }
 

@@ -17,7 +17,7 @@ namespace dem::domain {
 /// What a rank has sent so far, how long it took, and how evenly work is cut now.
 struct Traffic {
   std::uint64_t step_bytes = 0;  ///< handed over within steps: motion and loads of borders, sums
-  std::uint64_t list_bytes = 0;  ///< handed over when neighbours were listed or a run ended
+  std::uint64_t list_bytes = 0;  ///< handed over when neighbours were listed or a run ended; rows to count energy
   double step_seconds = 0.0;     ///< s, within steps: packing, sending, and waiting for others
   double list_seconds = 0.0;     ///< s, the same
   double imbalance = 1.0;        ///< of the last cut: most counted work of a rank, over the mean of all

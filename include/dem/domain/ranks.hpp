@@ -31,10 +31,11 @@ namespace dem::domain {
 ///
 /// Calls that change or run a world are made on every rank, with the same arguments: prepare, step, run, run_for,
 /// find_rest, assemble, lay_tiles, MovingPatch::follow, load and io::restore too. So are those that look at contacts or
-/// take the state: contacts_of, energy_of, take_tile, averages of soil, files of contacts (write_vtk_contacts), replays
-/// with forces, save and io::columns_of. Ranks that make different ones of these calls, end the program, or have set up
-/// different worlds before the first step are all told so in words. What is steered later, set points and switches say,
-/// must be alike and is not compared. Queries of single grains work on any rank by itself, but only between runs.
+/// take the state: contacts_of, count_energy, energy_of, take_tile, averages of soil, files of contacts
+/// (write_vtk_contacts), replays with forces, save and io::columns_of. Ranks that make different ones of these calls,
+/// end the program, or have set up different worlds before the first step are all told so in words. What is steered
+/// later, set points and switches say, must be alike and is not compared. Queries of single grains work on any rank by
+/// itself, but only between runs.
 ///
 /// At the end of step(), run() and run_for() every rank is told of all grains, which costs as much as a step or more.
 /// So give run() many steps.
@@ -43,11 +44,11 @@ namespace dem::domain {
 /// then anyway. A list that was made earlier, because the work is uneven, would depend on the number of ranks, and so
 /// would the bits.
 ///
-/// Within a run a rank works on its own chunks alone. When neighbours are listed it sorts its own grains, sends those
-/// that have another owner now, and hears of the grains of chunks that its own may touch. Where machine parts hold
-/// grains or inlets put some in, in periodic cells, and with a broad phase other than UniformGrid, all ranks tell each
-/// other all positions instead.
-/// Between runs every rank has the rows of all grains, some 400 bytes each: that bounds how many grains they can share.
+/// Within a run a rank works on its own chunks alone, unless energy is counted. When neighbours are listed it sorts its
+/// own grains, sends those that have another owner now, and hears of the grains of chunks that its own may touch. Where
+/// machine parts hold grains or inlets put some in, in periodic cells, and with a broad phase other than UniformGrid,
+/// all ranks tell each other all positions instead. Between runs every rank has the rows of all grains, some 400 bytes
+/// each: that bounds how many grains they can share.
 class Ranks : public Messages {
  public:
   static constexpr bool has_images = false, has_ranks = true;

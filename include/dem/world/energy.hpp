@@ -1,6 +1,7 @@
 #pragma once
 
 #include <dem/world/contacts.hpp>
+#include <dem/world/gather.hpp>
 
 #include <limits>
 
@@ -96,12 +97,34 @@ void record_contacts(WorldState<Model>& w, std::size_t c, ContactScratch<Model>&
   }
 }
 
+/// Appends the contacts of a step, in the order of chunks; where ranks share the grains those of all.
+template <class Model>
+void append_contacts(const WorldState<Model>& w, std::vector<grain::ContactWork>& to) {
+  const auto [begin, end] = w.own_chunks();
+  for (std::size_t c = begin; c < end; ++c) to.insert(to.end(), w.chunks[c].work.begin(), w.chunks[c].work.end());
+  if constexpr (Model::Domain::has_ranks) to = w.domain.gathered(to);
+}
+
+/// Every rank knows how all grains move. What else it has of other ranks' rows stays old.
+template <class Model>
+void gather_motion(WorldState<Model>& w) {
+  if (!w.domain.is_shared()) return;
+  gather_names(w);
+  auto& p = w.grains;
+  const auto gather = [&](Columns3& columns) {
+    columns.for_each_column([&](AlignedVector<double>& column) { w.domain.gather_chunks(column.data(), chunk_size); });
+  };
+  gather(p.position), gather(p.velocity), gather(p.local_angular_velocity);
+  if (p.has_orientation) gather(p.row0), gather(p.row1), gather(p.row2);
+}
+
 /// Counts the work of a step, at its end. The work of a force is its product with the mean of the velocities at the
 /// step's start and end, which is what the grain's kinetic energy gains. Integrators that evaluate where a step ends
 /// take the mean of its forces at both ends.
 template <class Model>
 void count_step(WorldState<Model>& w) {
   grain::EnergyLedger& ledger = w.ledger;
+  if constexpr (Model::Domain::has_ranks) gather_motion(w);
   const auto& p = w.grains;
   struct Mean {
     Vector3<double> velocity, angular_velocity;  // m/s, rad/s, global
@@ -166,10 +189,9 @@ void count_step(WorldState<Model>& w) {
     for (const grain::ContactWork& c : ledger.last) add(c, 0.5 * dt);
   }
   ledger.last.clear();
-  for (const Chunk<Model>& chunk : w.chunks) {
-    for (const grain::ContactWork& c : chunk.work) add(c, share * dt);
-    if (at_end) ledger.last.insert(ledger.last.end(), chunk.work.begin(), chunk.work.end());
-  }
+  append_contacts(w, ledger.last);
+  for (const grain::ContactWork& c : ledger.last) add(c, share * dt);
+  if (!at_end) ledger.last.clear();
 }
 
 }  // namespace detail
@@ -181,6 +203,14 @@ void count_step(WorldState<Model>& w) {
 template <class Model>
 GrainEnergy energy_of(const World<Model>& world) {
   const WorldState<Model>& w = world.state();
+  if constexpr (Model::Domain::has_ranks) {
+    if (!w.domain.is_whole) {  // within a run: a copy gets to know all grains
+      check_agreement(w, domain::Call::contacts);
+      World<Model> copy = world;
+      gather_rows(copy.state());
+      return energy_of(copy);
+    }
+  }
   GrainEnergy e;
   for (std::size_t row = 0; row < w.grains.count; ++row) {
     if (w.grains.row_of[w.grains.id[row]] == w.grains.gone) continue;
@@ -207,21 +237,19 @@ GrainEnergy energy_of(const World<Model>& world) {
 /// Counts from now on, while the world runs, what contacts dissipate and what machine parts do on the grains; energy_of
 /// tells it. What a contact dissipates is the work that went into it, less what its springs store. The run itself is
 /// the same bits as without; the work is added up on one thread after each step. Changes by hand (set_velocity,
-/// set_position, set_contact) are not counted: call it again after them. Throws Error as prepare() does.
+/// set_position, set_contact) are not counted: call it again after them. Throws Error as prepare() does. Where ranks
+/// share the grains, all ranks call it at once, between runs. In each step they are then told how all grains move and
+/// all contacts, and each rank adds up all of them.
 ///
 ///     count_energy(world);
 ///     world.run_for(1.0);
 ///     const GrainEnergy e = energy_of(world);   // e.balance() is what it was
 template <class Model>
 void count_energy(World<Model>& world) {
-  if constexpr (Model::Domain::has_ranks) {
-    if (world.state().domain.is_shared()) {
-      fail("count_energy adds up every contact of a step, which no rank has alone: run it on one rank");
-    }
-  }
   if constexpr (domain::IsSheared<typename Model::Domain>) {
     fail("count_energy does not know the work that shears a cell; count it by the stress times the shear rate");
   }
+  require_between_runs(world.state(), "that energy is counted");
   world.prepare();
   WorldState<Model>& w = world.state();
   w.ledger = {};

@@ -1,7 +1,7 @@
 #pragma once
 
-// What ranks tell each other between steps and when neighbours are listed (domain::Ranks): all of it by all ranks at
-// once.
+// What ranks tell each other between steps, when neighbours are listed and as energy is counted (domain::Ranks): all of
+// it by all ranks at once.
 
 #include <dem/world/state.hpp>
 

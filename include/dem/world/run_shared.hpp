@@ -27,8 +27,8 @@ struct Compared {
 
 /// The parts of a world by which ranks tell each other what differs.
 inline constexpr const char* parts_of_a_world[] = {
-    "the time, how many grains or other things there are, which inlets are open, what was changed, or what is asked",
-    "options",
+    "the time, how many grains or other things there are, open inlets, what was changed or counted, or what is asked",
+    "options or the shear rate",
     "materials or contact constants",
     "species",
     "surfaces",
@@ -47,7 +47,7 @@ domain::CallHashes hashes_of(const WorldState<Model>& world, const Compared& com
     size.mix(std::uint64_t{n});
   }
   for (const std::uint64_t n : {compared.asked, w.step, std::uint64_t{w.list_valid}, std::uint64_t{compared.set_up},
-                                std::uint64_t{compared.grains}}) {
+                                std::uint64_t{compared.grains}, std::uint64_t{w.ledger.on}}) {
     size.mix(n);
   }
   for (const auto& inlet : w.inlets) size.mix(std::uint64_t{inlet.is_open()});
@@ -113,7 +113,7 @@ void check_agreement(const WorldState<Model>& w, domain::Call call, const detail
       "the ranks do not have the same world, or ask different things of it: at t = {:g} s they differ in {}; set it "
       "up, "
       "change and run it alike on every rank, with no random numbers or clocks of each rank's own. Queries of single "
-      "grains may be made on one rank; contacts_of, energy_of, averages, save, ... on all ranks",
+      "grains may be made on one rank; contacts_of, count_energy, energy_of, averages, save, ... on all ranks",
       w.time, detail::parts_of_a_world[part]);
 }
 

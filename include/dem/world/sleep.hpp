@@ -250,6 +250,34 @@ void choose_working_chunks(WorldState<Model>& w) {
   s.all_work = false;
 }
 
+/// Counts the motion of grains that fell asleep in this step. Ranks tell each other of theirs.
+template <class Model>
+void count_stopped(WorldState<Model>& w) {
+  std::vector<double> stopped;  // J, of the chunks
+  for (const std::uint32_t c : w.sleepers.working) stopped.push_back(w.chunks[c].stopped);
+  if constexpr (Model::Domain::has_ranks) {
+    struct Sleeper {
+      double energy;  // J, of the grain afterwards
+      std::uint32_t id, padding;
+    };
+    std::vector<Sleeper> sleepers;
+    for (const std::uint32_t c : w.sleepers.working) {
+      const std::size_t end = std::min((c + 1) * chunk_size, w.grains.count);
+      for (std::size_t i = c * chunk_size; w.chunks[c].changed && i < end; ++i) {
+        const std::uint32_t id = w.grains.id[i];
+        const bool fell_asleep = (w.sleepers.doing[i] & (grain::awake | grain::changed)) == grain::changed;
+        if (fell_asleep) sleepers.push_back({w.ledger.energy[id], id, 0});
+      }
+    }
+    stopped = w.domain.gathered(stopped);
+    for (const Sleeper& s : w.domain.gathered(sleepers)) {
+      w.ledger.stop(s.id, 0.0);
+      w.ledger.energy[s.id] = s.energy;
+    }
+  }
+  for (const double motion : stopped) w.ledger.stopped += motion;
+}
+
 /// At the end of a step: wakes what is disturbed, and puts to sleep what rests.
 template <class Model>
 void wake_and_put_to_sleep(WorldState<Model>& w) {
@@ -297,8 +325,8 @@ void wake_and_put_to_sleep(WorldState<Model>& w) {
       if (s.doing[i] & grain::awake) chunk.asleep = false;
     }
   });
-  if (!w.ledger.on) return;
-  for (const std::uint32_t c : s.working) w.ledger.stopped += w.chunks[c].stopped;
+  if (w.ledger.on && s.measuring) [[unlikely]]
+    count_stopped(w);
 }
 
 }  // namespace dem

@@ -264,6 +264,10 @@ void settle_restored(WorldState<Model>& w, bool is_checked) {
   for (std::size_t c = 0; c < std::min(w.chunks.size(), w.grains.chunks()); ++c) {
     grain::refresh_chunk<Model>(c, w.chunks[c], w.grains, w.species);
   }
+  for (const grain::ContactWork& c : w.ledger.last) {  // sleepers' contacts stay counted until they are evaluated again
+    const std::size_t row = w.grains.row_of.at(c.i);
+    if (row != w.grains.gone && row / chunk_size < w.chunks.size()) w.chunks[row / chunk_size].work.push_back(c);
+  }
   if constexpr (Model::Domain::has_ranks) share_chunks(w);
   if (!w.list_valid || w.chunks.empty()) return;
   if constexpr (Model::Domain::has_images) {
