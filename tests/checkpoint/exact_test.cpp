@@ -7,6 +7,8 @@
 #include <dem/world/contacts.hpp>
 #include <dem/world/energy.hpp>
 
+#include <algorithm>
+
 namespace exact_test {
 
 namespace {
@@ -177,6 +179,18 @@ TEST_CASE("a bed in which some grains sleep goes on where it was saved, and the 
   }
   CHECK(mixed > 20);
   for (const GrainId p : whole.grains()) CHECK(counted.position(p) == whole.position(p));
+
+  // Contacts of chunks that sleep are not evaluated any more, but still counted.
+  REQUIRE(counted.run(3000));
+  const auto& chunks = counted.state().chunks;
+  REQUIRE(std::any_of(chunks.begin(), chunks.end(), [](const auto& c) { return c.asleep; }));
+  dem::save(counted, folder / "counted.h5");
+  dem::World<VerletCubes> again(with_sleep(1));
+  set_up(again);
+  dem::count_energy(again);
+  dem::load(again, folder / "counted.h5");
+  for (auto* w : {&counted, &again}) REQUIRE(w->run(1));
+  CHECK(difference(counted, again) == "");
 }
 
 TEST_CASE("energy that is counted goes on where it was saved") {
