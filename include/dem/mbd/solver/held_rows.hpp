@@ -6,6 +6,7 @@
 
 #include <dem/core/macros.hpp>
 #include <dem/mbd/drive/jacobian.hpp>
+#include <dem/mbd/joint/align.hpp>
 #include <dem/mbd/joint/locked_shafts.hpp>
 
 #include <cstdint>
@@ -31,44 +32,6 @@ inline HeldRow row_of(const Coordinate& q, std::uint32_t a, std::uint32_t b, dou
   if (b != JacobianRow::no_body) row.sides.push_back({b, push_on_b(q)});
   if (a != JacobianRow::no_body) row.sides.push_back({a, push_on_a(q)});
   return row;
-}
-
-/// The directions, global, in which a joint holds the rotation of b against a.
-template <class F>
-void for_each_held_rotation(const Joint& j, Align align, const Matrix3<double>& A, const Matrix3<double>& B, F&& each) {
-  switch (align) {
-    case Align::locked: each(A * j.axes_a.z); [[fallthrough]];
-    case Align::parallel:
-      each(A * j.axes_a.x);
-      each(A * j.axes_a.y);
-      break;
-    case Align::cross: each(normalised(cross(B * j.axes_b.y, A * j.axes_a.x))); break;
-    case Align::constant_velocity: each(normalised(A * j.axes_a.z + B * j.axes_b.z)); break;
-    case Align::bushing:
-    case Align::nothing: break;
-  }
-}
-
-/// The small rotation (rad, global) by which b is off what a joint holds.
-inline Vector3<double> rotation_off(const Joint& j, Align align, const Matrix3<double>& A, const Matrix3<double>& B) {
-  using V = Vector3<double>;
-  const V xa = A * j.axes_a.x, ya = A * j.axes_a.y, za = A * j.axes_a.z;
-  const V xb = B * j.axes_b.x, yb = B * j.axes_b.y, zb = B * j.axes_b.z;
-  switch (align) {
-    case Align::locked: return 0.5 * (cross(xa, xb) + cross(ya, yb) + cross(za, zb));
-    case Align::parallel: return cross(za, zb);
-    case Align::cross: {
-      const V g = cross(yb, xa);
-      return (dot(xa, yb) / max(dot(g, g), 1e-6)) * g;
-    }
-    case Align::constant_velocity: {
-      const V g = 0.5 * (cross(xb, ya) - cross(yb, xa));
-      return (0.5 * (dot(ya, xb) - dot(xa, yb)) / max(dot(g, g), 1e-6)) * g;
-    }
-    case Align::bushing:
-    case Align::nothing: break;
-  }
-  return {0, 0, 0};
 }
 
 /// The rows of a joint: of displacements if `holds`, of rotations if `aligns`.

@@ -249,19 +249,7 @@ class RigidRows {
     } else {
       for_each_held_axis(j, traits.hold, [&](const V& axis) { displacement(A * axis); });
     }
-    switch (traits.align) {
-      case Align::locked: rotation(A * j.axes_a.z); [[fallthrough]];
-      case Align::parallel:
-        rotation(A * j.axes_a.x);
-        rotation(A * j.axes_a.y);
-        break;
-      case Align::cross: rotation(cross(B * j.axes_b.y, A * j.axes_a.x)); break;
-      case Align::constant_velocity:
-        rotation(0.5 * (cross(B * j.axes_b.x, A * j.axes_a.y) - cross(B * j.axes_b.y, A * j.axes_a.x)));
-        break;
-      case Align::bushing:
-      case Align::nothing: break;
-    }
+    for_each_rotation_row(j, traits.align, A, B, rotation);
   }
   /// How far the joint is off along each of its rows, in their order: the rows are these errors' gradients.
   template <class F>
@@ -274,26 +262,7 @@ class RigidRows {
     } else {
       for_each_held_axis(j, traits.hold, [&](const V& axis) { put(dot(A * axis, d), per_metre); });
     }
-    if (traits.align == Align::nothing) return;
-    const V xa = A * j.axes_a.x, ya = A * j.axes_a.y, za = A * j.axes_a.z;
-    const V xb = B * j.axes_b.x, yb = B * j.axes_b.y, zb = B * j.axes_b.z;
-    switch (traits.align) {
-      case Align::locked: {
-        const V turn = 0.5 * (cross(xa, xb) + cross(ya, yb) + cross(za, zb));
-        put(dot(za, turn), 1.0);
-        put(dot(xa, turn), 1.0);
-        put(dot(ya, turn), 1.0);
-        break;
-      }
-      case Align::parallel:  // za x zb along xa and ya
-        put(-dot(ya, zb), 1.0);
-        put(dot(xa, zb), 1.0);
-        break;
-      case Align::cross: put(dot(xa, yb), 1.0); break;
-      case Align::constant_velocity: put(0.5 * (dot(ya, xb) - dot(xa, yb)), 1.0); break;
-      case Align::bushing:
-      case Align::nothing: break;
-    }
+    for_each_rotation_error(j, traits.align, A, B, [&](double error) { put(error, 1.0); });
   }
 
   std::vector<Item> items_;
