@@ -23,6 +23,9 @@ namespace dem {
 /// grows; a sleeping grain is out of balance by their sum at the most, in the mean. Each layer of a bed adds to that:
 /// the floor under nine layers has been seen to be 5 % behind, and 23 % with a `change` of 0.05. Waves of less than
 /// `jolt` end at grains that sleep: so half as many are awake around a blade.
+///
+/// All grains wake when gravity or these options get another value, at any call of set_contact, and when a surface is
+/// switched on or off. A function that is called each step should not do that: nothing would ever sleep.
 struct SleepOptions {
   double balance = 0.01;  ///< of what a grain bears
   double change = 0.01;   ///< of what a grain bears
@@ -30,6 +33,8 @@ struct SleepOptions {
   double motion = 1e-4;   ///< of a grain's bounding radius; rad
   int window = 100;       ///< steps
   int mean = 100;         ///< steps
+
+  bool operator==(const SleepOptions&) const = default;
 };
 
 /// Throws Error for options that make no sense.

@@ -42,7 +42,7 @@ mbd::RestReport find_rest(World<Model>& world, const mbd::RestOptions& options =
                                                             });
   });
   if constexpr (Model::Domain::has_ranks) gather_rows(w);
-  world.set_gravity(w.options.gravity);  // what integrators remember of forces is out of date, and grains may wake
+  world.evaluate_anew();
   return report;
 }
 
@@ -56,7 +56,7 @@ const mbd::AssemblyReport& assemble(World<Model>& world) {
   auto& parts = w.machine.parts();
   if (parts.apply_motions) parts.apply_motions(parts, w.time, 0.0, false);
   w.machine_solver.whole().assemble(w.machine);
-  world.set_gravity(w.options.gravity);  // what integrators remember of velocities is out of date
+  world.evaluate_anew();
   return w.machine_solver.whole().assembly();
 }
 

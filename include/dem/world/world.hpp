@@ -119,10 +119,16 @@ class World : public WorldGrains<M> {
   /// Throws Error unless n >= 1. Results do not depend on it.
   void set_threads(int n) { state_.executor.set_threads(n); }
   int threads() const { return state_.executor.threads(); }
-  /// m/s^2, from the next step on. Throws Error unless it is finite.
+  /// m/s^2, from the next step on. Another gravity wakes all grains. Throws Error unless it is finite.
   void set_gravity(const Vec3& g) {
     require_finite(g, "gravity");
+    if (g == state_.options.gravity) return;
     state_.options.gravity = g;
+    evaluate_anew();
+  }
+  /// Forces are evaluated anew before the next step, what integrators remember of them is forgotten, and all grains
+  /// wake: for what changed velocities or poses between two steps.
+  void evaluate_anew() {
     wake_all(state_);
     initialised_ = false;
   }
@@ -148,8 +154,10 @@ class World : public WorldGrains<M> {
     initialised_ = false;
   }
 
-  /// Lets grains at rest sleep from now on, or wakes all for good. Throws Error if a setting makes no sense.
+  /// Lets grains at rest sleep from now on, or wakes all for good. Another setting wakes all at first. Throws Error if
+  /// a setting makes no sense.
   void set_sleep(const std::optional<SleepOptions>& sleep) {
+    if (sleep == state_.options.sleep) return;
     if (sleep) check_sleep(*sleep);
     if (sleep && state_.grain_load) fail("grains that have a load law (set_grain_load) cannot sleep");
     if (domain::IsSheared<typename Model::Domain> && sleep) fail("grains of a sheared cell cannot sleep");

@@ -68,7 +68,8 @@ class WorldSetup {
     return SpeciesId(state_.species.size() - 1);
   }
 
-  /// Contact constants for every pair of materials that has none of its own. Throws Error if one makes no sense.
+  /// Contact constants for every pair of materials that has none of its own. Wakes all grains. Throws Error if one
+  /// makes no sense.
   void set_contact(const Parameters& p) {
     require_no_step("set_contact");
     require_grains_here("a change of contact constants");
@@ -76,7 +77,7 @@ class WorldSetup {
     wake_all(state_);
     checked_ = false;
   }
-  /// Contact constants for one pair of materials, named. Throws Error if one makes no sense.
+  /// Contact constants for one pair of materials, named. Wakes all grains. Throws Error if one makes no sense.
   void set_contact(std::string_view a, std::string_view b, const Parameters& p) {
     require_no_step("set_contact");
     require_grains_here("a change of contact constants");

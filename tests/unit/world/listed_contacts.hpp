@@ -33,7 +33,7 @@ struct SumOfContacts {
 template <class Model>
 std::array<int, 3> check_listed(dem::World<Model>& w) {
   dem::World<Model> evaluated = w, untouched = w;
-  evaluated.set_gravity(evaluated.state().options.gravity);  // forces at the present state are due
+  evaluated.evaluate_anew();
   evaluated.prepare();
 
   std::map<std::uint32_t, SumOfContacts> grains, surfaces, pairs;

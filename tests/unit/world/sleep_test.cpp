@@ -146,6 +146,14 @@ TEST_CASE("a sleeper wakes where its neighbour is given a velocity, and a whole 
   Towers bed(true);
   REQUIRE(bed.w.run_for(0.07));
   REQUIRE(bed.w.asleep_count() == bed.grains.size());
+  SECTION("nobody by what is as it was") {
+    bed.w.set_gravity(bed.w.state().options.gravity);
+    bed.w.set_sleep(dem::SleepOptions{});
+    REQUIRE(bed.w.run(1));
+    CHECK(bed.w.asleep_count() == bed.grains.size());
+    bed.w.set_sleep(dem::SleepOptions{.window = 50});
+    CHECK(bed.w.asleep_count() == 0);
+  }
   SECTION("a velocity") {
     bed.w.set_velocity(bed.grains[4], {0, 0, 0.1});
     CHECK(!bed.w.is_asleep(bed.grains[5]));  // it stands on the one that jumps
