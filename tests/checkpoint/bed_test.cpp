@@ -100,3 +100,26 @@ TEST_CASE("a bed that is left at any of its stages goes on from a file on other 
           dem::load(other.world, folder / "bed.h5", other.bed);
         }).find("densify time is 0.1 s in the saved state, but 0.2 s in this program") != std::string::npos);
 }
+
+TEST_CASE("a bed that was saved is refused where other shares of grains are put into it") {
+  const Folder folder;
+  struct Mixed {
+    dem::World<Balls> world{{.time_step = 1.5e-5}};
+    dem::soil::Bed<Balls> bed;
+    explicit Mixed(double share)
+        : bed(
+              [&]() -> dem::World<Balls>& {
+                world.set_contact({{2000.0, 0.05, 1.0}, {0.5, 1000.0, 0.02, 1.0}});
+                return world;
+              }(),
+              dem::soil::Container::cylinder(0.0085), mixture(share), pressed_bed) {}
+    dem::Mixture mixture(double share) {
+      const auto large = world.add_species(Sphere(1e-3)), small = world.add_species(Sphere(8e-4));
+      return dem::Mixture({{large, share}, {small, 1.0 - share}});
+    }
+  };
+  Mixed saved(0.7), same(0.7), other(0.05);
+  dem::save(saved.world, folder / "bed.h5", saved.bed);
+  CHECK(error_of([&] { dem::load(same.world, folder / "bed.h5", same.bed); }) == "");
+  CHECK(error_of([&] { dem::load(other.world, folder / "bed.h5", other.bed); }).find("mixture") != std::string::npos);
+}

@@ -28,15 +28,19 @@ namespace dem::soil {
 ///     save(world, "bed.h5");                                        // of <dem/io/checkpoint.hpp>
 ///
 /// A program that starts from such a file makes the world and the Bed, which adds the walls, the lid and the inlet of
-/// the rain, and calls load(world, "bed.h5") in place of make(). The lid is a body of the machine; when the bed is made
-/// it stands still where it was, and touches nothing. The inlet is closed then.
+/// the rain, and calls load(world, "bed.h5") in place of make(); the Bed does not know that it is made then, and make()
+/// would fill it again. load(world, "bed.h5", bed) of a file that was saved with the bed tells it. The lid is a body of
+/// the machine; when the bed is made it stands still where it was, and touches nothing. The inlet is closed then.
 ///
 /// A bed may be saved on its way as well, with its own fields:
 ///
 ///     bed.make(set_friction, [&] { if (is_time()) save(world, "bed.h5", bed); });
 ///     ...
 ///     load(world, "bed.h5", bed);        // in another run of the program
-///     bed.make(set_friction, look);      // goes on, and ends in the same bits
+///     bed.make(set_friction, look);      // goes on, and ends in the same bits; nothing is left to do where it was
+///     made
+///
+/// A Bed refers to its world, which must stay where it is.
 template <class Model>
 class Bed {
  public:

@@ -116,6 +116,7 @@ class BedFilling {
 
   template <class V>
   void fields(V& v) {
+    v.given("mixture", draw_);
     v("random", random_), v("raining", raining_);
   }
 

@@ -19,7 +19,7 @@
 namespace dem::io {
 
 /// The version of what is in such a file. It grows whenever a field comes, goes or changes its meaning.
-inline constexpr std::uint64_t checkpoint_schema = 13;
+inline constexpr std::uint64_t checkpoint_schema = 14;
 
 namespace detail {
 
@@ -92,6 +92,7 @@ inline void seal(const std::filesystem::path& path) {
 /// Throws Error unless the file is as it was sealed, and of the schema that this version reads.
 inline void check_seal(const std::filesystem::path& path) {
   std::error_code error;
+  if (std::filesystem::is_directory(path, error)) fail("cannot load '{}': it is a folder, not a file", path.string());
   if (!std::filesystem::is_regular_file(path, error)) fail("cannot load '{}': there is no such file", path.string());
   const Descriptor file(path, O_RDONLY);
   std::string line(Seal::size, '\0');

@@ -8,6 +8,57 @@
 
 namespace dem::io::detail {
 
+inline void append(std::vector<double>& list, const Vector3<double>& x) { list.insert(list.end(), {x.x, x.y, x.z}); }
+inline Vector3<double> vector_at(const std::vector<double>& list, std::size_t k) {
+  return {list.at(k), list.at(k + 1), list.at(k + 2)};
+}
+
+/// What is known of resting grains, by id: a column for each quantity.
+DEM_COLD inline void rest_fields(Fields& v, std::vector<grain::Rest>& grains) {
+  const bool is_restoring = v.task() == Fields::Task::restore;
+  const auto vectors = [&](const char* name, const char* unit, auto&& of) {
+    std::vector<double> list;
+    if (!is_restoring) {
+      for (grain::Rest& r : grains) append(list, of(r));
+    }
+    v.copied(name, ColumnKind::real, 3, list, unit);
+    if (!is_restoring) return;
+    grains.resize(list.size() / 3);
+    for (std::size_t k = 0; k < grains.size(); ++k) of(grains[k]) = vector_at(list, 3 * k);
+  };
+  const auto values = [&]<class T>(const char* name, ColumnKind kind, T, auto&& of, const char* unit = "") {
+    std::vector<T> list;
+    if (!is_restoring) {
+      for (grain::Rest& r : grains) list.push_back(of(r));
+    }
+    v.copied(name, kind, 1, list, unit);
+    if (!is_restoring) return;
+    for (std::size_t k = 0; k < grains.size(); ++k) of(grains[k]) = list.at(k);
+  };
+  using grain::Rest;
+  vectors(
+      "resting/position", "m", [](Rest & r) -> auto& { return r.position; });
+  vectors(
+      "resting/force", "N", [](Rest & r) -> auto& { return r.force; });
+  vectors(
+      "resting/torque", "N m", [](Rest & r) -> auto& { return r.torque; });
+  vectors(
+      "resting/force_since", "N", [](Rest & r) -> auto& { return r.more_force; });
+  vectors(
+      "resting/torque_since", "N m", [](Rest & r) -> auto& { return r.more_torque; });
+  vectors(
+      "resting/facing0", "", [](Rest & r) -> auto& { return r.facing.first; });
+  vectors(
+      "resting/facing1", "", [](Rest & r) -> auto& { return r.facing.second; });
+  values(
+      "resting/borne", ColumnKind::real, 0.0, [](Rest & r) -> auto& { return r.borne; }, "N");
+  const std::uint8_t byte = 0;
+  values(
+      "resting/quiet_windows", ColumnKind::byte, byte, [](Rest & r) -> auto& { return r.quiet_windows; });
+  values(
+      "resting/asleep", ColumnKind::byte, byte, [](Rest & r) -> auto& { return r.asleep; });
+}
+
 /// Who sleeps, what wakes them, and the loads that go on while they sleep. To be called when the chunks have their
 /// candidates.
 template <class Model>
@@ -22,21 +73,11 @@ void sleep_fields(Fields& v, WorldState<Model>& w) {
   if (is_restoring) w.options.sleep = may_sleep ? std::optional(o) : std::nullopt;
   if (!may_sleep || v.task() == Fields::Task::compare) return;
 
-  constexpr std::size_t width = 24, kept_width = 12, load_width = 6;
-  std::vector<double> rests, kept, surface_loads, deepest;
+  constexpr std::size_t kept_width = 12, load_width = 6;
+  std::vector<double> kept, surface_loads, deepest;
   std::vector<std::uint32_t> surface_count, surfaces, deepest_of;
   std::vector<std::uint8_t> doing;  // of grains: their images are told of it
-  const auto append = [](std::vector<double>& list, const Vector3<double>& x) {
-    list.insert(list.end(), {x.x, x.y, x.z});
-  };
   if (!is_restoring) {
-    for (const grain::Rest& r : s.grains) {
-      for (const auto* x :
-           {&r.position, &r.force, &r.torque, &r.more_force, &r.more_torque, &r.facing.first, &r.facing.second}) {
-        append(rests, *x);
-      }
-      rests.insert(rests.end(), {r.borne, double(r.quiet_windows), double(r.asleep)});
-    }
     const std::size_t rows = std::min(s.doing.size(), w.chunks.size() * chunk_size);
     doing.assign(s.doing.begin(), s.doing.begin() + static_cast<std::ptrdiff_t>(rows));
     for (std::size_t i = 0; i < s.kept_force.x.size(); ++i)
@@ -52,7 +93,7 @@ void sleep_fields(Fields& v, WorldState<Model>& w) {
       }
     }
   }
-  v.copied("resting", ColumnKind::real, width, rests);
+  rest_fields(v, s.grains);
   v("borne", s.borne, "N");
   v.copied("doing", ColumnKind::byte, 1, doing);
   v.copied("kept_loads", ColumnKind::real, kept_width, kept, "N, N m");
@@ -64,22 +105,6 @@ void sleep_fields(Fields& v, WorldState<Model>& w) {
   if (!is_restoring) return;
 
   s.doing = doing;
-  const auto vector_at = [](const std::vector<double>& list, std::size_t k) {
-    return Vector3<double>{list.at(k), list.at(k + 1), list.at(k + 2)};
-  };
-  s.grains.resize(rests.size() / width);
-  for (std::size_t k = 0; k < s.grains.size(); ++k) {
-    const std::size_t at = k * width;
-    s.grains[k] = {vector_at(rests, at),
-                   vector_at(rests, at + 3),
-                   vector_at(rests, at + 6),
-                   vector_at(rests, at + 9),
-                   vector_at(rests, at + 12),
-                   {vector_at(rests, at + 15), vector_at(rests, at + 18)},
-                   rests[at + 21],
-                   static_cast<std::uint8_t>(rests[at + 22]),
-                   rests[at + 23] != 0.0};
-  }
   const std::size_t rows = kept.size() / kept_width;
   std::size_t at = 0;
   for (Columns3* x : {&s.kept_force, &s.kept_torque, &s.surface_force, &s.surface_torque}) {
