@@ -112,7 +112,8 @@ class RigidWheel {
     auto& world = stand.bed.world;
     if (processes.count == 1) world.set_threads(1);  // slips go side by side
     auto& m = world.machine();
-    const double interval = s.sample_interval(), speed = (1.0 - result.slip) * s.rim_speed(), duration = s.duration();
+    const double interval = s.sample_interval(), speed = (1.0 - result.slip) * s.rim_speed(),
+                 duration = s.duration_at(result.slip);
     rigid_wheel::Rolling n{world.time(), m.coordinate(stand.rail), m.coordinate(stand.axle)};
     const auto stage = stages.enter(world, n, [&] {
       m.set_target(stand.drive, smooth_start(speed, s.ramp_time, n.start, n.rail));

@@ -34,8 +34,8 @@ void roll(const RigidWheel<Model>& test, const typename RigidWheel<Model>::Stand
   for (const double slip : s.slips) result.slips.push_back({.slip = slip});
   const std::size_t shown = is_run ? shown_slip(s.slips) : s.slips.size();
   if (s.replay && is_run)
-    replay.emplace(
-        report::ReplayOptions{.frames = 80, .interval = s.duration() / 60.0, .force_lines = s.replay_forces});
+    replay.emplace(report::ReplayOptions{
+        .frames = 80, .interval = s.duration_at(s.slips[shown]) / 60.0, .force_lines = s.replay_forces});
   const int threads = s.bed.threads > 0 ? s.bed.threads : std::max(1, omp_get_max_threads());
   session.begin("roll", static_cast<double>(s.slips.size()));
   side_by_side(s.slips.size(), threads, session, [&](std::size_t k, SharedStages& stages) {

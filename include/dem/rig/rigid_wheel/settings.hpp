@@ -31,7 +31,8 @@ struct Settings {
   double motor_stiffness = 1e5;  ///< N m/rad, of the wheel's: gives by 0.2 mrad under 20 N m. Damped critically
   double spin_deg = 0.0;         ///< deg/s; 0: by size
   std::vector<double> slips;     ///< empty: by size
-  double path = 0.0;             ///< m, that the rim turns in a run; 0: by size
+  double travel = 0.0;           ///< m, that the wheel travels in a run, its rim at most four times as far; 0: by size
+  double path = 0.0;             ///< m, that the rim turns in each run; 0: as `travel` says
   double ramp_time = 0.05;       ///< s, of the smooth start
   double set_down_speed = 0.05;  ///< m/s
 
@@ -43,14 +44,18 @@ struct Settings {
   std::uint64_t replay_forces = 2000;  ///< force chains of a frame of the replay, the largest; 0: none
   bool vtk = true;
 
-  [[nodiscard]] double spin() const { return spin_deg * std::numbers::pi / 180.0; }       ///< rad/s
-  [[nodiscard]] double rim_speed() const { return spin() * radius; }                      ///< m/s
-  [[nodiscard]] double duration() const { return path / rim_speed() + 0.5 * ramp_time; }  ///< s
+  [[nodiscard]] double spin() const { return spin_deg * std::numbers::pi / 180.0; }  ///< rad/s
+  [[nodiscard]] double rim_speed() const { return spin() * radius; }                 ///< m/s
+  /// m, that the rim turns at a slip.
+  [[nodiscard]] double path_at(double slip) const { return path > 0.0 ? path : travel / std::max(1.0 - slip, 0.25); }
   /// m, that the carriage travels at a slip.
-  [[nodiscard]] double travel(double slip) const { return (1.0 - slip) * path; }
+  [[nodiscard]] double travel_at(double slip) const { return (1.0 - slip) * path_at(slip); }
+  /// s, of a run.
+  [[nodiscard]] double duration_at(double slip) const { return path_at(slip) / rim_speed() + 0.5 * ramp_time; }
   /// m, where all runs start: the longest one ends as far from the middle of the bed.
-  [[nodiscard]] double start() const { return -0.5 * travel(slips.front()); }
-  [[nodiscard]] double sample_interval() const { return duration() / 400.0; }  ///< s
+  [[nodiscard]] double start() const { return -0.5 * travel_at(slips.front()); }
+  /// s, of all runs: the shortest, which is that of the least slip, has 400 samples.
+  [[nodiscard]] double sample_interval() const { return duration_at(slips.front()) / 400.0; }
   /// m, of the wheel with its grousers.
   [[nodiscard]] double outer_radius() const { return radius + (wheel == "grousers" ? grouser_height : 0.0); }
 };
@@ -82,7 +87,8 @@ inline void declare(Options& options, Settings& s) {
   add("--motor-stiffness", s.motor_stiffness, "of the actuator that turns the wheel [N m/rad]");
   add("--spin", s.spin_deg, "[deg/s]; 0: by size");
   add("--slips", s.slips, "s = 1 - v/(omega r), e.g. -0.3,0,0.1,0.3; table 5.3 of the thesis has -0.7 to 0.7");
-  add("--path", s.path, "that the rim turns in a run [m]; 0: by size");
+  add("--travel", s.travel, "of the wheel in a run [m], while its rim turns at most four times as far; 0: by size");
+  add("--path", s.path, "that the rim turns in each run [m]; 0: as --travel says");
   add("--ramp-time", s.ramp_time, "smooth start of a run [s]");
   add("--set-down-speed", s.set_down_speed, "of the load servo [m/s]");
   add("--soil", s.soil,
@@ -98,6 +104,7 @@ inline void find_idle(IdleOptions& idle, const Settings& s) {
   rig::find_idle(idle, s.bed);
   find_idle_replay(idle, s);
   find_idle_study(idle, s.study);
+  idle.unless(s.path == 0.0, "without --path", {"--travel"});
   idle.unless(s.wheel == "grousers", "with --wheel grousers",
               {"--grousers", "--grouser-height", "--grouser-thickness"});
 }
@@ -106,23 +113,23 @@ inline void find_idle(IdleOptions& idle, const Settings& s) {
 inline void resolve(Settings& s) {
   struct Defaults {
     BedBySize bed;
-    double half_edge, spin_deg, path;
+    double half_edge, spin_deg, travel;
     std::vector<double> slips;
   };
   // quick and smoke turn faster, on coarser grains and a smaller bed. full has the slips of table 5.3, and
   // the depth that the thesis's 231,264 grains fill.
   const auto by_size =
-      BySize<Defaults>{.smoke = {{0.30, 0.18, 0.03}, 6e-3, 90.0, 0.03, {0.3}},
-                       .quick = {{0.46, 0.26, 0.055}, 5e-3, 90.0, 0.15, {-0.5, -0.1, 0.1, 0.3, 0.7}},
+      BySize<Defaults>{.smoke = {{0.30, 0.18, 0.03}, 6e-3, 90.0, 0.021, {0.3}},
+                       .quick = {{0.36, 0.26, 0.055}, 5e-3, 90.0, 0.12, {-0.5, -0.1, 0.1, 0.3, 0.7}},
                        .full = {{0.50, 0.40, 0.02098},
                                 1.2e-3,
                                 17.0,
-                                0.20,
+                                0.12,
                                 {-0.7, -0.5, -0.3, -0.1, 0.0, 0.1, 0.3, 0.5, 0.7}}}[size_named(s.size)];
   rig::resolve(s.grains, by_size.half_edge);
   rig::resolve(s.bed, by_size.bed, s.output);
   fill(s.spin_deg, by_size.spin_deg);
-  fill(s.path, by_size.path);
+  fill(s.travel, by_size.travel);
   if (s.slips.empty()) s.slips = by_size.slips;
   resolve_study(s.study, s.study_seeds, s.bed);
   if (s.wheel_friction < 0.0)
@@ -144,15 +151,17 @@ inline void resolve(Settings& s) {
   require_within(s.drive_stiffness, 1e3, 1e12, "--drive-stiffness (N/m)");
   require_within(s.motor_stiffness, 1.0, 1e12, "--motor-stiffness (N m/rad)");
   require_within(s.spin_deg, 0.1, 3600.0, "--spin (deg/s)");
-  require_within(s.path, 1e-3, 100.0, "--path (m)");
-  require_within(s.ramp_time, 0.0, s.path / s.rim_speed(), "--ramp-time (s, at most what the path takes)");
+  require_within(s.travel, 1e-3, 100.0, "--travel (m)");
+  if (s.path != 0.0) require_within(s.path, 1e-3, 100.0, "--path (m)");
+  require_within(s.ramp_time, 0.0, s.path_at(s.slips.front()) / s.rim_speed(),
+                 "--ramp-time (s, at most what the shortest run takes)");
   require_within(s.set_down_speed, 1e-3, 1.0, "--set-down-speed (m/s)");
-  const double needed = s.travel(s.slips.front()) + s.radius;
+  const double needed = s.travel_at(s.slips.front()) + s.radius;
   if (!(s.bed.length > needed)) {
     fail(
         "a bed {:g} m long is too short for a wheel that travels {:g} m at slip {:g}, and needs half its radius before "
-        "and behind it; give --bed-length {:.3g}, or a shorter --path",
-        s.bed.length, s.travel(s.slips.front()), s.slips.front(), 1.01 * needed);
+        "and behind it; give --bed-length {:.3g}, or a shorter --travel or --path",
+        s.bed.length, s.travel_at(s.slips.front()), s.slips.front(), 1.01 * needed);
   }
 }
 
@@ -177,7 +186,8 @@ inline NamesAndValues list_settings(const Settings& s) {
                {"stiffness of drive and motor", text("{:g} N/m, {:g} N m/rad", s.drive_stiffness, s.motor_stiffness)},
                {"spin", text("{:g} deg/s: the rim at {:g} mm/s", s.spin_deg, 1e3 * s.rim_speed())},
                {"slip is", "s = 1 - v/(omega r), as in table 5.3"},
-               {"path of the rim", text("{:g} mm", 1e3 * s.path)},
+               {s.path > 0.0 ? "path of the rim" : "travel of the wheel",
+                text("{:g} mm", 1e3 * (s.path > 0.0 ? s.path : s.travel))},
                {"study", study_setting(s.study, s.study_seeds)}});
   return list;
 }
