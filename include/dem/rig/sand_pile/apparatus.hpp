@@ -158,7 +158,7 @@ class Apparatus {
 
 /// m, how high above the plate the container begins: grains start above it.
 inline double container_floor(const Settings& s) {
-  if (s.method != "funnel") return s.method == "lift" && s.plate == "ridged" ? s.half_edge : 0.0;
+  if (s.method != "funnel") return s.plate == "ridged" ? s.half_edge : 0.0;  // the height of the bars
   const double turn = s.funnel_angle_deg * std::numbers::pi / 180.0;
   return s.orifice_height + (s.cylinder_radius - s.orifice_radius) / std::tan(turn);
 }
