@@ -217,9 +217,10 @@ inline std::string bed_text(const Settings& s, const Campaign& c) {
                                               number(s.grains.relative_density(fraction)));
   return text(
       "Bed: {} grains of half-edge {:g} mm, {} mm deep to its mean surface, from which sinkages and ruts are measured; "
-      "{}. Time step {:.3g} s. The wheel, set down by the load servo, rests {} mm deep.",
+      "{}. Time step {:.3g} s. The wheel, set down by the load servo, rests {} mm deep.{}",
       c.grains, 1e3 * s.grains.half_edge, number(1e3 * c.level, "{:.1f}"), density, c.time_step,
-      number(1e3 * c.set_down_sinkage));
+      number(1e3 * c.set_down_sinkage),
+      c.set_down_sinkage < 0.0 ? " Below zero it stands on the highest grains, or on its grousers." : "");
 }
 
 inline constexpr const char* window_text =
