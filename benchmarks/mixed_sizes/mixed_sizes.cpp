@@ -1,10 +1,13 @@
 // Mixtures of two sizes of spheres: what neighbour lists cost with a uniform grid, whose cells are as large as the
-// largest grain's reach, and with a hierarchical one. Half of the solid volume is large grains.
+// largest grain's reach, and with a hierarchical one; and, with --steps, what a step of such a world costs. Half of the
+// solid volume is large grains.
 
+#include <dem/dem.hpp>
 #include <dem/grain/broadphase/hierarchical_grid.hpp>
 #include <dem/grain/broadphase/uniform_grid.hpp>
 #include <dem/math/random.hpp>
 #include <dem/report/ascii_table.hpp>
+#include <dem/world/contacts.hpp>
 
 #include <CLI/CLI.hpp>
 
@@ -98,16 +101,61 @@ void time_grid(const char* name, Heap heap, double ratio, int repeats, dem::io::
             1e6 * (building + looking) / n, double(tried) / n, double(near) / n);
 }
 
+template <class Grid>
+struct Mixture : dem::Model {
+  using BroadPhase = Grid;
+  using Integrator = dem::integrator::SymplecticEuler;
+};
+
+/// The heap in a box, which settles for so many steps and is timed for as many again, on one thread.
+template <class Grid>
+void time_world(const char* name, const Heap& heap, double ratio, std::uint64_t steps, dem::io::Table& table) {
+  dem::World<Mixture<Grid>> world({.gravity = {0, 0, -9.81}, .threads = 1});
+  world.set_contact(
+      {.normal = {.stiffness = 2e4, .damping = 0.1, .separation_factor = 1},
+       .friction = {.coefficient = 0.4, .stiffness = 2e4, .velocity_stiffness = 0.05, .breaking_factor = 1}});
+  const auto largest = [&](const std::vector<double>& at) {
+    double far = 0.0;
+    for (std::size_t i = 0; i < at.size(); ++i) far = std::max(far, at[i] + heap.radius_of_kind[heap.kind[i]]);
+    return far;
+  };
+  const double width = std::max(largest(heap.x), largest(heap.y)), height = 1.2 * largest(heap.z), wall = 0.05;
+  const auto box = [&](const dem::Vec3& low, const dem::Vec3& high) {
+    world.add_surface(world.ground(), dem::surface::Box(high - low), {.position = 0.5 * (low + high)});
+  };
+  box({-wall, -wall, -wall}, {width + wall, width + wall, 0.0});
+  box({-wall, -wall, 0.0}, {0.0, width + wall, height});
+  box({width, -wall, 0.0}, {width + wall, width + wall, height});
+  box({0.0, -wall, 0.0}, {width, 0.0, height});
+  box({0.0, width, 0.0}, {width, width + wall, height});
+  std::vector<dem::SpeciesId> species;
+  for (const double r : heap.radius_of_kind) species.push_back(world.add_species(dem::shape::Sphere(r)));
+  for (std::size_t i = 0; i < heap.x.size(); ++i)
+    world.add_grain({species[heap.kind[i]], {heap.x[i], heap.y[i], heap.z[i]}});
+  const auto run = [&] {
+    if (const auto report = world.run(steps); !report) dem::fail("{}", report.text);
+  };
+  run();
+  const std::uint64_t lists = world.state().rebuilds;
+  const std::clock_t start = std::clock();
+  run();
+  const double seconds = double(std::clock() - start) / CLOCKS_PER_SEC, n = double(heap.x.size());
+  table.row(dem::text("1:{:g}", ratio), std::to_string(heap.x.size()), name, 1e-6 * n * double(steps) / seconds,
+            double(world.state().rebuilds - lists), double(dem::contacts_of(world).size()) / n);
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
   std::vector<std::size_t> grains = {10'000, 100'000};
   std::vector<double> ratios = {1, 5, 20};
   int repeats = 3;
+  std::uint64_t steps = 0;
   CLI::App app("Neighbour lists of mixtures of two sizes, with a uniform and a hierarchical grid");
   app.add_option("--grains", grains, "of both sizes together")->delimiter(',')->check(CLI::Range(1000, 10'000'000));
   app.add_option("--ratios", ratios, "of the sizes")->delimiter(',')->check(CLI::Range(1.0, 1000.0));
   app.add_option("--repeats", repeats, "lists that the times are means of")->check(CLI::Range(1, 1000));
+  app.add_option("--steps", steps, "of worlds, as many to settle and to be timed; 0: lists alone");
   CLI11_PARSE(app, argc, argv);
   try {
     dem::io::Table table{.header = {"sizes", "grains", "grid", "CPU s to build", "to look up", "us a grain",
@@ -120,6 +168,17 @@ int main(int argc, char** argv) {
         time_grid<dem::broadphase::UniformGrid>("uniform", heap, ratio, repeats, table);
       }
       print(table);  // as far as it is
+    }
+    if (steps == 0) return 0;
+    dem::io::Table of_worlds{
+        .header = {"sizes", "grains", "grid", "million grain-steps/CPU s", "lists", "contacts a grain"}, .digits = 3};
+    for (const std::size_t n : grains) {
+      for (const double ratio : ratios) {
+        const Heap heap = heap_of(n, ratio);
+        time_world<dem::broadphase::HierarchicalGrid>("hierarchical", heap, ratio, steps, of_worlds);
+        time_world<dem::broadphase::UniformGrid>("uniform", heap, ratio, steps, of_worlds);
+        print(of_worlds);
+      }
     }
   } catch (const std::exception& error) {
     fmt::print(stderr, "mixed_sizes: {}\n", error.what());
