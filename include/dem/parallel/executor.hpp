@@ -10,8 +10,8 @@ namespace dem::exec {
 /// An executor runs f(0) ... f(n-1), in any order and on any number of threads. Every phase of the step is written such
 /// that the result does not depend on either. An f of two arguments is told which thread calls it, from 0 to
 /// threads() - 1, as scratch memory of that thread is chosen by. An exception of f leaves for_each, on the thread that
-/// called it. Where lists of neighbours are dearer than on a processor, beside the work of a step, an executor says by how
-/// many times: `static constexpr double list_weight`; skins are wider then.
+/// called it. Where lists of neighbours are dearer than on a processor, beside the work of a step, an executor says by
+/// how many times: `static constexpr double list_weight`; skins are wider then.
 template <class E>
 concept Executor = requires(E& executor) {
   executor.for_each(std::size_t{1}, FunctionLike<void(std::size_t)>{});

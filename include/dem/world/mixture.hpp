@@ -67,7 +67,7 @@ class MixtureDraw {
   }
   template <class V>
   void fields(V& v) {
-    v.given("species", species_), v.given("numbers", up_to_);
+    v.given("species", species_), v.given("share_of_grains_up_to_species", up_to_);
   }
   SpeciesId draw(RandomStream& random) const {
     const auto at = std::upper_bound(up_to_.begin(), up_to_.end() - 1, random.uniform());
