@@ -24,8 +24,9 @@ namespace dem {
 /// the floor under nine layers has been seen to be 5 % behind, and 23 % with a `change` of 0.05. Waves of less than
 /// `jolt` end at grains that sleep: so half as many are awake around a blade.
 ///
-/// All grains wake when gravity or these options get another value, at any call of set_contact, and when a surface is
-/// switched on or off. A function that is called each step should not do that: nothing would ever sleep.
+/// All grains wake when gravity or these options get another value, at any call of set_contact, evaluate_anew,
+/// find_rest or assemble, and when a surface is switched on or off. A function that is called each step should not do
+/// that: nothing would ever sleep.
 struct SleepOptions {
   double balance = 0.01;  ///< of what a grain bears
   double change = 0.01;   ///< of what a grain bears

@@ -127,7 +127,7 @@ class World : public WorldGrains<M> {
     evaluate_anew();
   }
   /// Forces are evaluated anew before the next step, what integrators remember of them is forgotten, and all grains
-  /// wake: for what changed velocities or poses between two steps.
+  /// wake: for what changed velocities or poses between two steps. Where ranks share the grains, all of them call it.
   void evaluate_anew() {
     wake_all(state_);
     initialised_ = false;

@@ -230,6 +230,7 @@ TEST_CASE(
   refuses([](auto& x) { x.shear_travel = 1.0; }, "--shear-travel (m, at most");
   refuses([](auto& x) { x.normal_stresses = {1e4, 2e4, 1e4}; }, "10000 and 10000 Pa of --normal-stresses");
   refuses([](auto& x) { x.path = 2.0; }, "give --wheel-bed-length");
+  refuses([](auto& x) { x.path = 2.0; }, "or a shorter --path");
   CHECK(in_own_words("change --relative-density, --densify-time or --seed if", bevameter::shear_words) ==
         "change --relative-density or --seed if");
 }

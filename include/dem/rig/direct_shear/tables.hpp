@@ -42,9 +42,8 @@ inline std::string coarseness_text(const Settings& s, const Campaign& c) {
   if (!any || kind_of(s).name != "cube8" || s.half_edge <= 1.01 * of_thesis) return {};
   return text(
       "The grains are of half-edge {:g} mm, those of table 3.3 of {:g} mm (--size full). Coarse grains in a small box "
-      "read otherwise: --size quick, as it is set, up to 15 % less than --size full at each load. Sheared further, "
-      "they "
-      "read more.",
+      "read otherwise: --size quick, as it is set, up to 15 % less than --size full at each load, and more when it is "
+      "sheared further.",
       1e3 * s.half_edge, 1e3 * of_thesis);
 }
 

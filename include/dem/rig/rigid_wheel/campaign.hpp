@@ -38,7 +38,8 @@ void roll(const RigidWheel<Model>& test, const typename RigidWheel<Model>::Stand
         .frames = 80, .interval = s.duration_at(s.slips[shown]) / 60.0, .force_lines = s.replay_forces});
   const int threads = s.bed.threads > 0 ? s.bed.threads : std::max(1, omp_get_max_threads());
   session.begin("roll", static_cast<double>(s.slips.size()));
-  side_by_side(s.slips.size(), threads, session, [&](std::size_t k, SharedStages& stages) {
+  side_by_side(s.slips.size(), threads, session, [&](std::size_t turn, SharedStages& stages) {
+    const std::size_t k = s.slips.size() - 1 - turn;  // the largest slip, whose run is longest, first
     SlipResult& r = result.slips[k];
     const std::string name = result.variant.prefix() + slip_name(r.slip);
     const auto save = [&] {

@@ -167,7 +167,7 @@ inline io::Plot print_plot(const Settings& s, std::span<const Reference> soils, 
                 .y_label = "stress [kPa]"};
   const double degree = std::numbers::pi / 180.0;
   io::Series pressure{.name = "pressure of the grains", .style = io::SeriesStyle::LinePoints, .color = 0};
-  io::Series shear{.name = "shear stress of the grains", .style = io::SeriesStyle::LinePoints, .color = 3};
+  io::Series shear{.name = "shear stress of the grains", .style = io::SeriesStyle::LinePoints, .color = 5};
   for (std::size_t a = 0; a < ContactPrint::along; ++a) {
     for (auto* series : {&pressure, &shear}) series->x.push_back(r.print.angle(a) / degree);
     pressure.y.push_back(1e-3 * r.print.pressure(a));
