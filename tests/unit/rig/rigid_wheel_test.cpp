@@ -119,7 +119,12 @@ TEST_CASE("settings of wheels that make no sense are refused by the names of the
   refuses([](auto& s) { s.carriage_mass = 0.0; }, "--carriage-mass");
   refuses([](auto& s) { s.drive_stiffness = 0.0; }, "--drive-stiffness");
   refuses([](auto& s) { s.motor_stiffness = -1.0; }, "--motor-stiffness");
-  // A bed for the way of 0.12 m and half a radius at either end, in which a run of a given path fits as well.
+  CHECK(rigid_wheel::slip_name(-0.3) == "slip_m30");
+  CHECK(rigid_wheel::slip_name(0.3) == "slip_30");
+}
+
+TEST_CASE(
+    "a wheel travels as far at any slip, while its rim turns at most four times as far; or its rim by a given path") {
   rigid_wheel::Settings s;
   s.slips = {-0.5, 0.7, 0.9, 1.0};
   rigid_wheel::resolve(s);
@@ -133,8 +138,6 @@ TEST_CASE("settings of wheels that make no sense are refused by the names of the
   CHECK(s.sample_interval() == Approx(s.duration_at(-0.5) / 400.0));
   s.path = 0.15;
   for (const double slip : s.slips) CHECK(s.path_at(slip) == 0.15);
-  CHECK(rigid_wheel::slip_name(-0.3) == "slip_m30");
-  CHECK(rigid_wheel::slip_name(0.3) == "slip_30");
 }
 
 TEST_CASE("a soil that the grains stand beside is read before the run begins, and not again") {
