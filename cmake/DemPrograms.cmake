@@ -9,6 +9,15 @@ add_library(dem_warnings INTERFACE)
 target_compile_options(dem_warnings
                        INTERFACE "$<$<COMPILE_LANG_AND_ID:CXX,GNU,Clang,AppleClang>:${DEM_WARNINGS}>")
 
+# g++ looks for memory that it no longer needs whenever what it has in use doubles, a tenth to a fifth of its time with
+# dem's programs. Where each core has 4 GiB it need not, up to 2 GB; programs take 1 to 3 GB then.
+cmake_host_system_information(RESULT memory QUERY TOTAL_PHYSICAL_MEMORY) # MiB
+cmake_host_system_information(RESULT cores QUERY NUMBER_OF_LOGICAL_CORES)
+math(EXPR memory_per_core "${memory} / ${cores}")
+if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND memory_per_core GREATER_EQUAL 4000)
+  target_compile_options(dem_warnings INTERFACE "$<$<COMPILE_LANGUAGE:CXX>:SHELL:--param ggc-min-heapsize=2000000>")
+endif()
+
 # dem_program(<target>): links what every program of dem links.
 function(dem_program target)
   target_link_libraries(${target} PRIVATE dem::dem dem_warnings $<$<BOOL:${DEM_NATIVE}>:dem::native>
