@@ -49,7 +49,7 @@ TEST_CASE("a bed that was saved is loaded in place of being made, and goes on in
   CHECK(made.world.grain_count() > 200);
 }
 
-TEST_CASE("a bed that is left at any of its stages goes on from a file on other threads in every bit") {
+TEST_CASE("a bed that is left at any of its stages goes on from a file on other threads in every bit", "[long]") {
   const Folder folder;
   const bool rains = GENERATE(true, false);
   dem::soil::BedOptions o = pressed_bed;

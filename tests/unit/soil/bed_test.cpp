@@ -190,7 +190,7 @@ TEST_CASE("a bed is as dense as it was asked for, with all of its friction in th
   CHECK(made.solid_fraction == bed.solid_fraction());
 }
 
-TEST_CASE("a bed that settles denser than asked for is refused, and one that comes out denser is told of") {
+TEST_CASE("a bed that settles denser than asked for is refused, and one that comes out denser is told of", "[long]") {
   const auto make = [](const dem::soil::BedOptions& o) {
     SoilOfBalls soil;
     dem::soil::Bed<Balls> bed(soil.world, Container::box(0.018, 0.014), soil.ball, o);

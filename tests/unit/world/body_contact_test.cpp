@@ -87,14 +87,11 @@ TEST_CASE("a body is one contact on the ground, however finely it is cut") {
 }
 
 TEST_CASE("a body that falls flat rebounds with the restitution that was asked for") {
-  struct Elastic : Balls {
-    using Normal = dem::contact::LinearSpringDashpot;
-  };
   const double e = 0.7;
   for (const Balls::Surfaces& surface :
        {Balls::Surfaces(Box(edges, 3)), Balls::Surfaces(TriangleMesh(mesh::box(edges, 4)))}) {
-    dem::World<Elastic> w(options({0, 0, 0}, 5e-6));
-    w.set_contact({dem::contact::LinearSpringDashpot::with_restitution(4e5, e), {0.5, 4e5, 0.0, 1.0}});
+    dem::World<models::LinearModel> w(options({0, 0, 0}, 5e-6));
+    w.set_contact({dem::contact::LinearSpringDashpot::with_restitution(4e5, e), {0.5, 4e5, 0.0}});
     const auto block = w.machine().add_body(box_body("block", edges, 1000.0).at({0, 0, 0.041}).moving({0, 0, -0.5}));
     w.add_body_contact(w.add_surface(block, surface), w.add_surface(w.ground(), Plane{}));
     REQUIRE(w.run_for(0.02));

@@ -16,9 +16,7 @@ using dem::surface::Box;
 
 namespace {
 
-struct Sprung : Balls {
-  using Normal = LinearSpringDashpot;
-};
+using Sprung = models::LinearModel;
 
 double kinetic_energy_of(const dem::Body& body) {
   const Vec3 spin = body.rotation().transpose() * body.angular_velocity();
@@ -30,7 +28,7 @@ double kinetic_energy_of(const dem::Body& body) {
 std::array<double, 2> rock(double height, double damping_ratio) {
   const double width = 0.1, K = 1e5, density = 1000.0;
   dem::World<Sprung> w(options({0, 0, -g}, 2e-5));
-  w.set_contact({{K, damping_ratio}, {0.0, 0.0, 0.0, 1.0}});
+  w.set_contact({{K, damping_ratio}, {0.0, 1.0, 0.0}});
   const Vec3 edges(width, width, height * width);
   const double mass = density * edges.prod(), sunk = mass * g / K,
                inertia = mass / 12 * (1 + height * height) * width * width;
@@ -54,7 +52,7 @@ std::array<double, 2> rock(double height, double damping_ratio) {
 /// The kinetic energy of two boxes that meet as they tumble, after over before.
 double tumble(unsigned seed, double restitution) {
   dem::World<Sprung> w(options({0, 0, 0}, 2e-5));
-  w.set_contact({LinearSpringDashpot::with_restitution(1e5, restitution), {0.0, 0.0, 0.0, 1.0}});
+  w.set_contact({LinearSpringDashpot::with_restitution(1e5, restitution), {0.0, 1.0, 0.0}});
   Random random(seed);
   const Vec3 a(0.1, 0.08, 0.06), b(0.12, 0.05, 0.05);
   const auto add = [&](const char* name, const Vec3& edges, double side) {

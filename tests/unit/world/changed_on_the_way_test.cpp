@@ -101,12 +101,12 @@ double speed_of_block(Push push) {
     return true;
   };
   if (push == Push::between_runs) {
-    for (int k = 0; k < 5000; ++k) {
+    for (int k = 0; k < 2000; ++k) {
       REQUIRE(w.run(1));
       steer();
     }
   } else {
-    REQUIRE(w.run(5000, steer));
+    REQUIRE(w.run(2000, steer));
   }
   CHECK(m.substeps == 10);
   return m.body(block).velocity().z();

@@ -70,12 +70,10 @@ TEST_CASE("a polyhedral cube that came to rest weighs m g") {
 TEST_CASE("a cube that falls flat rebounds with the restitution that was asked for") {
   // Four corners touch, each with a quarter of the contact: together they are the one spring and dashpot whose
   // restitution is known. The damped swing lasts about 300 steps: 1e-4.
-  struct Elastic : Sharp {
-    using Normal = dem::contact::LinearSpringDashpot;
-  };
+  using dem::contact::LinearSpringDashpot;
   const double e = 0.6, v = 0.1;
-  dem::World<Elastic> w(options({0, 0, 0}, 2e-6));
-  w.set_contact({dem::contact::LinearSpringDashpot::with_restitution(2000.0, e), {mu, 2000.0, 0.0, 1.0}});
+  dem::World<Rebounding<LinearSpringDashpot>> w(options({0, 0, 0}, 2e-6));
+  w.set_contact({LinearSpringDashpot::with_restitution(2000.0, e), {}});
   const auto cube = w.add_species(dem::shape::cube(half_edge));
   w.add_surface(w.ground(), dem::surface::Plane{});
   dem::NewGrain n;

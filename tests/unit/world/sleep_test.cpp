@@ -509,7 +509,7 @@ TEST_CASE("sleeping worlds are the same bits on any number of threads") {
   }
 }
 
-TEST_CASE("a load that grows slowly reaches the floor through a bed that sleeps") {
+TEST_CASE("a load that grows slowly reaches the floor through a bed that sleeps", "[long]") {
   // In 0.1 s all layers are awake most of the time. In 0.4 s half of them sleep.
   const auto [seconds, most] = GENERATE(std::pair(0.1, 0.03), std::pair(0.4, 0.09));
   Towers bed(true);

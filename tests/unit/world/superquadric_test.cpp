@@ -14,7 +14,6 @@ using Smooth = Grains<Superquadric, dem::integrator::VelocityVerlet>;
 using Pointed = Grains<SuperquadricPoints, dem::integrator::VelocityVerlet>;
 using Any = Mixed<Sphere, Cube8, Superquadric>;
 using AnyShapes = Grains<Any, dem::integrator::VelocityVerlet>;
-using OneKind = Grains<Mixed<Superquadric>, dem::integrator::VelocityVerlet>;
 
 /// Grains that fly at each other from a lattice, without walls and weight.
 template <class World>
@@ -196,7 +195,7 @@ TEST_CASE("a mixed world of one kind is that kind's own world, bit by bit") {
     return positions;
   };
   dem::World<Smooth> plain(options({0, 0, -9.81}, 1e-5)), again(options({0, 0, -9.81}, 1e-5));
-  dem::World<OneKind> mixed(options({0, 0, -9.81}, 1e-5));
+  dem::World<AnyShapes> mixed(options({0, 0, -9.81}, 1e-5));
   again.set_threads(3);
   const auto expected = run(plain);
   CHECK(run(mixed) == expected);

@@ -22,9 +22,10 @@ TriangleMesh sheet(MeshSide side) { return TriangleMesh(dem::mesh::rectangle(0.1
 
 /// A grain on the middle of a level surface.
 template <class S>
-dem::World<Grains<S>> on_surface(const S& shape, const dem::Model::Surfaces& surface, double top = 0.0) {
-  dem::World<Grains<S>> w(options({0, 0, -g}, 1e-5));
-  w.set_contact(sand<Grains<S>>());
+auto on_surface(const S& shape, const dem::Model::Surfaces& surface, double top = 0.0) {
+  using M = Grains<S, dem::integrator::VelocityVerlet>;
+  dem::World<M> w(options({0, 0, -g}, 1e-5));
+  w.set_contact(sand<M>());
   w.add_surface(w.ground(), surface, {.name = "chute"});
   w.add_grain({w.add_species(shape), Vec3(1e-3, 2e-3, top + sheet_half_edge)});
   return w;

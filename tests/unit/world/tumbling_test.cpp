@@ -6,18 +6,16 @@ using Catch::Approx;
 
 namespace {
 
-using Cluster = dem::shape::SphereCluster<2>;
-
 /// A grain with three different inertias, spinning about none of its axes.
 template <class Integrator>
 struct Tumbler {
-  dem::World<Grains<Cluster, Integrator>> world;
+  dem::World<Grains<Cube8, Integrator>> world;
   GrainId grain;
 
   explicit Tumbler(double dt) : world(options({0, 0, 0}, dt)) {
     const std::array<dem::Ball, 2> balls = {{{{-0.1, 0, 0}, 0.1}, {{0.1, 0, 0}, 0.1}}};
     const auto species =
-        world.add_species(Cluster(balls, dem::MassProperties{1.0, Vec3::Zero(), Vec3(1.0, 2.0, 2.5).asDiagonal()}));
+        world.add_species(Cube8(balls, dem::MassProperties{1.0, Vec3::Zero(), Vec3(1.0, 2.0, 2.5).asDiagonal()}));
     world.set_contact({{1e-6, 0, 1}, {0, 0, 0, 0}});  // nothing touches; so soft that it allows any step
     dem::NewGrain n;
     n.species = species;
@@ -88,7 +86,7 @@ TEST_CASE("order of accuracy of a tumbling grain") {
 TEST_CASE("a body that spins about its middle axis flips over and over") {
   Tumbler<dem::integrator::PredictorCorrector> t(1e-3);
   const double energy = t.energy();
-  dem::World<Grains<Cluster, dem::integrator::PredictorCorrector>>& w = t.world;
+  dem::World<Grains<Cube8, dem::integrator::PredictorCorrector>>& w = t.world;
   dem::NewGrain n;
   n.species = SpeciesId(0);
   n.position = {10, 0, 0};

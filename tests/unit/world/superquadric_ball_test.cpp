@@ -41,7 +41,7 @@ struct OnFloor {
   GrainId grain;
 
   OnFloor(const Floor& floor, const Vec3& gravity, double k) : world(options(gravity, 1e-5)) {
-    world.set_contact({{k, 0.05, 1.0}, {0.5, k, 0.05, 0.975}});
+    world.set_contact({{k, 0.2, 1.0}, {0.5, k, 0.05, 0.975}});
     dem::SurfaceOptions o;
     o.position = floor.place;
     world.add_surface(world.ground(), floor.geometry, o);
@@ -60,7 +60,7 @@ TEMPLATE_TEST_CASE("a superquadric ball rests on a floor as a sphere does", "", 
     CAPTURE(floor.name);
     OnFloor<TestType> scene(floor, {0, 0, -g}, 2000.0);
     auto& w = scene.world;
-    REQUIRE(w.run_for(1.0));
+    REQUIRE(w.run_for(0.3));  // its swing dies out as exp(-72 t)
     const double weight = mass_of(w, scene.grain) * g;
     // It lies m g/K = 7e-6 m deep, over a spot of sqrt(2 r 7e-6) = r/19 radius; what other points of the boundary are
     // in there weighs (3/19)^4 = 6e-4 at most.
@@ -88,7 +88,7 @@ TEMPLATE_TEST_CASE("a superquadric ball rolls down a slope as a sphere does", ""
 }
 
 TEMPLATE_TEST_CASE("an exact superquadric ball and a cluster of one ball go the way of a sphere", "", Superquadric,
-                   SuperquadricPoints, dem::shape::SphereCluster<1>) {
+                   SuperquadricPoints, Cube8) {
   // Over the edge of a slab, over the rim of a post, down in a tube, and along a slab of triangles.
   struct Place {
     Balls::Surfaces geometry;
@@ -120,7 +120,7 @@ TEMPLATE_TEST_CASE("an exact superquadric ball and a cluster of one ball go the 
     return result;
   };
   const auto shape = [] {
-    if constexpr (std::is_same_v<TestType, dem::shape::SphereCluster<1>>) {
+    if constexpr (std::is_same_v<TestType, Cube8>) {
       const dem::Ball one = {Vec3::Zero(), ball_radius};
       return TestType({&one, 1});
     } else {
