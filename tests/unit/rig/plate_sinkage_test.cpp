@@ -5,6 +5,7 @@
 #include <dem/rig/plate_sinkage.hpp>
 #include <dem/rig/plate_sinkage/study.hpp>
 
+#include <array>
 #include <cmath>
 
 namespace plate_sinkage_test {
@@ -267,7 +268,7 @@ TEST_CASE(
   const auto test = small_test();
   const auto bed = test.make_bed();
   const auto& m = bed.world.machine();
-  CHECK(m.bodies().size() == 4);  // ground, bottom box, top box, lid; the plate comes with its test
+  CHECK(m.bodies().size() == 4);  // ground, bottom box, top box, lid
   CHECK(m.parts().joints.size() == 3);
   CHECK(m.parts().actuators.size() == 3);
 
@@ -342,10 +343,14 @@ TEST_CASE(
   const PlateSinkage<models::VerletCubes> light(settings, [](double h) { return dem::shape::cube8(h); });
   plate_sinkage::PlateResult result{.width = 0.03};
   double mass = 0.0, stiffness = 0.0;
+  std::array<std::size_t, 3> parts = {};
   light.press(bed, result, quiet, [&](const auto& world, double) {
-    mass = world.machine().bodies().back().mass;
-    stiffness = world.machine().parts().actuators.back().spec.position_gain;
+    const auto& machine = world.machine();
+    mass = machine.bodies().back().mass;
+    stiffness = machine.parts().actuators.back().spec.position_gain;
+    parts = {machine.bodies().size(), machine.parts().joints.size(), machine.parts().actuators.size()};
   });
+  CHECK(parts == std::array<std::size_t, 3>{5, 4, 4});  // the plate comes with its test
   CHECK(mass == Approx(2700.0 * 9e-6));
   CHECK(stiffness == 2e6);
 }
