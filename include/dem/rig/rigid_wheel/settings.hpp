@@ -116,11 +116,12 @@ inline void resolve(Settings& s) {
     double half_edge, spin_deg, travel;
     std::vector<double> slips;
   };
-  // quick and smoke turn faster, on coarser grains and a smaller bed. full has the slips of table 5.3, and
-  // the depth that the thesis's 231,264 grains fill.
+  // quick and smoke turn faster, on coarser grains and a shorter bed; that of quick is as wide as the thesis's, so that
+  // its rut ends before the walls. full has the slips of table 5.3, and the depth that the thesis's 231,264 grains
+  // fill.
   const auto by_size =
       BySize<Defaults>{.smoke = {{0.30, 0.18, 0.03}, 6e-3, 90.0, 0.021, {0.3}},
-                       .quick = {{0.36, 0.26, 0.055}, 5e-3, 90.0, 0.12, {-0.5, -0.1, 0.1, 0.3, 0.7}},
+                       .quick = {{0.36, 0.40, 0.055}, 5e-3, 90.0, 0.12, {-0.5, -0.1, 0.1, 0.3, 0.7}},
                        .full = {{0.50, 0.40, 0.02098},
                                 1.2e-3,
                                 17.0,
