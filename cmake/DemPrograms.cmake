@@ -10,7 +10,7 @@ target_compile_options(dem_warnings
                        INTERFACE "$<$<COMPILE_LANG_AND_ID:CXX,GNU,Clang,AppleClang>:${DEM_WARNINGS}>")
 
 # g++ looks for memory that it no longer needs whenever what it has in use doubles, a tenth to a fifth of its time with
-# dem's programs. Where each core has 4 GiB it need not, up to 2 GB; programs take 1 to 3 GB then.
+# dem's programs. Where each core has some 4 GB it need not, up to 2 GB; programs take 1 to 3 GB then.
 cmake_host_system_information(RESULT memory QUERY TOTAL_PHYSICAL_MEMORY) # MiB
 cmake_host_system_information(RESULT cores QUERY NUMBER_OF_LOGICAL_CORES)
 math(EXPR memory_per_core "${memory} / ${cores}")

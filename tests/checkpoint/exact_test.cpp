@@ -22,7 +22,9 @@ struct HeldBalls : VerletBalls {
 
 template <class Model>
 dem::ContactParameters<Model> constants() {
-  if constexpr (std::is_same_v<Model, HertzModel>) {
+  if constexpr (std::is_same_v<Model, LinearModel>) {
+    return {.normal = Linear::with_restitution(2000.0, 0.6), .friction = {0.4, 1500.0, 0.1}};
+  } else if constexpr (std::is_same_v<Model, HertzModel>) {
     const auto pair = dem::contact::elastic_pair({.young = 2e6, .poisson = 0.25});
     return {.normal = dem::contact::Hertz::with_restitution(pair, 0.6),
             .friction = dem::friction::Mindlin::with_restitution(pair, 0.4, 0.6)};
@@ -54,7 +56,7 @@ struct Progress {
 }  // namespace
 
 TEMPLATE_TEST_CASE("n steps, a file and n steps on other threads are 2n steps in every bit", "", CorrectedBalls, Balls,
-                   VerletBalls, Cubes, VerletCubes, HertzModel, HeldBalls) {
+                   VerletBalls, Cubes, VerletCubes, LinearModel, HertzModel, HeldBalls) {
   const Folder folder;
   const int substeps = GENERATE(1, 3);
   CAPTURE(substeps);

@@ -100,7 +100,7 @@ void compare(const S& shape) {
 
 }  // namespace
 
-TEST_CASE("grains slide, tip and roll over a tilted flat mesh as over a plane, whatever shape and laws") {
+TEST_CASE("grains slide, tip and roll over a tilted flat mesh as over a plane, by springs or by moduli") {
   compare<Springs>(Sphere(grain_half));
   compare<Springs>(shape::Superquadric(Vec3::Constant(grain_half), Vec3::Constant(8)));
   compare<Springs>(shape::Superquadric(Vec3::Constant(grain_half), Vec3::Constant(2)));

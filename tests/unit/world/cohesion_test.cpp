@@ -152,7 +152,7 @@ TEST_CASE("a liquid bridge pulls after first contact only, over its distance, an
 TEMPLATE_TEST_CASE("grains find partners as far away as bridges reach, whatever the skin", "", Sphere, Cube8,
                    Superquadric) {
   // Two grains part at once; the neighbour list's skin is a thirtieth of the bridge. Clusters face each other with a
-  // ball of each.
+  // ball of each. They and superquadrics are in a world of several kinds.
   const auto shape = [] {
     if constexpr (std::is_same_v<TestType, Sphere>) {
       return Sphere(r);

@@ -182,7 +182,7 @@ TEST_CASE("spheres, clusters and superquadrics in one world keep momentum and lo
   check_swarm(w);
 }
 
-TEST_CASE("a mixed world of one kind is that kind's own world, bit by bit") {
+TEST_CASE("a mixed world with grains of one kind does what that kind's own world does, bit by bit") {
   const auto run = [](auto& w) {
     using Model = typename std::remove_reference_t<decltype(w)>::Model;
     w.set_contact(sand<Model>());
