@@ -123,6 +123,20 @@ TEST_CASE("constants are found through noise, and as surely as is said") {
   CHECK(held >= 70);  // of 80 intervals of 95 % 76 in the mean; fewer than 70 once in some three hundred times
 }
 
+TEST_CASE("a target of few runs that lie apart is known by as few degrees of freedom") {
+  Measurements m{.dimensions = 1, .places = {}, .values = {{}}};
+  for (int k = 0; k < 12; ++k) {
+    m.places.push_back(k / 11.0);
+    m.values[0].push_back(k / 11.0 + (k % 2 ? 0.01 : -0.01));
+  }
+  const auto freedom = [&](const Goal& goal) { return find_constants(m, std::vector<Goal>{goal}, by_grids).freedom; };
+  const std::size_t of_surface = freedom({0.5, 1e-3});
+  CHECK(of_surface == 9);  // twelve runs, a surface of second degree
+  CHECK(freedom({0.5, 0.2, 2.0}) == 1);
+  CHECK(freedom({0.5, 0.2, 4.0}) == 3);
+  CHECK(freedom({0.5, 1e-6, 2.0}) == of_surface);  // by chance so near each other: known by the scatter of all
+}
+
 TEST_CASE("a failed run is passed over, and what the goals do not determine has no error") {
   Measurements m{.dimensions = 2, .places = {}, .values = {{}}};
   for (std::size_t k = 0; k < 6; ++k) {

@@ -40,6 +40,10 @@ struct Goal {
   [[nodiscard]] double error_with(double scatter) const {
     return runs > 0.0 ? std::max(error, scatter / std::sqrt(runs)) : error;
   }
+  /// Degrees of freedom of that error, where the scatter has so many.
+  [[nodiscard]] double freedom_with(double scatter, double of_scatter) const {
+    return runs > 1.0 && error > scatter / std::sqrt(runs) ? runs - 1.0 : of_scatter;
+  }
 };
 
 /// Finds the least value of a function over the unit cube. `start` is where it begins.
@@ -167,7 +171,7 @@ inline Found find_constants(const Measurements& m, std::span<const Goal> goals, 
     found.surrogates.emplace_back(places, known, d, detail::distinct_places(places, d));
   }
   detail::find_place(found, goals, minimise);
-  // (G^T W G)^-1, and the least freedom of the surfaces.
+  // (G^T W G)^-1, and the least freedom of surfaces and goals together (Welch and Satterthwaite).
   std::vector<double> information(d * d, 0.0);
   found.freedom = found.surrogates.front().freedom();
   for (std::size_t q = 0; q < goals.size(); ++q) {
@@ -178,7 +182,11 @@ inline Found find_constants(const Measurements& m, std::span<const Goal> goals, 
     for (std::size_t a = 0; a < d; ++a) {
       for (std::size_t b = 0; b < d; ++b) information[a * d + b] += weight * slopes[a] * slopes[b];
     }
-    found.freedom = std::min(found.freedom, found.surrogates[q].freedom());
+    const auto of_surface = static_cast<double>(found.surrogates[q].freedom());
+    const double e = error * error, g = of_goal * of_goal;
+    const double spread = e * e / of_surface + g * g / goals[q].freedom_with(found.surrogates[q].scatter(), of_surface);
+    const double both = spread > 0.0 ? std::clamp((e + g) * (e + g) / spread, 1.0, of_surface) : of_surface;
+    found.freedom = std::min(found.freedom, static_cast<std::size_t>(both));
   }
   std::vector<double> factor = information;
   factorise_positive(factor, d, 1e-9);
