@@ -13,6 +13,15 @@ endif()
 # Tests are compiled several files at a time: names of one may hide another's. Linked after dem_warnings, so it comes last.
 target_compile_options(test_main INTERFACE $<$<COMPILE_LANG_AND_ID:CXX,GNU,Clang,AppleClang>:-Wno-shadow>)
 
+# How many sources of a program are compiled at a time: what they share, the library's code above all, is compiled once for
+# all of them. All of a room take up to 3 GB.
+if(memory_per_core GREATER_EQUAL 4000)
+  set(at_once 0)
+else()
+  set(at_once 16)
+endif()
+set(DEM_TESTS_AT_ONCE ${at_once} CACHE STRING "Sources of a test program that are compiled at a time; 0 for all of them")
+
 # What nearly every test includes, compiled once for all. Whether a header stands alone is another check's business.
 file(CONFIGURE OUTPUT "${CMAKE_CURRENT_BINARY_DIR}/precompiled.cpp" CONTENT "// Stands for its precompiled headers.\n")
 add_library(test_headers OBJECT "${CMAKE_CURRENT_BINARY_DIR}/precompiled.cpp")
@@ -34,17 +43,17 @@ if(CMAKE_CXX_FLAGS_DEBUG MATCHES "-Og")
 else()
   target_precompile_headers(test_worlds REUSE_FROM test_headers)
 endif()
-set_target_properties(test_worlds PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 8)
+set_target_properties(test_worlds PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE ${DEM_TESTS_AT_ONCE})
 
 # dem_add_catch_tests(<name> <label> <source>...): the program test_<name>, and a test per TEST_CASE in it. Those tagged
 # [long], which take ten seconds and more, are checks (and no test of the sanitizers, under which they take minutes). Sources are
-# compiled a few at a time, as most of the work is what they share. One whose names meet another's stands in a namespace.
+# compiled together, as most of the work is what they share. One whose names meet another's stands in a namespace.
 function(dem_add_catch_tests name label)
   add_executable(test_${name} ${ARGN})
   target_include_directories(test_${name} PRIVATE "${CMAKE_CURRENT_SOURCE_DIR}" "${CMAKE_CURRENT_SOURCE_DIR}/unit")
   dem_program(test_${name})
   target_link_libraries(test_${name} PRIVATE test_worlds test_main)
-  set_target_properties(test_${name} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 16)
+  set_target_properties(test_${name} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE ${DEM_TESTS_AT_ONCE})
   target_precompile_headers(test_${name} REUSE_FROM test_headers)
   set(others)
   foreach(source IN LISTS ARGN)
@@ -91,7 +100,7 @@ function(dem_add_width_1_test)
   dem_program(test_width_1)
   target_link_libraries(test_width_1 PRIVATE test_main)
   target_compile_definitions(test_width_1 PRIVATE DEM_NO_SIMD)
-  set_target_properties(test_width_1 PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 8)
+  set_target_properties(test_width_1 PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 0)
   catch_discover_tests(test_width_1 TEST_PREFIX width_1. PROPERTIES LABELS unit)
 endfunction()
 

@@ -34,7 +34,7 @@ Outcome run_turned(const typename Model::Shape& shape, const Mat3& turn, const V
     p.angular_velocity = turn * random.vector(20.0);
     w.add_grain(p);
   }
-  BodyId plate;
+  dem::BodyId plate;
   SurfaceId under;
   if (has_plate) {
     plate = w.machine().add_body(dem::mbd::given_body("plate", 1e-4, Vec3(6e-10, 6e-10, 1e-9))

@@ -7,6 +7,8 @@
 #include <dem/law/normal/hertz.hpp>
 #include <dem/law/normal/linear_spring_dashpot.hpp>
 
+namespace polyhedron_test {
+
 using Catch::Approx;
 using dem::shape::Polyhedron;
 
@@ -386,3 +388,5 @@ TEST_CASE("polyhedra do among other kinds what they do alone") {
   using Any = dem::shape::Mixed<Sphere, Polyhedron>;
   CHECK(heap(std::type_identity<Any>{}) == heap(std::type_identity<Polyhedron>{}));
 }
+
+}  // namespace polyhedron_test

@@ -5,6 +5,8 @@
 #include <dem/geometry/polyhedron/polyhedra.hpp>
 #include <dem/geometry/superquadric/superquadric_polyhedron.hpp>
 
+namespace superquadric_ball_test {
+
 using Catch::Approx;
 using dem::shape::Superquadric;
 using dem::shape::SuperquadricPoints;
@@ -155,3 +157,5 @@ TEST_CASE("a superquadric ball touches the face of a polyhedron as a plane") {
     CHECK(force == Approx(overlap).epsilon(3e-3));
   }
 }
+
+}  // namespace superquadric_ball_test

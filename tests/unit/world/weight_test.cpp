@@ -1,5 +1,7 @@
 #include "scenes.hpp"
 
+namespace weight_test {
+
 using Catch::Approx;
 
 namespace {
@@ -93,3 +95,5 @@ TEST_CASE("every force of a pile arrives in the walls") {
   CHECK(w.surface_force(walls[0]).z() < -0.5 * weight.norm());  // walls with friction carry some of it
   CHECK(kinetic_energy(w) < 1e-6 * mass * g * half_edge);
 }
+
+}  // namespace weight_test
