@@ -3,6 +3,7 @@
 // The worlds that many tests run. Each is compiled once, in worlds/*.cpp: a world takes ten seconds, and a test that
 // uses one of these does not compile it again. A test makes a model of its own only if what it asks needs one.
 
+#include <dem/domain/periodic.hpp>
 #include <dem/geometry/cluster/sphere_cluster.hpp>
 #include <dem/grain/broadphase/all_pairs.hpp>
 #include <dem/integrator/symplectic_euler.hpp>
@@ -12,6 +13,7 @@
 #include <dem/law/normal/hertz.hpp>
 #include <dem/law/normal/linear_spring_dashpot.hpp>
 #include <dem/mbd/mbd.hpp>
+#include <dem/mbd/solver/projected.hpp>
 #include <dem/parallel/serial.hpp>
 #include <dem/world/contacts.hpp>
 #include <dem/world/energy.hpp>
@@ -50,6 +52,16 @@ using VerletBalls = Grains<Sphere, dem::integrator::VelocityVerlet>;
 using CorrectedCubes = Grains<Cube8, dem::integrator::PredictorCorrector>;
 using Cubes = Grains<Cube8>;
 using VerletCubes = Grains<Cube8, dem::integrator::VelocityVerlet>;
+struct PeriodicCubes : Cubes {
+  using Domain = dem::domain::Periodic;
+};
+struct PeriodicVerletCubes : VerletCubes {
+  using Domain = dem::domain::Periodic;
+};
+/// The machine's joints are held exactly.
+struct HeldBalls : VerletBalls {
+  using Joints = dem::mbd::Projected;
+};
 
 using Linear = dem::contact::LinearSpringDashpot;
 struct LinearModel : Laws<Linear, dem::friction::CundallStrack> {
@@ -97,6 +109,9 @@ TEST_WORLD(extern, models::VerletBalls)
 TEST_WORLD(extern, models::CorrectedCubes)
 TEST_WORLD(extern, models::Cubes)
 TEST_WORLD(extern, models::VerletCubes)
+TEST_WORLD(extern, models::PeriodicCubes)
+TEST_WORLD(extern, models::PeriodicVerletCubes)
+TEST_WORLD(extern, models::HeldBalls)
 TEST_WORLD(extern, models::LinearModel)
 TEST_WORLD(extern, models::HertzModel)
 

@@ -1,7 +1,5 @@
 // n steps, a file, and n more steps are 2n steps: every column of the state is the same in every bit.
 
-#include <dem/mbd/solver/projected.hpp>
-
 #include "scenes_to_save.hpp"
 
 #include <dem/world/contacts.hpp>
@@ -14,11 +12,6 @@ namespace exact_test {
 namespace {
 
 using namespace models;
-
-/// The machine's joints are held exactly.
-struct HeldBalls : VerletBalls {
-  using Joints = dem::mbd::Projected;
-};
 
 template <class Model>
 dem::ContactParameters<Model> constants() {

@@ -2,14 +2,11 @@
 
 #include "scenes_to_save.hpp"
 
-#include <dem/domain/periodic.hpp>
 #include <dem/domain/sheared.hpp>
 
 namespace {
 
-struct PeriodicCubes : models::Cubes {
-  using Domain = dem::domain::Periodic;
-};
+using models::PeriodicCubes;
 
 struct ShearedCubes : models::Cubes {
   using Domain = dem::domain::Sheared;

@@ -4,12 +4,9 @@
 
 #include "world/scenes.hpp"
 
-#include <dem/domain/periodic.hpp>
 #include <dem/soil/tile.hpp>
 
-struct TiledCubes : models::VerletCubes {
-  using Domain = dem::domain::Periodic;
-};
+using TiledCubes = models::PeriodicVerletCubes;
 using OpenCubes = models::VerletCubes;
 
 inline constexpr double tile_length = 16e-3, tile_width = 12e-3, half_edge = 1e-3;  // m

@@ -4,7 +4,6 @@
 #include "worlds.hpp"
 
 #include <dem/dem.hpp>
-#include <dem/mbd/solver/projected.hpp>
 
 #include <algorithm>
 
@@ -117,16 +116,8 @@ TEST_CASE("sub-steps of a machine are raised while it runs, as the load on a joi
   CHECK(m.substeps == substeps);
 }
 
-namespace {
-
-struct HeldExactly : models::VerletBalls {
-  using Joints = dem::mbd::Projected;
-};
-
-}  // namespace
-
 TEST_CASE("a heavy car on light wishbones needs no sub-steps if its joints are held exactly") {
-  QuarterCar<HeldExactly> car;
+  QuarterCar<models::HeldBalls> car;
   double worst = 0.0;
   const auto watch = [&] {
     worst = std::max(worst, car.opening());

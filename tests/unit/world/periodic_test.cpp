@@ -2,7 +2,6 @@
 
 #include "scenes.hpp"
 
-#include <dem/domain/periodic.hpp>
 #include <dem/geometry/mesh/mesh_shapes.hpp>
 #include <dem/geometry/mesh/triangle_mesh.hpp>
 #include <dem/soil/averages.hpp>
@@ -16,9 +15,7 @@
 
 namespace {
 
-struct PeriodicCubes : Cubes {
-  using Domain = dem::domain::Periodic;
-};
+using models::PeriodicCubes;
 
 constexpr double length = 0.030, width = 0.024;  // m, of the cell
 

@@ -1,0 +1,3 @@
+#include "worlds.hpp"
+
+TEST_WORLD(, models::PeriodicCubes)
