@@ -3,6 +3,8 @@
 #include <dem/geometry/mixed.hpp>
 #include <dem/geometry/superquadric/superquadric.hpp>
 
+namespace cohesion_test {
+
 using Catch::Approx;
 
 namespace {
@@ -370,3 +372,5 @@ TEST_CASE("sticky grains in a box never gain more than their cohesion can give")
     CHECK(run_box(w, Sphere(r), r, 0.2, 10000, {well, drawn}) < 0.2);
   }
 }
+
+}  // namespace cohesion_test

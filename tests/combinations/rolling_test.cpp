@@ -1,5 +1,7 @@
 #include "world/laws.hpp"
 
+namespace rolling_test {
+
 using Catch::Approx;
 
 namespace {
@@ -200,3 +202,5 @@ TEST_CASE("grains that resist rolling lose energy in a box and never gain any") 
     CHECK(run_box(w, Sphere(r), r, 0.3, 5000) < 0.2);
   }
 }
+
+}  // namespace rolling_test

@@ -5,6 +5,8 @@
 #include <dem/geometry/superquadric/superquadric.hpp>
 #include <dem/geometry/superquadric/superquadric_points.hpp>
 
+namespace flat_mesh_test {
+
 using dem::surface::TriangleMesh;
 
 namespace {
@@ -108,3 +110,5 @@ TEST_CASE("grains slide, tip and roll over a tilted flat mesh as over a plane, b
   compare<Moduli>(shape::cube(grain_half));
   compare<Moduli>(shape::SuperquadricPoints(Vec3::Constant(grain_half), Vec3::Constant(8)));
 }
+
+}  // namespace flat_mesh_test
