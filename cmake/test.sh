@@ -9,4 +9,5 @@ cd "$(dirname "$0")/.."
 extra=()
 [ "${1:-}" != tsan ] || extra=(clang libomp-dev)
 bash cmake/packages.sh "${extra[@]}"
+export CMAKE_BUILD_PARALLEL_LEVEL=${CMAKE_BUILD_PARALLEL_LEVEL:-$(nproc)}
 CTEST_PARALLEL_LEVEL=${CTEST_PARALLEL_LEVEL:-$(nproc)} cmake --workflow --preset "${1:-test}"

@@ -1,12 +1,14 @@
 // Cells that are sheared without walls: what happens at a border is what happens anywhere else in the flow.
 
-#include "scenes.hpp"
+#include "world/scenes.hpp"
 
 #include <dem/domain/sheared.hpp>
 #include <dem/soil/averages.hpp>
 #include <dem/world/contacts.hpp>
 
 #include "core/error_of.hpp"
+
+namespace sheared_test {
 
 namespace {
 
@@ -178,3 +180,5 @@ TEST_CASE("a sheared cell that cannot be is refused in words") {
       },
       "surface 'floor'");
 }
+
+}  // namespace sheared_test
