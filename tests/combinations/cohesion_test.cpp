@@ -18,6 +18,12 @@ struct Wet : Laws<Linear, friction::CundallStrack, rolling::None, cohesion::Liqu
 using WetModel = Wet<Sphere>;
 using shape::Superquadric;
 using Any = shape::Mixed<Sphere, Cube8, Superquadric>;
+/// Grains of a shape, in a world of that shape or of more.
+template <class S, class OfWorld = S>
+struct Grain {
+  using Shape = S;
+  using Model = Wet<OfWorld>;
+};
 
 constexpr double r = 1e-3, density = 2500.0, stiffness = 2000.0;
 const double mass = density * Sphere(r).volume();
@@ -151,14 +157,17 @@ TEST_CASE("a liquid bridge pulls after first contact only, over its distance, an
   }
 }
 
-TEMPLATE_TEST_CASE("grains find partners as far away as bridges reach, whatever the skin", "", Sphere, Cube8,
-                   Superquadric) {
+TEMPLATE_TEST_CASE("grains find partners as far away as bridges reach, whatever the skin", "", Grain<Sphere>,
+                   Grain<Superquadric>, (Grain<Cube8, Any>), (Grain<Superquadric, Any>),
+                   (Grain<Cube8, shape::Mixed<Cube8>>)) {
   // Two grains part at once; the neighbour list's skin is a thirtieth of the bridge. Clusters face each other with a
-  // ball of each. They and superquadrics are in a world of several kinds.
+  // ball of each.
+  using Shape = typename TestType::Shape;
+  using Model = typename TestType::Model;
   const auto shape = [] {
-    if constexpr (std::is_same_v<TestType, Sphere>) {
+    if constexpr (std::is_same_v<Shape, Sphere>) {
       return Sphere(r);
-    } else if constexpr (std::is_same_v<TestType, Superquadric>) {
+    } else if constexpr (std::is_same_v<Shape, Superquadric>) {
       return Superquadric(Vec3::Constant(r), {2, 2, 2});  // a ball, too
     } else {
       const Ball balls[] = {{{0, 0, 0}, r}, {{1.5 * r, 0, 0}, r}};  // of the eight that it may have
@@ -166,7 +175,6 @@ TEMPLATE_TEST_CASE("grains find partners as far away as bridges reach, whatever 
     }
   }();
   for (const bool joined : {true, false}) {
-    using Model = Wet<std::conditional_t<std::is_same_v<TestType, Sphere>, Sphere, Any>>;
     World<Model> w(options({0, 0, 0}, 1e-6, 1e-5));
     w.set_contact(wet<Model>(1.0));
     w.add_species(shape, {"grain", density});

@@ -194,7 +194,11 @@ inline void resolve(Settings& s) {
   require_non_negative(s.pressure, "--pressure", "Pa");
   const auto constants = constants_of(s);
   const auto quantities = quantities_of(s);
-  if (quantities.empty()) fail("there is no target; give --phi, --repose or --pressure, or make one with --known");
+  if (quantities.empty()) {
+    fail(
+        "there is no target; give --phi, --repose or --pressure, or make one with --known; --resume and --go-on need "
+        "the options of the search as well, or --config and its settings.toml");
+  }
   if (quantities.size() < constants.size()) {
     fail("{} constants cannot be told from {} target{}; give as many targets as constants", constants.size(),
          quantities.size(), quantities.size() == 1 ? "" : "s");

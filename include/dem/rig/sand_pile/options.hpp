@@ -12,7 +12,8 @@ namespace dem::rig::sand_pile {
 inline void declare(Options& options, Settings& s) {
   const auto add = [&](const char* name, auto& value, const char* text) { return options.add(name, value, text); };
   add("--size", s.size, "smoke (seconds), quick (minutes) or full (12000 grains, three seeds, 10 s of creep)");
-  add("--method", s.method, "lift (a cylinder), funnel, or drain (a box, through a slot in its floor)")
+  add("--method", s.method,
+      "lift (a cylinder), funnel, or drain (a box, through a slot in its floor); a drum that turns is the example drum")
       .one_of({"lift", "funnel", "drain"});
   add("--kinds", s.kinds,
       "of grains, a pile of each: cube8 (eight spheres), polyhedron (sharp cubes), superquadric (rounded cubes), "
