@@ -11,10 +11,15 @@ target_compile_options(dem_warnings
 
 # g++ looks for memory that it no longer needs whenever what it has in use doubles, a tenth to a fifth of its time with
 # dem's programs. Where each core has some 4 GB it need not, up to 2 GB; programs take 1 to 3 GB then.
-cmake_host_system_information(RESULT memory QUERY TOTAL_PHYSICAL_MEMORY) # MiB
+cmake_host_system_information(RESULT memory QUERY TOTAL_PHYSICAL_MEMORY) # MiB, of the host where this is a container
 cmake_host_system_information(RESULT cores QUERY NUMBER_OF_LOGICAL_CORES)
 math(EXPR memory_per_core "${memory} / ${cores}")
-if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND memory_per_core GREATER_EQUAL 4000)
+set(has_memory OFF)
+if(memory_per_core GREATER_EQUAL 4000)
+  set(has_memory ON)
+endif()
+option(DEM_MUCH_MEMORY "A compiler may take 3 GB of memory, those of the checks 5" ${has_memory})
+if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND DEM_MUCH_MEMORY)
   target_compile_options(dem_warnings INTERFACE "$<$<COMPILE_LANGUAGE:CXX>:SHELL:--param ggc-min-heapsize=2000000>")
 endif()
 

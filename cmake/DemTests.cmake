@@ -15,7 +15,7 @@ target_compile_options(test_main INTERFACE $<$<COMPILE_LANG_AND_ID:CXX,GNU,Clang
 
 # How many sources of a program are compiled at a time: what they share, the library's code above all, is compiled once for
 # all of them. All of a room take up to 3 GB.
-if(memory_per_core GREATER_EQUAL 4000)
+if(DEM_MUCH_MEMORY)
   set(at_once 0)
 else()
   set(at_once 16)
