@@ -18,7 +18,7 @@ set(has_memory OFF)
 if(memory_per_core GREATER_EQUAL 4000)
   set(has_memory ON)
 endif()
-option(DEM_MUCH_MEMORY "A compiler may take 3 GB of memory, those of the checks 5" ${has_memory})
+option(DEM_MUCH_MEMORY "g++ may take 3 GB of memory, for the checks 5" ${has_memory})
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND DEM_MUCH_MEMORY)
   target_compile_options(dem_warnings INTERFACE "$<$<COMPILE_LANGUAGE:CXX>:SHELL:--param ggc-min-heapsize=2000000>")
 endif()
@@ -40,11 +40,11 @@ function(dem_subfolders out pattern)
 endfunction()
 
 # dem_includes(<out> <regex> <source>...): whether one of the sources includes a header that matches, as in
-# `#include <header>`.
+# `#include <header>` or `#include "header"`.
 function(dem_includes out regex)
   set(${out} FALSE PARENT_SCOPE)
   foreach(source IN LISTS ARGN)
-    file(STRINGS "${source}" lines REGEX "^#include <(${regex})>")
+    file(STRINGS "${source}" lines REGEX "^#include [<\"](${regex})[>\"]")
     if(lines)
       set(${out} TRUE PARENT_SCOPE)
     endif()
@@ -70,9 +70,9 @@ function(dem_is_rig out)
   set(${out} ${is_rig} PARENT_SCOPE)
 endfunction()
 
-# dem_needs_hdf5(<out> <source>...): whether one of the sources includes a header that needs HDF5.
+# dem_needs_hdf5(<out> <source>...): whether one of the sources includes a header that needs HDF5, of dem or of its tests.
 function(dem_needs_hdf5 out)
-  dem_includes(needs "hdf5\\.h|dem/io/checkpoint(/hdf5_file)?\\.hpp|dem/rig/hdf5_checkpoints\\.hpp|dem/soil/tile_file\\.hpp" ${ARGN})
+  dem_includes(needs "hdf5\\.h|dem/io/checkpoint(/hdf5_file)?\\.hpp|dem/rig/hdf5_checkpoints\\.hpp|dem/soil/tile_file\\.hpp|(checkpoint/)?scenes_to_save\\.hpp|combinations\\.hpp|combinations/combinations\\.hpp" ${ARGN})
   set(${out} ${needs} PARENT_SCOPE)
 endfunction()
 

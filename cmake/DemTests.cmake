@@ -10,17 +10,22 @@ else()
   target_link_libraries(test_main PUBLIC Catch2::Catch2)
 endif()
 
-# Tests are compiled several files at a time: names of one may hide another's. Linked after dem_warnings, so it comes last.
+# Sources of tests are compiled together: names of one may hide another's. Linked after dem_warnings, so it comes last.
 target_compile_options(test_main INTERFACE $<$<COMPILE_LANG_AND_ID:CXX,GNU,Clang,AppleClang>:-Wno-shadow>)
 
 # How many sources of a program are compiled at a time: what they share, the library's code above all, is compiled once for
-# all of them. All of a room take up to 3 GB.
-if(DEM_MUCH_MEMORY)
-  set(at_once 0)
-else()
-  set(at_once 16)
+# all of them. All of a room take g++ up to 3 GB at -Og. A world is dearer than a source of tests.
+set(DEM_TESTS_AT_ONCE "" CACHE STRING "Sources of a test program that are compiled at a time; 0: all; empty: by the memory")
+set(tests_at_once "${DEM_TESTS_AT_ONCE}")
+if(tests_at_once STREQUAL "" AND DEM_MUCH_MEMORY)
+  set(tests_at_once 0)
+elseif(tests_at_once STREQUAL "")
+  set(tests_at_once 16)
 endif()
-set(DEM_TESTS_AT_ONCE ${at_once} CACHE STRING "Sources of a test program that are compiled at a time; 0 for all of them")
+set(worlds_at_once ${tests_at_once})
+if(worlds_at_once GREATER 8)
+  set(worlds_at_once 8)
+endif()
 
 # What nearly every test includes, compiled once for all. Whether a header stands alone is another check's business.
 file(CONFIGURE OUTPUT "${CMAKE_CURRENT_BINARY_DIR}/precompiled.cpp" CONTENT "// Stands for its precompiled headers.\n")
@@ -43,7 +48,7 @@ if(CMAKE_CXX_FLAGS_DEBUG MATCHES "-Og")
 else()
   target_precompile_headers(test_worlds REUSE_FROM test_headers)
 endif()
-set_target_properties(test_worlds PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE ${DEM_TESTS_AT_ONCE})
+set_target_properties(test_worlds PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE ${worlds_at_once})
 
 # dem_add_catch_tests(<name> <label> <source>...): the program test_<name>, and a test per TEST_CASE in it. Those tagged
 # [long], which take ten seconds and more, are checks (and no test of the sanitizers, under which they take minutes). Sources are
@@ -53,7 +58,7 @@ function(dem_add_catch_tests name label)
   target_include_directories(test_${name} PRIVATE "${CMAKE_CURRENT_SOURCE_DIR}" "${CMAKE_CURRENT_SOURCE_DIR}/unit")
   dem_program(test_${name})
   target_link_libraries(test_${name} PRIVATE test_worlds test_main)
-  set_target_properties(test_${name} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE ${DEM_TESTS_AT_ONCE})
+  set_target_properties(test_${name} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE ${tests_at_once})
   target_precompile_headers(test_${name} REUSE_FROM test_headers)
   set(others)
   foreach(source IN LISTS ARGN)
@@ -100,7 +105,7 @@ function(dem_add_width_1_test)
   dem_program(test_width_1)
   target_link_libraries(test_width_1 PRIVATE test_main)
   target_compile_definitions(test_width_1 PRIVATE DEM_NO_SIMD)
-  set_target_properties(test_width_1 PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 0)
+  set_target_properties(test_width_1 PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE ${worlds_at_once})
   catch_discover_tests(test_width_1 TEST_PREFIX width_1. PROPERTIES LABELS unit)
 endfunction()
 
