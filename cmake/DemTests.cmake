@@ -51,7 +51,7 @@ endif()
 set_target_properties(test_worlds PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE ${worlds_at_once})
 
 # dem_add_catch_tests(<name> <label> <source>...): the program test_<name>, and a test per TEST_CASE in it. Those tagged
-# [long], which take ten seconds and more, are checks (and no test of the sanitizers, under which they take minutes). Sources are
+# [long], which take five seconds and more, are checks (and no test of the sanitizers, under which they take minutes). Sources are
 # compiled together, as most of the work is what they share. One whose names meet another's stands in a namespace.
 function(dem_add_catch_tests name label)
   add_executable(test_${name} ${ARGN})

@@ -152,7 +152,7 @@ struct RunOfBalls {
 
 }  // namespace
 
-TEST_CASE("a run that was stopped at any of its moments ends as one that was not") {
+TEST_CASE("a run that was stopped at any of its moments ends as one that was not", "[long]") {
   RunOfBalls whole;
   REQUIRE(whole.run({}) == 0);
   const int moments = whole.rig.updates;

@@ -126,7 +126,7 @@ TEST_CASE("grains of a lattice fall as slowly as was asked for, and fill a bed t
   CHECK(fastest[1] > 0.1);
 }
 
-TEST_CASE("a bed that is rained is filled at its flow from its height, level and at rest") {
+TEST_CASE("a bed that is rained is filled at its flow from its height, level and at rest", "[long]") {
   for (const Container& container :
        {Container::box(0.018, 0.014), Container::trough(0.018, 0.008, 0.4), Container::cylinder(0.0085)}) {
     SoilOfBalls soil;
@@ -162,7 +162,7 @@ TEST_CASE("a bed that is rained is filled at its flow from its height, level and
   }
 }
 
-TEST_CASE("a bed is as dense as it was asked for, with all of its friction in the end") {
+TEST_CASE("a bed is as dense as it was asked for, with all of its friction in the end", "[long]") {
   SoilOfBalls loose;
   dem::soil::Bed<Balls> as_settled(loose.world, Container::box(0.018, 0.014), loose.ball, {.height = 0.012});
   as_settled.make();

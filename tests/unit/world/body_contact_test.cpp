@@ -101,7 +101,7 @@ TEST_CASE("a body that falls flat rebounds with the restitution that was asked f
   }
 }
 
-TEST_CASE("planks laid across each other touch where their edges cross") {
+TEST_CASE("planks laid across each other touch where their edges cross", "[long]") {
   // No corner of either lies in the other: what touches are the edges, flat on flat or edge on edge.
   const Vec3 plank(1.0, 0.06, 0.03);
   for (const double roll : {0.0, 0.25 * std::numbers::pi}) {
