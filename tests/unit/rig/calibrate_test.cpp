@@ -172,6 +172,10 @@ TEST_CASE("of two places that fit, that between the tried points is found, and t
   CHECK(left.other.at(0) == Approx(0.75).margin(1e-4));
   CHECK_FALSE(left.is_beyond());
   CHECK(found_text(s, left).find("; but friction 0.75 fits the target as well") != std::string::npos);
+  CHECK(found_text(s, left).find("not told") == std::string::npos);
+  auto vague = left;
+  vague.error = {0.9};
+  CHECK(found_text(s, vague).find(" (wider than its range: not told by the targets)") != std::string::npos);
   const auto both = find_constants(measure(0.95), goals, by_grids);
   CHECK(both.place[0] + both.other.at(0) == Approx(1.0).margin(2e-3));
   const auto short_of = find_constants(measure(0.2), goals, [](auto* function, const void* data, const auto&) {

@@ -48,6 +48,8 @@ inline std::string found_text(const Settings& s, const Found& f) {
     const auto e = estimate_of(s, f, k);
     words += text("{}{} {} ± {}", words.empty() ? "" : ", ", names_of_constants[static_cast<int>(constants[k])],
                   number(e.value), number(e.half_width(), "{:.2g}"));
+    const auto& range = range_of(s, constants[k]);
+    if (!(e.half_width() <= range[1] - range[0])) words += " (wider than its range: not told by the targets)";
     if (f.place[k] < 1e-3 || f.place[k] > 1.0 - 1e-3) words += " (at the end of its range)";
     if (f.is_beyond(k)) {
       words += text(" (beyond the points that were tried, {} to {}: extrapolated; try more with --go-on and --trials)",
