@@ -98,6 +98,15 @@ bool holds(OnPlane<Model>& ball, double from, double to, double range) {
   return ball.gap() <= range;
 }
 
+/// Six by six by so many wet spheres that move at random in an open box.
+template <class Model>
+void add_wet_spheres(World<Model>& w, int layers) {
+  w.set_contact(wet<Model>(0.5));
+  const auto species = w.add_species(Sphere(r), {"grain", density});
+  add_open_box(w, {14e-3, 14e-3, 1});
+  add_block(w, species, Vec3::Constant(1.05e-3), 2.02e-3, 6, 6, layers, 0.3);
+}
+
 }  // namespace
 
 TEST_CASE("cohesion holds a ball up to its pull-off force") {
@@ -208,11 +217,7 @@ TEMPLATE_TEST_CASE("grains find partners as far away as bridges reach, whatever 
 TEST_CASE("wet spheres do among wet clusters what they do alone, to the bit") {
   // Without friction nothing turns, and what does not turn is the same whether the model keeps a rotation or not.
   const auto run = [](auto& w) {
-    using Model = typename std::remove_reference_t<decltype(w)>::Model;
-    w.set_contact(wet<Model>(0.5));
-    const auto species = w.add_species(Sphere(r), {"grain", density});
-    add_open_box(w, {14e-3, 14e-3, 1});
-    add_block(w, species, Vec3::Constant(1.05e-3), 2.02e-3, 6, 6, 8, 0.3);  // two chunks
+    add_wet_spheres(w, 8);  // two chunks
     REQUIRE(w.run(1000));
     std::vector<Vec3> places;
     for_each_grain(w, [&](GrainId p) { places.push_back(w.position(p)); });
@@ -282,10 +287,7 @@ TEST_CASE("wet grains go the same way, to the bit, on any number of threads") {
     WorldOptions o = options({0, 0, -9.81}, 5e-6, 1e-4);
     o.threads = threads;
     World<WetModel> w(o);
-    w.set_contact(wet(0.5));
-    const auto species = w.add_species(Sphere(r), {"grain", density});
-    add_open_box(w, {14e-3, 14e-3, 1});
-    add_block(w, species, Vec3::Constant(1.05e-3), 2.02e-3, 6, 6, 15, 0.3);  // three chunks
+    add_wet_spheres(w, 15);  // three chunks
     REQUIRE(w.run(300));
     std::vector<Vec3> all;
     for_each_grain(w, [&](GrainId p) { all.push_back(w.position(p)); });

@@ -7,6 +7,8 @@
 #include <dem/law/normal/hertz.hpp>
 #include <dem/law/normal/linear_spring_dashpot.hpp>
 
+#include <numbers>
+
 namespace rebound_test {
 
 using Catch::Approx;
