@@ -1,5 +1,6 @@
 #pragma once
 
+#include <dem/core/compiled.hpp>
 #include <dem/core/compiler.hpp>
 
 #include <cstdio>
@@ -49,10 +50,6 @@
 #else
 #define DEM_UNROLL
 #endif
-
-/// DEM_LAZY makes a function that is no template one, without a choice: only programs that call it compile what stands
-/// in it. For long work at set-up that few programs need, such as the repair of meshes.
-#define DEM_LAZY template <class DemLazy = void>
 
 /// DEM_COLD: set-up, which is compiled for size and never inlined into what runs: it costs a compiler half as much.
 #if defined(__GNUC__) && !defined(__CUDACC__)

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <dem/core/macros.hpp>
 // Texts made of numbers and names, in fmt's format language. Arguments lose their types before fmt sees them. Otherwise
 // fmt would make a template for each list of types, and every program would spend seconds on compiling texts that it
 // never prints.
@@ -45,12 +46,7 @@ class TextArgument {
   Argument argument_;
 };
 
-inline std::string text_of(std::string_view format, std::initializer_list<TextArgument> arguments) {
-  static_assert(sizeof(TextArgument) == sizeof(TextArgument::Argument));
-  const auto* first = arguments.size() == 0 ? nullptr : &arguments.begin()->argument_;
-  return fmt::vformat(fmt::string_view(format.data(), format.size()),
-                      fmt::format_args(first, static_cast<int>(arguments.size())));
-}
+std::string text_of(std::string_view format, std::initializer_list<TextArgument> arguments);
 
 // With DEM_CHECK_TEXTS a format that does not suit its arguments does not compile.
 #if defined(DEM_CHECK_TEXTS)
@@ -69,3 +65,18 @@ std::string text(TextFormat<std::type_identity_t<Args>...> format, const Args&..
 }
 
 }  // namespace dem
+
+#if DEM_DEFINES
+
+namespace dem {
+
+DEM_INLINE std::string text_of(std::string_view format, std::initializer_list<TextArgument> arguments) {
+  static_assert(sizeof(TextArgument) == sizeof(TextArgument::Argument));
+  const auto* first = arguments.size() == 0 ? nullptr : &arguments.begin()->argument_;
+  return fmt::vformat(fmt::string_view(format.data(), format.size()),
+                      fmt::format_args(first, static_cast<int>(arguments.size())));
+}
+
+}  // namespace dem
+
+#endif

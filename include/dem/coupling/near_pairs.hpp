@@ -17,28 +17,11 @@ namespace dem::coupling {
 class NearPairs {
  public:
   /// Forgets all pairs; makes room for surfaces 0 ... n - 1.
-  void clear(std::size_t n) {
-    partners_.assign(n, {});
-    reach_.assign(n, 0.0);
-    order_.clear();
-  }
+  void clear(std::size_t n);
   /// Pair number `pair`, of surfaces a and b that feel each other up to a gap (m). Pairs come in ascending order.
-  void add(std::uint32_t a, std::uint32_t b, std::uint32_t pair, double gap) {
-    partners_[std::min(a, b)].push_back({std::max(a, b), pair});
-    for (const std::uint32_t s : {a, b}) reach_[s] = std::max(reach_[s], gap);
-  }
+  void add(std::uint32_t a, std::uint32_t b, std::uint32_t pair, double gap);
   /// To be called when all pairs are there.
-  DEM_LAZY void finish() {
-    std::vector<char> has_pairs(partners_.size(), 0);
-    for (std::uint32_t s = 0; s < partners_.size(); ++s) {
-      for (const Partner& p : partners_[s]) has_pairs[s] = has_pairs[p.other] = 1;
-      std::stable_sort(partners_[s].begin(), partners_[s].end(),
-                       [](const Partner& a, const Partner& b) { return a.other < b.other; });
-    }
-    for (std::uint32_t s = 0; s < has_pairs.size(); ++s) {
-      if (has_pairs[s]) order_.push_back({s, 0.0, 0.0});
-    }
-  }
+  DEM_LAZY void finish();
 
   /// The numbers of the pairs whose boxes, surfaces[s].low to .high (m), meet within their gaps, and perhaps of others
   /// that nearly do; ascending.
@@ -79,12 +62,7 @@ class NearPairs {
     }
     return true;
   }
-  void list_pairs(std::uint32_t low, std::uint32_t high, std::vector<std::uint32_t>& found) const {
-    const std::vector<Partner>& all = partners_[low];
-    auto p = std::lower_bound(all.begin(), all.end(), high,
-                              [](const Partner& partner, std::uint32_t other) { return partner.other < other; });
-    for (; p != all.end() && p->other == high; ++p) found.push_back(p->pair);
-  }
+  void list_pairs(std::uint32_t low, std::uint32_t high, std::vector<std::uint32_t>& found) const;
 
   /// The axis along which the boxes are spread the most; endless ones do not count.
   template <class Surface>
@@ -114,3 +92,41 @@ class NearPairs {
 };
 
 }  // namespace dem::coupling
+
+#if DEM_DEFINES
+
+namespace dem::coupling {
+
+DEM_INLINE void NearPairs::clear(std::size_t n) {
+  partners_.assign(n, {});
+  reach_.assign(n, 0.0);
+  order_.clear();
+}
+
+DEM_INLINE void NearPairs::add(std::uint32_t a, std::uint32_t b, std::uint32_t pair, double gap) {
+  partners_[std::min(a, b)].push_back({std::max(a, b), pair});
+  for (const std::uint32_t s : {a, b}) reach_[s] = std::max(reach_[s], gap);
+}
+
+DEM_LAZY_INLINE void NearPairs::finish() {
+  std::vector<char> has_pairs(partners_.size(), 0);
+  for (std::uint32_t s = 0; s < partners_.size(); ++s) {
+    for (const Partner& p : partners_[s]) has_pairs[s] = has_pairs[p.other] = 1;
+    std::stable_sort(partners_[s].begin(), partners_[s].end(),
+                     [](const Partner& a, const Partner& b) { return a.other < b.other; });
+  }
+  for (std::uint32_t s = 0; s < has_pairs.size(); ++s) {
+    if (has_pairs[s]) order_.push_back({s, 0.0, 0.0});
+  }
+}
+
+DEM_INLINE void NearPairs::list_pairs(std::uint32_t low, std::uint32_t high, std::vector<std::uint32_t>& found) const {
+  const std::vector<Partner>& all = partners_[low];
+  auto p = std::lower_bound(all.begin(), all.end(), high,
+                            [](const Partner& partner, std::uint32_t other) { return partner.other < other; });
+  for (; p != all.end() && p->other == high; ++p) found.push_back(p->pair);
+}
+
+}  // namespace dem::coupling
+
+#endif

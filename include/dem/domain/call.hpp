@@ -1,5 +1,6 @@
 #pragma once
 
+#include <dem/core/macros.hpp>
 // What ranks do together. Needs no MPI.
 
 #include <dem/core/text.hpp>
@@ -39,27 +40,14 @@ using CallHashes = std::array<std::uint64_t, 7>;
 /// What ranks say of their calls. The largest number of each, of all ranks, tells all of them whether they agree.
 class CallNumbers {
  public:
-  CallNumbers(Call call, int rank, const CallHashes& hashes) {
-    put(0, std::uint64_t{static_cast<std::uint32_t>(call)} << 32 | static_cast<std::uint32_t>(rank));
-    for (std::size_t k = 0; k < hashes.size(); ++k) put(k + 1, hashes[k]);
-  }
+  CallNumbers(Call call, int rank, const CallHashes& hashes);
   std::uint64_t* data() { return numbers_.data(); }
   std::size_t size() const { return numbers_.size(); }
 
   /// Of the largest numbers: what two ranks do that do different things, in words; empty where all do the same.
-  std::string difference() const {
-    auto one = call_and_rank(least(0)), other = call_and_rank(most(0));
-    if (one.first == other.first) return {};
-    if (one.second > other.second) std::swap(one, other);
-    return dem::text("ranks are not in the same call: rank {} {}, rank {} {}; make this call on every rank", one.second,
-                     in_words(one.first), other.second, in_words(other.first));
-  }
+  std::string difference() const;
   /// The first of the hashes that is not the same on all ranks; their number where all are.
-  std::size_t differing_part() const {
-    std::size_t k = 0;
-    while (k < CallHashes{}.size() && least(k + 1) == most(k + 1)) ++k;
-    return k;
-  }
+  std::size_t differing_part() const;
 
  private:
   static std::pair<Call, std::uint32_t> call_and_rank(std::uint64_t x) {
@@ -73,3 +61,30 @@ class CallNumbers {
 };
 
 }  // namespace dem::domain
+
+#if DEM_DEFINES
+
+namespace dem::domain {
+
+DEM_INLINE CallNumbers::CallNumbers(Call call, int rank, const CallHashes& hashes) {
+  put(0, std::uint64_t{static_cast<std::uint32_t>(call)} << 32 | static_cast<std::uint32_t>(rank));
+  for (std::size_t k = 0; k < hashes.size(); ++k) put(k + 1, hashes[k]);
+}
+
+DEM_INLINE std::string CallNumbers::difference() const {
+  auto one = call_and_rank(least(0)), other = call_and_rank(most(0));
+  if (one.first == other.first) return {};
+  if (one.second > other.second) std::swap(one, other);
+  return dem::text("ranks are not in the same call: rank {} {}, rank {} {}; make this call on every rank", one.second,
+                   in_words(one.first), other.second, in_words(other.first));
+}
+
+DEM_INLINE std::size_t CallNumbers::differing_part() const {
+  std::size_t k = 0;
+  while (k < CallHashes{}.size() && least(k + 1) == most(k + 1)) ++k;
+  return k;
+}
+
+}  // namespace dem::domain
+
+#endif

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <dem/core/macros.hpp>
 #include <dem/geometry/mesh/bounding_volume_tree.hpp>
 
 #include <array>
@@ -32,15 +33,7 @@ void points_of_edge(const Vector3<double>& tail, const Vector3<double>& head, co
 class EdgeSet {
  public:
   EdgeSet() = default;
-  DEM_LAZY explicit EdgeSet(const std::vector<std::array<Vec3, 2>>& edges) {
-    std::vector<Aabb> boxes;
-    for (const auto& [a, b] : edges) boxes.push_back({lower(a, b), upper(a, b)});
-    tree_ = BoundingVolumeTree(boxes);
-    for (const std::uint32_t k : tree_.order()) {
-      ends_.push_back({from_eigen(edges[k][0]), from_eigen(edges[k][1])});
-      longest_ = std::max(longest_, (edges[k][1] - edges[k][0]).norm());
-    }
-  }
+  DEM_LAZY explicit EdgeSet(const std::vector<std::array<Vec3, 2>>& edges);
 
   std::size_t size() const { return ends_.size(); }
 
@@ -72,3 +65,21 @@ class EdgeSet {
 };
 
 }  // namespace dem::surface
+
+#if DEM_DEFINES
+
+namespace dem::surface {
+
+DEM_LAZY_INLINE EdgeSet::EdgeSet(const std::vector<std::array<Vec3, 2>>& edges) {
+  std::vector<Aabb> boxes;
+  for (const auto& [a, b] : edges) boxes.push_back({lower(a, b), upper(a, b)});
+  tree_ = BoundingVolumeTree(boxes);
+  for (const std::uint32_t k : tree_.order()) {
+    ends_.push_back({from_eigen(edges[k][0]), from_eigen(edges[k][1])});
+    longest_ = std::max(longest_, (edges[k][1] - edges[k][0]).norm());
+  }
+}
+
+}  // namespace dem::surface
+
+#endif

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <dem/core/macros.hpp>
 #include <dem/geometry/mesh/bounding_volume_tree.hpp>
 
 #include <vector>
@@ -10,12 +11,7 @@ namespace dem::surface {
 class PointSet {
  public:
   PointSet() = default;
-  DEM_LAZY explicit PointSet(const std::vector<Vec3>& points) {
-    std::vector<Aabb> boxes;
-    for (const Vec3& p : points) boxes.push_back({p, p});
-    tree_ = BoundingVolumeTree(boxes);
-    for (const std::uint32_t k : tree_.order()) points_.push_back(from_eigen(points[k]));
-  }
+  DEM_LAZY explicit PointSet(const std::vector<Vec3>& points);
 
   std::size_t size() const { return points_.size(); }
   const Vector3<double>& operator[](std::size_t number) const { return points_[number]; }
@@ -45,3 +41,18 @@ class PointSet {
 };
 
 }  // namespace dem::surface
+
+#if DEM_DEFINES
+
+namespace dem::surface {
+
+DEM_LAZY_INLINE PointSet::PointSet(const std::vector<Vec3>& points) {
+  std::vector<Aabb> boxes;
+  for (const Vec3& p : points) boxes.push_back({p, p});
+  tree_ = BoundingVolumeTree(boxes);
+  for (const std::uint32_t k : tree_.order()) points_.push_back(from_eigen(points[k]));
+}
+
+}  // namespace dem::surface
+
+#endif

@@ -26,7 +26,27 @@ struct SymmetricEigen {
   Vec3 values;
   Mat3 vectors;
 };
-DEM_COLD inline SymmetricEigen eigen_of_symmetric(Mat3 m) {
+DEM_COLD SymmetricEigen eigen_of_symmetric(Mat3 m);
+
+/// Of all frames along these eigenvectors (ascending eigenvalues) the one that turns the unit axes least. Eigenvectors
+/// of equal eigenvalues may be any in their plane.
+DEM_COLD Mat3 nearest_axes(const Vec3& values, const Mat3& vectors);
+
+}  // namespace detail
+
+/// Finds the principal axes, in the order and with the signs that turn the given axes least. A tensor that is diagonal
+/// already (to 1e-12) keeps its axes. Moments that differ by less than 1e-6 of the largest count as equal, as those of
+/// a wheel from a file of single precision. Their axes stay as near to the given ones as they can, so a part that was
+/// drawn along its axes stays as drawn. Throws Error unless the tensor is finite and symmetric (to 1e-9).
+DEM_COLD PrincipalAxes principal_axes(const Mat3& inertia);
+
+}  // namespace dem
+
+#if DEM_DEFINES
+
+namespace dem::detail {
+
+DEM_INLINE SymmetricEigen eigen_of_symmetric(Mat3 m) {
   Mat3 v = Mat3::Identity();
   const auto rotate = [](double& x, double& y, double c, double s) {
     const double old = x;
@@ -65,9 +85,7 @@ DEM_COLD inline SymmetricEigen eigen_of_symmetric(Mat3 m) {
   return found;
 }
 
-/// Of all frames along these eigenvectors (ascending eigenvalues) the one that turns the unit axes least. Eigenvectors
-/// of equal eigenvalues may be any in their plane.
-DEM_COLD inline Mat3 nearest_axes(const Vec3& values, const Mat3& vectors) {
+DEM_INLINE Mat3 nearest_axes(const Vec3& values, const Mat3& vectors) {
   const double equal = 1e-6 * std::max(std::fabs(values[0]), std::fabs(values[2]));
   const bool low = values[1] - values[0] < equal, high = values[2] - values[1] < equal;
   if (low && high) return Mat3::Identity();
@@ -98,13 +116,11 @@ DEM_COLD inline Mat3 nearest_axes(const Vec3& values, const Mat3& vectors) {
   return best;
 }
 
-}  // namespace detail
+}  // namespace dem::detail
 
-/// Finds the principal axes, in the order and with the signs that turn the given axes least. A tensor that is diagonal
-/// already (to 1e-12) keeps its axes. Moments that differ by less than 1e-6 of the largest count as equal, as those of
-/// a wheel from a file of single precision. Their axes stay as near to the given ones as they can, so a part that was
-/// drawn along its axes stays as drawn. Throws Error unless the tensor is finite and symmetric (to 1e-9).
-DEM_COLD inline PrincipalAxes principal_axes(const Mat3& inertia) {
+namespace dem {
+
+DEM_INLINE PrincipalAxes principal_axes(const Mat3& inertia) {
   for (int k = 0; k < 9; ++k) {  // looked at first, as the largest of several numbers may leave a NaN out
     if (0.0 * inertia.data()[k] == 0.0) continue;
     fail("an inertia tensor has moments {:g}, {:g}, {:g} and products {:g}, {:g}, {:g}, but all must be finite",
@@ -126,3 +142,5 @@ DEM_COLD inline PrincipalAxes principal_axes(const Mat3& inertia) {
 }
 
 }  // namespace dem
+
+#endif

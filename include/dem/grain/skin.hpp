@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <dem/core/macros.hpp>
 
 namespace dem::grain {
 
@@ -41,57 +42,76 @@ struct SkinChoice {
   }
 
   /// Candidates of a grain in a list with the skin s.
-  double candidates_at(double s) const {
-    const double ratio = (diameter + s) / (diameter + skin);
-    return candidates * ratio * ratio * ratio;
-  }
+  double candidates_at(double s) const;
   double list_cost(double s) const { return list_weight * (new_list + per_candidate * candidates_at(s)); }
 
   /// The best skin (m) for grains of which the fastest goes half of `speed` (m) in a step. `evaluations`: of forces, a
   /// step; `lists`: new lists a step that are made whatever the skin is.
-  double best(double speed, double evaluations, double lists) const {
-    double best = 0.0, least = 0.0;
-    for (const double share : ladder) {
-      const double s = share * radius;
-      const double cost = evaluations * candidates_at(s) + list_cost(s) * std::max(lists, speed / s);
-      if (best > 0.0 && cost >= least) continue;
-      best = s;
-      least = cost;
-    }
-    return best;
-  }
+  double best(double speed, double evaluations, double lists) const;
 
   /// Before a new list: its skin (m), the same as before where nobody knows how far grains have moved. `step`: steps so
   /// far.
-  double choose(std::uint64_t step, double evaluations) {
-    if (skin == 0.0) skin = ladder[0] * radius;
-    else if (moved >= 0.0) {
-      const double steps = static_cast<double>(std::max<std::uint64_t>(1, step - made));
-      const bool outlived = looked_at || 2.0 * moved >= skin;  // else something other than motion asked for it
-      skin = best(2.0 * moved / steps, evaluations, outlived ? 0.0 : 1.0 / steps);
-    }
-    looked_at = false;
-    moved = -1.0;
-    return skin;
-  }
+  double choose(std::uint64_t step, double evaluations);
   /// After a new list was made; `range`: m, of cohesion.
-  void made_list(double range, double candidates_of_a_grain, std::uint64_t step, double evaluations) {
-    diameter = 2.0 * radius + range;
-    candidates = candidates_of_a_grain;
-    made = step;
-    look_at = never;
-    const double least = ladder[0] * radius;
-    const double needless = evaluations * (candidates - candidates_at(least));
-    if (skin > least && needless > 0.0) look_at = step + 1 + static_cast<std::uint64_t>(list_cost(least) / needless);
-  }
+  void made_list(double range, double candidates_of_a_grain, std::uint64_t step, double evaluations);
   /// After `step` steps, when the list is due to be looked at: whether a new list is better, with grains that have
   /// moved so far (m).
-  bool is_too_wide(double so_far, std::uint64_t step, double evaluations) {
-    const std::uint64_t steps = step - made;
-    looked_at = best(2.0 * so_far / static_cast<double>(steps), evaluations, 0.0) < skin;
-    look_at = step + steps;
-    return looked_at;
-  }
+  bool is_too_wide(double so_far, std::uint64_t step, double evaluations);
 };
 
 }  // namespace dem::grain
+
+#if DEM_DEFINES
+
+namespace dem::grain {
+
+DEM_INLINE double SkinChoice::candidates_at(double s) const {
+  const double ratio = (diameter + s) / (diameter + skin);
+  return candidates * ratio * ratio * ratio;
+}
+
+DEM_INLINE double SkinChoice::best(double speed, double evaluations, double lists) const {
+  double best = 0.0, least = 0.0;
+  for (const double share : ladder) {
+    const double s = share * radius;
+    const double cost = evaluations * candidates_at(s) + list_cost(s) * std::max(lists, speed / s);
+    if (best > 0.0 && cost >= least) continue;
+    best = s;
+    least = cost;
+  }
+  return best;
+}
+
+DEM_INLINE double SkinChoice::choose(std::uint64_t step, double evaluations) {
+  if (skin == 0.0) skin = ladder[0] * radius;
+  else if (moved >= 0.0) {
+    const double steps = static_cast<double>(std::max<std::uint64_t>(1, step - made));
+    const bool outlived = looked_at || 2.0 * moved >= skin;  // else something other than motion asked for it
+    skin = best(2.0 * moved / steps, evaluations, outlived ? 0.0 : 1.0 / steps);
+  }
+  looked_at = false;
+  moved = -1.0;
+  return skin;
+}
+
+DEM_INLINE void SkinChoice::made_list(double range, double candidates_of_a_grain, std::uint64_t step,
+                                      double evaluations) {
+  diameter = 2.0 * radius + range;
+  candidates = candidates_of_a_grain;
+  made = step;
+  look_at = never;
+  const double least = ladder[0] * radius;
+  const double needless = evaluations * (candidates - candidates_at(least));
+  if (skin > least && needless > 0.0) look_at = step + 1 + static_cast<std::uint64_t>(list_cost(least) / needless);
+}
+
+DEM_INLINE bool SkinChoice::is_too_wide(double so_far, std::uint64_t step, double evaluations) {
+  const std::uint64_t steps = step - made;
+  looked_at = best(2.0 * so_far / static_cast<double>(steps), evaluations, 0.0) < skin;
+  look_at = step + steps;
+  return looked_at;
+}
+
+}  // namespace dem::grain
+
+#endif

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <dem/core/error.hpp>
+#include <dem/core/macros.hpp>
 
 namespace dem {
 
@@ -39,7 +40,15 @@ struct SleepOptions {
 };
 
 /// Throws Error for options that make no sense.
-inline void check_sleep(const SleepOptions& s) {
+void check_sleep(const SleepOptions& s);
+
+}  // namespace dem
+
+#if DEM_DEFINES
+
+namespace dem {
+
+DEM_INLINE void check_sleep(const SleepOptions& s) {
   require_within(s.balance, 1e-9, 1.0, "share of what a grain bears that may be out of balance when it falls asleep");
   require_within(s.change, 1e-9, 1.0, "share of what a grain bears that may change without waking it");
   require_within(s.jolt, s.change, 10.0, "share of what a grain bears that wakes it at once (at least `change`)");
@@ -50,3 +59,5 @@ inline void check_sleep(const SleepOptions& s) {
 }
 
 }  // namespace dem
+
+#endif

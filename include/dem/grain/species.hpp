@@ -2,6 +2,7 @@
 
 #include <dem/core/error.hpp>
 #include <dem/core/ids.hpp>
+#include <dem/core/macros.hpp>
 #include <dem/geometry/shape.hpp>
 #include <dem/math/vector.hpp>
 
@@ -50,15 +51,7 @@ double kinetic_energy(const Species<Shape>& kind, const Vector3<double>& v, cons
 }
 
 /// Throws Error for moments of inertia that no body has.
-inline void check_moments(const Vec3& moments) {
-  const double largest = moments.maxCoeff();
-  if (!(moments.minCoeff() > 0.0) || !(largest <= 1.01 * (moments.sum() - largest))) {
-    fail(
-        "the moments of inertia of a species are {:g}, {:g}, {:g} kg m^2, but must be positive and the largest no more "
-        "than the sum of the others; check the mass properties that the shape was given",
-        moments.x(), moments.y(), moments.z());
-  }
-}
+void check_moments(const Vec3& moments);
 
 /// A species of grains, of a density in kg/m^3, without its material yet. Throws Error unless the density, the volume
 /// and the radius are positive, and for moments of inertia that no body has.
@@ -74,3 +67,21 @@ Species<Shape> make_species(const Shape& shape, double density, bool held) {
 }
 
 }  // namespace dem
+
+#if DEM_DEFINES
+
+namespace dem {
+
+DEM_INLINE void check_moments(const Vec3& moments) {
+  const double largest = moments.maxCoeff();
+  if (!(moments.minCoeff() > 0.0) || !(largest <= 1.01 * (moments.sum() - largest))) {
+    fail(
+        "the moments of inertia of a species are {:g}, {:g}, {:g} kg m^2, but must be positive and the largest no more "
+        "than the sum of the others; check the mass properties that the shape was given",
+        moments.x(), moments.y(), moments.z());
+  }
+}
+
+}  // namespace dem
+
+#endif

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <dem/core/macros.hpp>
 #include <dem/math/vector.hpp>
 
 #include <cmath>
@@ -68,7 +69,20 @@ DEM_HOT Matrix3<T> orthonormalised(const Matrix3<T>& r) {
 /// The vector of a rotation, the inverse of rotation_from_vector: its length is the angle (rad), from 0 to pi. Through
 /// the quaternion, from its largest component, so that no angle loses digits. (In place of Eigen's AngleAxis, which
 /// costs each user half a second of compiling.)
-inline Vector3<double> vector_from_rotation(const Matrix3<double>& r) {
+Vector3<double> vector_from_rotation(const Matrix3<double>& r);
+
+/// The smallest turn that takes one direction into another; both of any length above 0. Opposite directions have no
+/// smallest one: half a turn about some axis across them. (In place of Eigen's FromTwoVectors, which solves that case
+/// by a singular value decomposition and costs each user seconds of compiling.)
+Mat3 rotation_between(const Vec3& from, const Vec3& to);
+
+}  // namespace dem
+
+#if DEM_DEFINES
+
+namespace dem {
+
+DEM_INLINE Vector3<double> vector_from_rotation(const Matrix3<double>& r) {
   const double xx = r.row0.x, yy = r.row1.y, zz = r.row2.z;
   // Quaternions times four of their components: w, x, y, z.
   const Vector3<double> off = {r.row2.y - r.row1.z, r.row0.z - r.row2.x, r.row1.x - r.row0.y};
@@ -95,10 +109,7 @@ inline Vector3<double> vector_from_rotation(const Matrix3<double>& r) {
   return (sine > 0.0 ? 2.0 * std::atan2(sine, w) / sine : 0.0) * v;
 }
 
-/// The smallest turn that takes one direction into another; both of any length above 0. Opposite directions have no
-/// smallest one: half a turn about some axis across them. (In place of Eigen's FromTwoVectors, which solves that case
-/// by a singular value decomposition and costs each user seconds of compiling.)
-inline Mat3 rotation_between(const Vec3& from, const Vec3& to) {
+DEM_INLINE Mat3 rotation_between(const Vec3& from, const Vec3& to) {
   const auto unit = [](const Vector3<double>& a) { return (1.0 / norm(a)) * a; };
   // I + s a b^T.
   const auto dyad = [](double s, const Vector3<double>& a, const Vector3<double>& b) {
@@ -118,3 +129,5 @@ inline Mat3 rotation_between(const Vec3& from, const Vec3& to) {
 }
 
 }  // namespace dem
+
+#endif

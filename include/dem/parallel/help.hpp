@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cstddef>
+#include <dem/core/macros.hpp>
 
 namespace dem::exec {
 
@@ -26,26 +27,11 @@ class Help {
 
   /// The time (s) in which the caller would have done what a helper did. Some pieces are more work than others, but a
   /// helper whose pieces take more than three times as long as the caller's is held up.
-  static double saved_by(const Share& helper, const Share& caller) {
-    if (helper.pieces == 0) return 0.0;
-    const double alike = static_cast<double>(helper.pieces) * caller.seconds / static_cast<double>(caller.pieces);
-    return std::min(helper.seconds, 3.0 * alike);
-  }
+  static double saved_by(const Share& helper, const Share& caller);
 
   /// A call is over (s): what helpers saved, and how long the caller did not work, but called them, waited for them, or
   /// had no processor.
-  void account(double saved, double cost, Time now) {
-    saved_ += saved;
-    cost_ += cost;
-    if (saved_ + cost_ < window) return;
-    if (cost_ > saved_) {
-      alone_until_ = now + std::chrono::duration_cast<Clock::duration>(pause_);
-      pause_ = std::min(2.0 * pause_, longest_pause);
-    } else {
-      pause_ = shortest_pause;
-    }
-    saved_ = cost_ = 0.0;
-  }
+  void account(double saved, double cost, Time now);
 
  private:
   using Seconds = std::chrono::duration<double>;
@@ -60,3 +46,30 @@ class Help {
 };
 
 }  // namespace dem::exec
+
+#if DEM_DEFINES
+
+namespace dem::exec {
+
+DEM_INLINE double Help::saved_by(const Share& helper, const Share& caller) {
+  if (helper.pieces == 0) return 0.0;
+  const double alike = static_cast<double>(helper.pieces) * caller.seconds / static_cast<double>(caller.pieces);
+  return std::min(helper.seconds, 3.0 * alike);
+}
+
+DEM_INLINE void Help::account(double saved, double cost, Time now) {
+  saved_ += saved;
+  cost_ += cost;
+  if (saved_ + cost_ < window) return;
+  if (cost_ > saved_) {
+    alone_until_ = now + std::chrono::duration_cast<Clock::duration>(pause_);
+    pause_ = std::min(2.0 * pause_, longest_pause);
+  } else {
+    pause_ = shortest_pause;
+  }
+  saved_ = cost_ = 0.0;
+}
+
+}  // namespace dem::exec
+
+#endif

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <dem/core/macros.hpp>
 // Which processors the threads of a team may use.
 
 #if defined(_OPENMP)
@@ -17,7 +18,23 @@ namespace dem::exec {
 /// the first thread of a program in one of them, and the threads that it starts inherit that: a whole team on one
 /// processor. A thread that the program bound itself counts as bound by OpenMP then. Where OpenMP binds nothing,
 /// nothing is changed.
-inline void use_all_places() {
+void use_all_places();
+
+}  // namespace dem::exec
+#else
+
+namespace dem::exec {
+
+inline void use_all_places() {}
+
+}  // namespace dem::exec
+#endif
+
+#if DEM_DEFINES
+
+namespace dem::exec {
+
+DEM_INLINE void use_all_places() {
   if (omp_get_proc_bind() == omp_proc_bind_false) return;
   cpu_set_t processors;
   CPU_ZERO(&processors);
@@ -33,11 +50,5 @@ inline void use_all_places() {
 }
 
 }  // namespace dem::exec
-#else
 
-namespace dem::exec {
-
-inline void use_all_places() {}
-
-}  // namespace dem::exec
 #endif

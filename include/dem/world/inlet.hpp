@@ -2,6 +2,7 @@
 
 #include <dem/core/error.hpp>
 #include <dem/core/ids.hpp>
+#include <dem/core/macros.hpp>
 #include <dem/geometry/surface.hpp>
 #include <dem/math/random.hpp>
 #include <dem/math/rotation.hpp>
@@ -20,50 +21,19 @@ using InletId = Id<struct InletTag>;  ///< a region that puts grains into the wo
 class InletRegion {
  public:
   /// The box may be flat. Throws Error unless it is finite.
-  static InletRegion box(const Vec3& low, const Vec3& high) {
-    if (!is_finite(low) || !is_finite(high) || !none_below(high, low)) {
-      fail("the region of an inlet goes from ({:g}, {:g}, {:g}) to ({:g}, {:g}, {:g}) m, which is no finite box",
-           low.x(), low.y(), low.z(), high.x(), high.y(), high.z());
-    }
-    InletRegion r;
-    r.centre_ = 0.5 * (low + high);
-    r.half_ = 0.5 * (high - low);
-    return r;
-  }
+  static InletRegion box(const Vec3& low, const Vec3& high);
   /// Radius and thickness in m; the disc is centred in its thickness. Throws Error for a radius or thickness that is
   /// negative, and a normal that is none.
-  static InletRegion disc(const Vec3& centre, const Vec3& normal, double radius, double thickness = 0.0) {
-    InletRegion r;
-    require_positive(radius, "radius of an inlet", "m");
-    require_non_negative(thickness, "thickness of an inlet", "m");
-    const double size = norm(from_eigen(normal));
-    if (!is_finite(centre) || !is_finite(normal) || !(size > 0.0)) {
-      fail("an inlet has the normal ({:g}, {:g}, {:g}), or a centre that is not finite; give it a direction",
-           normal.x(), normal.y(), normal.z());
-    }
-    r.centre_ = centre;
-    r.axes_ = rotation_between(Vec3::UnitZ(), Vec3((1.0 / size) * normal));
-    r.half_ = Vec3(radius, radius, 0.5 * thickness);
-    r.is_round_ = true;
-    return r;
-  }
+  static InletRegion disc(const Vec3& centre, const Vec3& normal, double radius, double thickness = 0.0);
 
   template <class V>
   void fields(V& v) {
     v.given("centre", centre_, "m"), v.given("half", half_, "m"), v.given("axes", axes_), v.given("round", is_round_);
   }
 
-  Vec3 point(RandomStream& random) const {
-    for (;;) {
-      const Vec3 x = random.in_box(Vec3(-half_), half_);
-      if (!is_round_ || x.x() * x.x() + x.y() * x.y() <= half_.x() * half_.x()) return centre_ + axes_ * x;
-    }
-  }
+  Vec3 point(RandomStream& random) const;
   /// A box along the axes that holds it.
-  surface::Aabb bounds() const {
-    const Vec3 half = magnitudes(axes_) * half_;
-    return {centre_ - half, centre_ + half};
-  }
+  surface::Aabb bounds() const;
 
  private:
   Vec3 centre_ = Vec3::Zero(), half_ = Vec3::Zero();  // m
@@ -92,22 +62,7 @@ struct InletOptions {
 /// fit is owed, and comes as soon as it fits.
 class Inlet {
  public:
-  Inlet(const InletRegion& region, const InletOptions& o, MixtureDraw grains, double now)
-      : options_(o), region_(region), grains_drawn_(std::move(grains)), random_(o.seed), start_(o.start.value_or(now)) {
-    require_non_negative(o.mass_flow, "mass flow of an inlet", "kg/s");
-    require_non_negative(o.grain_flow, "flow of grains of an inlet", "1/s");
-    require_non_negative(o.velocity_spread, "spread of an inlet's velocities", "m/s");
-    if ((o.mass_flow > 0.0) == (o.grain_flow > 0.0)) {
-      fail("inlet '{}' has a mass flow of {:g} kg/s and a flow of {:g} grains/s; give it one of the two", o.name,
-           o.mass_flow, o.grain_flow);
-    }
-    if (!(o.end > start_)) fail("inlet '{}' ends at {:g} s, but starts at {:g} s", o.name, o.end, start_);
-    if (!(o.total_mass > 0.0) || !(o.total_grains > 0.0)) {
-      fail("inlet '{}' is to give {:g} kg or {:g} grains in all; give it more than nothing", o.name, o.total_mass,
-           o.total_grains);
-    }
-    if (!is_finite(o.velocity)) fail("inlet '{}' has a velocity that is not finite", o.name);
-  }
+  Inlet(const InletRegion& region, const InletOptions& o, MixtureDraw grains, double now);
 
   template <class V>
   void fields(V& v) {
@@ -136,23 +91,10 @@ class Inlet {
   /// It is open, and more than a twentieth of what was due is owed, as there was no room.
   bool is_short() const { return is_open_ && is_blocked_ && owed() > 0.05 * due_; }
   /// What is short, in words; empty if nothing is.
-  std::string note() const {
-    if (!is_short()) return {};
-    const char* unit = by_mass() ? "kg" : "grains";
-    return text(
-        "inlet '{}' has put in {:.4g} of the {:.4g} {} that were due, as there was no more room in its region; enlarge "
-        "the region, raise the velocity with which grains leave it, or lower the flow",
-        options_.name, given(), due_, unit);
-  }
+  std::string note() const;
 
   /// Opens or closes it at a time (s): World::set_open.
-  void set_open(bool open, double now) {
-    if (open == is_open_) return;
-    is_open_ = open;
-    const double counts = std::clamp(now, start_, options_.end);
-    if (open) closed_for_ += counts - closed_at_;
-    else closed_at_ = counts;
-  }
+  void set_open(bool open, double now);
 
   // What follows is for the step.
 
@@ -170,12 +112,7 @@ class Inlet {
   }
   SpeciesId next() const { return next_; }  ///< species of the grain that is put in next
   RandomStream& random() { return random_; }
-  void put(double mass) {
-    ++grains_;
-    mass_ += mass;
-    next_ = {};
-    is_blocked_ = false;
-  }
+  void put(double mass);
   void block() { is_blocked_ = true; }
 
  private:
@@ -197,3 +134,91 @@ class Inlet {
 };
 
 }  // namespace dem
+
+#if DEM_DEFINES
+
+namespace dem {
+
+DEM_INLINE InletRegion InletRegion::box(const Vec3& low, const Vec3& high) {
+  if (!is_finite(low) || !is_finite(high) || !none_below(high, low)) {
+    fail("the region of an inlet goes from ({:g}, {:g}, {:g}) to ({:g}, {:g}, {:g}) m, which is no finite box", low.x(),
+         low.y(), low.z(), high.x(), high.y(), high.z());
+  }
+  InletRegion r;
+  r.centre_ = 0.5 * (low + high);
+  r.half_ = 0.5 * (high - low);
+  return r;
+}
+
+DEM_INLINE InletRegion InletRegion::disc(const Vec3& centre, const Vec3& normal, double radius, double thickness) {
+  InletRegion r;
+  require_positive(radius, "radius of an inlet", "m");
+  require_non_negative(thickness, "thickness of an inlet", "m");
+  const double size = norm(from_eigen(normal));
+  if (!is_finite(centre) || !is_finite(normal) || !(size > 0.0)) {
+    fail("an inlet has the normal ({:g}, {:g}, {:g}), or a centre that is not finite; give it a direction", normal.x(),
+         normal.y(), normal.z());
+  }
+  r.centre_ = centre;
+  r.axes_ = rotation_between(Vec3::UnitZ(), Vec3((1.0 / size) * normal));
+  r.half_ = Vec3(radius, radius, 0.5 * thickness);
+  r.is_round_ = true;
+  return r;
+}
+
+DEM_INLINE Vec3 InletRegion::point(RandomStream& random) const {
+  for (;;) {
+    const Vec3 x = random.in_box(Vec3(-half_), half_);
+    if (!is_round_ || x.x() * x.x() + x.y() * x.y() <= half_.x() * half_.x()) return centre_ + axes_ * x;
+  }
+}
+
+DEM_INLINE surface::Aabb InletRegion::bounds() const {
+  const Vec3 half = magnitudes(axes_) * half_;
+  return {centre_ - half, centre_ + half};
+}
+
+DEM_INLINE Inlet::Inlet(const InletRegion& region, const InletOptions& o, MixtureDraw grains, double now)
+    : options_(o), region_(region), grains_drawn_(std::move(grains)), random_(o.seed), start_(o.start.value_or(now)) {
+  require_non_negative(o.mass_flow, "mass flow of an inlet", "kg/s");
+  require_non_negative(o.grain_flow, "flow of grains of an inlet", "1/s");
+  require_non_negative(o.velocity_spread, "spread of an inlet's velocities", "m/s");
+  if ((o.mass_flow > 0.0) == (o.grain_flow > 0.0)) {
+    fail("inlet '{}' has a mass flow of {:g} kg/s and a flow of {:g} grains/s; give it one of the two", o.name,
+         o.mass_flow, o.grain_flow);
+  }
+  if (!(o.end > start_)) fail("inlet '{}' ends at {:g} s, but starts at {:g} s", o.name, o.end, start_);
+  if (!(o.total_mass > 0.0) || !(o.total_grains > 0.0)) {
+    fail("inlet '{}' is to give {:g} kg or {:g} grains in all; give it more than nothing", o.name, o.total_mass,
+         o.total_grains);
+  }
+  if (!is_finite(o.velocity)) fail("inlet '{}' has a velocity that is not finite", o.name);
+}
+
+DEM_INLINE std::string Inlet::note() const {
+  if (!is_short()) return {};
+  const char* unit = by_mass() ? "kg" : "grains";
+  return text(
+      "inlet '{}' has put in {:.4g} of the {:.4g} {} that were due, as there was no more room in its region; enlarge "
+      "the region, raise the velocity with which grains leave it, or lower the flow",
+      options_.name, given(), due_, unit);
+}
+
+DEM_INLINE void Inlet::set_open(bool open, double now) {
+  if (open == is_open_) return;
+  is_open_ = open;
+  const double counts = std::clamp(now, start_, options_.end);
+  if (open) closed_for_ += counts - closed_at_;
+  else closed_at_ = counts;
+}
+
+DEM_INLINE void Inlet::put(double mass) {
+  ++grains_;
+  mass_ += mass;
+  next_ = {};
+  is_blocked_ = false;
+}
+
+}  // namespace dem
+
+#endif

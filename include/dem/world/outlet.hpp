@@ -2,6 +2,7 @@
 
 #include <dem/core/error.hpp>
 #include <dem/core/ids.hpp>
+#include <dem/core/macros.hpp>
 #include <dem/geometry/surface.hpp>
 #include <dem/math/eager.hpp>
 #include <dem/mbd/sensor/sensor.hpp>
@@ -33,13 +34,7 @@ class Outlet {
   Outlet() : Outlet({filled(-HUGE_VAL), filled(HUGE_VAL)}, {.name = "everywhere"}) {}
   /// A box, which may be without end: corners may be infinite. Throws Error for a box that is none, and a window that
   /// is negative.
-  Outlet(const surface::Aabb& region, const OutletOptions& o) : name_(o.name), region_(region), flow_(o.window) {
-    if (all_below(region.low, region.high)) return;
-    const Vec3 &a = region.low, &b = region.high;
-    fail(
-        "outlet '{}' has the lower corner ({:g}, {:g}, {:g}) m, which is not below its upper one, ({:g}, {:g}, {:g}) m",
-        name_, a.x(), a.y(), a.z(), b.x(), b.y(), b.z());
-  }
+  Outlet(const surface::Aabb& region, const OutletOptions& o);
 
   template <class V>
   void fields(V& v) {
@@ -54,16 +49,9 @@ class Outlet {
   /// kg/s, the mean over the window, or over the time that there is of it so far.
   double mass_flow() const { return flow_.mean().force.x; }
 
-  void take(double mass) {
-    ++grains_;
-    mass_ += mass;
-    now_ += mass;
-  }
+  void take(double mass);
   /// At the end of a step of dt (s).
-  void end_step(double dt) {
-    flow_.add({{now_ / dt, 0, 0}, {0, 0, 0}}, dt);
-    now_ = 0.0;
-  }
+  void end_step(double dt);
 
  private:
   std::string name_;
@@ -74,3 +62,30 @@ class Outlet {
 };
 
 }  // namespace dem
+
+#if DEM_DEFINES
+
+namespace dem {
+
+DEM_INLINE Outlet::Outlet(const surface::Aabb& region, const OutletOptions& o)
+    : name_(o.name), region_(region), flow_(o.window) {
+  if (all_below(region.low, region.high)) return;
+  const Vec3 &a = region.low, &b = region.high;
+  fail("outlet '{}' has the lower corner ({:g}, {:g}, {:g}) m, which is not below its upper one, ({:g}, {:g}, {:g}) m",
+       name_, a.x(), a.y(), a.z(), b.x(), b.y(), b.z());
+}
+
+DEM_INLINE void Outlet::take(double mass) {
+  ++grains_;
+  mass_ += mass;
+  now_ += mass;
+}
+
+DEM_INLINE void Outlet::end_step(double dt) {
+  flow_.add({{now_ / dt, 0, 0}, {0, 0, 0}}, dt);
+  now_ = 0.0;
+}
+
+}  // namespace dem
+
+#endif

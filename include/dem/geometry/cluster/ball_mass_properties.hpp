@@ -1,5 +1,6 @@
 #pragma once
 
+#include <dem/core/macros.hpp>
 #include <dem/geometry/mass_properties.hpp>
 
 #include <algorithm>
@@ -18,7 +19,22 @@ struct Ball {
 /// Volume integrals of a union of balls, overlapping parts counted once: the union is cut into columns of a square
 /// grid, and each column integrated exactly along its axis. With the default grid the error is up to 2e-4 of the
 /// volume.
-inline MassProperties union_mass_properties(std::span<const Ball> balls, int columns_per_edge = 400) {
+MassProperties union_mass_properties(std::span<const Ball> balls, int columns_per_edge = 400);
+
+/// Whether two balls share more than a contact point: overlaps of less than a millionth of the smaller radius, whose
+/// volume is lost in rounding, count as one.
+bool any_overlap(std::span<const Ball> balls);
+
+/// Volume integrals of balls that do not overlap, by Steiner's theorem: exact.
+MassProperties separate_mass_properties(std::span<const Ball> balls);
+
+}  // namespace dem
+
+#if DEM_DEFINES
+
+namespace dem {
+
+DEM_INLINE MassProperties union_mass_properties(std::span<const Ball> balls, int columns_per_edge) {
   Vec3 low = filled(1e300), high = -low;
   for (const Ball& b : balls) {
     low = lower(low, b.centre - filled(b.radius));
@@ -58,9 +74,7 @@ inline MassProperties union_mass_properties(std::span<const Ball> balls, int col
   return p;
 }
 
-/// Whether two balls share more than a contact point: overlaps of less than a millionth of the smaller radius, whose
-/// volume is lost in rounding, count as one.
-inline bool any_overlap(std::span<const Ball> balls) {
+DEM_INLINE bool any_overlap(std::span<const Ball> balls) {
   for (std::size_t k = 0; k < balls.size(); ++k) {
     for (std::size_t m = 0; m < k; ++m) {
       const double r = balls[k].radius, s = balls[m].radius;
@@ -70,8 +84,7 @@ inline bool any_overlap(std::span<const Ball> balls) {
   return false;
 }
 
-/// Volume integrals of balls that do not overlap, by Steiner's theorem: exact.
-inline MassProperties separate_mass_properties(std::span<const Ball> balls) {
+DEM_INLINE MassProperties separate_mass_properties(std::span<const Ball> balls) {
   MassProperties p;
   for (const Ball& b : balls) {
     const double volume = sphere_mass_properties(b.radius).volume;
@@ -88,3 +101,5 @@ inline MassProperties separate_mass_properties(std::span<const Ball> balls) {
 }
 
 }  // namespace dem
+
+#endif

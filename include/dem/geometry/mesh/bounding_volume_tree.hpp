@@ -1,5 +1,6 @@
 #pragma once
 
+#include <dem/core/macros.hpp>
 #include <dem/geometry/surface.hpp>
 
 #include <algorithm>
@@ -18,12 +19,7 @@ class BoundingVolumeTree {
   static constexpr std::uint32_t items_in_a_leaf = 2;
 
   BoundingVolumeTree() = default;
-  DEM_LAZY explicit BoundingVolumeTree(std::span<const Aabb> boxes) : order_(boxes.size()) {
-    std::iota(order_.begin(), order_.end(), 0u);
-    std::vector<Vec3> middle;
-    for (const Aabb& b : boxes) middle.push_back(0.5 * (b.low + b.high));
-    if (!boxes.empty()) split(boxes, middle, 0, static_cast<std::uint32_t>(boxes.size()));
-  }
+  DEM_LAZY explicit BoundingVolumeTree(std::span<const Aabb> boxes);
 
   /// Items in the order of the leaves: store them so, and place k is item order()[k].
   const std::vector<std::uint32_t>& order() const { return order_; }
@@ -101,33 +97,51 @@ class BoundingVolumeTree {
     for (std::uint32_t k = 0; k < node.count; ++k) f(node.first + k);
   }
 
-  void split(std::span<const Aabb> boxes, const std::vector<Vec3>& middle, std::uint32_t from, std::uint32_t to) {
-    const std::size_t self = nodes_.size();
-    Vec3 low = filled(1e300), high = -low, first = low, last = high;
-    for (std::uint32_t k = from; k < to; ++k) {
-      low = lower(low, boxes[order_[k]].low);
-      high = upper(high, boxes[order_[k]].high);
-      first = lower(first, middle[order_[k]]);
-      last = upper(last, middle[order_[k]]);
-    }
-    nodes_.push_back({from_eigen(low), from_eigen(high), 0, from, to - from});
-    if (to - from > items_in_a_leaf) {
-      nodes_[self].count = 0;
-      Eigen::Index axis = 0;
-      (last - first).maxCoeff(&axis);
-      const std::uint32_t half = from + (to - from) / 2;
-      std::nth_element(order_.begin() + from, order_.begin() + half, order_.begin() + to,
-                       [&](std::uint32_t a, std::uint32_t b) {
-                         return std::pair(middle[a][axis], a) < std::pair(middle[b][axis], b);
-                       });
-      split(boxes, middle, from, half);
-      split(boxes, middle, half, to);
-    }
-    nodes_[self].skip = static_cast<std::uint32_t>(nodes_.size());
-  }
+  void split(std::span<const Aabb> boxes, const std::vector<Vec3>& middle, std::uint32_t from, std::uint32_t to);
 
   std::vector<Node> nodes_;
   std::vector<std::uint32_t> order_;
 };
 
 }  // namespace dem::surface
+
+#if DEM_DEFINES
+
+namespace dem::surface {
+
+DEM_LAZY_INLINE BoundingVolumeTree::BoundingVolumeTree(std::span<const Aabb> boxes) : order_(boxes.size()) {
+  std::iota(order_.begin(), order_.end(), 0u);
+  std::vector<Vec3> middle;
+  for (const Aabb& b : boxes) middle.push_back(0.5 * (b.low + b.high));
+  if (!boxes.empty()) split(boxes, middle, 0, static_cast<std::uint32_t>(boxes.size()));
+}
+
+DEM_INLINE void BoundingVolumeTree::split(std::span<const Aabb> boxes, const std::vector<Vec3>& middle,
+                                          std::uint32_t from, std::uint32_t to) {
+  const std::size_t self = nodes_.size();
+  Vec3 low = filled(1e300), high = -low, first = low, last = high;
+  for (std::uint32_t k = from; k < to; ++k) {
+    low = lower(low, boxes[order_[k]].low);
+    high = upper(high, boxes[order_[k]].high);
+    first = lower(first, middle[order_[k]]);
+    last = upper(last, middle[order_[k]]);
+  }
+  nodes_.push_back({from_eigen(low), from_eigen(high), 0, from, to - from});
+  if (to - from > items_in_a_leaf) {
+    nodes_[self].count = 0;
+    Eigen::Index axis = 0;
+    (last - first).maxCoeff(&axis);
+    const std::uint32_t half = from + (to - from) / 2;
+    std::nth_element(order_.begin() + from, order_.begin() + half, order_.begin() + to,
+                     [&](std::uint32_t a, std::uint32_t b) {
+                       return std::pair(middle[a][axis], a) < std::pair(middle[b][axis], b);
+                     });
+    split(boxes, middle, from, half);
+    split(boxes, middle, half, to);
+  }
+  nodes_[self].skip = static_cast<std::uint32_t>(nodes_.size());
+}
+
+}  // namespace dem::surface
+
+#endif

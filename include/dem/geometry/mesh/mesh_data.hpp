@@ -1,5 +1,6 @@
 #pragma once
 
+#include <dem/core/macros.hpp>
 #include <dem/geometry/edge_set.hpp>
 #include <dem/geometry/mesh/mesh_groups.hpp>
 #include <dem/geometry/mesh/mesh_repair.hpp>
@@ -79,7 +80,42 @@ inline bool is_flat(const Vector3<double>& a, const Vector3<double>& b) {
   return dot(d, d) < 1e-24;
 }
 
-DEM_LAZY inline void find_vertices(MeshData& m) {
+DEM_LAZY void find_vertices(MeshData& m);
+
+/// Whether the surface bends away on all in all around a vertex, by more than rounding.
+DEM_LAZY bool is_convex(const MeshData& m, std::uint32_t v);
+
+/// Sine of the angle by which the surface bends away at edge k of triangle t. It is 1 where the surface ends or turns
+/// by more than a right angle, and 0 where it is flat or concave.
+DEM_LAZY double bend(const MeshData& m, std::uint32_t t, std::size_t k);
+/// Whether the surface ends at an edge or bends away by more than 0.02 rad. At a smaller bend an edge needs no points
+/// of its own: the flat side of a grain on it reaches the faces beside it before it has sunk by a hundredth of its half
+/// size.
+inline bool is_ridge(double bend) { return bend > 0.02; }
+/// Whether an edge of a smaller turn is longer than a quarter of the radius of the bend, as those of a finely cut
+/// cylinder: its vertices are then too far apart to stand for it. `bend` as above, `width` of the narrower triangle.
+inline bool is_long_bend(double bend, double length, double width) {
+  return bend > 1e-5 && bend * length > 0.25 * width;  // below is the rounding of single precision
+}
+DEM_LAZY void find_edges(MeshData& m);
+
+/// Vertices, and points on sharp edges that are longer than the spacing (m; 0: none). Throws Error for more than the
+/// keys of contacts can tell apart.
+DEM_LAZY void find_points(MeshData& m, double spacing);
+
+}  // namespace detail
+
+/// Repairs a mesh and builds what queries need. Throws Error as `repaired` does.
+DEM_LAZY MeshData build_mesh(const IndexedMesh& given, MeshFacing facing, double smooth_angle, double point_spacing,
+                             double tolerance);
+
+}  // namespace dem::surface
+
+#if DEM_DEFINES
+
+namespace dem::surface::detail {
+
+DEM_LAZY_INLINE void find_vertices(MeshData& m) {
   const std::size_t n = m.mesh.vertices.size();
   std::vector<Vec3> normal(n, Vec3::Zero());
   std::vector<std::pair<std::uint32_t, std::uint32_t>> edges;
@@ -122,8 +158,7 @@ DEM_LAZY inline void find_vertices(MeshData& m) {
   }
 }
 
-/// Whether the surface bends away on all in all around a vertex, by more than rounding.
-DEM_LAZY inline bool is_convex(const MeshData& m, std::uint32_t v) {
+DEM_LAZY_INLINE bool is_convex(const MeshData& m, std::uint32_t v) {
   double height = 0.0, length = 0.0;
   for (std::uint32_t k = m.ring_first[v]; k < m.ring_first[v + 1]; ++k) {
     const Vector3<double> along = m.vertices[m.ring[k]] - m.vertices[v];
@@ -133,9 +168,7 @@ DEM_LAZY inline bool is_convex(const MeshData& m, std::uint32_t v) {
   return height < -1e-6 * length;
 }
 
-/// Sine of the angle by which the surface bends away at edge k of triangle t. It is 1 where the surface ends or turns
-/// by more than a right angle, and 0 where it is flat or concave.
-DEM_LAZY inline double bend(const MeshData& m, std::uint32_t t, std::size_t k) {
+DEM_LAZY_INLINE double bend(const MeshData& m, std::uint32_t t, std::size_t k) {
   const std::uint32_t other = m.topology.neighbour[t][k];
   if (other == MeshTopology::none) return 1.0;
   const Vector3<double>&n = m.faces[t].normal, &across = m.faces[other].normal;
@@ -144,16 +177,8 @@ DEM_LAZY inline double bend(const MeshData& m, std::uint32_t t, std::size_t k) {
   if (!(height < 0.0)) return 0.0;
   return dot(n, across) < 0.0 ? 1.0 : norm(cross(n, across));
 }
-/// Whether the surface ends at an edge or bends away by more than 0.02 rad. At a smaller bend an edge needs no points
-/// of its own: the flat side of a grain on it reaches the faces beside it before it has sunk by a hundredth of its half
-/// size.
-inline bool is_ridge(double bend) { return bend > 0.02; }
-/// Whether an edge of a smaller turn is longer than a quarter of the radius of the bend, as those of a finely cut
-/// cylinder: its vertices are then too far apart to stand for it. `bend` as above, `width` of the narrower triangle.
-inline bool is_long_bend(double bend, double length, double width) {
-  return bend > 1e-5 && bend * length > 0.25 * width;  // below is the rounding of single precision
-}
-DEM_LAZY inline void find_edges(MeshData& m) {
+
+DEM_LAZY_INLINE void find_edges(MeshData& m) {
   std::vector<std::array<Vec3, 2>> edges, bends;
   for (std::uint32_t t = 0; t < m.faces.size(); ++t) {
     for (std::size_t k = 0; k < 3; ++k) {
@@ -174,9 +199,7 @@ DEM_LAZY inline void find_edges(MeshData& m) {
   m.bends = EdgeSet(bends);
 }
 
-/// Vertices, and points on sharp edges that are longer than the spacing (m; 0: none). Throws Error for more than the
-/// keys of contacts can tell apart.
-DEM_LAZY inline void find_points(MeshData& m, double spacing) {
+DEM_LAZY_INLINE void find_points(MeshData& m, double spacing) {
   constexpr double most_points = 1 << 22;
   if (static_cast<double>(m.mesh.vertices.size()) > most_points) {
     fail("a mesh has {} vertices, but at most {:g} can be told apart; simplify it, or cut it into several surfaces",
@@ -211,10 +234,11 @@ DEM_LAZY inline void find_points(MeshData& m, double spacing) {
   m.corners = PointSet(corners);
 }
 
-}  // namespace detail
+}  // namespace dem::surface::detail
 
-/// Repairs a mesh and builds what queries need. Throws Error as `repaired` does.
-DEM_LAZY inline MeshData build_mesh(const IndexedMesh& given, MeshFacing facing, double smooth_angle,
+namespace dem::surface {
+
+DEM_LAZY_INLINE MeshData build_mesh(const IndexedMesh& given, MeshFacing facing, double smooth_angle,
                                     double point_spacing, double tolerance) {
   RepairedMesh whole = repaired(given, facing, tolerance);
   MeshData m;
@@ -251,3 +275,5 @@ DEM_LAZY inline MeshData build_mesh(const IndexedMesh& given, MeshFacing facing,
 }
 
 }  // namespace dem::surface
+
+#endif

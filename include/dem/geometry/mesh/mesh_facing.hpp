@@ -1,5 +1,6 @@
 #pragma once
 
+#include <dem/core/macros.hpp>
 #include <dem/geometry/mesh/mesh_topology.hpp>
 
 #include <cmath>
@@ -22,14 +23,42 @@ inline bool runs(const std::array<std::uint32_t, 3>& t, std::uint32_t from, std:
 }
 
 /// Six times the volume between a triangle and a point.
-DEM_LAZY inline double spanned(const IndexedMesh& mesh, std::uint32_t t, const Vec3& from) {
-  return (mesh.corner(t, 0) - from).dot(cross(mesh.corner(t, 1) - from, mesh.corner(t, 2) - from));
-}
+DEM_LAZY double spanned(const IndexedMesh& mesh, std::uint32_t t, const Vec3& from);
 
 /// How many times a closed piece goes round a point, as solid angles: 0 outside, 1 or -1 inside, something between on
 /// the surface (van Oosterom and Strackee 1983, doi:10.1109/TBME.1983.325207). Nothing hangs on a ray that meets an
 /// edge.
-DEM_LAZY inline double winding_number(const IndexedMesh& mesh, const std::vector<std::uint32_t>& piece,
+DEM_LAZY double winding_number(const IndexedMesh& mesh, const std::vector<std::uint32_t>& piece, const Vec3& point);
+
+/// Whether closed piece b, which does not cross closed piece a, lies in it. Pieces may touch, so the middle of the
+/// first triangle of b that does not lie on a decides.
+DEM_LAZY bool encloses(const IndexedMesh& mesh, const std::vector<std::uint32_t>& a,
+                       const std::vector<std::uint32_t>& b);
+
+/// Whether none of closed piece b lies outside of closed piece a, by the middles of some of its triangles.
+DEM_LAZY bool encloses_all(const IndexedMesh& mesh, const std::vector<std::uint32_t>& a,
+                           const std::vector<std::uint32_t>& b);
+
+/// Makes neighbours look the same way, piece by piece: the smaller part of a piece is turned round. Then a closed piece
+/// that lies in no other one is made to look as asked. What lies in a solid is turned with it, so a hollow stays one.
+/// What stands in a cavity is a solid, what lies in that a cavity, and so on, whichever way they looked. Returns how
+/// many triangles were turned, and how many pieces there are. A piece whose box lies in another's costs a sum over that
+/// one's triangles, of 0.1 us each (8 s for 1,000 pieces in a hull of 80,000); MeshFacing::as_given asks for none.
+DEM_LAZY std::pair<std::size_t, std::size_t> orient(IndexedMesh& mesh, MeshFacing facing);
+
+}  // namespace detail
+
+}  // namespace dem
+
+#if DEM_DEFINES
+
+namespace dem::detail {
+
+DEM_LAZY_INLINE double spanned(const IndexedMesh& mesh, std::uint32_t t, const Vec3& from) {
+  return (mesh.corner(t, 0) - from).dot(cross(mesh.corner(t, 1) - from, mesh.corner(t, 2) - from));
+}
+
+DEM_LAZY_INLINE double winding_number(const IndexedMesh& mesh, const std::vector<std::uint32_t>& piece,
                                       const Vec3& point) {
   double sum = 0.0;
   for (const std::uint32_t t : piece) {
@@ -41,9 +70,7 @@ DEM_LAZY inline double winding_number(const IndexedMesh& mesh, const std::vector
   return sum / (2.0 * std::numbers::pi);
 }
 
-/// Whether closed piece b, which does not cross closed piece a, lies in it. Pieces may touch, so the middle of the
-/// first triangle of b that does not lie on a decides.
-DEM_LAZY inline bool encloses(const IndexedMesh& mesh, const std::vector<std::uint32_t>& a,
+DEM_LAZY_INLINE bool encloses(const IndexedMesh& mesh, const std::vector<std::uint32_t>& a,
                               const std::vector<std::uint32_t>& b) {
   for (const std::uint32_t t : b) {
     const Vec3 middle = (mesh.corner(t, 0) + mesh.corner(t, 1) + mesh.corner(t, 2)) / 3.0;
@@ -53,8 +80,7 @@ DEM_LAZY inline bool encloses(const IndexedMesh& mesh, const std::vector<std::ui
   return false;
 }
 
-/// Whether none of closed piece b lies outside of closed piece a, by the middles of some of its triangles.
-DEM_LAZY inline bool encloses_all(const IndexedMesh& mesh, const std::vector<std::uint32_t>& a,
+DEM_LAZY_INLINE bool encloses_all(const IndexedMesh& mesh, const std::vector<std::uint32_t>& a,
                                   const std::vector<std::uint32_t>& b) {
   for (std::size_t k = 0; k < b.size(); k += 1 + b.size() / 64) {
     const Vec3 middle = (mesh.corner(b[k], 0) + mesh.corner(b[k], 1) + mesh.corner(b[k], 2)) / 3.0;
@@ -63,12 +89,7 @@ DEM_LAZY inline bool encloses_all(const IndexedMesh& mesh, const std::vector<std
   return true;
 }
 
-/// Makes neighbours look the same way, piece by piece: the smaller part of a piece is turned round. Then a closed piece
-/// that lies in no other one is made to look as asked. What lies in a solid is turned with it, so a hollow stays one.
-/// What stands in a cavity is a solid, what lies in that a cavity, and so on, whichever way they looked. Returns how
-/// many triangles were turned, and how many pieces there are. A piece whose box lies in another's costs a sum over that
-/// one's triangles, of 0.1 us each (8 s for 1,000 pieces in a hull of 80,000); MeshFacing::as_given asks for none.
-DEM_LAZY inline std::pair<std::size_t, std::size_t> orient(IndexedMesh& mesh, MeshFacing facing) {
+DEM_LAZY_INLINE std::pair<std::size_t, std::size_t> orient(IndexedMesh& mesh, MeshFacing facing) {
   const MeshTopology topology = topology_of(mesh);
   const std::size_t n = mesh.triangles.size();
   std::vector<std::uint32_t> piece(n, MeshTopology::none);
@@ -144,6 +165,6 @@ DEM_LAZY inline std::pair<std::size_t, std::size_t> orient(IndexedMesh& mesh, Me
   return {flipped, pieces.size()};
 }
 
-}  // namespace detail
+}  // namespace dem::detail
 
-}  // namespace dem
+#endif

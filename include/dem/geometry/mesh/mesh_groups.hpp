@@ -1,5 +1,6 @@
 #pragma once
 
+#include <dem/core/macros.hpp>
 #include <dem/geometry/mesh/mesh_topology.hpp>
 
 #include <cmath>
@@ -40,7 +41,15 @@ class UnionFind {
 /// one group. Sharper convex edges join groups too, as a contact moves over them steadily. A sharp concave edge
 /// separates groups, as a grain touches both sides at once there. Two groups that meet at such an edge stay apart, and
 /// so do two groups that both meet a third one there (the flanks of a slot).
-DEM_LAZY inline MeshGroups group_triangles(const IndexedMesh& mesh, const MeshTopology& topology, double smooth_angle) {
+DEM_LAZY MeshGroups group_triangles(const IndexedMesh& mesh, const MeshTopology& topology, double smooth_angle);
+
+}  // namespace dem::surface
+
+#if DEM_DEFINES
+
+namespace dem::surface {
+
+DEM_LAZY_INLINE MeshGroups group_triangles(const IndexedMesh& mesh, const MeshTopology& topology, double smooth_angle) {
   const auto n = static_cast<std::uint32_t>(mesh.triangles.size());
   MeshGroups result;
   result.group.resize(n);
@@ -110,3 +119,5 @@ DEM_LAZY inline MeshGroups group_triangles(const IndexedMesh& mesh, const MeshTo
 }
 
 }  // namespace dem::surface
+
+#endif

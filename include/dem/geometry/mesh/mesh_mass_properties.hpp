@@ -1,5 +1,6 @@
 #pragma once
 
+#include <dem/core/macros.hpp>
 #include <dem/geometry/mass_properties.hpp>
 #include <dem/geometry/mesh/indexed_mesh.hpp>
 
@@ -11,8 +12,20 @@ namespace dem {
 
 /// A closed triangle mesh, by summing the signed tetrahedra that the triangles span with the first vertex. Throws Error
 /// if a corner index is out of range or the volume is not positive.
-inline MassProperties mesh_mass_properties(std::span<const Vec3> vertices,
-                                           std::span<const std::array<std::uint32_t, 3>> triangles) {
+MassProperties mesh_mass_properties(std::span<const Vec3> vertices,
+                                    std::span<const std::array<std::uint32_t, 3>> triangles);
+inline MassProperties mesh_mass_properties(const IndexedMesh& mesh) {
+  return mesh_mass_properties(mesh.vertices, mesh.triangles);
+}
+
+}  // namespace dem
+
+#if DEM_DEFINES
+
+namespace dem {
+
+DEM_INLINE MassProperties mesh_mass_properties(std::span<const Vec3> vertices,
+                                               std::span<const std::array<std::uint32_t, 3>> triangles) {
   double volume = 0.0;
   Vec3 first = Vec3::Zero();   // integral of x
   Mat3 second = Mat3::Zero();  // integral of x x^T
@@ -40,8 +53,7 @@ inline MassProperties mesh_mass_properties(std::span<const Vec3> vertices,
   const Mat3 covariance = second - outer(volume * c, c);
   return {volume, c + vertices[0], scaled_identity(covariance.trace()) - covariance};
 }
-inline MassProperties mesh_mass_properties(const IndexedMesh& mesh) {
-  return mesh_mass_properties(mesh.vertices, mesh.triangles);
-}
 
 }  // namespace dem
+
+#endif

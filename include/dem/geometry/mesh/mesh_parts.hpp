@@ -1,5 +1,6 @@
 #pragma once
 
+#include <dem/core/macros.hpp>
 #include <dem/core/short_list.hpp>
 #include <dem/geometry/mesh/mesh_data.hpp>
 
@@ -18,7 +19,38 @@ using MeshCrossings = ShortList<MeshCrossing, 16>;
 
 /// Where the way from tail to head (m) crosses the triangles of a mesh, ascending. What only lies in a triangle's plane
 /// does not cross it. A way through an edge crosses both its triangles.
-DEM_LAZY inline void find_crossings(const MeshData& m, const Vector3<double>& tail, const Vector3<double>& head,
+DEM_LAZY void find_crossings(const MeshData& m, const Vector3<double>& tail, const Vector3<double>& head,
+                             MeshCrossings::Items& crossings);
+
+/// The parts of the way from tail to head (m) that lie in a closed mesh and cross its surface at one end at least:
+/// callback(from, to), shares of the way, ascending.
+template <class Callback>
+void parts_inside(const MeshData& m, const Vector3<double>& tail, const Vector3<double>& head, Callback&& callback) {
+  MeshCrossings list;
+  auto& crossings = list.items;
+  find_crossings(m, tail, head, crossings);
+  if (crossings.empty()) return;
+  bool inside = !crossings.front().entering;
+  double from = 0.0;
+  for (const MeshCrossing& c : crossings) {
+    if (c.entering == inside) continue;  // once more through an edge
+    if (inside && c.at > from) callback(from, c.at);
+    inside = c.entering;
+    from = c.at;
+  }
+  if (inside && from < 1.0) callback(from, 1.0);
+}
+
+/// Whether a point lies in a closed mesh that looks outward and is that long (m) at most.
+DEM_LAZY bool lies_inside(const MeshData& m, const Vector3<double>& p, double size);
+
+}  // namespace dem::surface
+
+#if DEM_DEFINES
+
+namespace dem::surface {
+
+DEM_LAZY_INLINE void find_crossings(const MeshData& m, const Vector3<double>& tail, const Vector3<double>& head,
                                     MeshCrossings::Items& crossings) {
   // Of a triangle's heights, so that a way through an edge or a corner misses none of the triangles there.
   constexpr double slack = 1e-9;
@@ -43,27 +75,7 @@ DEM_LAZY inline void find_crossings(const MeshData& m, const Vector3<double>& ta
   });
 }
 
-/// The parts of the way from tail to head (m) that lie in a closed mesh and cross its surface at one end at least:
-/// callback(from, to), shares of the way, ascending.
-template <class Callback>
-void parts_inside(const MeshData& m, const Vector3<double>& tail, const Vector3<double>& head, Callback&& callback) {
-  MeshCrossings list;
-  auto& crossings = list.items;
-  find_crossings(m, tail, head, crossings);
-  if (crossings.empty()) return;
-  bool inside = !crossings.front().entering;
-  double from = 0.0;
-  for (const MeshCrossing& c : crossings) {
-    if (c.entering == inside) continue;  // once more through an edge
-    if (inside && c.at > from) callback(from, c.at);
-    inside = c.entering;
-    from = c.at;
-  }
-  if (inside && from < 1.0) callback(from, 1.0);
-}
-
-/// Whether a point lies in a closed mesh that looks outward and is that long (m) at most.
-DEM_LAZY inline bool lies_inside(const MeshData& m, const Vector3<double>& p, double size) {
+DEM_LAZY_INLINE bool lies_inside(const MeshData& m, const Vector3<double>& p, double size) {
   bool inside = false;
   parts_inside(m, p, p + 1.2 * size * Vector3<double>{0.27, 0.2, 0.95},
                [&](double from, double) { inside |= from == 0.0; });
@@ -75,3 +87,5 @@ DEM_LAZY inline bool lies_inside(const MeshData& m, const Vector3<double>& p, do
 }
 
 }  // namespace dem::surface
+
+#endif

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <dem/core/macros.hpp>
 #include <dem/geometry/mesh/mesh_facing.hpp>
 
 #include <cmath>
@@ -24,33 +25,7 @@ struct MeshReport : BadEdges {
   bool oriented() const { return inconsistent_edges == 0; }
 
   /// One finding a line.
-  std::string text() const {
-    std::string s = dem::text("{} triangles over {} vertices in {} connected piece{}\n", triangles, vertices,
-                              components, components == 1 ? "" : "s");
-    const auto line = [&](std::size_t count, const char* what) {
-      if (count > 0) s += dem::text("{} {}\n", count, what);
-    };
-    line(merged_vertices, "vertices lay on another one and were merged with it");
-    line(unused_vertices, "vertices belonged to no triangle and were removed");
-    line(degenerate_triangles, "triangles had no area and were removed or joined to a neighbour");
-    line(duplicate_triangles, "triangles were there twice; one of each was kept");
-    line(flipped_triangles, "triangles looked the wrong way and were turned round");
-    const auto edges = [&](std::size_t count, const char* what, const Vec3& at) {
-      if (count > 0)
-        s += dem::text("{} edges {}; the first lies at ({:g}, {:g}, {:g}) m\n", count, what, at.x(), at.y(), at.z());
-    };
-    edges(boundary_edges, "belong to one triangle only: the surface has holes or is a sheet", boundary_at);
-    edges(non_manifold_edges, "belong to more than two triangles: split the parts that meet there", non_manifold_at);
-    edges(inconsistent_edges, "lie between triangles that look opposite ways (a Moebius strip): no side is outside",
-          inconsistent_at);
-    if (closed()) {
-      s += dem::text("closed; encloses {:.6g} m^3{}\n", std::abs(enclosed_volume),
-                     enclosed_volume < 0.0 ? ", facing inward (a cavity)" : "");
-    } else {
-      s += "not closed\n";
-    }
-    return s;
-  }
+  std::string text() const;
 };
 
 struct RepairedMesh {
@@ -61,7 +36,77 @@ struct RepairedMesh {
 namespace detail {
 
 /// Merges vertices within the tolerance, through a grid of cells; a vertex goes to the first one near it.
-DEM_LAZY inline std::size_t merge_vertices(IndexedMesh& mesh, double tolerance) {
+DEM_LAZY std::size_t merge_vertices(IndexedMesh& mesh, double tolerance);
+
+inline bool repeats_a_corner(const std::array<std::uint32_t, 3>& t) {
+  return t[0] == t[1] || t[1] == t[2] || t[2] == t[0];
+}
+
+/// Removes triangles with a repeated corner. One whose corners lie in a line is joined to the neighbour at its longest
+/// edge: the two are cut the other way, which closes the surface again; it is removed if there is no neighbour.
+DEM_LAZY std::size_t remove_degenerate(IndexedMesh& mesh, double tolerance);
+
+DEM_LAZY std::size_t remove_duplicates(IndexedMesh& mesh);
+
+DEM_LAZY std::size_t remove_unused(IndexedMesh& mesh);
+
+/// Throws Error if more than half of the triangles have vertices that were merged although they are neighbours. A
+/// single corrupt coordinate does this: it makes the mesh so large that all else is a point beside it.
+DEM_LAZY void refuse_collapse(const IndexedMesh& given, const IndexedMesh& merged, double tolerance);
+
+/// Throws Error for a triangle without an area, hence without a normal. Some are left if more vertices lie in a line
+/// than can be joined.
+DEM_LAZY void refuse_without_area(const IndexedMesh& mesh);
+
+}  // namespace detail
+
+/// Checks a mesh and repairs what is safe to repair: merges vertices within `tolerance` (m; 0: 1e-9 of the diagonal),
+/// removes triangles without an area or there twice, drops unused vertices, and turns triangles that look the wrong
+/// way. Holes and edges of more than two triangles are left, and reported. Throws Error for indices out of range,
+/// coordinates that are not finite or so far out that all other vertices merge, triangles that have no area after the
+/// repair, and a mesh without triangles.
+DEM_LAZY RepairedMesh repaired(const IndexedMesh& given, MeshFacing facing = MeshFacing::outward,
+                               double tolerance = 0.0);
+
+}  // namespace dem
+
+#if DEM_DEFINES
+
+namespace dem {
+
+DEM_INLINE std::string MeshReport::text() const {
+  std::string s = dem::text("{} triangles over {} vertices in {} connected piece{}\n", triangles, vertices, components,
+                            components == 1 ? "" : "s");
+  const auto line = [&](std::size_t count, const char* what) {
+    if (count > 0) s += dem::text("{} {}\n", count, what);
+  };
+  line(merged_vertices, "vertices lay on another one and were merged with it");
+  line(unused_vertices, "vertices belonged to no triangle and were removed");
+  line(degenerate_triangles, "triangles had no area and were removed or joined to a neighbour");
+  line(duplicate_triangles, "triangles were there twice; one of each was kept");
+  line(flipped_triangles, "triangles looked the wrong way and were turned round");
+  const auto edges = [&](std::size_t count, const char* what, const Vec3& at) {
+    if (count > 0)
+      s += dem::text("{} edges {}; the first lies at ({:g}, {:g}, {:g}) m\n", count, what, at.x(), at.y(), at.z());
+  };
+  edges(boundary_edges, "belong to one triangle only: the surface has holes or is a sheet", boundary_at);
+  edges(non_manifold_edges, "belong to more than two triangles: split the parts that meet there", non_manifold_at);
+  edges(inconsistent_edges, "lie between triangles that look opposite ways (a Moebius strip): no side is outside",
+        inconsistent_at);
+  if (closed()) {
+    s += dem::text("closed; encloses {:.6g} m^3{}\n", std::abs(enclosed_volume),
+                   enclosed_volume < 0.0 ? ", facing inward (a cavity)" : "");
+  } else {
+    s += "not closed\n";
+  }
+  return s;
+}
+
+}  // namespace dem
+
+namespace dem::detail {
+
+DEM_LAZY_INLINE std::size_t merge_vertices(IndexedMesh& mesh, double tolerance) {
   struct Hash {
     std::size_t operator()(const std::array<std::int64_t, 3>& c) const {
       return static_cast<std::size_t>(c[0] * 73856093 ^ c[1] * 19349663 ^ c[2] * 83492791);
@@ -102,13 +147,7 @@ DEM_LAZY inline std::size_t merge_vertices(IndexedMesh& mesh, double tolerance) 
   return merged;
 }
 
-inline bool repeats_a_corner(const std::array<std::uint32_t, 3>& t) {
-  return t[0] == t[1] || t[1] == t[2] || t[2] == t[0];
-}
-
-/// Removes triangles with a repeated corner. One whose corners lie in a line is joined to the neighbour at its longest
-/// edge: the two are cut the other way, which closes the surface again; it is removed if there is no neighbour.
-DEM_LAZY inline std::size_t remove_degenerate(IndexedMesh& mesh, double tolerance) {
+DEM_LAZY_INLINE std::size_t remove_degenerate(IndexedMesh& mesh, double tolerance) {
   const std::size_t repeated = std::erase_if(mesh.triangles, repeats_a_corner);
   std::size_t fixed = 0;
   for (int round = 0; round < 8; ++round) {
@@ -154,7 +193,7 @@ DEM_LAZY inline std::size_t remove_degenerate(IndexedMesh& mesh, double toleranc
   return repeated + fixed;
 }
 
-DEM_LAZY inline std::size_t remove_duplicates(IndexedMesh& mesh) {
+DEM_LAZY_INLINE std::size_t remove_duplicates(IndexedMesh& mesh) {
   std::vector<std::pair<std::array<std::uint32_t, 3>, std::uint32_t>> sorted;
   for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
     auto key = mesh.triangles[t];
@@ -168,7 +207,7 @@ DEM_LAZY inline std::size_t remove_duplicates(IndexedMesh& mesh) {
   return std::erase_if(mesh.triangles, [&](const auto&) { return dead[at++]; });
 }
 
-DEM_LAZY inline std::size_t remove_unused(IndexedMesh& mesh) {
+DEM_LAZY_INLINE std::size_t remove_unused(IndexedMesh& mesh) {
   std::vector<std::uint32_t> target(mesh.vertices.size(), MeshTopology::none);
   std::vector<Vec3> kept;
   for (auto& t : mesh.triangles) {
@@ -185,9 +224,7 @@ DEM_LAZY inline std::size_t remove_unused(IndexedMesh& mesh) {
   return unused;
 }
 
-/// Throws Error if more than half of the triangles have vertices that were merged although they are neighbours. A
-/// single corrupt coordinate does this: it makes the mesh so large that all else is a point beside it.
-DEM_LAZY inline void refuse_collapse(const IndexedMesh& given, const IndexedMesh& merged, double tolerance) {
+DEM_LAZY_INLINE void refuse_collapse(const IndexedMesh& given, const IndexedMesh& merged, double tolerance) {
   std::size_t collapsed = 0;
   for (std::size_t t = 0; t < merged.triangles.size(); ++t) {
     const bool had_corners = given.corner(t, 0) != given.corner(t, 1) && given.corner(t, 1) != given.corner(t, 2) &&
@@ -204,9 +241,7 @@ DEM_LAZY inline void refuse_collapse(const IndexedMesh& given, const IndexedMesh
       collapsed, merged.triangles.size(), tolerance, far.x(), far.y(), far.z());
 }
 
-/// Throws Error for a triangle without an area, hence without a normal. Some are left if more vertices lie in a line
-/// than can be joined.
-DEM_LAZY inline void refuse_without_area(const IndexedMesh& mesh) {
+DEM_LAZY_INLINE void refuse_without_area(const IndexedMesh& mesh) {
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
     if (mesh.area_vector(t).norm() > 0.0) continue;
     const Vec3 corner = mesh.corner(t, 0);
@@ -217,15 +252,11 @@ DEM_LAZY inline void refuse_without_area(const IndexedMesh& mesh) {
   }
 }
 
-}  // namespace detail
+}  // namespace dem::detail
 
-/// Checks a mesh and repairs what is safe to repair: merges vertices within `tolerance` (m; 0: 1e-9 of the diagonal),
-/// removes triangles without an area or there twice, drops unused vertices, and turns triangles that look the wrong
-/// way. Holes and edges of more than two triangles are left, and reported. Throws Error for indices out of range,
-/// coordinates that are not finite or so far out that all other vertices merge, triangles that have no area after the
-/// repair, and a mesh without triangles.
-DEM_LAZY inline RepairedMesh repaired(const IndexedMesh& given, MeshFacing facing = MeshFacing::outward,
-                                      double tolerance = 0.0) {
+namespace dem {
+
+DEM_LAZY_INLINE RepairedMesh repaired(const IndexedMesh& given, MeshFacing facing, double tolerance) {
   check_indices(given);
   require_non_negative(tolerance, "tolerance of a mesh repair", "m (0 chooses one)");
   RepairedMesh result{given, {}};
@@ -262,3 +293,5 @@ DEM_LAZY inline RepairedMesh repaired(const IndexedMesh& given, MeshFacing facin
 }
 
 }  // namespace dem
+
+#endif

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <dem/core/macros.hpp>
 #include <dem/geometry/mesh/indexed_mesh.hpp>
 
 #include <algorithm>
@@ -13,7 +14,46 @@
 namespace dem::mesh {
 
 /// A box with the given edge lengths (m), each > 0: 12 triangles, or more if each edge is cut into `pieces`.
-inline IndexedMesh box(const Vec3& edges, int pieces = 1) {
+IndexedMesh box(const Vec3& edges, int pieces = 1);
+
+/// A flat rectangle in z = 0, facing +z, cut into nx times ny cells of two triangles. Not closed.
+IndexedMesh rectangle(double size_x, double size_y, int nx = 1, int ny = 1);
+
+/// The solid that a profile sweeps when it turns about z: profile points (radius, z) in m, from low z to high z as seen
+/// outside; the first and the last point lie on the axis if their radius is 0, else the profile is closed to itself
+/// (a ring). Throws Error for less than 3 segments or less than 3 points.
+IndexedMesh revolved(const std::vector<std::array<double, 2>>& profile, int segments);
+
+/// A full cylinder (m): a prism whose corners lie on the radius.
+IndexedMesh cylinder(double radius, double length, int segments = 48);
+
+/// A sphere (m): an icosahedron whose triangles are cut in four `refinements` times: 20 * 4^refinements triangles.
+IndexedMesh sphere(double radius, int refinements = 3);
+
+/// A wheel with straight grousers (m).
+struct Wheel {
+  double radius;  ///< of the rim
+  double width;   ///< along the axis
+  int grousers = 0;
+  double grouser_height = 0.0;     ///< beyond the rim
+  double grouser_thickness = 0.0;  ///< along the circumference
+  int segments = 72;               ///< of the rim, at least; each gap between grousers gets the same number
+};
+
+/// One closed solid: the rim is a prism, each grouser a bar that stands on it. Throws Error if grousers overlap.
+IndexedMesh wheel(const Wheel& w);
+
+/// A tyre without a rim (a ring): outer diameter and width in m, with a rounded profile. It has about as many triangles
+/// as asked for, a grid of nearly square cells (6,650 for 6,662). The hole has `hole` times the diameter.
+IndexedMesh tyre(double diameter, double width, int triangles = 6662, double hole = 0.5);
+
+}  // namespace dem::mesh
+
+#if DEM_DEFINES
+
+namespace dem::mesh {
+
+DEM_INLINE IndexedMesh box(const Vec3& edges, int pieces) {
   for (int k = 0; k < 3; ++k) require_positive(edges[k], "edge length of a box mesh", "m");
   if (pieces < 1) fail("a box mesh was asked for {} pieces an edge, but needs at least 1", pieces);
   IndexedMesh mesh;
@@ -46,8 +86,7 @@ inline IndexedMesh box(const Vec3& edges, int pieces = 1) {
   return mesh;
 }
 
-/// A flat rectangle in z = 0, facing +z, cut into nx times ny cells of two triangles. Not closed.
-inline IndexedMesh rectangle(double size_x, double size_y, int nx = 1, int ny = 1) {
+DEM_INLINE IndexedMesh rectangle(double size_x, double size_y, int nx, int ny) {
   require_positive(size_x, "edge length of a rectangle mesh", "m");
   require_positive(size_y, "edge length of a rectangle mesh", "m");
   if (nx < 1 || ny < 1) fail("a rectangle mesh was asked for {} times {} cells, but needs at least 1 of each", nx, ny);
@@ -64,10 +103,7 @@ inline IndexedMesh rectangle(double size_x, double size_y, int nx = 1, int ny = 
   return mesh;
 }
 
-/// The solid that a profile sweeps when it turns about z: profile points (radius, z) in m, from low z to high z as seen
-/// outside; the first and the last point lie on the axis if their radius is 0, else the profile is closed to itself
-/// (a ring). Throws Error for less than 3 segments or less than 3 points.
-inline IndexedMesh revolved(const std::vector<std::array<double, 2>>& profile, int segments) {
+DEM_INLINE IndexedMesh revolved(const std::vector<std::array<double, 2>>& profile, int segments) {
   if (segments < 3 || profile.size() < 3) {
     fail("a revolved mesh was asked for {} segments and {} profile points, but needs at least 3 of each", segments,
          profile.size());
@@ -107,15 +143,13 @@ inline IndexedMesh revolved(const std::vector<std::array<double, 2>>& profile, i
   return mesh;
 }
 
-/// A full cylinder (m): a prism whose corners lie on the radius.
-inline IndexedMesh cylinder(double radius, double length, int segments = 48) {
+DEM_INLINE IndexedMesh cylinder(double radius, double length, int segments) {
   require_positive(radius, "radius of a cylinder mesh", "m");
   const double h = 0.5 * require_positive(length, "length of a cylinder mesh", "m");
   return revolved({{0.0, -h}, {radius, -h}, {radius, h}, {0.0, h}}, segments);
 }
 
-/// A sphere (m): an icosahedron whose triangles are cut in four `refinements` times: 20 * 4^refinements triangles.
-inline IndexedMesh sphere(double radius, int refinements = 3) {
+DEM_INLINE IndexedMesh sphere(double radius, int refinements) {
   require_positive(radius, "radius of a sphere mesh", "m");
   if (refinements < 0 || refinements > 9) fail("a sphere mesh takes 0 to 9 refinements, but was given {}", refinements);
   const double t = std::numbers::phi;
@@ -153,18 +187,7 @@ inline IndexedMesh sphere(double radius, int refinements = 3) {
   return mesh;
 }
 
-/// A wheel with straight grousers (m).
-struct Wheel {
-  double radius;  ///< of the rim
-  double width;   ///< along the axis
-  int grousers = 0;
-  double grouser_height = 0.0;     ///< beyond the rim
-  double grouser_thickness = 0.0;  ///< along the circumference
-  int segments = 72;               ///< of the rim, at least; each gap between grousers gets the same number
-};
-
-/// One closed solid: the rim is a prism, each grouser a bar that stands on it. Throws Error if grousers overlap.
-inline IndexedMesh wheel(const Wheel& w) {
+DEM_INLINE IndexedMesh wheel(const Wheel& w) {
   require_positive(w.radius, "radius of a wheel mesh", "m");
   require_positive(w.width, "width of a wheel mesh", "m");
   if (w.grousers < 0) fail("a wheel mesh was given {} grousers", w.grousers);
@@ -218,9 +241,7 @@ inline IndexedMesh wheel(const Wheel& w) {
   return mesh;
 }
 
-/// A tyre without a rim (a ring): outer diameter and width in m, with a rounded profile. It has about as many triangles
-/// as asked for, a grid of nearly square cells (6,650 for 6,662). The hole has `hole` times the diameter.
-inline IndexedMesh tyre(double diameter, double width, int triangles = 6662, double hole = 0.5) {
+DEM_INLINE IndexedMesh tyre(double diameter, double width, int triangles, double hole) {
   const double outer = 0.5 * require_positive(diameter, "diameter of a tyre mesh", "m");
   require_positive(width, "width of a tyre mesh", "m");
   require_within(hole, 0.05, 0.95, "hole of a tyre mesh as a share of its diameter");
@@ -240,3 +261,5 @@ inline IndexedMesh tyre(double diameter, double width, int triangles = 6662, dou
 }
 
 }  // namespace dem::mesh
+
+#endif

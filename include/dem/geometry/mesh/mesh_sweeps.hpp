@@ -1,5 +1,6 @@
 #pragma once
 
+#include <dem/core/macros.hpp>
 #include <dem/geometry/mesh/indexed_mesh.hpp>
 
 #include <array>
@@ -16,7 +17,21 @@ namespace dem::mesh {
 /// reaches from the radius `inner` to `outer`, is `thickness` thick along z, and climbs by `pitch` a turn; it is
 /// right-handed, or left-handed if the pitch is negative. `segments` (>= 8) is their number in a turn. Throws Error for
 /// measures that are not positive, an `inner` that is not below `outer`, and a blade as thick as its pitch.
-inline IndexedMesh helix(double inner, double outer, double pitch, double length, double thickness, int segments = 32) {
+IndexedMesh helix(double inner, double outer, double pitch, double length, double thickness, int segments = 32);
+
+/// The sheet that a profile of points (x, y) in m sweeps along z, from -length/2 to length/2: a trough, a chute, a
+/// corrugated plate. Not closed: TriangleMesh takes it with MeshSide::two_sided. A profile that goes round
+/// counter-clockwise shows its faces outwards. Throws Error for less than two points, two that are in one place, and a
+/// length that is not positive.
+IndexedMesh sheet(std::span<const std::array<double, 2>> profile, double length);
+
+}  // namespace dem::mesh
+
+#if DEM_DEFINES
+
+namespace dem::mesh {
+
+DEM_INLINE IndexedMesh helix(double inner, double outer, double pitch, double length, double thickness, int segments) {
   require_positive(inner, "inner radius of a helix", "m");
   require_positive(length, "length of a helix", "m");
   require_positive(thickness, "thickness of a helix", "m");
@@ -46,11 +61,7 @@ inline IndexedMesh helix(double inner, double outer, double pitch, double length
   return pitch > 0.0 ? m : m.flipped();
 }
 
-/// The sheet that a profile of points (x, y) in m sweeps along z, from -length/2 to length/2: a trough, a chute, a
-/// corrugated plate. Not closed: TriangleMesh takes it with MeshSide::two_sided. A profile that goes round
-/// counter-clockwise shows its faces outwards. Throws Error for less than two points, two that are in one place, and a
-/// length that is not positive.
-inline IndexedMesh sheet(std::span<const std::array<double, 2>> profile, double length) {
+DEM_INLINE IndexedMesh sheet(std::span<const std::array<double, 2>> profile, double length) {
   require_positive(length, "length of a sheet", "m");
   if (profile.size() < 2) fail("the profile of a sheet has {} points, but needs at least 2", profile.size());
   IndexedMesh m;
@@ -64,3 +75,5 @@ inline IndexedMesh sheet(std::span<const std::array<double, 2>> profile, double 
 }
 
 }  // namespace dem::mesh
+
+#endif

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <dem/core/macros.hpp>
 #include <dem/geometry/mesh/indexed_mesh.hpp>
 
 #include <algorithm>
@@ -29,7 +30,15 @@ struct MeshTopology : BadEdges {
 };
 
 /// Pairs the triangles' edges by sorting them: O(n log n).
-DEM_LAZY inline MeshTopology topology_of(const IndexedMesh& mesh) {
+DEM_LAZY MeshTopology topology_of(const IndexedMesh& mesh);
+
+}  // namespace dem
+
+#if DEM_DEFINES
+
+namespace dem {
+
+DEM_LAZY_INLINE MeshTopology topology_of(const IndexedMesh& mesh) {
   struct Use {
     std::uint32_t low, high, triangle;
     std::uint8_t edge;
@@ -66,3 +75,5 @@ DEM_LAZY inline MeshTopology topology_of(const IndexedMesh& mesh) {
 }
 
 }  // namespace dem
+
+#endif

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <dem/core/macros.hpp>
 #include <dem/geometry/mesh/mesh_minima.hpp>
 #include <dem/geometry/mesh/mesh_parts.hpp>
 #include <dem/math/fingerprint.hpp>
@@ -48,32 +49,7 @@ class TriangleMesh {
 
   /// Repairs the mesh (geometry/mesh/mesh_repair.hpp). Throws Error if an option is out of range, and if a solid is not
   /// closed.
-  DEM_LAZY explicit TriangleMesh(const IndexedMesh& mesh, const MeshOptions& o = {}) : options_(o) {
-    require_within(o.smooth_angle, 0.0, 60.0, "smooth angle of a mesh in degrees");
-    require_non_negative(o.depth, "depth of a mesh", "m (0 chooses one)");
-    require_non_negative(o.point_spacing, "point spacing of a mesh", "m (0: only vertices)");
-    const double angle = o.smooth_angle * std::numbers::pi / 180.0;
-    auto data = std::make_shared<MeshData>(build_mesh(mesh, o.facing, angle, o.point_spacing, o.tolerance));
-    if (o.side == MeshSide::solid && (!data->report.closed() || !data->report.oriented())) {
-      fail(
-          "a solid must be enclosed by its mesh, but this one is not closed. {}Close it, or take a sheet: side = "
-          "MeshSide::one_sided or two_sided",
-          data->report.text());
-    }
-    if (o.side == MeshSide::one_sided && !data->report.oriented()) {
-      fail("a one-sided sheet must have sides. {}Take MeshSide::two_sided", data->report.text());
-    }
-    if (data->groups.count > most_groups) {
-      fail(
-          "a mesh has {} regions that concave edges part from each other, but at most {} can be told apart; raise "
-          "smooth_angle (now {:g} degrees), simplify it, or cut it into several surfaces",
-          data->groups.count, most_groups, o.smooth_angle);
-    }
-    merge_cosine_ = std::min(std::cos(angle), 1.0 - 1e-9);
-    data_ = std::move(data);
-    if (o.side == MeshSide::two_sided) options_.depth = 0.0;
-    set_point_depth(o.side == MeshSide::two_sided ? 0.0 : o.depth > 0.0 ? o.depth : 0.25 * data_->mean_edge);
-  }
+  DEM_LAZY explicit TriangleMesh(const IndexedMesh& mesh, const MeshOptions& o = {});
 
   const MeshReport& report() const { return data_->report; }
   /// As repaired; triangles are in the order of the tree.
@@ -81,11 +57,7 @@ class TriangleMesh {
   const MeshData& data() const { return *data_; }
   const MeshOptions& options() const { return options_; }
   /// Of what it was made from. How deep points are found behind it is none of that: it depends on the grains.
-  std::uint64_t fingerprint() const {
-    const MeshOptions& o = options_;
-    return fingerprint_of(mesh().vertices, mesh().triangles, o.side, o.facing, o.smooth_angle, o.depth,
-                          o.point_spacing);
-  }
+  std::uint64_t fingerprint() const;
 
   template <class T>
   DEM_HOT auto near(const Vector3<T>& p, const T& radius) const {
@@ -97,10 +69,7 @@ class TriangleMesh {
 
   /// False only if no sample point in a sphere of that radius can touch: cheap for grains that are near the mesh's
   /// bounding box but not near its triangles. `points`: whether any sample point has no radius.
-  bool close(const Vector3<double>& p, double radius, bool points) const {
-    const double reach = radius + (points ? point_depth_ : options_.depth);
-    return data_->tree.reaches(p, reach * reach);
-  }
+  bool close(const Vector3<double>& p, double radius, bool points) const;
 
   /// callback(feature, normal, gap) for each contact of a sphere.
   template <class Callback>
@@ -222,28 +191,9 @@ class TriangleMesh {
     }
   }
   /// Of contacts with nearly the same normal the deepest stays; what is seen from behind lies beyond the solid.
-  void reduce(Found& found) const {
-    std::size_t kept = 0;
-    for (const Minimum& m : found) {
-      bool is_new = !m.behind;
-      for (std::size_t other = 0; other < kept; ++other) is_new &= dot(m.normal, found[other].normal) < merge_cosine_;
-      if (is_new) found[kept++] = m;
-    }
-    found.resize(kept);
-  }
+  void reduce(Found& found) const;
 
-  void set_point_depth(double depth) {
-    const Aabb& box = data_->bounds;
-    if (options_.depth == 0.0 && options_.side == MeshSide::solid) {
-      depth = std::min(depth, 0.5 * (box.high - box.low).minCoeff());
-    }
-    point_depth_ = depth;
-    // What is behind a cavity or a sheet lies outside of the box of the triangles.
-    const bool box_holds_solid = options_.side == MeshSide::solid && data_->report.enclosed_volume > 0.0;
-    const double grow = box_holds_solid ? 0.0 : depth;
-    low_ = from_eigen(Vec3(box.low - filled(grow)));
-    high_ = from_eigen(Vec3(box.high + filled(grow)));
-  }
+  void set_point_depth(double depth);
 
   MeshOptions options_;
   double merge_cosine_ = 1.0, point_depth_ = 0.0;
@@ -252,3 +202,71 @@ class TriangleMesh {
 };
 
 }  // namespace dem::surface
+
+#if DEM_DEFINES
+
+namespace dem::surface {
+
+DEM_LAZY_INLINE TriangleMesh::TriangleMesh(const IndexedMesh& mesh, const MeshOptions& o) : options_(o) {
+  require_within(o.smooth_angle, 0.0, 60.0, "smooth angle of a mesh in degrees");
+  require_non_negative(o.depth, "depth of a mesh", "m (0 chooses one)");
+  require_non_negative(o.point_spacing, "point spacing of a mesh", "m (0: only vertices)");
+  const double angle = o.smooth_angle * std::numbers::pi / 180.0;
+  auto data = std::make_shared<MeshData>(build_mesh(mesh, o.facing, angle, o.point_spacing, o.tolerance));
+  if (o.side == MeshSide::solid && (!data->report.closed() || !data->report.oriented())) {
+    fail(
+        "a solid must be enclosed by its mesh, but this one is not closed. {}Close it, or take a sheet: side = "
+        "MeshSide::one_sided or two_sided",
+        data->report.text());
+  }
+  if (o.side == MeshSide::one_sided && !data->report.oriented()) {
+    fail("a one-sided sheet must have sides. {}Take MeshSide::two_sided", data->report.text());
+  }
+  if (data->groups.count > most_groups) {
+    fail(
+        "a mesh has {} regions that concave edges part from each other, but at most {} can be told apart; raise "
+        "smooth_angle (now {:g} degrees), simplify it, or cut it into several surfaces",
+        data->groups.count, most_groups, o.smooth_angle);
+  }
+  merge_cosine_ = std::min(std::cos(angle), 1.0 - 1e-9);
+  data_ = std::move(data);
+  if (o.side == MeshSide::two_sided) options_.depth = 0.0;
+  set_point_depth(o.side == MeshSide::two_sided ? 0.0 : o.depth > 0.0 ? o.depth : 0.25 * data_->mean_edge);
+}
+
+DEM_INLINE std::uint64_t TriangleMesh::fingerprint() const {
+  const MeshOptions& o = options_;
+  return fingerprint_of(mesh().vertices, mesh().triangles, o.side, o.facing, o.smooth_angle, o.depth, o.point_spacing);
+}
+
+DEM_INLINE bool TriangleMesh::close(const Vector3<double>& p, double radius, bool points) const {
+  const double reach = radius + (points ? point_depth_ : options_.depth);
+  return data_->tree.reaches(p, reach * reach);
+}
+
+DEM_INLINE void TriangleMesh::reduce(Found& found) const {
+  std::size_t kept = 0;
+  for (const Minimum& m : found) {
+    bool is_new = !m.behind;
+    for (std::size_t other = 0; other < kept; ++other) is_new &= dot(m.normal, found[other].normal) < merge_cosine_;
+    if (is_new) found[kept++] = m;
+  }
+  found.resize(kept);
+}
+
+DEM_INLINE void TriangleMesh::set_point_depth(double depth) {
+  const Aabb& box = data_->bounds;
+  if (options_.depth == 0.0 && options_.side == MeshSide::solid) {
+    depth = std::min(depth, 0.5 * (box.high - box.low).minCoeff());
+  }
+  point_depth_ = depth;
+  // What is behind a cavity or a sheet lies outside of the box of the triangles.
+  const bool box_holds_solid = options_.side == MeshSide::solid && data_->report.enclosed_volume > 0.0;
+  const double grow = box_holds_solid ? 0.0 : depth;
+  low_ = from_eigen(Vec3(box.low - filled(grow)));
+  high_ = from_eigen(Vec3(box.high + filled(grow)));
+}
+
+}  // namespace dem::surface
+
+#endif

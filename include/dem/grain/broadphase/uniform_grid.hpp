@@ -17,10 +17,7 @@ namespace dem::broadphase {
 /// of a grain are in the 27 cells around it. Cells and the grains in them are sorted along a Z-order (Morton) curve.
 class UniformGrid {
  public:
-  DEM_LAZY void build(const Positions& p, double reach) {
-    exec::Serial alone;
-    build(p, reach, alone);
-  }
+  DEM_LAZY void build(const Positions& p, double reach);
   template <class Executor>
   void build(const Positions& p, double reach, Executor& executor) {
     is_in_order_ = false;
@@ -55,10 +52,7 @@ class UniformGrid {
 
   /// To be called when the grains were put in order(), so that row k is what was row order()[k]: as good as build(),
   /// and cheaper.
-  DEM_LAZY void reordered() {
-    exec::Serial alone;
-    reordered(alone);
-  }
+  DEM_LAZY void reordered();
   template <class Executor>
   void reordered(Executor& executor) {
     exec::for_each_block(executor, cells_.size(), [&](std::size_t first, std::size_t last) {
@@ -197,10 +191,7 @@ class UniformGrid {
 
   std::span<const std::uint32_t> order() const { return order_; }
 
-  std::size_t memory_bytes() const {
-    return sorted_.memory_bytes() + cells_.capacity() * sizeof(Cell) + table_.memory_bytes() +
-           (order_.capacity() + cell_of_.capacity()) * sizeof(std::uint32_t);
-  }
+  std::size_t memory_bytes() const;
 
  private:
   bool is_in_order_ = false;  // row k is order_[k] = k
@@ -211,3 +202,26 @@ class UniformGrid {
 };
 
 }  // namespace dem::broadphase
+
+#if DEM_DEFINES
+
+namespace dem::broadphase {
+
+DEM_LAZY_INLINE void UniformGrid::build(const Positions& p, double reach) {
+  exec::Serial alone;
+  build(p, reach, alone);
+}
+
+DEM_LAZY_INLINE void UniformGrid::reordered() {
+  exec::Serial alone;
+  reordered(alone);
+}
+
+DEM_INLINE std::size_t UniformGrid::memory_bytes() const {
+  return sorted_.memory_bytes() + cells_.capacity() * sizeof(Cell) + table_.memory_bytes() +
+         (order_.capacity() + cell_of_.capacity()) * sizeof(std::uint32_t);
+}
+
+}  // namespace dem::broadphase
+
+#endif

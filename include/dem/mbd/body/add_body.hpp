@@ -5,14 +5,24 @@
 
 namespace dem::mbd::detail {
 
-DEM_COLD inline BodyId add_body(Parts& parts, BuiltBody built, bool is_ground = false) {
+DEM_COLD BodyId add_body(Parts& parts, BuiltBody built, bool is_ground = false);
+
+DEM_COLD ConnectionId add_connection(Parts& parts, std::string name, BodyId body, const Vec3& at);
+
+}  // namespace dem::mbd::detail
+
+#if DEM_DEFINES
+
+namespace dem::mbd::detail {
+
+DEM_INLINE BodyId add_body(Parts& parts, BuiltBody built, bool is_ground) {
   settle_name(built.body.name, parts.bodies, "body", "bodies", [](const Body& b) { return b.name; });
   require_no_step(parts);
   is_ground ? parts.bodies.add_ground(built.body) : parts.bodies.add(built.body);
   return keep<BodyId>(parts, parts.built, std::move(built));
 }
 
-DEM_COLD inline ConnectionId add_connection(Parts& parts, std::string name, BodyId body, const Vec3& at) {
+DEM_INLINE ConnectionId add_connection(Parts& parts, std::string name, BodyId body, const Vec3& at) {
   const std::string who = dem::text("connection point '{}'", name);
   const Body& b = known_body(parts, body, who);
   settle_name(name, parts.connections, "connection point", "connection points",
@@ -22,3 +32,5 @@ DEM_COLD inline ConnectionId add_connection(Parts& parts, std::string name, Body
 }
 
 }  // namespace dem::mbd::detail
+
+#endif

@@ -2,6 +2,7 @@
 
 #include <dem/core/error.hpp>
 #include <dem/core/ids.hpp>
+#include <dem/core/macros.hpp>
 #include <dem/integrator/motion.hpp>
 
 #include <algorithm>
@@ -43,24 +44,36 @@ struct Body {
   /// Global position of a point given in the body frame (eq. 20).
   Vec3 point(const Vec3& local) const { return to_eigen(motion.position + motion.rotation * from_eigen(local)); }
   /// Global velocity of a point given in the body frame (eq. 20).
-  Vec3 point_velocity(const Vec3& local) const {
-    const Vector3<double> spin = motion.rotation * motion.angular_velocity;
-    return to_eigen(motion.velocity + cross(spin, motion.rotation * from_eigen(local)));
-  }
+  Vec3 point_velocity(const Vec3& local) const;
 
   /// Adds a force (N, global axes) that acts at a global point (eqs. 22-24) to this stage's sum. A machine clears the
   /// sums before each evaluation, so what is added between two steps is lost: a force that lasts is a load
   /// (mbd::applied_force, mbd::custom_load); this is for code that calls a machine's phases itself, after clear_forces.
-  void apply(const Vec3& f, const Vec3& at) {
-    force += from_eigen(f);
-    torque += cross(from_eigen(at) - motion.position, from_eigen(f));
-  }
+  void apply(const Vec3& f, const Vec3& at);
   /// Adds a torque (N m, global axes) likewise.
   void apply_torque(const Vec3& t) { torque += from_eigen(t); }
 };
 
 /// Throws Error if the body cannot be integrated.
-inline void check_body(const Body& b) {
+void check_body(const Body& b);
+
+}  // namespace dem
+
+#if DEM_DEFINES
+
+namespace dem {
+
+DEM_INLINE Vec3 Body::point_velocity(const Vec3& local) const {
+  const Vector3<double> spin = motion.rotation * motion.angular_velocity;
+  return to_eigen(motion.velocity + cross(spin, motion.rotation * from_eigen(local)));
+}
+
+DEM_INLINE void Body::apply(const Vec3& f, const Vec3& at) {
+  force += from_eigen(f);
+  torque += cross(from_eigen(at) - motion.position, from_eigen(f));
+}
+
+DEM_INLINE void check_body(const Body& b) {
   if (b.fixed) return;
   const auto what = [&](const char* field) { return field + (" of body '" + b.name + "'"); };
   require_positive(b.mass, what("mass").c_str(), "kg (or set fixed = true)");
@@ -78,3 +91,5 @@ inline void check_body(const Body& b) {
 }
 
 }  // namespace dem
+
+#endif

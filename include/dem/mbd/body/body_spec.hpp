@@ -25,18 +25,8 @@ struct BodySpec {
   /// and carries what touches it along, as a belt does.
   bool fixed = false;
 
-  BodySpec at(const Vec3& p, const Mat3& r = Mat3::Identity()) const {
-    BodySpec s = *this;
-    s.position = p;
-    s.rotation = r;
-    return s;
-  }
-  BodySpec moving(const Vec3& v, const Vec3& w = Vec3::Zero()) const {
-    BodySpec s = *this;
-    s.velocity = v;
-    s.angular_velocity = w;
-    return s;
-  }
+  BodySpec at(const Vec3& p, const Mat3& r = Mat3::Identity()) const;
+  BodySpec moving(const Vec3& v, const Vec3& w = Vec3::Zero()) const;
 };
 
 namespace detail {
@@ -95,7 +85,29 @@ struct BuiltBody {
 
 /// Finds the principal axes and moves the reference frame's motion to the centre of mass. Throws Error if the body has
 /// no mass, an impossible inertia, a rotation that is not one, or a number that is not finite.
-DEM_COLD inline BuiltBody build_body(const BodySpec& spec) {
+DEM_COLD BuiltBody build_body(const BodySpec& spec);
+
+}  // namespace dem::mbd
+
+#if DEM_DEFINES
+
+namespace dem::mbd {
+
+DEM_INLINE BodySpec BodySpec::at(const Vec3& p, const Mat3& r) const {
+  BodySpec s = *this;
+  s.position = p;
+  s.rotation = r;
+  return s;
+}
+
+DEM_INLINE BodySpec BodySpec::moving(const Vec3& v, const Vec3& w) const {
+  BodySpec s = *this;
+  s.velocity = v;
+  s.angular_velocity = w;
+  return s;
+}
+
+DEM_INLINE BuiltBody build_body(const BodySpec& spec) {
   using V = Vector3<double>;
   const Matrix3<double> turn = from_eigen(spec.rotation);
   if (!(squared_norm(turn * transposed(turn) - diagonal_matrix(1, 1, 1)) <= 1e-18) || !(determinant(turn) > 0)) {
@@ -133,3 +145,5 @@ DEM_COLD inline BuiltBody build_body(const BodySpec& spec) {
 }
 
 }  // namespace dem::mbd
+
+#endif

@@ -19,7 +19,21 @@ namespace dem::mbd {
 /// cavity if it looks the other way. Pieces that overlap count twice where they do. A mesh that is not closed as it is,
 /// as that of an STL file, is `repaired` first. Throws Error as `repaired` does, or if it is not closed then either:
 /// what an open one encloses is anything.
-DEM_LAZY inline BodyMass mesh_mass(const IndexedMesh& mesh, double density) {
+DEM_LAZY BodyMass mesh_mass(const IndexedMesh& mesh, double density);
+DEM_LAZY BodyMass mesh_mass(std::span<const Vec3> vertices, std::span<const std::array<std::uint32_t, 3>> triangles,
+                            double density);
+
+/// A solid that a closed mesh encloses, in the frame of the mesh (kg/m^3). Throws Error if the mesh is open or encloses
+/// no volume.
+DEM_LAZY BodySpec mesh_body(std::string name, const IndexedMesh& mesh, double density);
+
+}  // namespace dem::mbd
+
+#if DEM_DEFINES
+
+namespace dem::mbd {
+
+DEM_LAZY_INLINE BodyMass mesh_mass(const IndexedMesh& mesh, double density) {
   check_indices(mesh);
   const MeshTopology given = topology_of(mesh);
   if (given.closed()) {  // solids that touch stay apart
@@ -36,15 +50,16 @@ DEM_LAZY inline BodyMass mesh_mass(const IndexedMesh& mesh, double density) {
   }
   return of_density(mesh_mass_properties(solid), density);
 }
-DEM_LAZY inline BodyMass mesh_mass(std::span<const Vec3> vertices,
+
+DEM_LAZY_INLINE BodyMass mesh_mass(std::span<const Vec3> vertices,
                                    std::span<const std::array<std::uint32_t, 3>> triangles, double density) {
   return mesh_mass(IndexedMesh{{vertices.begin(), vertices.end()}, {triangles.begin(), triangles.end()}}, density);
 }
 
-/// A solid that a closed mesh encloses, in the frame of the mesh (kg/m^3). Throws Error if the mesh is open or encloses
-/// no volume.
-DEM_LAZY inline BodySpec mesh_body(std::string name, const IndexedMesh& mesh, double density) {
+DEM_LAZY_INLINE BodySpec mesh_body(std::string name, const IndexedMesh& mesh, double density) {
   return detail::made_of(std::move(name), [&] { return mesh_mass(mesh, density); });
 }
 
 }  // namespace dem::mbd
+
+#endif

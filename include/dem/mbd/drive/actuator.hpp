@@ -39,80 +39,32 @@ struct ActuatorSpec {
   double idle_speed = 0.0, idle_gain = 0.0;               ///< rad/s, 1/(rad/s); see idling_at
   bool has_throttle() const { return !torque_curve.empty() || !engine_map.empty(); }
 
-  ActuatorSpec along(Dof f) const {
-    ActuatorSpec s = *this;
-    s.dof = f;
-    return s;
-  }
-  ActuatorSpec with_max_force(double f) const {
-    ActuatorSpec s = *this;
-    s.max_force = f;
-    return s;
-  }
+  ActuatorSpec along(Dof f) const;
+  ActuatorSpec with_max_force(double f) const;
   ActuatorSpec idling_at(double speed, double gain = 0.05) const;
-  ActuatorSpec switched_off() const {
-    ActuatorSpec s = *this;
-    s.on = false;
-    return s;
-  }
+  ActuatorSpec switched_off() const;
 };
 
 /// Between two points (eqs. 34-37): the coordinate is their distance (m), which must not become zero.
-DEM_COLD inline ActuatorSpec linear_actuator(std::string name, BodyId a, const Vec3& at_a, BodyId b, const Vec3& at_b,
-                                             double position_gain, double speed_gain,
-                                             std::optional<Signal> set_point = {}) {
-  return {.name = std::move(name),
-          .a = a,
-          .b = b,
-          .at_a = at_a,
-          .at_b = at_b,
-          .position_gain = position_gain,
-          .speed_gain = speed_gain,
-          .set_point = std::move(set_point)};
-}
+DEM_COLD ActuatorSpec linear_actuator(std::string name, BodyId a, const Vec3& at_a, BodyId b, const Vec3& at_b,
+                                      double position_gain, double speed_gain, std::optional<Signal> set_point = {});
 /// On the coordinate of a joint: force on one that slides, torque on one that turns (eq. 38, over whole turns).
-DEM_COLD inline ActuatorSpec joint_actuator(std::string name, JointId joint, double position_gain, double speed_gain,
-                                            std::optional<Signal> set_point = {}) {
-  return {.name = std::move(name),
-          .joint = joint,
-          .position_gain = position_gain,
-          .speed_gain = speed_gain,
-          .set_point = std::move(set_point)};
-}
+DEM_COLD ActuatorSpec joint_actuator(std::string name, JointId joint, double position_gain, double speed_gain,
+                                     std::optional<Signal> set_point = {});
 /// A speed controller on the coordinate of a joint: force (N) or torque (N m) = -gain (speed - wanted speed). The
 /// wanted speed (m/s or rad/s) may change with time: Signal::smooth_step(0, 2, 0, 0.2) is a soft start. set_target
 /// gives it another one.
-DEM_COLD inline ActuatorSpec speed_actuator(std::string name, JointId joint, double gain, const Signal& speed) {
-  ActuatorSpec s = joint_actuator(std::move(name), joint, 0.0, gain, speed.as_rate());
-  s.by_speed = true;
-  return s;
-}
+DEM_COLD ActuatorSpec speed_actuator(std::string name, JointId joint, double gain, const Signal& speed);
 /// On three points (section 2.4.2): the angle at `corner` from `toward_a` on body a to `toward_b` on body b, counted
 /// positive about a x b at assembly. It is the turn of a free joint about that normal: give the bodies a joint that
 /// lets them turn about it, as a hinge does. Where they bend away from it, only the turn that is left is measured and
 /// driven.
-DEM_COLD inline ActuatorSpec rotational_actuator(std::string name, BodyId a, const Vec3& corner, const Vec3& toward_a,
-                                                 BodyId b, const Vec3& toward_b, double position_gain,
-                                                 double speed_gain, std::optional<Signal> set_point = {}) {
-  return {.name = std::move(name),
-          .a = a,
-          .b = b,
-          .at_a = corner,
-          .at_b = corner,
-          .toward_a = toward_a,
-          .toward_b = toward_b,
-          .three_points = true,
-          .position_gain = position_gain,
-          .speed_gain = speed_gain,
-          .set_point = std::move(set_point)};
-}
+DEM_COLD ActuatorSpec rotational_actuator(std::string name, BodyId a, const Vec3& corner, const Vec3& toward_a,
+                                          BodyId b, const Vec3& toward_b, double position_gain, double speed_gain,
+                                          std::optional<Signal> set_point = {});
 /// A motor on a joint: torque (N m) over speed (rad/s), times a throttle between -1 and 1 that is set while running.
 /// In reverse it is the same motor the other way round: torque = throttle curve(-speed).
-DEM_COLD inline ActuatorSpec motor(std::string name, JointId joint, Curve torque_over_speed, double throttle = 1.0) {
-  if (torque_over_speed.empty()) fail("motor '{}' has no torque curve; give it points (speed, torque)", name);
-  require_within(throttle, -1.0, 1.0, ("throttle of motor '" + name + "'").c_str());
-  return {.name = std::move(name), .joint = joint, .torque_curve = std::move(torque_over_speed), .throttle = throttle};
-}
+DEM_COLD ActuatorSpec motor(std::string name, JointId joint, Curve torque_over_speed, double throttle = 1.0);
 
 /// An actuator, ready to run, and what it did in the newest force evaluation.
 struct Actuator {
@@ -141,7 +93,89 @@ struct Actuator {
 };
 
 /// The torque (N m) of an engine at a throttle and a speed (rad/s), governor included.
-inline double torque_of_engine(const ActuatorSpec& s, double speed) {
+double torque_of_engine(const ActuatorSpec& s, double speed);
+/// N m s/rad, at most: of the steepest table, and of the governor where the tables differ most from the first one.
+double steepest_of_engine(const ActuatorSpec& s);
+
+/// The coordinate that an actuator acts on.
+Coordinate coordinate_of(const Actuator& u, const std::vector<Joint>& joints, const Body& a, const Body& b);
+
+void apply_actuator(Actuator& u, const std::vector<Joint>& joints, std::vector<Body>& bodies, double time, double dt);
+
+}  // namespace dem::mbd
+
+#if DEM_DEFINES
+
+namespace dem::mbd {
+
+DEM_INLINE ActuatorSpec ActuatorSpec::along(Dof f) const {
+  ActuatorSpec s = *this;
+  s.dof = f;
+  return s;
+}
+
+DEM_INLINE ActuatorSpec ActuatorSpec::with_max_force(double f) const {
+  ActuatorSpec s = *this;
+  s.max_force = f;
+  return s;
+}
+
+DEM_INLINE ActuatorSpec ActuatorSpec::switched_off() const {
+  ActuatorSpec s = *this;
+  s.on = false;
+  return s;
+}
+
+DEM_INLINE ActuatorSpec linear_actuator(std::string name, BodyId a, const Vec3& at_a, BodyId b, const Vec3& at_b,
+                                        double position_gain, double speed_gain, std::optional<Signal> set_point) {
+  return {.name = std::move(name),
+          .a = a,
+          .b = b,
+          .at_a = at_a,
+          .at_b = at_b,
+          .position_gain = position_gain,
+          .speed_gain = speed_gain,
+          .set_point = std::move(set_point)};
+}
+
+DEM_INLINE ActuatorSpec joint_actuator(std::string name, JointId joint, double position_gain, double speed_gain,
+                                       std::optional<Signal> set_point) {
+  return {.name = std::move(name),
+          .joint = joint,
+          .position_gain = position_gain,
+          .speed_gain = speed_gain,
+          .set_point = std::move(set_point)};
+}
+
+DEM_INLINE ActuatorSpec speed_actuator(std::string name, JointId joint, double gain, const Signal& speed) {
+  ActuatorSpec s = joint_actuator(std::move(name), joint, 0.0, gain, speed.as_rate());
+  s.by_speed = true;
+  return s;
+}
+
+DEM_INLINE ActuatorSpec rotational_actuator(std::string name, BodyId a, const Vec3& corner, const Vec3& toward_a,
+                                            BodyId b, const Vec3& toward_b, double position_gain, double speed_gain,
+                                            std::optional<Signal> set_point) {
+  return {.name = std::move(name),
+          .a = a,
+          .b = b,
+          .at_a = corner,
+          .at_b = corner,
+          .toward_a = toward_a,
+          .toward_b = toward_b,
+          .three_points = true,
+          .position_gain = position_gain,
+          .speed_gain = speed_gain,
+          .set_point = std::move(set_point)};
+}
+
+DEM_INLINE ActuatorSpec motor(std::string name, JointId joint, Curve torque_over_speed, double throttle) {
+  if (torque_over_speed.empty()) fail("motor '{}' has no torque curve; give it points (speed, torque)", name);
+  require_within(throttle, -1.0, 1.0, ("throttle of motor '" + name + "'").c_str());
+  return {.name = std::move(name), .joint = joint, .torque_curve = std::move(torque_over_speed), .throttle = throttle};
+}
+
+DEM_INLINE double torque_of_engine(const ActuatorSpec& s, double speed) {
   const auto& map = s.engine_map;
   const double wanted = std::max(s.throttle, std::clamp(s.idle_gain * (s.idle_speed - speed), 0.0, 1.0));
   std::size_t i = 1;
@@ -149,8 +183,8 @@ inline double torque_of_engine(const ActuatorSpec& s, double speed) {
   const double share = (wanted - map[i - 1].first) / (map[i].first - map[i - 1].first);
   return (1.0 - share) * map[i - 1].second(speed) + share * map[i].second(speed);
 }
-/// N m s/rad, at most: of the steepest table, and of the governor where the tables differ most from the first one.
-inline double steepest_of_engine(const ActuatorSpec& s) {
+
+DEM_INLINE double steepest_of_engine(const ActuatorSpec& s) {
   double slope = 0.0, rise = 0.0;
   for (const auto& [throttle, curve] : s.engine_map) slope = std::max(slope, curve.steepest());
   for (std::size_t i = 1; i < s.engine_map.size(); ++i) {
@@ -164,14 +198,13 @@ inline double steepest_of_engine(const ActuatorSpec& s) {
   return slope + s.idle_gain * rise;
 }
 
-/// The coordinate that an actuator acts on.
-inline Coordinate coordinate_of(const Actuator& u, const std::vector<Joint>& joints, const Body& a, const Body& b) {
+DEM_INLINE Coordinate coordinate_of(const Actuator& u, const std::vector<Joint>& joints, const Body& a, const Body& b) {
   return u.spec.joint.valid() ? coordinate_of(joints[u.spec.joint.index()], a, b, u.spec.dof)
                               : distance_of(u.point_a, u.point_b, a, b);
 }
 
-inline void apply_actuator(Actuator& u, const std::vector<Joint>& joints, std::vector<Body>& bodies, double time,
-                           double dt) {
+DEM_INLINE void apply_actuator(Actuator& u, const std::vector<Joint>& joints, std::vector<Body>& bodies, double time,
+                               double dt) {
   Body &a = bodies[u.a], &b = bodies[u.b];
   const Coordinate q = coordinate_of(u, joints, a, b);
   u.coordinate = q.value;
@@ -194,3 +227,5 @@ inline void apply_actuator(Actuator& u, const std::vector<Joint>& joints, std::v
 }
 
 }  // namespace dem::mbd
+
+#endif

@@ -10,11 +10,7 @@ namespace dem::mbd::detail {
 
 /// N, with which an actuator between two points pulls them together while they stand. A set point that it was not asked
 /// for yet (0, which is no length) is that at the start.
-inline double pull_of(const Actuator& u, double length) {
-  if (u.spec.position_gain == 0.0 || u.spec.has_throttle()) return 0.0;
-  const double target = u.target.value != 0.0 ? u.target.value : (*u.spec.set_point)(0.0).value;
-  return std::min(u.spec.position_gain * (length - target), u.spec.max_force);
-}
+double pull_of(const Actuator& u, double length);
 
 inline constexpr PartKind actuator_kind = {
     .rank = 6,
@@ -53,7 +49,29 @@ inline constexpr PartKind actuator_kind = {
       return {};
     }};
 
-DEM_COLD inline void check_actuator(const ActuatorSpec& spec, const std::string& who) {
+DEM_COLD void check_actuator(const ActuatorSpec& spec, const std::string& who);
+
+/// A rotational actuator between three points acts on a free joint about the normal of their plane.
+DEM_COLD JointId joint_on_three_points(Parts& parts, const ActuatorSpec& spec, const std::string& who);
+
+/// A number is no speed: without a position gain the rate of the set point counts alone.
+DEM_COLD void refuse_constant_speed(const ActuatorSpec& spec, const Signal& set_point, const std::string& who);
+
+DEM_COLD ActuatorId add_actuator(Parts& parts, ActuatorSpec spec);
+
+}  // namespace dem::mbd::detail
+
+#if DEM_DEFINES
+
+namespace dem::mbd::detail {
+
+DEM_INLINE double pull_of(const Actuator& u, double length) {
+  if (u.spec.position_gain == 0.0 || u.spec.has_throttle()) return 0.0;
+  const double target = u.target.value != 0.0 ? u.target.value : (*u.spec.set_point)(0.0).value;
+  return std::min(u.spec.position_gain * (length - target), u.spec.max_force);
+}
+
+DEM_INLINE void check_actuator(const ActuatorSpec& spec, const std::string& who) {
   require_non_negative(spec.position_gain, ("position gain of " + who).c_str(), "N/m or N m/rad");
   require_non_negative(spec.speed_gain, ("speed gain of " + who).c_str(), "N s/m or N m s/rad");
   require_within(spec.throttle, -1.0, 1.0, ("throttle of " + who).c_str());
@@ -63,8 +81,7 @@ DEM_COLD inline void check_actuator(const ActuatorSpec& spec, const std::string&
   }
 }
 
-/// A rotational actuator between three points acts on a free joint about the normal of their plane.
-DEM_COLD inline JointId joint_on_three_points(Parts& parts, const ActuatorSpec& spec, const std::string& who) {
+DEM_INLINE JointId joint_on_three_points(Parts& parts, const ActuatorSpec& spec, const std::string& who) {
   using V = Vector3<double>;
   const V to_a = unit(from_eigen(spec.toward_a) - from_eigen(spec.at_a), who);
   const V to_b = unit(from_eigen(spec.toward_b) - from_eigen(spec.at_b), who);
@@ -76,8 +93,7 @@ DEM_COLD inline JointId joint_on_three_points(Parts& parts, const ActuatorSpec& 
                               .starting_at(std::atan2(norm(normal), dot(to_a, to_b))));
 }
 
-/// A number is no speed: without a position gain the rate of the set point counts alone.
-DEM_COLD inline void refuse_constant_speed(const ActuatorSpec& spec, const Signal& set_point, const std::string& who) {
+DEM_INLINE void refuse_constant_speed(const ActuatorSpec& spec, const Signal& set_point, const std::string& who) {
   const bool follows_rate =
       spec.joint.valid() && spec.on && spec.position_gain == 0.0 && spec.speed_gain > 0.0 && !spec.by_speed;
   if (!follows_rate || !set_point.is_constant()) return;
@@ -91,7 +107,7 @@ DEM_COLD inline void refuse_constant_speed(const ActuatorSpec& spec, const Signa
       who, value, value);
 }
 
-DEM_COLD inline ActuatorId add_actuator(Parts& parts, ActuatorSpec spec) {
+DEM_INLINE ActuatorId add_actuator(Parts& parts, ActuatorSpec spec) {
   settle_name(spec.name, parts.actuators, "actuator", "actuators", name_in_spec);
   const std::string who = dem::text("actuator '{}'", spec.name);
   check_actuator(spec, who);
@@ -120,3 +136,5 @@ DEM_COLD inline ActuatorId add_actuator(Parts& parts, ActuatorSpec spec) {
 }
 
 }  // namespace dem::mbd::detail
+
+#endif

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <dem/core/macros.hpp>
 #include <dem/mbd/drive/prescribe.hpp>
 
 #include <algorithm>
@@ -11,14 +12,34 @@ namespace dem::mbd {
 namespace detail {
 
 /// How far (m or rad) a motion may be off its coordinate when it takes hold of it.
-inline double allowed_off(const Parts& parts, const PrescribedMotion& p) {
+double allowed_off(const Parts& parts, const PrescribedMotion& p);
+
+/// How far a motion is off its coordinate at `time` (s).
+double off_hold(const Parts& parts, PrescribedMotion& p, double time);
+
+/// Whether a motion that was loaded gives another value than it had when it was saved: it has to take hold again. One
+/// whose value was set for the step that comes next is on its way there, as it was.
+bool differs_from_saved(const PrescribedMotion& p, double time, double tolerance);
+
+}  // namespace detail
+
+/// Throws Error if a motion that is on would have to jump at `time` (s) to take hold of its coordinate, which would
+/// tear the machine apart, or press a part into grains. To be called before each step.
+void check_holds(Parts& parts, double time);
+
+}  // namespace dem::mbd
+
+#if DEM_DEFINES
+
+namespace dem::mbd::detail {
+
+DEM_INLINE double allowed_off(const Parts& parts, const PrescribedMotion& p) {
   const bool turns = p.spec.target == MotionSpec::Target::rotation ||
                      (p.spec.target == MotionSpec::Target::joint && is_rotation(p.spec.dof));
   return turns ? 1e-3 : std::min(1e-3, parts.allowed_jump);
 }
 
-/// How far a motion is off its coordinate at `time` (s).
-inline double off_hold(const Parts& parts, PrescribedMotion& p, double time) {
+DEM_INLINE double off_hold(const Parts& parts, PrescribedMotion& p, double time) {
   const integrator::Motion<double>& m = parts.bodies[p.spec.body.index()].motion;
   if (p.spec.target == MotionSpec::Target::pose) {
     const Pose pose = p.spec.pose(time);
@@ -30,19 +51,17 @@ inline double off_hold(const Parts& parts, PrescribedMotion& p, double time) {
   return p.drive.value - coordinate_of_drive(parts, p);
 }
 
-/// Whether a motion that was loaded gives another value than it had when it was saved: it has to take hold again. One
-/// whose value was set for the step that comes next is on its way there, as it was.
-inline bool differs_from_saved(const PrescribedMotion& p, double time, double tolerance) {
+DEM_INLINE bool differs_from_saved(const PrescribedMotion& p, double time, double tolerance) {
   if (p.spec.target == MotionSpec::Target::pose) return true;  // which is compared whole
   if (p.drive.way.is_ahead()) return false;
   return std::abs(p.spec.motion(time).value - p.drive.value) > tolerance;
 }
 
-}  // namespace detail
+}  // namespace dem::mbd::detail
 
-/// Throws Error if a motion that is on would have to jump at `time` (s) to take hold of its coordinate, which would
-/// tear the machine apart, or press a part into grains. To be called before each step.
-inline void check_holds(Parts& parts, double time) {
+namespace dem::mbd {
+
+DEM_INLINE void check_holds(Parts& parts, double time) {
   for (PrescribedMotion& p : parts.motions) {
     if (!p.spec.on) continue;
     p.drive.time = time;
@@ -76,3 +95,5 @@ inline void check_holds(Parts& parts, double time) {
 }
 
 }  // namespace dem::mbd
+
+#endif

@@ -47,12 +47,7 @@ struct ClutchSpec {
   bool on = true;
 
   /// Stiffness and damping of what sticks; both have to be greater than zero and not below zero, respectively.
-  ClutchSpec with_stiffness(double k, double c) const {
-    ClutchSpec s = *this;
-    s.stiffness = k;
-    s.damping = c;
-    return s;
-  }
+  ClutchSpec with_stiffness(double k, double c) const;
 };
 
 /// A brake on the coordinate of a joint: the joint's body b is held to its body a. The capacity (N m of a joint that
@@ -70,17 +65,11 @@ DEM_COLD inline ClutchSpec clutch(std::string name, JointId in, JointId out, Sig
 }
 /// A clutch or a brake between two bodies that have no joint with each other, about an axis at a point (global at
 /// assembly). A free joint that measures the turn is added with it.
-DEM_COLD inline ClutchSpec clutch(std::string name, BodyId a, BodyId b, const Vec3& at, const Vec3& axis,
-                                  Signal capacity) {
-  return {.name = std::move(name), .a = a, .b = b, .at = at, .axis = axis, .capacity = std::move(capacity)};
-}
+DEM_COLD ClutchSpec clutch(std::string name, BodyId a, BodyId b, const Vec3& at, const Vec3& axis, Signal capacity);
 /// The plates of a limited-slip differential, between the two outputs of a differential(...). Their capacity is the
 /// preload (N m; what it takes to turn one wheel against the other without input), and a share of the input's torque:
 /// with no preload, the slower output gets up to `bias_ratio` times the torque of the faster one. 1: an open one.
-DEM_COLD inline ClutchSpec limited_slip(std::string name, CouplingId differential, Signal preload, double bias_ratio) {
-  return {
-      .name = std::move(name), .capacity = std::move(preload), .differential = differential, .bias_ratio = bias_ratio};
-}
+DEM_COLD ClutchSpec limited_slip(std::string name, CouplingId differential, Signal preload, double bias_ratio);
 
 /// A brake or clutch, ready to run, and what it did in the newest force evaluation.
 struct Clutch {
@@ -115,7 +104,36 @@ struct Clutch {
 };
 
 /// The sum of coordinates that a clutch acts on, and its rate.
-inline Signal::Sample slip_of(const Clutch& u, const std::vector<Joint>& joints, const std::vector<Body>& bodies) {
+Signal::Sample slip_of(const Clutch& u, const std::vector<Joint>& joints, const std::vector<Body>& bodies);
+
+/// `multiplier` (N m) is that of the differential's coupling, if there is one. The anchor is dragged, and slip work
+/// counted, only where `commit` says so.
+void apply_clutch(Clutch& u, const std::vector<Joint>& joints, std::vector<Body>& bodies, double time, double dt,
+                  double multiplier, bool commit);
+
+}  // namespace dem::mbd
+
+#if DEM_DEFINES
+
+namespace dem::mbd {
+
+DEM_INLINE ClutchSpec ClutchSpec::with_stiffness(double k, double c) const {
+  ClutchSpec s = *this;
+  s.stiffness = k;
+  s.damping = c;
+  return s;
+}
+
+DEM_INLINE ClutchSpec clutch(std::string name, BodyId a, BodyId b, const Vec3& at, const Vec3& axis, Signal capacity) {
+  return {.name = std::move(name), .a = a, .b = b, .at = at, .axis = axis, .capacity = std::move(capacity)};
+}
+
+DEM_INLINE ClutchSpec limited_slip(std::string name, CouplingId differential, Signal preload, double bias_ratio) {
+  return {
+      .name = std::move(name), .capacity = std::move(preload), .differential = differential, .bias_ratio = bias_ratio};
+}
+
+DEM_INLINE Signal::Sample slip_of(const Clutch& u, const std::vector<Joint>& joints, const std::vector<Body>& bodies) {
   Signal::Sample s;
   for (const auto& term : u.spec.terms) {
     const Joint& j = joints[term.joint.index()];
@@ -126,10 +144,8 @@ inline Signal::Sample slip_of(const Clutch& u, const std::vector<Joint>& joints,
   return s;
 }
 
-/// `multiplier` (N m) is that of the differential's coupling, if there is one. The anchor is dragged, and slip work
-/// counted, only where `commit` says so.
-inline void apply_clutch(Clutch& u, const std::vector<Joint>& joints, std::vector<Body>& bodies, double time, double dt,
-                         double multiplier, bool commit) {
+DEM_INLINE void apply_clutch(Clutch& u, const std::vector<Joint>& joints, std::vector<Body>& bodies, double time,
+                             double dt, double multiplier, bool commit) {
   Clutch::History& h = u.history;
   u.torque = u.speed = u.capacity = 0.0;
   if (u.spec.on) {
@@ -168,3 +184,5 @@ inline void apply_clutch(Clutch& u, const std::vector<Joint>& joints, std::vecto
 }
 
 }  // namespace dem::mbd
+
+#endif

@@ -8,27 +8,13 @@
 
 namespace dem::mbd::detail {
 
-inline void derive(const Parts& m, Clutch& u, const Derivation& derivation) {
-  double w = 0.0;
-  for (const auto& t : u.spec.terms)
-    w += derivation.shared(m.joints[t.joint.index()], inverse_mass_of(m, u.spec.terms, t));
-  u.k = u.spec.stiffness.value_or(derivation.stiffness(joint_frequency, w));
-  u.c = u.spec.damping.value_or(Derivation::damping(u.k, w));
-}
+void derive(const Parts& m, Clutch& u, const Derivation& derivation);
 /// What a clutch holds when its stiffness was another one (k) stays where it is: the anchor gives way instead.
-inline void keep_torque(Clutch& u, double k) {
-  if (!u.history.is_closed || k == u.k || !(k > 0.0 && u.k > 0.0)) return;
-  const double stretch = u.history.stretch * k / u.k;
-  u.history.anchor -= stretch - u.history.stretch;
-  u.history.stretch = stretch;
-}
+void keep_torque(Clutch& u, double k);
 
 /// Capacity (N m) of a limited-slip differential's plates per N m of its coupling's multiplier. The outputs get
 /// S = (|r1| + |r2|) lambda together. T moves over from one to the other: (S/2 + T) = bias_ratio (S/2 - T).
-inline double plate_bias(const Coupling& differential, double bias_ratio) {
-  const Terms& t = differential.spec.terms;
-  return 0.5 * (std::abs(t[1].ratio) + std::abs(t[2].ratio)) * (bias_ratio - 1.0) / (bias_ratio + 1.0);
-}
+double plate_bias(const Coupling& differential, double bias_ratio);
 
 inline constexpr PartKind clutch_kind = {
     .rank = 8,  // after the couplings, of which a limited-slip differential takes its capacity
@@ -95,7 +81,37 @@ inline constexpr PartKind clutch_kind = {
     }};
 
 /// The two outputs of a differential.
-DEM_COLD inline void take_differential(const Parts& parts, Clutch& u, const std::string& who) {
+DEM_COLD void take_differential(const Parts& parts, Clutch& u, const std::string& who);
+
+DEM_COLD ClutchId add_clutch(Parts& parts, ClutchSpec spec);
+
+}  // namespace dem::mbd::detail
+
+#if DEM_DEFINES
+
+namespace dem::mbd::detail {
+
+DEM_INLINE void derive(const Parts& m, Clutch& u, const Derivation& derivation) {
+  double w = 0.0;
+  for (const auto& t : u.spec.terms)
+    w += derivation.shared(m.joints[t.joint.index()], inverse_mass_of(m, u.spec.terms, t));
+  u.k = u.spec.stiffness.value_or(derivation.stiffness(joint_frequency, w));
+  u.c = u.spec.damping.value_or(Derivation::damping(u.k, w));
+}
+
+DEM_INLINE void keep_torque(Clutch& u, double k) {
+  if (!u.history.is_closed || k == u.k || !(k > 0.0 && u.k > 0.0)) return;
+  const double stretch = u.history.stretch * k / u.k;
+  u.history.anchor -= stretch - u.history.stretch;
+  u.history.stretch = stretch;
+}
+
+DEM_INLINE double plate_bias(const Coupling& differential, double bias_ratio) {
+  const Terms& t = differential.spec.terms;
+  return 0.5 * (std::abs(t[1].ratio) + std::abs(t[2].ratio)) * (bias_ratio - 1.0) / (bias_ratio + 1.0);
+}
+
+DEM_INLINE void take_differential(const Parts& parts, Clutch& u, const std::string& who) {
   const Coupling& g = known(parts.couplings, u.spec.differential, ("coupling of " + who).c_str());
   const auto& t = g.spec.terms;
   if (t.size() != 3 || t[1].ratio != t[2].ratio) {
@@ -109,7 +125,7 @@ DEM_COLD inline void take_differential(const Parts& parts, Clutch& u, const std:
   u.bias = plate_bias(g, u.spec.bias_ratio);
 }
 
-DEM_COLD inline ClutchId add_clutch(Parts& parts, ClutchSpec spec) {
+DEM_INLINE ClutchId add_clutch(Parts& parts, ClutchSpec spec) {
   settle_name(spec.name, parts.clutches, "clutch or brake", "clutches or brakes", name_in_spec);
   const std::string who = dem::text("clutch or brake '{}'", spec.name);
   if (spec.stiffness) require_positive(*spec.stiffness, ("stiffness of " + who).c_str(), "N m/rad or N/m");
@@ -129,3 +145,5 @@ DEM_COLD inline ClutchId add_clutch(Parts& parts, ClutchSpec spec) {
 }
 
 }  // namespace dem::mbd::detail
+
+#endif

@@ -15,8 +15,20 @@ namespace dem::mbd {
 ///
 ///     const ActuatorId diesel = car.add_actuator(engine("diesel", crank, full, motoring).idling_at(75.0));
 ///     car.set_throttle(diesel, 0.6);
-DEM_COLD inline ActuatorSpec engine(std::string name, JointId crank, Curve full_throttle, Curve motoring,
-                                    double throttle = 0.0) {
+DEM_COLD ActuatorSpec engine(std::string name, JointId crank, Curve full_throttle, Curve motoring,
+                             double throttle = 0.0);
+/// The same from a map as it is measured: a table of torque over speed for each throttle, in rising throttle from 0 to
+/// 1. Between two throttles the torque is on the line between their tables.
+DEM_COLD ActuatorSpec engine(std::string name, JointId crank, std::vector<std::pair<double, Curve>> map,
+                             double throttle = 0.0);
+
+}  // namespace dem::mbd
+
+#if DEM_DEFINES
+
+namespace dem::mbd {
+
+DEM_INLINE ActuatorSpec engine(std::string name, JointId crank, Curve full_throttle, Curve motoring, double throttle) {
   if (full_throttle.empty() || motoring.empty()) {
     fail(
         "engine '{}' needs two tables, of torque at full throttle and while it is motored; give points (speed, torque)",
@@ -27,10 +39,9 @@ DEM_COLD inline ActuatorSpec engine(std::string name, JointId crank, Curve full_
   s.engine_map = {{0.0, std::move(motoring)}, {1.0, std::move(full_throttle)}};
   return s;
 }
-/// The same from a map as it is measured: a table of torque over speed for each throttle, in rising throttle from 0 to
-/// 1. Between two throttles the torque is on the line between their tables.
-DEM_COLD inline ActuatorSpec engine(std::string name, JointId crank, std::vector<std::pair<double, Curve>> map,
-                                    double throttle = 0.0) {
+
+DEM_INLINE ActuatorSpec engine(std::string name, JointId crank, std::vector<std::pair<double, Curve>> map,
+                               double throttle) {
   if (map.size() < 2 || map.front().first != 0.0 || map.back().first != 1.0) {
     fail("the map of engine '{}' has {} throttles, but needs at least 2, the first one 0 and the last one 1", name,
          map.size());
@@ -51,7 +62,7 @@ DEM_COLD inline ActuatorSpec engine(std::string name, JointId crank, std::vector
 /// A governor opens the throttle by `gain` (1/(rad/s)) for each rad/s below the idling speed (rad/s), if the driver has
 /// not opened it further. Without load the engine turns a little slower: by the throttle that balances its drag, over
 /// the gain.
-DEM_COLD inline ActuatorSpec ActuatorSpec::idling_at(double speed, double gain) const {
+DEM_INLINE ActuatorSpec ActuatorSpec::idling_at(double speed, double gain) const {
   if (engine_map.empty()) fail("actuator '{}' is no engine(...), so it cannot idle", name);
   ActuatorSpec s = *this;
   s.idle_speed = require_positive(speed, ("idling speed of engine '" + name + "'").c_str(), "rad/s");
@@ -60,3 +71,5 @@ DEM_COLD inline ActuatorSpec ActuatorSpec::idling_at(double speed, double gain) 
 }
 
 }  // namespace dem::mbd
+
+#endif

@@ -16,7 +16,17 @@ inline constexpr PartKind motion_kind = {.rank = 7, .not_a_number = [](const Par
                                            return {};
                                          }};
 
-DEM_COLD inline PrescribedMotion make_motion(const Parts& parts, MotionSpec spec) {
+DEM_COLD PrescribedMotion make_motion(const Parts& parts, MotionSpec spec);
+
+DEM_COLD MotionId add_motion(Parts& parts, MotionSpec spec);
+
+}  // namespace dem::mbd::detail
+
+#if DEM_DEFINES
+
+namespace dem::mbd::detail {
+
+DEM_INLINE PrescribedMotion make_motion(const Parts& parts, MotionSpec spec) {
   const std::string who = dem::text("prescribed motion '{}'", spec.name);
   PrescribedMotion p;
   if (spec.target == MotionSpec::Target::joint) {
@@ -56,7 +66,7 @@ DEM_COLD inline PrescribedMotion make_motion(const Parts& parts, MotionSpec spec
   return p;
 }
 
-DEM_COLD inline MotionId add_motion(Parts& parts, MotionSpec spec) {
+DEM_INLINE MotionId add_motion(Parts& parts, MotionSpec spec) {
   settle_name(spec.name, parts.motions, "prescribed motion", "prescribed motions", name_in_spec);
   use(parts, motion_kind);
   parts.apply_motions = &mbd::apply_motions;
@@ -65,3 +75,5 @@ DEM_COLD inline MotionId add_motion(Parts& parts, MotionSpec spec) {
 }
 
 }  // namespace dem::mbd::detail
+
+#endif

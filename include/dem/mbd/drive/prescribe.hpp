@@ -1,5 +1,6 @@
 #pragma once
 
+#include <dem/core/macros.hpp>
 // Prescribed motion (eq. 19): the impulses that bring every driven coordinate to its value and speed, all at once.
 
 #include <dem/mbd/drive/jacobian.hpp>
@@ -20,7 +21,56 @@ inline Matrix3<double> rotation_at(const PrescribedMotion& p, const Pose& pose) 
 }
 
 /// Sets a body whose pose is prescribed.
-inline void carry(PrescribedMotion& p, integrator::Motion<double>& m, double time) {
+void carry(PrescribedMotion& p, integrator::Motion<double>& m, double time);
+
+/// Sets the position or the rotation of a fixed body.
+void carry_fixed(const PrescribedMotion& p, integrator::Motion<double>& m);
+
+/// Where the coordinate of a motion, but not of a pose, is now (m or rad); a body's turn in the round of the value that
+/// was set last.
+double coordinate_of_drive(const Parts& parts, const PrescribedMotion& p);
+
+/// Notes where a step starts that ends at `time` (s). All its stages ask for the same time.
+void start_step(PrescribedMotion& p, double time);
+
+/// The value of a motion by speed at the end of a step of dt (s): that at its start, and the integral of its speed. The
+/// start is where the coordinate was, not where it should have been: what another drive or a user moved is not made up
+/// for.
+double integrated(const PrescribedMotion& p, double time, double dt, double rate);
+
+/// Samples the signals. Sets the bodies that no force moves: fixed ones, and those whose pose is prescribed.
+void sample_motions(Parts& parts, double time, double dt);
+
+/// What the drives put on a fixed body goes to its own drive; along or about its axis.
+double impulse_on(const Parts& parts, const PrescribedMotion& p, const std::vector<double>& impulses);
+
+/// Adds the impulses to those of their motions, and reports forces if dt > 0 (s).
+void report_forces(Parts& parts, const std::vector<double>& impulses, double dt);
+
+/// Moves bodies by what the rows' corrections give them; their spins stay.
+void shift_bodies(Parts& parts, std::vector<double>& corrections);
+
+/// Takes back how far forces moved driven coordinates within the step: as the impulses do that take back their speeds,
+/// whatever that does to the joints. If it were done about the joints' points, speeds and positions would not fit: a
+/// hinge beside a centre of mass would stand with a speed of its own, which its damper takes for slip.
+void take_back_moves(Parts& parts);
+
+/// Newton's iteration to the values: one is exact but for rotations, each squares what is left.
+void correct_values(Parts& parts);
+
+}  // namespace detail
+
+/// Sets the prescribed values and speeds for `time` (s) in steps of `dt` (s; 0: not known). The drives' forces are
+/// reported where the step is over.
+void apply_motions(Parts& parts, double time, double dt, bool is_over);
+
+}  // namespace dem::mbd
+
+#if DEM_DEFINES
+
+namespace dem::mbd::detail {
+
+DEM_INLINE void carry(PrescribedMotion& p, integrator::Motion<double>& m, double time) {
   using V = Vector3<double>;
   const Pose pose = p.spec.pose(time);
   m.position = centre_at(p, pose);
@@ -42,8 +92,7 @@ inline void carry(PrescribedMotion& p, integrator::Motion<double>& m, double tim
   p.drive.value = all.x + all.y + all.z;  // only to tell whether all of it are numbers
 }
 
-/// Sets the position or the rotation of a fixed body.
-inline void carry_fixed(const PrescribedMotion& p, integrator::Motion<double>& m) {
+DEM_INLINE void carry_fixed(const PrescribedMotion& p, integrator::Motion<double>& m) {
   const PrescribedMotion::Drive& d = p.drive;
   if (p.spec.target == MotionSpec::Target::position) {
     m.position += (p.start + d.value - dot(m.position, p.axis)) * p.axis;
@@ -54,9 +103,7 @@ inline void carry_fixed(const PrescribedMotion& p, integrator::Motion<double>& m
   }
 }
 
-/// Where the coordinate of a motion, but not of a pose, is now (m or rad); a body's turn in the round of the value that
-/// was set last.
-inline double coordinate_of_drive(const Parts& parts, const PrescribedMotion& p) {
+DEM_INLINE double coordinate_of_drive(const Parts& parts, const PrescribedMotion& p) {
   const integrator::Motion<double>& m = parts.bodies[p.spec.body.index()].motion;
   if (p.spec.target == MotionSpec::Target::position) return dot(m.position, p.axis) - p.start;
   if (p.spec.target == MotionSpec::Target::rotation) return p.drive.value + dot(rotation_off(p, m), p.axis);
@@ -64,8 +111,7 @@ inline double coordinate_of_drive(const Parts& parts, const PrescribedMotion& p)
   return coordinate_of(j, parts.bodies[j.a], parts.bodies[j.b], p.spec.dof).value;
 }
 
-/// Notes where a step starts that ends at `time` (s). All its stages ask for the same time.
-inline void start_step(PrescribedMotion& p, double time) {
+DEM_INLINE void start_step(PrescribedMotion& p, double time) {
   PrescribedMotion::Drive& d = p.drive;
   if (time == d.time) return;
   d.start = p.spec.by_speed ? d.reached : d.value;
@@ -74,18 +120,14 @@ inline void start_step(PrescribedMotion& p, double time) {
   d.moves = true;
 }
 
-/// The value of a motion by speed at the end of a step of dt (s): that at its start, and the integral of its speed. The
-/// start is where the coordinate was, not where it should have been: what another drive or a user moved is not made up
-/// for.
-inline double integrated(const PrescribedMotion& p, double time, double dt, double rate) {
+DEM_INLINE double integrated(const PrescribedMotion& p, double time, double dt, double rate) {
   const PrescribedMotion::Drive& d = p.drive;
   if (!d.moves || dt <= 0.0) return d.start;
   const double at_start = p.spec.motion(time - dt, dt).rate, half_way = p.spec.motion(time - 0.5 * dt, dt).rate;
   return d.start + dt / 6.0 * (at_start + 4.0 * half_way + rate);
 }
 
-/// Samples the signals. Sets the bodies that no force moves: fixed ones, and those whose pose is prescribed.
-inline void sample_motions(Parts& parts, double time, double dt) {
+DEM_INLINE void sample_motions(Parts& parts, double time, double dt) {
   for (PrescribedMotion& p : parts.motions) {
     if (!p.spec.on) continue;
     Body& x = parts.bodies[p.spec.body.index()];
@@ -103,8 +145,7 @@ inline void sample_motions(Parts& parts, double time, double dt) {
   }
 }
 
-/// What the drives put on a fixed body goes to its own drive; along or about its axis.
-inline double impulse_on(const Parts& parts, const PrescribedMotion& p, const std::vector<double>& impulses) {
+DEM_INLINE double impulse_on(const Parts& parts, const PrescribedMotion& p, const std::vector<double>& impulses) {
   const bool rotation = p.spec.target == MotionSpec::Target::rotation;
   double sum = 0.0;
   for (std::size_t k = 0; k < parts.rows.size(); ++k) {
@@ -117,8 +158,7 @@ inline double impulse_on(const Parts& parts, const PrescribedMotion& p, const st
   return sum;
 }
 
-/// Adds the impulses to those of their motions, and reports forces if dt > 0 (s).
-inline void report_forces(Parts& parts, const std::vector<double>& impulses, double dt) {
+DEM_INLINE void report_forces(Parts& parts, const std::vector<double>& impulses, double dt) {
   for (std::size_t k = 0; k < parts.rows.size(); ++k) {
     const JacobianRow& row = parts.rows[k];
     if (row.is_reported) parts.motions[row.motion].drive.impulse += impulses[k];
@@ -135,8 +175,7 @@ inline void report_forces(Parts& parts, const std::vector<double>& impulses, dou
   }
 }
 
-/// Moves bodies by what the rows' corrections give them; their spins stay.
-inline void shift_bodies(Parts& parts, std::vector<double>& corrections) {
+DEM_INLINE void shift_bodies(Parts& parts, std::vector<double>& corrections) {
   using V = Vector3<double>;
   solve_rows(parts, corrections);
   push_bodies(parts, corrections, [](Body& b, const Wrench& by) {
@@ -147,10 +186,7 @@ inline void shift_bodies(Parts& parts, std::vector<double>& corrections) {
   });
 }
 
-/// Takes back how far forces moved driven coordinates within the step: as the impulses do that take back their speeds,
-/// whatever that does to the joints. If it were done about the joints' points, speeds and positions would not fit: a
-/// hinge beside a centre of mass would stand with a speed of its own, which its damper takes for slip.
-inline void take_back_moves(Parts& parts) {
+DEM_INLINE void take_back_moves(Parts& parts) {
   fill_rows(parts, true);
   std::vector<double>& x = parts.drive_errors;
   x.clear();
@@ -164,8 +200,7 @@ inline void take_back_moves(Parts& parts) {
   if (turns_joints) shift_bodies(parts, x);
 }
 
-/// Newton's iteration to the values: one is exact but for rotations, each squares what is left.
-inline void correct_values(Parts& parts) {
+DEM_INLINE void correct_values(Parts& parts) {
   take_back_moves(parts);
   std::vector<double>&x = parts.drive_errors, &held = parts.drive_held;
   for (int k = 0; k < 5; ++k) {
@@ -187,11 +222,11 @@ inline void correct_values(Parts& parts) {
   }
 }
 
-}  // namespace detail
+}  // namespace dem::mbd::detail
 
-/// Sets the prescribed values and speeds for `time` (s) in steps of `dt` (s; 0: not known). The drives' forces are
-/// reported where the step is over.
-inline void apply_motions(Parts& parts, double time, double dt, bool is_over) {
+namespace dem::mbd {
+
+DEM_INLINE void apply_motions(Parts& parts, double time, double dt, bool is_over) {
   if (parts.motions.empty()) return;
   detail::sample_motions(parts, time, dt);
   detail::correct_values(parts);
@@ -211,3 +246,5 @@ inline void apply_motions(Parts& parts, double time, double dt, bool is_over) {
 }
 
 }  // namespace dem::mbd
+
+#endif

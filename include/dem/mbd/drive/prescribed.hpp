@@ -60,44 +60,21 @@ struct MotionSpec {
   bool on = true;
 
   /// Prescribes one of dofs_of(the joint's kind) instead of the joint's own coordinate.
-  MotionSpec along(Dof f) const {
-    MotionSpec s = *this;
-    s.dof = f;
-    return s;
-  }
+  MotionSpec along(Dof f) const;
 };
 
 DEM_COLD inline MotionSpec prescribed_position(std::string name, BodyId body, const Vec3& axis, Signal metres) {
   return {.name = std::move(name), .body = body, .axis = axis, .motion = std::move(metres)};
 }
-DEM_COLD inline MotionSpec prescribed_rotation(std::string name, BodyId body, const Vec3& axis, Signal radians) {
-  return {.name = std::move(name),
-          .target = MotionSpec::Target::rotation,
-          .body = body,
-          .axis = axis,
-          .motion = std::move(radians)};
-}
-DEM_COLD inline MotionSpec prescribed_joint(std::string name, JointId joint, Signal coordinate) {
-  return {
-      .name = std::move(name), .target = MotionSpec::Target::joint, .joint = joint, .motion = std::move(coordinate)};
-}
+DEM_COLD MotionSpec prescribed_rotation(std::string name, BodyId body, const Vec3& axis, Signal radians);
+DEM_COLD MotionSpec prescribed_joint(std::string name, JointId joint, Signal coordinate);
 /// Prescribes the speed of a joint's coordinate (m/s or rad/s), from whatever value it has: a driven wheel. In each
 /// step the value grows by the integral of the signal over the step (Simpson's rule, exact for cubics), whatever the
 /// load is.
-DEM_COLD inline MotionSpec prescribed_speed(std::string name, JointId joint, Signal speed) {
-  MotionSpec s = prescribed_joint(std::move(name), joint, speed.as_rate());
-  s.by_speed = true;
-  return s;
-}
+DEM_COLD MotionSpec prescribed_speed(std::string name, JointId joint, Signal speed);
 /// Prescribes where one of the body's frames is: by default the reference frame, as BodySpec::at does.
-DEM_COLD inline MotionSpec prescribed_pose(std::string name, BodyId body, PoseFunction pose,
-                                           BodyFrame frame = BodyFrame::reference) {
-  return {.name = std::move(name),
-          .target = MotionSpec::Target::pose,
-          .body = body,
-          .pose = std::move(pose),
-          .frame = frame};
-}
+DEM_COLD MotionSpec prescribed_pose(std::string name, BodyId body, PoseFunction pose,
+                                    BodyFrame frame = BodyFrame::reference);
 
 /// The way to a value that was set from outside with a rate: from where the coordinate is, straight through the step
 /// that comes next. So each of its sub-steps makes its share of it, and value and rate agree.
@@ -113,18 +90,9 @@ struct WayToValue {
     if (!is_ahead()) drop();
   }
   bool is_ahead() const { return end == not_yet; }
-  void begin_step(double start_of_step, double end_of_step) {
-    if (!is_ahead()) return;
-    begin = start_of_step;
-    end = end_of_step;
-  }
+  void begin_step(double start_of_step, double end_of_step);
   /// A rate of 0 asks for a jump, and one whose value stays is a belt's.
-  double at(double time, const Signal::Sample& wanted) const {
-    if (wanted.rate == 0.0 || end == -not_yet) return wanted.value;
-    if (is_ahead()) return from;
-    const double share = (time - begin) / (end - begin);
-    return share < 1.0 - 1e-9 ? from + share * (wanted.value - from) : wanted.value;
-  }
+  double at(double time, const Signal::Sample& wanted) const;
   template <class V>
   void fields(V& v) {
     v("from", from), v("begin", begin, "s"), v("end", end, "s");
@@ -165,3 +133,57 @@ struct PrescribedMotion {
 };
 
 }  // namespace dem::mbd
+
+#if DEM_DEFINES
+
+namespace dem::mbd {
+
+DEM_INLINE MotionSpec MotionSpec::along(Dof f) const {
+  MotionSpec s = *this;
+  s.dof = f;
+  return s;
+}
+
+DEM_INLINE MotionSpec prescribed_rotation(std::string name, BodyId body, const Vec3& axis, Signal radians) {
+  return {.name = std::move(name),
+          .target = MotionSpec::Target::rotation,
+          .body = body,
+          .axis = axis,
+          .motion = std::move(radians)};
+}
+
+DEM_INLINE MotionSpec prescribed_joint(std::string name, JointId joint, Signal coordinate) {
+  return {
+      .name = std::move(name), .target = MotionSpec::Target::joint, .joint = joint, .motion = std::move(coordinate)};
+}
+
+DEM_INLINE MotionSpec prescribed_speed(std::string name, JointId joint, Signal speed) {
+  MotionSpec s = prescribed_joint(std::move(name), joint, speed.as_rate());
+  s.by_speed = true;
+  return s;
+}
+
+DEM_INLINE MotionSpec prescribed_pose(std::string name, BodyId body, PoseFunction pose, BodyFrame frame) {
+  return {.name = std::move(name),
+          .target = MotionSpec::Target::pose,
+          .body = body,
+          .pose = std::move(pose),
+          .frame = frame};
+}
+
+DEM_INLINE void WayToValue::begin_step(double start_of_step, double end_of_step) {
+  if (!is_ahead()) return;
+  begin = start_of_step;
+  end = end_of_step;
+}
+
+DEM_INLINE double WayToValue::at(double time, const Signal::Sample& wanted) const {
+  if (wanted.rate == 0.0 || end == -not_yet) return wanted.value;
+  if (is_ahead()) return from;
+  const double share = (time - begin) / (end - begin);
+  return share < 1.0 - 1e-9 ? from + share * (wanted.value - from) : wanted.value;
+}
+
+}  // namespace dem::mbd
+
+#endif

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <dem/core/macros.hpp>
 // All that there is to know of the rotations that a joint holds. Springs are the gradient of an energy:
 //   parallel  kr (1 - z_a.z_b)   locked  kr/2 sum(1 - e_a.e_b)   cross  kr/2 (x_a.y_b)^2
 //   constant velocity  kr/8 (y_a.x_b - x_a.y_b)^2   bushing  see rotation_vector.hpp
@@ -42,63 +43,14 @@ DEM_HOT Vector3<double> aligning_torque(const Joint& j, const FrameOfA& at, cons
 }
 
 /// How far (rad, for small angles) a joint is from holding what it should. A bushing is meant to give way.
-inline double misalignment(const Joint& j, Align align, const FrameOfA& at, const Matrix3<double>& B) {
-  using V = Vector3<double>;
-  const V xa = at.x(), ya = at.y(), za = at.z();
-  const V xb = B * j.axes_b.x, yb = B * j.axes_b.y, zb = B * j.axes_b.z;
-  switch (align) {
-    case Align::parallel: return norm(cross(za, zb));
-    case Align::locked: return 0.5 * norm(cross(xa, xb) + cross(ya, yb) + cross(za, zb));
-    case Align::cross: return std::abs(dot(xa, yb));
-    case Align::constant_velocity: return 0.5 * std::abs(dot(ya, xb) - dot(xa, yb));
-    case Align::bushing:
-    case Align::nothing: break;
-  }
-  return 0.0;
-}
+double misalignment(const Joint& j, Align align, const FrameOfA& at, const Matrix3<double>& B);
 
 /// J, in the springs.
-inline double aligning_energy(const Joint& j, Align align, const FrameOfA& at, const Matrix3<double>& B) {
-  using V = Vector3<double>;
-  const V xa = at.x(), ya = at.y(), za = at.z();
-  const V xb = B * j.axes_b.x, yb = B * j.axes_b.y, zb = B * j.axes_b.z;
-  switch (align) {
-    case Align::parallel: return j.kr * (1.0 - dot(za, zb));
-    case Align::locked: return 0.5 * j.kr * ((1.0 - dot(xa, xb)) + (1.0 - dot(ya, yb)) + (1.0 - dot(za, zb)));
-    case Align::bushing: {
-      const V r = rotation_vector(xa, ya, za, xb, yb, zb);
-      return 0.5 * (j.kr3.x * r.x * r.x + j.kr3.y * r.y * r.y + j.kr3.z * r.z * r.z);
-    }
-    case Align::cross:
-    case Align::constant_velocity: {
-      const double off = misalignment(j, align, at, B);
-      return 0.5 * j.kr * off * off;
-    }
-    case Align::nothing: break;
-  }
-  return 0.0;
-}
+double aligning_energy(const Joint& j, Align align, const FrameOfA& at, const Matrix3<double>& B);
 
 /// The square root of the stiffness as a matrix, of size 1 where it is the same in all held directions; B is b's
 /// rotation; global.
-inline Matrix3<double> held_rotations(const Joint& j, Align align, const FrameOfA& at, const Matrix3<double>& B) {
-  const Vector3<double> z = at.z();
-  switch (align) {
-    case Align::parallel: return diagonal_matrix(1, 1, 1) - outer(z, z);
-    case Align::locked: return diagonal_matrix(1, 1, 1);
-    case Align::bushing: return square_root_of(j.kr3, at);
-    case Align::cross: {
-      const Vector3<double> g = normalised(cross(B * j.axes_b.y, at.x()));  // square to the cross
-      return outer(g, g);
-    }
-    case Align::constant_velocity: {
-      const Vector3<double> g = normalised(z + B * j.axes_b.z);  // half way between the shafts
-      return outer(g, g);
-    }
-    case Align::nothing: break;
-  }
-  return diagonal_matrix(0, 0, 0);
-}
+Matrix3<double> held_rotations(const Joint& j, Align align, const FrameOfA& at, const Matrix3<double>& B);
 
 /// The directions, global, in which a joint holds the rotation of b against a; A and B are their rotations.
 template <class F>
@@ -117,26 +69,7 @@ void for_each_held_rotation(const Joint& j, Align align, const Matrix3<double>& 
 }
 
 /// The small rotation (rad, global) by which b is off what a joint holds.
-inline Vector3<double> rotation_off(const Joint& j, Align align, const Matrix3<double>& A, const Matrix3<double>& B) {
-  using V = Vector3<double>;
-  const V xa = A * j.axes_a.x, ya = A * j.axes_a.y, za = A * j.axes_a.z;
-  const V xb = B * j.axes_b.x, yb = B * j.axes_b.y, zb = B * j.axes_b.z;
-  switch (align) {
-    case Align::locked: return 0.5 * (cross(xa, xb) + cross(ya, yb) + cross(za, zb));
-    case Align::parallel: return cross(za, zb);
-    case Align::cross: {
-      const V g = cross(yb, xa);
-      return (dot(xa, yb) / max(dot(g, g), 1e-6)) * g;
-    }
-    case Align::constant_velocity: {
-      const V g = 0.5 * (cross(xb, ya) - cross(yb, xa));
-      return (0.5 * (dot(ya, xb) - dot(xa, yb)) / max(dot(g, g), 1e-6)) * g;
-    }
-    case Align::bushing:
-    case Align::nothing: break;
-  }
-  return {0, 0, 0};
-}
+Vector3<double> rotation_off(const Joint& j, Align align, const Matrix3<double>& A, const Matrix3<double>& B);
 
 /// How far (rad) the joint is off along each rotation that it holds: `put(error)`.
 template <class F>
@@ -184,13 +117,100 @@ void for_each_rotation_row(const Joint& j, Align align, const Matrix3<double>& A
 }
 
 /// The axes of b's joint frame, turned by an angle about their z.
-inline Axes twisted(const Axes& axes, double angle) {
+Axes twisted(const Axes& axes, double angle);
+
+/// The axes that a joint would need on b, in b, for nothing that it holds to be off in the present pose.
+DEM_COLD Axes axes_that_align(const Joint& j, Align align, const FrameOfA& at, const Matrix3<double>& B);
+
+}  // namespace dem::mbd::detail
+
+#if DEM_DEFINES
+
+namespace dem::mbd::detail {
+
+DEM_INLINE double misalignment(const Joint& j, Align align, const FrameOfA& at, const Matrix3<double>& B) {
+  using V = Vector3<double>;
+  const V xa = at.x(), ya = at.y(), za = at.z();
+  const V xb = B * j.axes_b.x, yb = B * j.axes_b.y, zb = B * j.axes_b.z;
+  switch (align) {
+    case Align::parallel: return norm(cross(za, zb));
+    case Align::locked: return 0.5 * norm(cross(xa, xb) + cross(ya, yb) + cross(za, zb));
+    case Align::cross: return std::abs(dot(xa, yb));
+    case Align::constant_velocity: return 0.5 * std::abs(dot(ya, xb) - dot(xa, yb));
+    case Align::bushing:
+    case Align::nothing: break;
+  }
+  return 0.0;
+}
+
+DEM_INLINE double aligning_energy(const Joint& j, Align align, const FrameOfA& at, const Matrix3<double>& B) {
+  using V = Vector3<double>;
+  const V xa = at.x(), ya = at.y(), za = at.z();
+  const V xb = B * j.axes_b.x, yb = B * j.axes_b.y, zb = B * j.axes_b.z;
+  switch (align) {
+    case Align::parallel: return j.kr * (1.0 - dot(za, zb));
+    case Align::locked: return 0.5 * j.kr * ((1.0 - dot(xa, xb)) + (1.0 - dot(ya, yb)) + (1.0 - dot(za, zb)));
+    case Align::bushing: {
+      const V r = rotation_vector(xa, ya, za, xb, yb, zb);
+      return 0.5 * (j.kr3.x * r.x * r.x + j.kr3.y * r.y * r.y + j.kr3.z * r.z * r.z);
+    }
+    case Align::cross:
+    case Align::constant_velocity: {
+      const double off = misalignment(j, align, at, B);
+      return 0.5 * j.kr * off * off;
+    }
+    case Align::nothing: break;
+  }
+  return 0.0;
+}
+
+DEM_INLINE Matrix3<double> held_rotations(const Joint& j, Align align, const FrameOfA& at, const Matrix3<double>& B) {
+  const Vector3<double> z = at.z();
+  switch (align) {
+    case Align::parallel: return diagonal_matrix(1, 1, 1) - outer(z, z);
+    case Align::locked: return diagonal_matrix(1, 1, 1);
+    case Align::bushing: return square_root_of(j.kr3, at);
+    case Align::cross: {
+      const Vector3<double> g = normalised(cross(B * j.axes_b.y, at.x()));  // square to the cross
+      return outer(g, g);
+    }
+    case Align::constant_velocity: {
+      const Vector3<double> g = normalised(z + B * j.axes_b.z);  // half way between the shafts
+      return outer(g, g);
+    }
+    case Align::nothing: break;
+  }
+  return diagonal_matrix(0, 0, 0);
+}
+
+DEM_INLINE Vector3<double> rotation_off(const Joint& j, Align align, const Matrix3<double>& A,
+                                        const Matrix3<double>& B) {
+  using V = Vector3<double>;
+  const V xa = A * j.axes_a.x, ya = A * j.axes_a.y, za = A * j.axes_a.z;
+  const V xb = B * j.axes_b.x, yb = B * j.axes_b.y, zb = B * j.axes_b.z;
+  switch (align) {
+    case Align::locked: return 0.5 * (cross(xa, xb) + cross(ya, yb) + cross(za, zb));
+    case Align::parallel: return cross(za, zb);
+    case Align::cross: {
+      const V g = cross(yb, xa);
+      return (dot(xa, yb) / max(dot(g, g), 1e-6)) * g;
+    }
+    case Align::constant_velocity: {
+      const V g = 0.5 * (cross(xb, ya) - cross(yb, xa));
+      return (0.5 * (dot(ya, xb) - dot(xa, yb)) / max(dot(g, g), 1e-6)) * g;
+    }
+    case Align::bushing:
+    case Align::nothing: break;
+  }
+  return {0, 0, 0};
+}
+
+DEM_INLINE Axes twisted(const Axes& axes, double angle) {
   const double c = std::cos(angle), s = std::sin(angle);
   return {c * axes.x + s * axes.y, c * axes.y - s * axes.x, axes.z};
 }
 
-/// The axes that a joint would need on b, in b, for nothing that it holds to be off in the present pose.
-DEM_COLD inline Axes axes_that_align(const Joint& j, Align align, const FrameOfA& at, const Matrix3<double>& B) {
+DEM_INLINE Axes axes_that_align(const Joint& j, Align align, const FrameOfA& at, const Matrix3<double>& B) {
   using V = Vector3<double>;
   const V xa = at.x(), ya = at.y(), za = at.z();
   const V xb = B * j.axes_b.x, yb = B * j.axes_b.y, zb = B * j.axes_b.z;
@@ -210,3 +230,5 @@ DEM_COLD inline Axes axes_that_align(const Joint& j, Align align, const FrameOfA
 }
 
 }  // namespace dem::mbd::detail
+
+#endif

@@ -12,13 +12,8 @@ namespace dem::mbd {
 /// which push the left coordinate down and the right one up. In N m/rad where they turn, N/m where they slide. Both
 /// coordinates have to grow where their wheels rise. With `mirrored` the sum counts in place of the difference, for two
 /// arms on axes that point the same way on both sides of the car.
-DEM_COLD inline CouplingSpec anti_roll_bar(std::string name, JointId left, JointId right, double stiffness,
-                                           double damping = 0.0, bool mirrored = false) {
-  return {.name = std::move(name),
-          .terms = {{left, 1.0}, {right, mirrored ? 1.0 : -1.0}},
-          .stiffness = require_positive(stiffness, "stiffness of an anti-roll bar", "N m/rad or N/m"),
-          .damping = require_non_negative(damping, "damping of an anti-roll bar", "N m s/rad or N s/m")};
-}
+DEM_COLD CouplingSpec anti_roll_bar(std::string name, JointId left, JointId right, double stiffness,
+                                    double damping = 0.0, bool mirrored = false);
 
 /// An anti-roll bar between two points of suspension parts, where its drop links are tied to them. The forces act along
 /// `up` of the chassis. A bar of torsional stiffness kt (N m/rad) with arms of length L (m) has the stiffness kt/L^2.
@@ -34,7 +29,28 @@ struct AntiRollBarSpec {
 namespace detail {
 
 /// The heights of the points are measured by two free joints, named after the bar.
-DEM_COLD inline CouplingId add_anti_roll_bar(Parts& parts, const AntiRollBarSpec& s) {
+DEM_COLD CouplingId add_anti_roll_bar(Parts& parts, const AntiRollBarSpec& s);
+
+}  // namespace detail
+}  // namespace dem::mbd
+
+#if DEM_DEFINES
+
+namespace dem::mbd {
+
+DEM_INLINE CouplingSpec anti_roll_bar(std::string name, JointId left, JointId right, double stiffness, double damping,
+                                      bool mirrored) {
+  return {.name = std::move(name),
+          .terms = {{left, 1.0}, {right, mirrored ? 1.0 : -1.0}},
+          .stiffness = require_positive(stiffness, "stiffness of an anti-roll bar", "N m/rad or N/m"),
+          .damping = require_non_negative(damping, "damping of an anti-roll bar", "N m s/rad or N s/m")};
+}
+
+}  // namespace dem::mbd
+
+namespace dem::mbd::detail {
+
+DEM_INLINE CouplingId add_anti_roll_bar(Parts& parts, const AntiRollBarSpec& s) {
   const std::string who = "anti-roll bar '" + s.name + "'";
   const CouplingSpec bar = mbd::anti_roll_bar(s.name, {}, {}, s.stiffness, s.damping);
   known_body(parts, s.chassis, who);
@@ -56,5 +72,6 @@ DEM_COLD inline CouplingId add_anti_roll_bar(Parts& parts, const AntiRollBarSpec
   return add_coupling(parts, std::move(spec));
 }
 
-}  // namespace detail
-}  // namespace dem::mbd
+}  // namespace dem::mbd::detail
+
+#endif

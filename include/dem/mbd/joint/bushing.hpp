@@ -8,7 +8,31 @@ namespace dem::mbd {
 
 namespace detail {
 
-DEM_COLD inline void check_bushing(const JointSpec& s, const std::string& who) {
+DEM_COLD void check_bushing(const JointSpec& s, const std::string& who);
+DEM_COLD void take_constants(Joint& j, const JointSpec& s, const Vector3<double>&, const std::string&);
+
+}  // namespace detail
+
+inline constexpr JointTraits bushing_joint =
+    joint_that_holds<Hold::bushing, Align::bushing>({.name = "bushing",
+                                                     .dofs = {Dof::slide, Dof::slide_x, Dof::slide_y, Dof::bend},
+                                                     .stiffness = Stiffness::own,
+                                                     .check = detail::check_bushing,
+                                                     .take = detail::take_constants});
+inline constexpr JointKind JointKind::bushing{bushing_joint};
+
+/// Springs (N/m, N m/rad) and dampers (N s/m, N m s/rad) along and about the x, y, z axes of a frame with z along axis.
+DEM_COLD JointSpec bushing(std::string name, BodyId a, BodyId b, const Vec3& at, const Vec3& axis,
+                           const Vec3& stiffness, const Vec3& damping, const Vec3& rotational_stiffness,
+                           const Vec3& rotational_damping);
+
+}  // namespace dem::mbd
+
+#if DEM_DEFINES
+
+namespace dem::mbd::detail {
+
+DEM_INLINE void check_bushing(const JointSpec& s, const std::string& who) {
   if (s.has_stiffness_or_damping()) {
     fail(
         "{} was given a stiffness or damping with with_stiffness or with_damping, which it does not use: a bushing has "
@@ -23,27 +47,21 @@ DEM_COLD inline void check_bushing(const JointSpec& s, const std::string& who) {
     fail("{} has no stiffness at all: give it bushing_stiffness (N/m) or bushing_rotational_stiffness (N m/rad)", who);
   }
 }
-DEM_COLD inline void take_constants(Joint& j, const JointSpec& s, const Vector3<double>&, const std::string&) {
+
+DEM_INLINE void take_constants(Joint& j, const JointSpec& s, const Vector3<double>&, const std::string&) {
   j.k3 = from_eigen(s.bushing_stiffness);
   j.c3 = from_eigen(s.bushing_damping);
   j.kr3 = from_eigen(s.bushing_rotational_stiffness);
   j.cr3 = from_eigen(s.bushing_rotational_damping);
 }
 
-}  // namespace detail
+}  // namespace dem::mbd::detail
 
-inline constexpr JointTraits bushing_joint =
-    joint_that_holds<Hold::bushing, Align::bushing>({.name = "bushing",
-                                                     .dofs = {Dof::slide, Dof::slide_x, Dof::slide_y, Dof::bend},
-                                                     .stiffness = Stiffness::own,
-                                                     .check = detail::check_bushing,
-                                                     .take = detail::take_constants});
-inline constexpr JointKind JointKind::bushing{bushing_joint};
+namespace dem::mbd {
 
-/// Springs (N/m, N m/rad) and dampers (N s/m, N m s/rad) along and about the x, y, z axes of a frame with z along axis.
-DEM_COLD inline JointSpec bushing(std::string name, BodyId a, BodyId b, const Vec3& at, const Vec3& axis,
-                                  const Vec3& stiffness, const Vec3& damping, const Vec3& rotational_stiffness,
-                                  const Vec3& rotational_damping) {
+DEM_INLINE JointSpec bushing(std::string name, BodyId a, BodyId b, const Vec3& at, const Vec3& axis,
+                             const Vec3& stiffness, const Vec3& damping, const Vec3& rotational_stiffness,
+                             const Vec3& rotational_damping) {
   JointSpec s = joint(JointKind::bushing, std::move(name), a, b, at, axis);
   s.bushing_stiffness = stiffness;
   s.bushing_damping = damping;
@@ -53,3 +71,5 @@ DEM_COLD inline JointSpec bushing(std::string name, BodyId a, BodyId b, const Ve
 }
 
 }  // namespace dem::mbd
+
+#endif

@@ -35,38 +35,21 @@ struct CouplingSpec {
   std::optional<double> damping = {};
   bool on = true;
 
-  CouplingSpec switched_off() const {
-    CouplingSpec s = *this;
-    s.on = false;
-    return s;
-  }
+  CouplingSpec switched_off() const;
 };
 
 /// Gears, between joints that turn: joint `out` turns `ratio` times as fast as joint `in`; negative where it turns the
 /// other way, as outer gears do (ratio = -teeth of `in` / teeth of `out`).
-DEM_COLD inline CouplingSpec gear(std::string name, JointId in, JointId out, double ratio) {
-  using enum CouplingSpec::Moves;
-  return {std::move(name), {{in, ratio, Dof::own, rotation}, {out, -1.0, Dof::own, rotation}}};
-}
+DEM_COLD CouplingSpec gear(std::string name, JointId in, JointId out, double ratio);
 /// Rack and pinion: the rack slides by pinion_radius (m) times the pinion's angle. The pinion's joint has to turn, the
 /// rack's to slide; of a cylindrical joint the coordinate that fits is taken.
-DEM_COLD inline CouplingSpec rack_and_pinion(std::string name, JointId pinion, JointId rack, double pinion_radius) {
-  using enum CouplingSpec::Moves;
-  return {std::move(name), {{pinion, pinion_radius, Dof::own, rotation}, {rack, -1.0, Dof::own, displacement}}};
-}
+DEM_COLD CouplingSpec rack_and_pinion(std::string name, JointId pinion, JointId rack, double pinion_radius);
 /// Screw: the nut slides by `lead` (m) for each turn. One cylindrical joint may be both.
 DEM_COLD inline CouplingSpec screw(std::string name, JointId turning, JointId sliding, double lead) {
   return rack_and_pinion(std::move(name), turning, sliding, lead / (2.0 * std::numbers::pi));
 }
 /// Differential: the input turns `final_ratio` times as fast as the mean of the two outputs.
-DEM_COLD inline CouplingSpec differential(std::string name, JointId in, JointId left, JointId right,
-                                          double final_ratio) {
-  using enum CouplingSpec::Moves;
-  return {std::move(name),
-          {{in, 1.0, Dof::own, rotation},
-           {left, -0.5 * final_ratio, Dof::own, rotation},
-           {right, -0.5 * final_ratio, Dof::own, rotation}}};
-}
+DEM_COLD CouplingSpec differential(std::string name, JointId in, JointId left, JointId right, double final_ratio);
 
 struct Coupling {
   CouplingSpec spec;
@@ -82,8 +65,42 @@ struct Coupling {
   }
 };
 
-inline double coupling_sum(const CouplingSpec& spec, const std::vector<Joint>& joints,
-                           const std::vector<Body>& bodies) {
+double coupling_sum(const CouplingSpec& spec, const std::vector<Joint>& joints, const std::vector<Body>& bodies);
+
+void apply_coupling(Coupling& g, const std::vector<Joint>& joints, std::vector<Body>& bodies);
+
+}  // namespace dem::mbd
+
+#if DEM_DEFINES
+
+namespace dem::mbd {
+
+DEM_INLINE CouplingSpec CouplingSpec::switched_off() const {
+  CouplingSpec s = *this;
+  s.on = false;
+  return s;
+}
+
+DEM_INLINE CouplingSpec gear(std::string name, JointId in, JointId out, double ratio) {
+  using enum CouplingSpec::Moves;
+  return {std::move(name), {{in, ratio, Dof::own, rotation}, {out, -1.0, Dof::own, rotation}}};
+}
+
+DEM_INLINE CouplingSpec rack_and_pinion(std::string name, JointId pinion, JointId rack, double pinion_radius) {
+  using enum CouplingSpec::Moves;
+  return {std::move(name), {{pinion, pinion_radius, Dof::own, rotation}, {rack, -1.0, Dof::own, displacement}}};
+}
+
+DEM_INLINE CouplingSpec differential(std::string name, JointId in, JointId left, JointId right, double final_ratio) {
+  using enum CouplingSpec::Moves;
+  return {std::move(name),
+          {{in, 1.0, Dof::own, rotation},
+           {left, -0.5 * final_ratio, Dof::own, rotation},
+           {right, -0.5 * final_ratio, Dof::own, rotation}}};
+}
+
+DEM_INLINE double coupling_sum(const CouplingSpec& spec, const std::vector<Joint>& joints,
+                               const std::vector<Body>& bodies) {
   double sum = 0.0;
   for (const auto& term : spec.terms) {
     const Joint& j = joints[term.joint.index()];
@@ -92,7 +109,7 @@ inline double coupling_sum(const CouplingSpec& spec, const std::vector<Joint>& j
   return sum;
 }
 
-inline void apply_coupling(Coupling& g, const std::vector<Joint>& joints, std::vector<Body>& bodies) {
+DEM_INLINE void apply_coupling(Coupling& g, const std::vector<Joint>& joints, std::vector<Body>& bodies) {
   g.error = g.multiplier = 0.0;
   if (!g.spec.on) return;
   double sum = 0.0, rate = 0.0;
@@ -111,3 +128,5 @@ inline void apply_coupling(Coupling& g, const std::vector<Joint>& joints, std::v
 }
 
 }  // namespace dem::mbd
+
+#endif

@@ -8,7 +8,28 @@ namespace dem::mbd {
 
 namespace detail {
 
-DEM_COLD inline void take_length(Joint& j, const JointSpec& s, const Vector3<double>& gap, const std::string& who) {
+DEM_COLD void take_length(Joint& j, const JointSpec& s, const Vector3<double>& gap, const std::string& who);
+
+}  // namespace detail
+
+inline constexpr JointTraits distance_joint =
+    joint_that_holds<Hold::length, Align::nothing>({.name = "distance joint",
+                                                    .dofs = {Dof::length},
+                                                    .own = Dof::length,
+                                                    .points_apart = true,
+                                                    .take = detail::take_length});
+inline constexpr JointKind JointKind::distance{distance_joint};
+
+/// A massless rod between a point of a and a point of b.
+DEM_COLD JointSpec distance(std::string name, BodyId a, const Vec3& at_a, BodyId b, const Vec3& at_b);
+
+}  // namespace dem::mbd
+
+#if DEM_DEFINES
+
+namespace dem::mbd::detail {
+
+DEM_INLINE void take_length(Joint& j, const JointSpec& s, const Vector3<double>& gap, const std::string& who) {
   const double apart = norm(gap);
   j.length = s.length ? require_positive(*s.length, ("length of " + who).c_str(), "m") : apart;
   if (!(std::abs(j.length - apart) <= s.tolerance)) {
@@ -23,21 +44,16 @@ DEM_COLD inline void take_length(Joint& j, const JointSpec& s, const Vector3<dou
   }
 }
 
-}  // namespace detail
+}  // namespace dem::mbd::detail
 
-inline constexpr JointTraits distance_joint =
-    joint_that_holds<Hold::length, Align::nothing>({.name = "distance joint",
-                                                    .dofs = {Dof::length},
-                                                    .own = Dof::length,
-                                                    .points_apart = true,
-                                                    .take = detail::take_length});
-inline constexpr JointKind JointKind::distance{distance_joint};
+namespace dem::mbd {
 
-/// A massless rod between a point of a and a point of b.
-DEM_COLD inline JointSpec distance(std::string name, BodyId a, const Vec3& at_a, BodyId b, const Vec3& at_b) {
+DEM_INLINE JointSpec distance(std::string name, BodyId a, const Vec3& at_a, BodyId b, const Vec3& at_b) {
   JointSpec s = joint(JointKind::distance, std::move(name), a, b, at_a);
   s.at_b = at_b;
   return s;
 }
 
 }  // namespace dem::mbd
+
+#endif

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <dem/core/macros.hpp>
 #include <initializer_list>
 
 namespace dem::mbd {
@@ -18,11 +19,7 @@ enum class Dof {
   bend_y    ///< rad, of a universal joint: about y of body b, the arm of its cross on b
 };
 
-inline const char* name_of(Dof dof) {
-  constexpr const char* names[] = {"coordinate", "turn", "slide",  "slide_x", "slide_y",
-                                   "length",     "bend", "bend_x", "bend_y"};
-  return names[static_cast<int>(dof)];
-}
+const char* name_of(Dof dof);
 constexpr bool is_rotation(Dof f) { return f == Dof::turn || f >= Dof::bend; }
 
 /// A few degrees of freedom.
@@ -47,3 +44,17 @@ class Dofs {
 };
 
 }  // namespace dem::mbd
+
+#if DEM_DEFINES
+
+namespace dem::mbd {
+
+DEM_INLINE const char* name_of(Dof dof) {
+  constexpr const char* names[] = {"coordinate", "turn", "slide",  "slide_x", "slide_y",
+                                   "length",     "bend", "bend_x", "bend_y"};
+  return names[static_cast<int>(dof)];
+}
+
+}  // namespace dem::mbd
+
+#endif

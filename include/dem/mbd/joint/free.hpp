@@ -8,14 +8,7 @@ namespace dem::mbd {
 
 namespace detail {
 
-DEM_COLD inline void check_free(const JointSpec& s, const std::string& who) {
-  if (s.has_stiffness_or_damping()) {
-    fail(
-        "{} was given a stiffness or damping with with_stiffness or with_damping, which it does not use: it holds "
-        "nothing; use a bushing or another kind of joint",
-        who);
-  }
-}
+DEM_COLD void check_free(const JointSpec& s, const std::string& who);
 /// Puts no force on the bodies; its turns are followed.
 inline void follow_turns(Joint& j, Body& a, Body& b, const Vector3<double>& wa, const Vector3<double>& wb, double dt) {
   j.angle_estimate += dt * dot(turn_gradient(a.motion.rotation * j.axes_a.z, b.motion.rotation * j.axes_b.z), wb - wa);
@@ -39,3 +32,20 @@ DEM_COLD inline JointSpec free_joint(std::string name, BodyId a, BodyId b, const
 }
 
 }  // namespace dem::mbd
+
+#if DEM_DEFINES
+
+namespace dem::mbd::detail {
+
+DEM_INLINE void check_free(const JointSpec& s, const std::string& who) {
+  if (s.has_stiffness_or_damping()) {
+    fail(
+        "{} was given a stiffness or damping with with_stiffness or with_damping, which it does not use: it holds "
+        "nothing; use a bushing or another kind of joint",
+        who);
+  }
+}
+
+}  // namespace dem::mbd::detail
+
+#endif

@@ -43,7 +43,15 @@ constexpr Dofs friction_dofs(Bearing bearing) {
 
 /// Asperity friction on the joint's free motion. The spring is stretched by the velocity times `slip_time` (s), the
 /// share of a step that one of the integrator's stages stands for; 0 outside of a step, where nothing is remembered.
-inline void apply_friction(JointFrictionState& e, const Joint& j, Body& a, Body& b, double slip_time) {
+void apply_friction(JointFrictionState& e, const Joint& j, Body& a, Body& b, double slip_time);
+
+}  // namespace dem::mbd
+
+#if DEM_DEFINES
+
+namespace dem::mbd {
+
+DEM_INLINE void apply_friction(JointFrictionState& e, const Joint& j, Body& a, Body& b, double slip_time) {
   using V = Vector3<double>;
   e.force = e.torque = {0, 0, 0};
   if (!j.on) {
@@ -98,3 +106,5 @@ inline void apply_friction(JointFrictionState& e, const Joint& j, Body& a, Body&
 }
 
 }  // namespace dem::mbd
+
+#endif

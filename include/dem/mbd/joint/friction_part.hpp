@@ -14,16 +14,8 @@ namespace detail {
 inline const JointFriction& given_friction(const Parts& m, const JointFrictionState& e) {
   return *m.joint_specs[e.joint].friction;
 }
-inline std::pair<double, double> inverse_mass_of(const Parts& m, const JointFrictionState& e) {
-  const Joint& j = m.joints[e.joint];
-  return inverse_mass_of_friction(j, m.bodies[j.a], m.bodies[j.b], e.radius);
-}
-inline void derive(const Parts& m, JointFrictionState& e, const Derivation& derivation) {
-  const JointFriction& given = given_friction(m, e);
-  const double w = derivation.shared(m.joints[e.joint], inverse_mass_of(m, e));
-  e.law.stiffness = given.stiffness.value_or(derivation.stiffness(friction_frequency, w));
-  e.law.velocity_stiffness = given.velocity_stiffness.value_or(Derivation::damping(e.law.stiffness, w));
-}
+std::pair<double, double> inverse_mass_of(const Parts& m, const JointFrictionState& e);
+void derive(const Parts& m, JointFrictionState& e, const Derivation& derivation);
 
 inline constexpr PartKind friction_kind = {
     .rank = 2,
@@ -78,7 +70,32 @@ inline constexpr PartKind friction_kind = {
         }};
 
 /// Throws Error if the joint cannot rub, or its bearing's radius (m) is missing or is none.
-DEM_COLD inline void check_friction(const JointSpec& s, const std::string& who) {
+DEM_COLD void check_friction(const JointSpec& s, const std::string& who);
+
+/// Adds the friction of joint number `joint`. Throws Error for what cannot be.
+DEM_COLD void add_friction(Parts& parts, JointSpec& s, const Joint&, std::uint32_t joint);
+
+}  // namespace detail
+
+}  // namespace dem::mbd
+
+#if DEM_DEFINES
+
+namespace dem::mbd::detail {
+
+DEM_INLINE std::pair<double, double> inverse_mass_of(const Parts& m, const JointFrictionState& e) {
+  const Joint& j = m.joints[e.joint];
+  return inverse_mass_of_friction(j, m.bodies[j.a], m.bodies[j.b], e.radius);
+}
+
+DEM_INLINE void derive(const Parts& m, JointFrictionState& e, const Derivation& derivation) {
+  const JointFriction& given = given_friction(m, e);
+  const double w = derivation.shared(m.joints[e.joint], inverse_mass_of(m, e));
+  e.law.stiffness = given.stiffness.value_or(derivation.stiffness(friction_frequency, w));
+  e.law.velocity_stiffness = given.velocity_stiffness.value_or(Derivation::damping(e.law.stiffness, w));
+}
+
+DEM_INLINE void check_friction(const JointSpec& s, const std::string& who) {
   const JointTraits& traits = traits_of(s.kind);
   if (traits.bearing == Bearing::none) {
     fail(
@@ -100,8 +117,7 @@ DEM_COLD inline void check_friction(const JointSpec& s, const std::string& who) 
   }
 }
 
-/// Adds the friction of joint number `joint`. Throws Error for what cannot be.
-DEM_COLD inline void add_friction(Parts& parts, JointSpec& s, const Joint&, std::uint32_t joint) {
+DEM_INLINE void add_friction(Parts& parts, JointSpec& s, const Joint&, std::uint32_t joint) {
   const std::string who = dem::text("{} '{}'", name_of(s.kind), s.name);
   check_friction(s, who);
   const JointFriction& f = *s.friction;
@@ -116,9 +132,11 @@ DEM_COLD inline void add_friction(Parts& parts, JointSpec& s, const Joint&, std:
   parts.friction.push_back(e);
 }
 
-}  // namespace detail
+}  // namespace dem::mbd::detail
 
-DEM_COLD inline JointSpec JointSpec::with_friction(const JointFriction& f) const {
+namespace dem::mbd {
+
+DEM_INLINE JointSpec JointSpec::with_friction(const JointFriction& f) const {
   JointSpec s = *this;
   s.friction = f;
   s.add_friction = detail::add_friction;
@@ -126,3 +144,5 @@ DEM_COLD inline JointSpec JointSpec::with_friction(const JointFriction& f) const
 }
 
 }  // namespace dem::mbd
+
+#endif

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <dem/core/macros.hpp>
 // All that there is to know of the displacements that a joint holds: one struct for each Hold. Springs are the gradient
 // of an energy, so that without damping energy is kept; with d = x_b - x_a, the way from a's point to b's:
 //   point  k/2 |d|^2   line  k/2 |d - z z.d|^2   plane  k/2 (z.d)^2   length  k/2 (|d| - l)^2
@@ -22,10 +23,7 @@ struct FrameOfA {
 };
 
 /// The square root of a stiffness k along the axes of a's joint frame, as a matrix in global axes.
-inline Matrix3<double> square_root_of(const Vector3<double>& k, const FrameOfA& at) {
-  const Matrix3<double> axes = from_columns(at.x(), at.y(), at.z());
-  return axes * diagonal_matrix(std::sqrt(k.x), std::sqrt(k.y), std::sqrt(k.z)) * transposed(axes);
-}
+Matrix3<double> square_root_of(const Vector3<double>& k, const FrameOfA& at);
 
 /// The force (N) on b of the springs and dampers at a displacement d (m) and its rate v (m/s), global.
 template <Hold hold>
@@ -54,35 +52,14 @@ DEM_HOT Vector3<double> holding_force(const Joint& j, const FrameOfA& at, const 
 }
 
 /// How far (m) a joint is from holding what it should at a displacement d. A bushing is meant to give way.
-inline double opening(const Joint& j, Hold hold, const FrameOfA& at, const Vector3<double>& d) {
-  switch (hold) {
-    case Hold::point: return norm(d);
-    case Hold::line: return norm(d - dot(at.z(), d) * at.z());
-    case Hold::plane: return std::abs(dot(at.z(), d));
-    case Hold::length: return std::abs(norm(d) - j.length);
-    case Hold::bushing:
-    case Hold::nothing: break;
-  }
-  return 0.0;
-}
+double opening(const Joint& j, Hold hold, const FrameOfA& at, const Vector3<double>& d);
 
 /// J, in the springs at a displacement d.
-inline double holding_energy(const Joint& j, Hold hold, const FrameOfA& at, const Vector3<double>& d) {
-  if (hold == Hold::bushing) {
-    const double x = dot(at.x(), d), y = dot(at.y(), d), z = dot(at.z(), d);
-    return 0.5 * (j.k3.x * x * x + j.k3.y * y * y + j.k3.z * z * z);
-  }
-  const double open = opening(j, hold, at, d);
-  return 0.5 * j.k * open * open;
-}
+double holding_energy(const Joint& j, Hold hold, const FrameOfA& at, const Vector3<double>& d);
 
 /// The part of the way from one point to the other in the directions that are held, with z the joint's axis: only there
 /// two points have to meet at assembly.
-inline Vector3<double> held_part(Hold hold, const Vector3<double>& z, const Vector3<double>& gap) {
-  if (hold == Hold::line) return gap - dot(z, gap) * z;
-  if (hold == Hold::plane) return dot(z, gap) * z;
-  return gap;
-}
+Vector3<double> held_part(Hold hold, const Vector3<double>& z, const Vector3<double>& gap);
 
 /// The axes of a's joint frame, in a, along which b's point is held at a fixed place: `each(axis)`. A joint of given
 /// length and a bushing have none.
@@ -97,7 +74,47 @@ void for_each_held_axis(const Joint& j, Hold hold, F&& each) {
 
 /// The square root of the stiffness as a matrix, of size 1 where it is the same in all held directions; d is the
 /// displacement; global.
-inline Matrix3<double> held_displacements(const Joint& j, Hold hold, const FrameOfA& at, const Vector3<double>& d) {
+Matrix3<double> held_displacements(const Joint& j, Hold hold, const FrameOfA& at, const Vector3<double>& d);
+
+}  // namespace dem::mbd::detail
+
+#if DEM_DEFINES
+
+namespace dem::mbd::detail {
+
+DEM_INLINE Matrix3<double> square_root_of(const Vector3<double>& k, const FrameOfA& at) {
+  const Matrix3<double> axes = from_columns(at.x(), at.y(), at.z());
+  return axes * diagonal_matrix(std::sqrt(k.x), std::sqrt(k.y), std::sqrt(k.z)) * transposed(axes);
+}
+
+DEM_INLINE double opening(const Joint& j, Hold hold, const FrameOfA& at, const Vector3<double>& d) {
+  switch (hold) {
+    case Hold::point: return norm(d);
+    case Hold::line: return norm(d - dot(at.z(), d) * at.z());
+    case Hold::plane: return std::abs(dot(at.z(), d));
+    case Hold::length: return std::abs(norm(d) - j.length);
+    case Hold::bushing:
+    case Hold::nothing: break;
+  }
+  return 0.0;
+}
+
+DEM_INLINE double holding_energy(const Joint& j, Hold hold, const FrameOfA& at, const Vector3<double>& d) {
+  if (hold == Hold::bushing) {
+    const double x = dot(at.x(), d), y = dot(at.y(), d), z = dot(at.z(), d);
+    return 0.5 * (j.k3.x * x * x + j.k3.y * y * y + j.k3.z * z * z);
+  }
+  const double open = opening(j, hold, at, d);
+  return 0.5 * j.k * open * open;
+}
+
+DEM_INLINE Vector3<double> held_part(Hold hold, const Vector3<double>& z, const Vector3<double>& gap) {
+  if (hold == Hold::line) return gap - dot(z, gap) * z;
+  if (hold == Hold::plane) return dot(z, gap) * z;
+  return gap;
+}
+
+DEM_INLINE Matrix3<double> held_displacements(const Joint& j, Hold hold, const FrameOfA& at, const Vector3<double>& d) {
   const Vector3<double> z = at.z();
   switch (hold) {
     case Hold::point: return diagonal_matrix(1, 1, 1);
@@ -114,3 +131,5 @@ inline Matrix3<double> held_displacements(const Joint& j, Hold hold, const Frame
 }
 
 }  // namespace dem::mbd::detail
+
+#endif

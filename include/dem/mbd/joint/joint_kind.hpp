@@ -121,7 +121,18 @@ constexpr const Dofs& dofs_of(JointKind kind) { return traits_of(kind).dofs; }
 constexpr Dof resolved(JointKind kind, Dof dof) { return dof == Dof::own ? traits_of(kind).own : dof; }
 
 /// The degree of freedom's resolved name. Throws Error, with those that there are, unless joints of this kind have it.
-DEM_COLD inline Dof known_dof(JointKind kind, Dof dof, const std::string& who) {
+DEM_COLD Dof known_dof(JointKind kind, Dof dof, const std::string& who);
+
+/// The same for what acts on a coordinate, which therefore has to be free.
+DEM_COLD Dof require_free_dof(JointKind kind, Dof dof, const std::string& who);
+
+}  // namespace dem::mbd
+
+#if DEM_DEFINES
+
+namespace dem::mbd {
+
+DEM_INLINE Dof known_dof(JointKind kind, Dof dof, const std::string& who) {
   dof = resolved(kind, dof);
   const Dofs& list = dofs_of(kind);
   if (list.has(dof)) return dof;
@@ -135,8 +146,7 @@ DEM_COLD inline Dof known_dof(JointKind kind, Dof dof, const std::string& who) {
   fail("{} refers to '{}' of a {}, which has only: {}", who, name_of(dof), name_of(kind), known);
 }
 
-/// The same for what acts on a coordinate, which therefore has to be free.
-DEM_COLD inline Dof require_free_dof(JointKind kind, Dof dof, const std::string& who) {
+DEM_INLINE Dof require_free_dof(JointKind kind, Dof dof, const std::string& who) {
   dof = known_dof(kind, dof, who);
   if (dof == Dof::length) {
     fail("{} acts on the length of a distance joint, which the joint holds; use a linear_actuator or a spring instead",
@@ -146,3 +156,5 @@ DEM_COLD inline Dof require_free_dof(JointKind kind, Dof dof, const std::string&
 }
 
 }  // namespace dem::mbd
+
+#endif

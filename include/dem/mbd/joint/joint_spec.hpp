@@ -125,23 +125,9 @@ struct JointSpec {
   /// x of the joint's frame lies in the plane of z and this direction (global at assembly): the first direction of a
   /// planar joint or a bushing, or the arm of a universal joint's cross on body a. Without it x is the global X made
   /// square to z or, where z is within 26 deg of X, the global Y: for z along Z all three axes are the global ones.
-  JointSpec with_x(const Vec3& direction) const {
-    JointSpec s = *this;
-    s.x_axis = direction;
-    return s;
-  }
-  JointSpec with_stiffness(double translation, double rotation) const {
-    JointSpec s = *this;
-    s.stiffness = translation;
-    s.rotational_stiffness = rotation;
-    return s;
-  }
-  JointSpec with_damping(double translation, double rotation) const {
-    JointSpec s = *this;
-    s.damping = translation;
-    s.rotational_damping = rotation;
-    return s;
-  }
+  JointSpec with_x(const Vec3& direction) const;
+  JointSpec with_stiffness(double translation, double rotation) const;
+  JointSpec with_damping(double translation, double rotation) const;
   JointSpec with_limits(double lower, double upper) const { return with_limits(JointLimits{lower, upper}); }
   JointSpec with_limits(Dof dof, double lower, double upper) const {
     return with_limits(JointLimits{.lower = lower, .upper = upper, .dof = dof});
@@ -152,23 +138,57 @@ struct JointSpec {
   /// The joint's own coordinate, or another one that turns about or slides along z, counts from this value (rad or m)
   /// at assembly.
   JointSpec starting_at(double coordinate) const { return starting_at(Dof::own, coordinate); }
-  JointSpec starting_at(Dof dof, double coordinate) const {
-    JointSpec s = *this;
-    s.starts.push_back({dof, coordinate});
-    return s;
-  }
+  JointSpec starting_at(Dof dof, double coordinate) const;
 };
 
 /// A joint of any kind at a global point, with a global axis that both bodies share at assembly.
-DEM_COLD inline JointSpec joint(JointKind kind, std::string name, BodyId a, BodyId b, const Vec3& at,
-                                const Vec3& axis = Vec3::UnitZ()) {
+DEM_COLD JointSpec joint(JointKind kind, std::string name, BodyId a, BodyId b, const Vec3& at,
+                         const Vec3& axis = Vec3::UnitZ());
+/// A joint of any kind between two connection points, which have to meet.
+DEM_COLD JointSpec joint(JointKind kind, std::string name, ConnectionId a, ConnectionId b,
+                         const Vec3& axis = Vec3::UnitZ());
+
+}  // namespace dem::mbd
+
+#if DEM_DEFINES
+
+namespace dem::mbd {
+
+DEM_INLINE JointSpec JointSpec::with_x(const Vec3& direction) const {
+  JointSpec s = *this;
+  s.x_axis = direction;
+  return s;
+}
+
+DEM_INLINE JointSpec JointSpec::with_stiffness(double translation, double rotation) const {
+  JointSpec s = *this;
+  s.stiffness = translation;
+  s.rotational_stiffness = rotation;
+  return s;
+}
+
+DEM_INLINE JointSpec JointSpec::with_damping(double translation, double rotation) const {
+  JointSpec s = *this;
+  s.damping = translation;
+  s.rotational_damping = rotation;
+  return s;
+}
+
+DEM_INLINE JointSpec JointSpec::starting_at(Dof dof, double coordinate) const {
+  JointSpec s = *this;
+  s.starts.push_back({dof, coordinate});
+  return s;
+}
+
+DEM_INLINE JointSpec joint(JointKind kind, std::string name, BodyId a, BodyId b, const Vec3& at, const Vec3& axis) {
   return {
       .name = std::move(name), .kind = kind, .a = a, .b = b, .at_a = at, .at_b = at, .axis_a = axis, .axis_b = axis};
 }
-/// A joint of any kind between two connection points, which have to meet.
-DEM_COLD inline JointSpec joint(JointKind kind, std::string name, ConnectionId a, ConnectionId b,
-                                const Vec3& axis = Vec3::UnitZ()) {
+
+DEM_INLINE JointSpec joint(JointKind kind, std::string name, ConnectionId a, ConnectionId b, const Vec3& axis) {
   return {.name = std::move(name), .kind = kind, .axis_a = axis, .axis_b = axis, .connection_a = a, .connection_b = b};
 }
 
 }  // namespace dem::mbd
+
+#endif

@@ -21,7 +21,15 @@ struct JointLimitState {
 };
 
 /// A limit pushes back with a spring and, on the way in, a damper; it never pulls.
-inline void apply_limits(JointLimitState& e, const Joint& j, Body& a, Body& b) {
+void apply_limits(JointLimitState& e, const Joint& j, Body& a, Body& b);
+
+}  // namespace dem::mbd
+
+#if DEM_DEFINES
+
+namespace dem::mbd {
+
+DEM_INLINE void apply_limits(JointLimitState& e, const Joint& j, Body& a, Body& b) {
   e.force = 0.0;
   if (!j.on) return;
   const Coordinate q = coordinate_of(j, a, b, e.dof);
@@ -35,3 +43,5 @@ inline void apply_limits(JointLimitState& e, const Joint& j, Body& a, Body& b) {
 }
 
 }  // namespace dem::mbd
+
+#endif

@@ -12,20 +12,9 @@ namespace dem::mbd {
 namespace detail {
 
 /// The limits that a joint's user gave for a coordinate.
-inline const JointLimits& given_limits(const Parts& m, const JointLimitState& e) {
-  const std::vector<JointLimits>& given = m.joint_specs[e.joint].limits;
-  return *std::find_if(given.begin(), given.end(), [&](const JointLimits& l) { return l.dof == e.dof; });
-}
-inline std::pair<double, double> inverse_mass_of(const Parts& m, const JointLimitState& e) {
-  const Joint& j = m.joints[e.joint];
-  return inverse_mass_along(j, m.bodies[j.a], m.bodies[j.b], e.dof);
-}
-inline void derive(const Parts& m, JointLimitState& e, const Derivation& derivation) {
-  const JointLimits& given = given_limits(m, e);
-  const double w = derivation.shared(m.joints[e.joint], inverse_mass_of(m, e));
-  e.stiffness = given.stiffness.value_or(derivation.stiffness(joint_frequency, w));
-  e.damping = given.damping.value_or(Derivation::damping(e.stiffness, w));
-}
+const JointLimits& given_limits(const Parts& m, const JointLimitState& e);
+std::pair<double, double> inverse_mass_of(const Parts& m, const JointLimitState& e);
+void derive(const Parts& m, JointLimitState& e, const Derivation& derivation);
 
 inline constexpr PartKind limits_kind = {
     .rank = 3,
@@ -77,7 +66,34 @@ inline constexpr PartKind limits_kind = {
         }};
 
 /// Adds the limits of a joint that is about to be added, as number `joint`.
-DEM_COLD inline void add_limits(Parts& parts, JointSpec& s, const Joint& j, std::uint32_t joint) {
+DEM_COLD void add_limits(Parts& parts, JointSpec& s, const Joint& j, std::uint32_t joint);
+
+}  // namespace detail
+
+}  // namespace dem::mbd
+
+#if DEM_DEFINES
+
+namespace dem::mbd::detail {
+
+DEM_INLINE const JointLimits& given_limits(const Parts& m, const JointLimitState& e) {
+  const std::vector<JointLimits>& given = m.joint_specs[e.joint].limits;
+  return *std::find_if(given.begin(), given.end(), [&](const JointLimits& l) { return l.dof == e.dof; });
+}
+
+DEM_INLINE std::pair<double, double> inverse_mass_of(const Parts& m, const JointLimitState& e) {
+  const Joint& j = m.joints[e.joint];
+  return inverse_mass_along(j, m.bodies[j.a], m.bodies[j.b], e.dof);
+}
+
+DEM_INLINE void derive(const Parts& m, JointLimitState& e, const Derivation& derivation) {
+  const JointLimits& given = given_limits(m, e);
+  const double w = derivation.shared(m.joints[e.joint], inverse_mass_of(m, e));
+  e.stiffness = given.stiffness.value_or(derivation.stiffness(joint_frequency, w));
+  e.damping = given.damping.value_or(Derivation::damping(e.stiffness, w));
+}
+
+DEM_INLINE void add_limits(Parts& parts, JointSpec& s, const Joint& j, std::uint32_t joint) {
   const std::string who = dem::text("{} '{}'", name_of(s.kind), s.name);
   for (JointLimits& l : s.limits) {
     l.dof = require_free_dof(s.kind, l.dof, "a limit of " + who);
@@ -104,9 +120,11 @@ DEM_COLD inline void add_limits(Parts& parts, JointSpec& s, const Joint& j, std:
   }
 }
 
-}  // namespace detail
+}  // namespace dem::mbd::detail
 
-DEM_COLD inline JointSpec JointSpec::with_limits(const JointLimits& given) const {
+namespace dem::mbd {
+
+DEM_INLINE JointSpec JointSpec::with_limits(const JointLimits& given) const {
   JointSpec s = *this;
   s.limits.push_back(given);
   s.add_limits = detail::add_limits;
@@ -114,3 +132,5 @@ DEM_COLD inline JointSpec JointSpec::with_limits(const JointLimits& given) const
 }
 
 }  // namespace dem::mbd
+
+#endif

@@ -21,7 +21,17 @@ constexpr bool is_on(const T& part) {
 
 /// Throws Error if couplings together lock a coordinate: two gears of different ratio between the same two shafts.
 /// Those of given stiffness are springs and lock nothing; one that repeats another is no harm.
-DEM_COLD inline void check_locked(const Parts& m) {
+DEM_COLD void check_locked(const Parts& m);
+/// The same, if a coupling was added, switched on or given another ratio since. To be called before each step.
+void check_changed_couplings(Parts& m);
+
+}  // namespace dem::mbd::detail
+
+#if DEM_DEFINES
+
+namespace dem::mbd::detail {
+
+DEM_INLINE void check_locked(const Parts& m) {
   using Column = std::pair<std::uint32_t, Dof>;
   std::vector<Column> columns;
   std::vector<std::vector<double>> rows;
@@ -89,11 +99,13 @@ DEM_COLD inline void check_locked(const Parts& m) {
         m.joint_specs[columns[alone].first].name, names, name_of(columns[alone].second));
   }
 }
-/// The same, if a coupling was added, switched on or given another ratio since. To be called before each step.
-inline void check_changed_couplings(Parts& m) {
+
+DEM_INLINE void check_changed_couplings(Parts& m) {
   if (!m.couplings_changed) return;
   check_locked(m);
   m.couplings_changed = false;
 }
 
 }  // namespace dem::mbd::detail
+
+#endif

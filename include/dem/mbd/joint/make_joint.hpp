@@ -14,7 +14,26 @@
 namespace dem::mbd::detail {
 
 /// x of a joint's frame; the choice is explained at JointSpec::with_x.
-DEM_COLD inline Vector3<double> x_of_frame(const JointSpec& s, const Vector3<double>& z, const std::string& who) {
+DEM_COLD Vector3<double> x_of_frame(const JointSpec& s, const Vector3<double>& z, const std::string& who);
+
+DEM_COLD Axes axes_in_body(const Body& b, const Vector3<double>& x, const Vector3<double>& z);
+
+DEM_COLD void use_connections(const Parts& parts, JointSpec& s, const std::string& who);
+
+DEM_COLD void check_penalty(const JointSpec& s, const std::string& who);
+
+/// What the coordinates are said to be at assembly. Throws Error for those that are what they are.
+DEM_COLD void set_starts(Joint& j, const JointSpec& s, const std::string& who);
+
+DEM_COLD Joint make_joint(const Parts& parts, JointSpec& s);
+
+}  // namespace dem::mbd::detail
+
+#if DEM_DEFINES
+
+namespace dem::mbd::detail {
+
+DEM_INLINE Vector3<double> x_of_frame(const JointSpec& s, const Vector3<double>& z, const std::string& who) {
   using V = Vector3<double>;
   const V given = s.x_axis ? unit(*s.x_axis, "the x axis of " + who) : std::abs(z.x) > 0.9 ? V{0, 1, 0} : V{1, 0, 0};
   const V x = given - dot(z, given) * z;
@@ -25,12 +44,12 @@ DEM_COLD inline Vector3<double> x_of_frame(const JointSpec& s, const Vector3<dou
   return normalised(x);
 }
 
-DEM_COLD inline Axes axes_in_body(const Body& b, const Vector3<double>& x, const Vector3<double>& z) {
+DEM_INLINE Axes axes_in_body(const Body& b, const Vector3<double>& x, const Vector3<double>& z) {
   const auto in_body = [&](const Vector3<double>& v) { return transpose_times(b.motion.rotation, v); };
   return {in_body(x), in_body(cross(z, x)), in_body(z)};
 }
 
-DEM_COLD inline void use_connections(const Parts& parts, JointSpec& s, const std::string& who) {
+DEM_INLINE void use_connections(const Parts& parts, JointSpec& s, const std::string& who) {
   const auto resolve = [&](ConnectionId id, BodyId& body, Vec3& at) {
     if (!id.valid()) return;
     if (id.index() >= parts.connections.size()) {
@@ -45,7 +64,7 @@ DEM_COLD inline void use_connections(const Parts& parts, JointSpec& s, const std
   resolve(s.connection_b, s.b, s.at_b);
 }
 
-DEM_COLD inline void check_penalty(const JointSpec& s, const std::string& who) {
+DEM_INLINE void check_penalty(const JointSpec& s, const std::string& who) {
   const auto check = [&](const std::optional<double>& value, const char* what, const char* unit_name) {
     if (value) require_non_negative(*value, dem::text("{} of {}", what, who).c_str(), unit_name);
   };
@@ -56,8 +75,7 @@ DEM_COLD inline void check_penalty(const JointSpec& s, const std::string& who) {
   if (const auto check_kind = traits_of(s.kind).check) check_kind(s, who);
 }
 
-/// What the coordinates are said to be at assembly. Throws Error for those that are what they are.
-DEM_COLD inline void set_starts(Joint& j, const JointSpec& s, const std::string& who) {
+DEM_INLINE void set_starts(Joint& j, const JointSpec& s, const std::string& who) {
   for (const JointStart& start : s.starts) {
     const Dof dof = known_dof(s.kind, start.dof, "starting_at of " + who);
     if (dof != Dof::turn && dof != Dof::slide) {
@@ -73,7 +91,7 @@ DEM_COLD inline void set_starts(Joint& j, const JointSpec& s, const std::string&
   }
 }
 
-DEM_COLD inline Joint make_joint(const Parts& parts, JointSpec& s) {
+DEM_INLINE Joint make_joint(const Parts& parts, JointSpec& s) {
   if (!s.kind.valid()) fail("joint '{}' has no kind; make it with revolute(...) or another of its functions", s.name);
   if (!s.limits.empty() && !s.add_limits) fail("joint '{}' has limits of its own; give them with with_limits", s.name);
   if (s.friction && !s.add_friction) fail("joint '{}' has friction of its own; give it with with_friction", s.name);
@@ -152,3 +170,5 @@ DEM_COLD inline Joint make_joint(const Parts& parts, JointSpec& s) {
 }
 
 }  // namespace dem::mbd::detail
+
+#endif

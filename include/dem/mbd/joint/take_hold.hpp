@@ -7,7 +7,15 @@ namespace dem::mbd::detail {
 
 /// Moves the frame that a joint has on b to where the joint holds nothing strained in the present pose: a joint that is
 /// switched on takes the bodies as they are. What it leaves free counts on as before.
-DEM_COLD inline void take_hold(Joint& j, const Body& a, const Body& b) {
+DEM_COLD void take_hold(Joint& j, const Body& a, const Body& b);
+
+}  // namespace dem::mbd::detail
+
+#if DEM_DEFINES
+
+namespace dem::mbd::detail {
+
+DEM_INLINE void take_hold(Joint& j, const Body& a, const Body& b) {
   using V = Vector3<double>;
   const JointTraits& traits = traits_of(j.kind);
   const Matrix3<double>&A = a.motion.rotation, &B = b.motion.rotation;
@@ -22,3 +30,5 @@ DEM_COLD inline void take_hold(Joint& j, const Body& a, const Body& b) {
 }
 
 }  // namespace dem::mbd::detail
+
+#endif

@@ -41,14 +41,8 @@ struct LoadSpec {
   bool has_law() const { return law || pair_law || by_terrain; }
 };
 
-DEM_COLD inline LoadSpec applied_force(std::string name, BodyId body, const Vec3& at, const Vec3& direction,
-                                       Signal newtons) {
-  return {.name = std::move(name), .body = body, .direction = direction, .size = std::move(newtons), .at = at};
-}
-DEM_COLD inline LoadSpec applied_torque(std::string name, BodyId body, const Vec3& axis, Signal newton_metres) {
-  return {
-      .name = std::move(name), .body = body, .is_torque = true, .direction = axis, .size = std::move(newton_metres)};
-}
+DEM_COLD LoadSpec applied_force(std::string name, BodyId body, const Vec3& at, const Vec3& direction, Signal newtons);
+DEM_COLD LoadSpec applied_torque(std::string name, BodyId body, const Vec3& axis, Signal newton_metres);
 /// Drag, a tyre, a field: a law that is called at each evaluation of the forces.
 ///
 ///     custom_load("drag", car, [](double, const Body& b) { return Wrench{from_eigen(Vec3(-c * b.velocity())), {}}; })
@@ -56,10 +50,7 @@ DEM_COLD inline LoadSpec applied_torque(std::string name, BodyId body, const Vec
 /// Forces at a point x of the body have the torque (x - b.position()) x force. What the body carries so far in `force`
 /// and `torque` depends on the order of the parts. The stable time step does not know the law: keep its stiffness below
 /// m (0.5/dt)^2 and its damping below 0.5 m/dt. Velocity Verlet shows it the speed of half a step before (first order).
-DEM_COLD inline LoadSpec custom_load(std::string name, BodyId body, LoadLaw law) {
-  if (!law) fail("load '{}' was given no function; give one that returns the force and the torque", name);
-  return {.name = std::move(name), .body = body, .law = std::move(law)};
-}
+DEM_COLD LoadSpec custom_load(std::string name, BodyId body, LoadLaw law);
 
 /// The same between two bodies: a tyre on a road that moves, a torque converter, a field between two magnets. The law
 /// gives what body b feels, about its centre of mass; body a feels the opposite.
@@ -68,10 +59,7 @@ DEM_COLD inline LoadSpec custom_load(std::string name, BodyId body, LoadLaw law)
 ///       const double slip = axis.dot(a.angular_velocity() - b.angular_velocity());
 ///       return Wrench{{0, 0, 0}, from_eigen(Vec3(c * slip * axis))};
 ///     })
-DEM_COLD inline LoadSpec custom_load(std::string name, BodyId a, BodyId b, PairLoadLaw law) {
-  if (!law) fail("load '{}' was given no function; give one that returns the force and the torque", name);
-  return {.name = std::move(name), .body = b, .a = a, .pair_law = std::move(law)};
-}
+DEM_COLD LoadSpec custom_load(std::string name, BodyId a, BodyId b, PairLoadLaw law);
 
 struct Load {
   LoadSpec spec;
@@ -88,7 +76,35 @@ struct Load {
   }
 };
 
-inline void apply_load(Load& load, std::vector<Body>& bodies, double time, double dt) {
+void apply_load(Load& load, std::vector<Body>& bodies, double time, double dt);
+
+}  // namespace dem::mbd
+
+#if DEM_DEFINES
+
+namespace dem::mbd {
+
+DEM_INLINE LoadSpec applied_force(std::string name, BodyId body, const Vec3& at, const Vec3& direction,
+                                  Signal newtons) {
+  return {.name = std::move(name), .body = body, .direction = direction, .size = std::move(newtons), .at = at};
+}
+
+DEM_INLINE LoadSpec applied_torque(std::string name, BodyId body, const Vec3& axis, Signal newton_metres) {
+  return {
+      .name = std::move(name), .body = body, .is_torque = true, .direction = axis, .size = std::move(newton_metres)};
+}
+
+DEM_INLINE LoadSpec custom_load(std::string name, BodyId body, LoadLaw law) {
+  if (!law) fail("load '{}' was given no function; give one that returns the force and the torque", name);
+  return {.name = std::move(name), .body = body, .law = std::move(law)};
+}
+
+DEM_INLINE LoadSpec custom_load(std::string name, BodyId a, BodyId b, PairLoadLaw law) {
+  if (!law) fail("load '{}' was given no function; give one that returns the force and the torque", name);
+  return {.name = std::move(name), .body = b, .a = a, .pair_law = std::move(law)};
+}
+
+DEM_INLINE void apply_load(Load& load, std::vector<Body>& bodies, double time, double dt) {
   if (!load.spec.by_terrain || !load.spec.on) load.wrench = {};
   if (!load.spec.on) return;
   Body& b = bodies[load.spec.body.index()];
@@ -112,3 +128,5 @@ inline void apply_load(Load& load, std::vector<Body>& bodies, double time, doubl
 }
 
 }  // namespace dem::mbd
+
+#endif

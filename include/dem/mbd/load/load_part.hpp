@@ -24,7 +24,15 @@ inline constexpr PartKind load_kind = {
       return {};
     }};
 
-DEM_COLD inline LoadId add_load(Parts& parts, LoadSpec spec) {
+DEM_COLD LoadId add_load(Parts& parts, LoadSpec spec);
+
+}  // namespace dem::mbd::detail
+
+#if DEM_DEFINES
+
+namespace dem::mbd::detail {
+
+DEM_INLINE LoadId add_load(Parts& parts, LoadSpec spec) {
   settle_name(spec.name, parts.loads, "load", "loads", name_in_spec);
   const std::string who = dem::text("load '{}'", spec.name);
   const Body& b = known_body(parts, spec.body, who);
@@ -42,3 +50,5 @@ DEM_COLD inline LoadId add_load(Parts& parts, LoadSpec spec) {
 }
 
 }  // namespace dem::mbd::detail
+
+#endif

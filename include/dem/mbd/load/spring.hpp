@@ -26,78 +26,28 @@ struct SpringSpec {
   bool from_start = false;  ///< the table counts from what the joint's coordinate is when the spring is added
 
   /// Acts on one of dofs_of(the joint's kind) instead of the joint's own coordinate.
-  SpringSpec along(Dof f) const {
-    SpringSpec s = *this;
-    s.dof = f;
-    return s;
-  }
+  SpringSpec along(Dof f) const;
 };
 
 /// A linear spring (N/m) of free length (m; the length at assembly if negative) with a linear damper (N s/m).
-DEM_COLD inline SpringSpec spring(std::string name, BodyId a, const Vec3& at_a, BodyId b, const Vec3& at_b,
-                                  double stiffness, double damping = 0.0, double free_length = -1.0) {
-  require_non_negative(stiffness, "stiffness of a spring", "N/m");
-  require_non_negative(damping, "damping of a spring", "N s/m");
-  const double l0 = free_length < 0.0 ? norm(from_eigen(at_b) - from_eigen(at_a)) : free_length;
-  return {.name = std::move(name),
-          .a = a,
-          .b = b,
-          .at_a = at_a,
-          .at_b = at_b,
-          .force_over_length = Curve::line(stiffness * l0, -stiffness),
-          .force_over_speed = damping > 0.0 ? Curve::line(0.0, -damping) : Curve{}};
-}
+DEM_COLD SpringSpec spring(std::string name, BodyId a, const Vec3& at_a, BodyId b, const Vec3& at_b, double stiffness,
+                           double damping = 0.0, double free_length = -1.0);
 /// A spring of free length (m) whose force (N) over its compression (m, positive when shorter) is a table. Beyond the
 /// table the force goes on with the slope of its last piece. With a curve that is `held_outside` it keeps its last
 /// value instead: a bump stop is such a spring, which does not pull. The damper acts at every length.
-DEM_COLD inline SpringSpec spring_table(std::string name, BodyId a, const Vec3& at_a, BodyId b, const Vec3& at_b,
-                                        double free_length, const Curve& force_over_compression, double damping = 0.0) {
-  require_positive(free_length, "free length of a spring", "m");
-  require_non_negative(damping, "damping of a spring", "N s/m");
-  std::vector<std::pair<double, double>> points;
-  for (const auto& [x, f] : force_over_compression.points()) points.emplace_back(free_length - x, f);
-  const Curve over_length({points.rbegin(), points.rend()});
-  return {.name = std::move(name),
-          .a = a,
-          .b = b,
-          .at_a = at_a,
-          .at_b = at_b,
-          .force_over_length = force_over_compression.is_held_outside() ? over_length.held_outside() : over_length,
-          .force_over_speed = damping > 0.0 ? Curve::line(0.0, -damping) : Curve{}};
-}
+DEM_COLD SpringSpec spring_table(std::string name, BodyId a, const Vec3& at_a, BodyId b, const Vec3& at_b,
+                                 double free_length, const Curve& force_over_compression, double damping = 0.0);
 
 /// On a coordinate of a joint, a torsion bar or a coil spring on a slide: a linear spring (N m/rad where it turns, N/m
 /// where it slides) with a linear damper (N m s/rad, N s/m), free where the coordinate is when it is added.
-DEM_COLD inline SpringSpec joint_spring(std::string name, JointId joint, double stiffness, double damping = 0.0) {
-  require_non_negative(stiffness, "stiffness of a spring", "N m/rad or N/m");
-  require_non_negative(damping, "damping of a spring", "N m s/rad or N s/m");
-  return {.name = std::move(name),
-          .force_over_length = Curve::line(0.0, -stiffness),
-          .force_over_speed = damping > 0.0 ? Curve::line(0.0, -damping) : Curve{},
-          .on_joint = true,
-          .joint = joint,
-          .from_start = true};
-}
+DEM_COLD SpringSpec joint_spring(std::string name, JointId joint, double stiffness, double damping = 0.0);
 /// The same, free at a given value (rad or m) of the coordinate.
-DEM_COLD inline SpringSpec joint_spring(std::string name, JointId joint, double stiffness, double damping,
-                                        double free_at) {
-  SpringSpec s = joint_spring(std::move(name), joint, stiffness, damping);
-  s.force_over_length = Curve::line(stiffness * free_at, -stiffness);
-  s.from_start = false;
-  return s;
-}
+DEM_COLD SpringSpec joint_spring(std::string name, JointId joint, double stiffness, double damping, double free_at);
 /// The same from a table of torque (N m) over the coordinate (rad), or of force (N) over it (m): positive drives the
 /// coordinate up, so a spring that holds its middle has a falling table. Beyond the table its last slope goes on,
 /// unless the curve is held_outside().
-DEM_COLD inline SpringSpec joint_spring_table(std::string name, JointId joint, Curve torque_over_coordinate,
-                                              double damping = 0.0) {
-  require_non_negative(damping, "damping of a spring", "N m s/rad or N s/m");
-  return {.name = std::move(name),
-          .force_over_length = std::move(torque_over_coordinate),
-          .force_over_speed = damping > 0.0 ? Curve::line(0.0, -damping) : Curve{},
-          .on_joint = true,
-          .joint = joint};
-}
+DEM_COLD SpringSpec joint_spring_table(std::string name, JointId joint, Curve torque_over_coordinate,
+                                       double damping = 0.0);
 
 struct Spring {
   SpringSpec spec;
@@ -118,12 +68,86 @@ struct Spring {
 };
 
 /// The coordinate that a spring acts on.
-inline Coordinate coordinate_of(const Spring& s, const std::vector<Joint>& joints, const Body& a, const Body& b) {
+Coordinate coordinate_of(const Spring& s, const std::vector<Joint>& joints, const Body& a, const Body& b);
+
+void apply_spring(Spring& s, const std::vector<Joint>& joints, std::vector<Body>& bodies);
+
+}  // namespace dem::mbd
+
+#if DEM_DEFINES
+
+namespace dem::mbd {
+
+DEM_INLINE SpringSpec SpringSpec::along(Dof f) const {
+  SpringSpec s = *this;
+  s.dof = f;
+  return s;
+}
+
+DEM_INLINE SpringSpec spring(std::string name, BodyId a, const Vec3& at_a, BodyId b, const Vec3& at_b, double stiffness,
+                             double damping, double free_length) {
+  require_non_negative(stiffness, "stiffness of a spring", "N/m");
+  require_non_negative(damping, "damping of a spring", "N s/m");
+  const double l0 = free_length < 0.0 ? norm(from_eigen(at_b) - from_eigen(at_a)) : free_length;
+  return {.name = std::move(name),
+          .a = a,
+          .b = b,
+          .at_a = at_a,
+          .at_b = at_b,
+          .force_over_length = Curve::line(stiffness * l0, -stiffness),
+          .force_over_speed = damping > 0.0 ? Curve::line(0.0, -damping) : Curve{}};
+}
+
+DEM_INLINE SpringSpec spring_table(std::string name, BodyId a, const Vec3& at_a, BodyId b, const Vec3& at_b,
+                                   double free_length, const Curve& force_over_compression, double damping) {
+  require_positive(free_length, "free length of a spring", "m");
+  require_non_negative(damping, "damping of a spring", "N s/m");
+  std::vector<std::pair<double, double>> points;
+  for (const auto& [x, f] : force_over_compression.points()) points.emplace_back(free_length - x, f);
+  const Curve over_length({points.rbegin(), points.rend()});
+  return {.name = std::move(name),
+          .a = a,
+          .b = b,
+          .at_a = at_a,
+          .at_b = at_b,
+          .force_over_length = force_over_compression.is_held_outside() ? over_length.held_outside() : over_length,
+          .force_over_speed = damping > 0.0 ? Curve::line(0.0, -damping) : Curve{}};
+}
+
+DEM_INLINE SpringSpec joint_spring(std::string name, JointId joint, double stiffness, double damping) {
+  require_non_negative(stiffness, "stiffness of a spring", "N m/rad or N/m");
+  require_non_negative(damping, "damping of a spring", "N m s/rad or N s/m");
+  return {.name = std::move(name),
+          .force_over_length = Curve::line(0.0, -stiffness),
+          .force_over_speed = damping > 0.0 ? Curve::line(0.0, -damping) : Curve{},
+          .on_joint = true,
+          .joint = joint,
+          .from_start = true};
+}
+
+DEM_INLINE SpringSpec joint_spring(std::string name, JointId joint, double stiffness, double damping, double free_at) {
+  SpringSpec s = joint_spring(std::move(name), joint, stiffness, damping);
+  s.force_over_length = Curve::line(stiffness * free_at, -stiffness);
+  s.from_start = false;
+  return s;
+}
+
+DEM_INLINE SpringSpec joint_spring_table(std::string name, JointId joint, Curve torque_over_coordinate,
+                                         double damping) {
+  require_non_negative(damping, "damping of a spring", "N m s/rad or N s/m");
+  return {.name = std::move(name),
+          .force_over_length = std::move(torque_over_coordinate),
+          .force_over_speed = damping > 0.0 ? Curve::line(0.0, -damping) : Curve{},
+          .on_joint = true,
+          .joint = joint};
+}
+
+DEM_INLINE Coordinate coordinate_of(const Spring& s, const std::vector<Joint>& joints, const Body& a, const Body& b) {
   return s.spec.joint.valid() ? coordinate_of(joints[s.spec.joint.index()], a, b, s.spec.dof)
                               : distance_of(s.point_a, s.point_b, a, b);
 }
 
-inline void apply_spring(Spring& s, const std::vector<Joint>& joints, std::vector<Body>& bodies) {
+DEM_INLINE void apply_spring(Spring& s, const std::vector<Joint>& joints, std::vector<Body>& bodies) {
   Body &a = bodies[s.a], &b = bodies[s.b];
   const Coordinate q = coordinate_of(s, joints, a, b);
   s.length = q.value;
@@ -136,3 +160,5 @@ inline void apply_spring(Spring& s, const std::vector<Joint>& joints, std::vecto
 }
 
 }  // namespace dem::mbd
+
+#endif

@@ -35,7 +35,15 @@ inline constexpr PartKind spring_kind = {
     .name_of = [](const Parts& m, std::size_t i) { return "spring '" + m.springs[i].spec.name + "'"; },
     .may_grow = [](const Parts& m) { return !m.springs.empty(); }};
 
-DEM_COLD inline SpringId add_spring(Parts& parts, SpringSpec spec) {
+DEM_COLD SpringId add_spring(Parts& parts, SpringSpec spec);
+
+}  // namespace dem::mbd::detail
+
+#if DEM_DEFINES
+
+namespace dem::mbd::detail {
+
+DEM_INLINE SpringId add_spring(Parts& parts, SpringSpec spec) {
   settle_name(spec.name, parts.springs, "spring", "springs", name_in_spec);
   Spring s;
   const std::string who = "spring '" + spec.name + "'";
@@ -56,3 +64,5 @@ DEM_COLD inline SpringId add_spring(Parts& parts, SpringSpec spec) {
 }
 
 }  // namespace dem::mbd::detail
+
+#endif

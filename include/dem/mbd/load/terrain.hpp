@@ -1,6 +1,7 @@
 #pragma once
 
 #include <dem/core/error.hpp>
+#include <dem/core/macros.hpp>
 #include <dem/mbd/load/load.hpp>
 
 #include <memory>
@@ -52,10 +53,7 @@ DEM_COLD inline LoadSpec terrain_load(std::string name, BodyId body) {
 class TerrainPart {
  public:
   /// Throws Error for none.
-  DEM_COLD TerrainPart(std::string part_name, std::unique_ptr<Terrain> terrain)
-      : name(std::move(part_name)), terrain_(std::move(terrain)) {
-    if (!terrain_) fail("terrain '{}' is none; give one, such as soil columns", name);
-  }
+  DEM_COLD TerrainPart(std::string part_name, std::unique_ptr<Terrain> terrain);
   DEM_COLD TerrainPart(const TerrainPart& other) : name(other.name), terrain_(other.terrain_->copy()) {}
   TerrainPart(TerrainPart&&) noexcept = default;
   DEM_COLD TerrainPart& operator=(const TerrainPart& other) { return *this = TerrainPart(other); }
@@ -80,3 +78,16 @@ class TerrainPart {
 };
 
 }  // namespace dem::mbd
+
+#if DEM_DEFINES
+
+namespace dem::mbd {
+
+DEM_INLINE TerrainPart::TerrainPart(std::string part_name, std::unique_ptr<Terrain> terrain)
+    : name(std::move(part_name)), terrain_(std::move(terrain)) {
+  if (!terrain_) fail("terrain '{}' is none; give one, such as soil columns", name);
+}
+
+}  // namespace dem::mbd
+
+#endif

@@ -21,7 +21,18 @@ inline constexpr PartKind terrain_kind = {
 }  // namespace detail
 
 /// Adds a terrain to a machine. Throws Error for none, or a name that another one has.
-DEM_COLD inline TerrainId add_terrain(Mechanism& m, std::string name, std::unique_ptr<Terrain> terrain) {
+DEM_COLD TerrainId add_terrain(Mechanism& m, std::string name, std::unique_ptr<Terrain> terrain);
+
+/// The terrain of an id. Throws Error if there is none.
+inline Terrain& terrain_of(const Mechanism& m, TerrainId id) { return *known(m.parts().terrains, id, "terrain"); }
+
+}  // namespace dem::mbd
+
+#if DEM_DEFINES
+
+namespace dem::mbd {
+
+DEM_INLINE TerrainId add_terrain(Mechanism& m, std::string name, std::unique_ptr<Terrain> terrain) {
   Parts& parts = m.parts();
   require_no_step(parts);
   settle_name(name, parts.terrains, "terrain", "terrains", [](const TerrainPart& t) { return t.name; });
@@ -31,7 +42,6 @@ DEM_COLD inline TerrainId add_terrain(Mechanism& m, std::string name, std::uniqu
   return TerrainId(parts.terrains.size() - 1);
 }
 
-/// The terrain of an id. Throws Error if there is none.
-inline Terrain& terrain_of(const Mechanism& m, TerrainId id) { return *known(m.parts().terrains, id, "terrain"); }
-
 }  // namespace dem::mbd
+
+#endif

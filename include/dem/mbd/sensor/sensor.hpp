@@ -20,32 +20,13 @@ class WindowAverage {
   explicit WindowAverage(double window = 0.0) : window_(require_non_negative(window, "averaging window", "s")) {}
 
   /// Adds a sample that held for dt seconds.
-  void add(const Wrench& w, double dt) {
-    latest_ = w;
-    if (window_ <= 0.0 || dt <= 0.0) return;
-    if (bins_[head_].time >= window_ / bin_count) {
-      head_ = (head_ + 1) % ring_size;
-      bins_[head_] = {};
-    }
-    bins_[head_].sum = bins_[head_].sum + dt * w;
-    bins_[head_].time += dt;
-  }
+  void add(const Wrench& w, double dt);
 
   /// The newest sample.
   const Wrench& latest() const { return latest_; }
 
   /// The mean over the window, or over what there is of it so far. With a window of 0 it is the newest sample.
-  Wrench mean() const {
-    Wrench sum;
-    double time = 0.0;
-    const double full = (1.0 - 1e-9) * window_;  // s: times that sum up to the window but for rounding fill it
-    for (std::size_t k = 0; k < ring_size && time < full; ++k) {
-      const Bin& bin = bins_[(head_ + ring_size - k) % ring_size];
-      sum = sum + bin.sum;
-      time += bin.time;
-    }
-    return time > 0.0 ? (1.0 / time) * sum : latest_;
-  }
+  Wrench mean() const;
   void clear() { bins_ = {}; }
   double window() const { return window_; }
 
@@ -116,3 +97,34 @@ struct Sensor {
 };
 
 }  // namespace dem::mbd
+
+#if DEM_DEFINES
+
+namespace dem::mbd {
+
+DEM_INLINE void WindowAverage::add(const Wrench& w, double dt) {
+  latest_ = w;
+  if (window_ <= 0.0 || dt <= 0.0) return;
+  if (bins_[head_].time >= window_ / bin_count) {
+    head_ = (head_ + 1) % ring_size;
+    bins_[head_] = {};
+  }
+  bins_[head_].sum = bins_[head_].sum + dt * w;
+  bins_[head_].time += dt;
+}
+
+DEM_INLINE Wrench WindowAverage::mean() const {
+  Wrench sum;
+  double time = 0.0;
+  const double full = (1.0 - 1e-9) * window_;  // s: times that sum up to the window but for rounding fill it
+  for (std::size_t k = 0; k < ring_size && time < full; ++k) {
+    const Bin& bin = bins_[(head_ + ring_size - k) % ring_size];
+    sum = sum + bin.sum;
+    time += bin.time;
+  }
+  return time > 0.0 ? (1.0 / time) * sum : latest_;
+}
+
+}  // namespace dem::mbd
+
+#endif

@@ -8,7 +8,27 @@
 namespace dem::mbd::detail {
 
 /// What touches a body: grains and surfaces of other bodies, and terrains.
-inline Wrench contacts_of(const Parts& m, std::size_t body) {
+Wrench contacts_of(const Parts& m, std::size_t body);
+
+/// Hands sensors what they measure, for the dt (s) that it held; but those of drives, whose forces are known when the
+/// step is over (Stages).
+void sample_sensors(Parts& m, double dt);
+
+/// The mean force (N) or torque (N m) that an actuator or a drive puts on its coordinate.
+DEM_COLD double drive_effort(const Sensor& s);
+
+/// Checks that what a sensor measures is there.
+DEM_COLD void check_sensor(const Parts& parts, const SensorSpec& spec);
+
+DEM_COLD SensorId add_sensor(Parts& parts, SensorSpec spec);
+
+}  // namespace dem::mbd::detail
+
+#if DEM_DEFINES
+
+namespace dem::mbd::detail {
+
+DEM_INLINE Wrench contacts_of(const Parts& m, std::size_t body) {
   Wrench w = m.outside[body];
   if (m.terrains.empty()) return w;
   for (const Load& load : m.loads) {
@@ -17,9 +37,7 @@ inline Wrench contacts_of(const Parts& m, std::size_t body) {
   return w;
 }
 
-/// Hands sensors what they measure, for the dt (s) that it held; but those of drives, whose forces are known when the
-/// step is over (Stages).
-inline void sample_sensors(Parts& m, double dt) {
+DEM_INLINE void sample_sensors(Parts& m, double dt) {
   for (Sensor& s : m.sensors) {
     const std::size_t i = s.spec.index;
     Wrench w;
@@ -34,8 +52,7 @@ inline void sample_sensors(Parts& m, double dt) {
   }
 }
 
-/// The mean force (N) or torque (N m) that an actuator or a drive puts on its coordinate.
-DEM_COLD inline double drive_effort(const Sensor& s) {
+DEM_INLINE double drive_effort(const Sensor& s) {
   if (s.spec.target == SensorTarget::actuator || s.spec.target == SensorTarget::drive) return s.average.mean().force.x;
   fail(
       "sensor '{}' measures no actuator and no drive, so it has a force and a torque in space; read "
@@ -43,8 +60,7 @@ DEM_COLD inline double drive_effort(const Sensor& s) {
       s.spec.name);
 }
 
-/// Checks that what a sensor measures is there.
-DEM_COLD inline void check_sensor(const Parts& parts, const SensorSpec& spec) {
+DEM_INLINE void check_sensor(const Parts& parts, const SensorSpec& spec) {
   const std::size_t count = spec.target == SensorTarget::joint      ? parts.joints.size()
                             : spec.target == SensorTarget::actuator ? parts.actuators.size()
                             : spec.target == SensorTarget::drive    ? parts.motions.size()
@@ -65,7 +81,7 @@ DEM_COLD inline void check_sensor(const Parts& parts, const SensorSpec& spec) {
   }
 }
 
-DEM_COLD inline SensorId add_sensor(Parts& parts, SensorSpec spec) {
+DEM_INLINE SensorId add_sensor(Parts& parts, SensorSpec spec) {
   settle_name(spec.name, parts.sensors, "sensor", "sensors", name_in_spec);
   check_sensor(parts, spec);
   WindowAverage average(spec.window);
@@ -74,3 +90,5 @@ DEM_COLD inline SensorId add_sensor(Parts& parts, SensorSpec spec) {
 }
 
 }  // namespace dem::mbd::detail
+
+#endif

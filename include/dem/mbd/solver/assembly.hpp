@@ -31,19 +31,34 @@ struct AssemblyReport {
 
   /// What is within rounding of numbers with five digits counts as given: it stays as it is.
   bool has_changed() const { return kinetic_of_change > 1e-10 * std::max(kinetic_before, kinetic_after); }
-  std::string text() const {
-    return dem::text(
-        "The given velocities did not fit the joints: body '{}' was changed by {:.3g} m/s and {:.3g} rad/s, the "
-        "kinetic energy from {:.4g} to {:.4g} J.",
-        body, change, turn, kinetic_before, kinetic_after);
-  }
+  std::string text() const;
 };
 
 /// Changes the bodies' velocities to what joints with derived stiffness, couplings and prescribed motions allow. Those
 /// of given stiffness may move, and are left alone. Joints whose directions differ by less than the root of `tolerance`
 /// (rad) hold one direction. Throws Error if they are to be refused.
-DEM_LAZY DEM_COLD inline AssemblyReport joined_velocities(Parts& m, GivenVelocities how = GivenVelocities::project,
-                                                          double tolerance = 1e-13) {
+DEM_LAZY DEM_COLD AssemblyReport joined_velocities(Parts& m, GivenVelocities how = GivenVelocities::project,
+                                                   double tolerance = 1e-13);
+
+/// Moves the bodies so that joints and couplings with derived stiffness are off by `part` of what they are, with the
+/// least change of positions as masses weigh them, and takes the speeds at which they open or close. Brakes and
+/// clutches go on with the torque that they have.
+DEM_LAZY DEM_COLD void close_openings(Parts& m, double part);
+
+}  // namespace dem::mbd
+
+#if DEM_DEFINES
+
+namespace dem::mbd {
+
+DEM_INLINE std::string AssemblyReport::text() const {
+  return dem::text(
+      "The given velocities did not fit the joints: body '{}' was changed by {:.3g} m/s and {:.3g} rad/s, the "
+      "kinetic energy from {:.4g} to {:.4g} J.",
+      body, change, turn, kinetic_before, kinetic_after);
+}
+
+DEM_LAZY_INLINE AssemblyReport joined_velocities(Parts& m, GivenVelocities how, double tolerance) {
   using namespace detail;
   AssemblyReport report;
   const std::vector<HeldRow> rows = held_rows(m);
@@ -106,10 +121,7 @@ DEM_LAZY DEM_COLD inline AssemblyReport joined_velocities(Parts& m, GivenVelocit
   return report;
 }
 
-/// Moves the bodies so that joints and couplings with derived stiffness are off by `part` of what they are, with the
-/// least change of positions as masses weigh them, and takes the speeds at which they open or close. Brakes and
-/// clutches go on with the torque that they have.
-DEM_LAZY DEM_COLD inline void close_openings(Parts& m, double part) {
+DEM_LAZY_INLINE void close_openings(Parts& m, double part) {
   using namespace detail;
   // Joints stand open, so two that hold a shaft differ in direction by some 1e-4 rad, or ten times that where a load
   // came at once. Taken for two directions they would hold its turn: within 3e-3 rad they are one.
@@ -142,3 +154,5 @@ DEM_LAZY DEM_COLD inline void close_openings(Parts& m, double part) {
 }
 
 }  // namespace dem::mbd
+
+#endif

@@ -10,13 +10,7 @@
 namespace dem::mbd {
 
 /// The first function of a user that gave no number in the newest step, in words; empty if all did.
-DEM_COLD inline std::string not_a_number(const Parts& parts) {
-  for (const detail::PartKind* kind : parts.kinds) {
-    if (!kind->not_a_number) continue;
-    if (std::string text = kind->not_a_number(parts); !text.empty()) return text;
-  }
-  return {};
-}
+DEM_COLD std::string not_a_number(const Parts& parts);
 
 /// Why a machine blew up at steps of dt (s, with all `substeps`), in words: a number that is none, a step that was too
 /// large from the start or became so in another pose, a joint that folded or that no pose closes, or none of these.
@@ -56,3 +50,19 @@ std::string cause_of_blow_up(const Parts& parts, const StableTimeStep& at_start,
 }
 
 }  // namespace dem::mbd
+
+#if DEM_DEFINES
+
+namespace dem::mbd {
+
+DEM_INLINE std::string not_a_number(const Parts& parts) {
+  for (const detail::PartKind* kind : parts.kinds) {
+    if (!kind->not_a_number) continue;
+    if (std::string text = kind->not_a_number(parts); !text.empty()) return text;
+  }
+  return {};
+}
+
+}  // namespace dem::mbd
+
+#endif

@@ -19,10 +19,7 @@ namespace dem::mbd {
 
 /// The number of sub-steps that lowers an opening from `share` of what is allowed to `wanted`, from n of them; at most
 /// `most`, but never less than n.
-inline int substeps_for(int n, double share, double wanted, int most) {
-  const double needed = std::ceil(n * std::sqrt(share / wanted) * (1.0 - 1e-12));
-  return std::max(n, needed < most ? static_cast<int>(needed) : most);
-}
+int substeps_for(int n, double share, double wanted, int most);
 
 /// The watched joint that weight opens farthest, as a share of what is allowed and of gravity (s^2/m), if each carries
 /// all bodies that it is joined with.
@@ -30,59 +27,25 @@ struct MostLoaded {
   JointId joint = {};
   double share = 0.0;
 };
-inline MostLoaded most_loaded(const Parts& m, const JointWatch& watch) {
-  MostLoaded most;
-  for (const JointWatch::Watched& w : watch.watched()) {
-    const double k = m.joints[w.joint].k;
-    if (k > 0.0 && w.mass / (k * w.displacement) > most.share) most = {JointId(w.joint), w.mass / (k * w.displacement)};
-  }
-  return most;
-}
+MostLoaded most_loaded(const Parts& m, const JointWatch& watch);
 
 /// Brings stiffness that was raised while a machine runs in by and by. A strained spring that gets stiffer all at once
 /// gains energy; here it grows at most fourfold in a step, under the dampers that belong to its end.
 class StiffnessRamp {
  public:
   /// What the stiffness is now, before it is derived anew.
-  static std::vector<double> stiffness_of(Parts& m) {
-    std::vector<double> all;
-    for_each_stiffness(m, [&](double& k) { all.push_back(k); });
-    return all;
-  }
+  static std::vector<double> stiffness_of(Parts& m);
 
   StiffnessRamp() = default;
   /// From `before` to what is in the parts now, which is put back to `before`.
-  StiffnessRamp(Parts& m, const std::vector<double>& before) {
-    auto was = before.begin();
-    for_each_stiffness(m, [&](double& k) {
-      to_.push_back(k);
-      left_ = std::max(left_, *was > 0.0 ? k / *was : 1.0);
-      if (*was > 0.0) k = std::min(k, *was);
-      ++was;
-    });
-    step(m);
-  }
+  StiffnessRamp(Parts& m, const std::vector<double>& before);
 
   bool is_over() const { return to_.empty(); }
   /// How many times as stiff the softest part is going to be; 1 when it is over.
   double left() const { return is_over() ? 1.0 : left_; }
 
   /// To be called once in a step of the world, or of a machine alone.
-  void step(Parts& m) {
-    if (is_over()) return;
-    constexpr double growth = 4.0;
-    auto to = to_.begin();
-    double left = 1.0;
-    for_each_stiffness(m, [&](double& k) {
-      if (k < *to) {
-        k = std::min(growth * k, *to);
-        left = std::max(left, *to / k);
-      }
-      ++to;
-    });
-    left_ = left;
-    if (left <= 1.0) to_.clear();
-  }
+  void step(Parts& m);
 
   template <class V>
   void fields(V& v) {
@@ -106,3 +69,58 @@ class StiffnessRamp {
 };
 
 }  // namespace dem::mbd
+
+#if DEM_DEFINES
+
+namespace dem::mbd {
+
+DEM_INLINE int substeps_for(int n, double share, double wanted, int most) {
+  const double needed = std::ceil(n * std::sqrt(share / wanted) * (1.0 - 1e-12));
+  return std::max(n, needed < most ? static_cast<int>(needed) : most);
+}
+
+DEM_INLINE MostLoaded most_loaded(const Parts& m, const JointWatch& watch) {
+  MostLoaded most;
+  for (const JointWatch::Watched& w : watch.watched()) {
+    const double k = m.joints[w.joint].k;
+    if (k > 0.0 && w.mass / (k * w.displacement) > most.share) most = {JointId(w.joint), w.mass / (k * w.displacement)};
+  }
+  return most;
+}
+
+DEM_INLINE std::vector<double> StiffnessRamp::stiffness_of(Parts& m) {
+  std::vector<double> all;
+  for_each_stiffness(m, [&](double& k) { all.push_back(k); });
+  return all;
+}
+
+DEM_INLINE StiffnessRamp::StiffnessRamp(Parts& m, const std::vector<double>& before) {
+  auto was = before.begin();
+  for_each_stiffness(m, [&](double& k) {
+    to_.push_back(k);
+    left_ = std::max(left_, *was > 0.0 ? k / *was : 1.0);
+    if (*was > 0.0) k = std::min(k, *was);
+    ++was;
+  });
+  step(m);
+}
+
+DEM_INLINE void StiffnessRamp::step(Parts& m) {
+  if (is_over()) return;
+  constexpr double growth = 4.0;
+  auto to = to_.begin();
+  double left = 1.0;
+  for_each_stiffness(m, [&](double& k) {
+    if (k < *to) {
+      k = std::min(growth * k, *to);
+      left = std::max(left, *to / k);
+    }
+    ++to;
+  });
+  left_ = left;
+  if (left <= 1.0) to_.clear();
+}
+
+}  // namespace dem::mbd
+
+#endif

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <dem/core/macros.hpp>
 // Effective masses. That of a body at a point and in a direction n is 1/(n.W n), where W is the acceleration per unit
 // force there; of a rotation it is an inertia. What is computed is its inverse, 0 for fixed bodies.
 
@@ -13,28 +14,14 @@
 namespace dem::mbd::detail {
 
 /// The inverse of the inertia (1/(kg m^2)), global axes.
-inline Matrix3<double> inverse_inertia_of(const Body& b) {
-  if (b.fixed) return diagonal_matrix(0, 0, 0);
-  const Matrix3<double>& r = b.motion.rotation;
-  return r * diagonal_matrix(1.0 / b.inertia[0], 1.0 / b.inertia[1], 1.0 / b.inertia[2]) * transposed(r);
-}
+Matrix3<double> inverse_inertia_of(const Body& b);
 /// What turning adds to the displacement per unit force at `arm` (global) from the centre of mass (1/kg).
-inline Matrix3<double> inverse_mass_by_turning(const Body& b, const Vector3<double>& arm) {
-  const Matrix3<double> x = cross_matrix(arm);
-  return x * inverse_inertia_of(b) * transposed(x);
-}
+Matrix3<double> inverse_mass_by_turning(const Body& b, const Vector3<double>& arm);
 /// Displacement per unit force at `arm` (1/kg).
-inline Matrix3<double> inverse_mass_matrix(const Body& b, const Vector3<double>& arm) {
-  if (b.fixed) return diagonal_matrix(0, 0, 0);
-  return diagonal_matrix(1.0 / b.mass, 1.0 / b.mass, 1.0 / b.mass) + inverse_mass_by_turning(b, arm);
-}
+Matrix3<double> inverse_mass_matrix(const Body& b, const Vector3<double>& arm);
 
 /// Turn about a unit vector n (global) per unit torque, and displacement along it at `arm` (global) per unit force.
-inline double inverse_inertia_about(const Body& b, const Vector3<double>& n) {
-  if (b.fixed) return 0.0;
-  const Vector3<double> t = transpose_times(b.motion.rotation, n);
-  return t.x * t.x / b.inertia[0] + t.y * t.y / b.inertia[1] + t.z * t.z / b.inertia[2];
-}
+double inverse_inertia_about(const Body& b, const Vector3<double>& n);
 inline double inverse_mass_at(const Body& b, const Vector3<double>& arm, const Vector3<double>& n) {
   return b.fixed ? 0.0 : 1.0 / b.mass + inverse_inertia_about(b, cross(arm, n));
 }
@@ -53,7 +40,46 @@ inline double largest_inverse_mass(const Body& b, const Vector3<double>& arm) {
 struct JointInverseMass {
   double displacement_a, displacement_b, rotation_a, rotation_b;
 };
-inline JointInverseMass inverse_mass_of(const Joint& j, const Body& a, const Body& b) {
+JointInverseMass inverse_mass_of(const Joint& j, const Body& a, const Body& b);
+
+/// Inverse effective masses or inertias of the two bodies along a coordinate of their joint. The axis of a bend may
+/// point anywhere.
+std::pair<double, double> inverse_mass_along(const Joint& j, const Body& a, const Body& b, Dof dof);
+
+/// The same where a joint's friction acts: the largest in whatever mixture of its directions, as all have the same
+/// spring. A force beside the centre of mass turns a body, so directions may be softer together than each of them
+/// alone. Rotations are times the bearing's radius, which turns sliding into rotation.
+std::pair<double, double> inverse_mass_of_friction(const Joint& j, const Body& a, const Body& b, double radius);
+
+}  // namespace dem::mbd::detail
+
+#if DEM_DEFINES
+
+namespace dem::mbd::detail {
+
+DEM_INLINE Matrix3<double> inverse_inertia_of(const Body& b) {
+  if (b.fixed) return diagonal_matrix(0, 0, 0);
+  const Matrix3<double>& r = b.motion.rotation;
+  return r * diagonal_matrix(1.0 / b.inertia[0], 1.0 / b.inertia[1], 1.0 / b.inertia[2]) * transposed(r);
+}
+
+DEM_INLINE Matrix3<double> inverse_mass_by_turning(const Body& b, const Vector3<double>& arm) {
+  const Matrix3<double> x = cross_matrix(arm);
+  return x * inverse_inertia_of(b) * transposed(x);
+}
+
+DEM_INLINE Matrix3<double> inverse_mass_matrix(const Body& b, const Vector3<double>& arm) {
+  if (b.fixed) return diagonal_matrix(0, 0, 0);
+  return diagonal_matrix(1.0 / b.mass, 1.0 / b.mass, 1.0 / b.mass) + inverse_mass_by_turning(b, arm);
+}
+
+DEM_INLINE double inverse_inertia_about(const Body& b, const Vector3<double>& n) {
+  if (b.fixed) return 0.0;
+  const Vector3<double> t = transpose_times(b.motion.rotation, n);
+  return t.x * t.x / b.inertia[0] + t.y * t.y / b.inertia[1] + t.z * t.z / b.inertia[2];
+}
+
+DEM_INLINE JointInverseMass inverse_mass_of(const Joint& j, const Body& a, const Body& b) {
   const JointTraits& traits = traits_of(j.kind);
   using V = Vector3<double>;
   using M = Matrix3<double>;
@@ -76,9 +102,7 @@ inline JointInverseMass inverse_mass_of(const Joint& j, const Body& a, const Bod
   return {displacement(a), displacement(b), rotation(a), rotation(b)};
 }
 
-/// Inverse effective masses or inertias of the two bodies along a coordinate of their joint. The axis of a bend may
-/// point anywhere.
-inline std::pair<double, double> inverse_mass_along(const Joint& j, const Body& a, const Body& b, Dof dof) {
+DEM_INLINE std::pair<double, double> inverse_mass_along(const Joint& j, const Body& a, const Body& b, Dof dof) {
   if (dof == Dof::bend) {
     return {largest_inverse_inertia(a), largest_inverse_inertia(b)};
   }
@@ -87,10 +111,8 @@ inline std::pair<double, double> inverse_mass_along(const Joint& j, const Body& 
   return {inverse_mass_at(a, q.arm_a, q.axis), inverse_mass_at(b, q.arm_b, q.axis)};
 }
 
-/// The same where a joint's friction acts: the largest in whatever mixture of its directions, as all have the same
-/// spring. A force beside the centre of mass turns a body, so directions may be softer together than each of them
-/// alone. Rotations are times the bearing's radius, which turns sliding into rotation.
-inline std::pair<double, double> inverse_mass_of_friction(const Joint& j, const Body& a, const Body& b, double radius) {
+DEM_INLINE std::pair<double, double> inverse_mass_of_friction(const Joint& j, const Body& a, const Body& b,
+                                                              double radius) {
   const Dofs dofs = friction_dofs(traits_of(j.kind).bearing);
   std::pair<double, double> alone = {0.0, 0.0};
   for (const Dof dof : dofs) {
@@ -117,3 +139,5 @@ inline std::pair<double, double> inverse_mass_of_friction(const Joint& j, const 
 }
 
 }  // namespace dem::mbd::detail
+
+#endif

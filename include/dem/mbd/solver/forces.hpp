@@ -1,5 +1,6 @@
 #pragma once
 
+#include <dem/core/macros.hpp>
 #include <dem/mbd/solver/part_kind.hpp>
 
 namespace dem::mbd {
@@ -10,8 +11,19 @@ inline void clear_forces(Parts& m) {
 
 /// All forces of the machine itself, added to what the bodies already carry (the grains' contact forces). `time` (s) is
 /// that of the state the forces are evaluated at, `dt` (s) the machine's time step; see Evaluation.
-inline void add_forces(Parts& m, double time, double dt, double slip_time = 0.0, bool is_last_stage = false,
-                       bool is_trial = false) {
+void add_forces(Parts& m, double time, double dt, double slip_time = 0.0, bool is_last_stage = false,
+                bool is_trial = false);
+
+/// Turn counts are sums of speed times dt; now and then they are set to the exact angles.
+void settle_turns(Parts& m);
+
+}  // namespace dem::mbd
+
+#if DEM_DEFINES
+
+namespace dem::mbd {
+
+DEM_INLINE void add_forces(Parts& m, double time, double dt, double slip_time, bool is_last_stage, bool is_trial) {
   for (std::size_t i = 0; i < m.bodies.size(); ++i) {
     const Body& b = m.bodies[i];
     m.global_angular_velocity[i] = b.motion.rotation * b.motion.angular_velocity;
@@ -22,8 +34,7 @@ inline void add_forces(Parts& m, double time, double dt, double slip_time = 0.0,
   }
 }
 
-/// Turn counts are sums of speed times dt; now and then they are set to the exact angles.
-inline void settle_turns(Parts& m) {
+DEM_INLINE void settle_turns(Parts& m) {
   for (Joint& j : m.joints) {
     if (!j.turns) continue;
     j.angle_estimate = rotation_of(j, m.bodies[j.a], m.bodies[j.b]).value - j.angle_offset;
@@ -31,3 +42,5 @@ inline void settle_turns(Parts& m) {
 }
 
 }  // namespace dem::mbd
+
+#endif

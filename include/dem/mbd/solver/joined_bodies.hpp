@@ -26,7 +26,15 @@ struct JoinedBodies {
   std::uint32_t machine_of_joint(const Joint& j) const { return std::min(machine_of[j.a], machine_of[j.b]); }
 };
 
-DEM_COLD inline JoinedBodies joined_bodies(const Parts& m) {
+DEM_COLD JoinedBodies joined_bodies(const Parts& m);
+
+}  // namespace dem::mbd
+
+#if DEM_DEFINES
+
+namespace dem::mbd {
+
+DEM_INLINE JoinedBodies joined_bodies(const Parts& m) {
   using V = Vector3<double>;
   const std::size_t n = m.bodies.size();
   std::vector<std::uint32_t> root(n);
@@ -81,3 +89,5 @@ DEM_COLD inline JoinedBodies joined_bodies(const Parts& m) {
 }
 
 }  // namespace dem::mbd
+
+#endif

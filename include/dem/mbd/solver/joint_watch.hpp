@@ -50,36 +50,10 @@ class JointWatch {
 
   JointWatch() = default;
   /// `tolerance` in m, for displacements, and with the size of its machine for rotations; 0: part_of_size of its size.
-  DEM_COLD JointWatch(const Parts& m, double tolerance) {
-    if (!(tolerance >= 0.0)) fail("joint_tolerance is {:g} m, but must not be negative; 0 chooses one", tolerance);
-    const JoinedBodies joined = joined_bodies(m);
-    for (std::size_t i = 0; i < m.joints.size(); ++i) {
-      const Joint& j = m.joints[i];
-      const JointSpec& s = m.joint_specs[i];
-      const JointTraits& traits = traits_of(j.kind);
-      const std::uint32_t k = joined.machine_of_joint(j);
-      if (traits.stiffness != Stiffness::derived || k == JoinedBodies::none) continue;
-      const JoinedBodies::Machine& whole = joined.machines[k];
-      const double allowed = tolerance > 0.0 ? tolerance : part_of_size * whole.size;
-      const bool holds = traits.hold != Hold::nothing && !s.stiffness;
-      const bool aligns = traits.align != Align::nothing && !s.rotational_stiffness;
-      watched_.push_back({static_cast<std::uint32_t>(i), holds ? allowed : unwatched,
-                          aligns ? allowed / whole.size : unwatched, whole.mass});
-    }
-  }
+  DEM_COLD JointWatch(const Parts& m, double tolerance);
 
   /// To be called at the end of each of the machine's own steps.
-  void follow(const Parts& m, double time) {
-    for (const Watched& w : watched_) {
-      const Joint& j = m.joints[w.joint];
-      const double f = 0.5 * w.displacement * j.k, t = 0.5 * w.rotation * j.kr;
-      if (dot(j.force, j.force) > f * f || dot(j.torque, j.torque) > t * t) [[unlikely]]
-        look(m, w, time);
-    }
-    if (--steps_left_ > 0) return;
-    steps_left_ = 64;
-    look_for_folded(m, time);
-  }
+  void follow(const Parts& m, double time);
 
   /// The joint that stood open farthest since the last call; no valid id if none came to half of what is allowed.
   JointOpening take_recent() { return std::exchange(recent_, {}); }
@@ -102,32 +76,11 @@ class JointWatch {
  private:
   static constexpr double unwatched = 1e300;
 
-  DEM_COLD void look(const Parts& m, const Watched& w, double time) {
-    const Joint& j = m.joints[w.joint];
-    const Violation v = violation_of(j, m.bodies[j.a], m.bodies[j.b]);
-    const double share = std::max(v.displacement / w.displacement, v.rotation / w.rotation);
-    if (!(share >= 0.5 && share > recent_.share)) return;
-    recent_ = {JointId(w.joint), v, share, w.displacement, w.rotation, time};
-    if (share > worst_.share) worst_ = recent_;
-  }
+  DEM_COLD void look(const Parts& m, const Watched& w, double time);
 
   /// A joint folds where what it holds turns by so much that its springs no longer pull it back: 45 deg of axes that
   /// should be parallel, or shafts of a universal or constant-velocity joint that come to stand square to each other.
-  void look_for_folded(const Parts& m, double time) {
-    if (folded_.joint.valid()) return;
-    for (std::size_t i = 0; i < m.joints.size(); ++i) {
-      const Joint& j = m.joints[i];
-      const JointTraits& traits = traits_of(j.kind);
-      if (!j.on || traits.stiffness != Stiffness::derived || traits.align == Align::nothing) continue;
-      const Matrix3<double>&A = m.bodies[j.a].motion.rotation, &B = m.bodies[j.b].motion.rotation;
-      const double shafts = dot(A * j.axes_a.z, B * j.axes_b.z);
-      const double around = traits.align == Align::locked ? dot(A * j.axes_a.x, B * j.axes_b.x) : 1.0;
-      if (!(std::min(shafts, around) < (traits.two_axes ? 0.05 : 0.7))) continue;
-      const double angle = std::acos(std::clamp(std::min(shafts, around), -1.0, 1.0));
-      folded_ = {JointId(i), {0.0, angle}, 0.0, 0.0, 0.0, time};
-      return;
-    }
-  }
+  void look_for_folded(const Parts& m, double time);
 
   std::vector<Watched> watched_;
   JointOpening recent_, worst_, folded_;
@@ -135,7 +88,70 @@ class JointWatch {
 };
 
 /// "revolute joint 'x' stood open by 0.067 m and 0.01 rad at t = 0.1 s, allowed are ...".
-DEM_COLD inline std::string in_words(const Parts& m, const JointOpening& o) {
+DEM_COLD std::string in_words(const Parts& m, const JointOpening& o);
+
+}  // namespace dem::mbd
+
+#if DEM_DEFINES
+
+namespace dem::mbd {
+
+DEM_INLINE JointWatch::JointWatch(const Parts& m, double tolerance) {
+  if (!(tolerance >= 0.0)) fail("joint_tolerance is {:g} m, but must not be negative; 0 chooses one", tolerance);
+  const JoinedBodies joined = joined_bodies(m);
+  for (std::size_t i = 0; i < m.joints.size(); ++i) {
+    const Joint& j = m.joints[i];
+    const JointSpec& s = m.joint_specs[i];
+    const JointTraits& traits = traits_of(j.kind);
+    const std::uint32_t k = joined.machine_of_joint(j);
+    if (traits.stiffness != Stiffness::derived || k == JoinedBodies::none) continue;
+    const JoinedBodies::Machine& whole = joined.machines[k];
+    const double allowed = tolerance > 0.0 ? tolerance : part_of_size * whole.size;
+    const bool holds = traits.hold != Hold::nothing && !s.stiffness;
+    const bool aligns = traits.align != Align::nothing && !s.rotational_stiffness;
+    watched_.push_back({static_cast<std::uint32_t>(i), holds ? allowed : unwatched,
+                        aligns ? allowed / whole.size : unwatched, whole.mass});
+  }
+}
+
+DEM_INLINE void JointWatch::follow(const Parts& m, double time) {
+  for (const Watched& w : watched_) {
+    const Joint& j = m.joints[w.joint];
+    const double f = 0.5 * w.displacement * j.k, t = 0.5 * w.rotation * j.kr;
+    if (dot(j.force, j.force) > f * f || dot(j.torque, j.torque) > t * t) [[unlikely]]
+      look(m, w, time);
+  }
+  if (--steps_left_ > 0) return;
+  steps_left_ = 64;
+  look_for_folded(m, time);
+}
+
+DEM_INLINE void JointWatch::look(const Parts& m, const Watched& w, double time) {
+  const Joint& j = m.joints[w.joint];
+  const Violation v = violation_of(j, m.bodies[j.a], m.bodies[j.b]);
+  const double share = std::max(v.displacement / w.displacement, v.rotation / w.rotation);
+  if (!(share >= 0.5 && share > recent_.share)) return;
+  recent_ = {JointId(w.joint), v, share, w.displacement, w.rotation, time};
+  if (share > worst_.share) worst_ = recent_;
+}
+
+DEM_INLINE void JointWatch::look_for_folded(const Parts& m, double time) {
+  if (folded_.joint.valid()) return;
+  for (std::size_t i = 0; i < m.joints.size(); ++i) {
+    const Joint& j = m.joints[i];
+    const JointTraits& traits = traits_of(j.kind);
+    if (!j.on || traits.stiffness != Stiffness::derived || traits.align == Align::nothing) continue;
+    const Matrix3<double>&A = m.bodies[j.a].motion.rotation, &B = m.bodies[j.b].motion.rotation;
+    const double shafts = dot(A * j.axes_a.z, B * j.axes_b.z);
+    const double around = traits.align == Align::locked ? dot(A * j.axes_a.x, B * j.axes_b.x) : 1.0;
+    if (!(std::min(shafts, around) < (traits.two_axes ? 0.05 : 0.7))) continue;
+    const double angle = std::acos(std::clamp(std::min(shafts, around), -1.0, 1.0));
+    folded_ = {JointId(i), {0.0, angle}, 0.0, 0.0, 0.0, time};
+    return;
+  }
+}
+
+DEM_INLINE std::string in_words(const Parts& m, const JointOpening& o) {
   const bool by_turn = o.violation.rotation / o.rotation > o.violation.displacement / o.displacement;
   return dem::text("{} {} by {:.3g} {} at t = {:.6g} s, allowed is {:.3g}", detail::joint_in_words(m, o.joint.index()),
                    by_turn ? "was out of line" : "stood open",
@@ -144,3 +160,5 @@ DEM_COLD inline std::string in_words(const Parts& m, const JointOpening& o) {
 }
 
 }  // namespace dem::mbd
+
+#endif

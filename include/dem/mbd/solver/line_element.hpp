@@ -1,5 +1,6 @@
 #pragma once
 
+#include <dem/core/macros.hpp>
 // What acts along the line between two points, a spring or a ram, also holds them across it where it pulls: as a taut
 // string does, with the tension over the length. And it turns each body towards the line, as weight turns a pendulum.
 // With the stiffness k along the line n, the tension T, the length L and the arm r from a centre of mass,
@@ -20,8 +21,21 @@ struct LineForce {
 
 /// 1/s^2, of a body that is pulled along a unit vector (global) at `arm` from its centre of mass, on its side of a
 /// line.
-inline double pulled_frequency(const Body& b, const Vector3<double>& arm, const Vector3<double>& pull,
-                               const LineForce& line, double length) {
+double pulled_frequency(const Body& b, const Vector3<double>& arm, const Vector3<double>& pull, const LineForce& line,
+                        double length);
+
+/// Lists what acts along the line between two points, whose distance is `q`.
+void add_line_element(std::vector<Element>& list, const Parts& m, const PartKind& kind, std::size_t index,
+                      std::uint32_t a, std::uint32_t b, const Coordinate& q, const LineForce& line);
+
+}  // namespace dem::mbd::detail
+
+#if DEM_DEFINES
+
+namespace dem::mbd::detail {
+
+DEM_INLINE double pulled_frequency(const Body& b, const Vector3<double>& arm, const Vector3<double>& pull,
+                                   const LineForce& line, double length) {
   if (b.fixed) return 0.0;
   const Matrix3<double> along = outer(pull, pull);
   const Matrix3<double> root =
@@ -30,9 +44,8 @@ inline double pulled_frequency(const Body& b, const Vector3<double>& arm, const 
   return largest_eigenvalue(root * inverse_mass_matrix(b, arm) * root) + turning * largest_inverse_inertia(b);
 }
 
-/// Lists what acts along the line between two points, whose distance is `q`.
-inline void add_line_element(std::vector<Element>& list, const Parts& m, const PartKind& kind, std::size_t index,
-                             std::uint32_t a, std::uint32_t b, const Coordinate& q, const LineForce& line) {
+DEM_INLINE void add_line_element(std::vector<Element>& list, const Parts& m, const PartKind& kind, std::size_t index,
+                                 std::uint32_t a, std::uint32_t b, const Coordinate& q, const LineForce& line) {
   const Body &body_a = m.bodies[a], &body_b = m.bodies[b];
   const std::pair w = {inverse_mass_at(body_a, q.arm_a, q.axis), inverse_mass_at(body_b, q.arm_b, q.axis)};
   add_element(list, kind, index, a, b, w, line.stiffness, line.damping);
@@ -43,3 +56,5 @@ inline void add_line_element(std::vector<Element>& list, const Parts& m, const P
 }
 
 }  // namespace dem::mbd::detail
+
+#endif

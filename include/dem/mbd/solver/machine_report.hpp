@@ -27,8 +27,25 @@ struct MachineSteps {
 };
 
 /// Which joint opened beyond joint_tolerance (`tolerance` in m; 0: by default), and what keeps it closed.
-DEM_COLD inline MachineReport report_of_opening(const Parts& m, const JointOpening& worst, double tolerance,
-                                                const MachineSteps& steps, int substeps, double time) {
+DEM_COLD MachineReport report_of_opening(const Parts& m, const JointOpening& worst, double tolerance,
+                                         const MachineSteps& steps, int substeps, double time);
+
+/// What has newly gone wrong with the terrains, in words; empty if nothing.
+DEM_COLD std::string take_terrain_problem(Parts& m);
+
+/// What was changed of what the user gave: velocities at the start, sub-steps (`from` 0: not); and what the terrains
+/// have to say. Empty if nothing.
+DEM_COLD std::string note_of(const Parts& m, const AssemblyReport& assembly, const JointWatch& joints, int from,
+                             int to);
+
+}  // namespace dem::mbd
+
+#if DEM_DEFINES
+
+namespace dem::mbd {
+
+DEM_INLINE MachineReport report_of_opening(const Parts& m, const JointOpening& worst, double tolerance,
+                                           const MachineSteps& steps, int substeps, double time) {
   const int n = substeps_for(substeps, worst.share, 0.5, 1 << 30);  // half: what swings opens twice as far
   if (m.joints[worst.joint.index()].rigid) {
     return {false,
@@ -48,8 +65,7 @@ DEM_COLD inline MachineReport report_of_opening(const Parts& m, const JointOpeni
   return {false, time, {}, worst.joint, text, {}};
 }
 
-/// What has newly gone wrong with the terrains, in words; empty if nothing.
-DEM_COLD inline std::string take_terrain_problem(Parts& m) {
+DEM_INLINE std::string take_terrain_problem(Parts& m) {
   std::string text;
   for (TerrainPart& t : m.terrains) {
     if (const std::string problem = t->take_problem(); !problem.empty()) text += (text.empty() ? "" : "; ") + problem;
@@ -57,10 +73,8 @@ DEM_COLD inline std::string take_terrain_problem(Parts& m) {
   return text;
 }
 
-/// What was changed of what the user gave: velocities at the start, sub-steps (`from` 0: not); and what the terrains
-/// have to say. Empty if nothing.
-DEM_COLD inline std::string note_of(const Parts& m, const AssemblyReport& assembly, const JointWatch& joints, int from,
-                                    int to) {
+DEM_INLINE std::string note_of(const Parts& m, const AssemblyReport& assembly, const JointWatch& joints, int from,
+                               int to) {
   std::string text = assembly.has_changed() ? assembly.text() : "";
   for (const TerrainPart& t : m.terrains) {
     if (const std::string note = t->note(); !note.empty()) text += (text.empty() ? "" : " ") + note;
@@ -75,3 +89,5 @@ DEM_COLD inline std::string note_of(const Parts& m, const AssemblyReport& assemb
 }
 
 }  // namespace dem::mbd
+
+#endif

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <dem/core/macros.hpp>
 #include <dem/mbd/body/add_body.hpp>
 #include <dem/mbd/drive/actuator_part.hpp>
 #include <dem/mbd/drive/clutch_part.hpp>
@@ -39,27 +40,18 @@ class Mechanism {
 
   DEM_COLD BodyId add_body(const BodySpec& spec) { return detail::add_body(parts_, build_body(spec)); }
   /// A body that is given in its own frame: centre of mass and principal axes.
-  DEM_COLD BodyId add_body(const Body& body) {
-    check_body(body);
-    return detail::add_body(parts_, {body, Vec3::Zero(), Mat3::Identity()});
-  }
+  DEM_COLD BodyId add_body(const Body& body);
   DEM_COLD BodyId add_fixed_body(std::string name, const Vec3& position = Vec3::Zero()) {
     return add_body(fixed_body(std::move(name), position));
   }
   /// The fixed body "ground" at the origin, made when first asked for. References to other bodies stay good.
-  DEM_COLD BodyId ground() {
-    if (!ground_.valid()) ground_ = detail::add_body(parts_, build_body(fixed_body("ground", Vec3::Zero())), true);
-    return ground_;
-  }
+  DEM_COLD BodyId ground();
   /// A connection point (section 2.3) at a global point.
   DEM_COLD ConnectionId add_connection(std::string name, BodyId body, const Vec3& at) {
     return detail::add_connection(parts_, std::move(name), body, at);
   }
   /// A connection point at a point of the body's reference frame.
-  DEM_COLD ConnectionId add_connection_in_reference(std::string name, BodyId body, const Vec3& point) {
-    known_body(parts_, body, dem::text("connection point '{}'", name));
-    return add_connection(std::move(name), body, reference_point(body, point));
-  }
+  DEM_COLD ConnectionId add_connection_in_reference(std::string name, BodyId body, const Vec3& point);
   DEM_COLD JointId add_joint(JointSpec spec) { return detail::add_joint(parts_, std::move(spec)); }
   DEM_COLD ActuatorId add_actuator(ActuatorSpec spec) { return detail::add_actuator(parts_, std::move(spec)); }
   DEM_COLD SpringId add_spring(SpringSpec spec) { return detail::add_spring(parts_, std::move(spec)); }
@@ -80,21 +72,9 @@ class Mechanism {
   Body& body(BodyId id) { return known(parts_.bodies, id, "body"); }
   const Body& body(BodyId id) const { return known(parts_.bodies, id, "body"); }
   /// The body of that name. Throws Error if there is none.
-  DEM_COLD BodyId body_named(const std::string& name) const {
-    for (std::size_t i = 0; i < parts_.bodies.size(); ++i) {
-      if (parts_.bodies[i].name == name) return BodyId(i);
-    }
-    std::string names;
-    for (const Body& b : parts_.bodies) names += (names.empty() ? "'" : ", '") + b.name + "'";
-    fail("no body is named '{}'; there {} {}", name, parts_.bodies.size() == 1 ? "is" : "are",
-         names.empty() ? "none" : names);
-  }
+  DEM_COLD BodyId body_named(const std::string& name) const;
   /// Global position (m) of a point of the body's reference frame.
-  Vec3 reference_point(BodyId id, const Vec3& point) const {
-    const BuiltBody& built = known(parts_.built, id, "body");
-    const Matrix3<double> axes = from_eigen(built.reference_axes);
-    return body(id).point(to_eigen(from_eigen(built.reference_origin) + axes * from_eigen(point)));
-  }
+  Vec3 reference_point(BodyId id, const Vec3& point) const;
   /// Origin of the body's reference frame (m, global): with reference_rotation the pose at which a mesh of the body in
   /// the axes of its drawing is shown (io::BodyMesh).
   Vec3 reference_position(BodyId id) const { return reference_point(id, Vec3::Zero()); }
@@ -103,20 +83,11 @@ class Mechanism {
     return to_eigen(body(id).motion.rotation * from_eigen(known(parts_.built, id, "body").reference_axes));
   }
   /// Global velocity (m/s) of a point (m) of the body's reference frame.
-  Vec3 reference_point_velocity(BodyId id, const Vec3& point) const {
-    const Body& b = body(id);
-    return b.point_velocity(to_eigen(to_body(b, from_eigen(reference_point(id, point)))));
-  }
+  Vec3 reference_point_velocity(BodyId id, const Vec3& point) const;
   /// Global velocity (m/s) of the origin of the body's reference frame.
   Vec3 reference_velocity(BodyId id) const { return reference_point_velocity(id, Vec3::Zero()); }
-  Vec3 connection_velocity(ConnectionId id) const {
-    const Connection& c = known(parts_.connections, id, "connection point");
-    return body(c.body).point_velocity(c.point);
-  }
-  Vec3 connection_position(ConnectionId id) const {
-    const Connection& c = known(parts_.connections, id, "connection point");
-    return body(c.body).point(c.point);
-  }
+  Vec3 connection_velocity(ConnectionId id) const;
+  Vec3 connection_position(ConnectionId id) const;
 
   /// A coordinate and its speed, one of dofs_of(the joint's kind), as Dof::slide of a cylindrical joint. Without a name
   /// the joint's own: the rotation (rad, over whole turns) of one that turns, the slide (m) of one that slides, the
@@ -124,21 +95,12 @@ class Mechanism {
   double coordinate(JointId id, Dof dof = Dof::own) const { return coordinate_now(parts_, id, dof).value; }
   double speed(JointId id, Dof dof = Dof::own) const { return coordinate_now(parts_, id, dof).speed; }
   /// What a joint would be strained by (m, rad) if it were switched on without taking the bodies as they are.
-  Violation gap(JointId id) const {
-    const Joint& j = joint(id);
-    return gap_of(j, parts_.bodies[j.a], parts_.bodies[j.b]);
-  }
+  Violation gap(JointId id) const;
   /// How far (m, rad) a joint is from holding what it should; 0 while it is switched off.
-  Violation violation(JointId id) const {
-    const Joint& j = joint(id);
-    return violation_of(j, parts_.bodies[j.a], parts_.bodies[j.b]);
-  }
+  Violation violation(JointId id) const;
   /// Force (N) and torque (N m, about the joint's point) that the joint puts on its body b: its springs and dampers,
   /// limits and friction. Actuators, couplings and drives that act on its coordinates report their own.
-  Wrench reaction(JointId id) const {
-    joint(id);
-    return reaction_of(parts_, id.index());
-  }
+  Wrench reaction(JointId id) const;
   const Joint& joint(JointId id) const { return known(parts_.joints, id, "joint"); }
   /// Limits of a joint's coordinate, or its friction; nullptr if it has none.
   const JointLimitState* limits(JointId id, Dof dof = Dof::own) const { return limits_of(parts_, id, dof); }
@@ -237,3 +199,72 @@ class Mechanism {
 };
 
 }  // namespace dem::mbd
+
+#if DEM_DEFINES
+
+namespace dem::mbd {
+
+DEM_INLINE BodyId Mechanism::add_body(const Body& body) {
+  check_body(body);
+  return detail::add_body(parts_, {body, Vec3::Zero(), Mat3::Identity()});
+}
+
+DEM_INLINE BodyId Mechanism::ground() {
+  if (!ground_.valid()) ground_ = detail::add_body(parts_, build_body(fixed_body("ground", Vec3::Zero())), true);
+  return ground_;
+}
+
+DEM_INLINE ConnectionId Mechanism::add_connection_in_reference(std::string name, BodyId body, const Vec3& point) {
+  known_body(parts_, body, dem::text("connection point '{}'", name));
+  return add_connection(std::move(name), body, reference_point(body, point));
+}
+
+DEM_INLINE BodyId Mechanism::body_named(const std::string& name) const {
+  for (std::size_t i = 0; i < parts_.bodies.size(); ++i) {
+    if (parts_.bodies[i].name == name) return BodyId(i);
+  }
+  std::string names;
+  for (const Body& b : parts_.bodies) names += (names.empty() ? "'" : ", '") + b.name + "'";
+  fail("no body is named '{}'; there {} {}", name, parts_.bodies.size() == 1 ? "is" : "are",
+       names.empty() ? "none" : names);
+}
+
+DEM_INLINE Vec3 Mechanism::reference_point(BodyId id, const Vec3& point) const {
+  const BuiltBody& built = known(parts_.built, id, "body");
+  const Matrix3<double> axes = from_eigen(built.reference_axes);
+  return body(id).point(to_eigen(from_eigen(built.reference_origin) + axes * from_eigen(point)));
+}
+
+DEM_INLINE Vec3 Mechanism::reference_point_velocity(BodyId id, const Vec3& point) const {
+  const Body& b = body(id);
+  return b.point_velocity(to_eigen(to_body(b, from_eigen(reference_point(id, point)))));
+}
+
+DEM_INLINE Vec3 Mechanism::connection_velocity(ConnectionId id) const {
+  const Connection& c = known(parts_.connections, id, "connection point");
+  return body(c.body).point_velocity(c.point);
+}
+
+DEM_INLINE Vec3 Mechanism::connection_position(ConnectionId id) const {
+  const Connection& c = known(parts_.connections, id, "connection point");
+  return body(c.body).point(c.point);
+}
+
+DEM_INLINE Violation Mechanism::gap(JointId id) const {
+  const Joint& j = joint(id);
+  return gap_of(j, parts_.bodies[j.a], parts_.bodies[j.b]);
+}
+
+DEM_INLINE Violation Mechanism::violation(JointId id) const {
+  const Joint& j = joint(id);
+  return violation_of(j, parts_.bodies[j.a], parts_.bodies[j.b]);
+}
+
+DEM_INLINE Wrench Mechanism::reaction(JointId id) const {
+  joint(id);
+  return reaction_of(parts_, id.index());
+}
+
+}  // namespace dem::mbd
+
+#endif

@@ -12,7 +12,21 @@ namespace dem::mbd {
 /// What is hardly meant as it was given: joints that are there twice, coordinates that two drives hold, actuators that
 /// do nothing. In words; empty if there is nothing odd. Looked for where a machine is laid out, and told as it was
 /// then.
-DEM_COLD inline std::string odd_parts(const Parts& m) {
+DEM_COLD std::string odd_parts(const Parts& m);
+
+/// The free bodies that no joint, spring, drive or load is at.
+DEM_COLD std::vector<std::uint32_t> loose_bodies(const Parts& m);
+
+/// That the first of some bodies falls; empty if there is none.
+DEM_COLD std::string note_of_loose(const Parts& m, const std::vector<std::uint32_t>& loose);
+
+}  // namespace dem::mbd
+
+#if DEM_DEFINES
+
+namespace dem::mbd {
+
+DEM_INLINE std::string odd_parts(const Parts& m) {
   std::string text;
   const auto tell = [&](const std::string& sentence) { text += (text.empty() ? "" : " ") + sentence; };
   const auto are_one = [](const Vector3<double>& p, const Vector3<double>& q) { return norm(p - q) < 1e-6; };
@@ -64,8 +78,7 @@ DEM_COLD inline std::string odd_parts(const Parts& m) {
   return text;
 }
 
-/// The free bodies that no joint, spring, drive or load is at.
-DEM_COLD inline std::vector<std::uint32_t> loose_bodies(const Parts& m) {
+DEM_INLINE std::vector<std::uint32_t> loose_bodies(const Parts& m) {
   std::vector<char> held(m.bodies.size());
   const auto hold = [&](BodyId id) {
     if (id.valid()) held[id.index()] = 1;
@@ -90,11 +103,12 @@ DEM_COLD inline std::vector<std::uint32_t> loose_bodies(const Parts& m) {
   return loose;
 }
 
-/// That the first of some bodies falls; empty if there is none.
-DEM_COLD inline std::string note_of_loose(const Parts& m, const std::vector<std::uint32_t>& loose) {
+DEM_INLINE std::string note_of_loose(const Parts& m, const std::vector<std::uint32_t>& loose) {
   if (loose.empty()) return {};
   return dem::text("Nothing holds body '{}'{}: it falls freely.", m.bodies[loose.front()].name,
                    loose.size() > 1 ? dem::text(" and {} more", loose.size() - 1) : "");
 }
 
 }  // namespace dem::mbd
+
+#endif

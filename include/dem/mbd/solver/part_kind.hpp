@@ -1,5 +1,6 @@
 #pragma once
 
+#include <dem/core/macros.hpp>
 // What the solver asks of a kind of part (joints, springs, actuators ...): its forces and its stiffness. Each kind
 // answers in a file of its own, <kind>_part.hpp, and the solver calls the kinds that a machine has. So a program has
 // the code of the parts that it adds, and of no others.
@@ -73,46 +74,22 @@ struct PartKind {
 };
 
 /// Lets the solver call a kind of part; to be called with each part that is added.
-inline void use(Parts& parts, const PartKind& kind) {
-  require_no_step(parts);
-  auto at = parts.kinds.begin();
-  while (at != parts.kinds.end() && (*at)->rank < kind.rank) ++at;
-  if (at == parts.kinds.end() || *at != &kind) parts.kinds.insert(at, &kind);
-}
+void use(Parts& parts, const PartKind& kind);
 
 /// Every element with its present stiffness.
-inline std::vector<Element> elements_of(const Parts& parts) {
-  std::vector<Element> list;
-  for (const PartKind* kind : parts.kinds) {
-    if (kind->list_elements) kind->list_elements(parts, list);
-  }
-  return list;
-}
+std::vector<Element> elements_of(const Parts& parts);
 
 /// Lists an element between a joint's two bodies, of stiffness k (N/m) and damping c (N s/m).
-inline void add_element(std::vector<Element>& list, const PartKind& kind, std::size_t index, std::uint32_t a,
-                        std::uint32_t b, const std::pair<double, double>& w, double k, double c) {
-  list.push_back({&kind, index, {{a, k * w.first, c * w.first}, {b, k * w.second, c * w.second}}});
-}
-inline void add_element(std::vector<Element>& list, const PartKind& kind, std::size_t index, const Joint& j,
-                        const std::pair<double, double>& w, double k, double c) {
-  add_element(list, kind, index, j.a, j.b, w, k, c);
-}
+void add_element(std::vector<Element>& list, const PartKind& kind, std::size_t index, std::uint32_t a, std::uint32_t b,
+                 const std::pair<double, double>& w, double k, double c);
+void add_element(std::vector<Element>& list, const PartKind& kind, std::size_t index, const Joint& j,
+                 const std::pair<double, double>& w, double k, double c);
 
 /// A joint as reports call it.
-inline std::string joint_in_words(const Parts& parts, std::size_t joint) {
-  const JointSpec& s = parts.joint_specs[joint];
-  return name_of(s.kind) + (" '" + s.name + "'");
-}
+std::string joint_in_words(const Parts& parts, std::size_t joint);
 
 /// Number of elements on each body: the shares into which its mass is cut. Counts parts, whatever their stiffness is.
-inline std::vector<double> shares_of(const Parts& parts, const std::vector<Element>& elements) {
-  std::vector<double> n(parts.bodies.size(), 0.0);
-  for (const Element& e : elements) {
-    for (const Element::Side& s : e.sides) n[s.body] += 1.0;
-  }
-  return n;
-}
+std::vector<double> shares_of(const Parts& parts, const std::vector<Element>& elements);
 
 /// Stiffness and damping that are derived for a time step.
 struct Derivation {
@@ -133,10 +110,58 @@ struct Derivation {
 };
 
 /// Lowers a value to what is allowed, but not for rounding alone. `worst`: how many times too large the worst one was.
-inline void lower_to(double& value, double allowed, double& worst) {
+void lower_to(double& value, double allowed, double& worst);
+
+}  // namespace dem::mbd::detail
+
+#if DEM_DEFINES
+
+namespace dem::mbd::detail {
+
+DEM_INLINE void use(Parts& parts, const PartKind& kind) {
+  require_no_step(parts);
+  auto at = parts.kinds.begin();
+  while (at != parts.kinds.end() && (*at)->rank < kind.rank) ++at;
+  if (at == parts.kinds.end() || *at != &kind) parts.kinds.insert(at, &kind);
+}
+
+DEM_INLINE std::vector<Element> elements_of(const Parts& parts) {
+  std::vector<Element> list;
+  for (const PartKind* kind : parts.kinds) {
+    if (kind->list_elements) kind->list_elements(parts, list);
+  }
+  return list;
+}
+
+DEM_INLINE void add_element(std::vector<Element>& list, const PartKind& kind, std::size_t index, std::uint32_t a,
+                            std::uint32_t b, const std::pair<double, double>& w, double k, double c) {
+  list.push_back({&kind, index, {{a, k * w.first, c * w.first}, {b, k * w.second, c * w.second}}});
+}
+
+DEM_INLINE void add_element(std::vector<Element>& list, const PartKind& kind, std::size_t index, const Joint& j,
+                            const std::pair<double, double>& w, double k, double c) {
+  add_element(list, kind, index, j.a, j.b, w, k, c);
+}
+
+DEM_INLINE std::string joint_in_words(const Parts& parts, std::size_t joint) {
+  const JointSpec& s = parts.joint_specs[joint];
+  return name_of(s.kind) + (" '" + s.name + "'");
+}
+
+DEM_INLINE std::vector<double> shares_of(const Parts& parts, const std::vector<Element>& elements) {
+  std::vector<double> n(parts.bodies.size(), 0.0);
+  for (const Element& e : elements) {
+    for (const Element::Side& s : e.sides) n[s.body] += 1.0;
+  }
+  return n;
+}
+
+DEM_INLINE void lower_to(double& value, double allowed, double& worst) {
   if (!(value > 1.001 * allowed)) return;
   worst = std::max(worst, value / allowed);
   value = allowed;
 }
 
 }  // namespace dem::mbd::detail
+
+#endif

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <dem/core/known.hpp>
+#include <dem/core/macros.hpp>
 #include <dem/mbd/body/body_spec.hpp>
 #include <dem/mbd/drive/actuator.hpp>
 #include <dem/mbd/drive/clutch.hpp>
@@ -52,19 +53,13 @@ struct Connection {
 class BodyList : public std::vector<Body> {
  public:
   BodyList() = default;
-  BodyList(const BodyList& o) : std::vector<Body>() {
-    reserve(o.size() + 1);
-    insert(end(), o.begin(), o.end());
-  }
+  BodyList(const BodyList& o);
   BodyList(BodyList&&) noexcept = default;
   BodyList& operator=(const BodyList& o) { return *this = BodyList(o); }
   BodyList& operator=(BodyList&&) noexcept = default;
   ~BodyList() = default;
 
-  void add(const Body& body) {
-    if (capacity() < size() + 2) reserve(2 * size() + 2);
-    push_back(body);
-  }
+  void add(const Body& body);
   void add_ground(const Body& body) { push_back(body); }  ///< moves no other body
 };
 
@@ -124,16 +119,7 @@ struct Parts {
 };
 
 /// What a joint puts on its body b, about the joint's point: its springs and dampers, its limits and its friction.
-inline Wrench reaction_of(const Parts& parts, std::size_t joint) {
-  Wrench w = {parts.joints[joint].force, parts.joints[joint].torque};
-  for (const JointFrictionState& e : parts.friction) {
-    if (e.joint == joint) w = w + Wrench{e.force, e.torque};
-  }
-  for (const JointLimitState& e : parts.limits) {
-    if (e.joint == joint) (is_rotation(e.dof) ? w.torque : w.force) += e.force * e.axis;
-  }
-  return w;
-}
+Wrench reaction_of(const Parts& parts, std::size_t joint);
 
 /// Reports and recorders tell parts by their names: one that has none gets that of its kind (`one`) and its number, one
 /// that another of its kind has is refused. `name_of(item)` is the name of an item.
@@ -146,44 +132,15 @@ void settle_name(std::string& name, const Items& items, const char* one, const c
 }
 
 /// The body of an id, or an Error that names who asked for it.
-inline const Body& known_body(const Parts& parts, BodyId id, const std::string& asker) {
-  if (!id.valid()) fail("{} names a body that was never added; use the BodyId that add_body returned", asker);
-  if (id.index() >= parts.bodies.size()) {
-    fail("{} names body {}, but the machine has {} (0 to {}); use the BodyId that add_body returned", asker, id.index(),
-         parts.bodies.size(), static_cast<long>(parts.bodies.size()) - 1);
-  }
-  return parts.bodies[id.index()];
-}
+const Body& known_body(const Parts& parts, BodyId id, const std::string& asker);
 
-inline const Joint& known_joint(const Parts& parts, JointId id, const std::string& asker) {
-  if (!id.valid() || id.index() >= parts.joints.size()) {
-    fail("{} names a joint that the machine does not have (it has {}); use the JointId that add_joint returned", asker,
-         parts.joints.size());
-  }
-  return parts.joints[id.index()];
-}
+const Joint& known_joint(const Parts& parts, JointId id, const std::string& asker);
 
 /// A coordinate of a joint and its speed, now. Throws Error unless joints of this kind have it.
-inline Coordinate coordinate_now(const Parts& parts, JointId id, Dof dof) {
-  const Joint& j = known(parts.joints, id, "joint");
-  const std::string& name = parts.joint_specs[id.index()].name;
-  return coordinate_of(j, parts.bodies[j.a], parts.bodies[j.b],
-                       known_dof(j.kind, dof, "a coordinate of '" + name + "'"));
-}
+Coordinate coordinate_now(const Parts& parts, JointId id, Dof dof);
 /// The limits of a joint's coordinate, or its friction; nullptr if it has none.
-inline const JointLimitState* limits_of(const Parts& parts, JointId id, Dof dof) {
-  dof = resolved(known(parts.joints, id, "joint").kind, dof);
-  for (const JointLimitState& e : parts.limits) {
-    if (e.joint == id.value && e.dof == dof) return &e;
-  }
-  return nullptr;
-}
-inline const JointFrictionState* friction_of(const Parts& parts, JointId id) {
-  for (const JointFrictionState& e : parts.friction) {
-    if (e.joint == id.value) return &e;
-  }
-  return nullptr;
-}
+const JointLimitState* limits_of(const Parts& parts, JointId id, Dof dof);
+const JointFrictionState* friction_of(const Parts& parts, JointId id);
 
 /// While it lives, forces are found and bodies move: nothing can be added.
 class Stepping {
@@ -199,13 +156,7 @@ class Stepping {
 };
 
 /// Throws Error where a step is under way: lists of parts that are being gone through must stay what they are.
-inline void require_no_step(const Parts& parts) {
-  if (parts.is_stepping) {
-    fail(
-        "a part is added to a machine within a step, from a load, a signal or a law; add it between steps, or in what "
-        "run() calls after each");
-  }
-}
+void require_no_step(const Parts& parts);
 
 /// Keeps a part; structural ones make what was derived and initialised before out of date.
 template <class Id, class Part>
@@ -223,30 +174,14 @@ inline Vector3<double> to_body(const Body& b, const Vector3<double>& global) {
 }
 
 /// A point (m) that was given as `what`, or an Error if it is nowhere.
-inline Vector3<double> finite_point(const Vec3& p, const std::string& what) {
-  if (!is_finite(from_eigen(p))) fail("{} is ({:g}, {:g}, {:g}), but must be finite", what, p.x(), p.y(), p.z());
-  return from_eigen(p);
-}
+Vector3<double> finite_point(const Vec3& p, const std::string& what);
 
-inline Vector3<double> unit(const Vector3<double>& v, const std::string& asker) {
-  const double length = norm(v);
-  if (!(length > 1e-12) || !std::isfinite(length)) {
-    fail("the direction of {} is ({:g}, {:g}, {:g}), but needs a length; give any vector along it", asker, v.x, v.y,
-         v.z);
-  }
-  return v / length;
-}
+Vector3<double> unit(const Vector3<double>& v, const std::string& asker);
 /// A direction that was given by `asker`, of length 1.
 inline Vector3<double> unit(const Vec3& v, const std::string& asker) { return unit(from_eigen(v), asker); }
 
 /// Throws Error for an element whose force could move neither of the bodies that it acts on.
-DEM_COLD inline void require_one_moves(const Body& a, const Body& b, const std::string& who) {
-  if (!a.is_fixed_for_good() || !b.is_fixed_for_good()) return;
-  fail(
-      "{} acts on {}{}, which {} fixed and has no mass, so it would move nothing; make a body with a mass (box_body), "
-      "on a prismatic joint if it is to slide along one direction",
-      who, "body '" + a.name + "'", &a == &b ? "" : " and body '" + b.name + "'", &a == &b ? "is" : "are each");
-}
+DEM_COLD void require_one_moves(const Body& a, const Body& b, const std::string& who);
 
 /// Checks the two ends of an element between points and puts the points into body frames.
 template <class Part, class Spec>
@@ -267,3 +202,101 @@ void attach_points(const Parts& parts, Part& part, const Spec& s, const std::str
 }
 
 }  // namespace dem::mbd
+
+#if DEM_DEFINES
+
+namespace dem::mbd {
+
+DEM_INLINE BodyList::BodyList(const BodyList& o) : std::vector<Body>() {
+  reserve(o.size() + 1);
+  insert(end(), o.begin(), o.end());
+}
+
+DEM_INLINE void BodyList::add(const Body& body) {
+  if (capacity() < size() + 2) reserve(2 * size() + 2);
+  push_back(body);
+}
+
+DEM_INLINE Wrench reaction_of(const Parts& parts, std::size_t joint) {
+  Wrench w = {parts.joints[joint].force, parts.joints[joint].torque};
+  for (const JointFrictionState& e : parts.friction) {
+    if (e.joint == joint) w = w + Wrench{e.force, e.torque};
+  }
+  for (const JointLimitState& e : parts.limits) {
+    if (e.joint == joint) (is_rotation(e.dof) ? w.torque : w.force) += e.force * e.axis;
+  }
+  return w;
+}
+
+DEM_INLINE const Body& known_body(const Parts& parts, BodyId id, const std::string& asker) {
+  if (!id.valid()) fail("{} names a body that was never added; use the BodyId that add_body returned", asker);
+  if (id.index() >= parts.bodies.size()) {
+    fail("{} names body {}, but the machine has {} (0 to {}); use the BodyId that add_body returned", asker, id.index(),
+         parts.bodies.size(), static_cast<long>(parts.bodies.size()) - 1);
+  }
+  return parts.bodies[id.index()];
+}
+
+DEM_INLINE const Joint& known_joint(const Parts& parts, JointId id, const std::string& asker) {
+  if (!id.valid() || id.index() >= parts.joints.size()) {
+    fail("{} names a joint that the machine does not have (it has {}); use the JointId that add_joint returned", asker,
+         parts.joints.size());
+  }
+  return parts.joints[id.index()];
+}
+
+DEM_INLINE Coordinate coordinate_now(const Parts& parts, JointId id, Dof dof) {
+  const Joint& j = known(parts.joints, id, "joint");
+  const std::string& name = parts.joint_specs[id.index()].name;
+  return coordinate_of(j, parts.bodies[j.a], parts.bodies[j.b],
+                       known_dof(j.kind, dof, "a coordinate of '" + name + "'"));
+}
+
+DEM_INLINE const JointLimitState* limits_of(const Parts& parts, JointId id, Dof dof) {
+  dof = resolved(known(parts.joints, id, "joint").kind, dof);
+  for (const JointLimitState& e : parts.limits) {
+    if (e.joint == id.value && e.dof == dof) return &e;
+  }
+  return nullptr;
+}
+
+DEM_INLINE const JointFrictionState* friction_of(const Parts& parts, JointId id) {
+  for (const JointFrictionState& e : parts.friction) {
+    if (e.joint == id.value) return &e;
+  }
+  return nullptr;
+}
+
+DEM_INLINE void require_no_step(const Parts& parts) {
+  if (parts.is_stepping) {
+    fail(
+        "a part is added to a machine within a step, from a load, a signal or a law; add it between steps, or in what "
+        "run() calls after each");
+  }
+}
+
+DEM_INLINE Vector3<double> finite_point(const Vec3& p, const std::string& what) {
+  if (!is_finite(from_eigen(p))) fail("{} is ({:g}, {:g}, {:g}), but must be finite", what, p.x(), p.y(), p.z());
+  return from_eigen(p);
+}
+
+DEM_INLINE Vector3<double> unit(const Vector3<double>& v, const std::string& asker) {
+  const double length = norm(v);
+  if (!(length > 1e-12) || !std::isfinite(length)) {
+    fail("the direction of {} is ({:g}, {:g}, {:g}), but needs a length; give any vector along it", asker, v.x, v.y,
+         v.z);
+  }
+  return v / length;
+}
+
+DEM_INLINE void require_one_moves(const Body& a, const Body& b, const std::string& who) {
+  if (!a.is_fixed_for_good() || !b.is_fixed_for_good()) return;
+  fail(
+      "{} acts on {}{}, which {} fixed and has no mass, so it would move nothing; make a body with a mass (box_body), "
+      "on a prismatic joint if it is to slide along one direction",
+      who, "body '" + a.name + "'", &a == &b ? "" : " and body '" + b.name + "'", &a == &b ? "is" : "are each");
+}
+
+}  // namespace dem::mbd
+
+#endif

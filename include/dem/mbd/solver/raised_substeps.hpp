@@ -1,5 +1,6 @@
 #pragma once
 
+#include <dem/core/macros.hpp>
 #include <dem/mbd/solver/joint_watch.hpp>
 
 #include <algorithm>
@@ -13,19 +14,12 @@ namespace dem::mbd {
 class RaisedSubsteps {
  public:
   /// They are raised from n to m.
-  void raise(int n, int m) {
-    if (to_ != n) from_ = n;
-    to_ = m;
-  }
+  void raise(int n, int m);
   /// How many were given, if `now` is what they were raised to; else 0.
   int given(int now) const { return to_ == now && to_ > from_ ? from_ : 0; }
 
   /// A joint stands open with as many as there may be. Each joint is told once.
-  void stands_open(const JointOpening& joint) {
-    if (std::find(known_.begin(), known_.end(), joint.joint) != known_.end()) return;
-    known_.push_back(joint.joint);
-    newly_opened_ = joint;
-  }
+  void stands_open(const JointOpening& joint);
   JointOpening take_newly_opened() { return std::exchange(newly_opened_, {}); }
 
   template <class V>
@@ -40,3 +34,22 @@ class RaisedSubsteps {
 };
 
 }  // namespace dem::mbd
+
+#if DEM_DEFINES
+
+namespace dem::mbd {
+
+DEM_INLINE void RaisedSubsteps::raise(int n, int m) {
+  if (to_ != n) from_ = n;
+  to_ = m;
+}
+
+DEM_INLINE void RaisedSubsteps::stands_open(const JointOpening& joint) {
+  if (std::find(known_.begin(), known_.end(), joint.joint) != known_.end()) return;
+  known_.push_back(joint.joint);
+  newly_opened_ = joint;
+}
+
+}  // namespace dem::mbd
+
+#endif

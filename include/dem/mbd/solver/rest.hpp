@@ -235,34 +235,13 @@ class RestSearch {
 };
 
 /// Throws Error for what a search for rest cannot hold, and stops all bodies that are not fixed.
-DEM_COLD inline void stop_for_rest(Parts& parts) {
-  for (const PrescribedMotion& p : parts.motions) {
-    if (p.spec.on && !parts.bodies[p.spec.body.index()].fixed) {
-      fail(
-          "find_rest knows nothing of prescribed motion '{}'; switch it off (switch_on(motion, false)) and on again "
-          "afterwards, or hold the coordinate with an actuator",
-          p.spec.name);
-    }
-  }
-  for (Body& b : parts.bodies) {
-    if (!b.fixed) b.motion.velocity = b.motion.angular_velocity = {0, 0, 0};
-  }
-}
+DEM_COLD void stop_for_rest(Parts& parts);
 
 /// While it lives, fixed bodies have no speed: belts, which run on afterwards.
 class StandStill {
  public:
-  explicit StandStill(Parts& parts) : m_(parts) {
-    for (Body& b : parts.bodies) {
-      was_.push_back(b.motion);
-      if (b.fixed) b.motion.velocity = b.motion.angular_velocity = {0, 0, 0};
-    }
-  }
-  ~StandStill() {
-    for (std::size_t i = 0; i < was_.size(); ++i) {
-      if (m_.bodies[i].fixed) m_.bodies[i].motion = was_[i];
-    }
-  }
+  explicit StandStill(Parts& parts);
+  ~StandStill();
   StandStill(const StandStill&) = delete;
   StandStill& operator=(const StandStill&) = delete;
 
@@ -273,24 +252,7 @@ class StandStill {
 
 /// What is held exactly gets springs for the search, so stiff that they hardly give way. All else (limits, brakes,
 /// friction) keeps the stiffness that it has in steps of dt (s): it is what the run goes on with.
-DEM_COLD inline void put_springs_on(Parts& parts, double dt) {
-  constexpr double stiffer = 100.0;
-  std::vector<Joint*> joints;
-  std::vector<Coupling*> couplings;
-  for (Joint& j : parts.joints) {
-    if (j.rigid) joints.push_back(&j);
-    j.rigid = false;
-  }
-  for (Coupling& g : parts.couplings) {
-    if (g.k == 0.0 && g.c == 0.0) couplings.push_back(&g);
-  }
-  derive_stiffness(parts, dt);
-  for (Joint* j : joints) {
-    j->k *= stiffer;
-    j->kr *= stiffer;
-  }
-  for (Coupling* g : couplings) g->k *= stiffer;
-}
+DEM_COLD void put_springs_on(Parts& parts, double dt);
 
 /// Searches, with joints as they are in steps of dt (s).
 template <class Joints, class PutForces>
@@ -332,3 +294,57 @@ RestReport find_rest(Machine<I, Joints>& machine, double dt, const RestOptions& 
 }
 
 }  // namespace dem::mbd
+
+#if DEM_DEFINES
+
+namespace dem::mbd::detail {
+
+DEM_INLINE void stop_for_rest(Parts& parts) {
+  for (const PrescribedMotion& p : parts.motions) {
+    if (p.spec.on && !parts.bodies[p.spec.body.index()].fixed) {
+      fail(
+          "find_rest knows nothing of prescribed motion '{}'; switch it off (switch_on(motion, false)) and on again "
+          "afterwards, or hold the coordinate with an actuator",
+          p.spec.name);
+    }
+  }
+  for (Body& b : parts.bodies) {
+    if (!b.fixed) b.motion.velocity = b.motion.angular_velocity = {0, 0, 0};
+  }
+}
+
+DEM_INLINE StandStill::StandStill(Parts& parts) : m_(parts) {
+  for (Body& b : parts.bodies) {
+    was_.push_back(b.motion);
+    if (b.fixed) b.motion.velocity = b.motion.angular_velocity = {0, 0, 0};
+  }
+}
+
+DEM_INLINE StandStill::~StandStill() {
+  for (std::size_t i = 0; i < was_.size(); ++i) {
+    if (m_.bodies[i].fixed) m_.bodies[i].motion = was_[i];
+  }
+}
+
+DEM_INLINE void put_springs_on(Parts& parts, double dt) {
+  constexpr double stiffer = 100.0;
+  std::vector<Joint*> joints;
+  std::vector<Coupling*> couplings;
+  for (Joint& j : parts.joints) {
+    if (j.rigid) joints.push_back(&j);
+    j.rigid = false;
+  }
+  for (Coupling& g : parts.couplings) {
+    if (g.k == 0.0 && g.c == 0.0) couplings.push_back(&g);
+  }
+  derive_stiffness(parts, dt);
+  for (Joint* j : joints) {
+    j->k *= stiffer;
+    j->kr *= stiffer;
+  }
+  for (Coupling* g : couplings) g->k *= stiffer;
+}
+
+}  // namespace dem::mbd::detail
+
+#endif

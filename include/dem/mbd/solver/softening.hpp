@@ -1,5 +1,6 @@
 #pragma once
 
+#include <dem/core/macros.hpp>
 #include <dem/mbd/solver/derive.hpp>
 
 #include <algorithm>
@@ -25,12 +26,7 @@ class Softening {
   }
 
   /// To be called at the end of each step.
-  void follow(Parts& m) {
-    if (derivation_.shares.empty() || --steps_left_ > 0) return;
-    const double excess = lower(m);
-    interval_ = excess > 1.2 ? 1 : excess > 1.05 ? interval_ : std::min(2 * interval_, longest_interval);
-    steps_left_ = interval_;
-  }
+  void follow(Parts& m);
 
   template <class V>
   void fields(V& v) {
@@ -42,16 +38,33 @@ class Softening {
   static constexpr int longest_interval = 64;  // steps
 
   /// Returns how many times too stiff the worst one was; 0 if no pose changes anything.
-  double lower(Parts& m) const {
-    double worst = 0.0;
-    for (const detail::PartKind* kind : m.kinds) {
-      if (kind->soften) worst = std::max(worst, kind->soften(m, derivation_));
-    }
-    return worst;
-  }
+  double lower(Parts& m) const;
 
   detail::Derivation derivation_;
   int interval_ = 1, steps_left_ = 1;
 };
 
 }  // namespace dem::mbd
+
+#if DEM_DEFINES
+
+namespace dem::mbd {
+
+DEM_INLINE void Softening::follow(Parts& m) {
+  if (derivation_.shares.empty() || --steps_left_ > 0) return;
+  const double excess = lower(m);
+  interval_ = excess > 1.2 ? 1 : excess > 1.05 ? interval_ : std::min(2 * interval_, longest_interval);
+  steps_left_ = interval_;
+}
+
+DEM_INLINE double Softening::lower(Parts& m) const {
+  double worst = 0.0;
+  for (const detail::PartKind* kind : m.kinds) {
+    if (kind->soften) worst = std::max(worst, kind->soften(m, derivation_));
+  }
+  return worst;
+}
+
+}  // namespace dem::mbd
+
+#endif

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <dem/core/macros.hpp>
 #include <dem/core/stable_time_step.hpp>
 #include <dem/mbd/solver/derive.hpp>
 #include <dem/mbd/solver/part_kind.hpp>
@@ -54,59 +55,12 @@ struct ElementBounds {
 };
 
 /// One for each element; a part without any stiffness limits nothing.
-inline std::vector<ElementBounds> bounds_of(const Parts& m, const std::vector<Element>& elements) {
-  const std::vector<double> n = shares_of(m, elements);
-  std::vector<double> k(m.bodies.size(), 0.0), c(m.bodies.size(), 0.0);
-  for (const Element& e : elements) {
-    for (const Element::Side& s : e.sides) {
-      k[s.body] += s.k;
-      c[s.body] += s.c;
-    }
-  }
-  std::vector<ElementBounds> bounds(elements.size());
-  for (std::size_t i = 0; i < elements.size(); ++i) {
-    ElementBounds b;
-    double own = 0.0;
-    for (const Element::Side& s : elements[i].sides) {
-      b.k[0] += n[s.body] * s.k;
-      b.c[0] += n[s.body] * s.c;
-      b.k[1] += k[s.body];
-      b.c[1] += c[s.body];
-      own += s.k + s.c;
-    }
-    if (own > 0.0) bounds[i] = b;
-  }
-  return bounds;
-}
+std::vector<ElementBounds> bounds_of(const Parts& m, const std::vector<Element>& elements);
 
 /// The part to blame where the parts on one of an element's bodies are too stiff together: of those whose stiffness or
 /// damping was given the one that adds most, if it adds a tenth or more, as what is derived follows the step. Else the
 /// element itself.
-DEM_COLD inline std::string culprit(const Parts& m, const std::vector<Element>& elements, std::size_t worst,
-                                    double dt) {
-  const auto added = [&](const std::vector<Element>& all, std::size_t e, std::uint32_t body) {
-    double sum = 0.0;
-    for (const Element::Side& s : all[e].sides) sum += s.body == body ? s.k * dt * dt + 2.0 * s.c * dt : 0.0;
-    return sum;
-  };
-  const std::vector<Element> given = elements_of(without_derived(m));  // the same, in the same order
-  std::size_t blamed = worst;
-  double most = 0.0, total = 0.0;
-  for (const Element::Side& s : elements[worst].sides) {
-    double on_body = 0.0;
-    for (std::size_t e = 0; e < elements.size(); ++e) on_body += added(elements, e, s.body);
-    total = std::max(total, on_body);
-    for (std::size_t e = 0; e < given.size(); ++e) {
-      const double by_given = added(given, e, s.body);
-      if (by_given > most) {
-        most = by_given;
-        blamed = e;
-      }
-    }
-  }
-  if (most < 0.1 * total) blamed = worst;
-  return elements[blamed].kind->name_of(m, elements[blamed].index);
-}
+DEM_COLD std::string culprit(const Parts& m, const std::vector<Element>& elements, std::size_t worst, double dt);
 
 }  // namespace detail
 
@@ -145,3 +99,61 @@ StableTimeStep stable_time_step_of(const Parts& m) {
 }
 
 }  // namespace dem::mbd
+
+#if DEM_DEFINES
+
+namespace dem::mbd::detail {
+
+DEM_INLINE std::vector<ElementBounds> bounds_of(const Parts& m, const std::vector<Element>& elements) {
+  const std::vector<double> n = shares_of(m, elements);
+  std::vector<double> k(m.bodies.size(), 0.0), c(m.bodies.size(), 0.0);
+  for (const Element& e : elements) {
+    for (const Element::Side& s : e.sides) {
+      k[s.body] += s.k;
+      c[s.body] += s.c;
+    }
+  }
+  std::vector<ElementBounds> bounds(elements.size());
+  for (std::size_t i = 0; i < elements.size(); ++i) {
+    ElementBounds b;
+    double own = 0.0;
+    for (const Element::Side& s : elements[i].sides) {
+      b.k[0] += n[s.body] * s.k;
+      b.c[0] += n[s.body] * s.c;
+      b.k[1] += k[s.body];
+      b.c[1] += c[s.body];
+      own += s.k + s.c;
+    }
+    if (own > 0.0) bounds[i] = b;
+  }
+  return bounds;
+}
+
+DEM_INLINE std::string culprit(const Parts& m, const std::vector<Element>& elements, std::size_t worst, double dt) {
+  const auto added = [&](const std::vector<Element>& all, std::size_t e, std::uint32_t body) {
+    double sum = 0.0;
+    for (const Element::Side& s : all[e].sides) sum += s.body == body ? s.k * dt * dt + 2.0 * s.c * dt : 0.0;
+    return sum;
+  };
+  const std::vector<Element> given = elements_of(without_derived(m));  // the same, in the same order
+  std::size_t blamed = worst;
+  double most = 0.0, total = 0.0;
+  for (const Element::Side& s : elements[worst].sides) {
+    double on_body = 0.0;
+    for (std::size_t e = 0; e < elements.size(); ++e) on_body += added(elements, e, s.body);
+    total = std::max(total, on_body);
+    for (std::size_t e = 0; e < given.size(); ++e) {
+      const double by_given = added(given, e, s.body);
+      if (by_given > most) {
+        most = by_given;
+        blamed = e;
+      }
+    }
+  }
+  if (most < 0.1 * total) blamed = worst;
+  return elements[blamed].kind->name_of(m, elements[blamed].index);
+}
+
+}  // namespace dem::mbd::detail
+
+#endif

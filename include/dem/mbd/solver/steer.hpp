@@ -10,7 +10,33 @@
 
 namespace dem::mbd::detail {
 
-DEM_COLD inline void set_friction_preload(Parts& parts, JointId id, double newtons) {
+DEM_COLD void set_friction_preload(Parts& parts, JointId id, double newtons);
+
+/// `lasts`: it stays until another is given, so a number that would brake by mistake is refused.
+DEM_COLD void set_target(ActuatorSpec& s, Signal signal, bool lasts = true);
+DEM_COLD void set_throttle(ActuatorSpec& s, double throttle);
+
+DEM_COLD void switch_on(Parts& parts, PrescribedMotion& p, bool on);
+
+/// A joint that is switched on holds the bodies as they are now; one that is off holds nothing.
+DEM_COLD void switch_on(Parts& parts, JointId id, bool on);
+
+DEM_COLD void set_fixed(Parts& parts, Body& b, bool fixed);
+
+DEM_COLD void set_load(LoadSpec& s, Signal size);
+
+DEM_COLD void set_motion(PrescribedMotion& p, Signal motion);
+DEM_COLD void set_motion(PrescribedMotion& p, double value, double rate);
+
+DEM_COLD void set_pose(PrescribedMotion& p, PoseFunction pose);
+
+}  // namespace dem::mbd::detail
+
+#if DEM_DEFINES
+
+namespace dem::mbd::detail {
+
+DEM_INLINE void set_friction_preload(Parts& parts, JointId id, double newtons) {
   for (JointFrictionState& e : parts.friction) {
     if (e.joint == id.value) {
       e.preload = require_non_negative(newtons, "preload of a joint's friction", "N");
@@ -20,19 +46,19 @@ DEM_COLD inline void set_friction_preload(Parts& parts, JointId id, double newto
   fail("joint '{}' has no friction to preload; add it with with_friction", known(parts.joint_specs, id, "joint").name);
 }
 
-/// `lasts`: it stays until another is given, so a number that would brake by mistake is refused.
-DEM_COLD inline void set_target(ActuatorSpec& s, Signal signal, bool lasts = true) {
+DEM_INLINE void set_target(ActuatorSpec& s, Signal signal, bool lasts) {
   if (s.has_throttle()) fail("actuator '{}' is a motor, which has no set point; use set_throttle", s.name);
   if (lasts) refuse_constant_speed(s, signal, dem::text("actuator '{}'", s.name));
   s.set_point = s.by_speed ? signal.as_rate() : std::move(signal);
 }
-DEM_COLD inline void set_throttle(ActuatorSpec& s, double throttle) {
+
+DEM_INLINE void set_throttle(ActuatorSpec& s, double throttle) {
   if (!s.has_throttle()) fail("actuator '{}' is no motor, so it has no throttle; use set_target", s.name);
   s.throttle = s.engine_map.empty() ? require_within(throttle, -1.0, 1.0, "throttle of a motor")
                                     : require_within(throttle, 0.0, 1.0, "throttle of an engine");
 }
 
-DEM_COLD inline void switch_on(Parts& parts, PrescribedMotion& p, bool on) {
+DEM_INLINE void switch_on(Parts& parts, PrescribedMotion& p, bool on) {
   Body& b = parts.bodies[p.spec.body.index()];
   if (!on && p.spec.on && b.fixed && p.spec.target != MotionSpec::Target::joint) {
     b.motion.velocity = b.motion.angular_velocity = {0, 0, 0};
@@ -43,15 +69,14 @@ DEM_COLD inline void switch_on(Parts& parts, PrescribedMotion& p, bool on) {
   if (was_carried && !CarriedBodies(parts).has(p.spec.body)) ++parts.releases;
 }
 
-/// A joint that is switched on holds the bodies as they are now; one that is off holds nothing.
-DEM_COLD inline void switch_on(Parts& parts, JointId id, bool on) {
+DEM_INLINE void switch_on(Parts& parts, JointId id, bool on) {
   Joint& j = known(parts.joints, id, "joint");
   if (on && !j.on) take_hold(j, parts.bodies[j.a], parts.bodies[j.b]);
   j.on = on;
   if (!on) j.force = j.torque = {0, 0, 0};
 }
 
-DEM_COLD inline void set_fixed(Parts& parts, Body& b, bool fixed) {
+DEM_INLINE void set_fixed(Parts& parts, Body& b, bool fixed) {
   if (b.fixed == fixed) return;
   b.fixed = fixed;
   try {
@@ -64,14 +89,14 @@ DEM_COLD inline void set_fixed(Parts& parts, Body& b, bool fixed) {
   ++parts.revision;
 }
 
-DEM_COLD inline void set_load(LoadSpec& s, Signal size) {
+DEM_INLINE void set_load(LoadSpec& s, Signal size) {
   if (s.has_law()) {
     fail("load '{}' has a law of its own and no size; let the law give other forces, or switch it off", s.name);
   }
   s.size = std::move(size);
 }
 
-DEM_COLD inline void set_motion(PrescribedMotion& p, Signal motion) {
+DEM_INLINE void set_motion(PrescribedMotion& p, Signal motion) {
   if (p.spec.target == MotionSpec::Target::pose) {
     fail("prescribed motion '{}' is a whole pose, which no signal gives; use set_pose", p.spec.name);
   }
@@ -79,7 +104,8 @@ DEM_COLD inline void set_motion(PrescribedMotion& p, Signal motion) {
   p.drive.way.drop();
   p.has_hold = false;
 }
-DEM_COLD inline void set_motion(PrescribedMotion& p, double value, double rate) {
+
+DEM_INLINE void set_motion(PrescribedMotion& p, double value, double rate) {
   if (p.spec.by_speed) {
     fail("prescribed motion '{}' is one of speed and takes no value with a rate; use set_motion(id, speed)",
          p.spec.name);
@@ -90,7 +116,7 @@ DEM_COLD inline void set_motion(PrescribedMotion& p, double value, double rate) 
   p.has_hold = has_hold;
 }
 
-DEM_COLD inline void set_pose(PrescribedMotion& p, PoseFunction pose) {
+DEM_INLINE void set_pose(PrescribedMotion& p, PoseFunction pose) {
   if (p.spec.target != MotionSpec::Target::pose) {
     fail("prescribed motion '{}' is that of one coordinate, not of a pose; use set_motion", p.spec.name);
   }
@@ -100,3 +126,5 @@ DEM_COLD inline void set_pose(PrescribedMotion& p, PoseFunction pose) {
 }
 
 }  // namespace dem::mbd::detail
+
+#endif

@@ -1,0 +1,49 @@
+#pragma once
+
+/// What no model changes stands at the end of its header, within `#if DEM_DEFINES`, and begins with DEM_INLINE. A
+/// program may have it compiled once (CMake's target dem::compiled): then dem/compiled.cpp, one of its sources, holds
+/// these definitions, and all others are compiled with DEM_COMPILED defined and see declarations alone. Else each
+/// source has them, as in any header-only library.
+///
+/// DEM_LAZY before such a declaration and DEM_LAZY_INLINE before its definition make the function a template without a
+/// choice where each source has it: those that do not call it skip what stands in it. For long work at set-up that few
+/// programs need, such as the repair of meshes.
+#if defined(DEM_COMPILING)
+#define DEM_DEFINES 1
+#define DEM_INLINE __attribute__((used)) inline
+#define DEM_LAZY
+#define DEM_LAZY_INLINE DEM_INLINE
+#elif defined(DEM_COMPILED)
+#define DEM_DEFINES 0
+#define DEM_LAZY
+#else
+#define DEM_DEFINES 1
+#define DEM_INLINE inline
+#define DEM_LAZY template <class DemLazy = void>
+#define DEM_LAZY_INLINE    \
+  template <class DemLazy> \
+  inline
+#endif
+
+// Sources that are compiled for another processor align vectors otherwise, and would misread each other's. The linker
+// finds no such name then.
+#if defined(DEM_COMPILED)
+#if defined(DEM_NO_SIMD)
+#define DEM_COMPILED_FOR dem_compiled_cpp_has_these_options_without_simd
+#elif defined(__AVX512F__)
+#define DEM_COMPILED_FOR dem_compiled_cpp_has_these_options_with_avx512
+#elif defined(__AVX__)
+#define DEM_COMPILED_FOR dem_compiled_cpp_has_these_options_with_avx
+#else
+#define DEM_COMPILED_FOR dem_compiled_cpp_has_these_options
+#endif
+extern "C" {
+extern const char DEM_COMPILED_FOR;
+#if defined(DEM_COMPILING)
+const char DEM_COMPILED_FOR = 0;
+#endif
+}
+namespace dem::detail {
+__attribute__((used)) inline const char* const compiled_for = &DEM_COMPILED_FOR;
+}
+#endif
