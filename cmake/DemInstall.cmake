@@ -5,7 +5,7 @@ include(CMakePackageConfigHelpers)
 
 set(package_dir "${CMAKE_INSTALL_DATADIR}/cmake/dem")
 
-install(DIRECTORY include/dem TYPE INCLUDE FILES_MATCHING PATTERN "*.hpp" PATTERN "*.cuh")
+install(DIRECTORY include/dem TYPE INCLUDE FILES_MATCHING PATTERN "*.hpp" PATTERN "*.cuh" PATTERN "compiled.cpp")
 install(FILES LICENSE TYPE DOC)
 
 install(TARGETS dem dem_native EXPORT dem INCLUDES DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}")
@@ -15,4 +15,5 @@ configure_package_config_file(cmake/demConfig.cmake.in demConfig.cmake INSTALL_D
 # Before 1.0 a minor release may change the interface. There is nothing to link, so any word size will do.
 write_basic_package_version_file(demConfigVersion.cmake COMPATIBILITY SameMinorVersion ARCH_INDEPENDENT)
 install(FILES "${CMAKE_CURRENT_BINARY_DIR}/demConfig.cmake" "${CMAKE_CURRENT_BINARY_DIR}/demConfigVersion.cmake"
+              cmake/DemCompiled.cmake
         DESTINATION "${package_dir}")

@@ -1,0 +1,22 @@
+# dem::compiled: what no model changes, compiled once for all programs that link it, in place of dem::dem. They see
+# declarations alone of it, so a program with a machine takes the compiler half the time. dem::compiled_native is the same
+# with the options of dem::native, which those that link it have as well. Either is built by the project that uses dem,
+# with its compiler and options, and only where something links it.
+
+if(TARGET dem_compiled)
+  return()
+endif()
+foreach(way compiled compiled_native)
+  add_library(dem_${way} STATIC EXCLUDE_FROM_ALL)
+  add_library(dem::${way} ALIAS dem_${way})
+  target_compile_definitions(dem_${way} PUBLIC DEM_COMPILED)
+  target_link_libraries(dem_${way} PUBLIC dem::dem)
+endforeach()
+target_link_libraries(dem_compiled_native PUBLIC dem::native)
+
+# Beside the headers, wherever these are.
+get_target_property(dem_include dem::dem INTERFACE_INCLUDE_DIRECTORIES)
+string(REGEX REPLACE "\\$<BUILD_INTERFACE:([^>]*)>.*" "\\1" dem_include "${dem_include}")
+list(GET dem_include 0 dem_include)
+target_sources(dem_compiled PRIVATE "${dem_include}/dem/compiled.cpp")
+target_sources(dem_compiled_native PRIVATE "${dem_include}/dem/compiled.cpp")
