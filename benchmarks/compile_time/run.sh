@@ -34,11 +34,12 @@ awk '/^```cpp$/ { on = 1; text = ""; next }
   printf '}\n'
 } > "$work/machine.cpp"
 
-# line <what> <level> <budget in seconds> <budget in MB> <source>
+# line <what> <options> <budget in seconds> <budget in MB> <source>
 line() {
   local seconds= megabytes= user system kilobytes
   for ((k = 0; k < repeats; ++k)); do
-    /usr/bin/time -f '%U %S %M' -o "$work/time" "$compiler" "${flags[@]}" "$2" -c "$5" -o "$work/object"
+    # shellcheck disable=SC2086  # several options
+    /usr/bin/time -f '%U %S %M' -o "$work/time" "$compiler" "${flags[@]}" $2 -c "$5" -o "$work/object"
     read -r user system kilobytes < "$work/time"
     read -r seconds megabytes < <(awk -v u="$user" -v s="$system" -v m="$kilobytes" -v best="$seconds" -v most="$megabytes" '
       BEGIN {
@@ -57,7 +58,10 @@ echo
 echo "| what | | CPU (s) | budget (s) | memory (MB) | budget (MB) |"
 echo "|---|---|---|---|---|---|"
 line "\`#include <Eigen/Core>\`, an empty main" -O2 "" "" "$work/eigen.cpp"
-line "\`#include <dem/dem.hpp>\`, an empty main" -O2 2.5 450 "$work/empty.cpp"
-line "\`#include <dem/mbd/mbd.hpp>\`, the README's machine" -O2 4 "" "$work/machine.cpp"
-line "\`examples/first_steps\`" -O0 6 700 "$root/examples/first_steps/first_steps.cpp"
-line "\`examples/first_steps\`" -O2 10 700 "$root/examples/first_steps/first_steps.cpp"
+line "what \`dem::compiled\` compiles once" "-O2 -DDEM_COMPILED" "" "" "$root/include/dem/compiled.cpp"
+for once in " -DDEM_COMPILED" ""; do
+  line "\`#include <dem/dem.hpp>\`, an empty main" "-O2$once" 2.5 450 "$work/empty.cpp"
+  line "\`#include <dem/mbd/mbd.hpp>\`, the README's machine" "-O2$once" 4 "" "$work/machine.cpp"
+  line "\`examples/first_steps\`" "-O0$once" 6 700 "$root/examples/first_steps/first_steps.cpp"
+  line "\`examples/first_steps\`" "-O2$once" 10 700 "$root/examples/first_steps/first_steps.cpp"
+done
