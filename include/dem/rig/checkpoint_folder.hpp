@@ -49,14 +49,18 @@ class CheckpointFolder final : public PartStore {
   [[nodiscard]] bool writes() const override { return options_.every > 0.0; }
   [[nodiscard]] bool resumes() const { return options_.resume; }
 
+  /// Throws Error unless a run has begun in the folder.
+  void require_begun() const {
+    if (!std::filesystem::exists(std::filesystem::path(output_) / "settings.toml")) {
+      fail("there is no run in '{}' to go on with; leave out --resume to begin one", output_);
+    }
+  }
+
   /// Throws Error unless the run in the folder can be gone on with: it has the same settings, and its files are whole.
   /// A run that was killed before the first of them is begun anew.
   void check() const {
-    const auto settings = std::filesystem::path(output_) / "settings.toml";
-    if (!std::filesystem::exists(settings)) {
-      fail("there is no run in '{}' to go on with; leave out --resume to begin one", output_);
-    }
-    require_same_settings(io::read_file(settings), settings_, options_.free_settings, output_);
+    require_begun();
+    require_same_settings(io::read_file(std::filesystem::path(output_) / "settings.toml"), settings_, options_.free_settings, output_);
     const auto files = parts();
     if (files.empty() && std::filesystem::exists(std::filesystem::path(output_) / "report.html")) {
       fail(

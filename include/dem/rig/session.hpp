@@ -149,6 +149,7 @@ class Session final : public Stages {
  private:
   void lock() {
     if (lock_ || !process_writes_files) return;
+    if (parts_.resumes()) parts_.require_begun();  // before there is a folder
     io::make_folder_of(folder() / "settings.toml");
     lock_.emplace(set_.output, set_.program);
   }

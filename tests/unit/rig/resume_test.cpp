@@ -220,6 +220,7 @@ TEST_CASE("a run goes on with its own settings only, and is refused in words") {
     return error_of([&] { session.begin_run(1); });
   };
   CHECK_THAT(refusal("", {}), ContainsSubstring("there is no run in '") && ContainsSubstring("leave out --resume"));
+  CHECK_FALSE(fs::exists(r.path()));  // no folder is left behind
   REQUIRE(r.run({"--checkpoint-every=1e-9"}, 12) == 130);
   const std::string rest = r.text("rest.csv"), settings = r.text("settings.toml");
   CHECK(settings.find("checkpoint") == std::string::npos);
