@@ -1,7 +1,8 @@
 # dem::compiled: what no model changes, compiled once for all programs that link it, in place of dem::dem. They see
 # declarations alone of it, so a program with a machine takes the compiler half the time. dem::compiled_native is the same
 # with the options of dem::native, which those that link it have as well. Either is built by the project that uses dem,
-# with its compiler and options, and only where something links it.
+# with the compiler and the options that hold where dem is found or added, and only where something links it. They are
+# for programs and for libraries that are not exported.
 
 if(TARGET dem_compiled)
   return()
@@ -10,6 +11,7 @@ foreach(way compiled compiled_native)
   add_library(dem_${way} STATIC EXCLUDE_FROM_ALL)
   add_library(dem::${way} ALIAS dem_${way})
   target_compile_definitions(dem_${way} PUBLIC DEM_COMPILED)
+  set_target_properties(dem_${way} PROPERTIES POSITION_INDEPENDENT_CODE ON) # for users' shared libraries
   target_link_libraries(dem_${way} PUBLIC dem::dem)
 endforeach()
 target_link_libraries(dem_compiled_native PUBLIC dem::native)

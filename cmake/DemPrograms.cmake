@@ -23,14 +23,15 @@ if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND DEM_MUCH_MEMORY)
   target_compile_options(dem_warnings INTERFACE "$<$<COMPILE_LANGUAGE:CXX>:SHELL:--param ggc-min-heapsize=2000000>")
 endif()
 
-# dem_program(<target> [HEADERS_ALONE]): links what every program of dem links. HEADERS_ALONE: all is compiled in its own
-# sources, for those whose options differ from the others'.
 option(DEM_COMPILE_ONCE "dem's own programs share one compilation of what no model changes" ON)
 if(PROJECT_IS_TOP_LEVEL)
   foreach(library dem_compiled dem_compiled_native)
     target_link_libraries(${library} PRIVATE dem_warnings)
   endforeach()
 endif()
+
+# dem_program(<target> [HEADERS_ALONE]): links what every program of dem links. HEADERS_ALONE: all is compiled in its own
+# sources, for those whose options differ from the others'.
 function(dem_program target)
   target_link_libraries(${target} PRIVATE dem::dem dem_warnings $<$<BOOL:${DEM_NATIVE}>:dem::native>
                                           $<TARGET_NAME_IF_EXISTS:dem::zlib>)

@@ -86,12 +86,18 @@ function(dem_drop package list)
   set(${list} ${${list}} PARENT_SCOPE)
 endfunction()
 
-# dem_add_state_hash_test(<name> <label> <option>...): the program test_<name> runs equivalence/state_hash_test.cpp, compiled with
-# these options. It shares nothing with other tests: whether products and sums are fused is left to no compiler here.
+# dem_add_state_hash_test(<name> <label> [COMPILED] <option>...): the program test_<name> runs equivalence/state_hash_test.cpp,
+# compiled with these options; COMPILED: what no model changes is a source of its own. It shares nothing with other tests: whether
+# products and sums are fused is left to no compiler here.
 function(dem_add_state_hash_test name label)
   add_executable(test_${name} equivalence/state_hash_test.cpp)
   target_include_directories(test_${name} PRIVATE "${CMAKE_CURRENT_SOURCE_DIR}")
   dem_program(test_${name} HEADERS_ALONE)
+  if("COMPILED" IN_LIST ARGN)
+    list(REMOVE_ITEM ARGN COMPILED)
+    target_sources(test_${name} PRIVATE "${PROJECT_SOURCE_DIR}/include/dem/compiled.cpp")
+    target_compile_definitions(test_${name} PRIVATE DEM_COMPILED)
+  endif()
   target_link_libraries(test_${name} PRIVATE test_main)
   target_compile_options(test_${name} PRIVATE -ffp-contract=off ${ARGN})
   catch_discover_tests(test_${name} TEST_PREFIX "${name}." PROPERTIES LABELS ${label})

@@ -1,5 +1,5 @@
 // What no model changes, compiled once for a program: one of its sources, where all others are compiled with
-// DEM_COMPILED defined (dem/core/macros.hpp says what that does). CMake's target dem::compiled does both. It is
+// DEM_COMPILED defined (dem/core/compiled.hpp says what that does). CMake's target dem::compiled does both. It is
 // compiled with the options of the others: the linker says so where their vectors are of another size.
 
 #if !defined(DEM_COMPILED)

@@ -25,17 +25,17 @@
   inline
 #endif
 
-// Sources that are compiled for another processor align vectors otherwise, and would misread each other's. The linker
-// finds no such name then.
+// Sources that are compiled for other vectors align them otherwise, and would misread each other's. The linker finds no
+// such name then: each source asks for it.
 #if defined(DEM_COMPILED)
-#if defined(DEM_NO_SIMD)
-#define DEM_COMPILED_FOR dem_compiled_cpp_has_these_options_without_simd
+#if defined(DEM_NO_SIMD) || defined(__CUDACC__)
+#define DEM_COMPILED_FOR dem_compiled_cpp_is_compiled_without_simd_as_well
 #elif defined(__AVX512F__)
-#define DEM_COMPILED_FOR dem_compiled_cpp_has_these_options_with_avx512
+#define DEM_COMPILED_FOR dem_compiled_cpp_is_compiled_for_avx512_as_well
 #elif defined(__AVX__)
-#define DEM_COMPILED_FOR dem_compiled_cpp_has_these_options_with_avx
+#define DEM_COMPILED_FOR dem_compiled_cpp_is_compiled_for_avx_as_well
 #else
-#define DEM_COMPILED_FOR dem_compiled_cpp_has_these_options
+#define DEM_COMPILED_FOR dem_compiled_cpp_is_compiled_without_avx_as_well
 #endif
 extern "C" {
 extern const char DEM_COMPILED_FOR;
@@ -44,6 +44,9 @@ const char DEM_COMPILED_FOR = 0;
 #endif
 }
 namespace dem::detail {
-__attribute__((used)) inline const char* const compiled_for = &DEM_COMPILED_FOR;
-}
+#if __has_attribute(retain)
+__attribute__((retain))
+#endif
+__attribute__((used)) static const char* const compiled_for = &DEM_COMPILED_FOR;
+}  // namespace dem::detail
 #endif

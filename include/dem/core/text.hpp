@@ -1,6 +1,5 @@
 #pragma once
 
-#include <dem/core/macros.hpp>
 // Texts made of numbers and names, in fmt's format language. Arguments lose their types before fmt sees them. Otherwise
 // fmt would make a template for each list of types, and every program would spend seconds on compiling texts that it
 // never prints.
@@ -9,6 +8,8 @@
 #if defined(__CUDACC__) && !defined(FMT_USE_CONSTEXPR)
 #define FMT_USE_CONSTEXPR 1
 #endif
+#include <dem/core/macros.hpp>
+
 #include <fmt/core.h>
 
 #include <initializer_list>

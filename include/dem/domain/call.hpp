@@ -1,8 +1,8 @@
 #pragma once
 
-#include <dem/core/macros.hpp>
 // What ranks do together. Needs no MPI.
 
+#include <dem/core/macros.hpp>
 #include <dem/core/text.hpp>
 
 #include <array>

@@ -1,9 +1,10 @@
 #pragma once
 
+#include <dem/core/macros.hpp>
+
 #include <algorithm>
 #include <array>
 #include <cstdint>
-#include <dem/core/macros.hpp>
 
 namespace dem::grain {
 

@@ -1,9 +1,10 @@
 #pragma once
 
+#include <dem/core/macros.hpp>
+
 #include <algorithm>
 #include <chrono>
 #include <cstddef>
-#include <dem/core/macros.hpp>
 
 namespace dem::exec {
 

@@ -1,16 +1,10 @@
 #pragma once
 
-#include <dem/core/macros.hpp>
 // Which processors the threads of a team may use.
 
-#if defined(_OPENMP)
-#include <omp.h>
-#endif
+#include <dem/core/macros.hpp>
 
 #if defined(_OPENMP) && _OPENMP >= 201511 && defined(__linux__)
-#include <sched.h>
-
-#include <vector>
 
 namespace dem::exec {
 
@@ -21,16 +15,13 @@ namespace dem::exec {
 void use_all_places();
 
 }  // namespace dem::exec
-#else
-
-namespace dem::exec {
-
-inline void use_all_places() {}
-
-}  // namespace dem::exec
-#endif
 
 #if DEM_DEFINES
+
+#include <omp.h>
+#include <sched.h>
+
+#include <vector>
 
 namespace dem::exec {
 
@@ -48,6 +39,16 @@ DEM_INLINE void use_all_places() {
   }
   if (CPU_COUNT(&processors) > 0) (void)sched_setaffinity(0, sizeof(processors), &processors);
 }
+
+}  // namespace dem::exec
+
+#endif
+
+#else
+
+namespace dem::exec {
+
+inline void use_all_places() {}
 
 }  // namespace dem::exec
 

@@ -60,7 +60,8 @@ class CheckpointFolder final : public PartStore {
   /// A run that was killed before the first of them is begun anew.
   void check() const {
     require_begun();
-    require_same_settings(io::read_file(std::filesystem::path(output_) / "settings.toml"), settings_, options_.free_settings, output_);
+    require_same_settings(io::read_file(std::filesystem::path(output_) / "settings.toml"), settings_,
+                          options_.free_settings, output_);
     const auto files = parts();
     if (files.empty() && std::filesystem::exists(std::filesystem::path(output_) / "report.html")) {
       fail(

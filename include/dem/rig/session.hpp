@@ -148,8 +148,9 @@ class Session final : public Stages {
 
  private:
   void lock() {
-    if (lock_ || !process_writes_files) return;
+    if (lock_) return;
     if (parts_.resumes()) parts_.require_begun();  // before there is a folder
+    if (!process_writes_files) return;
     io::make_folder_of(folder() / "settings.toml");
     lock_.emplace(set_.output, set_.program);
   }

@@ -1,8 +1,9 @@
 #pragma once
 
+#include <dem/core/macros.hpp>
+
 #include <algorithm>
 #include <cstdint>
-#include <dem/core/macros.hpp>
 #include <iterator>
 #include <vector>
 

@@ -69,7 +69,10 @@ class TriangleMesh {
 
   /// False only if no sample point in a sphere of that radius can touch: cheap for grains that are near the mesh's
   /// bounding box but not near its triangles. `points`: whether any sample point has no radius.
-  bool close(const Vector3<double>& p, double radius, bool points) const;
+  bool close(const Vector3<double>& p, double radius, bool points) const {
+    const double reach = radius + (points ? point_depth_ : options_.depth);
+    return data_->tree.reaches(p, reach * reach);
+  }
 
   /// callback(feature, normal, gap) for each contact of a sphere.
   template <class Callback>
@@ -191,7 +194,15 @@ class TriangleMesh {
     }
   }
   /// Of contacts with nearly the same normal the deepest stays; what is seen from behind lies beyond the solid.
-  void reduce(Found& found) const;
+  void reduce(Found& found) const {
+    std::size_t kept = 0;
+    for (const Minimum& m : found) {
+      bool is_new = !m.behind;
+      for (std::size_t other = 0; other < kept; ++other) is_new &= dot(m.normal, found[other].normal) < merge_cosine_;
+      if (is_new) found[kept++] = m;
+    }
+    found.resize(kept);
+  }
 
   void set_point_depth(double depth);
 
@@ -237,21 +248,6 @@ DEM_LAZY_INLINE TriangleMesh::TriangleMesh(const IndexedMesh& mesh, const MeshOp
 DEM_INLINE std::uint64_t TriangleMesh::fingerprint() const {
   const MeshOptions& o = options_;
   return fingerprint_of(mesh().vertices, mesh().triangles, o.side, o.facing, o.smooth_angle, o.depth, o.point_spacing);
-}
-
-DEM_INLINE bool TriangleMesh::close(const Vector3<double>& p, double radius, bool points) const {
-  const double reach = radius + (points ? point_depth_ : options_.depth);
-  return data_->tree.reaches(p, reach * reach);
-}
-
-DEM_INLINE void TriangleMesh::reduce(Found& found) const {
-  std::size_t kept = 0;
-  for (const Minimum& m : found) {
-    bool is_new = !m.behind;
-    for (std::size_t other = 0; other < kept; ++other) is_new &= dot(m.normal, found[other].normal) < merge_cosine_;
-    if (is_new) found[kept++] = m;
-  }
-  found.resize(kept);
 }
 
 DEM_INLINE void TriangleMesh::set_point_depth(double depth) {

@@ -41,7 +41,10 @@ struct ActuatorSpec {
 
   ActuatorSpec along(Dof f) const;
   ActuatorSpec with_max_force(double f) const;
-  ActuatorSpec idling_at(double speed, double gain = 0.05) const;
+  /// A governor opens the throttle by `gain` (1/(rad/s)) for each rad/s below the idling speed (rad/s), if the driver
+  /// has not opened it further. Without load the engine turns a little slower: by the throttle that balances its drag,
+  /// over the gain.
+  DEM_COLD ActuatorSpec idling_at(double speed, double gain = 0.05) const;
   ActuatorSpec switched_off() const;
 };
 

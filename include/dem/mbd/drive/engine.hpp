@@ -59,9 +59,6 @@ DEM_INLINE ActuatorSpec engine(std::string name, JointId crank, std::vector<std:
   return s;
 }
 
-/// A governor opens the throttle by `gain` (1/(rad/s)) for each rad/s below the idling speed (rad/s), if the driver has
-/// not opened it further. Without load the engine turns a little slower: by the throttle that balances its drag, over
-/// the gain.
 DEM_INLINE ActuatorSpec ActuatorSpec::idling_at(double speed, double gain) const {
   if (engine_map.empty()) fail("actuator '{}' is no engine(...), so it cannot idle", name);
   ActuatorSpec s = *this;

@@ -1,10 +1,10 @@
 #pragma once
 
-#include <dem/core/macros.hpp>
 // The coordinates that are driven at a time, as rows of one small system of equations. Each coordinate q has a Jacobian
 // J on its bodies (a force along its axis at the joint's point, or a torque); with the bodies' masses M, impulses l
 // change the coordinates by A l, A = J M^-1 J^T, so they follow from A l = error.
 
+#include <dem/core/macros.hpp>
 #include <dem/math/solve_positive.hpp>
 #include <dem/mbd/solver/parts.hpp>
 

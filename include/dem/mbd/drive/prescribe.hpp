@@ -1,8 +1,8 @@
 #pragma once
 
-#include <dem/core/macros.hpp>
 // Prescribed motion (eq. 19): the impulses that bring every driven coordinate to its value and speed, all at once.
 
+#include <dem/core/macros.hpp>
 #include <dem/mbd/drive/jacobian.hpp>
 
 #include <algorithm>

@@ -1,10 +1,10 @@
 #pragma once
 
-#include <dem/core/macros.hpp>
 // All that there is to know of the rotations that a joint holds. Springs are the gradient of an energy:
 //   parallel  kr (1 - z_a.z_b)   locked  kr/2 sum(1 - e_a.e_b)   cross  kr/2 (x_a.y_b)^2
 //   constant velocity  kr/8 (y_a.x_b - x_a.y_b)^2   bushing  see rotation_vector.hpp
 
+#include <dem/core/macros.hpp>
 #include <dem/math/rotation.hpp>
 #include <dem/mbd/joint/hold.hpp>
 #include <dem/mbd/joint/rotation_vector.hpp>

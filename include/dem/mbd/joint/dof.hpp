@@ -1,6 +1,7 @@
 #pragma once
 
 #include <dem/core/macros.hpp>
+
 #include <initializer_list>
 
 namespace dem::mbd {

@@ -1,11 +1,11 @@
 #pragma once
 
-#include <dem/core/macros.hpp>
 // All that there is to know of the displacements that a joint holds: one struct for each Hold. Springs are the gradient
 // of an energy, so that without damping energy is kept; with d = x_b - x_a, the way from a's point to b's:
 //   point  k/2 |d|^2   line  k/2 |d - z z.d|^2   plane  k/2 (z.d)^2   length  k/2 (|d| - l)^2
 //   bushing  (kx (x.d)^2 + ky (y.d)^2 + kz (z.d)^2) / 2
 
+#include <dem/core/macros.hpp>
 #include <dem/math/matrix3.hpp>
 #include <dem/mbd/joint/joint.hpp>
 

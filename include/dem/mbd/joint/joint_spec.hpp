@@ -132,9 +132,9 @@ struct JointSpec {
   JointSpec with_limits(Dof dof, double lower, double upper) const {
     return with_limits(JointLimits{.lower = lower, .upper = upper, .dof = dof});
   }
-  JointSpec with_limits(const JointLimits& given) const;
+  DEM_COLD JointSpec with_limits(const JointLimits& given) const;
   bool has_stiffness_or_damping() const { return stiffness || damping || rotational_stiffness || rotational_damping; }
-  JointSpec with_friction(const JointFriction& f) const;
+  DEM_COLD JointSpec with_friction(const JointFriction& f) const;
   /// The joint's own coordinate, or another one that turns about or slides along z, counts from this value (rad or m)
   /// at assembly.
   JointSpec starting_at(double coordinate) const { return starting_at(Dof::own, coordinate); }

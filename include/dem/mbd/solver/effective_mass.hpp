@@ -1,9 +1,9 @@
 #pragma once
 
-#include <dem/core/macros.hpp>
 // Effective masses. That of a body at a point and in a direction n is 1/(n.W n), where W is the acceleration per unit
 // force there; of a rotation it is an inertia. What is computed is its inverse, 0 for fixed bodies.
 
+#include <dem/core/macros.hpp>
 #include <dem/mbd/joint/coordinate.hpp>
 #include <dem/mbd/joint/friction.hpp>
 

@@ -1,12 +1,12 @@
 #pragma once
 
-#include <dem/core/macros.hpp>
 // What acts along the line between two points, a spring or a ram, also holds them across it where it pulls: as a taut
 // string does, with the tension over the length. And it turns each body towards the line, as weight turns a pendulum.
 // With the stiffness k along the line n, the tension T, the length L and the arm r from a centre of mass,
 //   K = k n n^T + T/L (1 - n n^T) at the two points,   T (|r| + r.p) / 2 at most about the centre of mass,
 // where p is the direction in which the body is pulled. What pushes lowers the frequencies, which is left out.
 
+#include <dem/core/macros.hpp>
 #include <dem/mbd/solver/effective_mass.hpp>
 #include <dem/mbd/solver/part_kind.hpp>
 

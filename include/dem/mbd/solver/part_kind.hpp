@@ -1,9 +1,8 @@
 #pragma once
 
-#include <dem/core/macros.hpp>
 // What the solver asks of a kind of part (joints, springs, actuators ...): its forces and its stiffness. Each kind
 // answers in a file of its own, <kind>_part.hpp, and the solver calls the kinds that a machine has. So a program has
-// the code of the parts that it adds, and of no others.
+// the code of the parts that it adds, and of no others, but for programs that link dem::compiled.
 //
 // How stiff a machine is, and how stiff it may be. Element bound: give each of the n elements on a body 1/n of the
 // body's mass and inertia. Then the highest frequency of the whole machine is at most the highest frequency of a single
@@ -15,6 +14,7 @@
 // and the damping so that this frequency has the damping ratio 0.5: c = k dt/0.7, or sqrt(k / sum(n W)) if
 // the stiffness is the user's. Limits and joint friction are derived in the same way (friction with omega_e dt = 0.1).
 
+#include <dem/core/macros.hpp>
 #include <dem/mbd/solver/parts.hpp>
 
 #include <algorithm>

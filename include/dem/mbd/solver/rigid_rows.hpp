@@ -1,10 +1,10 @@
 #pragma once
 
-#include <dem/core/macros.hpp>
 // What is held exactly, as rows of one sparse system of equations: joints and couplings without a stiffness of their
 // own, and prescribed motions. Each row is a direction in the space of all bodies' velocities, along which only what is
 // prescribed may move. Joints that share a body stand near each other, so that the system stays narrow.
 
+#include <dem/core/macros.hpp>
 #include <dem/math/skyline.hpp>
 #include <dem/mbd/drive/jacobian.hpp>
 

@@ -195,8 +195,9 @@ inline void resolve(Settings& s) {
   const auto constants = constants_of(s);
   const auto quantities = quantities_of(s);
   if (quantities.empty()) {
-    fail("there is no target; give --phi, --repose or --pressure, or make one with --known; to go on with a search, "
-         "give those that it had (or --config with its settings.toml)");
+    fail(
+        "there is no target; give --phi, --repose or --pressure, or make one with --known; to go on with a search, "
+        "give those that it had (or --config with its settings.toml)");
   }
   if (quantities.size() < constants.size()) {
     fail("{} constants cannot be told from {} target{}; give as many targets as constants", constants.size(),
