@@ -88,6 +88,21 @@ TEST_CASE("a machine's wheel on columns does what the wheel alone does, with eit
   check_rig<integrator::PredictorCorrector>();
 }
 
+TEST_CASE("a machine on columns has the same bits for any number of threads") {
+  const auto rolled = [](int threads) {
+    Rig<integrator::VelocityVerlet> rig;
+    MachineColumns soil(rig.machine, lane(0.03));
+    soil.soil().set_threads(threads);
+    soil.add(rig.wheel, std::make_shared<ColumnCylinder>(0.13, 0.16), {0, 0, 0.13});
+    REQUIRE(rig.machine.run(0.1, 5e-4).ok);
+    REQUIRE(soil.loads()[0].force.z > 10.0);
+    const auto& m = rig.machine.body(rig.wheel).motion;
+    return std::array{m.position.x, m.position.z, m.velocity.x, m.velocity.z, m.angular_velocity.z};
+  };
+  const auto one = rolled(1);
+  for (const int threads : {2, 3}) CHECK(rolled(threads) == one);
+}
+
 TEST_CASE("a wheel of the library's rig on columns feels what the wheel alone does") {
   const double travel = 0.12;
   for (const double slip : {-0.3, 0.3}) {
