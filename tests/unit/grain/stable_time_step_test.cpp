@@ -121,7 +121,7 @@ TEST_CASE("laws that stiffen, and rolling springs, limit the time step too") {
   CHECK(1 / (both * both) == Approx(1 / (friction * friction) + 1 / (rolling.dt * rolling.dt)).epsilon(1e-4));
 }
 
-TEMPLATE_TEST_CASE("a bed is stable at the stable time step", "", models::Balls, models::Cubes,
+TEMPLATE_TEST_CASE("a bed is stable at the stable time step", "[slow]", models::Balls, models::Cubes,
                    models::CorrectedCubes) {
   // Grains squeezed between six walls, each with six neighbours, without dampers; smooth, or so rough that all stick.
   // They may swing and buckle, but as long as the step is stable their motion has no more energy than was stored in the

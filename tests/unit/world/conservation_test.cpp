@@ -75,14 +75,14 @@ void check_conserved(double angular_tolerance) {
 
 }  // namespace
 
-TEST_CASE("momentum and angular momentum are kept to rounding") {
+TEST_CASE("momentum and angular momentum are kept to rounding", "[slow]") {
   // These schemes apply each force where the grain is when it is evaluated: angular momentum too is kept exactly (for
   // bodies whose inertia is the same about all axes, like cubes).
   check_conserved<dem::integrator::SymplecticEuler>(1e-12);
   check_conserved<dem::integrator::VelocityVerlet>(1e-12);
 }
 
-TEST_CASE("the predictor-corrector keeps momentum to rounding and angular momentum to its order") {
+TEST_CASE("the predictor-corrector keeps momentum to rounding and angular momentum to its order", "[slow]") {
   // Measured with three swarms: 0.5 to 1.2e-7, and up to 1.6e-7 on the way. Another swarm, or another processor's
   // rounding, may do three times worse.
   check_conserved<dem::integrator::PredictorCorrector>(5e-7);

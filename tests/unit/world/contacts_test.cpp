@@ -37,7 +37,7 @@ void check_spheres_and_cubes(const dem::ContactParameters<Model>& constants) {
 
 }  // namespace
 
-TEST_CASE("listed contacts add up to the forces on grains, surfaces and bodies, and asking changes nothing") {
+TEST_CASE("listed contacts add up to the forces on grains, surfaces and bodies, and asking changes nothing", "[slow]") {
   SECTION("spheres, symplectic Euler") { check_spheres_and_cubes<Balls>(sand<Balls>()); }
   SECTION("spheres, predictor-corrector") {
     check_spheres_and_cubes<models::CorrectedBalls>(sand<models::CorrectedBalls>());

@@ -240,7 +240,7 @@ TEST_CASE("counting energy changes no bit of a run, and grains that come and go 
   CHECK(energy_of(w).balance() == Approx(start.balance()).epsilon(1e-6));  // a step of Euler loses (g dt)^2/2
 }
 
-TEST_CASE("what an attached grain does to others is the work of its part") {
+TEST_CASE("what an attached grain does to others is the work of its part", "[slow]") {
   // A plunger drives a ball up and down in a heap: the grains gain by the plunger's work, and the sum stays.
   World<LinearModel> w(options({0, 0, -g}, 2e-6));
   w.set_contact(

@@ -63,7 +63,7 @@ TEST_CASE("a torque of a load law spins a ball up, and the law is told its name,
   CHECK(times.back() == Approx(a.w.time()).margin(2.01e-5));
 }
 
-TEST_CASE("grains under a load law have the same bits on any number of threads") {
+TEST_CASE("grains under a load law have the same bits on any number of threads", "[slow]") {
   const auto run = [](int threads) {
     dem::World<Cubes> w(options({0, 0, -g}, 1e-5));
     w.set_threads(threads);

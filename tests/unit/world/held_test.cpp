@@ -152,7 +152,7 @@ TEMPLATE_TEST_CASE("grains that hit a part's attached grains hand it their momen
   }
 }
 
-TEST_CASE("attached grains do the same on every number of threads, many in a bed that is stirred") {
+TEST_CASE("attached grains do the same on every number of threads, many in a bed that is stirred", "[slow]") {
   const auto run = [](int threads) {
     dem::WorldOptions o = options({0, 0, -g}, 1e-5);
     o.threads = threads;

@@ -38,7 +38,7 @@ struct Incline {
 
 }  // namespace
 
-TEMPLATE_TEST_CASE("a block below the angle of friction sticks", "", dem::integrator::PredictorCorrector,
+TEMPLATE_TEST_CASE("a block below the angle of friction sticks", "[slow]", dem::integrator::PredictorCorrector,
                    dem::integrator::VelocityVerlet, dem::integrator::SymplecticEuler) {
   for (const double slope : {0.5 * mu, 0.95 * mu}) {
     Incline<TestType> scene(slope, 0.975);

@@ -175,7 +175,7 @@ TEST_CASE("bodies that only a measuring joint connects may touch each other") {
   }
 }
 
-TEST_CASE("surface sensors feel other machine parts, too") {
+TEST_CASE("surface sensors feel other machine parts, too", "[slow]") {
   // A ball body rests on a table, a grain beside it: each sensor sums what touches its surface.
   dem::World<VerletBalls> world;
   world.set_contact({.normal = {.stiffness = 1000, .damping = 1.0, .separation_factor = 1}, .friction = {}});

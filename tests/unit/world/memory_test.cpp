@@ -56,7 +56,7 @@ std::unique_ptr<dem::World<Cubes>> settled_bed(int n) {
 
 }  // namespace
 
-TEST_CASE("a settled cube of eight spheres takes less than 2000 bytes") {
+TEST_CASE("a settled cube of eight spheres takes less than 2000 bytes", "[slow]") {
   const auto w = settled_bed(10);
   std::size_t contacts = 0;
   for (const auto& chunk : w->state().chunks) contacts += static_cast<std::size_t>(chunk.pair_contacts.committed());

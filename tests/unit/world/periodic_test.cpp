@@ -201,7 +201,7 @@ TEST_CASE("a machine part meets grains across a border, in whichever cell it is"
   CHECK(sum < -largest(near));  // the bed holds it back
 }
 
-TEST_CASE("contacts across borders are listed with the rest, and inlets see grains beyond them") {
+TEST_CASE("contacts across borders are listed with the rest, and inlets see grains beyond them", "[slow]") {
   dem::World<PeriodicCubes> w(cell({2.0, 1.0, -g}, {.x = true, .y = true}));
   set_up(w);
   w.add_surface(w.ground(), dem::surface::Plane{});
@@ -433,7 +433,8 @@ Mat3 virial_stress(const World& w, double volume) {
 
 }  // namespace
 
-TEST_CASE("a compressed packing bears the same stress in its cell as two copies of it in a cell twice as long") {
+TEST_CASE("a compressed packing bears the same stress in its cell as two copies of it in a cell twice as long",
+          "[slow]") {
   // Cubes that are a little tilted, and nearer to each other than they are wide, push each other about and come to
   // rest.
   const double pitch = 1.98e-3, edge = 5 * pitch, volume = edge * edge * edge;
@@ -508,7 +509,8 @@ TEST_CASE(
   }
 }
 
-TEST_CASE("a bed has the same bits in a cell somewhere else, and if its grains are put in whole periods away") {
+TEST_CASE("a bed has the same bits in a cell somewhere else, and if its grains are put in whole periods away",
+          "[slow]") {
   // Places from 1 to 2 m are whole numbers of 2^-52 m. A shift that is one too, and an even one, from such places to
   // such places is not rounded, and what is added later is rounded alike. What contacts read is how far apart grains
   // are.

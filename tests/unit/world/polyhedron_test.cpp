@@ -161,7 +161,7 @@ TEST_CASE("a stack of five cubes carries its weight and stays") {
   CHECK(w.surface_force(plate).z() == Approx(-5.0 * weight).epsilon(1e-6));
 }
 
-TEST_CASE("a column of cubes between plates slides or leans, whichever resists less") {
+TEST_CASE("a column of cubes between plates slides or leans, whichever resists less", "[slow]") {
   // A column of n loose cubes under a lid that bears N stands on its edges when it leans: a shear T on lid and floor
   // then has T h = N w, so it resists with N/n, below the mu N of sliding where n > 1/mu. A bed of sharp cubes in
   // columns is therefore weaker than a flat layer that slides.
@@ -270,7 +270,7 @@ TEST_CASE("without dampers a collision of polyhedra gives back its energy within
   CHECK(std::abs(sum / n) < 0.02);
 }
 
-TEST_CASE("a pile of polyhedra loses its energy, and never takes any from nowhere") {
+TEST_CASE("a pile of polyhedra loses its energy, and never takes any from nowhere", "[slow]") {
   dem::World<Sharp> w(options({0, 0, -g}, 1e-5));
   w.set_contact(sand<Sharp>());
   const auto cube = w.add_species(dem::shape::cube(half_edge));

@@ -82,7 +82,7 @@ TEST_CASE("a list that has lasted is narrowed when its needless candidates have 
   CHECK(narrow.look_at == SkinChoice::never);
 }
 
-TEST_CASE("a falling bed makes fewer lists, and a bed at rest goes back to the narrow skin") {
+TEST_CASE("a falling bed makes fewer lists, and a bed at rest goes back to the narrow skin", "[slow]") {
   auto fixed = falling_bed(1e-4, 1), chosen = falling_bed(0.0, 1);
   REQUIRE(fixed.run(1500));
   REQUIRE(chosen.run(1500));
@@ -108,7 +108,7 @@ TEST_CASE("a falling bed makes fewer lists, and a bed at rest goes back to the n
   CHECK(bed.state().list_skin == 1e-4);
 }
 
-TEST_CASE("a chosen skin is the same for any number of threads") {
+TEST_CASE("a chosen skin is the same for any number of threads", "[slow]") {
   const auto run = [](int threads) {
     auto w = falling_bed(0.0, threads);
     REQUIRE(w.run(3000));  // it meets the floor

@@ -96,7 +96,7 @@ void check_sums(const dem::World<models::VerletCubes>& w, const std::vector<Grai
 
 }  // namespace
 
-TEST_CASE("a bed falls asleep, weighs what it weighs, and its grains stay where they are") {
+TEST_CASE("a bed falls asleep, weighs what it weighs, and its grains stay where they are", "[slow]") {
   Towers bed(true), awake(false);
   REQUIRE(bed.w.run_for(0.07));
   REQUIRE(awake.w.run_for(0.07));
@@ -111,7 +111,7 @@ TEST_CASE("a bed falls asleep, weighs what it weighs, and its grains stay where 
   CHECK(bed.w.velocity(bed.grains[0]).norm() == 0.0);
 }
 
-TEST_CASE("no grain hangs in the air when what it stands on is taken away") {
+TEST_CASE("no grain hangs in the air when what it stands on is taken away", "[slow]") {
   Towers bed(true);
   REQUIRE(bed.w.run_for(0.07));
   REQUIRE(bed.w.asleep_count() == bed.grains.size());
@@ -142,7 +142,7 @@ TEST_CASE("no grain hangs in the air when what it stands on is taken away") {
   }
 }
 
-TEST_CASE("a sleeper wakes where its neighbour is given a velocity, and a whole bed where constants are") {
+TEST_CASE("a sleeper wakes where its neighbour is given a velocity, and a whole bed where constants are", "[slow]") {
   Towers bed(true);
   REQUIRE(bed.w.run_for(0.07));
   REQUIRE(bed.w.asleep_count() == bed.grains.size());
@@ -175,7 +175,7 @@ TEST_CASE("a sleeper wakes where its neighbour is given a velocity, and a whole 
   }
 }
 
-TEST_CASE("a floor that sinks under a sleeping bed takes it along") {
+TEST_CASE("a floor that sinks under a sleeping bed takes it along", "[slow]") {
   TowersOnTable bed([](double t) { return t < 0.07 ? 0.0 : -0.02 * (t - 0.07); });
   REQUIRE(bed.w.run_for(0.06));
   REQUIRE(bed.w.asleep_count() == bed.grains.size());
@@ -187,7 +187,7 @@ TEST_CASE("a floor that sinks under a sleeping bed takes it along") {
   }
 }
 
-TEST_CASE("no grain hangs in the air when the floor is far away after one step") {
+TEST_CASE("no grain hangs in the air when the floor is far away after one step", "[slow]") {
   TowersOnTable bed([](double t) { return t < 0.07 ? 0.0 : -0.1; });
   REQUIRE(bed.w.run_for(0.069));
   REQUIRE(bed.w.asleep_count() == bed.grains.size());
@@ -196,7 +196,7 @@ TEST_CASE("no grain hangs in the air when the floor is far away after one step")
   CHECK(bed.w.surface_force(bed.table).norm() == 0.0);
 }
 
-TEST_CASE("a surface that is added where grains sleep is felt in the next step") {
+TEST_CASE("a surface that is added where grains sleep is felt in the next step", "[slow]") {
   Towers bed(true);
   REQUIRE(bed.w.run_for(0.07));
   REQUIRE(bed.w.asleep_count() == bed.grains.size());
@@ -242,7 +242,7 @@ TEST_CASE("a grain that turns in its place, or flies slowly, does not sleep") {
   check(balls, Sphere(1e-3));
 }
 
-TEST_CASE("what grains that fall asleep lose of their motion is counted") {
+TEST_CASE("what grains that fall asleep lose of their motion is counted", "[slow]") {
   // They may move ten times as far, so that there is something to lose.
   const bool sleeps = GENERATE(false, true);
   Towers bed(false);
@@ -258,7 +258,7 @@ TEST_CASE("what grains that fall asleep lose of their motion is counted") {
   CHECK(std::abs(e.balance() - before) < 1e-10);
 }
 
-TEST_CASE("neighbours are listed anew where a few grains that are awake lie in many chunks") {
+TEST_CASE("neighbours are listed anew where a few grains that are awake lie in many chunks", "[slow]") {
   Towers bed(true);
   REQUIRE(bed.w.run_for(0.07));
   auto& s = bed.w.state();
@@ -282,7 +282,7 @@ TEST_CASE("neighbours are listed anew where a few grains that are awake lie in m
   }
 }
 
-TEST_CASE("a part that holds grains finds its rest under grains that sleep on them") {
+TEST_CASE("a part that holds grains finds its rest under grains that sleep on them", "[slow]") {
   // A table of glued cubes on a spring, and towers of 5 on it.
   dem::World<models::VerletCubes> w(Towers::with(true, 1));
   w.set_contact({{500.0, 0.06, 1.0}, {0.4, 500.0, 0.05, 0.975}});
@@ -313,7 +313,7 @@ TEST_CASE("a part that holds grains finds its rest under grains that sleep on th
   CHECK(w.machine().body(table).position().z() == Approx(sunk).margin(1e-7));
 }
 
-TEST_CASE("grains that a part holds wake as it moves, and so do those that stand on them") {
+TEST_CASE("grains that a part holds wake as it moves, and so do those that stand on them", "[slow]") {
   // Towers of 5 on cubes that are glued to a table, and a visitor on one of them, so that contacts are evaluated. The
   // table begins to sink in the middle of a step: its grains wake at the step's end, after the contacts.
   dem::World<models::VerletCubes> w(Towers::with(true, 1));
@@ -357,7 +357,7 @@ TEST_CASE("grains that a part holds wake as it moves, and so do those that stand
   CHECK(w.asleep_count() == 385);
 }
 
-TEST_CASE("a grain that lands wakes its surroundings, and is held") {
+TEST_CASE("a grain that lands wakes its surroundings, and is held", "[slow]") {
   Towers bed(true);
   REQUIRE(bed.w.run_for(0.07));
   const double top = 2e-3 * Towers::high;
@@ -394,7 +394,7 @@ TEST_CASE("the force on each grain is that of all of its contacts, evaluated in 
   CHECK(mixed > 5);
 }
 
-TEST_CASE("each grain knows how many are awake beside it, while some wake and others fall asleep") {
+TEST_CASE("each grain knows how many are awake beside it, while some wake and others fall asleep", "[slow]") {
   Towers bed(true);
   for (std::size_t k = 0; k < bed.grains.size(); ++k) {  // towers that fall asleep at different times
     bed.w.set_position(bed.grains[k], bed.w.position(bed.grains[k]) + Vec3(0, 0, 1e-5 * double(k / 30)));
@@ -454,7 +454,7 @@ TEST_CASE("histories of contacts that were not evaluated stay, whatever comes an
   SECTION("all are gone") { check({}, {first, third, fourth, last}); }
 }
 
-TEST_CASE("a grain that flies past wakes nobody, however often lists are made anew") {
+TEST_CASE("a grain that flies past wakes nobody, however often lists are made anew", "[slow]") {
   // It rises beside the towers and touches nothing, all of it in less than the two windows after which a grain that was
   // woken may sleep again. As the only one that is awake it is sorted before all others.
   Towers bed(true);
@@ -475,7 +475,7 @@ TEST_CASE("a grain that flies past wakes nobody, however often lists are made an
   CHECK(least == bed.grains.size());
 }
 
-TEST_CASE("a bed falls asleep although neighbours are listed anew again and again") {
+TEST_CASE("a bed falls asleep although neighbours are listed anew again and again", "[slow]") {
   // A grain far away is so fast that there is a new list in each of the windows that grains must be at rest for.
   Towers bed(true);
   const auto flier = bed.w.add_grain({SpeciesId(0), Vec3(0.5, 0.5, 0.5), {3.0, 0, 0}});
@@ -488,7 +488,7 @@ TEST_CASE("a bed falls asleep although neighbours are listed anew again and agai
   CHECK(!bed.w.is_asleep(flier));
 }
 
-TEST_CASE("sleeping worlds are the same bits on any number of threads") {
+TEST_CASE("sleeping worlds are the same bits on any number of threads", "[slow]") {
   std::vector<std::vector<Vec3>> positions;
   std::vector<std::size_t> asleep;
   for (const int threads : {1, 2, 3}) {
@@ -534,7 +534,7 @@ TEST_CASE("a load that grows slowly reaches the floor through a bed that sleeps"
   CHECK(worst < most);
 }
 
-TEST_CASE("a load that grows in a few steps and stays reaches the floor through a bed that sleeps") {
+TEST_CASE("a load that grows in a few steps and stays reaches the floor through a bed that sleeps", "[slow]") {
   // Over before the running mean has seen it. On its way the lid's damper makes a jolt of it.
   Towers bed(true);
   auto& m = bed.w.machine();
@@ -556,7 +556,7 @@ TEST_CASE("a load that grows in a few steps and stays reaches the floor through 
   CHECK(bed.on_floor() - floor > 0.5 * pressed_more);
 }
 
-TEST_CASE("a change of load below SleepOptions::change leaves a bed asleep, one above it wakes the bed") {
+TEST_CASE("a change of load below SleepOptions::change leaves a bed asleep, one above it wakes the bed", "[slow]") {
   // Towers of 6 cubes on a table that rises within 10 ms. The lowest cube bears 6 weights from below and 5 from above.
   // While it sleeps it does not give way, so the table's force on it grows by 4 K times the way.
   const auto least_asleep = [](double share_of_borne, double change) {

@@ -5,7 +5,7 @@
 
 using Catch::Approx;
 
-TEST_CASE("grains of different size, shape and material share a world") {
+TEST_CASE("grains of different size, shape and material share a world", "[slow]") {
   using Cluster = dem::shape::SphereCluster<8>;
   using Model = Grains<Cluster>;
   dem::World<Model> w(options({0, 0, -9.81}, 2e-6));
@@ -170,7 +170,7 @@ TEST_CASE("two worlds in one program do not know of each other") {
   CHECK(touched > 20 * 48);  // grains times steps, as only contacts turn a grain: twenty steps each
 }
 
-TEST_CASE("grains may be added during a run") {
+TEST_CASE("grains may be added during a run", "[slow]") {
   dem::World<Cubes> w(options({0, 0, -9.81}, 1e-5));
   w.set_contact(sand<Cubes>());
   const auto cube = w.add_species(dem::shape::cube8(1e-3));

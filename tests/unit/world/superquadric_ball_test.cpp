@@ -57,7 +57,8 @@ struct OnFloor {
 
 }  // namespace
 
-TEMPLATE_TEST_CASE("a superquadric ball rests on a floor as a sphere does", "", Superquadric, SuperquadricPoints) {
+TEMPLATE_TEST_CASE("a superquadric ball rests on a floor as a sphere does", "[slow]", Superquadric,
+                   SuperquadricPoints) {
   for (const Floor& floor : floors()) {
     CAPTURE(floor.name);
     OnFloor<TestType> scene(floor, {0, 0, -g}, 2000.0);
@@ -71,7 +72,7 @@ TEMPLATE_TEST_CASE("a superquadric ball rests on a floor as a sphere does", "", 
   }
 }
 
-TEMPLATE_TEST_CASE("a superquadric ball rolls down a slope as a sphere does", "", Sphere, Superquadric,
+TEMPLATE_TEST_CASE("a superquadric ball rolls down a slope as a sphere does", "[slow]", Sphere, Superquadric,
                    SuperquadricPoints) {
   const double angle = 0.2;
   for (const Floor& floor : floors()) {

@@ -156,7 +156,7 @@ TEST_CASE("superquadrics keep momentum and lose energy") {
   check_swarm(w);
 }
 
-TEST_CASE("superquadrics of points keep momentum and lose energy, whatever their points weigh") {
+TEST_CASE("superquadrics of points keep momentum and lose energy, whatever their points weigh", "[slow]") {
   for (const PointArea area : {PointArea::share, PointArea::relative}) {
     dem::World<Pointed> w(options({0, 0, 0}, 5e-6));
     if (area == PointArea::share) {
@@ -202,7 +202,7 @@ TEST_CASE("a mixed world with grains of one kind does what that kind's own world
   CHECK(run(again) == expected);  // what a search keeps belongs to the pair, so threads change nothing
 }
 
-TEST_CASE("towers of rounded cubes stand, with a contact a pair and with points") {
+TEST_CASE("towers of rounded cubes stand, with a contact a pair and with points", "[slow]") {
   const double half = 5e-3;
   auto smooth = tower<Smooth>(Superquadric(Vec3::Constant(half), Vec3::Constant(8)), half, 2e4);
   check_stands(smooth, half, 2e4);

@@ -52,7 +52,7 @@ double measured_order() {
 
 }  // namespace
 
-TEMPLATE_TEST_CASE("a free body tumbles and stays what it is", "", dem::integrator::PredictorCorrector,
+TEMPLATE_TEST_CASE("a free body tumbles and stays what it is", "[slow]", dem::integrator::PredictorCorrector,
                    dem::integrator::VelocityVerlet, dem::integrator::SymplecticEuler) {
   // A step turns the body by 1.4e-3 rad; a million are 220 turns. The cheaper schemes run a fifth of that.
   Tumbler<TestType> t(1e-3);

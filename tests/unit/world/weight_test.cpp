@@ -51,7 +51,7 @@ TEST_CASE("a cube that fell on its corner weighs m g when it lies") {
   CHECK((w.surface_force(plate) - Vec3(0, 0, -weight)).norm() < 1e-9 * weight);
 }
 
-TEST_CASE("every force of a pile arrives in the walls") {
+TEST_CASE("every force of a pile arrives in the walls", "[slow]") {
   dem::World<Cubes> w(options({0, 0, -g}, 1e-5));
   w.set_contact(sand<Cubes>());
   const auto cube = w.add_species(dem::shape::cube8(half_edge));
