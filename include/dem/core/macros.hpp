@@ -51,11 +51,11 @@
 #define DEM_UNROLL
 #endif
 
-/// DEM_COLD: set-up, which is compiled for size and never inlined into what runs: it costs a compiler half as much.
+/// DEM_SETUP: set-up, which is compiled for size and never inlined into what runs: it costs a compiler half as much.
 #if defined(__GNUC__) && !defined(__CUDACC__)
-#define DEM_COLD [[gnu::cold]]
+#define DEM_SETUP [[gnu::cold]]
 #else
-#define DEM_COLD
+#define DEM_SETUP
 #endif
 
 /// DEM_ASSERT states an invariant of the library itself (never a check of user input, which throws dem::Error).

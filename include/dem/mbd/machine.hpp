@@ -72,13 +72,13 @@ class Machine : public Mechanism {
 
   /// Derives what was left open (stiffness, damping) for a step of dt (s). Without it, step and run derive for the dt
   /// that they are given; after it, they keep what was derived, also for a smaller dt.
-  DEM_COLD void design_for(double dt) {
+  DEM_SETUP void design_for(double dt) {
     solver_.design_for(*this, dt);
     is_designed_ = true;
   }
   /// Evaluates the forces at the present state, at `time` (s), as the first step would. Throws Error if a stiffness has
   /// to be derived and design_for was not called, or a prescribed motion would have to jump.
-  DEM_COLD void initialise(double time, const Vec3& g) {
+  DEM_SETUP void initialise(double time, const Vec3& g) {
     gravity = g;
     const Stepping stepping(parts());
     solver_.initialise(*this, time, solver_.design_step(), g, [] {});
@@ -98,7 +98,7 @@ class Machine : public Mechanism {
   const AssemblyReport& assembly() const { return solver_.assembly(); }
   /// Does that now: velocities that joints do not allow are changed, as given_velocities says. What is prescribed moves
   /// as it does at the machine's time. Later changes of velocities need another call: the first step asks once.
-  DEM_COLD const AssemblyReport& assemble() {
+  DEM_SETUP const AssemblyReport& assemble() {
     solver_.check_motions(*this);
     const Stepping stepping(parts());
     if (parts().apply_motions) parts().apply_motions(parts(), time(), 0.0, false);
@@ -130,7 +130,7 @@ class Machine : public Mechanism {
     if (!parts().terrains.empty()) terrain_problem_ = take_terrain_problem(parts());
   }
   /// Lays the machine out for steps of dt (s), as far as that is due. Throws Error if they are too large.
-  DEM_COLD void accept(double dt) {
+  DEM_SETUP void accept(double dt) {
     const bool same = is_initialised();
     if (!is_designed_ && (dt != solver_.design_step() || !same)) solver_.design_for(*this, dt);
     if (!same) {
@@ -147,7 +147,7 @@ class Machine : public Mechanism {
     accepted_dt_ = dt;
   }
 
-  DEM_COLD void check_time_step(double dt) const {
+  DEM_SETUP void check_time_step(double dt) const {
     if (dt <= stable_time_step().dt || allow_unstable_time_step) return;
     // What is derived is derived anew for a smaller step: the one that is named is accepted when it is taken.
     const StableTimeStep limit = is_designed_ ? stable_time_step() : solver_.accepted_time_step(*this, dt);

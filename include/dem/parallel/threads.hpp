@@ -79,7 +79,7 @@ class Threads {
         w.keep(piece);
       }
     }
-    DEM_COLD void keep(std::size_t piece) {
+    DEM_SETUP void keep(std::size_t piece) {
       while (taken.test_and_set(std::memory_order_acquire)) {
       }
       if (!exception || piece < thrown_by) {

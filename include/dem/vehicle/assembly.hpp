@@ -15,7 +15,7 @@ struct PartMass {
 };
 
 /// A full cylinder about the x (0), y (1) or z (2) axis of the vehicle; mass in kg, radius and length in m.
-DEM_COLD inline PartMass round_part(double mass, double radius, double length, int axis) {
+DEM_SETUP inline PartMass round_part(double mass, double radius, double length, int axis) {
   require_positive(mass, "mass of a round part", "kg");
   require_positive(radius, "radius of a round part", "m");
   require_positive(length, "length of a round part", "m");
@@ -42,22 +42,22 @@ class Assembly {
 
   /// Adds a body with its centre of mass at `centre`. It turns with `spin` (rad/s) at the start, beside the speed of
   /// the vehicle.
-  DEM_COLD BodyId body(const std::string& part, const PartMass& m, const Vec3& centre,
-                       const Vec3& spin = Vec3::Zero()) const {
+  DEM_SETUP BodyId body(const std::string& part, const PartMass& m, const Vec3& centre,
+                        const Vec3& spin = Vec3::Zero()) const {
     const Vec3 velocity = direction(Vec3(speed_, 0, 0)), turn = direction(spin);
     return mechanism_->add_body(
         mbd::given_body(name(part), m.mass, m.inertia).at(point(centre), rotation_).moving(velocity, turn));
   }
   /// Adds a joint. Unless it says where x of its frame lies, that follows from the axes of the vehicle as
   /// JointSpec::with_x says of the global ones: the arms of a cross stand the same way wherever the vehicle heads.
-  DEM_COLD JointId add_joint(const mbd::JointSpec& s) const {
+  DEM_SETUP JointId add_joint(const mbd::JointSpec& s) const {
     if (s.x_axis) return mechanism_->add_joint(s);
     const bool along_x = std::abs(s.axis_a.normalized().dot(direction(Vec3::UnitX()))) > 0.9;
     return mechanism_->add_joint(s.with_x(direction(along_x ? Vec3::UnitY() : Vec3::UnitX())));
   }
   /// The same for a joint of one point and one axis.
-  DEM_COLD JointId joint(mbd::JointKind kind, const std::string& part, BodyId a, BodyId b, const Vec3& at,
-                         const Vec3& axis = Vec3::UnitZ()) const {
+  DEM_SETUP JointId joint(mbd::JointKind kind, const std::string& part, BodyId a, BodyId b, const Vec3& at,
+                          const Vec3& axis = Vec3::UnitZ()) const {
     return add_joint(mbd::joint(kind, name(part), a, b, point(at), direction(axis)));
   }
 

@@ -28,8 +28,8 @@ struct Axle {
 };
 
 /// `left_wheel`, `right_wheel`: bodies that turn about y. The shafts start turning with them at `spin` (rad/s).
-DEM_COLD inline Axle add_axle(const Assembly& in, const std::string& name, BodyId chassis, BodyId left_wheel,
-                              BodyId right_wheel, const AxleSpec& s, double spin = 0.0) {
+DEM_SETUP inline Axle add_axle(const Assembly& in, const std::string& name, BodyId chassis, BodyId left_wheel,
+                               BodyId right_wheel, const AxleSpec& s, double spin = 0.0) {
   using namespace mbd;
   require_positive(s.ratio, ("ratio of the " + name + " axle").c_str(), "(turns of the pinion for one of the cage)");
   Mechanism& m = in.mechanism();

@@ -42,7 +42,7 @@ struct BallJoint {
   double damping = 3.5e4;  ///< N s/m
 
   /// Throws Error for a constant that is not positive.
-  DEM_COLD JointId add(const Assembly& in, const std::string& part, BodyId a, BodyId b, const Vec3& at) const {
+  DEM_SETUP JointId add(const Assembly& in, const std::string& part, BodyId a, BodyId b, const Vec3& at) const {
     if (!is_rubber) return in.joint(mbd::JointKind::spherical, part, a, b, at);
     require_positive(stiffness, ("stiffness of " + part).c_str(), "N/m");
     require_positive(damping, ("damping of " + part).c_str(), "N s/m");
@@ -75,8 +75,8 @@ struct DoubleWishbone {
   SpringId spring, shock;
 };
 
-DEM_COLD inline DoubleWishbone add_double_wishbone(const Assembly& in, const std::string& corner, BodyId chassis,
-                                                   const DoubleWishboneSpec& s) {
+DEM_SETUP inline DoubleWishbone add_double_wishbone(const Assembly& in, const std::string& corner, BodyId chassis,
+                                                    const DoubleWishboneSpec& s) {
   using mbd::JointKind;
   mbd::Mechanism& m = in.mechanism();
   const WishbonePoints& p = s.points;
@@ -105,8 +105,8 @@ DEM_COLD inline DoubleWishbone add_double_wishbone(const Assembly& in, const std
 }
 
 /// A massless link of given length that keeps the knuckle's toe where there is no steering.
-DEM_COLD inline JointId add_toe_link(const Assembly& in, const std::string& corner, BodyId chassis, BodyId knuckle,
-                                     const WishbonePoints& p) {
+DEM_SETUP inline JointId add_toe_link(const Assembly& in, const std::string& corner, BodyId chassis, BodyId knuckle,
+                                      const WishbonePoints& p) {
   return in.add_joint(
       mbd::distance(in.name(corner + " toe link"), chassis, in.point(p.rod_inner), knuckle, in.point(p.rod_outer)));
 }

@@ -32,8 +32,8 @@ struct Driveline {
 
 /// `wheels`: front left, front right, rear left, rear right. The shafts turn with wheels of `spin` (rad/s) at the
 /// start.
-DEM_COLD inline Driveline add_driveline(const Assembly& in, BodyId chassis, const BodyId (&wheels)[4],
-                                        const DrivelineSpec& s, double spin = 0.0) {
+DEM_SETUP inline Driveline add_driveline(const Assembly& in, BodyId chassis, const BodyId (&wheels)[4],
+                                         const DrivelineSpec& s, double spin = 0.0) {
   using namespace mbd;
   Driveline d;
   d.front = add_axle(in, "front", chassis, wheels[0], wheels[1], s.front, spin);

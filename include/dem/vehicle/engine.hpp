@@ -46,13 +46,13 @@ struct EngineSpec {
 namespace detail {
 
 /// N m over rad/s at the drive shaft, of a motor.
-DEM_COLD inline mbd::Curve curve_at_shaft(const EngineSpec& e) {
+DEM_SETUP inline mbd::Curve curve_at_shaft(const EngineSpec& e) {
   std::vector<std::pair<double, double>> points;
   for (const auto& [speed, torque] : e.torque.points()) points.emplace_back(speed / e.ratio(0), torque * e.ratio(0));
   return mbd::Curve(std::move(points)).held_outside();
 }
 
-DEM_COLD inline void check_gears(const EngineSpec& e) {
+DEM_SETUP inline void check_gears(const EngineSpec& e) {
   double widest = 1.0;
   for (std::size_t k = 1; k < e.gears.size(); ++k) {
     if (!(e.gears[k] < e.gears[k - 1])) {
@@ -79,7 +79,7 @@ DEM_COLD inline void check_gears(const EngineSpec& e) {
 
 /// Throws Error for an engine that cannot be: without gears or a curve, with gears that do not fall or would shift back
 /// at once, without drag or an idling speed below that of its clutch; and for a motor with more than one ratio.
-DEM_COLD inline void check_engine(const EngineSpec& e) {
+DEM_SETUP inline void check_engine(const EngineSpec& e) {
   if (e.kind == EngineSpec::Kind::actuator) {
     require_positive(e.speed_gain, "speed gain of the engine", "N m s/rad");
     require_positive(e.largest_torque, "largest torque of the engine", "N m");
@@ -121,8 +121,8 @@ struct Engine {
 };
 
 /// `shaft` turns about `forward` in the chassis with its middle at `at` (m), at `spin` (rad/s) at the start.
-DEM_COLD inline Engine add_engine(const Assembly& in, BodyId chassis, JointId shaft, const EngineSpec& s,
-                                  const Vec3& at, const Vec3& forward, double spin) {
+DEM_SETUP inline Engine add_engine(const Assembly& in, BodyId chassis, JointId shaft, const EngineSpec& s,
+                                   const Vec3& at, const Vec3& forward, double spin) {
   using namespace mbd;
   detail::check_engine(s);
   Engine e;

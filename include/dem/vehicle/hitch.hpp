@@ -9,7 +9,7 @@ namespace dem::vehicle {
 
 /// A damper against sinking, rolling and pitching of the chassis: the car's weight sinks at a speed (m/s), ever slower
 /// as the ground takes it up.
-DEM_COLD inline LoadId add_crane(mbd::Mechanism& m, const Vehicle& car, double speed) {
+DEM_SETUP inline LoadId add_crane(mbd::Mechanism& m, const Vehicle& car, double speed) {
   const double up = weight_of(m) / speed, turn = up * car.spec.wheelbase();
   return m.add_load(mbd::custom_load("crane", car.chassis, [up, turn](double, const Body& b) {
     const Vec3 v = b.velocity(), w = b.angular_velocity();
@@ -29,7 +29,7 @@ struct Hitch {
 
 /// Adds a hitch 0.9 m behind the rear axle, so high (m) above the lowest points of the wheels where they are now. It is
 /// off.
-DEM_COLD inline std::shared_ptr<Hitch> add_hitch(mbd::Mechanism& m, const Vehicle& car, double height) {
+DEM_SETUP inline std::shared_ptr<Hitch> add_hitch(mbd::Mechanism& m, const Vehicle& car, double height) {
   const Body& b = m.body(car.chassis);
   const Vec3 wheel = m.body(car.wheels[2].body).position();
   const Vec3 at(wheel.x() - 0.9, b.position().y(), wheel.z() - car.spec.tyre.radius + height);

@@ -24,7 +24,7 @@ inline constexpr const char* engine_words =
     "motor (no gears), gears (a diesel with six), low-range (the same), actuator (holds a speed, as in the thesis)";
 
 /// The options with an engine of that name. Throws Error for a name that is none.
-DEM_COLD inline HumveeOptions with_engine(HumveeOptions o, const std::string& name) {
+DEM_SETUP inline HumveeOptions with_engine(HumveeOptions o, const std::string& name) {
   const auto names = engine_names();
   if (std::find(names.begin(), names.end(), name) == names.end()) {
     fail("there is no engine '{}'; give motor, gears, low-range or actuator", name);
@@ -45,7 +45,7 @@ DEM_COLD inline HumveeOptions with_engine(HumveeOptions o, const std::string& na
 /// torque. Ballast scales mass and inertia of the chassis alike, about the same centre. A spindle is part of its
 /// knuckle. The origin is the middle between the axles. Throws Error for a sprung mass below that of the parts on the
 /// chassis.
-DEM_COLD inline VehicleSpec humvee(const HumveeOptions& o = {}) {
+DEM_SETUP inline VehicleSpec humvee(const HumveeOptions& o = {}) {
   VehicleSpec s;
   const double axle = 1.688965;
   const WishbonePoints front = {.wheel = Vec3(-.040, .910, -.026),

@@ -27,8 +27,8 @@ struct RackSteering {
 
 /// `arm` (m): how far the outer ends of the rods are ahead of the axes about which the knuckles steer, negative where
 /// they are behind. Throws Error for less than a millimetre.
-DEM_COLD inline RackSteering add_rack_steering(const Assembly& in, BodyId chassis, BodyId left_knuckle,
-                                               BodyId right_knuckle, const RackSteeringSpec& s, double arm) {
+DEM_SETUP inline RackSteering add_rack_steering(const Assembly& in, BodyId chassis, BodyId left_knuckle,
+                                                BodyId right_knuckle, const RackSteeringSpec& s, double arm) {
   using namespace mbd;
   require_positive(s.pinion_radius, "radius of the steering pinion", "m");
   require_positive(s.largest_angle, "largest angle of the steering pinion", "rad");

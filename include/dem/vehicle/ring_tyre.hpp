@@ -44,7 +44,7 @@ struct RingTyreSpec {
 };
 
 /// Throws Error for a tyre that cannot be.
-DEM_COLD inline void check_ring_tyre(const RingTyreSpec& s) {
+DEM_SETUP inline void check_ring_tyre(const RingTyreSpec& s) {
   require_positive(s.radius, "radius of a ring tyre", "m");
   require_positive(s.width, "width of a ring tyre", "m");
   require_within(s.segments, 12, 400, "segments of a ring tyre");
@@ -110,8 +110,8 @@ inline double deflection_of(const mbd::Mechanism& m, const RingTyre& tyre) {
 /// Puts a tyre on a rim that turns about y of the vehicle, with its middle at `middle` (m) and a `spin` (rad/s). The
 /// rim's mass is that of the wheel without the belt. Outside of the ring is the tread: a segment's own frame has its
 /// middle half a thickness below it. Throws Error for a tyre that cannot be.
-DEM_COLD inline RingTyre add_ring_tyre(const Assembly& in, const std::string& corner, BodyId rim, const Vec3& middle,
-                                       const RingTyreSpec& s, double spin = 0.0) {
+DEM_SETUP inline RingTyre add_ring_tyre(const Assembly& in, const std::string& corner, BodyId rim, const Vec3& middle,
+                                        const RingTyreSpec& s, double spin = 0.0) {
   check_ring_tyre(s);
   mbd::Mechanism& m = in.mechanism();
   RingTyre tyre{.spec = s, .rim = rim, .segments = {}};

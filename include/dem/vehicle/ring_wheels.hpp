@@ -11,7 +11,7 @@ namespace dem::vehicle {
 /// The vehicle with wheels of the size of ring tyres, without the mass and inertia of their belts. Throws Error for a
 /// tyre that cannot be, for belts that are heavier than the wheel with them, and for a time step (s) that they do not
 /// bear.
-DEM_COLD inline VehicleSpec on_ring_tyres(VehicleSpec car, const RingTyreSpec& ring, double time_step) {
+DEM_SETUP inline VehicleSpec on_ring_tyres(VehicleSpec car, const RingTyreSpec& ring, double time_step) {
   check_ring_tyre(ring);
   if (!(time_step <= ring.stable_time_step())) {
     fail(
@@ -35,8 +35,8 @@ DEM_COLD inline VehicleSpec on_ring_tyres(VehicleSpec car, const RingTyreSpec& r
 }
 
 /// Puts a ring tyre on a wheel (0 to 3) of a vehicle as it is drawn, at rest.
-DEM_COLD inline RingTyre add_ring_tyre(const Assembly& in, const Vehicle& car, std::size_t corner,
-                                       const RingTyreSpec& s) {
+DEM_SETUP inline RingTyre add_ring_tyre(const Assembly& in, const Vehicle& car, std::size_t corner,
+                                        const RingTyreSpec& s) {
   Vec3 middle = (corner < 2 ? car.spec.front : car.spec.rear).points.wheel;
   if (corner % 2 == 1) middle.y() = -middle.y();
   return add_ring_tyre(in, corner_names[corner], car.wheels[corner].body, middle, s);

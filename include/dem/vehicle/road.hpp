@@ -119,7 +119,7 @@ struct Road {
 };
 
 /// Throws Error for a road that cannot be.
-DEM_COLD inline void check_road(const Road& road) {
+DEM_SETUP inline void check_road(const Road& road) {
   const Vec3 &p = road.point, &n = road.normal;
   require_non_negative(road.friction, "friction of a road", "(no unit)");
   require_positive(road.print, "print of a road under a tyre", "m");

@@ -19,7 +19,7 @@ class RoadTyre final : public mbd::Terrain {
       : spec_(spec), road_(road), wheel_(wheel), axis_(axis), load_(load), name_(std::move(name)) {}
 
   /// Another tyre from now on, between two steps. The stretch of its tread goes on.
-  DEM_COLD void set_spec(const TyreSpec& spec) {
+  DEM_SETUP void set_spec(const TyreSpec& spec) {
     check_tyre(spec);
     spec_ = spec;
   }

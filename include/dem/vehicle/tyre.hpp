@@ -42,7 +42,7 @@ struct TyreSpec {
 };
 
 /// Throws Error for a tyre that cannot be.
-DEM_COLD inline void check_tyre(const TyreSpec& s) {
+DEM_SETUP inline void check_tyre(const TyreSpec& s) {
   require_positive(s.radius, "radius of a tyre", "m");
   require_positive(s.width, "width of a tyre", "m");
   require_positive(s.stiffness, "stiffness of a tyre", "N/m");

@@ -65,7 +65,7 @@ class TyreWatch {
   static constexpr double longest_begin = 0.1;  // s, in which a tyre that begins in the road throws its wheel out
   static constexpr double largest_throw = 5.0;  // m/s
 
-  DEM_COLD void tell_deep(const TyreSpec& tyre, const Body& wheel, const TyreState& s) {
+  DEM_SETUP void tell_deep(const TyreSpec& tyre, const Body& wheel, const TyreState& s) {
     is_told_deep_ = true;
     tell(
         text("the tyre of body '{}' is {:.3g} m deep in the road, more than half of its radius, {:g} m; start it "
@@ -94,7 +94,7 @@ class TyreWatch {
     if (thrown_ > 0.0 && rise > 0.5 * thrown_ && !is_told_thrown_) tell_thrown(tyre, wheel, dt);
     thrown_ = s.load * dt / wheel.mass;
   }
-  DEM_COLD void tell_thrown(const TyreSpec& tyre, const Body& wheel, double dt) {
+  DEM_SETUP void tell_thrown(const TyreSpec& tyre, const Body& wheel, double dt) {
     is_told_thrown_ = true;
     const double m = wheel.mass, k = tyre.stiffness, c = tyre.damping;
     tell(text(

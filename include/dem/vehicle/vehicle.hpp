@@ -72,7 +72,7 @@ struct Vehicle {
 namespace detail {
 
 /// Throws Error for a vehicle whose left wheels are not on the left, or whose front wheels are not in front.
-DEM_COLD inline void check_drawing(const VehicleSpec& s) {
+DEM_SETUP inline void check_drawing(const VehicleSpec& s) {
   const Vec3 &front = s.front.points.wheel, &rear = s.rear.points.wheel;
   if (!(front.y() > 0.0 && rear.y() > 0.0)) {
     fail(
@@ -98,7 +98,7 @@ DEM_COLD inline void check_drawing(const VehicleSpec& s) {
 /// for them, and is many times slower. So give it a large joint_tolerance (0.5 m, say) before its first step. Nothing
 /// watches the suspension then: halve the step once, compare, and look at violation() of its joints. See README.md
 /// beside this file.
-DEM_COLD inline Vehicle add_vehicle(const Assembly& in, const VehicleSpec& s, const std::optional<Road>& road = {}) {
+DEM_SETUP inline Vehicle add_vehicle(const Assembly& in, const VehicleSpec& s, const std::optional<Road>& road = {}) {
   detail::check_drawing(s);
   Vehicle v;
   v.spec = s;

@@ -35,8 +35,8 @@ struct Wheel {
   }
 };
 
-DEM_COLD inline Wheel add_wheel(const Assembly& in, const std::string& corner, BodyId knuckle, const Vec3& middle,
-                                const WheelSpec& s, double spin = 0.0) {
+DEM_SETUP inline Wheel add_wheel(const Assembly& in, const std::string& corner, BodyId knuckle, const Vec3& middle,
+                                 const WheelSpec& s, double spin = 0.0) {
   using namespace mbd;
   require_non_negative(s.brake, ("brake of the " + corner + " wheel").c_str(), "N m");
   require_positive(s.brake_stiffness, ("brake stiffness of the " + corner + " wheel").c_str(), "N m/rad");
@@ -53,8 +53,8 @@ DEM_COLD inline Wheel add_wheel(const Assembly& in, const std::string& corner, B
 /// Puts a tyre on a hard road. Not for worlds where the wheel has a surface that touches ground. Throws Error for a
 /// tyre or road that cannot be, a wheel that has a tyre already, or one that is too deep in the road where it is. The
 /// tyre is as given here until set_tyre().
-DEM_COLD inline void add_tyre(const Assembly& in, const std::string& corner, Wheel& w, const TyreSpec& tyre,
-                              const Road& road) {
+DEM_SETUP inline void add_tyre(const Assembly& in, const std::string& corner, Wheel& w, const TyreSpec& tyre,
+                               const Road& road) {
   check_tyre(tyre);
   check_road(road);
   mbd::Mechanism& m = in.mechanism();
@@ -93,7 +93,7 @@ inline const TyreState& tyre_of(const mbd::Mechanism& m, const Wheel& w) { retur
 /// Gives a wheel's tyre on hard ground other numbers, between two steps: less friction on ice, less stiffness for less
 /// air. VehicleSpec::tyre stays as it was built. A saved state is only loaded where tyres were changed the same way.
 /// Throws Error if the wheel has none, or for one that cannot be.
-DEM_COLD inline void set_tyre(mbd::Mechanism& m, const Wheel& w, const TyreSpec& tyre) {
+DEM_SETUP inline void set_tyre(mbd::Mechanism& m, const Wheel& w, const TyreSpec& tyre) {
   detail::road_tyre_of(m, w).set_spec(tyre);
 }
 

@@ -13,7 +13,7 @@ namespace dem::io {
 namespace detail {
 
 /// A row of a column in words.
-DEM_COLD inline std::string in_words(ColumnKind kind, std::size_t width, const void* data, const std::string& unit) {
+DEM_SETUP inline std::string in_words(ColumnKind kind, std::size_t width, const void* data, const std::string& unit) {
   if (kind == ColumnKind::text) return "'" + *static_cast<const std::string*>(data) + "'";
   std::string words;
   for (std::size_t k = 0; k < width; ++k) {
@@ -44,7 +44,7 @@ DEM_COLD inline std::string in_words(ColumnKind kind, std::size_t width, const v
 }
 
 /// The last part of a column's name, as a word.
-DEM_COLD inline std::string last_word(const std::string& path) {
+DEM_SETUP inline std::string last_word(const std::string& path) {
   std::string word = path.substr(path.rfind('/') + 1);
   if (word == "value" || word == "count" || word == "is_set" || word == "first" || word == "second") {
     const std::size_t end = path.rfind('/');
@@ -111,7 +111,7 @@ class FieldColumns {
   bool named_ = true;  ///< whether the present part has been named
 };
 
-DEM_COLD inline Column& FieldColumns::column() {
+DEM_SETUP inline Column& FieldColumns::column() {
   const auto found = columns_->find(path_);
   if (found == columns_->end()) {
     fail(
@@ -169,7 +169,7 @@ inline void FieldColumns::exchange(ColumnKind kind, std::size_t width, void* dat
   c.at = at + 1;
 }
 
-DEM_COLD inline void FieldColumns::compare(const Column& c, const void* data) {
+DEM_SETUP inline void FieldColumns::compare(const Column& c, const void* data) {
   const void* saved = c.kind == ColumnKind::text ? static_cast<const void*>(&c.texts[c.at])
                                                  : static_cast<const void*>(c.bytes().data() + c.at * c.row_bytes());
   const bool same = c.kind == ColumnKind::text ? c.texts[c.at] == *static_cast<const std::string*>(data)
@@ -180,7 +180,7 @@ DEM_COLD inline void FieldColumns::compare(const Column& c, const void* data) {
        detail::in_words(c.kind, c.width, data, c.unit));
 }
 
-DEM_COLD inline void FieldColumns::compare_fingerprint(std::uint64_t bits) {
+DEM_SETUP inline void FieldColumns::compare_fingerprint(std::uint64_t bits) {
   std::uint64_t saved = 0;
   take(ColumnKind::natural, 1, &saved, 1);
   if (saved == bits) return;
@@ -188,7 +188,7 @@ DEM_COLD inline void FieldColumns::compare_fingerprint(std::uint64_t bits) {
        part_.empty() ? "" : part_ + ": ", detail::last_word(path_));
 }
 
-DEM_COLD inline void FieldColumns::compare_reals(std::size_t width, const double* numbers, const char* const* names) {
+DEM_SETUP inline void FieldColumns::compare_reals(std::size_t width, const double* numbers, const char* const* names) {
   std::vector<double> saved(width);
   take(ColumnKind::real, width, saved.data(), 1);
   for (std::size_t k = 0; k < width; ++k) {
@@ -200,13 +200,13 @@ DEM_COLD inline void FieldColumns::compare_reals(std::size_t width, const double
   }
 }
 
-DEM_COLD inline void FieldColumns::add_count(std::size_t count) {
+DEM_SETUP inline void FieldColumns::add_count(std::size_t count) {
   const Inside inside(*this, "count");
   std::uint64_t n = count;
   exchange(ColumnKind::natural, 1, &n, "");
 }
 
-DEM_COLD inline void FieldColumns::compare_count(std::size_t count, const char* one) {
+DEM_SETUP inline void FieldColumns::compare_count(std::size_t count, const char* one) {
   std::uint64_t saved = 0;
   const Inside inside(*this, "count");
   take(ColumnKind::natural, 1, &saved, 1);
@@ -221,13 +221,13 @@ DEM_COLD inline void FieldColumns::compare_count(std::size_t count, const char* 
        part_.empty() ? "" : part_ + ", ", one, saved, names, count);
 }
 
-DEM_COLD inline void FieldColumns::begin_item(const std::string& outer, const char* one, std::size_t k) {
+DEM_SETUP inline void FieldColumns::begin_item(const std::string& outer, const char* one, std::size_t k) {
   part_ = (outer.empty() ? "" : outer + ", ") + one + " " + std::to_string(k);
   named_ = false;
   kind_of_part_ = one;
 }
 
-DEM_COLD inline void FieldColumns::check_all_read(std::string_view group) const {
+DEM_SETUP inline void FieldColumns::check_all_read(std::string_view group) const {
   for (const auto& [name, column] : *columns_) {
     if (column.at == column.rows() || !name.starts_with(group)) continue;
     if (group == "model/" && !column.texts.empty()) {

@@ -14,7 +14,7 @@ inline Vector3<double> vector_at(const std::vector<double>& list, std::size_t k)
 }
 
 /// What is known of resting grains, by id: a column for each quantity.
-DEM_COLD inline void rest_fields(Fields& v, std::vector<grain::Rest>& grains) {
+DEM_SETUP inline void rest_fields(Fields& v, std::vector<grain::Rest>& grains) {
   const bool is_restoring = v.task() == Fields::Task::restore;
   const auto vectors = [&](const char* name, const char* unit, auto&& of) {
     std::vector<double> list;

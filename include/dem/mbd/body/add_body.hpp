@@ -5,9 +5,9 @@
 
 namespace dem::mbd::detail {
 
-DEM_COLD BodyId add_body(Parts& parts, BuiltBody built, bool is_ground = false);
+DEM_SETUP BodyId add_body(Parts& parts, BuiltBody built, bool is_ground = false);
 
-DEM_COLD ConnectionId add_connection(Parts& parts, std::string name, BodyId body, const Vec3& at);
+DEM_SETUP ConnectionId add_connection(Parts& parts, std::string name, BodyId body, const Vec3& at);
 
 }  // namespace dem::mbd::detail
 

@@ -61,18 +61,18 @@ BodySpec given_body(std::string name, double mass, const Eigen::MatrixBase<Deriv
   return {.name = std::move(name), .mass_properties = {mass, centre_of_mass, tensor}};
 }
 /// A box with full edges `size` (m), reference frame in its middle; density in kg/m^3.
-DEM_COLD inline BodySpec box_body(std::string name, const Vec3& size, double density) {
+DEM_SETUP inline BodySpec box_body(std::string name, const Vec3& size, double density) {
   return detail::made_of(std::move(name), [&] { return box_mass(size, density); });
 }
 /// A full cylinder about the z axis of its reference frame, which sits in its middle (m, kg/m^3).
-DEM_COLD inline BodySpec cylinder_body(std::string name, double radius, double length, double density) {
+DEM_SETUP inline BodySpec cylinder_body(std::string name, double radius, double length, double density) {
   return detail::made_of(std::move(name), [&] { return cylinder_mass(radius, length, density); });
 }
-DEM_COLD inline BodySpec sphere_body(std::string name, double radius, double density) {
+DEM_SETUP inline BodySpec sphere_body(std::string name, double radius, double density) {
   return detail::made_of(std::move(name), [&] { return sphere_mass(radius, density); });
 }
 /// A body that stays where it is (or is moved by prescribed motion alone); it needs no mass.
-DEM_COLD inline BodySpec fixed_body(std::string name, const Vec3& position = Vec3::Zero()) {
+DEM_SETUP inline BodySpec fixed_body(std::string name, const Vec3& position = Vec3::Zero()) {
   return {.name = std::move(name), .position = position, .fixed = true};
 }
 
@@ -85,7 +85,7 @@ struct BuiltBody {
 
 /// Finds the principal axes and moves the reference frame's motion to the centre of mass. Throws Error if the body has
 /// no mass, an impossible inertia, a rotation that is not one, or a number that is not finite.
-DEM_COLD BuiltBody build_body(const BodySpec& spec);
+DEM_SETUP BuiltBody build_body(const BodySpec& spec);
 
 }  // namespace dem::mbd
 

@@ -55,21 +55,21 @@ struct ClutchSpec {
 ///
 ///     const BrakeId handbrake = car.add_brake(brake("handbrake", rear_hub, 0.0));
 ///     car.set_capacity(handbrake, 1500.0);
-DEM_COLD inline ClutchSpec brake(std::string name, JointId joint, Signal capacity) {
+DEM_SETUP inline ClutchSpec brake(std::string name, JointId joint, Signal capacity) {
   return {.name = std::move(name), .terms = {{joint, 1.0}}, .capacity = std::move(capacity)};
 }
 /// A clutch between two shafts that turn in bearings of their own (N m): what slips is the turn of `out` less that of
 /// `in`. Both joints have to count the turn the same way, as two on one axis do.
-DEM_COLD inline ClutchSpec clutch(std::string name, JointId in, JointId out, Signal capacity) {
+DEM_SETUP inline ClutchSpec clutch(std::string name, JointId in, JointId out, Signal capacity) {
   return {.name = std::move(name), .terms = {{out, 1.0}, {in, -1.0}}, .capacity = std::move(capacity)};
 }
 /// A clutch or a brake between two bodies that have no joint with each other, about an axis at a point (global at
 /// assembly). A free joint that measures the turn is added with it.
-DEM_COLD ClutchSpec clutch(std::string name, BodyId a, BodyId b, const Vec3& at, const Vec3& axis, Signal capacity);
+DEM_SETUP ClutchSpec clutch(std::string name, BodyId a, BodyId b, const Vec3& at, const Vec3& axis, Signal capacity);
 /// The plates of a limited-slip differential, between the two outputs of a differential(...). Their capacity is the
 /// preload (N m; what it takes to turn one wheel against the other without input), and a share of the input's torque:
 /// with no preload, the slower output gets up to `bias_ratio` times the torque of the faster one. 1: an open one.
-DEM_COLD ClutchSpec limited_slip(std::string name, CouplingId differential, Signal preload, double bias_ratio);
+DEM_SETUP ClutchSpec limited_slip(std::string name, CouplingId differential, Signal preload, double bias_ratio);
 
 /// A brake or clutch, ready to run, and what it did in the newest force evaluation.
 struct Clutch {

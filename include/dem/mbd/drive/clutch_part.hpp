@@ -81,9 +81,9 @@ inline constexpr PartKind clutch_kind = {
     }};
 
 /// The two outputs of a differential.
-DEM_COLD void take_differential(const Parts& parts, Clutch& u, const std::string& who);
+DEM_SETUP void take_differential(const Parts& parts, Clutch& u, const std::string& who);
 
-DEM_COLD ClutchId add_clutch(Parts& parts, ClutchSpec spec);
+DEM_SETUP ClutchId add_clutch(Parts& parts, ClutchSpec spec);
 
 }  // namespace dem::mbd::detail
 

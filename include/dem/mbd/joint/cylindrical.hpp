@@ -11,7 +11,7 @@ inline constexpr JointTraits cylindrical_joint = joint_that_holds<Hold::line, Al
 inline constexpr JointKind JointKind::cylindrical{cylindrical_joint};
 
 /// A sleeve on a shaft: leaves the rotation about an axis and the slide along it.
-DEM_COLD inline JointSpec cylindrical(std::string name, BodyId a, BodyId b, const Vec3& at, const Vec3& axis) {
+DEM_SETUP inline JointSpec cylindrical(std::string name, BodyId a, BodyId b, const Vec3& at, const Vec3& axis) {
   return joint(JointKind::cylindrical, std::move(name), a, b, at, axis);
 }
 

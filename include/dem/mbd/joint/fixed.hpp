@@ -11,7 +11,7 @@ inline constexpr JointTraits fixed_joint =
 inline constexpr JointKind JointKind::fixed{fixed_joint};
 
 /// Holds everything: two bodies become one.
-DEM_COLD inline JointSpec fixed(std::string name, BodyId a, BodyId b, const Vec3& at) {
+DEM_SETUP inline JointSpec fixed(std::string name, BodyId a, BodyId b, const Vec3& at) {
   return joint(JointKind::fixed, std::move(name), a, b, at);
 }
 

@@ -8,7 +8,7 @@ namespace dem::mbd {
 
 namespace detail {
 
-DEM_COLD void check_free(const JointSpec& s, const std::string& who);
+DEM_SETUP void check_free(const JointSpec& s, const std::string& who);
 /// Puts no force on the bodies; its turns are followed.
 inline void follow_turns(Joint& j, Body& a, Body& b, const Vector3<double>& wa, const Vector3<double>& wb, double dt) {
   j.angle_estimate += dt * dot(turn_gradient(a.motion.rotation * j.axes_a.z, b.motion.rotation * j.axes_b.z), wb - wa);
@@ -27,7 +27,7 @@ inline constexpr JointTraits free_joint_traits = {
 inline constexpr JointKind JointKind::free{free_joint_traits};
 
 /// Holds nothing; measures the rotation about and the displacement along an axis.
-DEM_COLD inline JointSpec free_joint(std::string name, BodyId a, BodyId b, const Vec3& at, const Vec3& axis) {
+DEM_SETUP inline JointSpec free_joint(std::string name, BodyId a, BodyId b, const Vec3& at, const Vec3& axis) {
   return joint(JointKind::free, std::move(name), a, b, at, axis);
 }
 

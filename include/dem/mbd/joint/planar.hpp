@@ -14,7 +14,7 @@ inline constexpr JointTraits planar_joint =
 inline constexpr JointKind JointKind::planar{planar_joint};
 
 /// A plate on a table: leaves both slides along a plane and the rotation about its normal.
-DEM_COLD inline JointSpec planar(std::string name, BodyId a, BodyId b, const Vec3& at, const Vec3& normal) {
+DEM_SETUP inline JointSpec planar(std::string name, BodyId a, BodyId b, const Vec3& at, const Vec3& normal) {
   return joint(JointKind::planar, std::move(name), a, b, at, normal);
 }
 

@@ -11,7 +11,7 @@ inline constexpr JointTraits point_on_line_joint = joint_that_holds<Hold::line, 
 inline constexpr JointKind JointKind::point_on_line{point_on_line_joint};
 
 /// A point of b stays on a line that is fixed to a.
-DEM_COLD inline JointSpec point_on_line(std::string name, BodyId a, BodyId b, const Vec3& at, const Vec3& axis) {
+DEM_SETUP inline JointSpec point_on_line(std::string name, BodyId a, BodyId b, const Vec3& at, const Vec3& axis) {
   return joint(JointKind::point_on_line, std::move(name), a, b, at, axis);
 }
 

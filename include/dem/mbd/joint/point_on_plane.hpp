@@ -11,7 +11,7 @@ inline constexpr JointTraits point_on_plane_joint = joint_that_holds<Hold::plane
 inline constexpr JointKind JointKind::point_on_plane{point_on_plane_joint};
 
 /// A point of b stays on a plane that is fixed to a.
-DEM_COLD inline JointSpec point_on_plane(std::string name, BodyId a, BodyId b, const Vec3& at, const Vec3& normal) {
+DEM_SETUP inline JointSpec point_on_plane(std::string name, BodyId a, BodyId b, const Vec3& at, const Vec3& normal) {
   return joint(JointKind::point_on_plane, std::move(name), a, b, at, normal);
 }
 

@@ -11,7 +11,7 @@ inline constexpr JointTraits prismatic_joint = joint_that_holds<Hold::line, Alig
 inline constexpr JointKind JointKind::prismatic{prismatic_joint};
 
 /// A slider on a rail (thesis section 2.3.2): leaves the slide along an axis.
-DEM_COLD inline JointSpec prismatic(std::string name, BodyId a, BodyId b, const Vec3& at, const Vec3& axis) {
+DEM_SETUP inline JointSpec prismatic(std::string name, BodyId a, BodyId b, const Vec3& at, const Vec3& axis) {
   return joint(JointKind::prismatic, std::move(name), a, b, at, axis);
 }
 

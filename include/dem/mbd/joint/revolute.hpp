@@ -15,7 +15,7 @@ inline constexpr JointTraits revolute_joint =
 inline constexpr JointKind JointKind::revolute{revolute_joint};
 
 /// A hinge (thesis section 2.3.1): leaves the rotation about an axis.
-DEM_COLD inline JointSpec revolute(std::string name, BodyId a, BodyId b, const Vec3& at, const Vec3& axis) {
+DEM_SETUP inline JointSpec revolute(std::string name, BodyId a, BodyId b, const Vec3& at, const Vec3& axis) {
   return joint(JointKind::revolute, std::move(name), a, b, at, axis);
 }
 

@@ -11,7 +11,7 @@ inline constexpr JointTraits spherical_joint = joint_that_holds<Hold::point, Ali
 inline constexpr JointKind JointKind::spherical{spherical_joint};
 
 /// A ball in a socket: holds a point and leaves all rotations.
-DEM_COLD inline JointSpec spherical(std::string name, BodyId a, BodyId b, const Vec3& at) {
+DEM_SETUP inline JointSpec spherical(std::string name, BodyId a, BodyId b, const Vec3& at) {
   return joint(JointKind::spherical, std::move(name), a, b, at);
 }
 

@@ -45,7 +45,7 @@ class Terrain {
 };
 
 /// The force of a terrain on a body, one for each body that it acts on: the terrain writes it before loads are applied.
-DEM_COLD inline LoadSpec terrain_load(std::string name, BodyId body) {
+DEM_SETUP inline LoadSpec terrain_load(std::string name, BodyId body) {
   return {.name = std::move(name), .body = body, .by_terrain = true};
 }
 
@@ -53,10 +53,10 @@ DEM_COLD inline LoadSpec terrain_load(std::string name, BodyId body) {
 class TerrainPart {
  public:
   /// Throws Error for none.
-  DEM_COLD TerrainPart(std::string part_name, std::unique_ptr<Terrain> terrain);
-  DEM_COLD TerrainPart(const TerrainPart& other) : name(other.name), terrain_(other.terrain_->copy()) {}
+  DEM_SETUP TerrainPart(std::string part_name, std::unique_ptr<Terrain> terrain);
+  DEM_SETUP TerrainPart(const TerrainPart& other) : name(other.name), terrain_(other.terrain_->copy()) {}
   TerrainPart(TerrainPart&&) noexcept = default;
-  DEM_COLD TerrainPart& operator=(const TerrainPart& other) { return *this = TerrainPart(other); }
+  DEM_SETUP TerrainPart& operator=(const TerrainPart& other) { return *this = TerrainPart(other); }
   TerrainPart& operator=(TerrainPart&&) noexcept = default;
   ~TerrainPart() = default;
 

@@ -70,20 +70,20 @@ struct SensorSpec {
 };
 
 /// What a body feels of what it touches: grains, surfaces of other bodies of the machine, and terrains.
-DEM_COLD inline SensorSpec contact_sensor(std::string name, BodyId body, double window) {
+DEM_SETUP inline SensorSpec contact_sensor(std::string name, BodyId body, double window) {
   return {std::move(name), SensorTarget::contacts, body.index(), window};
 }
 /// All forces on a body but its weight and the forces of prescribed motions (drive_sensor).
-DEM_COLD inline SensorSpec total_force_sensor(std::string name, BodyId body, double window) {
+DEM_SETUP inline SensorSpec total_force_sensor(std::string name, BodyId body, double window) {
   return {std::move(name), SensorTarget::total, body.index(), window};
 }
-DEM_COLD inline SensorSpec joint_sensor(std::string name, JointId joint, double window) {
+DEM_SETUP inline SensorSpec joint_sensor(std::string name, JointId joint, double window) {
   return {std::move(name), SensorTarget::joint, joint.index(), window};
 }
-DEM_COLD inline SensorSpec actuator_sensor(std::string name, ActuatorId actuator, double window) {
+DEM_SETUP inline SensorSpec actuator_sensor(std::string name, ActuatorId actuator, double window) {
   return {std::move(name), SensorTarget::actuator, actuator.index(), window};
 }
-DEM_COLD inline SensorSpec drive_sensor(std::string name, MotionId motion, double window) {
+DEM_SETUP inline SensorSpec drive_sensor(std::string name, MotionId motion, double window) {
   return {std::move(name), SensorTarget::drive, motion.index(), window};
 }
 

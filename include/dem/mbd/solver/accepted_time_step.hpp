@@ -12,7 +12,7 @@ namespace dem::mbd {
 /// step, and the part that limits it. What is derived gets stiffer as the step gets shorter and shares its bodies with
 /// what is given, so the stable step of a longer one is not yet a step that is stable.
 template <class I>
-DEM_COLD StableTimeStep accepted_time_step_of(Parts m, double dt, int n) {
+DEM_SETUP StableTimeStep accepted_time_step_of(Parts m, double dt, int n) {
   StableTimeStep limit;
   const auto is_stable_at = [&](double step) {
     derive_stiffness(m, step / n);

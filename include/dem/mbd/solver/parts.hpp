@@ -181,7 +181,7 @@ Vector3<double> unit(const Vector3<double>& v, const std::string& asker);
 inline Vector3<double> unit(const Vec3& v, const std::string& asker) { return unit(from_eigen(v), asker); }
 
 /// Throws Error for an element whose force could move neither of the bodies that it acts on.
-DEM_COLD void require_one_moves(const Body& a, const Body& b, const std::string& who);
+DEM_SETUP void require_one_moves(const Body& a, const Body& b, const std::string& who);
 
 /// Checks the two ends of an element between points and puts the points into body frames.
 template <class Part, class Spec>

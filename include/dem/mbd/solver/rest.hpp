@@ -68,7 +68,7 @@ class RestSearch {
     for (std::size_t k = 0; k < free_.size(); ++k) m_.bodies[free_[k]].motion = start_[k];
   }
 
-  DEM_COLD RestReport run(const RestOptions& o) {
+  DEM_SETUP RestReport run(const RestOptions& o) {
     RestReport report;
     double tau = 0.1, last = residual(), least = 1e300;
     int stalled = 0;  // iterations since the residual was halved
@@ -235,7 +235,7 @@ class RestSearch {
 };
 
 /// Throws Error for what a search for rest cannot hold, and stops all bodies that are not fixed.
-DEM_COLD void stop_for_rest(Parts& parts);
+DEM_SETUP void stop_for_rest(Parts& parts);
 
 /// While it lives, fixed bodies have no speed: belts, which run on afterwards.
 class StandStill {
@@ -252,7 +252,7 @@ class StandStill {
 
 /// What is held exactly gets springs for the search, so stiff that they hardly give way. All else (limits, brakes,
 /// friction) keeps the stiffness that it has in steps of dt (s): it is what the run goes on with.
-DEM_COLD void put_springs_on(Parts& parts, double dt);
+DEM_SETUP void put_springs_on(Parts& parts, double dt);
 
 /// Searches, with joints as they are in steps of dt (s).
 template <class Joints, class PutForces>

@@ -38,7 +38,7 @@ class Solver {
   double design_step() const { return design_dt_; }  ///< s, for which was derived what was left open; 0: not yet
 
   /// Derives what was left open (stiffness, damping) for a step of dt (s), all sub-steps together, in the present pose.
-  DEM_COLD void design_for(Mechanism& m, double dt) {
+  DEM_SETUP void design_for(Mechanism& m, double dt) {
     derive_stiffness(m.parts(), dt / checked_substeps(m));
     stages_.take_design(m.parts(), dt / m.substeps);
     ramp_ = {};
@@ -47,7 +47,7 @@ class Solver {
 
   /// After design_for: raises the machine's sub-steps, and derives for them, until the weight of all bodies that a
   /// joint is joined with opens none beyond joint_tolerance.
-  DEM_COLD void carry_weight(Mechanism& m, const Vec3& gravity) {
+  DEM_SETUP void carry_weight(Mechanism& m, const Vec3& gravity) {
     const JointWatch watch(m.parts(), m.joint_tolerance);
     const double share = most_loaded(m.parts(), watch).share * norm(from_eigen(gravity));
     const int n = substeps_for(m.substeps, share, 1.0, std::max(m.substeps, m.most_substeps));
@@ -60,14 +60,14 @@ class Solver {
   /// Both, for steps of dt (s) of a world. Strained joints that became stiffer at once would throw what they hold. So
   /// where the world has run, what was derived for a larger step stays as soft, and what gets stiffer because
   /// sub-steps are raised grows as StiffnessRamp says.
-  DEM_COLD void design(Mechanism& m, double dt, const Vec3& gravity, bool has_run) {
+  DEM_SETUP void design(Mechanism& m, double dt, const Vec3& gravity, bool has_run) {
     const std::vector<double> before = StiffnessRamp::stiffness_of(m.parts());
     design_for(m, has_run && has_derived(m.parts()) ? std::max(dt, design_dt_) : dt);
     carry_weight(m, gravity);
     if (has_run) ramp_ = StiffnessRamp(m.parts(), before);
   }
   /// What that comes to, of copies.
-  DEM_COLD MachineDesign tried(const Mechanism& m, double dt, const Vec3& gravity, bool has_run) const {
+  DEM_SETUP MachineDesign tried(const Mechanism& m, double dt, const Vec3& gravity, bool has_run) const {
     Mechanism machine = m;
     Solver solver = *this;
     solver.design(machine, dt, gravity, has_run);
@@ -96,14 +96,14 @@ class Solver {
   MachineReport newly_opened(const Mechanism& m) { return report_of(m, raised_.take_newly_opened()); }
 
   /// The largest stable time step of the world, all sub-steps of the machine together, and the part that limits it.
-  DEM_COLD StableTimeStep stable_time_step(const Mechanism& m) const {
+  DEM_SETUP StableTimeStep stable_time_step(const Mechanism& m) const {
     StableTimeStep limit = stable_time_step_of<I>(m.parts());
     limit.dt *= checked_substeps(m);
     return limit;
   }
   /// The same with the stiffness and damping alone that were given: what a step may be chosen by before anything is
   /// derived for it. 1e300 if none limits it.
-  DEM_COLD StableTimeStep stable_time_step_of_given(const Mechanism& m) const {
+  DEM_SETUP StableTimeStep stable_time_step_of_given(const Mechanism& m) const {
     StableTimeStep limit = stable_time_step_of<I>(without_derived(m.parts()));
     if (limit.dt > 1e-3 * endless_step) return {};
     limit.dt *= checked_substeps(m);
@@ -111,7 +111,7 @@ class Solver {
   }
 
   /// The largest time step (s) up to dt at which the machine is stable with what would be derived for that step.
-  DEM_COLD StableTimeStep accepted_time_step(const Mechanism& m, double dt) const {
+  DEM_SETUP StableTimeStep accepted_time_step(const Mechanism& m, double dt) const {
     return accepted_time_step_of<I>(m.parts(), dt, checked_substeps(m));
   }
 
@@ -135,7 +135,7 @@ class Solver {
   /// state. `put_forces()` adds those from outside (the grains) to the bodies. Throws Error if a stiffness has to be
   /// derived and no time step is known, or a prescribed motion would have to jump.
   template <class PutForces>
-  DEM_COLD void initialise(Mechanism& m, double time, double dt, const Vec3& gravity, PutForces&& put_forces) {
+  DEM_SETUP void initialise(Mechanism& m, double time, double dt, const Vec3& gravity, PutForces&& put_forces) {
     Parts& parts = m.parts();
     const bool goes_on = is_initialised(m) && m.substeps > 1;
     if (design_dt_ <= 0.0) require_derived(parts);
@@ -155,7 +155,7 @@ class Solver {
   }
 
   /// Bodies that hang together are made to move together; at the first start this is done anyway.
-  DEM_COLD void assemble(Mechanism& m) {
+  DEM_SETUP void assemble(Mechanism& m) {
     if (m.given_velocities != GivenVelocities::keep) assembly_ = joined_velocities(m.parts(), m.given_velocities);
     is_assembled_ = true;
   }
@@ -202,7 +202,7 @@ class Solver {
   }
   /// What was changed of what the user gave (sub-steps, velocities at the start), and what of it is odd. Empty if
   /// nothing.
-  DEM_COLD std::string note(const Mechanism& m) const {
+  DEM_SETUP std::string note(const Mechanism& m) const {
     const std::string changed = note_of(m.parts(), assembly_, joints(), raised_.given(m.substeps), m.substeps);
     return odd_ + (odd_.empty() || changed.empty() ? "" : " ") + changed;
   }
@@ -212,7 +212,7 @@ class Solver {
   bool has_blown_up() const { return stages_.watches.has_blown_up(); }
 
   /// Remembers the largest stable step of this pose, for the report of a blow-up.
-  DEM_COLD void note_stable_step(const Mechanism& m) {
+  DEM_SETUP void note_stable_step(const Mechanism& m) {
     stages_.watches.note_stable_step(m.parts(), stable_time_step(m));
   }
 
@@ -244,7 +244,7 @@ class Solver {
   }
 
   /// While running, between two steps of the world or of a machine alone.
-  DEM_COLD void raise_substeps(Mechanism& m, int n, bool in_ramp) {
+  DEM_SETUP void raise_substeps(Mechanism& m, int n, bool in_ramp) {
     Parts& parts = m.parts();
     if (m.substeps == 1) stages_.hold_contacts(parts);  // the contacts' forces, which are held from here on
     raised_.raise(m.substeps, n);

@@ -10,25 +10,25 @@
 
 namespace dem::mbd::detail {
 
-DEM_COLD void set_friction_preload(Parts& parts, JointId id, double newtons);
+DEM_SETUP void set_friction_preload(Parts& parts, JointId id, double newtons);
 
 /// `lasts`: it stays until another is given, so a number that would brake by mistake is refused.
-DEM_COLD void set_target(ActuatorSpec& s, Signal signal, bool lasts = true);
-DEM_COLD void set_throttle(ActuatorSpec& s, double throttle);
+DEM_SETUP void set_target(ActuatorSpec& s, Signal signal, bool lasts = true);
+DEM_SETUP void set_throttle(ActuatorSpec& s, double throttle);
 
-DEM_COLD void switch_on(Parts& parts, PrescribedMotion& p, bool on);
+DEM_SETUP void switch_on(Parts& parts, PrescribedMotion& p, bool on);
 
 /// A joint that is switched on holds the bodies as they are now; one that is off holds nothing.
-DEM_COLD void switch_on(Parts& parts, JointId id, bool on);
+DEM_SETUP void switch_on(Parts& parts, JointId id, bool on);
 
-DEM_COLD void set_fixed(Parts& parts, Body& b, bool fixed);
+DEM_SETUP void set_fixed(Parts& parts, Body& b, bool fixed);
 
-DEM_COLD void set_load(LoadSpec& s, Signal size);
+DEM_SETUP void set_load(LoadSpec& s, Signal size);
 
-DEM_COLD void set_motion(PrescribedMotion& p, Signal motion);
-DEM_COLD void set_motion(PrescribedMotion& p, double value, double rate);
+DEM_SETUP void set_motion(PrescribedMotion& p, Signal motion);
+DEM_SETUP void set_motion(PrescribedMotion& p, double value, double rate);
 
-DEM_COLD void set_pose(PrescribedMotion& p, PoseFunction pose);
+DEM_SETUP void set_pose(PrescribedMotion& p, PoseFunction pose);
 
 }  // namespace dem::mbd::detail
 
