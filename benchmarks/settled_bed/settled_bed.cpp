@@ -13,6 +13,8 @@
 
 #include <CLI/CLI.hpp>
 
+#include <exception>
+
 namespace {
 
 using namespace bench;

@@ -7,6 +7,7 @@
 #include <dem/world/memory.hpp>
 
 #include <array>
+#include <chrono>
 #include <ctime>
 
 namespace bench {

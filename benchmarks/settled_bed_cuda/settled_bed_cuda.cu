@@ -11,8 +11,10 @@
 
 #include <dem/flat/cuda.hpp>
 
+#include <chrono>
 #include <cstdlib>
 #include <cstring>
+#include <exception>
 #include <optional>
 #include <string>
 

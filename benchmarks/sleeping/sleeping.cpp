@@ -10,6 +10,7 @@
 #include <CLI/CLI.hpp>
 
 #include <ctime>
+#include <exception>
 #include <random>
 
 using namespace dem;

@@ -1,9 +1,8 @@
 #include <dem/terramechanics/rut_files.hpp>
 #include <dem/terramechanics/rut_vtk.hpp>
 
-#include <filesystem>
-
 #include "catch.hpp"
+#include "io/files.hpp"
 #include "io/vtk_reader.hpp"
 
 using namespace dem;
@@ -24,17 +23,13 @@ ColumnField small() {
   f.heap[f.grid.row(0, 1)] += 0.01;
   return f;
 }
-struct Folder {
-  std::filesystem::path path = "rut_files_test";
-  ~Folder() { std::filesystem::remove_all(path); }
-};
 
 }  // namespace
 
 TEST_CASE("a rut is written as a table") {
-  const Folder folder;
-  write_rut_csv(folder.path / "rut.csv", small());
-  CHECK(io::read_file(folder.path / "rut.csv") ==
+  const TempFolder folder;
+  write_rut_csv(folder / "rut.csv", small());
+  CHECK(io::read_file(folder / "rut.csv") ==
         "x_m,y_m,height_m,sunk_m,heap_m,pressure_Pa,shear_share\n"
         "1.25,2.25,0.1,0,0,0,0\n"
         "1.75,2.25,0.1,0,0,0,0\n"
@@ -45,9 +40,9 @@ TEST_CASE("a rut is written as a table") {
 }
 
 TEST_CASE("a rut is written as a grey picture, y upwards") {
-  const Folder folder;
-  write_rut_pgm(folder.path / "rut.pgm", small());
-  const std::string text = io::read_file(folder.path / "rut.pgm");
+  const TempFolder folder;
+  write_rut_pgm(folder / "rut.pgm", small());
+  const std::string text = io::read_file(folder / "rut.pgm");
   CHECK_THAT(text, ContainsSubstring("P5\n# height in m: black 0.06, white 0.11; 0.5 m a pixel\n3 2\n65535\n"));
   REQUIRE(text.size() > 12);
   const auto pixel = [&](std::size_t k) {
@@ -59,27 +54,27 @@ TEST_CASE("a rut is written as a grey picture, y upwards") {
   CHECK(pixel(5) == 0);      // the rut
   ColumnField flat = small();
   flat.resize(0.2);
-  CHECK_NOTHROW(write_rut_pgm(folder.path / "flat.pgm", flat));
+  CHECK_NOTHROW(write_rut_pgm(folder / "flat.pgm", flat));
 }
 
 TEST_CASE("a rut is written for ParaView") {
-  const Folder folder;
+  const TempFolder folder;
   const ColumnField f = small();
-  write_rut_vtk(folder.path / "rut.vtp", f, {.single_precision = false});
-  const std::string text = io::read_file(folder.path / "rut.vtp");
+  write_rut_vtk(folder / "rut.vtp", f, {.single_precision = false});
+  const std::string text = io::read_file(folder / "rut.vtp");
   CHECK_THAT(text, ContainsSubstring("NumberOfPoints=\"6\""));
   CHECK_THAT(text, ContainsSubstring("NumberOfPolys=\"2\""));
-  const VtkContent file = read_vtk(folder.path / "rut.vtp");
+  const VtkContent file = read_vtk(folder / "rut.vtp");
   CHECK(file.values<double>("sunk_m").at(2) == 0.04);                  // of (2, 0)
   CHECK(file.values<double>("heap_m").at(3) == Approx(0.01));          // of (0, 1)
   CHECK(file.values<double>("Points").at(3 * 2 + 2) == Approx(0.06));  // z of (2, 0)
   ColumnField line;
   line.grid = {0.0, 0.0, 1.0, 5, 1};
   line.resize(0.0);
-  CHECK_THROWS_WITH(write_rut_vtk(folder.path / "line.vtp", line), ContainsSubstring("make no surface"));
-  io::VtkSeries series(folder.path / "drive.pvd");
+  CHECK_THROWS_WITH(write_rut_vtk(folder / "line.vtp", line), ContainsSubstring("make no surface"));
+  io::VtkSeries series(folder / "drive.pvd");
   add_vtk_frame(series, 0.5, f);
   add_vtk_frame(series, 1.0, f);
-  CHECK(std::filesystem::exists(folder.path / "drive" / "soil_000001.vtp"));
+  CHECK(std::filesystem::exists(folder / "drive" / "soil_000001.vtp"));
   CHECK_THAT(io::read_file(series.path()), ContainsSubstring("timestep=\"1\""));
 }
