@@ -16,8 +16,8 @@ check_header='
   FNR == 1 {
     layer = layer_of(FILENAME)
     own_rank = layer in rank ? rank[layer] : count
-    if (FILENAME == "dem/dem.hpp") next
-    if (layer == "") refuse("only dem.hpp stands outside the layers")
+    if (FILENAME == "dem/dem.hpp" || FILENAME == "dem/fwd.hpp") next
+    if (layer == "") refuse("only dem.hpp and fwd.hpp stand outside the layers")
     else if (!(layer in rank)) refuse("\"" layer "\" is no layer: there are " layers)
   }
 
