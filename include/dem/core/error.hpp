@@ -1,5 +1,6 @@
 #pragma once
 
+#include <dem/core/compiled.hpp>
 #include <dem/core/compiler.hpp>
 #include <dem/core/text.hpp>
 
@@ -20,23 +21,35 @@ template <class... Args>
 }
 
 /// Throws unless `value` is finite and greater than zero; returns it.
-inline double require_positive(double value, const char* what, const char* unit) {
+double require_positive(double value, const char* what, const char* unit);
+
+/// Throws unless `value` is finite and at least zero; returns it.
+double require_non_negative(double value, const char* what, const char* unit);
+
+/// Throws unless lowest <= value <= highest; returns it.
+double require_within(double value, double lowest, double highest, const char* what);
+
+}  // namespace dem
+
+#if DEM_DEFINES
+
+namespace dem {
+
+DEM_INLINE double require_positive(double value, const char* what, const char* unit) {
   if (!(value > 0.0) || value > 1e300) {
     fail("{} is {:g} {}, but must be finite and greater than zero", what, value, unit);
   }
   return value;
 }
 
-/// Throws unless `value` is finite and at least zero; returns it.
-inline double require_non_negative(double value, const char* what, const char* unit) {
+DEM_INLINE double require_non_negative(double value, const char* what, const char* unit) {
   if (!(value >= 0.0) || value > 1e300) {
     fail("{} is {:g} {}, but must be finite and not negative", what, value, unit);
   }
   return value;
 }
 
-/// Throws unless lowest <= value <= highest; returns it.
-inline double require_within(double value, double lowest, double highest, const char* what) {
+DEM_INLINE double require_within(double value, double lowest, double highest, const char* what) {
   if (!(value >= lowest && value <= highest)) {
     fail("{} is {:g}, but must lie between {:g} and {:g}", what, value, lowest, highest);
   }
@@ -44,3 +57,5 @@ inline double require_within(double value, double lowest, double highest, const 
 }
 
 }  // namespace dem
+
+#endif

@@ -22,29 +22,32 @@ namespace dem {
 /// A number or a piece of text to be put into a text. It refers to the characters that it is made from.
 class TextArgument {
  public:
-  TextArgument(double x) : argument_(of(x)) {}
-  TextArgument(bool x) : argument_(of(x)) {}
-  TextArgument(char x) : argument_(of(x)) {}
-  TextArgument(int x) : argument_(of(x)) {}
-  TextArgument(unsigned x) : argument_(of(x)) {}
-  TextArgument(long x) : argument_(of(static_cast<long long>(x))) {}
-  TextArgument(unsigned long x) : argument_(of(static_cast<unsigned long long>(x))) {}
-  TextArgument(long long x) : argument_(of(x)) {}
-  TextArgument(unsigned long long x) : argument_(of(x)) {}
-  TextArgument(std::string_view x) : argument_(of(fmt::string_view(x.data(), x.size()))) {}
+  TextArgument(double x) : kind_(Kind::real), real_(x) {}
+  TextArgument(bool x) : kind_(Kind::truth), truth_(x) {}
+  TextArgument(char x) : kind_(Kind::character), character_(x) {}
+  TextArgument(int x) : TextArgument(static_cast<long long>(x)) {}
+  TextArgument(unsigned x) : TextArgument(static_cast<unsigned long long>(x)) {}
+  TextArgument(long x) : TextArgument(static_cast<long long>(x)) {}
+  TextArgument(unsigned long x) : TextArgument(static_cast<unsigned long long>(x)) {}
+  TextArgument(long long x) : kind_(Kind::integer), integer_(x) {}
+  TextArgument(unsigned long long x) : kind_(Kind::natural), natural_(x) {}
+  TextArgument(std::string_view x) : kind_(Kind::words), words_(x) {}
   TextArgument(const char* x) : TextArgument(std::string_view(x)) {}
   TextArgument(const std::string& x) : TextArgument(std::string_view(x)) {}
 
  private:
   friend std::string text_of(std::string_view, std::initializer_list<TextArgument>);
-  using Argument = fmt::basic_format_arg<fmt::format_context>;
+  enum class Kind { real, truth, character, integer, natural, words };
 
-  template <class T>
-  static Argument of(const T& x) {
-    return fmt::format_args(fmt::make_format_args(x)).get(0);
-  }
-
-  Argument argument_;
+  Kind kind_;
+  union {
+    double real_;
+    bool truth_;
+    char character_;
+    long long integer_;
+    unsigned long long natural_;
+    std::string_view words_;
+  };
 };
 
 std::string text_of(std::string_view format, std::initializer_list<TextArgument> arguments);
@@ -68,14 +71,26 @@ std::string text(TextFormat<std::type_identity_t<Args>...> format, const Args&..
 }  // namespace dem
 
 #if DEM_DEFINES
+#include <vector>
 
 namespace dem {
 
 DEM_INLINE std::string text_of(std::string_view format, std::initializer_list<TextArgument> arguments) {
-  static_assert(sizeof(TextArgument) == sizeof(TextArgument::Argument));
-  const auto* first = arguments.size() == 0 ? nullptr : &arguments.begin()->argument_;
+  using Argument = fmt::basic_format_arg<fmt::format_context>;
+  const auto of = [](const auto& x) { return Argument(fmt::format_args(fmt::make_format_args(x)).get(0)); };
+  std::vector<Argument> list;
+  for (const TextArgument& a : arguments) {
+    switch (a.kind_) {
+      case TextArgument::Kind::real: list.push_back(of(a.real_)); break;
+      case TextArgument::Kind::truth: list.push_back(of(a.truth_)); break;
+      case TextArgument::Kind::character: list.push_back(of(a.character_)); break;
+      case TextArgument::Kind::integer: list.push_back(of(a.integer_)); break;
+      case TextArgument::Kind::natural: list.push_back(of(a.natural_)); break;
+      case TextArgument::Kind::words: list.push_back(of(fmt::string_view(a.words_.data(), a.words_.size()))); break;
+    }
+  }
   return fmt::vformat(fmt::string_view(format.data(), format.size()),
-                      fmt::format_args(first, static_cast<int>(arguments.size())));
+                      fmt::format_args(list.data(), static_cast<int>(list.size())));
 }
 
 }  // namespace dem
