@@ -1,9 +1,9 @@
 #pragma once
 
-/// What no model changes stands at the end of its header, within `#if DEM_DEFINES`, and begins with DEM_INLINE. A
-/// program may have it compiled once (CMake's target dem::compiled): then dem/compiled.cpp, one of its sources, holds
-/// these definitions, and all others are compiled with DEM_COMPILED defined and see declarations alone. Else each
-/// source has them, as in any header-only library.
+/// What no model changes stands at the end of its header, within `#if DEM_DEFINES` and after what it alone includes,
+/// and begins with DEM_INLINE. A program may have it compiled once (CMake's target dem::compiled): then
+/// dem/compiled.cpp, one of its sources, holds these definitions, and all others are compiled with DEM_COMPILED defined
+/// and see declarations alone. Else each source has them, as in any header-only library.
 ///
 /// DEM_LAZY before such a declaration and DEM_LAZY_INLINE before its definition make the function a template without a
 /// choice where each source has it: those that do not call it skip what stands in it. For long work at set-up that few
@@ -24,6 +24,28 @@
   template <class DemLazy> \
   inline
 #endif
+
+/// The special member functions of a class with many members: DEM_VALUE declares them within the class,
+/// DEM_DEFINE_VALUE defines them behind it, as its members' are. Left to the compiler, each source has them, and those
+/// of all its members' containers. The class is no aggregate then: each of its numbers needs an initialiser. Moves of
+/// its members must not throw.
+///
+///     struct Parts {
+///       DEM_VALUE(Parts)
+#define DEM_VALUE(Class)              \
+  Class();                            \
+  Class(const Class&);                \
+  Class(Class&&) noexcept;            \
+  Class& operator=(const Class&);     \
+  Class& operator=(Class&&) noexcept; \
+  ~Class();
+#define DEM_DEFINE_VALUE(Class)                                   \
+  DEM_INLINE Class::Class() = default;                            \
+  DEM_INLINE Class::Class(const Class&) = default;                \
+  DEM_INLINE Class::Class(Class&&) noexcept = default;            \
+  DEM_INLINE Class& Class::operator=(const Class&) = default;     \
+  DEM_INLINE Class& Class::operator=(Class&&) noexcept = default; \
+  DEM_INLINE Class::~Class() = default;
 
 // Sources that are compiled for other vectors align them otherwise, and would misread each other's. The linker finds no
 // such name then: each source asks for it.
