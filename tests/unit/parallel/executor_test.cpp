@@ -1,5 +1,7 @@
 #include "core/error_of.hpp"
 
+#include <dem/parallel/any_executor.hpp>
+#include <dem/parallel/help.hpp>
 #include <dem/parallel/openmp.hpp>
 #include <dem/parallel/serial.hpp>
 #include <dem/parallel/threads.hpp>
@@ -54,6 +56,48 @@ TEMPLATE_TEST_CASE("a piece is told which thread runs it, and no two run on one 
     }
     CHECK(wrong == 0);
   }
+}
+
+TEMPLATE_TEST_CASE("an executor of any type stands for the one that it was made from", "", dem::exec::Threads,
+                   dem::exec::OpenMP, dem::exec::Serial) {
+  TestType executor;
+  if (!std::same_as<TestType, dem::exec::Serial>) executor.set_threads(3);
+  dem::exec::AnyExecutor any(executor);
+  CHECK(any.threads() == executor.threads());
+  std::vector<std::atomic<int>> calls(101), threads(101);
+  any.for_each(100, [&](std::size_t k) { ++calls[k]; });
+  any.for_each(100, [&, copy = dem::exec::AnyExecutor(any)](std::size_t k, int thread) mutable {
+    if (thread >= 0 && thread < copy.threads()) ++threads[k];
+  });
+  for (std::size_t k = 0; k < 100; ++k) CHECK((calls[k] == 1 && threads[k] == 1));
+  CHECK((calls[100] == 0 && threads[100] == 0));
+  CHECK_THROWS_AS(any.for_each(8,
+                               [](std::size_t k) {
+                                 if (k == 5) throw std::out_of_range("piece");
+                               }),
+                  std::out_of_range);
+}
+
+namespace {
+std::atomic<int> calls_of_a_function = 0;
+void count_call(std::size_t) { ++calls_of_a_function; }
+}  // namespace
+
+TEMPLATE_TEST_CASE("plain functions, and callables that are const, are pieces of work", "", dem::exec::Threads,
+                   dem::exec::OpenMP, dem::exec::Serial) {
+  TestType executor;
+  dem::exec::AnyExecutor any(executor);
+  const auto count = [](std::size_t k) { count_call(k); };
+  calls_of_a_function = 0;
+  executor.for_each(5, count_call), any.for_each(5, count_call);
+  executor.for_each(5, count), any.for_each(5, count);
+  CHECK(calls_of_a_function == 20);
+  if constexpr (!std::same_as<TestType, dem::exec::Threads>) {  // others are called without being changed
+    const TestType same;
+    dem::exec::AnyExecutor(same).for_each(5, count);
+    CHECK(calls_of_a_function == 25);
+  }
+  STATIC_REQUIRE(!std::convertible_to<int&, dem::exec::AnyExecutor>);
 }
 
 TEST_CASE("the serial executor goes through in order") {

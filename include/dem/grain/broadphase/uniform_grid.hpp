@@ -3,12 +3,11 @@
 #include <dem/core/macros.hpp>
 #include <dem/grain/broadphase/block_table.hpp>
 #include <dem/grain/broadphase/curve_order.hpp>
-#include <dem/parallel/serial.hpp>
+#include <dem/parallel/any_executor.hpp>
 
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <numeric>
 
 namespace dem::broadphase {
 
@@ -17,54 +16,15 @@ namespace dem::broadphase {
 /// of a grain are in the 27 cells around it. Cells and the grains in them are sorted along a Z-order (Morton) curve.
 class UniformGrid {
  public:
+  DEM_VALUE(UniformGrid)
+
   DEM_LAZY void build(const Positions& p, double reach);
-  template <class Executor>
-  void build(const Positions& p, double reach, Executor& executor) {
-    is_in_order_ = false;
-    sorted_.sort(p, 1.0 / reach, executor);
-    const auto begins_cell = [&](std::size_t k) { return k == 0 || sorted_[k].code != sorted_[k - 1].code; };
-    std::vector<std::uint32_t> cells_before(p.n / exec::block_size + 2, 0);  // of each block of grains
-    exec::for_each_block(executor, p.n, [&](std::size_t first, std::size_t last) {
-      std::uint32_t count = 0;
-      for (std::size_t k = first; k < last; ++k) count += begins_cell(k) ? 1U : 0U;
-      cells_before[first / exec::block_size + 1] = count;
-    });
-    std::partial_sum(cells_before.begin(), cells_before.end(), cells_before.begin());
-    cells_.resize(cells_before.back());
-    order_.resize(p.n);
-    cell_of_.resize(p.n);
-    exec::for_each_block(executor, p.n, [&](std::size_t first, std::size_t last) {
-      std::uint32_t next = cells_before[first / exec::block_size];
-      for (std::size_t k = first; k < last; ++k) {
-        if (begins_cell(k)) {
-          cells_[next].key = sorted_[k].code;
-          cells_[next].first = static_cast<std::uint32_t>(k);
-          if (next > 0) cells_[next - 1].last = static_cast<std::uint32_t>(k);
-          ++next;
-        }
-        order_[k] = sorted_[k].grain;
-        cell_of_[sorted_[k].grain] = next - 1;
-      }
-    });
-    if (!cells_.empty()) cells_.back().last = static_cast<std::uint32_t>(p.n);
-    table_.fill(cells_);
-  }
+  void build(const Positions& p, double reach, exec::AnyExecutor executor);
 
   /// To be called when the grains were put in order(), so that row k is what was row order()[k]: as good as build(),
   /// and cheaper.
   DEM_LAZY void reordered();
-  template <class Executor>
-  void reordered(Executor& executor) {
-    exec::for_each_block(executor, cells_.size(), [&](std::size_t first, std::size_t last) {
-      for (std::size_t c = first; c < last; ++c) {
-        for (std::uint32_t k = cells_[c].first; k < cells_[c].last; ++k) {
-          order_[k] = k;
-          cell_of_[k] = static_cast<std::uint32_t>(c);
-        }
-      }
-    });
-    is_in_order_ = true;
-  }
+  void reordered(exec::AnyExecutor executor);
 
   /// Looks candidates up; each thread has its own. Remembers the surroundings of the last cell, as grains that follow
   /// each other are mostly in one cell.
@@ -204,8 +164,57 @@ class UniformGrid {
 }  // namespace dem::broadphase
 
 #if DEM_DEFINES
+#include <dem/parallel/blocks.hpp>
+#include <dem/parallel/serial.hpp>
+
+#include <numeric>
 
 namespace dem::broadphase {
+
+DEM_DEFINE_VALUE(UniformGrid)
+
+DEM_INLINE void UniformGrid::build(const Positions& p, double reach, exec::AnyExecutor executor) {
+  is_in_order_ = false;
+  sorted_.sort(p, 1.0 / reach, executor);
+  const auto begins_cell = [&](std::size_t k) { return k == 0 || sorted_[k].code != sorted_[k - 1].code; };
+  std::vector<std::uint32_t> cells_before(p.n / exec::block_size + 2, 0);  // of each block of grains
+  exec::for_each_block(executor, p.n, [&](std::size_t first, std::size_t last) {
+    std::uint32_t count = 0;
+    for (std::size_t k = first; k < last; ++k) count += begins_cell(k) ? 1U : 0U;
+    cells_before[first / exec::block_size + 1] = count;
+  });
+  std::partial_sum(cells_before.begin(), cells_before.end(), cells_before.begin());
+  cells_.resize(cells_before.back());
+  order_.resize(p.n);
+  cell_of_.resize(p.n);
+  exec::for_each_block(executor, p.n, [&](std::size_t first, std::size_t last) {
+    std::uint32_t next = cells_before[first / exec::block_size];
+    for (std::size_t k = first; k < last; ++k) {
+      if (begins_cell(k)) {
+        cells_[next].key = sorted_[k].code;
+        cells_[next].first = static_cast<std::uint32_t>(k);
+        if (next > 0) cells_[next - 1].last = static_cast<std::uint32_t>(k);
+        ++next;
+      }
+      order_[k] = sorted_[k].grain;
+      cell_of_[sorted_[k].grain] = next - 1;
+    }
+  });
+  if (!cells_.empty()) cells_.back().last = static_cast<std::uint32_t>(p.n);
+  table_.fill(cells_);
+}
+
+DEM_INLINE void UniformGrid::reordered(exec::AnyExecutor executor) {
+  exec::for_each_block(executor, cells_.size(), [&](std::size_t first, std::size_t last) {
+    for (std::size_t c = first; c < last; ++c) {
+      for (std::uint32_t k = cells_[c].first; k < cells_[c].last; ++k) {
+        order_[k] = k;
+        cell_of_[k] = static_cast<std::uint32_t>(c);
+      }
+    }
+  });
+  is_in_order_ = true;
+}
 
 DEM_LAZY_INLINE void UniformGrid::build(const Positions& p, double reach) {
   exec::Serial alone;
