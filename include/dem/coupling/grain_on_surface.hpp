@@ -18,6 +18,8 @@ inline constexpr std::uint32_t first_ball = 1u << 24;  ///< among its features
 
 /// Lists that a thread uses again for each chunk.
 struct SurfaceScratch {
+  DEM_VALUE(SurfaceScratch)
+
   std::vector<std::uint32_t> law_of;
   std::vector<grain::Hit> hits;
   std::vector<contact::SurfaceContactPoint<double>> contact_points;
@@ -189,3 +191,13 @@ void add_grain_contacts(const GrainAtSurface& at, const Shape& grain, const Surf
 }
 
 }  // namespace dem::coupling
+
+#if DEM_DEFINES
+
+namespace dem::coupling {
+
+DEM_DEFINE_VALUE(SurfaceScratch)
+
+}  // namespace dem::coupling
+
+#endif

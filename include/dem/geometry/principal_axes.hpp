@@ -26,11 +26,11 @@ struct SymmetricEigen {
   Vec3 values;
   Mat3 vectors;
 };
-DEM_SETUP SymmetricEigen eigen_of_symmetric(Mat3 m);
+SymmetricEigen eigen_of_symmetric(Mat3 m);
 
 /// Of all frames along these eigenvectors (ascending eigenvalues) the one that turns the unit axes least. Eigenvectors
 /// of equal eigenvalues may be any in their plane.
-DEM_SETUP Mat3 nearest_axes(const Vec3& values, const Mat3& vectors);
+Mat3 nearest_axes(const Vec3& values, const Mat3& vectors);
 
 }  // namespace detail
 
@@ -38,7 +38,7 @@ DEM_SETUP Mat3 nearest_axes(const Vec3& values, const Mat3& vectors);
 /// already (to 1e-12) keeps its axes. Moments that differ by less than 1e-6 of the largest count as equal, as those of
 /// a wheel from a file of single precision. Their axes stay as near to the given ones as they can, so a part that was
 /// drawn along its axes stays as drawn. Throws Error unless the tensor is finite and symmetric (to 1e-9).
-DEM_SETUP PrincipalAxes principal_axes(const Mat3& inertia);
+PrincipalAxes principal_axes(const Mat3& inertia);
 
 }  // namespace dem
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <dem/core/compiled.hpp>
 #include <dem/core/ids.hpp>
 #include <dem/geometry/shape.hpp>
 #include <dem/grain/contact_list.hpp>
@@ -31,14 +32,13 @@ struct DeepestContact {
   bool with_surface = false;
 };
 
-/// What belongs to chunk_size consecutive grains: their candidates, contacts and bounds.
-template <class Model>
-struct Chunk {
+/// What belongs to chunk_size consecutive grains whatever the model: their candidates, loads and bounds.
+struct ChunkCommon {
+  DEM_VALUE(ChunkCommon)
+
   std::array<std::uint32_t, chunk_size + 1> candidate_first = {};  ///< candidates of the k-th grain of the chunk
   std::vector<std::uint32_t> candidate;                            ///< partners j > i, ascending for each i
   std::vector<std::uint8_t> owner;                                 ///< of each candidate: its i in the chunk
-  [[no_unique_address]] shape::WarmStarts<typename Model::Shape> searches;  ///< of the candidates
-  HistoriesOfSteps<history_size<Model>> pair_contacts, surface_contacts;
 
   std::vector<PartnerLoad> partner_loads;         ///< of the contacts whose partner is in another chunk, in their order
   std::vector<std::uint32_t> partner_load_first;  ///< for each candidate, and one entry more
@@ -62,6 +62,13 @@ struct Chunk {
   std::vector<std::uint8_t> sleeps;  ///< where grains may sleep, by candidate: both grains slept when it was evaluated
   std::vector<std::uint32_t> reached;  ///< other chunks of whose grains it has candidates
   std::vector<std::uint32_t> around;   ///< chunks with which it has candidates; listed where grains may sleep
+};
+
+/// The same with what their contacts remember.
+template <class Model>
+struct Chunk : ChunkCommon {
+  [[no_unique_address]] shape::WarmStarts<typename Model::Shape> searches;  ///< of the candidates
+  HistoriesOfSteps<history_size<Model>> pair_contacts, surface_contacts;
 
   /// The contact histories of pairs of this evaluation become the ones that the next starts from. To be called while
   /// the chunk has the memory that they were written to (ContactScratch::lend). If only some candidates were evaluated,
@@ -73,3 +80,13 @@ struct Chunk {
 };
 
 }  // namespace dem
+
+#if DEM_DEFINES
+
+namespace dem {
+
+DEM_DEFINE_VALUE(ChunkCommon)
+
+}  // namespace dem
+
+#endif

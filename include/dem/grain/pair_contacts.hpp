@@ -1,5 +1,6 @@
 #pragma once
 
+#include <dem/core/compiled.hpp>
 #include <dem/core/prefetch.hpp>
 #include <dem/geometry/shape.hpp>
 #include <dem/grain/chunk.hpp>
@@ -13,21 +14,27 @@
 
 namespace dem::grain {
 
-/// Lists that a thread uses again for each chunk.
-template <class Model>
-struct PairScratch {
+/// Lists that a thread uses again for each chunk, whatever the model.
+struct PairScratchCommon {
+  DEM_VALUE(PairScratchCommon)
+
   std::vector<std::uint32_t> close;         ///< candidates whose bounding spheres overlap
   std::vector<std::uint64_t> contact_bits;  ///< BitShape: answers that are not zero
   std::vector<Hit> hits;
-  std::vector<typename Model::Shape::template PairContactPoint<double>>
-      contact_points;  ///< other shapes: one for each hit
   ContactForces forces;
   // Where grains may sleep:
-  bool chooses = false;                          ///< not all candidates are evaluated
-  std::vector<std::uint32_t> listed;             ///< those that are, if not all are
-  std::vector<std::uint8_t> renews;              ///< by candidate: see list_evaluated; empty where all are
-  ForceSums asleep;                              ///< of contacts between sleepers
-  ContactHistories<history_size<Model>> merged;  ///< for Chunk::commit_pairs
+  bool chooses = false;               ///< not all candidates are evaluated
+  std::vector<std::uint32_t> listed;  ///< those that are, if not all are
+  std::vector<std::uint8_t> renews;   ///< by candidate: see list_evaluated; empty where all are
+  ForceSums asleep;                   ///< of contacts between sleepers
+};
+
+/// The same with what contacts are and remember.
+template <class Model>
+struct PairScratch : PairScratchCommon {
+  std::vector<typename Model::Shape::template PairContactPoint<double>>
+      contact_points;                            ///< other shapes: one for each hit
+  ContactHistories<history_size<Model>> merged;  ///< for Chunk::commit_pairs, where grains may sleep
 };
 
 /// The candidates of a chunk as pairs of grains.
@@ -274,3 +281,13 @@ void find_pair_contacts(const ChunkPairs<Model, GrainColumns> pairs, double dt, 
 }
 
 }  // namespace dem::grain
+
+#if DEM_DEFINES
+
+namespace dem::grain {
+
+DEM_DEFINE_VALUE(PairScratchCommon)
+
+}  // namespace dem::grain
+
+#endif

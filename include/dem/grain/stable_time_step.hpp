@@ -34,8 +34,8 @@ inline double stable_step(double limit, double k, double c, double w) {
 /// m^2)) is the inverse inertia of rotations; text() names the spring. Throws Error if a law tells a stiffness or
 /// damping that is negative or not finite, which would limit nothing.
 template <class Model, class Parameters, class Limit>
-void for_each_swing(const Parameters& p, const contact::NormalState<double>& deepest, double acting, double w,
-                    double w_turning, Limit&& limit) {
+DEM_SETUP void for_each_swing(const Parameters& p, const contact::NormalState<double>& deepest, double acting, double w,
+                              double w_turning, Limit&& limit) {
   const auto stiffness = [](double k, const char* what) { return require_non_negative(k, what, "N/m or N m"); };
   const auto damping = [](double c, const char* what) { return require_non_negative(c, what, "N s/m or N m s"); };
   const double normal =
@@ -71,9 +71,9 @@ struct SurfaceMatter {
 /// contacts are points counts with as many as may touch at once. A nonlinear law's stiffness is taken at the overlap
 /// that the world reports as too deep, WorldOptions::overlap_limit.
 template <class Model>
-StableTimeStep stable_time_step(std::span<const Species<typename Model::Shape>> species,
-                                const Materials<Model>& materials, std::span<const SurfaceMatter> surfaces,
-                                double overlap_limit) {
+DEM_SETUP StableTimeStep stable_time_step(std::span<const Species<typename Model::Shape>> species,
+                                          const Materials<Model>& materials, std::span<const SurfaceMatter> surfaces,
+                                          double overlap_limit) {
   StableTimeStep result;
   const auto inverse_effective_mass_of = [](const Species<typename Model::Shape>& s) {  // 1/kg
     const double radius = s.shape.bounding_radius();

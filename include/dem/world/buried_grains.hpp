@@ -8,7 +8,7 @@ namespace dem {
 /// were put somewhere since the last step. Throws Error for a grain so deep in a solid that nothing of it is felt: it
 /// would pass through without a word. What is less deep overlaps, which the first step reports.
 template <class Model>
-void check_buried_grains(WorldState<Model>& w) {
+DEM_SETUP void check_buried_grains(WorldState<Model>& w) {
   const auto& p = w.grains;
   const bool some_placed = w.placed.at == w.step;
   for (std::size_t s = 0; s < w.surfaces.size(); ++s) {

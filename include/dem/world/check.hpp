@@ -13,22 +13,35 @@
 
 namespace dem {
 
+namespace detail {
+
+/// A problem of a world, now.
+StepReport report_of(const WorldCommon& w, StepReport::Problem kind, GrainId grain, std::string text);
+inline StepReport no_problem(const WorldCommon& w) { return report_of(w, StepReport::Problem::none, {}, {}); }
+/// "at t = 0.1 s (step 1000)".
+std::string when_in_words(const WorldCommon& w);
+std::string surface_in_words(const WorldCommon& w, std::size_t number, const SurfaceOnBody& s, bool name_is_unique);
+// What befell the grain of that number.
+std::string not_finite_in_words(const WorldCommon& w, std::uint32_t grain);
+std::string lost_in_words(const WorldCommon& w, std::uint32_t grain, const Vec3& x);
+std::string passed_in_words(const WorldCommon& w, std::uint32_t grain, double radius, const std::string& surface,
+                            double went);
+std::string body_overlap_in_words(const WorldCommon& w, const SurfaceOnBody& a, const SurfaceOnBody& b, double overlap);
+
+}  // namespace detail
+
 /// A surface in words: its name, with its number and body where it has none or others are called the same.
 template <class Model>
-std::string surface_in_words(const WorldState<Model>& w, std::size_t s) {
+DEM_SETUP std::string surface_in_words(const WorldState<Model>& w, std::size_t s) {
   const std::string& name = w.surfaces[s].name;
   const auto is_called_so = [&](const auto& other) { return other.name == name; };
-  if (!name.empty() && std::count_if(w.surfaces.begin(), w.surfaces.end(), is_called_so) == 1) {
-    return dem::text("surface '{}'", name);
-  }
-  const std::string& body = w.machine.bodies()[w.surfaces[s].body.index()].name;
-  return name.empty() ? dem::text("surface {} of body '{}'", s, body)
-                      : dem::text("surface {} ('{}' of body '{}')", s, name, body);
+  const bool name_is_unique = !name.empty() && std::count_if(w.surfaces.begin(), w.surfaces.end(), is_called_so) == 1;
+  return detail::surface_in_words(w, s, w.surfaces[s], name_is_unique);
 }
 
 /// Of surfaces that are there twice, in words; else empty.
 template <class Model>
-std::string note_of_twins(const WorldState<Model>& w) {
+DEM_SETUP std::string note_of_twins(const WorldState<Model>& w) {
   for (std::size_t b = 1; b < w.surfaces.size(); ++b) {
     for (std::size_t a = 0; a < b; ++a) {
       const auto &first = w.surfaces[a], &second = w.surfaces[b];
@@ -42,7 +55,7 @@ std::string note_of_twins(const WorldState<Model>& w) {
 
 /// Of bodies that nothing holds and that have nothing to lie on, in words; else empty.
 template <class Model>
-std::string note_of_loose_bodies(const WorldState<Model>& w) {
+DEM_SETUP std::string note_of_loose_bodies(const WorldState<Model>& w) {
   if (w.options.gravity.isZero() || !w.held.empty()) return {};
   std::vector<std::uint32_t> loose = mbd::loose_bodies(w.machine.parts());
   std::erase_if(loose, [&](std::uint32_t body) {
@@ -53,7 +66,7 @@ std::string note_of_loose_bodies(const WorldState<Model>& w) {
 
 /// Of densities that hardly any solid has, as those in g/cm^3 or t/mm^3, in words; else empty.
 template <class Model>
-std::string note_of_density(const WorldState<Model>& w) {
+DEM_SETUP std::string note_of_density(const WorldState<Model>& w) {
   for (std::size_t k = 0; k < w.species.size(); ++k) {
     if (const double density = w.species[k].density; density < 5.0 || density > 30e3) {
       return dem::text("Species {} has a density of {:g} kg/m^3; is it in another unit? Sand has 2650 kg/m^3.", k,
@@ -66,7 +79,7 @@ std::string note_of_density(const WorldState<Model>& w) {
 /// Of gravity along a direction in which a cell repeats itself and has nothing that could carry grains, in words; else
 /// empty. What grains are held by is a surface or a held grain.
 template <class Model>
-std::string note_of_free_fall(const WorldState<Model>& w) {
+DEM_SETUP std::string note_of_free_fall(const WorldState<Model>& w) {
   if constexpr (Model::Domain::has_images) {
     if (!w.surfaces.empty() || !w.held.empty()) return {};
     for (const auto& kind : w.species) {
@@ -111,7 +124,7 @@ std::string misfit_in_period(const WorldState<Model>& w, std::size_t number,
 
 /// "grain 4 at (0, 0, 0.1) m overlaps surface 'wheel' by 0.3 of their effective diameter".
 template <class Model>
-std::string overlap_in_words(const WorldState<Model>& w, const DeepestContact& deepest) {
+DEM_SETUP std::string overlap_in_words(const WorldState<Model>& w, const DeepestContact& deepest) {
   const auto& p = w.grains;
   const Vec3 x = to_eigen(p.position[deepest.i]);
   const std::string partner =
@@ -132,7 +145,7 @@ bool is_as_placed(const WorldState<Model>& w, const DeepestContact& deepest) {
 
 /// Notes the deepest overlap of what was just placed, where it is deep enough to throw grains about.
 template <class Model>
-void note_deep(WorldState<Model>& w) {
+DEM_SETUP void note_deep(WorldState<Model>& w) {
   double most = 0.1;
   for (const auto& chunk : w.chunks) {
     if (!(chunk.deepest.overlap > most) || !is_as_placed(w, chunk.deepest)) continue;
@@ -143,7 +156,7 @@ void note_deep(WorldState<Model>& w) {
 
 /// What to do about an overlap of a grain.
 template <class Model>
-std::string overlap_remedy(const WorldState<Model>& w, const DeepestContact& deepest) {
+DEM_SETUP std::string overlap_remedy(const WorldState<Model>& w, const DeepestContact& deepest) {
   if (is_as_placed(w, deepest)) return "they overlap as they were placed: put one of them elsewhere";
   return dem::text(
       "raise the normal stiffness, lower time_step (now {:g} s), the load or the speed of moving parts, or start from "
@@ -176,17 +189,12 @@ StepReport find_passed_grain(const WorldState<Model>& w) {
         const Vec3 x = to_eigen(p.position[i]);
         if (radius >= s.went || p.row_of[p.id[i]] == p.gone || !coupling::may_meet(w.domain, x, x, s.went_over, radius))
           continue;
-        std::string text = dem::text(
-            "{} went {:.3g} m within the step to t = {:.6g} s (step {}), more than the radius of grain {} "
-            "there, {:.3g} m, which it may have passed without touching it; let its motion go without a "
-            "jump (Signal::smooth_step), let it touch nothing meanwhile (set_active), or lower time_step "
-            "(now {:g} s)",
-            surface_in_words(w, k), s.went, w.time, w.step, p.number_at(i), radius, w.time_step);
-        return {StepReport::Problem::machine, w.time, w.step, p.name(p.id[i]), std::move(text), {}};
+        return detail::report_of(w, StepReport::Problem::machine, p.name(p.id[i]),
+                                 detail::passed_in_words(w, p.number_at(i), radius, surface_in_words(w, k), s.went));
       }
     }
   }
-  return {StepReport::Problem::none, w.time, w.step, {}, {}, {}};
+  return detail::no_problem(w);
 }
 
 /// Looks for grains of this process's chunks that are not finite, lost, pressed too deep into something, or passed by a
@@ -194,10 +202,10 @@ StepReport find_passed_grain(const WorldState<Model>& w) {
 template <class Model>
 StepReport find_problem_of_grains(WorldState<Model>& w) {
   const auto& p = w.grains;
-  const auto problem = [&](StepReport::Problem kind, std::size_t row, std::string text) {
-    return StepReport{kind, w.time, w.step, p.name(p.id[row]), std::move(text), {}};
+  using Problem = StepReport::Problem;
+  const auto problem = [&](Problem kind, std::size_t row, std::string text) {
+    return detail::report_of(w, kind, p.name(p.id[row]), std::move(text));
   };
-  const auto when = [&] { return dem::text("at t = {:.6g} s (step {})", w.time, w.step); };
   const auto [first, last] = w.own_chunks();
   for (std::size_t c = first; c < last; ++c) {
     const auto& chunk = w.chunks[c];
@@ -207,10 +215,7 @@ StepReport find_problem_of_grains(WorldState<Model>& w) {
         const Vector3<double> x = p.position[i], v = p.velocity[i], turn = p.local_angular_velocity[i];
         // The sum that the chunk was judged by, so that one of its grains fails it: 1e308 twice is infinite as well.
         if (0.0 * (x.x + x.y + x.z + v.x + v.y + v.z + turn.x + turn.y + turn.z) == 0.0) continue;
-        return problem(StepReport::Problem::not_finite, i,
-                       dem::text("grain {} has a position or velocity that is not a number {}: the simulation blew up; "
-                                 "lower time_step (now {:g} s) or the stiffness, or raise the damping",
-                                 p.number_at(i), when(), w.time_step));
+        return problem(Problem::not_finite, i, detail::not_finite_in_words(w, p.number_at(i)));
       }
     }
     if (const auto& domain = w.borders; domain && w.options.beyond_domain == BeyondDomain::report &&
@@ -220,17 +225,13 @@ StepReport find_problem_of_grains(WorldState<Model>& w) {
         const Vec3 x = to_eigen(p.position[i]);
         if ((none_below(x, domain->low) && none_below(domain->high, x)) || p.row_of[p.id[i]] == p.gone) continue;
         if (!w.known_lost.insert(p.id[i]).second) continue;
-        return problem(
-            StepReport::Problem::lost, i,
-            dem::text("grain {} left the domain {} and is at ({:.4g}, {:.4g}, {:.4g}) m; close the walls, lower "
-                      "time_step (now {:g} s), or enlarge domain",
-                      p.number_at(i), when(), x.x(), x.y(), x.z(), w.time_step));
+        return problem(Problem::lost, i, detail::lost_in_words(w, p.number_at(i), x));
       }
     }
     if (const DeepestContact& deepest = chunk.deepest; deepest.overlap > w.options.overlap_limit) [[unlikely]] {
-      return problem(StepReport::Problem::overlap, deepest.i,
-                     dem::text("{} {}, more than overlap_limit {:g}; {}", overlap_in_words(w, deepest), when(),
-                               w.options.overlap_limit, overlap_remedy(w, deepest)));
+      return problem(Problem::overlap, deepest.i,
+                     dem::text("{} {}, more than overlap_limit {:g}; {}", overlap_in_words(w, deepest),
+                               detail::when_in_words(w), w.options.overlap_limit, overlap_remedy(w, deepest)));
     }
   }
   return find_passed_grain(w);
@@ -259,43 +260,95 @@ StepReport first_report(WorldState<Model>& w, StepReport mine) {
 /// Looks for grains that are not finite, lost, or pressed too deep into something, and at the machine.
 template <class Model>
 StepReport find_problem(WorldState<Model>& w) {
-  const auto problem = [&](StepReport::Problem kind, std::string text) {
-    return StepReport{kind, w.time, w.step, {}, std::move(text), {}};
-  };
-  const auto when = [&] { return dem::text("at t = {:.6g} s (step {})", w.time, w.step); };
+  using Problem = StepReport::Problem;
+  const auto problem = [&](Problem kind, std::string text) { return detail::report_of(w, kind, {}, std::move(text)); };
   StepReport of_grains = find_problem_of_grains(w);
   for (auto& s : w.surfaces) s.went = 0.0;  // looked at; the next step begins
   if constexpr (Model::Domain::has_ranks) of_grains = first_report(w, std::move(of_grains));
   if (!of_grains) return of_grains;
   if (w.body_contacts.worst_overlap > w.options.overlap_limit) [[unlikely]] {
     const coupling::BodyPair& pair = w.body_contacts.pairs[w.body_contacts.worst_pair];
-    const auto body = [&](SurfaceId s) { return w.machine.bodies()[w.surfaces[s.index()].body.index()].name; };
-    return problem(StepReport::Problem::overlap,
-                   dem::text("body '{}' overlaps body '{}' by {:.3g} of their effective diameter {}, more than "
-                             "overlap_limit {:g}; raise the normal stiffness between their materials, lower time_step "
-                             "(now {:g} s), or start with the bodies apart",
-                             body(pair.a), body(pair.b), w.body_contacts.worst_overlap, when(), w.options.overlap_limit,
-                             w.time_step));
+    return problem(Problem::overlap,
+                   detail::body_overlap_in_words(w, w.surfaces[pair.a.index()], w.surfaces[pair.b.index()],
+                                                 w.body_contacts.worst_overlap));
   }
   if constexpr (Model::Domain::has_images) {
     for (std::size_t s = 0; s < w.surfaces.size(); ++s) {
       if (!w.surfaces[s].moved) continue;
       if (const std::string why = misfit_in_period(w, s, w.surfaces[s]); !why.empty()) {
-        return problem(StepReport::Problem::machine, why + dem::text(" ({})", when()));
+        return problem(Problem::machine, why + " (" + detail::when_in_words(w) + ")");
       }
     }
   }
   if (const auto report = w.machine_solver.report(w.machine); !report) {
-    return problem(StepReport::Problem::machine, report.text);
+    return problem(Problem::machine, report.text);
   }
   if (const auto report = w.machine_solver.newly_opened(w.machine); !report) {
-    return problem(StepReport::Problem::joint, report.text);
+    return problem(Problem::joint, report.text);
   }
   if (!w.machine.parts().terrains.empty()) [[unlikely]] {
     if (std::string text = mbd::take_terrain_problem(w.machine.parts()); !text.empty())
-      return problem(StepReport::Problem::machine, text + " (" + when() + ")");
+      return problem(Problem::machine, text + " (" + detail::when_in_words(w) + ")");
   }
-  return {StepReport::Problem::none, w.time, w.step, {}, {}, {}};
+  return detail::no_problem(w);
 }
 
 }  // namespace dem
+
+#if DEM_DEFINES
+
+namespace dem::detail {
+
+DEM_INLINE StepReport report_of(const WorldCommon& w, StepReport::Problem kind, GrainId grain, std::string text) {
+  return {kind, w.time, w.step, grain, std::move(text), {}};
+}
+
+DEM_INLINE std::string when_in_words(const WorldCommon& w) {
+  return dem::text("at t = {:.6g} s (step {})", w.time, w.step);
+}
+
+DEM_INLINE std::string surface_in_words(const WorldCommon& w, std::size_t number, const SurfaceOnBody& s,
+                                        bool name_is_unique) {
+  if (name_is_unique) return dem::text("surface '{}'", s.name);
+  const std::string& body = w.machine.bodies()[s.body.index()].name;
+  return s.name.empty() ? dem::text("surface {} of body '{}'", number, body)
+                        : dem::text("surface {} ('{}' of body '{}')", number, s.name, body);
+}
+
+DEM_INLINE std::string not_finite_in_words(const WorldCommon& w, std::uint32_t grain) {
+  return dem::text(
+      "grain {} has a position or velocity that is not a number {}: the simulation blew up; lower time_step (now {:g} "
+      "s) or the stiffness, or raise the damping",
+      grain, when_in_words(w), w.time_step);
+}
+
+DEM_INLINE std::string lost_in_words(const WorldCommon& w, std::uint32_t grain, const Vec3& x) {
+  return dem::text(
+      "grain {} left the domain {} and is at ({:.4g}, {:.4g}, {:.4g}) m; close the walls, lower time_step (now {:g} "
+      "s), or enlarge domain",
+      grain, when_in_words(w), x.x(), x.y(), x.z(), w.time_step);
+}
+
+DEM_INLINE std::string passed_in_words(const WorldCommon& w, std::uint32_t grain, double radius,
+                                       const std::string& surface, double went) {
+  return dem::text(
+      "{} went {:.3g} m within the step to t = {:.6g} s (step {}), more than the radius of grain {} there, {:.3g} m, "
+      "which it may have passed without touching it; let its motion go without a jump (Signal::smooth_step), let it "
+      "touch nothing meanwhile (set_active), or lower time_step (now {:g} s)",
+      surface, went, w.time, w.step, grain, radius, w.time_step);
+}
+
+DEM_INLINE std::string body_overlap_in_words(const WorldCommon& w, const SurfaceOnBody& a, const SurfaceOnBody& b,
+                                             double overlap) {
+  const auto name = [&](const SurfaceOnBody& s) -> const std::string& {
+    return w.machine.bodies()[s.body.index()].name;
+  };
+  return dem::text(
+      "body '{}' overlaps body '{}' by {:.3g} of their effective diameter {}, more than overlap_limit {:g}; raise the "
+      "normal stiffness between their materials, lower time_step (now {:g} s), or start with the bodies apart",
+      name(a), name(b), overlap, when_in_words(w), w.options.overlap_limit, w.time_step);
+}
+
+}  // namespace dem::detail
+
+#endif

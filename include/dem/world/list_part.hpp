@@ -13,7 +13,6 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
-#include <functional>
 #include <utility>
 #include <vector>
 
@@ -53,7 +52,8 @@ std::vector<typename Model::Domain::SortKey> sort_keys(WorldState<Model>& w, dou
                     .work = work[k],
                     .asleep = sleepers_last && is_asleep(w, id) ? 1u : 0u});
   }
-  broadphase::sort_nearly_sorted(keys, scratch, std::less<>(), w.executor);
+  broadphase::sort_nearly_sorted(
+      keys, scratch, [](const auto& a, const auto& b) { return a < b; }, w.executor);
   return keys;
 }
 

@@ -1,6 +1,9 @@
 #pragma once
 
+#include <dem/core/compiled.hpp>
+#include <dem/core/error.hpp>
 #include <dem/core/ids.hpp>
+#include <dem/core/pack_widths.hpp>
 #include <dem/geometry/surface.hpp>
 #include <dem/grain/sleep_options.hpp>
 #include <dem/math/vector.hpp>
@@ -36,6 +39,13 @@ struct WorldOptions {
   std::optional<SleepOptions> sleep = {};  ///< lets grains at rest sleep, so that they cost next to nothing
 };
 
+namespace detail {
+/// Throws Error if an option is out of range, or the sources of the program were compiled for different processors.
+void check_options(const WorldOptions& options);
+/// Throws Error for a vector that is not finite; `what` it is.
+void require_finite(const Vec3& v, const char* what);
+}  // namespace detail
+
 /// A grain to be added.
 struct NewGrain {
   SpeciesId species = {};
@@ -66,3 +76,34 @@ struct SurfaceOptions {
 };
 
 }  // namespace dem
+
+#if DEM_DEFINES
+
+namespace dem::detail {
+
+DEM_INLINE void check_options(const WorldOptions& options) {
+  if (const PackWidths& widths = pack_widths; widths.other != 0) {
+    fail(
+        "the sources of this program were compiled for different processors: packs hold {} numbers in one, {} in "
+        "another; compile all with the same flags (link all to dem::native, or none)",
+        widths.first, widths.other);
+  }
+  require_non_negative(options.time_step, "time step", "s (0 chooses one)");
+  require_within(options.time_step_safety, 1e-6, 1.0, "time step safety");
+  require_non_negative(options.skin, "skin", "m (0 chooses one)");
+  require_positive(options.overlap_limit, "overlap limit", "effective diameters");
+  require_finite(options.gravity, "gravity");
+  if (options.sleep) check_sleep(*options.sleep);
+  if (const auto& d = options.domain; d && !all_below(d->low, d->high)) {
+    fail("the domain's lower corner ({:g}, {:g}, {:g}) m is not below its upper one, ({:g}, {:g}, {:g}) m", d->low.x(),
+         d->low.y(), d->low.z(), d->high.x(), d->high.y(), d->high.z());
+  }
+}
+
+DEM_INLINE void require_finite(const Vec3& v, const char* what) {
+  if (!is_finite(v)) fail("{} is ({:g}, {:g}, {:g}), but must be finite", what, v.x(), v.y(), v.z());
+}
+
+}  // namespace dem::detail
+
+#endif

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <dem/core/compiled.hpp>
 #include <dem/core/ids.hpp>
 
 #include <cstdint>
@@ -20,6 +21,21 @@ struct StepReport {
   std::string note;  ///< what of what was given was changed, or could not be done, in words; empty if nothing
 
   explicit operator bool() const { return problem == Problem::none; }
+  /// Says that, too; nothing where it is empty.
+  void add_note(const std::string& more);
 };
 
 }  // namespace dem
+
+#if DEM_DEFINES
+
+namespace dem {
+
+DEM_INLINE void StepReport::add_note(const std::string& more) {
+  if (!note.empty() && !more.empty()) note += ' ';
+  note += more;
+}
+
+}  // namespace dem
+
+#endif

@@ -35,7 +35,7 @@ void wake_chunk(WorldState<Model>& w, std::size_t c) {
   for (std::size_t i = c * chunk_size; i < end; ++i) wake_row(w, i);
 }
 template <class Model>
-void wake_all(WorldState<Model>& w) {
+DEM_SETUP void wake_all(WorldState<Model>& w) {
   for (auto& rest : w.sleepers.grains) rest = {};
   for (std::size_t i = 0; i < std::min(w.grains.count, w.sleepers.doing.size()); ++i) {
     w.sleepers.doing[i] = grain::awake;

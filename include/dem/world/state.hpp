@@ -59,12 +59,9 @@ struct MoveStage {
   bool at_once = false;           ///< within the sweep that finds contacts
 };
 
-/// Everything a world consists of. Only World and the functions of the step see it.
-template <class Model>
-struct WorldState {
-  using Shape = typename Model::Shape;
-  using Integrator = typename Model::Integrator;
-  using Surface = MachineSurface<typename Model::Surfaces>;
+/// What a world consists of whatever its model.
+struct WorldCommon {
+  DEM_VALUE(WorldCommon)
 
   WorldOptions options;
   double time = 0.0;
@@ -74,18 +71,11 @@ struct WorldState {
   std::uint64_t step = 0;
   bool is_broken_off = false;  ///< an exception ended the newest step within it
 
-  Materials<Model> materials;
-  std::vector<Species<Shape>> species;
   std::vector<SpeciesInertia> inertia;  ///< of the species
   double largest_radius = 0.0;          ///< m, bounding radius
   double smallest_radius = HUGE_VAL;    ///< m, the same
 
-  GrainColumns<Shape, Integrator> grains;
-  std::vector<Chunk<Model>> chunks;
-  typename Model::BroadPhase broad_phase;
   std::optional<surface::Aabb> borders;  ///< WorldOptions::domain, without end where it repeats itself
-  typename Model::Domain domain;
-  grain::Images<typename Model::Domain> images;
   std::vector<std::uint32_t> incoming_first;
   std::vector<grain::Incoming> incoming;
   double list_skin = 0.0;         ///< m, with which the neighbour list was made
@@ -102,32 +92,52 @@ struct WorldState {
   std::vector<Outlet> outlets;
   Outlet beyond_domain;  ///< of a domain that removes what leaves it
   std::vector<Inlet> inlets;
-  std::uint64_t put_in_at = 0;                  ///< the step in which inlets put in what is due at the latest
-  void (*put_in)(WorldState&) = nullptr;        ///< set with the first inlet: other programs are without that code
-  std::vector<grain::HeldGrains> held;          ///< attached to machine parts
-  void (*carry_held)(WorldState&) = nullptr;    ///< set with the first attached grain, as put_in is
-  void (*load_by_held)(WorldState&) = nullptr;  ///< the same
+  std::uint64_t put_in_at = 0;          ///< the step in which inlets put in what is due at the latest
+  std::vector<grain::HeldGrains> held;  ///< attached to machine parts
   grain::Sleepers sleepers;
   grain::Turns turns;
   MoveStage move;
 
   mbd::Mechanism machine;
-  mbd::LazySolver<Integrator, typename Model::Joints> machine_solver;
-  std::vector<Surface> surfaces;
-  std::vector<coupling::FindHits<Model>> find_hits;  ///< of the surfaces: the code for their kinds
-  std::vector<coupling::IsBuried<Model>> is_buried;  ///< the same; null of most kinds
   SurfaceSet new_surfaces;  ///< added or switched on since they were last compared with the cell and the grains
   std::vector<SurfaceSensor> surface_sensors;
-  coupling::BodyContacts<Model> body_contacts;
-  void (*find_body_contacts)(WorldState&) = nullptr;  ///< set with the first pair: other programs are without that code
-  typename Model::Executor executor;
-  std::vector<ContactScratch<Model>> scratch;  ///< of the executor's threads
   Stopwatch stopwatch;
 
   GrainLoadLaw grain_load;  ///< on each grain; usually none
 
   grain::EnergyLedger ledger;
-  void (*record_contacts)(WorldState&, std::size_t, ContactScratch<Model>&) = nullptr;  ///< set by count_energy()
+};
+
+/// Everything a world consists of. Only World and the functions of the step see it.
+template <class Model>
+struct WorldState : WorldCommon {
+  using Shape = typename Model::Shape;
+  using Integrator = typename Model::Integrator;
+  using Surface = MachineSurface<typename Model::Surfaces>;
+
+  Materials<Model> materials;
+  std::vector<Species<Shape>> species;
+
+  GrainColumns<Shape, Integrator> grains;
+  std::vector<Chunk<Model>> chunks;
+  typename Model::BroadPhase broad_phase;
+  typename Model::Domain domain;
+  grain::Images<typename Model::Domain> images;
+
+  mbd::LazySolver<Integrator, typename Model::Joints> machine_solver;
+  std::vector<Surface> surfaces;
+  std::vector<coupling::FindHits<Model>> find_hits;  ///< of the surfaces: the code for their kinds
+  std::vector<coupling::IsBuried<Model>> is_buried;  ///< the same; null of most kinds
+  coupling::BodyContacts<Model> body_contacts;
+  typename Model::Executor executor;
+  std::vector<ContactScratch<Model>> scratch;  ///< of the executor's threads
+
+  // Set with the first of what they are for: other programs are without that code.
+  void (*put_in)(WorldState&) = nullptr;                                                ///< what inlets give
+  void (*carry_held)(WorldState&) = nullptr;                                            ///< attached grains
+  void (*load_by_held)(WorldState&) = nullptr;                                          ///< the same
+  void (*find_body_contacts)(WorldState&) = nullptr;                                    ///< of pairs of surfaces
+  void (*record_contacts)(WorldState&, std::size_t, ContactScratch<Model>&) = nullptr;  ///< count_energy()
   void (*count_energy)(WorldState&) = nullptr;                                          ///< at the end of a step
 
   /// All that the future depends on but the grains and their contacts, which <dem/io/checkpoint.hpp> knows.
@@ -222,7 +232,7 @@ void give_up_list(WorldState<Model>& w) {
 
 /// Points of grains and of other bodies are found behind a finely cut mesh until they are so deep that it is reported.
 template <class Model>
-void find_points_deep_enough(WorldState<Model>& w) {
+DEM_SETUP void find_points_deep_enough(WorldState<Model>& w) {
   const double share = 1.25 * std::min(1.0, 2.0 * w.options.overlap_limit);  // a step may go beyond
   const auto find_to = [&](auto& surface, double radius) {
     std::visit(
@@ -246,7 +256,7 @@ void place_surfaces(WorldState<Model>& w) {
   for (auto& s : w.surfaces) s.follow(w.machine.bodies()[s.body.index()], !carried.has(s.body));
 }
 
-/// Surfaces note how far they go within a step: see MachineSurface::went.
+/// Surfaces note how far they go within a step: see SurfaceOnBody::went.
 template <class Model>
 void begin_step_of_surfaces(WorldState<Model>& w) {
   for (auto& s : w.surfaces) s.begin_step(w.machine.bodies()[s.body.index()]);
@@ -307,3 +317,13 @@ void load_bodies(WorldState<Model>& w) {
 }
 
 }  // namespace dem
+
+#if DEM_DEFINES
+
+namespace dem {
+
+DEM_DEFINE_VALUE(WorldCommon)
+
+}  // namespace dem
+
+#endif

@@ -156,7 +156,7 @@ void take_step(WorldState<Model>& w) {
 /// Before the first step, and after anything but grains that were added was changed by hand: forces at the present
 /// state, from which integrators that remember an acceleration take their first one.
 template <class Model>
-void initialise(WorldState<Model>& w) {
+DEM_SETUP void initialise(WorldState<Model>& w) {
   w.sleepers.all_work = true;
   w.move = {};
   w.time_of_forces = w.time;

@@ -1,7 +1,9 @@
 #pragma once
 
+#include <dem/core/compiled.hpp>
+
 #include <array>
-#include <chrono>
+#include <cstddef>
 
 namespace dem {
 
@@ -19,27 +21,41 @@ class Stopwatch {
   /// A phase begins.
   void start() {
     if (on_) [[unlikely]]
-      since_ = Clock::now();
+      since_ = now();
   }
   /// The phase is over.
   void stop(Phase phase) {
     if (!on_) [[likely]]
       return;
-    seconds_[static_cast<std::size_t>(phase)] += std::chrono::duration<double>(Clock::now() - since_).count();
+    seconds_[static_cast<std::size_t>(phase)] += now() - since_;
   }
   /// The time in s while it is on, else 0: for work inside a phase, clock() after less clock() before.
   double clock() const {
     if (!on_) [[likely]]
       return 0.0;
-    return std::chrono::duration<double>(Clock::now().time_since_epoch()).count();
+    return now();
   }
   double seconds(Phase phase) const { return seconds_[static_cast<std::size_t>(phase)]; }
 
  private:
-  using Clock = std::chrono::steady_clock;
+  static double now();  // s
+
   bool on_ = false;
-  Clock::time_point since_;
+  double since_ = 0.0;
   std::array<double, phase_names.size()> seconds_ = {};
 };
 
 }  // namespace dem
+
+#if DEM_DEFINES
+#include <chrono>
+
+namespace dem {
+
+DEM_INLINE double Stopwatch::now() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+}  // namespace dem
+
+#endif

@@ -9,7 +9,7 @@ namespace dem {
 
 /// Whether points (radius 0) pass a surface unseen.
 template <class Surface>
-bool lets_points_through(const Surface& s) {
+DEM_SETUP bool lets_points_through(const Surface& s) {
   return std::visit(
       []<class G>(const G& geometry) {
         if constexpr (surface::MayLetPointsThrough<G>) return geometry.lets_points_through();
@@ -20,7 +20,7 @@ bool lets_points_through(const Surface& s) {
 
 /// Whether a grain meets surfaces with points of its boundary, which have no radius.
 template <class Shape>
-bool meets_with_points(const Shape& shape) {
+DEM_SETUP bool meets_with_points(const Shape& shape) {
   bool any = false;
   shape::visit_kind(shape, [&]<class Kind>(const Kind& grain) {
     if (coupling::touches_as_ball(grain)) return;
@@ -35,7 +35,7 @@ bool meets_with_points(const Shape& shape) {
 /// without a word, so they are refused. Balls, and bodies that show no points (planes), meet such a sheet as any other.
 /// Throws Error.
 template <class Model>
-void check_thin_sheets(const WorldState<Model>& w) {
+DEM_SETUP void check_thin_sheets(const WorldState<Model>& w) {
   constexpr const char* remedy =
       "points find no side of it and would pass. Make it a closed plate (MeshSide::solid) of more than twice the "
       "overlap's thickness, or a sheet with one side (MeshSide::one_sided)";

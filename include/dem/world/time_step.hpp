@@ -14,7 +14,7 @@ namespace detail {
 
 /// Of grains with each other and with surfaces, and of bodies with each other.
 template <class Model>
-StableTimeStep stable_time_step_of_contacts(const WorldState<Model>& w) {
+DEM_SETUP StableTimeStep stable_time_step_of_contacts(const WorldState<Model>& w) {
   const mbd::CarriedBodies carried(w.machine.parts());
   std::vector<grain::SurfaceMatter> of_surfaces;
   for (const auto& s : w.surfaces) {
@@ -30,7 +30,7 @@ StableTimeStep stable_time_step_of_contacts(const WorldState<Model>& w) {
   return limit;
 }
 template <class Model>
-StableTimeStep stable_time_step_of_machine(const WorldState<Model>& w) {
+DEM_SETUP StableTimeStep stable_time_step_of_machine(const WorldState<Model>& w) {
   return w.machine_solver.stable_time_step(w.machine);
 }
 
@@ -38,14 +38,14 @@ StableTimeStep stable_time_step_of_machine(const WorldState<Model>& w) {
 /// step, not with the grains, and where another pose has made it too stiff. A smaller step goes on with it once the
 /// world has run.
 template <class Model>
-bool is_designed_for(const WorldState<Model>& w, double dt) {
+DEM_SETUP bool is_designed_for(const WorldState<Model>& w, double dt) {
   const double design = w.machine_solver.design_step();
   return (dt == design || (w.step > 0 && dt < design)) && w.machine_solver.is_designed_for(w.machine, design) &&
          stable_time_step_of_machine(w).dt >= dt;
 }
 /// Where something is derived, forces are out of date: `initialised` becomes false.
 template <class Model>
-void design_machine(WorldState<Model>& w, double dt, bool& initialised) {
+DEM_SETUP void design_machine(WorldState<Model>& w, double dt, bool& initialised) {
   if (is_designed_for(w, dt)) return;
   w.machine_solver.design(w.machine, dt, w.options.gravity, w.step > 0);
   initialised = false;
@@ -55,7 +55,7 @@ void design_machine(WorldState<Model>& w, double dt, bool& initialised) {
 
 /// Largest stable time step of grains and machine, and what limits it.
 template <class Model>
-StableTimeStep stable_time_step(const WorldState<Model>& w) {
+DEM_SETUP StableTimeStep stable_time_step(const WorldState<Model>& w) {
   const StableTimeStep contacts = detail::stable_time_step_of_contacts(w);
   const StableTimeStep machine = detail::stable_time_step_of_machine(w);
   return machine.dt < contacts.dt ? machine : contacts;
@@ -64,7 +64,7 @@ StableTimeStep stable_time_step(const WorldState<Model>& w) {
 namespace detail {
 
 template <class Model>
-void choose_time_step_automatically(WorldState<Model>& w, bool& initialised) {
+DEM_SETUP void choose_time_step_automatically(WorldState<Model>& w, bool& initialised) {
   // A machine's derived stiffness suits whatever step is chosen, so only given stiffness limits the step.
   const double of_given = w.machine_solver.stable_time_step_of_given(w.machine).dt;
   const double limit = std::min(stable_time_step_of_contacts(w).dt, of_given);
@@ -79,7 +79,7 @@ void choose_time_step_automatically(WorldState<Model>& w, bool& initialised) {
 
 /// Throws Error for a step above the stable one. The machine stays as it is.
 template <class Model>
-void refuse_unstable(const WorldState<Model>& w, double dt) {
+DEM_SETUP void refuse_unstable(const WorldState<Model>& w, double dt) {
   mbd::MachineDesign design;
   if (!is_designed_for(w, dt)) design = w.machine_solver.tried(w.machine, dt, w.options.gravity, w.step > 0);
   StableTimeStep limit = stable_time_step_of_contacts(w);
@@ -94,7 +94,7 @@ void refuse_unstable(const WorldState<Model>& w, double dt) {
 }
 
 template <class Model>
-void check_time_step(WorldState<Model>& w, double dt, bool& initialised) {
+DEM_SETUP void check_time_step(WorldState<Model>& w, double dt, bool& initialised) {
   if (!w.options.allow_unstable_time_step) refuse_unstable(w, dt);
   design_machine(w, dt, initialised);
   w.time_step = dt;
@@ -106,7 +106,7 @@ void check_time_step(WorldState<Model>& w, double dt, bool& initialised) {
 /// out of date and `initialised` becomes false. Throws Error for a step above the stable one, and where nothing limits
 /// it.
 template <class Model>
-void choose_time_step(WorldState<Model>& w, bool& initialised) {
+DEM_SETUP void choose_time_step(WorldState<Model>& w, bool& initialised) {
   const double given = w.options.time_step, before = w.time_step;
   given == 0.0 ? detail::choose_time_step_automatically(w, initialised)
                : detail::check_time_step(w, given, initialised);
@@ -115,7 +115,7 @@ void choose_time_step(WorldState<Model>& w, bool& initialised) {
 
 /// What makes a time step that was chosen less than a tenth of what the contacts allow, in words; else empty.
 template <class Model>
-std::string note_of_time_step(const WorldState<Model>& w) {
+DEM_SETUP std::string note_of_time_step(const WorldState<Model>& w) {
   if (w.options.time_step != 0.0) return {};
   const StableTimeStep of_given = w.machine_solver.stable_time_step_of_given(w.machine);
   const double of_contacts = detail::stable_time_step_of_contacts(w).dt;

@@ -21,7 +21,7 @@ namespace dem {
 template <class M>
 class World : public WorldGrains<M> {
   using Setup = WorldGrains<M>;
-  using Setup::state_, Setup::checked_, Setup::initialised_, Setup::require_finite;
+  using Setup::state_, Setup::checked_, Setup::initialised_;
 
  public:
   using Model = M;
@@ -32,7 +32,7 @@ class World : public WorldGrains<M> {
   /// Checks the set-up, chooses or checks the time step, and lists grains that were added; called by step() and run().
   /// Throws Error if contact constants are missing, the time step is too large, points would pass a two-sided sheet, a
   /// grain lies unseen within a solid mesh, or a prescribed motion would have to jump.
-  void prepare() {
+  DEM_SETUP void prepare() {
     this->require_no_step("run");
     if (state_.is_broken_off) {
       fail(
@@ -121,7 +121,7 @@ class World : public WorldGrains<M> {
   int threads() const { return state_.executor.threads(); }
   /// m/s^2, from the next step on. Another gravity wakes all grains. Throws Error unless it is finite.
   void set_gravity(const Vec3& g) {
-    require_finite(g, "gravity");
+    detail::require_finite(g, "gravity");
     if (g == state_.options.gravity) return;
     state_.options.gravity = g;
     evaluate_anew();
@@ -292,7 +292,7 @@ class World : public WorldGrains<M> {
       return;
     list_between_runs(state_, [&] { rebuild_neighbours(state_); });  // inlets look at the bounds of all chunks
   }
-  std::vector<MaterialId> used_materials() const {
+  DEM_SETUP std::vector<MaterialId> used_materials() const {
     std::vector<MaterialId> used;
     for (const auto& s : state_.species) used.push_back(s.material);
     for (const auto& s : state_.surfaces) used.push_back(s.material);
@@ -307,20 +307,19 @@ class World : public WorldGrains<M> {
   StepReport ok() const {
     StepReport r{
         StepReport::Problem::none, state_.time, state_.step, {}, {}, state_.machine_solver.note(state_.machine)};
-    const auto add = [&](const std::string& note) { r.note += (r.note.empty() || note.empty() ? "" : " ") + note; };
-    add(state_.time_step_note.value_or(""));
-    add(state_.placed_note);
-    add(note_of_density(state_));
-    add(note_of_free_fall(state_));
-    add(state_.odd_note);
+    r.add_note(state_.time_step_note.value_or(""));
+    r.add_note(state_.placed_note);
+    r.add_note(note_of_density(state_));
+    r.add_note(note_of_free_fall(state_));
+    r.add_note(state_.odd_note);
     for (const Inlet& inlet : state_.inlets) {
-      if (inlet.is_short()) add(inlet.note());
+      if (inlet.is_short()) r.add_note(inlet.note());
     }
     return r;
   }
 
   /// What was set up fits together; finds what follows from it. Throws Error.
-  void check_set_up() {
+  DEM_SETUP void check_set_up() {
     auto& materials = state_.materials;
     materials.check_complete();
     materials.check_names(used_materials());

@@ -14,8 +14,8 @@ class WorldGrains : public WorldSetup<M> {
   using Setup = WorldSetup<M>;
 
  protected:
-  using Setup::state_, Setup::initialised_, Setup::row, Setup::row_that_moves, Setup::require_finite,
-      Setup::require_between_runs, Setup::touched;
+  using Setup::state_, Setup::initialised_, Setup::row, Setup::row_that_moves, Setup::require_between_runs,
+      Setup::touched;
 
  public:
   using Shape = typename M::Shape;
@@ -64,21 +64,21 @@ class WorldGrains : public WorldSetup<M> {
 
   /// m/s. Throws Error for a held grain too, and unless v is finite, as the other set_... do.
   void set_velocity(GrainId p, const Vec3& v) {
-    require_finite(v, "velocity of a grain");
+    detail::require_finite(v, "velocity of a grain");
     wake_around(state_, row_that_moves(p));
     state_.grains.velocity.set(row(p), from_eigen(v));
     initialised_ = false;
   }
   /// rad/s, global axes.
   void set_angular_velocity(GrainId p, const Vec3& w) {
-    require_finite(w, "angular velocity of a grain");
+    detail::require_finite(w, "angular velocity of a grain");
     wake_around(state_, row_that_moves(p));
     state_.grains.local_angular_velocity.set(row(p), from_eigen(Vec3(rotation(p).transpose() * w)));
     initialised_ = false;
   }
   /// Puts a grain elsewhere; its contacts there start without friction, those that it still has go on.
   void set_position(GrainId p, const Vec3& x) {
-    require_finite(x, "position of a grain");
+    detail::require_finite(x, "position of a grain");
     wake_around(state_, row_that_moves(p));
     state_.grains.position.set(row(p), from_eigen(x));
     state_.placed.grain(state_.step, state_.grains.id[row(p)]);

@@ -31,22 +31,7 @@ class WorldSetup {
   explicit WorldSetup(std::initializer_list<NoOptions>) : WorldSetup() {}
   /// Throws Error if an option is out of range.
   explicit WorldSetup(const WorldOptions& options = {}) {
-    if (const detail::PackWidths& widths = detail::pack_widths; widths.other != 0) {
-      fail(
-          "the sources of this program were compiled for different processors: packs hold {} numbers in one, {} in "
-          "another; compile all with the same flags (link all to dem::native, or none)",
-          widths.first, widths.other);
-    }
-    require_non_negative(options.time_step, "time step", "s (0 chooses one)");
-    require_within(options.time_step_safety, 1e-6, 1.0, "time step safety");
-    require_non_negative(options.skin, "skin", "m (0 chooses one)");
-    require_positive(options.overlap_limit, "overlap limit", "effective diameters");
-    require_finite(options.gravity, "gravity");
-    if (options.sleep) check_sleep(*options.sleep);
-    if (const auto& d = options.domain; d && !all_below(d->low, d->high)) {
-      fail("the domain's lower corner ({:g}, {:g}, {:g}) m is not below its upper one, ({:g}, {:g}, {:g}) m",
-           d->low.x(), d->low.y(), d->low.z(), d->high.x(), d->high.y(), d->high.z());
-    }
+    detail::check_options(options);
     state_.options = options;
     set_period(state_);
     if (options.threads != 0) state_.executor.set_threads(options.threads);
@@ -55,7 +40,7 @@ class WorldSetup {
 
   /// A kind of grain. Throws Error unless the density, and the volume and radius of the shape, are positive, and for
   /// moments of inertia that no body has.
-  SpeciesId add_species(const Shape& shape, const SpeciesOptions& o = {}) {
+  DEM_SETUP SpeciesId add_species(const Shape& shape, const SpeciesOptions& o = {}) {
     require_no_step("add_species");
     Species<Shape> s = make_species(shape, o.density, o.held);
     s.material = state_.materials.id(o.material);
@@ -70,7 +55,7 @@ class WorldSetup {
 
   /// Contact constants for every pair of materials that has none of its own. Wakes all grains. Throws Error if one
   /// makes no sense.
-  void set_contact(const Parameters& p) {
+  DEM_SETUP void set_contact(const Parameters& p) {
     require_no_step("set_contact");
     require_grains_here("a change of contact constants");
     state_.materials.set_default(p);
@@ -78,7 +63,7 @@ class WorldSetup {
     checked_ = false;
   }
   /// Contact constants for one pair of materials, named. Wakes all grains. Throws Error if one makes no sense.
-  void set_contact(std::string_view a, std::string_view b, const Parameters& p) {
+  DEM_SETUP void set_contact(std::string_view a, std::string_view b, const Parameters& p) {
     require_no_step("set_contact");
     require_grains_here("a change of contact constants");
     state_.materials.set(a, b, p);
@@ -124,7 +109,7 @@ class WorldSetup {
   /// the body carries it from here on, and feels the forces on it. Its mass is not added to the body's. Attached to
   /// ground() it stands still, as one that is not attached does, and loads the ground. Throws Error for an unknown
   /// body, and for a species of grains that move.
-  void attach(GrainId p, BodyId body) {
+  DEM_SETUP void attach(GrainId p, BodyId body) {
     require_no_step("attach");
     if (!state_.species[state_.grains.species[row(p)]].is_held()) {
       fail("grain {} is to be attached to a body, but moves by itself; make its species with SpeciesOptions::held",
@@ -147,7 +132,7 @@ class WorldSetup {
   /// is gone at once for who looks; others feel it for up to 16 steps more, until the next neighbour list. One
   /// that crosses the box within a step is not taken: make the box thicker than the fastest goes in a step. Throws
   /// Error for a box that is none.
-  OutletId add_outlet(const surface::Aabb& region, const OutletOptions& o = {}) {
+  DEM_SETUP OutletId add_outlet(const surface::Aabb& region, const OutletOptions& o = {}) {
     require_no_step("add_outlet");
     require_grains_here("a new outlet");
     state_.outlets.emplace_back(region, o);
@@ -159,7 +144,7 @@ class WorldSetup {
   /// StepReport::note tells of it.
   ///
   ///     world.add_inlet(InletRegion::disc({0, 0, 0.3}, {0, 0, -1}, 0.02), {.grains = sand, .mass_flow = 0.1});
-  InletId add_inlet(const InletRegion& region, const InletOptions& o) {
+  DEM_SETUP InletId add_inlet(const InletRegion& region, const InletOptions& o) {
     require_no_step("add_inlet");
     require_grains_here("a new inlet");
     const auto mass_of = [&](SpeciesId s) {
@@ -248,8 +233,8 @@ class WorldSetup {
   }
 
  protected:
-  SurfaceId place_surface(BodyId body, const typename Model::Surfaces& geometry, const SurfaceOptions& o,
-                          const coupling::SurfaceCode<Model>& code) {
+  DEM_SETUP SurfaceId place_surface(BodyId body, const typename Model::Surfaces& geometry, const SurfaceOptions& o,
+                                    const coupling::SurfaceCode<Model>& code) {
     require_no_step("add_surface");
     mbd::known_body(state_.machine.parts(), body, text("surface '{}'", o.name));
     // Written such that a NaN fails as well: a wall whose place is not known would let everything through.
@@ -267,8 +252,10 @@ class WorldSetup {
       position = built.reference_origin + built.reference_axes * o.position;
       rotation = built.reference_axes * o.rotation;
     }
-    typename WorldState<Model>::Surface s{o.name, body, state_.materials.id(o.material), geometry, position, rotation};
-    state_.surfaces.push_back(s);
+    SurfaceOnBody s;
+    s.name = o.name, s.body = body, s.material = state_.materials.id(o.material);
+    s.position = position, s.rotation = rotation;
+    state_.surfaces.emplace_back(std::move(s), geometry);
     state_.find_hits.push_back(code.find_hits);
     state_.is_buried.push_back(code.is_buried);
     state_.placed.surface(state_.step, state_.surfaces.size() - 1);
@@ -296,9 +283,6 @@ class WorldSetup {
         "{} is called within a step of this world, from a load, a signal or a law, or by another thread; call it "
         "between steps, or in goes_on() of run(n, goes_on)",
         call);
-  }
-  static void require_finite(const Vec3& v, const char* what) {
-    if (!is_finite(v)) fail("{} is ({:g}, {:g}, {:g}), but must be finite", what, v.x(), v.y(), v.z());
   }
   /// The row of a grain that moves by itself.
   std::size_t row_that_moves(GrainId p) const {

@@ -48,6 +48,18 @@ TEST_CASE("materials that come later leave the pairs that were set alone") {
   CHECK(m.name(m.id("c")) == "c");
 }
 
+TEST_CASE("constants of one pair may be given to another") {
+  ModelMaterials m;
+  m.set_default(with_mu(0.1));
+  m.set("a", "b", m.table()[0]);  // of the table, which grows
+  m.set("c", "d", with_mu(0.2));
+  m.set("a", "a", m.table()[m.row(m.id("c"), m.id("d"))]);
+  m.set("c", "d", m.table()[0]);
+  CHECK(mu_of(m, m.id("a"), m.id("b")) == 0.1);
+  CHECK(mu_of(m, m.id("a"), m.id("a")) == 0.2);
+  CHECK(mu_of(m, m.id("c"), m.id("d")) == 0.1);
+}
+
 TEST_CASE("two materials that may meet need constants") {
   ModelMaterials m;
   const MaterialId sand = m.id("sand");

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <numeric>
 #include <span>
 #include <vector>
 
@@ -106,6 +105,7 @@ class BoundingVolumeTree {
 }  // namespace dem::surface
 
 #if DEM_DEFINES
+#include <numeric>
 
 namespace dem::surface {
 

@@ -4,8 +4,6 @@
 #include <dem/geometry/mesh/mesh_topology.hpp>
 
 #include <cmath>
-#include <numeric>
-#include <set>
 #include <utility>
 #include <vector>
 
@@ -18,6 +16,20 @@ struct MeshGroups {
   std::vector<std::array<bool, 3>> sharp;  ///< edge k is boundary, or convex and sharper than the angle
   std::uint32_t count = 0;                 ///< groups
 };
+
+/// Groups triangles by their edges. A small turn (rad), convex or concave, is a curved surface: both triangles are in
+/// one group. Sharper convex edges join groups too, as a contact moves over them steadily. A sharp concave edge
+/// separates groups, as a grain touches both sides at once there. Two groups that meet at such an edge stay apart, and
+/// so do two groups that both meet a third one there (the flanks of a slot).
+DEM_LAZY MeshGroups group_triangles(const IndexedMesh& mesh, const MeshTopology& topology, double smooth_angle);
+
+}  // namespace dem::surface
+
+#if DEM_DEFINES
+#include <numeric>
+#include <set>
+
+namespace dem::surface {
 
 namespace detail {
 
@@ -36,18 +48,6 @@ class UnionFind {
 };
 
 }  // namespace detail
-
-/// Groups triangles by their edges. A small turn (rad), convex or concave, is a curved surface: both triangles are in
-/// one group. Sharper convex edges join groups too, as a contact moves over them steadily. A sharp concave edge
-/// separates groups, as a grain touches both sides at once there. Two groups that meet at such an edge stay apart, and
-/// so do two groups that both meet a third one there (the flanks of a slot).
-DEM_LAZY MeshGroups group_triangles(const IndexedMesh& mesh, const MeshTopology& topology, double smooth_angle);
-
-}  // namespace dem::surface
-
-#if DEM_DEFINES
-
-namespace dem::surface {
 
 DEM_LAZY_INLINE MeshGroups group_triangles(const IndexedMesh& mesh, const MeshTopology& topology, double smooth_angle) {
   const auto n = static_cast<std::uint32_t>(mesh.triangles.size());

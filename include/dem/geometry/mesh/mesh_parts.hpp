@@ -5,7 +5,6 @@
 #include <dem/geometry/mesh/mesh_data.hpp>
 
 #include <algorithm>
-#include <numeric>
 #include <vector>
 
 namespace dem::surface {
@@ -47,6 +46,7 @@ DEM_LAZY bool lies_inside(const MeshData& m, const Vector3<double>& p, double si
 }  // namespace dem::surface
 
 #if DEM_DEFINES
+#include <numeric>
 
 namespace dem::surface {
 

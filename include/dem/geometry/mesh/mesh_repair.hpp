@@ -5,7 +5,6 @@
 
 #include <cmath>
 #include <string>
-#include <unordered_map>
 
 namespace dem {
 
@@ -71,6 +70,7 @@ DEM_LAZY RepairedMesh repaired(const IndexedMesh& given, MeshFacing facing = Mes
 }  // namespace dem
 
 #if DEM_DEFINES
+#include <unordered_map>
 
 namespace dem {
 

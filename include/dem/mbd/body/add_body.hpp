@@ -5,9 +5,9 @@
 
 namespace dem::mbd::detail {
 
-DEM_SETUP BodyId add_body(Parts& parts, BuiltBody built, bool is_ground = false);
+BodyId add_body(Parts& parts, BuiltBody built, bool is_ground = false);
 
-DEM_SETUP ConnectionId add_connection(Parts& parts, std::string name, BodyId body, const Vec3& at);
+ConnectionId add_connection(Parts& parts, std::string name, BodyId body, const Vec3& at);
 
 }  // namespace dem::mbd::detail
 

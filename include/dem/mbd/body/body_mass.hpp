@@ -21,22 +21,22 @@ struct BodyMass {
 };
 
 /// Inertia of a point mass at r about the origin: m (r.r I - r r^T), the parallel axis theorem.
-DEM_SETUP Mat3 steiner(double mass, const Vec3& r);
+Mat3 steiner(double mass, const Vec3& r);
 
 /// Two bodies welded together; subtract one with a negative mass.
-DEM_SETUP BodyMass operator+(const BodyMass& a, const BodyMass& b);
+BodyMass operator+(const BodyMass& a, const BodyMass& b);
 
 /// From volume integrals and a density (kg/m^3).
-DEM_SETUP BodyMass of_density(const MassProperties& volume, double density);
+BodyMass of_density(const MassProperties& volume, double density);
 
 /// A box with full edges `size` (m), centred on the origin; density in kg/m^3.
-DEM_SETUP BodyMass box_mass(const Vec3& size, double density);
+BodyMass box_mass(const Vec3& size, double density);
 
 /// A full cylinder about the z axis, centred on the origin (m, kg/m^3).
-DEM_SETUP BodyMass cylinder_mass(double radius, double length, double density);
+BodyMass cylinder_mass(double radius, double length, double density);
 
 /// A full sphere about the origin (m, kg/m^3).
-DEM_SETUP BodyMass sphere_mass(double radius, double density);
+BodyMass sphere_mass(double radius, double density);
 
 }  // namespace dem::mbd
 

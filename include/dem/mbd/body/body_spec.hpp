@@ -85,7 +85,7 @@ struct BuiltBody {
 
 /// Finds the principal axes and moves the reference frame's motion to the centre of mass. Throws Error if the body has
 /// no mass, an impossible inertia, a rotation that is not one, or a number that is not finite.
-DEM_SETUP BuiltBody build_body(const BodySpec& spec);
+BuiltBody build_body(const BodySpec& spec);
 
 }  // namespace dem::mbd
 

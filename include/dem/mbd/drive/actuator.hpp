@@ -44,30 +44,30 @@ struct ActuatorSpec {
   /// A governor opens the throttle by `gain` (1/(rad/s)) for each rad/s below the idling speed (rad/s), if the driver
   /// has not opened it further. Without load the engine turns a little slower: by the throttle that balances its drag,
   /// over the gain.
-  DEM_SETUP ActuatorSpec idling_at(double speed, double gain = 0.05) const;
+  ActuatorSpec idling_at(double speed, double gain = 0.05) const;
   ActuatorSpec switched_off() const;
 };
 
 /// Between two points (eqs. 34-37): the coordinate is their distance (m), which must not become zero.
-DEM_SETUP ActuatorSpec linear_actuator(std::string name, BodyId a, const Vec3& at_a, BodyId b, const Vec3& at_b,
-                                       double position_gain, double speed_gain, std::optional<Signal> set_point = {});
+ActuatorSpec linear_actuator(std::string name, BodyId a, const Vec3& at_a, BodyId b, const Vec3& at_b,
+                             double position_gain, double speed_gain, std::optional<Signal> set_point = {});
 /// On the coordinate of a joint: force on one that slides, torque on one that turns (eq. 38, over whole turns).
-DEM_SETUP ActuatorSpec joint_actuator(std::string name, JointId joint, double position_gain, double speed_gain,
-                                      std::optional<Signal> set_point = {});
+ActuatorSpec joint_actuator(std::string name, JointId joint, double position_gain, double speed_gain,
+                            std::optional<Signal> set_point = {});
 /// A speed controller on the coordinate of a joint: force (N) or torque (N m) = -gain (speed - wanted speed). The
 /// wanted speed (m/s or rad/s) may change with time: Signal::smooth_step(0, 2, 0, 0.2) is a soft start. set_target
 /// gives it another one.
-DEM_SETUP ActuatorSpec speed_actuator(std::string name, JointId joint, double gain, const Signal& speed);
+ActuatorSpec speed_actuator(std::string name, JointId joint, double gain, const Signal& speed);
 /// On three points (section 2.4.2): the angle at `corner` from `toward_a` on body a to `toward_b` on body b, counted
 /// positive about a x b at assembly. It is the turn of a free joint about that normal: give the bodies a joint that
 /// lets them turn about it, as a hinge does. Where they bend away from it, only the turn that is left is measured and
 /// driven.
-DEM_SETUP ActuatorSpec rotational_actuator(std::string name, BodyId a, const Vec3& corner, const Vec3& toward_a,
-                                           BodyId b, const Vec3& toward_b, double position_gain, double speed_gain,
-                                           std::optional<Signal> set_point = {});
+ActuatorSpec rotational_actuator(std::string name, BodyId a, const Vec3& corner, const Vec3& toward_a, BodyId b,
+                                 const Vec3& toward_b, double position_gain, double speed_gain,
+                                 std::optional<Signal> set_point = {});
 /// A motor on a joint: torque (N m) over speed (rad/s), times a throttle between -1 and 1 that is set while running.
 /// In reverse it is the same motor the other way round: torque = throttle curve(-speed).
-DEM_SETUP ActuatorSpec motor(std::string name, JointId joint, Curve torque_over_speed, double throttle = 1.0);
+ActuatorSpec motor(std::string name, JointId joint, Curve torque_over_speed, double throttle = 1.0);
 
 /// An actuator, ready to run, and what it did in the newest force evaluation.
 struct Actuator {

@@ -49,15 +49,15 @@ inline constexpr PartKind actuator_kind = {
       return {};
     }};
 
-DEM_SETUP void check_actuator(const ActuatorSpec& spec, const std::string& who);
+void check_actuator(const ActuatorSpec& spec, const std::string& who);
 
 /// A rotational actuator between three points acts on a free joint about the normal of their plane.
-DEM_SETUP JointId joint_on_three_points(Parts& parts, const ActuatorSpec& spec, const std::string& who);
+JointId joint_on_three_points(Parts& parts, const ActuatorSpec& spec, const std::string& who);
 
 /// A number is no speed: without a position gain the rate of the set point counts alone.
-DEM_SETUP void refuse_constant_speed(const ActuatorSpec& spec, const Signal& set_point, const std::string& who);
+void refuse_constant_speed(const ActuatorSpec& spec, const Signal& set_point, const std::string& who);
 
-DEM_SETUP ActuatorId add_actuator(Parts& parts, ActuatorSpec spec);
+ActuatorId add_actuator(Parts& parts, ActuatorSpec spec);
 
 }  // namespace dem::mbd::detail
 

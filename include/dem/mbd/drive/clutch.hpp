@@ -65,11 +65,11 @@ DEM_SETUP inline ClutchSpec clutch(std::string name, JointId in, JointId out, Si
 }
 /// A clutch or a brake between two bodies that have no joint with each other, about an axis at a point (global at
 /// assembly). A free joint that measures the turn is added with it.
-DEM_SETUP ClutchSpec clutch(std::string name, BodyId a, BodyId b, const Vec3& at, const Vec3& axis, Signal capacity);
+ClutchSpec clutch(std::string name, BodyId a, BodyId b, const Vec3& at, const Vec3& axis, Signal capacity);
 /// The plates of a limited-slip differential, between the two outputs of a differential(...). Their capacity is the
 /// preload (N m; what it takes to turn one wheel against the other without input), and a share of the input's torque:
 /// with no preload, the slower output gets up to `bias_ratio` times the torque of the faster one. 1: an open one.
-DEM_SETUP ClutchSpec limited_slip(std::string name, CouplingId differential, Signal preload, double bias_ratio);
+ClutchSpec limited_slip(std::string name, CouplingId differential, Signal preload, double bias_ratio);
 
 /// A brake or clutch, ready to run, and what it did in the newest force evaluation.
 struct Clutch {

@@ -81,9 +81,9 @@ inline constexpr PartKind clutch_kind = {
     }};
 
 /// The two outputs of a differential.
-DEM_SETUP void take_differential(const Parts& parts, Clutch& u, const std::string& who);
+void take_differential(const Parts& parts, Clutch& u, const std::string& who);
 
-DEM_SETUP ClutchId add_clutch(Parts& parts, ClutchSpec spec);
+ClutchId add_clutch(Parts& parts, ClutchSpec spec);
 
 }  // namespace dem::mbd::detail
 

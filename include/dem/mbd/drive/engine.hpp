@@ -15,12 +15,10 @@ namespace dem::mbd {
 ///
 ///     const ActuatorId diesel = car.add_actuator(engine("diesel", crank, full, motoring).idling_at(75.0));
 ///     car.set_throttle(diesel, 0.6);
-DEM_SETUP ActuatorSpec engine(std::string name, JointId crank, Curve full_throttle, Curve motoring,
-                              double throttle = 0.0);
+ActuatorSpec engine(std::string name, JointId crank, Curve full_throttle, Curve motoring, double throttle = 0.0);
 /// The same from a map as it is measured: a table of torque over speed for each throttle, in rising throttle from 0 to
 /// 1. Between two throttles the torque is on the line between their tables.
-DEM_SETUP ActuatorSpec engine(std::string name, JointId crank, std::vector<std::pair<double, Curve>> map,
-                              double throttle = 0.0);
+ActuatorSpec engine(std::string name, JointId crank, std::vector<std::pair<double, Curve>> map, double throttle = 0.0);
 
 }  // namespace dem::mbd
 

@@ -16,9 +16,9 @@ inline constexpr PartKind motion_kind = {.rank = 7, .not_a_number = [](const Par
                                            return {};
                                          }};
 
-DEM_SETUP PrescribedMotion make_motion(const Parts& parts, MotionSpec spec);
+PrescribedMotion make_motion(const Parts& parts, MotionSpec spec);
 
-DEM_SETUP MotionId add_motion(Parts& parts, MotionSpec spec);
+MotionId add_motion(Parts& parts, MotionSpec spec);
 
 }  // namespace dem::mbd::detail
 

@@ -66,15 +66,14 @@ struct MotionSpec {
 DEM_SETUP inline MotionSpec prescribed_position(std::string name, BodyId body, const Vec3& axis, Signal metres) {
   return {.name = std::move(name), .body = body, .axis = axis, .motion = std::move(metres)};
 }
-DEM_SETUP MotionSpec prescribed_rotation(std::string name, BodyId body, const Vec3& axis, Signal radians);
-DEM_SETUP MotionSpec prescribed_joint(std::string name, JointId joint, Signal coordinate);
+MotionSpec prescribed_rotation(std::string name, BodyId body, const Vec3& axis, Signal radians);
+MotionSpec prescribed_joint(std::string name, JointId joint, Signal coordinate);
 /// Prescribes the speed of a joint's coordinate (m/s or rad/s), from whatever value it has: a driven wheel. In each
 /// step the value grows by the integral of the signal over the step (Simpson's rule, exact for cubics), whatever the
 /// load is.
-DEM_SETUP MotionSpec prescribed_speed(std::string name, JointId joint, Signal speed);
+MotionSpec prescribed_speed(std::string name, JointId joint, Signal speed);
 /// Prescribes where one of the body's frames is: by default the reference frame, as BodySpec::at does.
-DEM_SETUP MotionSpec prescribed_pose(std::string name, BodyId body, PoseFunction pose,
-                                     BodyFrame frame = BodyFrame::reference);
+MotionSpec prescribed_pose(std::string name, BodyId body, PoseFunction pose, BodyFrame frame = BodyFrame::reference);
 
 /// The way to a value that was set from outside with a rate: from where the coordinate is, straight through the step
 /// that comes next. So each of its sub-steps makes its share of it, and value and rate agree.

@@ -120,7 +120,7 @@ void for_each_rotation_row(const Joint& j, Align align, const Matrix3<double>& A
 Axes twisted(const Axes& axes, double angle);
 
 /// The axes that a joint would need on b, in b, for nothing that it holds to be off in the present pose.
-DEM_SETUP Axes axes_that_align(const Joint& j, Align align, const FrameOfA& at, const Matrix3<double>& B);
+Axes axes_that_align(const Joint& j, Align align, const FrameOfA& at, const Matrix3<double>& B);
 
 }  // namespace dem::mbd::detail
 

@@ -12,8 +12,8 @@ namespace dem::mbd {
 /// which push the left coordinate down and the right one up. In N m/rad where they turn, N/m where they slide. Both
 /// coordinates have to grow where their wheels rise. With `mirrored` the sum counts in place of the difference, for two
 /// arms on axes that point the same way on both sides of the car.
-DEM_SETUP CouplingSpec anti_roll_bar(std::string name, JointId left, JointId right, double stiffness,
-                                     double damping = 0.0, bool mirrored = false);
+CouplingSpec anti_roll_bar(std::string name, JointId left, JointId right, double stiffness, double damping = 0.0,
+                           bool mirrored = false);
 
 /// An anti-roll bar between two points of suspension parts, where its drop links are tied to them. The forces act along
 /// `up` of the chassis. A bar of torsional stiffness kt (N m/rad) with arms of length L (m) has the stiffness kt/L^2.
@@ -29,7 +29,7 @@ struct AntiRollBarSpec {
 namespace detail {
 
 /// The heights of the points are measured by two free joints, named after the bar.
-DEM_SETUP CouplingId add_anti_roll_bar(Parts& parts, const AntiRollBarSpec& s);
+CouplingId add_anti_roll_bar(Parts& parts, const AntiRollBarSpec& s);
 
 }  // namespace detail
 }  // namespace dem::mbd

@@ -8,8 +8,8 @@ namespace dem::mbd {
 
 namespace detail {
 
-DEM_SETUP void check_bushing(const JointSpec& s, const std::string& who);
-DEM_SETUP void take_constants(Joint& j, const JointSpec& s, const Vector3<double>&, const std::string&);
+void check_bushing(const JointSpec& s, const std::string& who);
+void take_constants(Joint& j, const JointSpec& s, const Vector3<double>&, const std::string&);
 
 }  // namespace detail
 
@@ -22,9 +22,8 @@ inline constexpr JointTraits bushing_joint =
 inline constexpr JointKind JointKind::bushing{bushing_joint};
 
 /// Springs (N/m, N m/rad) and dampers (N s/m, N m s/rad) along and about the x, y, z axes of a frame with z along axis.
-DEM_SETUP JointSpec bushing(std::string name, BodyId a, BodyId b, const Vec3& at, const Vec3& axis,
-                            const Vec3& stiffness, const Vec3& damping, const Vec3& rotational_stiffness,
-                            const Vec3& rotational_damping);
+JointSpec bushing(std::string name, BodyId a, BodyId b, const Vec3& at, const Vec3& axis, const Vec3& stiffness,
+                  const Vec3& damping, const Vec3& rotational_stiffness, const Vec3& rotational_damping);
 
 }  // namespace dem::mbd
 

@@ -23,7 +23,7 @@ void bushing_table_force(Joint& j, Body& a, Body& b, const Vector3<double>& wa, 
 /// J.
 double bushing_table_energy(const Joint& j, const FrameOfA& at, const Matrix3<double>& B, const Vector3<double>& d);
 
-DEM_SETUP void take_tables(Joint& j, const JointSpec& s, const Vector3<double>& gap, const std::string& who);
+void take_tables(Joint& j, const JointSpec& s, const Vector3<double>& gap, const std::string& who);
 
 constexpr JointTraits traits_of_bushing_tables() {
   JointTraits t = bushing_joint;  // it is as stiff as the steepest slopes of its tables
@@ -41,8 +41,8 @@ inline constexpr JointKind JointKind::bushing_with_tables{bushing_table_joint};
 
 /// A bushing with tables, and dampers (N s/m, N m s/rad), along and about the x, y, z axes of a frame with z along
 /// axis. The stable time step counts the steepest slope of each table.
-DEM_SETUP JointSpec bushing(std::string name, BodyId a, BodyId b, const Vec3& at, const Vec3& axis,
-                            BushingTables tables, const Vec3& damping, const Vec3& rotational_damping);
+JointSpec bushing(std::string name, BodyId a, BodyId b, const Vec3& at, const Vec3& axis, BushingTables tables,
+                  const Vec3& damping, const Vec3& rotational_damping);
 
 }  // namespace dem::mbd
 

@@ -12,8 +12,8 @@ inline constexpr JointKind JointKind::constant_velocity{constant_velocity_joint}
 
 /// Shaft a runs along axis_a and shaft b along axis_b, both pointing the way the torque goes. Both turn alike, however
 /// the joint is bent.
-DEM_SETUP JointSpec constant_velocity(std::string name, BodyId a, BodyId b, const Vec3& at, const Vec3& axis_a,
-                                      const Vec3& axis_b);
+JointSpec constant_velocity(std::string name, BodyId a, BodyId b, const Vec3& at, const Vec3& axis_a,
+                            const Vec3& axis_b);
 
 }  // namespace dem::mbd
 

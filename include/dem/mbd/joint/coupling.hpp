@@ -40,16 +40,16 @@ struct CouplingSpec {
 
 /// Gears, between joints that turn: joint `out` turns `ratio` times as fast as joint `in`; negative where it turns the
 /// other way, as outer gears do (ratio = -teeth of `in` / teeth of `out`).
-DEM_SETUP CouplingSpec gear(std::string name, JointId in, JointId out, double ratio);
+CouplingSpec gear(std::string name, JointId in, JointId out, double ratio);
 /// Rack and pinion: the rack slides by pinion_radius (m) times the pinion's angle. The pinion's joint has to turn, the
 /// rack's to slide; of a cylindrical joint the coordinate that fits is taken.
-DEM_SETUP CouplingSpec rack_and_pinion(std::string name, JointId pinion, JointId rack, double pinion_radius);
+CouplingSpec rack_and_pinion(std::string name, JointId pinion, JointId rack, double pinion_radius);
 /// Screw: the nut slides by `lead` (m) for each turn. One cylindrical joint may be both.
 DEM_SETUP inline CouplingSpec screw(std::string name, JointId turning, JointId sliding, double lead) {
   return rack_and_pinion(std::move(name), turning, sliding, lead / (2.0 * std::numbers::pi));
 }
 /// Differential: the input turns `final_ratio` times as fast as the mean of the two outputs.
-DEM_SETUP CouplingSpec differential(std::string name, JointId in, JointId left, JointId right, double final_ratio);
+CouplingSpec differential(std::string name, JointId in, JointId left, JointId right, double final_ratio);
 
 struct Coupling {
   CouplingSpec spec;

@@ -9,14 +9,14 @@
 namespace dem::mbd::detail {
 
 /// The degree of freedom that a term of a coupling names, or the one of the kind that the term needs.
-DEM_SETUP Dof dof_of(const CouplingSpec::Term& term, const Parts& parts, std::size_t number, const std::string& who);
+Dof dof_of(const CouplingSpec::Term& term, const Parts& parts, std::size_t number, const std::string& who);
 
 using Terms = std::vector<CouplingSpec::Term>;
 
 /// Resolves the degrees of freedom of terms. Throws Error for coordinates or ratios that cannot be.
-DEM_SETUP void check_terms(const Parts& parts, Terms& terms, const std::string& who);
+void check_terms(const Parts& parts, Terms& terms, const std::string& who);
 
-DEM_SETUP Coupling make_coupling(const Parts& parts, CouplingSpec spec);
+Coupling make_coupling(const Parts& parts, CouplingSpec spec);
 
 /// A term's inverse masses of the joint's two bodies, along the terms' sum: (sum x)^2 <= n sum x^2.
 std::pair<double, double> inverse_mass_of(const Parts& m, const Terms& all, const CouplingSpec::Term& term);
@@ -71,13 +71,13 @@ inline constexpr PartKind coupling_kind = {
         }};
 
 /// One that is switched on takes hold of its coordinates where they are.
-DEM_SETUP void switch_on(Parts& parts, Coupling& g, bool on);
+void switch_on(Parts& parts, Coupling& g, bool on);
 
 /// Another ratio, from the present pose on. What is derived for the old one is carried over by the inverse masses of
 /// both; the offset is such that the multiplier stays.
-DEM_SETUP void set_ratio(Parts& parts, Coupling& g, std::size_t term, double ratio);
+void set_ratio(Parts& parts, Coupling& g, std::size_t term, double ratio);
 
-DEM_SETUP CouplingId add_coupling(Parts& parts, CouplingSpec spec);
+CouplingId add_coupling(Parts& parts, CouplingSpec spec);
 
 }  // namespace dem::mbd::detail
 

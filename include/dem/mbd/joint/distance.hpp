@@ -8,7 +8,7 @@ namespace dem::mbd {
 
 namespace detail {
 
-DEM_SETUP void take_length(Joint& j, const JointSpec& s, const Vector3<double>& gap, const std::string& who);
+void take_length(Joint& j, const JointSpec& s, const Vector3<double>& gap, const std::string& who);
 
 }  // namespace detail
 
@@ -21,7 +21,7 @@ inline constexpr JointTraits distance_joint =
 inline constexpr JointKind JointKind::distance{distance_joint};
 
 /// A massless rod between a point of a and a point of b.
-DEM_SETUP JointSpec distance(std::string name, BodyId a, const Vec3& at_a, BodyId b, const Vec3& at_b);
+JointSpec distance(std::string name, BodyId a, const Vec3& at_a, BodyId b, const Vec3& at_b);
 
 }  // namespace dem::mbd
 

@@ -8,7 +8,7 @@ namespace dem::mbd {
 
 namespace detail {
 
-DEM_SETUP void check_free(const JointSpec& s, const std::string& who);
+void check_free(const JointSpec& s, const std::string& who);
 /// Puts no force on the bodies; its turns are followed.
 inline void follow_turns(Joint& j, Body& a, Body& b, const Vector3<double>& wa, const Vector3<double>& wb, double dt) {
   j.angle_estimate += dt * dot(turn_gradient(a.motion.rotation * j.axes_a.z, b.motion.rotation * j.axes_b.z), wb - wa);

@@ -70,10 +70,10 @@ inline constexpr PartKind friction_kind = {
         }};
 
 /// Throws Error if the joint cannot rub, or its bearing's radius (m) is missing or is none.
-DEM_SETUP void check_friction(const JointSpec& s, const std::string& who);
+void check_friction(const JointSpec& s, const std::string& who);
 
 /// Adds the friction of joint number `joint`. Throws Error for what cannot be.
-DEM_SETUP void add_friction(Parts& parts, JointSpec& s, const Joint&, std::uint32_t joint);
+void add_friction(Parts& parts, JointSpec& s, const Joint&, std::uint32_t joint);
 
 }  // namespace detail
 

@@ -121,10 +121,10 @@ constexpr const Dofs& dofs_of(JointKind kind) { return traits_of(kind).dofs; }
 constexpr Dof resolved(JointKind kind, Dof dof) { return dof == Dof::own ? traits_of(kind).own : dof; }
 
 /// The degree of freedom's resolved name. Throws Error, with those that there are, unless joints of this kind have it.
-DEM_SETUP Dof known_dof(JointKind kind, Dof dof, const std::string& who);
+Dof known_dof(JointKind kind, Dof dof, const std::string& who);
 
 /// The same for what acts on a coordinate, which therefore has to be free.
-DEM_SETUP Dof require_free_dof(JointKind kind, Dof dof, const std::string& who);
+Dof require_free_dof(JointKind kind, Dof dof, const std::string& who);
 
 }  // namespace dem::mbd
 

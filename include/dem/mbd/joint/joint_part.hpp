@@ -17,7 +17,7 @@ void derive(const Parts& m, const JointSpec& s, Joint& j, const Derivation& deri
 
 double soften_joints(Parts& m, const Derivation& derivation);
 
-DEM_SETUP std::string first_underived_joint(const Parts& m);
+std::string first_underived_joint(const Parts& m);
 
 inline constexpr PartKind joint_kind = {
     .rank = 1,
@@ -54,7 +54,7 @@ inline constexpr PartKind joint_kind = {
           });
         }};
 
-DEM_SETUP JointId add_joint(Parts& parts, JointSpec spec);
+JointId add_joint(Parts& parts, JointSpec spec);
 
 }  // namespace dem::mbd::detail
 

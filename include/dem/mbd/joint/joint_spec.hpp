@@ -132,9 +132,9 @@ struct JointSpec {
   JointSpec with_limits(Dof dof, double lower, double upper) const {
     return with_limits(JointLimits{.lower = lower, .upper = upper, .dof = dof});
   }
-  DEM_SETUP JointSpec with_limits(const JointLimits& given) const;
+  JointSpec with_limits(const JointLimits& given) const;
   bool has_stiffness_or_damping() const { return stiffness || damping || rotational_stiffness || rotational_damping; }
-  DEM_SETUP JointSpec with_friction(const JointFriction& f) const;
+  JointSpec with_friction(const JointFriction& f) const;
   /// The joint's own coordinate, or another one that turns about or slides along z, counts from this value (rad or m)
   /// at assembly.
   JointSpec starting_at(double coordinate) const { return starting_at(Dof::own, coordinate); }
@@ -142,11 +142,9 @@ struct JointSpec {
 };
 
 /// A joint of any kind at a global point, with a global axis that both bodies share at assembly.
-DEM_SETUP JointSpec joint(JointKind kind, std::string name, BodyId a, BodyId b, const Vec3& at,
-                          const Vec3& axis = Vec3::UnitZ());
+JointSpec joint(JointKind kind, std::string name, BodyId a, BodyId b, const Vec3& at, const Vec3& axis = Vec3::UnitZ());
 /// A joint of any kind between two connection points, which have to meet.
-DEM_SETUP JointSpec joint(JointKind kind, std::string name, ConnectionId a, ConnectionId b,
-                          const Vec3& axis = Vec3::UnitZ());
+JointSpec joint(JointKind kind, std::string name, ConnectionId a, ConnectionId b, const Vec3& axis = Vec3::UnitZ());
 
 }  // namespace dem::mbd
 

@@ -66,7 +66,7 @@ inline constexpr PartKind limits_kind = {
         }};
 
 /// Adds the limits of a joint that is about to be added, as number `joint`.
-DEM_SETUP void add_limits(Parts& parts, JointSpec& s, const Joint& j, std::uint32_t joint);
+void add_limits(Parts& parts, JointSpec& s, const Joint& j, std::uint32_t joint);
 
 }  // namespace detail
 

@@ -21,7 +21,7 @@ constexpr bool is_on(const T& part) {
 
 /// Throws Error if couplings together lock a coordinate: two gears of different ratio between the same two shafts.
 /// Those of given stiffness are springs and lock nothing; one that repeats another is no harm.
-DEM_SETUP void check_locked(const Parts& m);
+void check_locked(const Parts& m);
 /// The same, if a coupling was added, switched on or given another ratio since. To be called before each step.
 void check_changed_couplings(Parts& m);
 

@@ -14,18 +14,18 @@
 namespace dem::mbd::detail {
 
 /// x of a joint's frame; the choice is explained at JointSpec::with_x.
-DEM_SETUP Vector3<double> x_of_frame(const JointSpec& s, const Vector3<double>& z, const std::string& who);
+Vector3<double> x_of_frame(const JointSpec& s, const Vector3<double>& z, const std::string& who);
 
-DEM_SETUP Axes axes_in_body(const Body& b, const Vector3<double>& x, const Vector3<double>& z);
+Axes axes_in_body(const Body& b, const Vector3<double>& x, const Vector3<double>& z);
 
-DEM_SETUP void use_connections(const Parts& parts, JointSpec& s, const std::string& who);
+void use_connections(const Parts& parts, JointSpec& s, const std::string& who);
 
-DEM_SETUP void check_penalty(const JointSpec& s, const std::string& who);
+void check_penalty(const JointSpec& s, const std::string& who);
 
 /// What the coordinates are said to be at assembly. Throws Error for those that are what they are.
-DEM_SETUP void set_starts(Joint& j, const JointSpec& s, const std::string& who);
+void set_starts(Joint& j, const JointSpec& s, const std::string& who);
 
-DEM_SETUP Joint make_joint(const Parts& parts, JointSpec& s);
+Joint make_joint(const Parts& parts, JointSpec& s);
 
 }  // namespace dem::mbd::detail
 

@@ -18,8 +18,8 @@ inline constexpr JointKind JointKind::plunging_constant_velocity{plunging_consta
 /// does in the housing of a half shaft. Its own coordinate is this slide (m); limits and friction go with it. A half
 /// shaft has this joint at the gearbox and a constant_velocity(...) at the wheel, and gets longer and shorter as the
 /// wheel travels. Both ends turn alike, however the joint is bent and wherever it slides.
-DEM_SETUP JointSpec plunging_constant_velocity(std::string name, BodyId a, BodyId b, const Vec3& at, const Vec3& axis_a,
-                                               const Vec3& axis_b);
+JointSpec plunging_constant_velocity(std::string name, BodyId a, BodyId b, const Vec3& at, const Vec3& axis_a,
+                                     const Vec3& axis_b);
 
 }  // namespace dem::mbd
 

@@ -7,7 +7,7 @@ namespace dem::mbd::detail {
 
 /// Moves the frame that a joint has on b to where the joint holds nothing strained in the present pose: a joint that is
 /// switched on takes the bodies as they are. What it leaves free counts on as before.
-DEM_SETUP void take_hold(Joint& j, const Body& a, const Body& b);
+void take_hold(Joint& j, const Body& a, const Body& b);
 
 }  // namespace dem::mbd::detail
 

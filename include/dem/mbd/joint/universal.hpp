@@ -15,8 +15,7 @@ inline constexpr JointKind JointKind::universal{universal_joint};
 
 /// Shaft a runs along axis_a and shaft b along axis_b, both pointing the way the torque goes. with_x gives the arm of
 /// the cross on shaft a; two joints in a row cancel their ripple if the arms on the shaft between them are parallel.
-DEM_SETUP JointSpec universal(std::string name, BodyId a, BodyId b, const Vec3& at, const Vec3& axis_a,
-                              const Vec3& axis_b);
+JointSpec universal(std::string name, BodyId a, BodyId b, const Vec3& at, const Vec3& axis_a, const Vec3& axis_b);
 
 }  // namespace dem::mbd
 

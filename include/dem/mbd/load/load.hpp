@@ -41,8 +41,8 @@ struct LoadSpec {
   bool has_law() const { return law || pair_law || by_terrain; }
 };
 
-DEM_SETUP LoadSpec applied_force(std::string name, BodyId body, const Vec3& at, const Vec3& direction, Signal newtons);
-DEM_SETUP LoadSpec applied_torque(std::string name, BodyId body, const Vec3& axis, Signal newton_metres);
+LoadSpec applied_force(std::string name, BodyId body, const Vec3& at, const Vec3& direction, Signal newtons);
+LoadSpec applied_torque(std::string name, BodyId body, const Vec3& axis, Signal newton_metres);
 /// Drag, a tyre, a field: a law that is called at each evaluation of the forces.
 ///
 ///     custom_load("drag", car, [](double, const Body& b) { return Wrench{from_eigen(Vec3(-c * b.velocity())), {}}; })
@@ -50,7 +50,7 @@ DEM_SETUP LoadSpec applied_torque(std::string name, BodyId body, const Vec3& axi
 /// Forces at a point x of the body have the torque (x - b.position()) x force. What the body carries so far in `force`
 /// and `torque` depends on the order of the parts. The stable time step does not know the law: keep its stiffness below
 /// m (0.5/dt)^2 and its damping below 0.5 m/dt. Velocity Verlet shows it the speed of half a step before (first order).
-DEM_SETUP LoadSpec custom_load(std::string name, BodyId body, LoadLaw law);
+LoadSpec custom_load(std::string name, BodyId body, LoadLaw law);
 
 /// The same between two bodies: a tyre on a road that moves, a torque converter, a field between two magnets. The law
 /// gives what body b feels, about its centre of mass; body a feels the opposite.
@@ -59,7 +59,7 @@ DEM_SETUP LoadSpec custom_load(std::string name, BodyId body, LoadLaw law);
 ///       const double slip = axis.dot(a.angular_velocity() - b.angular_velocity());
 ///       return Wrench{{0, 0, 0}, from_eigen(Vec3(c * slip * axis))};
 ///     })
-DEM_SETUP LoadSpec custom_load(std::string name, BodyId a, BodyId b, PairLoadLaw law);
+LoadSpec custom_load(std::string name, BodyId a, BodyId b, PairLoadLaw law);
 
 struct Load {
   LoadSpec spec;

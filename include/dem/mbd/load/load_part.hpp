@@ -24,7 +24,7 @@ inline constexpr PartKind load_kind = {
       return {};
     }};
 
-DEM_SETUP LoadId add_load(Parts& parts, LoadSpec spec);
+LoadId add_load(Parts& parts, LoadSpec spec);
 
 }  // namespace dem::mbd::detail
 

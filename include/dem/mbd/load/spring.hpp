@@ -30,24 +30,23 @@ struct SpringSpec {
 };
 
 /// A linear spring (N/m) of free length (m; the length at assembly if negative) with a linear damper (N s/m).
-DEM_SETUP SpringSpec spring(std::string name, BodyId a, const Vec3& at_a, BodyId b, const Vec3& at_b, double stiffness,
-                            double damping = 0.0, double free_length = -1.0);
+SpringSpec spring(std::string name, BodyId a, const Vec3& at_a, BodyId b, const Vec3& at_b, double stiffness,
+                  double damping = 0.0, double free_length = -1.0);
 /// A spring of free length (m) whose force (N) over its compression (m, positive when shorter) is a table. Beyond the
 /// table the force goes on with the slope of its last piece. With a curve that is `held_outside` it keeps its last
 /// value instead: a bump stop is such a spring, which does not pull. The damper acts at every length.
-DEM_SETUP SpringSpec spring_table(std::string name, BodyId a, const Vec3& at_a, BodyId b, const Vec3& at_b,
-                                  double free_length, const Curve& force_over_compression, double damping = 0.0);
+SpringSpec spring_table(std::string name, BodyId a, const Vec3& at_a, BodyId b, const Vec3& at_b, double free_length,
+                        const Curve& force_over_compression, double damping = 0.0);
 
 /// On a coordinate of a joint, a torsion bar or a coil spring on a slide: a linear spring (N m/rad where it turns, N/m
 /// where it slides) with a linear damper (N m s/rad, N s/m), free where the coordinate is when it is added.
-DEM_SETUP SpringSpec joint_spring(std::string name, JointId joint, double stiffness, double damping = 0.0);
+SpringSpec joint_spring(std::string name, JointId joint, double stiffness, double damping = 0.0);
 /// The same, free at a given value (rad or m) of the coordinate.
-DEM_SETUP SpringSpec joint_spring(std::string name, JointId joint, double stiffness, double damping, double free_at);
+SpringSpec joint_spring(std::string name, JointId joint, double stiffness, double damping, double free_at);
 /// The same from a table of torque (N m) over the coordinate (rad), or of force (N) over it (m): positive drives the
 /// coordinate up, so a spring that holds its middle has a falling table. Beyond the table its last slope goes on,
 /// unless the curve is held_outside().
-DEM_SETUP SpringSpec joint_spring_table(std::string name, JointId joint, Curve torque_over_coordinate,
-                                        double damping = 0.0);
+SpringSpec joint_spring_table(std::string name, JointId joint, Curve torque_over_coordinate, double damping = 0.0);
 
 struct Spring {
   SpringSpec spec;

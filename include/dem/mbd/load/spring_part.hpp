@@ -35,7 +35,7 @@ inline constexpr PartKind spring_kind = {
     .name_of = [](const Parts& m, std::size_t i) { return "spring '" + m.springs[i].spec.name + "'"; },
     .may_grow = [](const Parts& m) { return !m.springs.empty(); }};
 
-DEM_SETUP SpringId add_spring(Parts& parts, SpringSpec spec);
+SpringId add_spring(Parts& parts, SpringSpec spec);
 
 }  // namespace dem::mbd::detail
 

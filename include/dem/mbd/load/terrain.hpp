@@ -53,7 +53,7 @@ DEM_SETUP inline LoadSpec terrain_load(std::string name, BodyId body) {
 class TerrainPart {
  public:
   /// Throws Error for none.
-  DEM_SETUP TerrainPart(std::string part_name, std::unique_ptr<Terrain> terrain);
+  TerrainPart(std::string part_name, std::unique_ptr<Terrain> terrain);
   DEM_SETUP TerrainPart(const TerrainPart& other) : name(other.name), terrain_(other.terrain_->copy()) {}
   TerrainPart(TerrainPart&&) noexcept = default;
   DEM_SETUP TerrainPart& operator=(const TerrainPart& other) { return *this = TerrainPart(other); }

@@ -21,7 +21,7 @@ inline constexpr PartKind terrain_kind = {
 }  // namespace detail
 
 /// Adds a terrain to a machine. Throws Error for none, or a name that another one has.
-DEM_SETUP TerrainId add_terrain(Mechanism& m, std::string name, std::unique_ptr<Terrain> terrain);
+TerrainId add_terrain(Mechanism& m, std::string name, std::unique_ptr<Terrain> terrain);
 
 /// The terrain of an id. Throws Error if there is none.
 inline Terrain& terrain_of(const Mechanism& m, TerrainId id) { return *known(m.parts().terrains, id, "terrain"); }

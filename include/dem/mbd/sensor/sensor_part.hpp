@@ -15,12 +15,12 @@ Wrench contacts_of(const Parts& m, std::size_t body);
 void sample_sensors(Parts& m, double dt);
 
 /// The mean force (N) or torque (N m) that an actuator or a drive puts on its coordinate.
-DEM_SETUP double drive_effort(const Sensor& s);
+double drive_effort(const Sensor& s);
 
 /// Checks that what a sensor measures is there.
-DEM_SETUP void check_sensor(const Parts& parts, const SensorSpec& spec);
+void check_sensor(const Parts& parts, const SensorSpec& spec);
 
-DEM_SETUP SensorId add_sensor(Parts& parts, SensorSpec spec);
+SensorId add_sensor(Parts& parts, SensorSpec spec);
 
 }  // namespace dem::mbd::detail
 

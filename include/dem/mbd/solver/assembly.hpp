@@ -37,13 +37,13 @@ struct AssemblyReport {
 /// Changes the bodies' velocities to what joints with derived stiffness, couplings and prescribed motions allow. Those
 /// of given stiffness may move, and are left alone. Joints whose directions differ by less than the root of `tolerance`
 /// (rad) hold one direction. Throws Error if they are to be refused.
-DEM_LAZY DEM_SETUP AssemblyReport joined_velocities(Parts& m, GivenVelocities how = GivenVelocities::project,
-                                                    double tolerance = 1e-13);
+DEM_LAZY AssemblyReport joined_velocities(Parts& m, GivenVelocities how = GivenVelocities::project,
+                                          double tolerance = 1e-13);
 
 /// Moves the bodies so that joints and couplings with derived stiffness are off by `part` of what they are, with the
 /// least change of positions as masses weigh them, and takes the speeds at which they open or close. Brakes and
 /// clutches go on with the torque that they have.
-DEM_LAZY DEM_SETUP void close_openings(Parts& m, double part);
+DEM_LAZY void close_openings(Parts& m, double part);
 
 }  // namespace dem::mbd
 

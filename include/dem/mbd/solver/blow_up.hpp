@@ -10,7 +10,7 @@
 namespace dem::mbd {
 
 /// The first function of a user that gave no number in the newest step, in words; empty if all did.
-DEM_SETUP std::string not_a_number(const Parts& parts);
+std::string not_a_number(const Parts& parts);
 
 /// Why a machine blew up at steps of dt (s, with all `substeps`), in words: a number that is none, a step that was too
 /// large from the start or became so in another pose, a joint that folded or that no pose closes, or none of these.

@@ -14,7 +14,7 @@ class BodiesInMotion {
   using Memory = typename I::template Memory<double>;
 
   /// Reads masses and inertias. Throws Error for a body that cannot be integrated.
-  void read(const std::vector<Body>& bodies) {
+  DEM_SETUP void read(const std::vector<Body>& bodies) {
     memory_.assign(bodies.size(), {});
     inverse_.clear();
     for (const Body& b : bodies) {

@@ -11,17 +11,17 @@ inline constexpr double endless_step = 1e30;  ///< s
 
 /// Fills in every stiffness and damping that the user left open, for a time step dt (s); the formula stands in
 /// part_kind.hpp. What the user gave stays.
-DEM_SETUP void derive_stiffness(Parts& m, double dt);
+void derive_stiffness(Parts& m, double dt);
 
 /// The same machine with only the stiffness and damping that its user gave. It derives for an endlessly long time step,
 /// for which every derived stiffness is 0. Dampers that are derived from a given stiffness stay.
-DEM_SETUP Parts without_derived(Parts m);
+Parts without_derived(Parts m);
 
 /// What has no stiffness yet: its name, or an empty text. Without a time step nothing can be derived.
-DEM_SETUP std::string first_underived(const Parts& m);
+std::string first_underived(const Parts& m);
 
 /// Throws Error if anything has no stiffness yet.
-DEM_SETUP void require_derived(const Parts& m);
+void require_derived(const Parts& m);
 
 }  // namespace dem::mbd
 

@@ -32,7 +32,7 @@ void add_rows(const Parts& m, const Joint& j, bool holds, bool aligns, std::vect
 
 /// All that is held without give of its own: joints and couplings whose stiffness is derived, and what is prescribed.
 /// Fills the scratch of the prescribed motions.
-DEM_SETUP std::vector<HeldRow> held_rows(Parts& m);
+std::vector<HeldRow> held_rows(Parts& m);
 
 /// The speed along a row.
 double speed_of(const Parts& m, const HeldRow& row);

@@ -26,7 +26,7 @@ struct JoinedBodies {
   std::uint32_t machine_of_joint(const Joint& j) const { return std::min(machine_of[j.a], machine_of[j.b]); }
 };
 
-DEM_SETUP JoinedBodies joined_bodies(const Parts& m);
+JoinedBodies joined_bodies(const Parts& m);
 
 }  // namespace dem::mbd
 

@@ -50,7 +50,7 @@ class JointWatch {
 
   JointWatch() = default;
   /// `tolerance` in m, for displacements, and with the size of its machine for rotations; 0: part_of_size of its size.
-  DEM_SETUP JointWatch(const Parts& m, double tolerance);
+  JointWatch(const Parts& m, double tolerance);
 
   /// To be called at the end of each of the machine's own steps.
   void follow(const Parts& m, double time);
@@ -76,7 +76,7 @@ class JointWatch {
  private:
   static constexpr double unwatched = 1e300;
 
-  DEM_SETUP void look(const Parts& m, const Watched& w, double time);
+  void look(const Parts& m, const Watched& w, double time);
 
   /// A joint folds where what it holds turns by so much that its springs no longer pull it back: 45 deg of axes that
   /// should be parallel, or shafts of a universal or constant-velocity joint that come to stand square to each other.
@@ -88,7 +88,7 @@ class JointWatch {
 };
 
 /// "revolute joint 'x' stood open by 0.067 m and 0.01 rad at t = 0.1 s, allowed are ...".
-DEM_SETUP std::string in_words(const Parts& m, const JointOpening& o);
+std::string in_words(const Parts& m, const JointOpening& o);
 
 }  // namespace dem::mbd
 

@@ -27,16 +27,15 @@ struct MachineSteps {
 };
 
 /// Which joint opened beyond joint_tolerance (`tolerance` in m; 0: by default), and what keeps it closed.
-DEM_SETUP MachineReport report_of_opening(const Parts& m, const JointOpening& worst, double tolerance,
-                                          const MachineSteps& steps, int substeps, double time);
+MachineReport report_of_opening(const Parts& m, const JointOpening& worst, double tolerance, const MachineSteps& steps,
+                                int substeps, double time);
 
 /// What has newly gone wrong with the terrains, in words; empty if nothing.
-DEM_SETUP std::string take_terrain_problem(Parts& m);
+std::string take_terrain_problem(Parts& m);
 
 /// What was changed of what the user gave: velocities at the start, sub-steps (`from` 0: not); and what the terrains
 /// have to say. Empty if nothing.
-DEM_SETUP std::string note_of(const Parts& m, const AssemblyReport& assembly, const JointWatch& joints, int from,
-                              int to);
+std::string note_of(const Parts& m, const AssemblyReport& assembly, const JointWatch& joints, int from, int to);
 
 }  // namespace dem::mbd
 

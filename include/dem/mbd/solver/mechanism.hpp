@@ -40,18 +40,18 @@ class Mechanism {
 
   DEM_SETUP BodyId add_body(const BodySpec& spec) { return detail::add_body(parts_, build_body(spec)); }
   /// A body that is given in its own frame: centre of mass and principal axes.
-  DEM_SETUP BodyId add_body(const Body& body);
+  BodyId add_body(const Body& body);
   DEM_SETUP BodyId add_fixed_body(std::string name, const Vec3& position = Vec3::Zero()) {
     return add_body(fixed_body(std::move(name), position));
   }
   /// The fixed body "ground" at the origin, made when first asked for. References to other bodies stay good.
-  DEM_SETUP BodyId ground();
+  BodyId ground();
   /// A connection point (section 2.3) at a global point.
   DEM_SETUP ConnectionId add_connection(std::string name, BodyId body, const Vec3& at) {
     return detail::add_connection(parts_, std::move(name), body, at);
   }
   /// A connection point at a point of the body's reference frame.
-  DEM_SETUP ConnectionId add_connection_in_reference(std::string name, BodyId body, const Vec3& point);
+  ConnectionId add_connection_in_reference(std::string name, BodyId body, const Vec3& point);
   DEM_SETUP JointId add_joint(JointSpec spec) { return detail::add_joint(parts_, std::move(spec)); }
   DEM_SETUP ActuatorId add_actuator(ActuatorSpec spec) { return detail::add_actuator(parts_, std::move(spec)); }
   DEM_SETUP SpringId add_spring(SpringSpec spec) { return detail::add_spring(parts_, std::move(spec)); }
@@ -74,7 +74,7 @@ class Mechanism {
   Body& body(BodyId id) { return known(parts_.bodies, id, "body"); }
   const Body& body(BodyId id) const { return known(parts_.bodies, id, "body"); }
   /// The body of that name. Throws Error if there is none.
-  DEM_SETUP BodyId body_named(const std::string& name) const;
+  BodyId body_named(const std::string& name) const;
   /// Global position (m) of a point of the body's reference frame.
   Vec3 reference_point(BodyId id, const Vec3& point) const;
   /// Origin of the body's reference frame (m, global): with reference_rotation the pose at which a mesh of the body in

@@ -12,13 +12,13 @@ namespace dem::mbd {
 /// What is hardly meant as it was given: joints that are there twice, coordinates that two drives hold, actuators that
 /// do nothing. In words; empty if there is nothing odd. Looked for where a machine is laid out, and told as it was
 /// then.
-DEM_SETUP std::string odd_parts(const Parts& m);
+std::string odd_parts(const Parts& m);
 
 /// The free bodies that no joint, spring, drive or load is at.
-DEM_SETUP std::vector<std::uint32_t> loose_bodies(const Parts& m);
+std::vector<std::uint32_t> loose_bodies(const Parts& m);
 
 /// That the first of some bodies falls; empty if there is none.
-DEM_SETUP std::string note_of_loose(const Parts& m, const std::vector<std::uint32_t>& loose);
+std::string note_of_loose(const Parts& m, const std::vector<std::uint32_t>& loose);
 
 }  // namespace dem::mbd
 

@@ -65,6 +65,8 @@ class BodyList : public std::vector<Body> {
 
 /// All that a machine is made of, as plain arrays; an Id is an index into its array.
 struct Parts {
+  DEM_VALUE(Parts)
+
   BodyList bodies;
   std::vector<BuiltBody> built;  ///< each body as it was added, with its reference frame
   std::vector<Connection> connections;
@@ -181,7 +183,7 @@ Vector3<double> unit(const Vector3<double>& v, const std::string& asker);
 inline Vector3<double> unit(const Vec3& v, const std::string& asker) { return unit(from_eigen(v), asker); }
 
 /// Throws Error for an element whose force could move neither of the bodies that it acts on.
-DEM_SETUP void require_one_moves(const Body& a, const Body& b, const std::string& who);
+void require_one_moves(const Body& a, const Body& b, const std::string& who);
 
 /// Checks the two ends of an element between points and puts the points into body frames.
 template <class Part, class Spec>
@@ -216,6 +218,8 @@ DEM_INLINE void BodyList::add(const Body& body) {
   if (capacity() < size() + 2) reserve(2 * size() + 2);
   push_back(body);
 }
+
+DEM_DEFINE_VALUE(Parts)
 
 DEM_INLINE Wrench reaction_of(const Parts& parts, std::size_t joint) {
   Wrench w = {parts.joints[joint].force, parts.joints[joint].torque};

@@ -23,10 +23,10 @@ namespace detail {
 class Projection {
  public:
   /// Marks the joints that are held exactly; they have no springs. To be called when stiffness has been derived.
-  DEM_SETUP static void take_springs_off(Parts& m);
+  static void take_springs_off(Parts& m);
 
   /// Closes the joints of bodies that are about to start, without a change of speed.
-  DEM_SETUP void start(Parts& m);
+  void start(Parts& m);
   /// To be called before a step begins. What a part that was switched on or off changes counts from now on.
   void begin(Parts& m);
   /// The bodies were put elsewhere, if only by rounding.
@@ -57,7 +57,7 @@ class Projection {
   };
 
   static void mark(Parts& m);
-  DEM_SETUP void lay_out(Parts& m);
+  void lay_out(Parts& m);
 
   /// Hands the bodies what the impulses x_ change of their speeds, `by_speed` times, and moves them for `dt` (s) with
   /// it.

@@ -235,7 +235,7 @@ class RestSearch {
 };
 
 /// Throws Error for what a search for rest cannot hold, and stops all bodies that are not fixed.
-DEM_SETUP void stop_for_rest(Parts& parts);
+void stop_for_rest(Parts& parts);
 
 /// While it lives, fixed bodies have no speed: belts, which run on afterwards.
 class StandStill {
@@ -252,7 +252,7 @@ class StandStill {
 
 /// What is held exactly gets springs for the search, so stiff that they hardly give way. All else (limits, brakes,
 /// friction) keeps the stiffness that it has in steps of dt (s): it is what the run goes on with.
-DEM_SETUP void put_springs_on(Parts& parts, double dt);
+void put_springs_on(Parts& parts, double dt);
 
 /// Searches, with joints as they are in steps of dt (s).
 template <class Joints, class PutForces>

@@ -38,7 +38,7 @@ class RigidRows {
 
   /// Whether a part was switched on or off since the rows were laid out.
   bool is_laid_out_for(const Parts& m) const { return key_ == key_of(m); }
-  DEM_SETUP void lay_out(Parts& m);
+  void lay_out(Parts& m);
 
   /// The rows and the factors at the present positions.
   void update(Parts& m);

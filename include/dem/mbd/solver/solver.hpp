@@ -176,7 +176,7 @@ class Solver {
 
   void design_bare(double dt) { design_dt_ = dt; }
   template <class PutForces>
-  void initialise_bare(Mechanism& m, double time, PutForces&& put_forces) {
+  DEM_SETUP void initialise_bare(Mechanism& m, double time, PutForces&& put_forces) {
     if (m.parts().bodies.size() > 1) fail("a machine was put together that World::machine() did not hand out");
     clear_forces(m.parts());
     put_forces();

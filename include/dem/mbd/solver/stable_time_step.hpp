@@ -60,7 +60,7 @@ std::vector<ElementBounds> bounds_of(const Parts& m, const std::vector<Element>&
 /// The part to blame where the parts on one of an element's bodies are too stiff together: of those whose stiffness or
 /// damping was given the one that adds most, if it adds a tenth or more, as what is derived follows the step. Else the
 /// element itself.
-DEM_SETUP std::string culprit(const Parts& m, const std::vector<Element>& elements, std::size_t worst, double dt);
+std::string culprit(const Parts& m, const std::vector<Element>& elements, std::size_t worst, double dt);
 
 }  // namespace detail
 

@@ -10,25 +10,25 @@
 
 namespace dem::mbd::detail {
 
-DEM_SETUP void set_friction_preload(Parts& parts, JointId id, double newtons);
+void set_friction_preload(Parts& parts, JointId id, double newtons);
 
 /// `lasts`: it stays until another is given, so a number that would brake by mistake is refused.
-DEM_SETUP void set_target(ActuatorSpec& s, Signal signal, bool lasts = true);
-DEM_SETUP void set_throttle(ActuatorSpec& s, double throttle);
+void set_target(ActuatorSpec& s, Signal signal, bool lasts = true);
+void set_throttle(ActuatorSpec& s, double throttle);
 
-DEM_SETUP void switch_on(Parts& parts, PrescribedMotion& p, bool on);
+void switch_on(Parts& parts, PrescribedMotion& p, bool on);
 
 /// A joint that is switched on holds the bodies as they are now; one that is off holds nothing.
-DEM_SETUP void switch_on(Parts& parts, JointId id, bool on);
+void switch_on(Parts& parts, JointId id, bool on);
 
-DEM_SETUP void set_fixed(Parts& parts, Body& b, bool fixed);
+void set_fixed(Parts& parts, Body& b, bool fixed);
 
-DEM_SETUP void set_load(LoadSpec& s, Signal size);
+void set_load(LoadSpec& s, Signal size);
 
-DEM_SETUP void set_motion(PrescribedMotion& p, Signal motion);
-DEM_SETUP void set_motion(PrescribedMotion& p, double value, double rate);
+void set_motion(PrescribedMotion& p, Signal motion);
+void set_motion(PrescribedMotion& p, double value, double rate);
 
-DEM_SETUP void set_pose(PrescribedMotion& p, PoseFunction pose);
+void set_pose(PrescribedMotion& p, PoseFunction pose);
 
 }  // namespace dem::mbd::detail
 
