@@ -1,5 +1,6 @@
 #pragma once
 
+#include <dem/core/sorted.hpp>
 #include <dem/grain/chunk.hpp>
 #include <dem/grain/contact_key.hpp>
 #include <dem/grain/images.hpp>
@@ -200,7 +201,7 @@ class HistoryCarrier {
   }
   static void remember(Histories& histories, std::vector<std::pair<std::uint64_t, std::uint32_t>>& keys,
                        const std::vector<Entry>& entries) {
-    std::sort(keys.begin(), keys.end());
+    sort_ascending(keys);
     histories.count = static_cast<int>(keys.size());
     if (histories.key.size() < keys.size()) histories.reserve(keys.size() * 5 / 4);
     for (std::size_t at = 0; at < keys.size(); ++at) {

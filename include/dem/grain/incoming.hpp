@@ -1,6 +1,7 @@
 #pragma once
 // Whose partners the grains of a chunk are: candidate lists the other way round.
 
+#include <dem/core/sorted.hpp>
 #include <dem/grain/chunk.hpp>
 #include <dem/grain/images.hpp>
 #include <dem/grain/move.hpp>
@@ -32,8 +33,7 @@ Outgoing find_outgoing(std::size_t c, const Chunk<Model>& chunk, const Images<ty
   for_each([&](std::uint32_t, std::uint32_t other) {
     if (out.to.empty() || out.to.back() != other) out.to.push_back(other);
   });
-  std::sort(out.to.begin(), out.to.end());
-  out.to.erase(std::unique(out.to.begin(), out.to.end()), out.to.end());
+  sort_and_drop_doubles(out.to);
 
   std::size_t last = 0;  // neighbours in a list mostly go to the same chunk
   const auto place_of = [&](std::uint32_t other) {

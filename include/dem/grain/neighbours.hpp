@@ -1,5 +1,6 @@
 #pragma once
 
+#include <dem/core/sorted.hpp>
 #include <dem/grain/broadphase/broad_phase.hpp>
 #include <dem/grain/chunk.hpp>
 #include <dem/grain/images.hpp>
@@ -103,8 +104,7 @@ void list_candidates(std::size_t begin, Chunk<Model>& chunk, const GrainColumns&
       found.make_room(1);
       found.add_if(is_partner(j), j);
     });
-    const auto rows = found.rows.begin();
-    std::sort(rows + static_cast<std::ptrdiff_t>(first), rows + static_cast<std::ptrdiff_t>(found.count));
+    sort_ascending(std::span(found.rows).subspan(first, found.count - first));
   }
   chunk.candidate.assign(found.rows.begin(), found.rows.begin() + static_cast<std::ptrdiff_t>(found.count));
   for (std::size_t k = end - begin; k <= chunk_size; ++k) {

@@ -3,6 +3,7 @@
 // Who tells whom what in each step, where ranks share the grains (domain::Ranks). It is agreed on with each neighbour
 // list. In worlds that are not shared all of this is nothing.
 
+#include <dem/core/sorted.hpp>
 #include <dem/world/images.hpp>
 
 #include <cstddef>
@@ -86,8 +87,7 @@ void make_borders(WorldState<Model>& w) {
   }
   for (std::size_t r = 0; r < ranks; ++r) {
     d.borders[r].first_out.push_back(static_cast<std::uint32_t>(d.borders[r].candidates_out.size()));
-    std::sort(wanted[r].begin(), wanted[r].end());
-    wanted[r].erase(std::unique(wanted[r].begin(), wanted[r].end()), wanted[r].end());
+    sort_and_drop_doubles(wanted[r]);
     d.borders[r].rows_in = wanted[r];
   }
   const auto [asked, asked_first] = d.exchanged(wanted);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <dem/core/sorted.hpp>
 #include <dem/world/sleep.hpp>
 
 #include <algorithm>
@@ -38,8 +39,7 @@ void carry_held(WorldState<Model>& w) {
     }
   }
   if (chunks.empty()) return;
-  std::sort(chunks.begin(), chunks.end());
-  chunks.erase(std::unique(chunks.begin(), chunks.end()), chunks.end());
+  sort_and_drop_doubles(chunks);
   if (!w.list_valid) return;  // all is refreshed when neighbours are listed
   w.executor.for_each(
       chunks.size(), [&](std::size_t k) { grain::refresh_chunk<Model>(chunks[k], w.chunks[chunks[k]], p, w.species); });

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 namespace dem {
@@ -16,10 +17,11 @@ inline bool sleepers_go_last(std::size_t asleep, std::size_t grains) { return 4 
 template <class Model>
 bool put_sleepers_last(const WorldState<Model>& w, std::vector<std::uint32_t>& order) {
   if (!w.options.sleep) return false;
-  const auto is_awake = [&](std::uint32_t row) { return !is_asleep(w, w.grains.id[row]); };
-  const auto awake = static_cast<std::size_t>(std::count_if(order.begin(), order.end(), is_awake));
-  if (!sleepers_go_last(order.size() - awake, order.size())) return false;
-  std::stable_partition(order.begin(), order.end(), is_awake);
+  std::vector<std::uint32_t> awake, asleep;
+  for (const std::uint32_t row : order) (is_asleep(w, w.grains.id[row]) ? asleep : awake).push_back(row);
+  if (!sleepers_go_last(asleep.size(), order.size())) return false;
+  order = std::move(awake);
+  order.insert(order.end(), asleep.begin(), asleep.end());
   return true;
 }
 
