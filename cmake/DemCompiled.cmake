@@ -22,3 +22,23 @@ string(REGEX REPLACE "\\$<BUILD_INTERFACE:([^>]*)>.*" "\\1" dem_include "${dem_i
 list(GET dem_include 0 dem_include)
 target_sources(dem_compiled PRIVATE "${dem_include}/dem/compiled.cpp")
 target_sources(dem_compiled_native PRIVATE "${dem_include}/dem/compiled.cpp")
+
+# dem_compile_fast(<target> [PORTABLE]): all that makes the compiler's work short each time that sources of a program
+# change. It links dem::compiled_native (PORTABLE: dem::compiled), has <dem/dem.hpp> precompiled, which takes some 10 s
+# once, and lets g++ take more memory before it looks for some that it no longer needs. Another program of the same
+# options may share that header: target_precompile_headers(<other> REUSE_FROM <target>).
+function(dem_compile_fast target)
+  cmake_parse_arguments(PARSE_ARGV 1 arg "PORTABLE" "" "")
+  if(arg_UNPARSED_ARGUMENTS)
+    message(FATAL_ERROR "dem_compile_fast(${target}): knows no ${arg_UNPARSED_ARGUMENTS}, but PORTABLE")
+  endif()
+  if(arg_PORTABLE)
+    target_link_libraries(${target} PRIVATE dem::compiled)
+  else()
+    target_link_libraries(${target} PRIVATE dem::compiled_native)
+  endif()
+  target_precompile_headers(${target} PRIVATE "$<$<COMPILE_LANGUAGE:CXX>:<dem/dem.hpp$<ANGLE-R>>")
+  if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+    target_compile_options(${target} PRIVATE "$<$<COMPILE_LANGUAGE:CXX>:SHELL:--param ggc-min-heapsize=1000000>")
+  endif()
+endfunction()

@@ -34,12 +34,12 @@ awk '/^```cpp$/ { on = 1; text = ""; next }
   printf '}\n'
 } > "$work/machine.cpp"
 
-# line <what> <options> <budget in seconds> <budget in MB> <source>
+# line <what> <options> <budget in seconds> <budget in MB> <source> [<options, if they are not those shown>]
 line() {
   local seconds= megabytes= user system kilobytes
   for ((k = 0; k < repeats; ++k)); do
     # shellcheck disable=SC2086  # several options
-    /usr/bin/time -f '%U %S %M' -o "$work/time" "$compiler" "${flags[@]}" $2 -c "$5" -o "$work/object"
+    /usr/bin/time -f '%U %S %M' -o "$work/time" "$compiler" "${flags[@]}" ${6:-$2} -c "$5" -o "$work/object"
     read -r user system kilobytes < "$work/time"
     read -r seconds megabytes < <(awk -v u="$user" -v s="$system" -v m="$kilobytes" -v best="$seconds" -v most="$megabytes" '
       BEGIN {
@@ -59,9 +59,22 @@ echo "| what | | CPU (s) | budget (s) | memory (MB) | budget (MB) |"
 echo "|---|---|---|---|---|---|"
 line "\`#include <Eigen/Core>\`, an empty main" -O2 "" "" "$work/eigen.cpp"
 line "what \`dem::compiled\` compiles once" "-O2 -DDEM_COMPILED" "" "" "$root/include/dem/compiled.cpp"
-for once in " -DDEM_COMPILED" ""; do
-  line "\`#include <dem/dem.hpp>\`, an empty main" "-O2$once" 2.5 450 "$work/empty.cpp"
-  line "\`#include <dem/mbd/mbd.hpp>\`, the README's machine" "-O2$once" 4 "" "$work/machine.cpp"
-  line "\`examples/first_steps\`" "-O0$once" 6 700 "$root/examples/first_steps/first_steps.cpp"
-  line "\`examples/first_steps\`" "-O2$once" 10 700 "$root/examples/first_steps/first_steps.cpp"
+# programs <options besides the level> [<what is shown of them>]: LEVEL in the options is the level's number.
+programs() {
+  local shown=${2:-$1}
+  line "\`#include <dem/dem.hpp>\`, an empty main" "-O2$shown" 2.5 450 "$work/empty.cpp" "-O2${1//LEVEL/2}"
+  line "\`#include <dem/mbd/mbd.hpp>\`, the README's machine" "-O2$shown" 4 "" "$work/machine.cpp" "-O2${1//LEVEL/2}"
+  line "\`examples/first_steps\`" "-O0$shown" 6 700 "$root/examples/first_steps/first_steps.cpp" "-O0${1//LEVEL/0}"
+  line "\`examples/first_steps\`" "-O2$shown" 10 700 "$root/examples/first_steps/first_steps.cpp" "-O2${1//LEVEL/2}"
+}
+# As CMake's dem_compile_fast has it: dem.hpp precompiled, and more memory for g++.
+fast=" -DDEM_COMPILED"
+[[ $("$compiler" --version) == *clang* ]] || fast+=" --param ggc-min-heapsize=1000000"
+printf '#include <dem/dem.hpp>\n' > "$work/dem.hpp"
+for level in 2 0; do
+  line "\`dem.hpp\`, precompiled once" "-O$level -DDEM_COMPILED" "" "" "$work/dem.hpp" "-O$level$fast -x c++-header"
+  mv "$work/object" "$work/level_$level.gch"
 done
+programs "$fast -Winvalid-pch -include $work/level_LEVEL" " (dem_compile_fast)"
+programs " -DDEM_COMPILED"
+programs ""
