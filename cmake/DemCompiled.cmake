@@ -1,5 +1,5 @@
 # dem::compiled: what no model changes, compiled once for all programs that link it, in place of dem::dem. They see
-# declarations alone of it, so a program with a machine takes the compiler half the time. dem::compiled_native is the same
+# declarations alone of it, so a program with a machine takes the compiler two fifths of the time. dem::compiled_native is the same
 # with the options of dem::native, which those that link it have as well. Either is built by the project that uses dem,
 # with the compiler and the options that hold where dem is found or added, and only where something links it. They are
 # for programs and for libraries that are not exported.
@@ -23,22 +23,26 @@ list(GET dem_include 0 dem_include)
 target_sources(dem_compiled PRIVATE "${dem_include}/dem/compiled.cpp")
 target_sources(dem_compiled_native PRIVATE "${dem_include}/dem/compiled.cpp")
 
-# dem_compile_fast(<target> [PORTABLE]): all that makes the compiler's work short each time that sources of a program
-# change. It links dem::compiled_native (PORTABLE: dem::compiled), has <dem/dem.hpp> precompiled, which takes some 10 s
-# once, and lets g++ take more memory before it looks for some that it no longer needs. Another program of the same
-# options may share that header: target_precompile_headers(<other> REUSE_FROM <target>).
+# dem_compile_fast(<target> [PORTABLE] [SHARE <other>]): all that makes the compiler's work short each time that sources
+# of a program change. It links dem::compiled_native (PORTABLE: dem::compiled), has <dem/dem.hpp> precompiled, which
+# takes some 10 s once, and lets g++ take more memory before it looks for some that it no longer needs. SHARE takes the
+# precompiled header of another program of the same options for which this was called.
 function(dem_compile_fast target)
-  cmake_parse_arguments(PARSE_ARGV 1 arg "PORTABLE" "" "")
-  if(arg_UNPARSED_ARGUMENTS)
-    message(FATAL_ERROR "dem_compile_fast(${target}): knows no ${arg_UNPARSED_ARGUMENTS}, but PORTABLE")
+  cmake_parse_arguments(PARSE_ARGV 1 arg "PORTABLE" "SHARE" "")
+  if(arg_UNPARSED_ARGUMENTS OR arg_KEYWORDS_MISSING_VALUES)
+    message(FATAL_ERROR "dem_compile_fast(${target} ${ARGN}): may have PORTABLE, and SHARE with another program's name")
   endif()
   if(arg_PORTABLE)
     target_link_libraries(${target} PRIVATE dem::compiled)
   else()
     target_link_libraries(${target} PRIVATE dem::compiled_native)
   endif()
-  target_precompile_headers(${target} PRIVATE "$<$<COMPILE_LANGUAGE:CXX>:<dem/dem.hpp$<ANGLE-R>>")
   if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
     target_compile_options(${target} PRIVATE "$<$<COMPILE_LANGUAGE:CXX>:SHELL:--param ggc-min-heapsize=1000000>")
+  endif()
+  if(arg_SHARE)
+    target_precompile_headers(${target} REUSE_FROM ${arg_SHARE})
+  else()
+    target_precompile_headers(${target} PRIVATE "$<$<COMPILE_LANGUAGE:CXX>:<dem/dem.hpp$<ANGLE-R>>")
   endif()
 endfunction()

@@ -72,7 +72,7 @@ fast=" -DDEM_COMPILED"
 [[ $("$compiler" --version) == *clang* ]] || fast+=" --param ggc-min-heapsize=1000000"
 printf '#include <dem/dem.hpp>\n' > "$work/dem.hpp"
 for level in 2 0; do
-  line "\`dem.hpp\`, precompiled once" "-O$level -DDEM_COMPILED" "" "" "$work/dem.hpp" "-O$level$fast -x c++-header"
+  line "\`dem.hpp\`, precompiled once" "-O$level (dem_compile_fast)" "" "" "$work/dem.hpp" "-O$level$fast -x c++-header"
   mv "$work/object" "$work/level_$level.gch"
 done
 programs "$fast -Winvalid-pch -include $work/level_LEVEL" " (dem_compile_fast)"

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <dem/core/compiled.hpp>
 #include <dem/coupling/support_contacts.hpp>
 #include <dem/geometry/contact_shares.hpp>
 #include <dem/geometry/shape.hpp>

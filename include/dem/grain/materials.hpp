@@ -96,7 +96,7 @@ class Materials : public MaterialNames {
     } catch (const Error& e) {
       fail("contact of '{}' and '{}': {}", a, b, e.what());
     }
-    table_.reserve(pairs_.size() + 2);  // first: it may throw
+    if (table_.size() == table_.capacity()) table_.reserve(2 * table_.size());  // first: it may throw
     const std::uint32_t row = own_row(a, b);
     if (row == table_.size()) table_.push_back(given);
     else table_[row] = given;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <dem/core/macros.hpp>
 #include <dem/core/stable_time_step.hpp>
 #include <dem/geometry/shape.hpp>
 #include <dem/grain/materials.hpp>

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <dem/core/compiled.hpp>
+#include <dem/core/macros.hpp>
 #include <dem/coupling/surface_contacts.hpp>
 #include <dem/mbd/solver/odd_parts.hpp>
 #include <dem/world/report.hpp>

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <dem/core/compiled.hpp>
 #include <dem/world/state.hpp>
 
 #include <algorithm>

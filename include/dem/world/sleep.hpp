@@ -1,5 +1,6 @@
 #pragma once
 
+#include <dem/core/macros.hpp>
 #include <dem/grain/sleep.hpp>
 #include <dem/world/gather.hpp>
 #include <dem/world/images.hpp>

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <dem/core/compiled.hpp>
+#include <dem/core/macros.hpp>
 #include <dem/coupling/body_contacts.hpp>
 #include <dem/coupling/body_stability.hpp>
 #include <dem/coupling/buried.hpp>
@@ -21,7 +23,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <set>
+#include <string>
+#include <vector>
 
 namespace dem {
 

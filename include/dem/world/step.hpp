@@ -1,5 +1,6 @@
 #pragma once
 
+#include <dem/core/macros.hpp>
 #include <dem/grain/move.hpp>
 #include <dem/world/border_step.hpp>
 #include <dem/world/chunk_contacts.hpp>

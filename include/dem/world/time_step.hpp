@@ -1,5 +1,6 @@
 #pragma once
 
+#include <dem/core/macros.hpp>
 #include <dem/coupling/body_stability.hpp>
 #include <dem/grain/stable_time_step.hpp>
 #include <dem/world/state.hpp>

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <dem/core/known.hpp>
+#include <dem/core/macros.hpp>
 #include <dem/world/body_contacts.hpp>
 #include <dem/world/held_grains.hpp>
 #include <dem/world/period.hpp>
