@@ -1,7 +1,7 @@
 #pragma once
 
 #include <dem/core/macros.hpp>
-#include <dem/world/check.hpp>
+#include <dem/world/in_words.hpp>
 
 namespace dem {
 

@@ -3,7 +3,7 @@
 #include <dem/core/compiled.hpp>
 #include <dem/core/macros.hpp>
 #include <dem/coupling/surface_contacts.hpp>
-#include <dem/mbd/solver/odd_parts.hpp>
+#include <dem/world/in_words.hpp>
 #include <dem/world/report.hpp>
 #include <dem/world/state.hpp>
 
@@ -20,120 +20,7 @@ namespace detail {
 /// A problem of a world, now.
 StepReport report_of(const WorldCommon& w, StepReport::Problem kind, GrainId grain, std::string text);
 inline StepReport no_problem(const WorldCommon& w) { return report_of(w, StepReport::Problem::none, {}, {}); }
-/// "at t = 0.1 s (step 1000)".
-std::string when_in_words(const WorldCommon& w);
-std::string surface_in_words(const WorldCommon& w, std::size_t number, const SurfaceOnBody& s, bool name_is_unique);
-// What befell the grain of that number.
-std::string not_finite_in_words(const WorldCommon& w, std::uint32_t grain);
-std::string lost_in_words(const WorldCommon& w, std::uint32_t grain, const Vec3& x);
-std::string passed_in_words(const WorldCommon& w, std::uint32_t grain, double radius, const std::string& surface,
-                            double went);
-std::string body_overlap_in_words(const WorldCommon& w, const SurfaceOnBody& a, const SurfaceOnBody& b, double overlap);
-
 }  // namespace detail
-
-/// A surface in words: its name, with its number and body where it has none or others are called the same.
-template <class Model>
-DEM_SETUP std::string surface_in_words(const WorldState<Model>& w, std::size_t s) {
-  const std::string& name = w.surfaces[s].name;
-  const auto is_called_so = [&](const auto& other) { return other.name == name; };
-  const bool name_is_unique = !name.empty() && std::count_if(w.surfaces.begin(), w.surfaces.end(), is_called_so) == 1;
-  return detail::surface_in_words(w, s, w.surfaces[s], name_is_unique);
-}
-
-/// Of surfaces that are there twice, in words; else empty.
-template <class Model>
-DEM_SETUP std::string note_of_twins(const WorldState<Model>& w) {
-  for (std::size_t b = 1; b < w.surfaces.size(); ++b) {
-    for (std::size_t a = 0; a < b; ++a) {
-      const auto &first = w.surfaces[a], &second = w.surfaces[b];
-      if (!first.active || !second.active || !second.coincides_with(first)) continue;
-      return dem::text("Surfaces {} and {} of body '{}' have one shape and one place: both push on what touches them.",
-                       a, b, w.machine.bodies()[first.body.index()].name);
-    }
-  }
-  return {};
-}
-
-/// Of bodies that nothing holds and that have nothing to lie on, in words; else empty.
-template <class Model>
-DEM_SETUP std::string note_of_loose_bodies(const WorldState<Model>& w) {
-  if (w.options.gravity.isZero() || !w.held.empty()) return {};
-  std::vector<std::uint32_t> loose = mbd::loose_bodies(w.machine.parts());
-  std::erase_if(loose, [&](std::uint32_t body) {
-    return std::any_of(w.surfaces.begin(), w.surfaces.end(), [&](const auto& s) { return s.body.index() == body; });
-  });
-  return mbd::note_of_loose(w.machine.parts(), loose);
-}
-
-/// Of densities that hardly any solid has, as those in g/cm^3 or t/mm^3, in words; else empty.
-template <class Model>
-DEM_SETUP std::string note_of_density(const WorldState<Model>& w) {
-  for (std::size_t k = 0; k < w.species.size(); ++k) {
-    if (const double density = w.species[k].density; density < 5.0 || density > 30e3) {
-      return dem::text("Species {} has a density of {:g} kg/m^3; is it in another unit? Sand has 2650 kg/m^3.", k,
-                       density);
-    }
-  }
-  return {};
-}
-
-/// Of gravity along a direction in which a cell repeats itself and has nothing that could carry grains, in words; else
-/// empty. What grains are held by is a surface or a held grain.
-template <class Model>
-DEM_SETUP std::string note_of_free_fall(const WorldState<Model>& w) {
-  if constexpr (Model::Domain::has_images) {
-    if (!w.surfaces.empty() || !w.held.empty()) return {};
-    for (const auto& kind : w.species) {
-      if (kind.is_held()) return {};
-    }
-    for (std::size_t k = 0; k < 3; ++k) {
-      const double g = w.options.gravity[static_cast<int>(k)];
-      if (g == 0.0 || w.domain.period()[k] == 0.0 || w.grains.count == 0) continue;
-      return dem::text(
-          "Gravity is {:g} m/s^2 along {}, where the cell repeats itself and has no surface: all grains fall "
-          "for ever. Set WorldOptions::gravity to zero, or add a floor.",
-          g, "xyz"[k]);
-    }
-  }
-  return {};
-}
-
-/// Why a surface of a periodic world, where it is now, does not fit the cell, in words; empty if it does. Grains meet
-/// the nearest image of a short surface. A longer one has to reach beyond the cell as far as a grain may: its bounding
-/// radius, and half of the widest skin.
-template <class Model>
-std::string misfit_in_period(const WorldState<Model>& w, std::size_t number,
-                             const typename WorldState<Model>::Surface& s) {
-  if constexpr (Model::Domain::has_images) {
-    constexpr const char* axes[] = {"x", "y", "z"};
-    const double reach = shape::widened(w.largest_radius, w.materials.range());
-    const double skin = w.options.skin > 0.0 ? w.options.skin : grain::SkinChoice::ladder.back() * w.largest_radius;
-    const double margin = reach + 0.5 * skin;
-    for (std::size_t k = 0; k < 3; ++k) {
-      const double period = w.domain.period()[k], from = w.domain.low(k) - margin;
-      const double to = w.domain.low(k) + period + margin;
-      const double low = s.low.data()[k], high = s.high.data()[k];
-      if (period == 0.0 || !s.active || w.domain.repeats(k, high - low, reach) || (low <= from && high >= to)) continue;
-      return dem::text(
-          "{} reaches from {:g} to {:g} m in {}, where the domain repeats itself every {:g} m: a surface there must be "
-          "shorter than {:g} m, so that grains fit between its images, or fill the cell and more, from {:g} to {:g} m",
-          surface_in_words(w, number), low, high, axes[k], period, period - 2.0 * reach, from, to);
-    }
-  }
-  return {};
-}
-
-/// "grain 4 at (0, 0, 0.1) m overlaps surface 'wheel' by 0.3 of their effective diameter".
-template <class Model>
-DEM_SETUP std::string overlap_in_words(const WorldState<Model>& w, const DeepestContact& deepest) {
-  const auto& p = w.grains;
-  const Vec3 x = to_eigen(p.position[deepest.i]);
-  const std::string partner =
-      deepest.with_surface ? surface_in_words(w, deepest.partner) : dem::text("grain {}", p.number_at(deepest.partner));
-  return dem::text("grain {} at ({:.4g}, {:.4g}, {:.4g}) m overlaps {} by {:.3g} of their effective diameter",
-                   p.number_at(deepest.i), x.x(), x.y(), x.z(), partner, deepest.overlap);
-}
 
 /// Whether a contact is of something that was put somewhere by hand just before the newest step: then it is as deep as
 /// it was placed.
@@ -303,52 +190,6 @@ namespace dem::detail {
 
 DEM_INLINE StepReport report_of(const WorldCommon& w, StepReport::Problem kind, GrainId grain, std::string text) {
   return {kind, w.time, w.step, grain, std::move(text), {}};
-}
-
-DEM_INLINE std::string when_in_words(const WorldCommon& w) {
-  return dem::text("at t = {:.6g} s (step {})", w.time, w.step);
-}
-
-DEM_INLINE std::string surface_in_words(const WorldCommon& w, std::size_t number, const SurfaceOnBody& s,
-                                        bool name_is_unique) {
-  if (name_is_unique) return dem::text("surface '{}'", s.name);
-  const std::string& body = w.machine.bodies()[s.body.index()].name;
-  return s.name.empty() ? dem::text("surface {} of body '{}'", number, body)
-                        : dem::text("surface {} ('{}' of body '{}')", number, s.name, body);
-}
-
-DEM_INLINE std::string not_finite_in_words(const WorldCommon& w, std::uint32_t grain) {
-  return dem::text(
-      "grain {} has a position or velocity that is not a number {}: the simulation blew up; lower time_step (now {:g} "
-      "s) or the stiffness, or raise the damping",
-      grain, when_in_words(w), w.time_step);
-}
-
-DEM_INLINE std::string lost_in_words(const WorldCommon& w, std::uint32_t grain, const Vec3& x) {
-  return dem::text(
-      "grain {} left the domain {} and is at ({:.4g}, {:.4g}, {:.4g}) m; close the walls, lower time_step (now {:g} "
-      "s), or enlarge domain",
-      grain, when_in_words(w), x.x(), x.y(), x.z(), w.time_step);
-}
-
-DEM_INLINE std::string passed_in_words(const WorldCommon& w, std::uint32_t grain, double radius,
-                                       const std::string& surface, double went) {
-  return dem::text(
-      "{} went {:.3g} m within the step to t = {:.6g} s (step {}), more than the radius of grain {} there, {:.3g} m, "
-      "which it may have passed without touching it; let its motion go without a jump (Signal::smooth_step), let it "
-      "touch nothing meanwhile (set_active), or lower time_step (now {:g} s)",
-      surface, went, w.time, w.step, grain, radius, w.time_step);
-}
-
-DEM_INLINE std::string body_overlap_in_words(const WorldCommon& w, const SurfaceOnBody& a, const SurfaceOnBody& b,
-                                             double overlap) {
-  const auto name = [&](const SurfaceOnBody& s) -> const std::string& {
-    return w.machine.bodies()[s.body.index()].name;
-  };
-  return dem::text(
-      "body '{}' overlaps body '{}' by {:.3g} of their effective diameter {}, more than overlap_limit {:g}; raise the "
-      "normal stiffness between their materials, lower time_step (now {:g} s), or start with the bodies apart",
-      name(a), name(b), overlap, when_in_words(w), w.options.overlap_limit, w.time_step);
 }
 
 }  // namespace dem::detail

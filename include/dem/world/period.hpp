@@ -1,6 +1,6 @@
 #pragma once
 
-#include <dem/world/check.hpp>
+#include <dem/world/in_words.hpp>
 
 namespace dem {
 

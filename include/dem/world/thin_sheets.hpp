@@ -2,7 +2,7 @@
 
 #include <dem/core/macros.hpp>
 #include <dem/geometry/surface_traits.hpp>
-#include <dem/world/check.hpp>
+#include <dem/world/in_words.hpp>
 
 #include <algorithm>
 

@@ -3,6 +3,7 @@
 #include <dem/core/macros.hpp>
 #include <dem/world/buried_grains.hpp>
 #include <dem/world/check.hpp>
+#include <dem/world/notes.hpp>
 #include <dem/world/period.hpp>
 #include <dem/world/report.hpp>
 #include <dem/world/run_shared.hpp>
