@@ -18,7 +18,8 @@ struct ChronoScm {
   double damping = 0.0;            ///< damping_R, Pa s/m
 };
 
-/// The soil for SCM terrain. SCM knows Bekker's pressure only: Reece's is taken as under a plate or wheel of a `width`
+/// The soil for SCM terrain, whose unloading stiffness is k0 alone: it does not grow with the sinkage (A is left out).
+/// SCM knows Bekker's pressure only: Reece's is taken as under a plate or wheel of a `width`
 /// (m), with k_c = 0; the others do not need it. `damping` in Pa s/m. Throws Error for a soil that check_soil refuses,
 /// without an unloading stiffness, and if that is not above k_phi, which SCM asks for.
 inline ChronoScm to_chrono(const Soil& soil, double width = 0.0, double damping = 0.0) {

@@ -27,7 +27,7 @@ struct ColumnLaw {
   static constexpr double unknown_ratio = 10.0;  ///< soil that springs back by a tenth of its sinkage, or less
 
   PressureCurve curve;
-  double unloading_stiffness = 0.0;  ///< k0, Pa/m; 0: not known
+  double unloading_stiffness = 0.0;  ///< k0, Pa/m; 0 with A = 0: not known
   double unloading_growth = 0.0;     ///< A, Pa/m^2
   double thickness = 1e300;          ///< m, of the soil over hard ground
 
@@ -42,8 +42,8 @@ struct ColumnLaw {
   /// Pa/m, of unloading from a deepest sinkage above 0 (m), where the pressure law gives `pressure` (Pa).
   double slope(double deepest, double pressure) const {
     const double chord = std::max(1.0, curve.exponent) * pressure / deepest;
-    return std::max(unloading_stiffness + unloading_growth * deepest,
-                    (unloading_stiffness > 0.0 ? least_ratio : unknown_ratio) * chord);
+    const bool is_known = unloading_stiffness > 0.0 || unloading_growth > 0.0;
+    return std::max(unloading_stiffness + unloading_growth * deepest, (is_known ? least_ratio : unknown_ratio) * chord);
   }
   /// m, the sinkage that stays when the load is gone.
   double residual(double deepest) const {

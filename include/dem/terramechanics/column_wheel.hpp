@@ -29,7 +29,7 @@ struct ColumnWheel {
 
 /// Means over the second half of the way.
 struct ColumnWheelRun {
-  double pull = 0.0, torque = 0.0, sinkage = 0.0;  ///< N, N m, m
+  double pull = 0.0, torque = 0.0, sinkage = 0.0;  ///< N, N m, m; the sinkage is that of the tips of grousers
   ColumnField field;                               ///< the ground at the end
 };
 
@@ -78,7 +78,7 @@ inline ColumnWheelRun roll_on_columns(const ColumnWheel& w, double slip) {
     if (machine.time() < 0.5 * w.travel / v) return;  // set down and settled
     mean.pull += soil.loads()[0].force.x;
     mean.torque -= soil.loads()[0].torque.y;
-    mean.sinkage += rim - machine.body(wheel).position().z();
+    mean.sinkage += r - machine.body(wheel).position().z();
     ++count;
   });
   if (!report) fail("{}", report.text);

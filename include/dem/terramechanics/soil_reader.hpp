@@ -39,11 +39,18 @@ inline std::vector<SoilLine> soil_lines(std::string_view text, const std::string
     if (equals == std::string_view::npos) fail("'{}', line {}: no '='; write name = value", where, number);
     SoilLine line{std::string(trimmed(row.substr(0, equals))), {}, number, false};
     std::string_view value = trimmed(row.substr(equals + 1));
-    if (!value.empty() && value.front() == '"') {
+    if (!value.empty() && (value.front() == '"' || value.front() == '\'')) {
       line.is_text = true;
+      const char quote = value.front();
       std::size_t k = 1;
-      for (; k < value.size() && value[k] != '"'; ++k) {
-        if (value[k] == '\\' && k + 1 < value.size()) ++k;
+      for (; k < value.size() && value[k] != quote; ++k) {
+        if (quote == '"' && value[k] == '\\' && k + 1 < value.size()) {
+          ++k;
+          if (value[k] != '"' && value[k] != '\\') {
+            fail("'{}', line {}: {} has \\{}, but only \\\" and \\\\ are known in texts; write the character itself",
+                 where, number, line.name, value[k]);
+          }
+        }
         line.value += value[k];
       }
       const std::string_view rest = k < value.size() ? trimmed(value.substr(k + 1)) : "?";
@@ -52,6 +59,8 @@ inline std::vector<SoilLine> soil_lines(std::string_view text, const std::string
       }
     } else {
       line.value = trimmed(value.substr(0, value.find('#')));
+      if (line.value.starts_with('+')) line.value.erase(0, 1);
+      std::erase(line.value, '_');  // 1_528_430, as TOML may have it
     }
     for (const SoilLine& other : lines) {
       if (other.name == line.name) {

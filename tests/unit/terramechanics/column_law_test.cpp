@@ -106,6 +106,14 @@ TEST_CASE("no energy comes from a column, whatever way it is pressed") {
   }
 }
 
+TEST_CASE("soil whose unloading is known by its growth alone unloads by that, and else by ten times its chord") {
+  const ColumnLaw known(soil_with(1.0, 0.0, 1e10), 0.1), unknown(soil_with(1.0, 0.0, 0.0), 0.1);
+  const double z = 0.01, p = known.curve.pressure(z);
+  CHECK(known.slope(z, p) == 1e10 * z);                                       // 50 times the chord of 2e6 Pa/m
+  CHECK(known.slope(1e-4, known.curve.pressure(1e-4)) == Approx(2.0 * 2e6));  // never flatter than twice the chord
+  CHECK(unknown.slope(z, p) == Approx(10.0 * 2e6));
+}
+
 TEST_CASE("soil on hard ground stops at it") {
   const ColumnLaw law(soil_with(1.0, 6e7, 0.0), 0.1, 0.02);
   const ColumnStress before = law.at(0.0199, 0.0), on = law.at(0.021, 0.0);

@@ -95,6 +95,18 @@ TEST_CASE("comments, blank lines, other ends of lines and what has a default are
   CHECK(named.name.empty());
 }
 
+TEST_CASE("numbers and texts may be written as TOML has them") {
+  const NamedSoil named =
+      read_soil(text_with("name = 'C:\\sand \"fine\"'\nshear_displacement = +1e-3\na0 = 0.4\nsource = \"a \\\\ b\""));
+  CHECK(named.name == "C:\\sand \"fine\"");
+  CHECK(named.source == "a \\ b");
+  CHECK(named.soil.shear.displacement == 1e-3);
+  CHECK(std::get<Bekker>(read_soil("pressure = 'bekker'\nn = 1\nk_c = 0\nk_phi = 1_528_430\ncohesion = 0\n"
+                                   "friction_angle = 30\nshear_displacement = 1e-3")
+                             .soil.pressure)
+            .k_phi == 1528430.0);
+}
+
 TEST_CASE("soil files with mistakes are refused with the line") {
   const auto refused = [](const std::string& line) { return [=] { return read_soil(text_with(line), "s.toml"); }; };
   CHECK_NOTHROW(refused("shear_displacement = 1e-3")());
@@ -107,6 +119,8 @@ TEST_CASE("soil files with mistakes are refused with the line") {
   CHECK_THROWS_WITH(refused("name = 3")(), ContainsSubstring("name takes a text in quotes"));
   CHECK_THROWS_WITH(refused("a0 = \"3\"")(), ContainsSubstring("a0 takes a number"));
   CHECK_THROWS_WITH(refused("name = \"sand")(), ContainsSubstring("does not end in a quote"));
+  CHECK_THROWS_WITH(refused("name = 'sand\"")(), ContainsSubstring("does not end in a quote"));
+  CHECK_THROWS_WITH(refused("name = \"a\\tb\"")(), ContainsSubstring("line 7: name has \\t, but only"));
   CHECK_THROWS_WITH(refused("exit_angle = 5")(), ContainsSubstring("line 7: exit_angle is 5 degrees"));
   CHECK_THROWS_WITH(refused("shear_displacement = -1")(), ContainsSubstring("K of the soil is -1 m"));
   CHECK_THROWS_WITH(read_soil("pressure = \"sand\""), ContainsSubstring("\"bekker\", \"reece\" or \"wong-reece\""));

@@ -8,14 +8,13 @@ namespace dem::rig::rigid_wheel {
 
 /// Rolls the rig's wheel on columns of these soils (dynamic Bekker), at the slips of runs that were made. It takes some
 /// seconds a soil: columns know no rates, so the wheel turns at 1 rad/s whatever the rig's does. Slips from 0.95 on,
-/// where it hardly gets on, are left out.
+/// where it hardly gets on, are left out. Columns carry a wheel with grousers by their tips, so its sinkage is not
+/// beside that of the rim: it is not known.
 inline void roll_on_columns(std::vector<Reference>& soils, const Campaign& c, const Settings& s) {
-  // A rim that grips less than the grains do among each other is smooth for the soil as well.
-  const bool grips = s.wheel != "smooth" && s.wheel_friction >= s.grains.friction;
   for (Reference& reference : soils) {
     const terramechanics::ColumnWheel test{.wheel = reference_wheel(s),
                                            .soil = reference.soil,
-                                           .friction = grips ? terramechanics::ColumnPart::rough : s.wheel_friction,
+                                           .friction = grips(s) ? terramechanics::ColumnPart::rough : s.wheel_friction,
                                            .load = s.load,
                                            .wheel_mass = 0.1 * s.load / 9.81,
                                            .spin = 1.0,
@@ -26,7 +25,10 @@ inline void roll_on_columns(std::vector<Reference>& soils, const Campaign& c, co
       if (r.samples.empty() || r.slip > 0.95) continue;
       try {
         const auto run = terramechanics::roll_on_columns(test, r.slip);
-        forces = {.sinkage = run.sinkage, .load = s.load, .pull = run.pull, .torque = run.torque};
+        forces = {.sinkage = s.wheel == "grousers" ? not_known : run.sinkage,
+                  .load = s.load,
+                  .pull = run.pull,
+                  .torque = run.torque};
       } catch (const Error&) {  // the soil does not carry the wheel
       }
     }

@@ -30,6 +30,13 @@ inline terramechanics::Wheel reference_wheel(const Settings& s) {
   return {.radius = s.radius, .width = s.width, .grouser_height = s.wheel == "grousers" ? s.grouser_height : 0.0};
 }
 
+/// Whether the rim grips as much as the grains do among each other; else it is smooth for the soil as well.
+inline bool grips(const Settings& s) { return s.wheel != "smooth" && s.wheel_friction >= s.grains.friction; }
+
+inline constexpr const char* smooth_text =
+    "The rim is smoother than the grains: dynamic Bekker has its friction, but the equations of Bekker, Reece and Wong "
+    "are those of soil that shears on soil.";
+
 /// The wheel on a soil by eqs. 2-11; none where the soil does not carry it.
 inline std::optional<terramechanics::WheelForces> reference_at(const terramechanics::Soil& soil, double slip,
                                                                const Settings& s) {
