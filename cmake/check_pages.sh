@@ -32,6 +32,7 @@ check ARCHITECTURE.md "### Your own law" "### Your own shape" examples/own_law
 check ARCHITECTURE.md "### Your own shape" "## The step" examples/own_shape
 check include/dem/vehicle/README.md "# Your own vehicle" "## The points" tests/unit/vehicle
 check include/dem/README.md "# dem inside your program" "(none)" tests/pages
+check include/dem/terramechanics/README.md "# Soil by equations" "(none)" tests/unit/terramechanics
 check include/dem/io/checkpoint/README.md "## A program that goes on" "## Files" examples/bucket
 check include/dem/rig/README.md "## Your own rig" "## The direct shear test" examples/blade
 check include/dem/rig/README.md "## The direct shear test" "(none)" tests/unit/rig
