@@ -30,6 +30,8 @@ struct CheckpointOptions {
   bool resume = false;  ///< go on with the run in the output folder
   CheckpointFiles files = {};
   std::vector<std::string> free_settings = {};  ///< those that may change between stop and resume
+  /// What to do in place of going on with a run that has ended.
+  std::string when_ended = "leave out --resume to begin it anew, which replaces its results";
 };
 
 /// The parts of one run in `<output>/checkpoint`. Parts of several threads may be written at the same time.
@@ -64,10 +66,8 @@ class CheckpointFolder final : public PartStore {
                           options_.free_settings, output_);
     const auto files = parts();
     if (files.empty() && std::filesystem::exists(std::filesystem::path(output_) / "report.html")) {
-      fail(
-          "the run in '{}' has ended, or kept nothing that it could go on from (see --checkpoint-every); leave out "
-          "--resume to begin it anew",
-          output_);
+      fail("the run in '{}' has ended, or kept nothing that it could go on from (see --checkpoint-every); {}", output_,
+           options_.when_ended);
     }
     const std::lock_guard lock(mutex_);
     for (const auto& file : files) {

@@ -131,6 +131,7 @@ inline int run_program(const ProgramText& program, Rig& rig, int argc, const cha
     const std::string config = settings_text(options, idle);
     rig.resolve();
     detail::resolve(checkpoints, options);
+    if (const std::string instead = rig.when_ended(); !instead.empty()) checkpoints.when_ended = instead;
     Session session({program.name, rig.output(), config, rig.results(), rig.words(), std::move(checkpoints)});
     if (!detail::run_to_end(rig, session)) {
       tell(stderr, "rank {} of {}: {}\n", processes.rank, processes.count, session.outcome.problem);

@@ -28,6 +28,8 @@ class Rig {
   [[nodiscard]] virtual ResultNames results() const = 0;
   /// Whether its stages are entered (see Stages), in parts (see PartOf): then it can go on after it was stopped.
   [[nodiscard]] virtual bool can_resume() const { return false; }
+  /// What to do in place of --resume with a run that has ended; empty: begin it anew.
+  [[nodiscard]] virtual std::string when_ended() const { return ""; }
   /// For what the library calls otherwise than the program does.
   [[nodiscard]] virtual std::vector<OwnWord> words() const { return {}; }
   /// Builds the world, which throws Error for what cannot work; calls session.begin_run(stages); runs the stages and

@@ -235,7 +235,47 @@ TEST_CASE("what a rig would refuse is refused before the search, by the names of
   CHECK_THROWS_WITH(check_rigs(s), Catch::Contains("a mass of --loads is 0"));
   s.loads = {};
   s.plates = {5.0};
-  CHECK_THROWS_WITH(check_rigs(s), Catch::Contains("a width of --plate (m, within the bed) is 5"));
+  CHECK_THROWS_WITH(check_rigs(s),
+                    Catch::Contains("a width of --plate (m, within the bed; the smaller side of a plate) is 5"));
+}
+
+TEST_CASE("constants that are not looked for are those of all rigs, and the others as each rig has them") {
+  Settings s;
+  s.size = "smoke";
+  s.phi = 30.0, s.repose = 25.0, s.pressure = 1e4;
+  s.held = {.half_edge = 3.2e-3,
+            .damping = 0.02,
+            .friction = 0.9,
+            .wall_friction = 0.1,
+            .breaking_factor = 0.9,
+            .relative_density = 0.3,
+            .rolling = 0.25};
+  const Trial t{.values = {0.35}};  // the friction, which is looked for
+  const auto shear = detail::shear_settings(s, t, "");
+  const auto plate = detail::plate_settings(s, t, "");
+  const auto pile = detail::pile_settings(s, t, "");
+  const auto have = [&](const auto& grains, double wall_friction) {
+    CHECK(grains.half_edge == 3.2e-3);
+    CHECK(grains.damping == 0.02);
+    CHECK(grains.velocity_stiffness == 0.02);  // as C, where it is not held
+    CHECK(grains.friction == 0.35);
+    CHECK(wall_friction == 0.1);
+    CHECK(grains.breaking_factor == 0.9);
+    CHECK(grains.density == 2650.0);
+  };
+  have(shear, shear.wall_friction), have(plate.grains, plate.grains.wall_friction), have(pile, pile.plate_friction);
+  CHECK(shear.relative_density == 0.3);
+  CHECK(plate.bed.relative_density == 0.3);
+  CHECK(pile.rolling_length == Approx(0.25 * 3.2e-3));
+  CHECK(shear.stiffness == 2e4);
+  CHECK(pile.stiffness == 2e3);
+  s.held.density = 0.0;
+  CHECK_THROWS_WITH(check_rigs(s), Catch::Contains("--density is 0"));
+  s.held.density = -1.0, s.held.rolling = 5.0;
+  CHECK_THROWS_WITH(resolve(s), Catch::Contains("--rolling (half-edges, at most the radius of a sphere) is 5"));
+  s.held.rolling = 0.2;
+  s.find = "relative-density", s.held.friction = std::nan("");
+  CHECK_THROWS_WITH(resolve(s), Catch::Contains("--friction is nan"));
 }
 
 TEST_CASE("options of rigs that measure no target are idle") {
@@ -256,6 +296,14 @@ TEST_CASE("options of rigs that measure no target are idle") {
   CHECK(is_idle(s, "--loads"));
   CHECK_FALSE(is_idle(s, "--plate"));
   CHECK_FALSE(is_idle(s, "--pile-kind"));
+  CHECK(is_idle(s, "--friction"));  // it is looked for
+  CHECK_FALSE(is_idle(s, "--stiffness"));
+  CHECK_FALSE(is_idle(s, "--relative-density"));
+  CHECK_FALSE(is_idle(s, "--rolling"));
+  s.find = "stiffness,rolling";
+  CHECK_FALSE(is_idle(s, "--friction"));
+  CHECK(is_idle(s, "--stiffness"));
+  CHECK(is_idle(s, "--rolling"));
 }
 
 TEST_CASE("searches that cannot work are refused by the names of their options") {
@@ -279,6 +327,18 @@ TEST_CASE("searches that cannot work are refused by the names of their options")
   refuses([](auto& s) { s.known = {0.95}; }, "--known");
   refuses([](auto& s) { s.known = {0.3, 0.4}; }, "--known has 2 values");
   refuses([](auto& s) { s.trials = 2; }, "--trials");
+  refuses([](auto& s) { s.find = "friction,rolling", s.repose = 20.0, s.repeats = 1, s.trials = 3; },
+          "raise --trials to 4, or --repeats");
+  const auto by_both = [](auto& s) { s.find = "stiffness", s.pressure = 1e4; };
+  refuses(by_both, "the plate has it for 1.86 mm, shear test and pile for 0.9 mm; give one for all by --constants-for");
+  Settings both;
+  both.phi = 30.0, by_both(both);
+  both.held.constants_for = 1.2e-3;
+  CHECK_NOTHROW(resolve(both));
+  CHECK(unit_of(both, Constant::stiffness) == "N/m for half-edge 1.2 mm");
+  both.held.constants_for = -1.0;
+  both.phi = 0.0;
+  CHECK(unit_of(both, Constant::stiffness) == "N/m for half-edge 1.86 mm");
   refuses([](auto& s) { s.phi = std::nan(""); }, "--phi (deg) is nan");
   refuses([](auto& s) { s.pressure = std::nan(""); }, "--pressure is nan");
   Settings fine;

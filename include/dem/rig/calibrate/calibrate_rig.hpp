@@ -38,6 +38,9 @@ class CalibrateRig : public Rig {
     return names;
   }
   [[nodiscard]] bool can_resume() const override { return true; }
+  [[nodiscard]] std::string when_ended() const override {
+    return "give --go-on in place of --resume to go on with its table of tried points";
+  }
 
   void run(Session& session) override {
     const Settings& s = settings;
@@ -57,6 +60,7 @@ class CalibrateRig : public Rig {
     session.begin_run(static_cast<int>(batches) + (s.known.empty() ? 0 : 1));
     if (!resumes) {
       forget_trials(session.folder() / "runs");
+      if (!s.go_on) remove_trials(session.folder() / "runs");
     } else if (std::filesystem::exists(table_)) {
       tried = load_tried(table_, s);
       session.message(text("Going on with the {} run{} in tried.csv.", tried.size(), tried.size() == 1 ? "" : "s"));

@@ -1,8 +1,10 @@
 #pragma once
 
+#include <dem/rig/calibrate/held_constants.hpp>
 #include <dem/rig/contact_options.hpp>
 #include <dem/rig/names_in.hpp>
 #include <dem/rig/own_words.hpp>
+#include <dem/rig/plate_sinkage/settings.hpp>
 #include <dem/rig/sand_pile/settings.hpp>
 #include <dem/rig/sizes.hpp>
 
@@ -44,6 +46,7 @@ struct Settings {
   std::vector<double> stiffness_range = {5e3, 4e4};  ///< N/m, by its logarithm
   std::vector<double> density_range = {0.05, 0.6};
   std::vector<double> rolling_range = {0.02, 0.5};  ///< half-edges
+  HeldConstants held;
 
   // Rigs
   std::vector<double> loads;            ///< kg, of the shear test; empty: by size
@@ -129,12 +132,15 @@ inline void declare(Options& options, Settings& s) {
   add("--stiffness-range", s.stiffness_range, "[N/m]");
   add("--relative-density-range", s.density_range, "of the packing or bed");
   add("--rolling-range", s.rolling_range, "rolling length of the pile's grains [half-edges]");
+  add_held_constants(options, s.held);
   options.group("Rigs");
   add("--loads", s.loads, "of the shear test [kg]; empty: by size");
   add("--plate", s.plates, "width of the plate [m]; empty: by size");
   add("--pile-kind", s.kind, "grains of the pile").one_of({"sphere-rolling", "cube8"});
   options.group("Search");
-  add("--trials", s.trials, "points that are tried; more may be asked for by --go-on, or --resume; 0: by size")
+  add("--trials", s.trials,
+      "points that are tried; more may be asked for with --go-on of a search that has ended, and with --resume of one "
+      "that was stopped; 0: by size")
       .changes_no_result();
   add("--repeats", s.repeats, "runs at each point, with other seeds");
   add("--batch", s.batch, "points that are chosen at once, from all that was found before");
@@ -169,20 +175,43 @@ inline void find_idle(IdleOptions& idle, const Settings& s) {
   idle.unless(has(s.find, "stiffness"), "with --find stiffness", {"--stiffness-range"});
   idle.unless(has(s.find, "relative-density"), "with --find relative-density", {"--relative-density-range"});
   idle.unless(has(s.find, "rolling"), "with --find rolling", {"--rolling-range"});
+  idle.unless(!has(s.find, "friction"), "where --find does not name friction", {"--friction"});
+  idle.unless(!has(s.find, "stiffness"), "where --find does not name stiffness", {"--stiffness"});
+  const bool packs = aims(s.phi, "phi") || aims(s.pressure, "pressure");
+  idle.unless(packs && !has(s.find, "relative-density"),
+              "with the target phi or pressure, where --find does not name relative-density", {"--relative-density"});
+  idle.unless(aims(s.repose, "repose") && s.kind == "sphere-rolling" && !has(s.find, "rolling"),
+              "with the target repose of sphere-rolling, where --find does not name rolling", {"--rolling"});
 }
 
-/// What the rigs call otherwise than these options.
-inline constexpr OwnWord own_words[] = {
-    {"; change --relative-density, --densify-time or --seed if that matters", ""},
-    {"; take more --grains or a smaller --half-edge if that matters", "; take another --size if that matters"},
-    {"lower --shear-speed to", "it would be slow below"},
-    {"raise --consolidation-limit, --rest-speed or --damping", "change the ranges of the constants"},
-    {"raise --settle-limit or --damping", "change the ranges of the constants"},
-    {"raise --stage-limit or --damping", "change the ranges of the constants"},
-    {"--relative-density", "--relative-density-range"},
-    {"--friction", "--friction-range"},
-    {"--stiffness", "--stiffness-range"},
-    {"--plates", "--plate"}};
+/// What the rigs call otherwise than these options: a constant that is looked for has a range.
+inline std::vector<OwnWord> own_words(const Settings& s) {
+  std::vector<OwnWord> words = {
+      {"; change --relative-density, --densify-time or --seed if that matters", ""},
+      {"; take more --grains or a smaller --half-edge if that matters",
+       "; take another --size or a smaller --half-edge if that matters"},
+      {"lower --shear-speed to", "it would be slow below"},
+      {"raise --consolidation-limit, --rest-speed or --damping", "change the ranges of the constants, or --damping"},
+      {"raise --settle-limit or --damping", "change the ranges of the constants, or --damping"},
+      {"raise --stage-limit or --damping", "change the ranges of the constants, or --damping"},
+      {"--plates", "--plate"},
+      {"--plate-friction", "--wall-friction"},
+      {"--rolling-length", "--rolling"}};
+  for (const Constant c : constants_of(s)) {
+    if (c == Constant::friction) words.push_back({"--friction", "--friction-range"});
+    if (c == Constant::stiffness) words.push_back({"--stiffness", "--stiffness-range"});
+    if (c == Constant::density) words.push_back({"--relative-density", "--relative-density-range"});
+  }
+  return words;
+}
+
+/// m, the half-edge that a stiffness is given for: that of the rigs, which `held.constants_for` overrides.
+inline double size_of_stiffness(const Settings& s) {
+  if (s.held.constants_for > 0.0) return s.held.constants_for;
+  const auto quantities = quantities_of(s);
+  const bool by_plates = std::count(quantities.begin(), quantities.end(), Quantity::pressure) > 0;
+  return by_plates ? plate_sinkage::Settings{}.grains.constants_for : sand_pile::Settings{}.constants_for;
+}
 
 /// Fills in what depends on the size, and checks every option. Throws Error.
 inline void resolve(Settings& s) {
@@ -202,6 +231,15 @@ inline void resolve(Settings& s) {
   if (quantities.size() < constants.size()) {
     fail("{} constants cannot be told from {} target{}; give as many targets as constants", constants.size(),
          quantities.size(), quantities.size() == 1 ? "" : "s");
+  }
+  const bool by_plates = std::count(quantities.begin(), quantities.end(), Quantity::pressure) > 0;
+  if (std::count(constants.begin(), constants.end(), Constant::stiffness) + (s.held.stiffness >= 0.0 ? 1 : 0) > 0 &&
+      by_plates && quantities.size() > 1 && !(s.held.constants_for > 0.0)) {
+    fail(
+        "a stiffness is that of grains of one half-edge, but the plate has it for {:g} mm, shear test and pile for "
+        "{:g} "
+        "mm; give one for all by --constants-for (m)",
+        1e3 * plate_sinkage::Settings{}.grains.constants_for, 1e3 * sand_pile::Settings{}.constants_for);
   }
   for (const Constant c : constants) {
     const auto& range = range_of(s, c);
@@ -237,8 +275,20 @@ inline void resolve(Settings& s) {
   fill(s.pressure_error, 0.05 * s.pressure);
   require_within(static_cast<double>(s.trials), 3.0, 1e4, "--trials (0: by size)");
   require_within(static_cast<double>(s.repeats), 1.0, 1e3, "--repeats");
+  const std::uint64_t points = constants.size() + 1;  // of a plane; a run more tells what runs scatter by
+  if (s.trials < points || s.trials * s.repeats < points + 1) {
+    fail("{} points of {} runs each cannot tell {} constants; raise --trials to {}, or --repeats", s.trials, s.repeats,
+         constants.size(), std::max(points, (points + s.repeats) / s.repeats));
+  }
   require_within(static_cast<double>(s.batch), 1.0, 1e3, "--batch");
   require_within(s.threads, 0.0, 4096.0, "--threads (0: all)");
+  if (s.held.rolling > 0.0) {
+    require_within(s.held.rolling, 0.0, sand_pile::sphere_radius(1.0),
+                   "--rolling (half-edges, at most the radius of a sphere)");
+  }
+  for_each_held(s.held, [](const char* name, const double& value, const char*, const char*) {
+    if (!(value <= 1e12)) fail("{} is {:g}, but must be at most 1e12 (negative: as each rig has it)", name, value);
+  });
   if (s.plates.size() > 1) fail("--plate has {} widths, but one plate is pressed; give one", s.plates.size());
 }
 

@@ -33,6 +33,13 @@ inline std::string titled(Quantity q) {
 }
 inline std::string number(double value, const char* format = "{:.4g}") { return rig::number(value, format); }
 
+/// A unit, and what it is a stiffness of.
+inline std::string unit_of(const Settings& s, Constant c) {
+  if (c == Constant::stiffness) return text("N/m for half-edge {:g} mm", 1e3 * size_of_stiffness(s));
+  const std::string unit = units_of_constants[static_cast<int>(c)];
+  return unit.empty() ? "-" : unit;
+}
+
 /// A constant that was found, with its standard error in its own unit.
 inline terramechanics::Estimate estimate_of(const Settings& s, const Found& f, std::size_t k) {
   const Constant c = constants_of(s)[k];
@@ -75,8 +82,9 @@ inline io::Table found_table(const Settings& s, const Found& f) {
   const auto constants = constants_of(s);
   for (std::size_t k = 0; k < constants.size(); ++k) {
     const auto e = estimate_of(s, f, k);
-    t.row(titled(constants[k]), number(e.value), number(e.error, "{:.2g}"), number(e.half_width(), "{:.2g}"),
-          text("{}", e.freedom), s.known.empty() ? "-" : number(s.known[k]));
+    t.row(text("{} [{}]", names_of_constants[static_cast<int>(constants[k])], unit_of(s, constants[k])),
+          number(e.value), number(e.error, "{:.2g}"), number(e.half_width(), "{:.2g}"), text("{}", e.freedom),
+          s.known.empty() ? "-" : number(s.known[k]));
   }
   return t;
 }
@@ -173,7 +181,7 @@ inline void write_found(const std::filesystem::path& path, const Settings& s, co
   for (std::size_t k = 0; k < constants.size(); ++k) {
     const auto e = estimate_of(s, f, k);
     const int c = static_cast<int>(constants[k]);
-    csv.row(names_of_constants[c], e.value, e.error, e.half_width(), e.freedom, units_of_constants[c]);
+    csv.row(names_of_constants[c], e.value, e.error, e.half_width(), e.freedom, unit_of(s, constants[k]));
   }
   csv.flush();
 }
@@ -182,10 +190,10 @@ inline void write_found(const std::filesystem::path& path, const Settings& s, co
 inline NamesAndValues list_settings(const Settings& s) {
   NamesAndValues list{{"size of the rigs", s.size}};
   for (const Constant c : constants_of(s)) {
-    list.emplace_back(
-        names_of_constants[static_cast<int>(c)],
-        text("from {:g} to {:g} {}", range_of(s, c)[0], range_of(s, c)[1], units_of_constants[static_cast<int>(c)]));
+    list.emplace_back(names_of_constants[static_cast<int>(c)],
+                      text("from {:g} to {:g} {}", range_of(s, c)[0], range_of(s, c)[1], unit_of(s, c)));
   }
+  list_settings(list, s.held);
   list.emplace_back("points", text("{}, {} seeds each, chosen {} at once", s.trials, s.repeats, s.batch));
   return list;
 }

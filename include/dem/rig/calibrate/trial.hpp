@@ -4,6 +4,7 @@
 #include <dem/rig/calibrate/settings.hpp>
 #include <dem/rig/direct_shear/evaluate.hpp>
 #include <dem/rig/direct_shear/resolve.hpp>
+#include <dem/rig/file_names.hpp>
 #include <dem/rig/plate_sinkage/tables.hpp>
 #include <dem/rig/run_within.hpp>
 #include <dem/rig/sand_pile/resolve.hpp>
@@ -13,6 +14,7 @@
 #include <cmath>
 #include <iterator>
 #include <string>
+#include <system_error>
 #include <vector>
 
 namespace dem::rig::calibrate {
@@ -69,6 +71,8 @@ inline direct_shear::Settings shear_settings(const Settings& s, const Trial& t, 
   direct_shear::Settings d;
   d.size = s.size;
   d.loads = s.loads;
+  hold(d, s.held);
+  if (s.held.relative_density >= 0.0) d.relative_density = s.held.relative_density;
   set_constants(d, constants_of(s), t.values);
   set_density(d.relative_density, constants_of(s), t.values);
   d.seed = t.seed;
@@ -91,6 +95,8 @@ inline plate_sinkage::Settings plate_settings(const Settings& s, const Trial& t,
   plate_sinkage::Settings p;
   p.size = s.size;
   p.widths = s.plates.empty() ? std::vector{size_named(s.size) == Size::smoke ? 0.03 : 0.05} : s.plates;
+  hold(p.grains, s.held);
+  if (s.held.relative_density >= 0.0) p.bed.relative_density = s.held.relative_density;
   set_constants(p.grains, constants_of(s), t.values);
   set_density(p.bed.relative_density, constants_of(s), t.values);
   p.bed.seed = t.seed;
@@ -113,6 +119,7 @@ inline sand_pile::Settings pile_settings(const Settings& s, const Trial& t, cons
   p.size = s.size;
   p.kinds = s.kind;
   const auto constants = constants_of(s);
+  hold(p, s.held);
   set_constants(p, constants, t.values);
   p.seed = t.seed;
   p.threads = 1;
@@ -120,9 +127,11 @@ inline sand_pile::Settings pile_settings(const Settings& s, const Trial& t, cons
   p.output = output;
   p.creep_time = 0.01;
   sand_pile::resolve(p);
+  double rolling = s.held.rolling;
   for (std::size_t k = 0; k < constants.size(); ++k) {
-    if (constants[k] == Constant::rolling) p.rolling_length = p.plate_rolling_length = t.values[k] * p.half_edge;
+    if (constants[k] == Constant::rolling) rolling = t.values[k];
   }
+  if (rolling >= 0.0) p.rolling_length = p.plate_rolling_length = rolling * p.half_edge;
   return p;
 }
 
@@ -165,7 +174,7 @@ inline void check_rigs(const Settings& s) {
         else detail::plate_settings(s, t, s.output);
       }
     } catch (const Error& problem) {
-      throw Error(in_own_words(problem.what(), own_words));
+      throw Error(in_own_words(problem.what(), own_words(s)));
     }
   }
 }
@@ -182,8 +191,7 @@ inline void run_trial(const Settings& s, Trial& t, const Worlds& worlds, const s
     const auto own = detail::folder_of(folder, t, quantities[q]);
     const std::string config = detail::values_text(s, t);
     const CheckpointOptions kept = checkpoints_within(checkpoints, "calibrate", own, config);
-    Session session(
-        {"calibrate", own.string(), config, {}, {std::begin(own_words), std::end(own_words)}, kept, &share});
+    Session session({"calibrate", own.string(), config, {}, own_words(s), kept, &share});
     try {
       t.results[q] = quantities[q] == Quantity::phi      ? detail::measure_phi(s, t, worlds, session)
                      : quantities[q] == Quantity::repose ? detail::measure_repose(s, t, worlds, session)
@@ -207,6 +215,26 @@ inline void forget_trial(const Settings& s, const Trial& t, const std::filesyste
 inline void forget_trials(const std::filesystem::path& folder) {
   if (!std::filesystem::is_directory(folder)) return;
   for (const auto& entry : std::filesystem::directory_iterator(folder)) forget_run_within(entry.path());
+}
+
+/// Removes the folders of runs that an earlier search has made there, as a new one begins. What is called otherwise
+/// stays.
+inline void remove_trials(const std::filesystem::path& folder) {
+  if (!process_writes_files || !std::filesystem::is_directory(folder)) return;
+  std::vector<std::filesystem::path> old;
+  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+    if (entry.symlink_status().type() != std::filesystem::file_type::directory) continue;
+    for (const char* quantity : names_of_quantities) {
+      if (matches(entry.path().filename().string(), text("#+_#+_{}", quantity))) old.push_back(entry.path());
+    }
+  }
+  for (const auto& path : old) {
+    std::error_code error;
+    std::filesystem::remove_all(path, error);
+    if (error)
+      fail("cannot remove '{}', which an earlier search left ({}); choose another --output", path.string(),
+           error.message());
+  }
 }
 
 }  // namespace dem::rig::calibrate
