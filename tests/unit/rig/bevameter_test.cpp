@@ -2,7 +2,7 @@
 
 #include <dem/rig/bevameter/circle.hpp>
 #include <dem/rig/bevameter/constants.hpp>
-#include <dem/rig/bevameter/settings.hpp>
+#include <dem/rig/bevameter/resolve.hpp>
 #include <dem/rig/session.hpp>
 
 #include <cmath>
@@ -189,6 +189,11 @@ TEST_CASE(
   bevameter::Settings s;
   s.grains.friction = 0.31;
   s.grains.half_edge = 5e-3;
+  s.stable_share = 0.6;
+  s.stage_limit = 2.5;
+  s.sleep = true;
+  s.plate_friction = 0.3;
+  s.wheel_friction = 0.7;
   bevameter::resolve(s);
   const auto plates = bevameter::plates_of(s);
   const auto shear = bevameter::shear_of(s, 0.2);
@@ -202,6 +207,14 @@ TEST_CASE(
   CHECK(plates.grains.scale() == wheel.grains.scale());
   CHECK(shear.normal_stress(shear.loads.front()) == Approx(5e3));
   CHECK(shear.relative_density == 0.2);
+  CHECK(plates.bed.stable_share == 0.6);
+  CHECK(shear.stable_share == 0.6);
+  CHECK(wheel.bed.stable_share == 0.6);
+  CHECK(plates.bed.stage_limit == 2.5);
+  CHECK(wheel.bed.stage_limit == 2.5);
+  CHECK((plates.bed.sleep && wheel.bed.sleep));
+  CHECK(plates.plate_friction == 0.3);
+  CHECK(wheel.wheel_friction == 0.7);
   CHECK(plates.unload);
   CHECK(plates.output == "bevameter_output/plates");
   s.output.clear();  // here, and not at the root of the disk

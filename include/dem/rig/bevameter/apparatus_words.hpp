@@ -10,8 +10,7 @@
 namespace dem::rig::bevameter {
 
 /// What the apparatus call otherwise than the bevameter, each for its own.
-inline constexpr OwnWord plate_words[] = {{"--speed", "--plate-speed"},
-                                          {"raise --stage-limit or --damping", "raise --damping"}};
+inline constexpr OwnWord plate_words[] = {{"--speed", "--plate-speed"}};
 inline constexpr OwnWord shear_words[] = {
     {"--travel", "--shear-travel"},
     {"--smoothing", "--shear-smoothing"},
@@ -25,8 +24,7 @@ inline constexpr OwnWord wheel_words[] = {
     {"--bed-length", "--wheel-bed-length"},
     {"--travel or --path", "--path"},
     {"--bed-width", "--wheel-bed-width"},
-    {"--bed-depth", "--wheel-bed-depth"},
-    {"raise --stage-limit or --damping", "raise --damping"}};
+    {"--bed-depth", "--wheel-bed-depth"}};
 
 /// Calls what an apparatus does. What it throws is said in the bevameter's words.
 template <class F>

@@ -1,9 +1,10 @@
 #pragma once
 
 #include <dem/rig/bevameter/circle.hpp>
-#include <dem/rig/bevameter/settings.hpp>
+#include <dem/rig/bevameter/resolve.hpp>
 #include <dem/rig/bevameter/tables.hpp>
 #include <dem/rig/direct_shear/shear_rig.hpp>
+#include <dem/rig/old_results.hpp>
 #include <dem/rig/plate_sinkage/plate_rig.hpp>
 #include <dem/rig/rigid_wheel/wheel_rig.hpp>
 #include <dem/rig/run_within.hpp>
@@ -13,6 +14,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <utility>
 
 namespace dem::rig::bevameter {
 
@@ -42,6 +44,7 @@ class BevameterRig : public Rig {
     const Settings& s = settings;
     plates_.settings = plates_of(s);
     session.begin_run(s.has_wheel() ? 3 : 2);
+    if (!session.checkpoints().resume) clear_apparatus();
     keep_begun(session, "bevameter");
     session.begin("plates", 1.0);
     run_in(plate_words, session, plates_, "plate_sinkage", "Plates of the bevameter");
@@ -73,6 +76,7 @@ class BevameterRig : public Rig {
       tables = {constants_table(*constants, settings.confidence), shear_table(*constants)};
       if (has_rolled()) {
         predictions = predict(*constants, wheel_.campaign, wheel_.settings);
+        if (!rigid_wheel::grips(wheel_.settings)) words += text(" {}", rigid_wheel::smooth_text);
         tables.push_back(circle_table(predictions, wheel_.campaign));
         report.part("predicted.csv",
                     [&] { write_predicted(report.folder() / "predicted.csv", predictions, wheel_.campaign); });
@@ -95,10 +99,9 @@ class BevameterRig : public Rig {
       page.paragraph(words);
       if (!note.empty()) page.paragraph(note);
       page.paragraph(
-          "The folders plates, shear and wheel have the reports of these runs. soil_bekker.toml and soil_reece.toml "
-          "are "
-          "the soil for terramechanics, chrono_scm.txt is the call that gives Bekker's to Project Chrono's SCM "
-          "terrain.");
+          text("The folders {} have the reports of these runs. soil_bekker.toml and soil_reece.toml are the soil for "
+               "terramechanics, chrono_scm.txt is the call that gives Bekker's to Project Chrono's SCM terrain.",
+               settings.has_wheel() ? "plates, shear and wheel" : "plates and shear"));
       for (const auto& table : tables) page.table(table);
       add_plots(report, page, predictions);
     });
@@ -109,6 +112,17 @@ class BevameterRig : public Rig {
   std::optional<Constants> constants = {};
 
  private:
+  /// Removes what an earlier run has left of the apparatus: those of this one come in turn, or not at all.
+  void clear_apparatus() const {
+    if (!process_writes_files) return;
+    for (const auto& [folder, rig] :
+         {std::pair<const char*, const Rig*>{"plates", &plates_}, {"shear", &shear_}, {"wheel", &wheel_}}) {
+      const std::filesystem::path own = folder_in(settings, folder);
+      forget_run_within(own);
+      remove_old_results(own, rig->results());
+    }
+  }
+
   static void run_in(std::span<const OwnWord> words, Session& session, Rig& rig, const char* program,
                      const char* title) {
     in_words(words, [&] { run_within(session, rig, program, title, words); });

@@ -7,6 +7,7 @@
 #include <dem/rig/bevameter/tables.hpp>
 #include <dem/rig/rigid_wheel/columns.hpp>
 
+#include <algorithm>
 #include <array>
 #include <filesystem>
 #include <optional>
@@ -116,6 +117,8 @@ inline io::Plot circle_plot(const Constants& c, const Predictions& predictions, 
     columns.y.push_back(q.of(predictions[2].at_runs[k]));
   }
   for (auto* line : {&points, &low, &high}) plot.series.push_back(*line);
+  const double room = std::max(0.02, 0.05 * (s.slips.back() - s.slips.front()));  // so that no point lies on the frame
+  plot.x_range = {.min = s.slips.front() - room, .max = s.slips.back() + room};
   int color = 1;
   for (const auto& [name, soil] :
        {std::pair{"Bekker and Wong", &c.bekker_soil}, std::pair{"Reece and Wong", &c.reece_soil}}) {
