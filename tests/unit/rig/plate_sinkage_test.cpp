@@ -85,9 +85,10 @@ TEST_CASE("settings of plates that make no sense are refused by the names of the
   };
   refuses([](auto& s) { s.sinkage = 0.02; }, "--sinkage");
   refuses([](auto& s) { s.widths = {0.07}; }, "--plates");
-  refuses([](auto& s) { s.widths = {0.03, 0.0301}; }, "--plates");
-  refuses([](auto& s) { s.widths = {0.0295, 0.0305}; }, "both would be called plate_30mm");
+  refuses([](auto& s) { s.length = 0.04, s.widths = {0.03, 0.0301}; }, "--plates");
+  refuses([](auto& s) { s.length = 0.04, s.widths = {0.0295, 0.0305}; }, "both would be called plate_30mm");
   refuses([](auto& s) { s.length = 0.07; }, "--plate-length");
+  refuses([](auto& s) { s.length = 0.02; }, "the smaller side of a plate) is 0.03");
   refuses([](auto& s) { s.plate_density = 0.0; }, "--plate-density");
   refuses([](auto& s) { s.drive_stiffness = -1e7; }, "--drive-stiffness");
   refuses([](auto& s) { s.unload_speed = 2.0; }, "--unload-speed");
@@ -97,6 +98,16 @@ TEST_CASE("settings of plates that make no sense are refused by the names of the
   refuses([](auto& s) { s.grains.stiffness = 1e300; }, "--stiffness");
   refuses([](auto& s) { s.grains.damping = 1e300; }, "--damping");
   refuses([](auto& s) { s.grains.constants_for = 1.86; }, "--constants-for");  // mm
+}
+
+TEST_CASE("a plate goes half as deep as its bed at most, also where that comes from a file of grains") {
+  auto s = small();
+  s.bed.file = "bed.txt";
+  s.sinkage = 0.02;  // of a bed that may be deeper than the rig's own
+  CHECK_NOTHROW(plate_sinkage::resolve(s));
+  CHECK_NOTHROW(plate_sinkage::require_depth(s, 0.041));
+  CHECK_THROWS_WITH(plate_sinkage::require_depth(s, 0.039),
+                    Catch::Contains("--sinkage is 0.02 m, but must be at most half of the bed's depth"));
 }
 
 TEST_CASE("relative densities count between the limits of the grains' shape, and so does the number of grains") {
@@ -200,7 +211,7 @@ TEST_CASE("a study of plates changes what it says, and nothing else, in beds of 
 
 TEST_CASE("the study of plates has the spread of the seeds, and changes paired by seed with a verdict") {
   auto s = small();
-  s.widths = {0.03, 0.04};
+  s.widths = {0.03, 0.04}, s.length = 0.05;
   s.study = "box";
   plate_sinkage::resolve(s);
   plate_sinkage::Campaign c;

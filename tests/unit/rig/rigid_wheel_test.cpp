@@ -57,7 +57,22 @@ TEST_CASE("means of a wheel are those after its transient, and efficiency is pul
   CHECK(r.window_from <= 1.0);
   CHECK(r.pull.mean == Approx(20.0).margin(0.2));  // what is left of the ramp in its last part
   CHECK(r.pull.deviation == Approx(0.5).margin(0.3));
-  CHECK(r.efficiency == Approx(r.pull.mean * 0.75 * s.radius / 2.0));
+  CHECK(r.efficiency.mean == Approx(r.pull.mean * 0.75 * s.radius / 2.0));
+  // The torque is steady, so that efficiency swings as the pull does.
+  CHECK(r.efficiency.deviation == Approx(r.pull.deviation * 0.75 * s.radius / 2.0));
+
+  rigid_wheel::Campaign c;
+  c.slips = {r};
+  const auto soils = rigid_wheel::references(s);
+  const auto plot = rigid_wheel::efficiency_plot(s, c, soils);
+  REQUIRE(plot.series.size() > 3);
+  CHECK(plot.series[0].y.front() == Approx(r.efficiency.mean));
+  const auto& p1 = plot.series[3];  // Bekker and Wong: only where the wheel drives and pulls
+  REQUIRE_FALSE(p1.x.empty());
+  for (std::size_t k = 0; k < p1.x.size(); ++k) {
+    CHECK(p1.y[k] > 0.0);
+    CHECK(p1.y[k] < 1.0);
+  }
 }
 
 TEST_CASE("a groove in a flat surface is found with its depth and width") {

@@ -7,8 +7,8 @@
 namespace dem::rig {
 
 // What a bed should have at least, in widths of the plate: a plate in 2.4 widths carried three times as much as in 4.8
-// and more. At these a bed twice as wide still carried 13 % less (two seeds), and one twice as deep, of grains that
-// fall freely, 20 % more (three seeds; examples/plate_sinkage/RESULTS.md).
+// and more. At these a bed twice as wide still carried 10 +- 12 % less (95 %), and one twice as deep, of grains that
+// fall freely, 20 +- 5 % more (three pairs each; examples/plate_sinkage/RESULTS.md).
 inline constexpr double plate_widths_across = 5.0, plate_widths_deep = 2.0;
 
 /// What is said of a bed (m) that is too small for its widest plate (m): in numbers, and what to change. Empty of one

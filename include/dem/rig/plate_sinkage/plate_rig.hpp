@@ -20,10 +20,10 @@ class PlateRig : public Rig {
   void resolve() override { plate_sinkage::resolve(settings); }
   [[nodiscard]] std::string output() const override { return settings.output; }
   [[nodiscard]] ResultNames results() const override {
-    ResultNames names{
-        .files = {"results.csv", "study.csv", "plate_#+mm.pvd", "plate_#+mm.csv", "plate_#+mm_unloading.csv"},
-        .plots = {"pressure", "fits"},
-        .frames = {"grains", "surfaces"}};
+    ResultNames names{.files = {"results.csv", "constants.csv", "study.csv", "plate_#+mm.pvd", "plate_#+mm.csv",
+                                "plate_#+mm_unloading.csv"},
+                      .plots = {"pressure", "fits"},
+                      .frames = {"grains", "surfaces"}};
     for (const std::string& variant : variant_prefixes()) {
       names.files.push_back(variant + "plate_#+mm.csv");
       names.files.push_back(variant + "plate_#+mm_unloading.csv");
@@ -54,6 +54,7 @@ class PlateRig : public Rig {
       report.part("study.csv", [&] { write_study(report.folder() / "study.csv", of, rows); });
     }
     report.part("results.csv", [&] { write_results(report.folder() / "results.csv"); });
+    report.part("constants.csv", [&] { write_constants(report.folder() / "constants.csv"); });
     report.part("the printed report", [&] {
       fmt::print("\n");
       for (const auto& line : words) fmt::print("{}\n", line);
@@ -110,6 +111,23 @@ class PlateRig : public Rig {
                 cell(f ? r.fit->modulus_error : not_known), cell(f ? r.fit->curve.exponent : not_known),
                 cell(f ? r.fit->exponent_error : not_known), cell(mean_pressure(r, v.variant.settings)),
                 cell(r.unloading_stiffness), cell(v.solid_fraction), v.grains, r.finished);
+      }
+    }
+    csv.flush();
+  }
+
+  /// Of the forms over all plates, beside each other: in Pa/m^(n-1) and Pa/m^n (Bekker), without unit (Reece).
+  void write_constants(const std::filesystem::path& path) const {
+    io::CsvWriter csv(path, {"run", "form", "kc", "kc_error", "kphi", "kphi_error", "n", "n_error", "r_squared"});
+    for (const VariantResult& v : campaign.variants) {
+      const OverPlates fits = fit_over_plates(v);
+      if (const auto& b = fits.bekker) {
+        csv.row(v.variant.text, "Bekker", cell(b->law.k_c), cell(b->error.k_c), cell(b->law.k_phi),
+                cell(b->error.k_phi), cell(b->law.n), cell(b->error.n), cell(b->r_squared));
+      }
+      if (const auto& r = fits.reece) {
+        csv.row(v.variant.text, "Reece, c = 0", cell(not_known), cell(not_known), cell(r->law.k_phi),
+                cell(r->k_phi_error), cell(r->law.n), cell(r->n_error), cell(r->r_squared));
       }
     }
     csv.flush();

@@ -74,6 +74,10 @@ struct VariantResult {
   std::size_t grains = 0;
   double time_step = not_known;  ///< s
   std::vector<PlateResult> plates = {};
+
+  [[nodiscard]] double unit_weight() const {
+    return 9.81 * variant.settings.grains.density * solid_fraction;
+  }  ///< N/m^3
 };
 
 /// Everything that a run finds.

@@ -43,6 +43,12 @@ struct Settings {
   [[nodiscard]] double sample_interval() const { return sinkage / 400.0 / speed; }  ///< s
 };
 
+/// Throws Error where a levelled bed is shallower (m) than twice the sinkage.
+inline void require_depth(const Settings& s, double level) {
+  if (s.sinkage <= 0.5 * level || s.bed.file.empty() || BedSettings::is_state(s.bed.file)) return;
+  fail("--sinkage is {:g} m, but must be at most half of the bed's depth, which came out as {:g} m", s.sinkage, level);
+}
+
 using Variant = rig::Variant<Settings>;
 
 /// What the files of a plate of a width (m) are called.
@@ -103,7 +109,10 @@ inline void resolve(Settings& s) {
   if (s.widths.empty()) s.widths = by_size.widths;
   require_within(s.length, 1e-3, s.bed.length, "--plate-length (m, within the bed)");
   std::sort(s.widths.begin(), s.widths.end());
-  for (const double w : s.widths) require_within(w, 1e-3, s.bed.width, "a width of --plates (m, within the bed)");
+  for (const double w : s.widths) {
+    require_within(w, 1e-3, std::min(s.bed.width, s.length),
+                   "a width of --plates (m, within the bed; the smaller side of a plate)");
+  }
   for (std::size_t k = 1; k < s.widths.size(); ++k) {
     if (plate_name(s.widths[k]) != plate_name(s.widths[k - 1])) continue;
     fail(
@@ -117,7 +126,9 @@ inline void resolve(Settings& s) {
   require_within(s.drive_stiffness, 1e3, 1e12, "--drive-stiffness (N/m)");
   require_within(s.speed, 1e-4, 1.0, "--speed (m/s)");
   require_within(s.unload_speed, 1e-5, 1.0, "--unload-speed (m/s)");
-  require_within(s.sinkage, 1e-4, 0.5 * s.bed.depth, "--sinkage (m, at most half the bed's depth)");
+  // How deep a bed of grains from a file is, is known once it is level (require_depth).
+  const bool is_known = s.bed.file.empty() || BedSettings::is_state(s.bed.file);
+  require_within(s.sinkage, 1e-4, is_known ? 0.5 * s.bed.depth : 1e3, "--sinkage (m, at most half the bed's depth)");
   require_within(s.ramp_time, 0.0, s.sinkage / s.speed, "--ramp-time (s, at most what the sinkage takes)");
   require_positive(s.threshold, "--threshold", "Pa");
   require_within(s.smoothing, 0.0, 0.5, "--smoothing");

@@ -5,9 +5,11 @@
 #include <dem/report/table.hpp>
 #include <dem/rig/bed/bed.hpp>
 #include <dem/rig/plate_sinkage/results.hpp>
+#include <dem/terramechanics/bevameter_fit.hpp>
 #include <dem/terramechanics/soil.hpp>
 
 #include <array>
+#include <optional>
 
 // What was found, as tables and plots.
 
@@ -53,26 +55,42 @@ inline io::Table fit_table(const VariantResult& v) {
   return t;
 }
 
+/// Bekker's and Reece's constants over the plates of a bed, without cohesion; none where the plates do not tell them.
+struct OverPlates {
+  std::optional<terramechanics::BekkerFit> bekker = {};
+  std::optional<terramechanics::ReeceFit> reece = {};
+};
+
+inline OverPlates fit_over_plates(const VariantResult& v) {
+  OverPlates fits;
+  const auto curves = fitted_curves(v);
+  if (curves.size() < 2) return fits;
+  const auto kind = terramechanics::PlateFit::weighted_logarithms;
+  try {
+    fits.bekker = terramechanics::fit_bekker(curves, kind);
+  } catch (const Error&) {
+  }
+  try {
+    fits.reece = terramechanics::fit_reece(curves, 0.0, v.unit_weight(), kind);
+  } catch (const Error&) {
+  }
+  return fits;
+}
+
 /// Bekker's and Reece's constants over the plates; empty if there are not two plates.
 inline io::Table constants_table(const VariantResult& v) {
   io::Table t{.caption = "Constants over all plates (weighted logarithms; standard errors)",
               .header = {"form", "kc", "±", "kphi", "±", "n", "±", "R²"}};
-  const auto curves = fitted_curves(v);
-  if (curves.size() < 2) return t;
-  const auto kind = terramechanics::PlateFit::weighted_logarithms;
+  if (fitted_curves(v).size() < 2) return t;
   const auto g = [](double x) { return number(x, "{:.4g}"); };
-  try {
-    const auto b = terramechanics::fit_bekker(curves, kind);
-    t.row("Bekker [kPa/m^(n-1), kPa/m^n]", g(1e-3 * b.law.k_c), g(1e-3 * b.error.k_c), g(1e-3 * b.law.k_phi),
-          g(1e-3 * b.error.k_phi), g(b.law.n), g(b.error.n), number(b.r_squared, "{:.4f}"));
-  } catch (const Error&) {
+  const OverPlates fits = fit_over_plates(v);
+  if (const auto& b = fits.bekker) {
+    t.row("Bekker [kPa/m^(n-1), kPa/m^n]", g(1e-3 * b->law.k_c), g(1e-3 * b->error.k_c), g(1e-3 * b->law.k_phi),
+          g(1e-3 * b->error.k_phi), g(b->law.n), g(b->error.n), number(b->r_squared, "{:.4f}"));
   }
-  try {
-    const double weight = 9.81 * v.variant.settings.grains.density * v.solid_fraction;
-    const auto r = terramechanics::fit_reece(curves, 0.0, weight, kind);
-    t.row("Reece, c = 0 [-]", "-", "-", g(r.law.k_phi), g(r.k_phi_error), g(r.law.n), g(r.n_error),
-          number(r.r_squared, "{:.4f}"));
-  } catch (const Error&) {
+  if (const auto& r = fits.reece) {
+    t.row("Reece, c = 0 [-]", "-", "-", g(r->law.k_phi), g(r->k_phi_error), g(r->law.n), g(r->n_error),
+          number(r->r_squared, "{:.4f}"));
   }
   const auto& p3 = std::get<terramechanics::Bekker>(terramechanics::mojave_martian_simulant.pressure);
   t.row("P3, Bekker", g(1e-3 * p3.k_c), "-", g(1e-3 * p3.k_phi), "-", g(p3.n), "-", "-");

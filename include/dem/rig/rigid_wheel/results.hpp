@@ -61,9 +61,9 @@ struct SlipResult {
   double window_from = not_known;  ///< s, where the steady window begins
   bool is_steady = false;
   MeanAndDeviation pull = {}, torque = {}, sinkage = {}, carried = {};
-  double pull_error = not_known;  ///< N, standard error of its mean in time
-  double efficiency = not_known;  ///< pull v/(torque omega), thesis eq. 44; known where the wheel drives and pulls
-  Rut rut = {};                   ///< against the level of the bed
+  double pull_error = not_known;     ///< N, standard error of its mean in time
+  MeanAndDeviation efficiency = {};  ///< pull v/(torque omega), thesis eq. 44; known where the wheel drives and pulls
+  Rut rut = {};                      ///< against the level of the bed
 
   /// What a run that goes on takes over.
   template <class V>
@@ -120,7 +120,13 @@ inline void evaluate(SlipResult& r, double level, const Settings& s) {
   r.sinkage = mean(&Sample::sinkage);
   r.carried = mean(&Sample::carried);
   if (r.pull.mean > 0.0 && r.torque.mean > 0.0) {
-    r.efficiency = r.pull.mean * (1.0 - r.slip) * s.radius / r.torque.mean;
+    // Of the mean pull and the mean torque; its deviation is what both swing by together.
+    const double arm = (1.0 - r.slip) * s.radius / r.torque.mean, share = r.pull.mean / r.torque.mean;
+    std::vector<double> swing;
+    for (std::size_t k = first; k < r.samples.size(); ++k) {
+      swing.push_back(arm * (r.samples[k].pull - share * r.samples[k].torque));
+    }
+    r.efficiency = {arm * r.pull.mean, mean_of(swing).deviation};
   }
   r.rut = rut_between({r.rut_y, std::vector<double>(r.rut_y.size(), level)}, {r.rut_y, r.rut_z}, 0.0, s.width);
 }

@@ -92,7 +92,8 @@ inline void declare(Options& options, Settings& s) {
   add("--ramp-time", s.ramp_time, "smooth start of a run [s]");
   add("--set-down-speed", s.set_down_speed, "of the load servo [m/s]");
   add("--soil", s.soil,
-      "file of a soil as the bevameter writes it: Bekker-Wong and dynamic Bekker with it are drawn too");
+      "file of a soil as the bevameter writes it: Bekker-Wong and dynamic Bekker with it are drawn too")
+      .changes_no_result();
   add_study_options(options, s.study, s.study_seeds);
   add_grain_options(options, s.grains);
   add_bed_options(options, s.bed);

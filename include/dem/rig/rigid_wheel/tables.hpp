@@ -16,30 +16,37 @@ namespace dem::rig::rigid_wheel {
 
 inline io::Table slip_table(const Campaign& c) {
   io::Table t{.caption = "Means over the steady window, slip s = 1 - v/(omega r) (± standard deviation in time)",
-              .header = {"slip", "pull [N]", "±", "torque [N m]", "±", "sinkage [mm]", "±", "efficiency", "carried [N]",
-                         "steady from [s]", "steady", "done"}};
+              .header = {"slip", "pull [N]", "±", "torque [N m]", "±", "sinkage [mm]", "±", "efficiency", "±",
+                         "carried [N]", "steady from [s]", "steady", "done"}};
   for (const SlipResult& r : c.slips) {
     t.row(number(r.slip), number(r.pull.mean), number(r.pull.deviation), number(r.torque.mean),
           number(r.torque.deviation), number(1e3 * r.sinkage.mean), number(1e3 * r.sinkage.deviation),
-          number(r.efficiency), number(r.carried.mean, "{:.1f}"), number(r.window_from), r.is_steady, r.finished);
+          number(r.efficiency.mean), number(r.efficiency.deviation), number(r.carried.mean, "{:.1f}"),
+          number(r.window_from), r.is_steady, r.finished);
   }
   return t;
+}
+
+/// Calls row(name, forces) for what each soil has at slip number k.
+template <class Row>
+void for_each_reference(const Settings& s, double slip, std::size_t k, std::span<const Reference> soils, Row&& row) {
+  for (const Reference& soil : soils) {
+    if (const auto f = reference_at(soil.soil, slip, s)) row(soil.name, *f);
+    if (k < soil.on_columns.size() && soil.on_columns[k]) row(soil.name + ", dynamic Bekker", *soil.on_columns[k]);
+  }
 }
 
 inline io::Table reference_table(const Settings& s, const Campaign& c, std::span<const Reference> soils) {
   io::Table t{
       .caption = "Beside Bekker and Wong (eqs. 2-11) and dynamic Bekker (soil columns), slip s = 1 - v/(omega r)",
       .header = {"slip", "soil", "pull [N]", "torque [N m]", "sinkage [mm]"}};
-  const auto row = [&](const std::string& name, const std::optional<terramechanics::WheelForces>& f) {
-    if (f) t.row("", name, number(f->pull), number(f->torque), number(1e3 * f->sinkage));
+  const auto row = [&](const std::string& name, const terramechanics::WheelForces& f) {
+    t.row("", name, number(f.pull), number(f.torque), number(1e3 * f.sinkage));
   };
   for (std::size_t k = 0; k < c.slips.size(); ++k) {
     const SlipResult& r = c.slips[k];
     t.row(number(r.slip), "grains", number(r.pull.mean), number(r.torque.mean), number(1e3 * r.sinkage.mean));
-    for (const Reference& soil : soils) {
-      row(soil.name, reference_at(soil.soil, r.slip, s));
-      if (k < soil.on_columns.size()) row(soil.name + ", dynamic Bekker", soil.on_columns[k]);
-    }
+    for_each_reference(s, r.slip, k, soils, row);
   }
   return t;
 }
@@ -60,7 +67,7 @@ inline io::Table rut_table(const Campaign& c) {
   return t;
 }
 
-/// A mean over slip, beside the semi-empirical soils.
+/// A mean over slip, beside the semi-empirical soils: `of_forces(forces, slip)` is theirs, NaN where they have none.
 template <class OfForces>
 io::Plot slip_plot(const Settings& s, const Campaign& c, std::span<const Reference> soils,
                    MeanAndDeviation SlipResult::*value, double scale, OfForces&& of_forces, const char* title,
@@ -83,7 +90,8 @@ io::Plot slip_plot(const Settings& s, const Campaign& c, std::span<const Referen
     io::Series line{.name = soil.name + ", Bekker and Wong", .style = io::SeriesStyle::Dashed, .color = color};
     io::Series columns{.name = soil.name + ", dynamic Bekker", .style = io::SeriesStyle::Points, .color = color++};
     const auto add = [&](io::Series& to, double slip, const std::optional<terramechanics::WheelForces>& f) {
-      if (f) to.x.push_back(slip), to.y.push_back(scale * of_forces(*f));
+      const double y = f ? scale * of_forces(*f, slip) : not_known;
+      if (std::isfinite(y)) to.x.push_back(slip), to.y.push_back(y);
     };
     for (int k = -14; k <= 16; ++k) add(line, 0.05 * k, reference_at(soil.soil, 0.05 * k, s));
     for (std::size_t k = 0; k < soil.on_columns.size(); ++k) add(columns, c.slips[k].slip, soil.on_columns[k]);
@@ -96,6 +104,14 @@ io::Plot slip_plot(const Settings& s, const Campaign& c, std::span<const Referen
   const double room = 0.05 * (highest - lowest);
   if (room > 0.0) plot.y_range = {lowest < 0.0 ? lowest - room : 0.0, highest + room};
   return plot;
+}
+
+/// Efficiency over slip, where a wheel drives and pulls.
+inline io::Plot efficiency_plot(const Settings& s, const Campaign& c, std::span<const Reference> soils) {
+  const auto of_forces = [&](const terramechanics::WheelForces& f, double slip) {
+    return f.pull > 0.0 && f.torque > 0.0 ? f.pull * (1.0 - slip) * s.radius / f.torque : not_known;
+  };
+  return slip_plot(s, c, soils, &SlipResult::efficiency, 1.0, of_forces, "Efficiency", "pull v/(torque ω) [-]");
 }
 
 /// The title of a plot of all runs: where there is one run alone, with its slip.

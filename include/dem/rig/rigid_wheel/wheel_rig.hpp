@@ -22,11 +22,11 @@ class WheelRig : public Rig {
   void resolve() override { rigid_wheel::resolve(settings); }
   [[nodiscard]] std::string output() const override { return settings.output; }
   [[nodiscard]] ResultNames results() const override {
-    ResultNames names{
-        .files = {"results.csv", "rut.csv", "under_wheel.csv", "study.csv", "study_runs.csv", "slip_#+.csv",
-                  "slip_m#+.csv", "slip_#+.pvd", "slip_m#+.pvd"},
-        .plots = {"pull", "torque", "sinkage", "pull_over_time", "sinkage_over_time", "rut", "stress", "print"},
-        .frames = {"grains", "surfaces"}};
+    ResultNames names{.files = {"results.csv", "references.csv", "rut.csv", "under_wheel.csv", "study.csv",
+                                "study_runs.csv", "slip_#+.csv", "slip_m#+.csv", "slip_#+.pvd", "slip_m#+.pvd"},
+                      .plots = {"pull", "torque", "sinkage", "efficiency", "pull_over_time", "sinkage_over_time", "rut",
+                                "stress", "print"},
+                      .frames = {"grains", "surfaces"}};
     for (const std::string& variant : variant_prefixes()) {
       names.files.push_back(variant + "slip_#+.csv");
       names.files.push_back(variant + "slip_m#+.csv");
@@ -47,9 +47,11 @@ class WheelRig : public Rig {
     report.part("the wheel on soil columns", [&] { roll_on_columns(soils, campaign, s); });
     std::vector<io::Table> tables{slip_table(campaign), reference_table(s, campaign, soils), rut_table(campaign),
                                   print_table(campaign)};
+    report.part("references.csv", [&] { write_references(report.folder() / "references.csv", soils); });
     report.part("rut.csv", [&] { write_ruts(report.folder() / "rut.csv"); });
     report.part("under_wheel.csv", [&] { write_print(report.folder() / "under_wheel.csv"); });
     std::vector<std::string> words{bed_text(s, campaign), window_text, reference_text, print_text};
+    if (!grips(s)) words.emplace_back(smooth_text);
     if (!campaign.study.empty()) {
       const StudiedValue of = studied_pull(s);
       const std::vector<StudyRow> rows = study_rows(campaign);
@@ -97,19 +99,23 @@ class WheelRig : public Rig {
     page.heading("Plots");
     report.plot(page,
                 slip_plot(
-                    s, c, soils, &SlipResult::pull, 1.0, [](const WheelForces& f) { return f.pull; }, "Drawbar pull",
-                    "drawbar pull [N]"),
+                    s, c, soils, &SlipResult::pull, 1.0, [](const WheelForces& f, double) { return f.pull; },
+                    "Drawbar pull", "drawbar pull [N]"),
                 "pull", "Drawbar pull over slip.");
     report.plot(page,
                 slip_plot(
-                    s, c, soils, &SlipResult::torque, 1.0, [](const WheelForces& f) { return f.torque; }, "Torque",
-                    "torque [N m]"),
+                    s, c, soils, &SlipResult::torque, 1.0, [](const WheelForces& f, double) { return f.torque; },
+                    "Torque", "torque [N m]"),
                 "torque", "Torque that drives the wheel over slip.");
     report.plot(page,
                 slip_plot(
-                    s, c, soils, &SlipResult::sinkage, 1e3, [](const WheelForces& f) { return f.sinkage; }, "Sinkage",
-                    "sinkage [mm]"),
+                    s, c, soils, &SlipResult::sinkage, 1e3, [](const WheelForces& f, double) { return f.sinkage; },
+                    "Sinkage", "sinkage [mm]"),
                 "sinkage", "Sinkage over slip.");
+    if (std::any_of(c.slips.begin(), c.slips.end(), [](const SlipResult& r) { return r.efficiency.mean > 0.0; })) {
+      report.plot(page, efficiency_plot(s, c, soils), "efficiency",
+                  "Power of the pull over that of the motor, where a wheel drives and pulls.");
+    }
     report.plot(page, time_plot(c, &Sample::pull, 1.0, "Drawbar pull over time", "drawbar pull [N]"), "pull_over_time",
                 "Drawbar pull of every run.");
     report.plot(page, time_plot(c, &Sample::sinkage, 1e3, "Sinkage over time", "sinkage [mm]"), "sinkage_over_time",
@@ -124,13 +130,25 @@ class WheelRig : public Rig {
   }
 
   void write_results(const std::filesystem::path& path) const {
-    io::CsvWriter csv(path, {"slip_1-v/(omega*r)", "drawbar_pull_N", "pull_deviation_N", "torque_Nm",
-                             "torque_deviation_Nm", "sinkage_m", "sinkage_deviation_m", "efficiency", "carried_N",
-                             "steady_from_s", "steady", "rut_depth_m", "rut_width_m", "finished"});
+    io::CsvWriter csv(
+        path, {"slip_1-v/(omega*r)", "drawbar_pull_N", "pull_deviation_N", "torque_Nm", "torque_deviation_Nm",
+               "sinkage_m", "sinkage_deviation_m", "efficiency", "efficiency_deviation", "carried_N", "steady_from_s",
+               "steady", "rut_depth_m", "rut_width_m", "finished"});
     for (const SlipResult& r : campaign.slips) {
       csv.row(r.slip, cell(r.pull.mean), cell(r.pull.deviation), cell(r.torque.mean), cell(r.torque.deviation),
-              cell(r.sinkage.mean), cell(r.sinkage.deviation), cell(r.efficiency), cell(r.carried.mean),
-              cell(r.window_from), r.is_steady, cell(r.rut.depth), cell(r.rut.width), r.finished);
+              cell(r.sinkage.mean), cell(r.sinkage.deviation), cell(r.efficiency.mean), cell(r.efficiency.deviation),
+              cell(r.carried.mean), cell(r.window_from), r.is_steady, cell(r.rut.depth), cell(r.rut.width), r.finished);
+    }
+    csv.flush();
+  }
+
+  void write_references(const std::filesystem::path& path, std::span<const Reference> soils) const {
+    io::CsvWriter csv(path, {"slip_1-v/(omega*r)", "soil", "drawbar_pull_N", "torque_Nm", "sinkage_m"});
+    for (std::size_t k = 0; k < campaign.slips.size(); ++k) {
+      const double slip = campaign.slips[k].slip;
+      for_each_reference(settings, slip, k, soils, [&](const std::string& name, const terramechanics::WheelForces& f) {
+        csv.row(slip, name, cell(f.pull), cell(f.torque), cell(f.sinkage));
+      });
     }
     csv.flush();
   }
