@@ -1,3 +1,4 @@
+#include <dem/io/checkpoint/fields.hpp>
 #include <dem/rig/mobility/cases.hpp>
 #include <dem/rig/mobility/drive.hpp>
 #include <dem/rig/mobility/tables.hpp>
@@ -94,6 +95,26 @@ TEST_CASE("a lane of stretches is as long as they are, and one that cannot be re
   longer.lane = "hard:3";
   longer.path = 4.0;
   CHECK_THROWS_WITH(mobility::resolve(longer, nullptr), ContainsSubstring("longer than the --lane of 3 m"));
+}
+
+TEST_CASE("a run of drives that goes on has the soil that it began with") {
+  mobility::Case c;
+  c.lane = {{dem::terramechanics::known_soil("dry-sand"), 3.0}};
+  mobility::SameSoil soil = mobility::soil_of(c);
+  dem::io::StateColumns kept;
+  const auto visit = [&](dem::io::Fields::Task task, dem::io::StateColumns& columns) {
+    dem::io::Fields v(task, columns);
+    soil.fields(v);
+  };
+  const auto go_on = [&] {
+    dem::io::StateColumns columns = kept;
+    visit(dem::io::Fields::Task::restore, columns);
+  };
+  visit(dem::io::Fields::Task::collect, kept);
+  CHECK_NOTHROW(go_on());
+  c.lane[0].soil.soil.shear.cohesion += 1.0;
+  soil = mobility::soil_of(c);
+  CHECK_THROWS_WITH(go_on(), Catch::Contains("the soil of a drive is another one"));
 }
 
 TEST_CASE("a drive by inputs ends with its last row, and one by a driver knows no such end") {

@@ -63,7 +63,8 @@ TEST_CASE("settings of a sand pile that make no sense are refused") {
   CHECK_THROWS_WITH(refused([](Settings& s) { s.method = "throw"; }), ContainsSubstring("--method is 'throw'"));
   CHECK_THROWS_WITH(refused([](Settings& s) { s.size = "big"; }), ContainsSubstring("--size is 'big'"));
   CHECK_THROWS_WITH(refused([](Settings& s) { s.grains = 3; }), ContainsSubstring("--grains"));
-  CHECK_THROWS_WITH(refused([](Settings& s) { s.orifice_radius = 1e-3; }), ContainsSubstring("--orifice-radius"));
+  CHECK_THROWS_WITH(refused([](Settings& s) { s.method = "funnel", s.orifice_radius = 1e-3; }),
+                    ContainsSubstring("--orifice-radius"));
   CHECK_THROWS_WITH(refused([](Settings& s) { s.plate_radius = 1e-3; }), ContainsSubstring("--plate-radius"));
   CHECK_THROWS_WITH(refused([](Settings& s) { s.friction = -1.0; }), ContainsSubstring("--friction"));
   CHECK_THROWS_WITH(refused([](Settings& s) { s.flank_low = 0.9; }), ContainsSubstring("--flank-low"));
@@ -194,6 +195,21 @@ TEST_CASE("options of a sand pile that change nothing are named") {
   sand_pile::find_idle(idle, s);
   CHECK_FALSE(idle.contains("--rolling-length"));
   CHECK(idle.contains("--rolling-damping"));  // a constant torque has no springs
+}
+
+TEST_CASE("what a way of piling does not have is not asked for") {
+  Settings s;
+  s.method = "drain";
+  s.grains = 20;
+  CHECK_THROWS_WITH(sand_pile::resolve(s), ContainsSubstring("--box-length"));
+  s.box_length = 0.02;
+  CHECK_NOTHROW(sand_pile::resolve(s));
+  s = {};
+  s.method = "lift", s.grains = 40;
+  CHECK_NOTHROW(sand_pile::resolve(s));  // too few for a box that is emptied
+  s = {};
+  s.method = "lift", s.grains = 20;
+  CHECK_THROWS_WITH(sand_pile::resolve(s), ContainsSubstring("--cylinder-radius"));
 }
 
 TEST_CASE("piles of a kind are one row of the table") {

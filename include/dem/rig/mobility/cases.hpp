@@ -66,4 +66,20 @@ struct Campaign {
   Driven shown;                 ///< the only drive, or the last pass; empty where a study has many
 };
 
+/// The soil of a drive, as text: a run that goes on has the one that it began with, whatever its file says now.
+struct SameSoil {
+  std::string now;
+  template <class V>
+  void fields(V& v) {
+    std::string then = now;
+    v("soil", then);
+    if (then != now) fail("the soil of a drive is another one than that which the run began with; give that one again");
+  }
+};
+inline SameSoil soil_of(const Case& c) {
+  SameSoil soil;
+  for (const vehicle::LaneStretch& stretch : c.lane) soil.now += terramechanics::to_text(stretch.soil);
+  return soil;
+}
+
 }  // namespace dem::rig::mobility

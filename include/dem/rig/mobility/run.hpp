@@ -9,6 +9,7 @@
 #include <dem/vehicle/drawn_hull.hpp>
 
 #include <optional>
+#include <string>
 #include <thread>
 
 namespace dem::rig::mobility {
@@ -126,7 +127,9 @@ inline void run_campaign(const Settings& s, Campaign& c, std::optional<report::R
                    StagesOfOne own(shared, k);
                    DrivePart part(session, own, c.cases[k].name);
                    vehicle::OpenLoop inputs = s.open_loop;
-                   const auto kept = own.keep("result", c.results[k]), kept_inputs = own.keep("inputs", inputs);
+                   SameSoil soil = soil_of(c.cases[k]);
+                   const auto kept = own.keep("result", c.results[k]), kept_inputs = own.keep("inputs", inputs),
+                              kept_soil = own.keep("soil", soil);
                    std::vector<double> ruts;
                    if (part.is_done()) own.go_on();
                    else one(k, own, 0.0, 1.0, ruts);

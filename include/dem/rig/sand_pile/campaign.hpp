@@ -42,9 +42,11 @@ void make_pile(const SandPile<Model>& sand_pile, PileResult& r, report::Replay* 
   work_and_save(make, [&] {
     if (!r.samples.empty()) save_samples<Sample>(session.folder() / (name + ".csv"), r.samples, sample_columns);
     if (!r.pile.empty()) {
-      soil::save_packing(
-          {s.half_edge, 2.0 * s.plate_radius, 2.0 * s.plate_radius, "a pile, " + s.method, r.pile, r.kind.shape},
-          session.folder() / (name + ".txt"));
+      const bool drains = s.method == "drain";
+      const double length = drains ? s.box_length : 2.0 * s.plate_radius;
+      const double width = drains ? s.box_width : 2.0 * s.plate_radius;
+      soil::save_packing({s.half_edge, length, width, "a pile, " + s.method, r.pile, r.kind.shape},
+                         session.folder() / (name + ".txt"));
     }
   });
 }

@@ -35,24 +35,30 @@ inline void check(const Settings& s) {
   require_within(s.half_edge, 1e-6, 1.0, "--half-edge (m, 0: by size)");
   require_positive(s.density, "--density", "kg/m^3");
   const double d = 2.0 * s.half_edge;
-  require_within(s.cylinder_radius, 2.0 * d, 1e3 * d, "--cylinder-radius (m, from two grains to a thousand)");
+  const bool drains = s.method == "drain";
+  if (!drains)
+    require_within(s.cylinder_radius, 2.0 * d, 1e3 * d, "--cylinder-radius (m, from two grains to a thousand)");
   // On a wider floor the rows of the lattice that grains fall from may end before enough of them lie in the cylinder.
   const double widest = 2.5 * d * std::sqrt(static_cast<double>(s.grains));
-  if (s.method != "drain" && s.cylinder_radius > widest) {
+  if (!drains && s.cylinder_radius > widest) {
     fail(
         "--cylinder-radius is {:g} m, but must be at most {:.3g} m, for {} grains of half-edge {:g} m to cover a "
         "twentieth of its floor; lower it, or give more --grains",
         s.cylinder_radius, widest, s.grains, s.half_edge);
   }
-  require_within(s.plate_radius, s.cylinder_radius, 4e3 * d, "--plate-radius (m, from the cylinder's up)");
+  if (!drains) require_within(s.plate_radius, s.cylinder_radius, 4e3 * d, "--plate-radius (m, from the cylinder's up)");
   require_within(s.lift_speed, 1e-3, 10.0, "--lift-speed (m/s)");
-  require_within(s.orifice_radius, 1.5 * d, 0.9 * s.cylinder_radius,
-                 "--orifice-radius (m, from one and a half grains to nine tenths of the cylinder)");
+  if (s.method == "funnel") {
+    require_within(s.orifice_radius, 1.5 * d, 0.9 * s.cylinder_radius,
+                   "--orifice-radius (m, from one and a half grains to nine tenths of the cylinder)");
+  }
   require_positive(s.orifice_height, "--orifice-height", "m");
   require_within(s.funnel_angle_deg, 5.0, 80.0, "--funnel-angle (deg)");
-  require_within(s.box_length, 4.0 * d, 4e3 * d, "--box-length (m, from four grains up)");
-  require_within(s.box_width, 5.0 * d, 4e3 * d, "--box-width (m, from five grains up)");
-  require_within(s.slot_width, 2.0 * d, 1e3 * d, "--slot-width (m, from two grains up)");
+  if (drains) {
+    require_within(s.box_length, 4.0 * d, 4e3 * d, "--box-length (m, from four grains up)");
+    require_within(s.box_width, 5.0 * d, 4e3 * d, "--box-width (m, from five grains up)");
+    require_within(s.slot_width, 2.0 * d, 1e3 * d, "--slot-width (m, from two grains up)");
+  }
   check_contact_options(s);
   check_constants_for(s);
   require_non_negative(s.plate_friction, "--plate-friction", "(no unit)");

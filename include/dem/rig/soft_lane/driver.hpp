@@ -9,7 +9,8 @@
 
 namespace dem::rig::soft_lane {
 
-/// Drives a scene: along the lane, or by a table of inputs, or brakes, coasts or turns after half of the path. Asked
+/// Drives a scene: along the lane, or by a table of inputs, or brakes or coasts after half of the path, or turns
+/// after the first 15 % of it. Asked
 /// every hundredth of a second.
 class Driver {
  public:
