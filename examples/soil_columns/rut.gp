@@ -1,5 +1,5 @@
 # Draws the rut that soil_columns wrote: gnuplot -e "folder = 'out/soil_columns'" examples/soil_columns/rut.gp
-if (!exists("folder")) folder = "soil_columns"
+if (!exists("folder")) folder = "soil_columns_output"
 set terminal pngcairo size 1100,520 font ",12"
 set output folder."/rut.png"
 set datafile separator ","

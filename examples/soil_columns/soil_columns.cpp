@@ -3,6 +3,7 @@
 //
 //   soil_columns --load 130 --soil sand.toml --output out/soil_columns
 //   soil_columns --wheel grousers --grouser 0.01        also smooth; rough is the default
+//   soil_columns --radius 0.3 --width 0.2 --load 800 --slips=-0.2,0,0.2
 //   soil_columns --halve                                how much the results change with columns half as wide
 //
 // prints a table, and writes it as CSV, plots, and the last rut as CSV, PGM picture and ParaView surface. A slip at
@@ -21,6 +22,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <ctime>
@@ -32,9 +34,11 @@ using namespace dem;
 using namespace dem::terramechanics;
 
 int main(int argc, char** argv) {
-  ColumnWheel s = {.spin = radians(17.0)};
+  ColumnWheel s;
   NamedSoil named = {"sand P1", "D. Melanz", melanz_sand};
   std::string soil_file, output = "soil_columns_output", kind = "rough";
+  std::vector<double> slips = {-0.7, -0.5, -0.3, -0.2, -0.1, -0.05, 0.0, 0.05, 0.1, 0.2, 0.3, 0.5, 0.7};
+  double spin = 17.0;  // deg/s
   double grouser = 0.01, friction = 0.3;
   bool halve = false;
   CLI::App app("A rigid wheel on soil columns, beside the semi-empirical curves");
@@ -47,7 +51,15 @@ int main(int argc, char** argv) {
   const auto* friction_option =
       app.add_option("--friction", friction, "mu of a smooth rim on the soil, 0 to 2")->capture_default_str();
   app.add_flag("--halve", halve, "the same on columns half as wide, and how much that changes");
-  app.add_option("--load", s.load, "on the wheel [N], 20 to 10000")->capture_default_str();
+  app.add_option("--radius", s.wheel.radius, "of the wheel without grousers [m], 0.05 to 2")->capture_default_str();
+  app.add_option("--width", s.wheel.width, "of the wheel [m], 0.02 to 2")->capture_default_str();
+  app.add_option("--load", s.load, "on the wheel [N], 20 to 100000")->capture_default_str();
+  app.add_option("--spin", spin, "[deg/s], 1 to 360")->capture_default_str();
+  app.add_option("--slips", slips, "s = 1 - v/(omega r), from -5 to below 1, with commas between them")
+      ->delimiter(',')
+      ->capture_default_str();
+  app.add_option("--bulldozing", s.bulldozing, "share of the soil pressed aside that is piled up there, 0 to 1")
+      ->capture_default_str();
   app.add_option("--spacing", s.spacing, "of the columns [m], 0.001 to 0.05")->capture_default_str();
   app.add_option("--travel", s.travel, "[m], 0.05 to 10")->capture_default_str();
   app.add_option("--output", output, "folder for the results")->capture_default_str();
@@ -62,7 +74,14 @@ int main(int argc, char** argv) {
     require_kind(friction_option, "--friction", "smooth");
     require_within(grouser, 1e-3, 0.1, "--grouser (m)");
     require_within(friction, 0.0, 2.0, "--friction");
-    require_within(s.load, 20.0, 1e4, "--load (N)");
+    require_within(s.wheel.radius, 0.05, 2.0, "--radius (m)");
+    require_within(s.wheel.width, 0.02, 2.0, "--width (m)");
+    require_within(s.load, 20.0, 1e5, "--load (N)");
+    require_within(spin, 1.0, 360.0, "--spin (deg/s)");
+    require_within(s.bulldozing, 0.0, 1.0, "--bulldozing");
+    std::sort(slips.begin(), slips.end());
+    for (const double slip : slips) require_within(slip, -5.0, 0.95, "a slip of --slips, 1 - v/(omega r)");
+    s.spin = radians(spin);
     require_within(s.spacing, 1e-3, 0.05, "--spacing (m)");
     require_within(s.travel, 0.05, 10.0, "--travel (m)");
     if (!soil_file.empty()) named = load_soil(soil_file);
@@ -108,7 +127,7 @@ int main(int argc, char** argv) {
       }
     };
     double largest[3] = {}, changed[3] = {};  // of each quantity, and by how much columns half as wide change it
-    for (const double slip : {-0.7, -0.5, -0.3, -0.2, -0.1, -0.05, 0.0, 0.05, 0.1, 0.2, 0.3, 0.5, 0.7}) {
+    for (const double slip : slips) {
       const auto roll = [&](const ColumnWheel& w) {
         const auto found = carried([&] { return roll_on_columns(w, slip); });
         if (found) simulated += w.travel / (w.spin * w.wheel.radius * (1.0 - slip));
