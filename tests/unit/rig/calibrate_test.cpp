@@ -313,7 +313,8 @@ TEST_CASE("searches that cannot work are refused by the names of their options")
     change(s);
     CHECK_THROWS_WITH(resolve(s), Catch::Contains(words));
   };
-  refuses([](auto& s) { s.phi = 0.0; }, "--phi, --repose or --pressure");
+  refuses([](auto& s) { s.phi = 0.0; }, "--phi, --repose, --pressure or --exponent");
+  refuses([](auto& s) { s.exponent = 20.0; }, "--exponent is 20");
   refuses([](auto& s) { s.find = "friction,rolling"; }, "as many targets as constants");
   refuses([](auto& s) { s.find = "rolling"; }, "--repose");
   refuses([](auto& s) { s.find = "colour"; }, "'colour'");
@@ -337,7 +338,9 @@ TEST_CASE("searches that cannot work are refused by the names of their options")
   CHECK_NOTHROW(resolve(both));
   CHECK(unit_of(both, Constant::stiffness) == "N/m for half-edge 1.2 mm");
   both.held.constants_for = -1.0;
-  both.phi = 0.0;
+  both.phi = 0.0, both.exponent = 0.8;
+  CHECK_NOTHROW(resolve(both));  // one plate has both targets
+  CHECK(quantities_of(both) == std::vector{Quantity::pressure, Quantity::exponent});
   CHECK(unit_of(both, Constant::stiffness) == "N/m for half-edge 1.86 mm");
   refuses([](auto& s) { s.phi = std::nan(""); }, "--phi (deg) is nan");
   refuses([](auto& s) { s.pressure = std::nan(""); }, "--pressure is nan");

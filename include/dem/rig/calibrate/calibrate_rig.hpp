@@ -33,7 +33,7 @@ class CalibrateRig : public Rig {
   [[nodiscard]] std::string output() const override { return settings.output; }
   [[nodiscard]] ResultNames results() const override {
     ResultNames names{.files = {"found.csv"},
-                      .plots = {"response_phi", "response_repose", "response_pressure", "search"}};
+                      .plots = {"response_phi", "response_repose", "response_pressure", "response_exponent", "search"}};
     if (!settings.go_on) names.files.push_back("tried.csv");
     return names;
   }
@@ -183,9 +183,10 @@ class CalibrateRig : public Rig {
     const auto quantities = quantities_of(s);
     for (std::size_t q = 0; q < quantities.size(); ++q) {
       if (s.known.empty()) {
-        list.push_back(quantities[q] == Quantity::phi      ? Goal{s.phi, s.phi_error}
-                       : quantities[q] == Quantity::repose ? Goal{s.repose, s.repose_error}
-                                                           : Goal{s.pressure, s.pressure_error});
+        list.push_back(quantities[q] == Quantity::phi        ? Goal{s.phi, s.phi_error}
+                       : quantities[q] == Quantity::repose   ? Goal{s.repose, s.repose_error}
+                       : quantities[q] == Quantity::pressure ? Goal{s.pressure, s.pressure_error}
+                                                             : Goal{s.exponent, s.exponent_error});
         continue;
       }
       std::vector<double> made;

@@ -22,12 +22,12 @@ namespace dem::rig::calibrate {
 enum class Constant { friction, stiffness, density, rolling };
 
 /// What a rig measures.
-enum class Quantity { phi, repose, pressure };
+enum class Quantity { phi, repose, pressure, exponent };
 
 inline constexpr const char* names_of_constants[] = {"friction", "stiffness", "relative-density", "rolling"};
 inline constexpr const char* units_of_constants[] = {"", "N/m", "", "half-edges"};
-inline constexpr const char* names_of_quantities[] = {"phi", "repose", "pressure"};
-inline constexpr const char* units_of_quantities[] = {"deg", "deg", "Pa"};
+inline constexpr const char* names_of_quantities[] = {"phi", "repose", "pressure", "exponent"};
+inline constexpr const char* units_of_quantities[] = {"deg", "deg", "Pa", "-"};
 
 /// Everything that can be chosen. A value of 0 where it says "0: by size" is filled in by resolve().
 struct Settings {
@@ -37,9 +37,10 @@ struct Settings {
   std::string targets;            ///< made with `known`: quantities, with commas between them
 
   // Targets; 0: not one
-  double phi = 0.0, phi_error = 0.5;            ///< deg, of direct shear, through the origin
-  double repose = 0.0, repose_error = 1.0;      ///< deg, of a pile
-  double pressure = 0.0, pressure_error = 0.0;  ///< Pa, of a plate: mean over the second half of the sinkage; 0: 5 %
+  double phi = 0.0, phi_error = 0.5;             ///< deg, of direct shear, through the origin
+  double repose = 0.0, repose_error = 1.0;       ///< deg, of a pile
+  double pressure = 0.0, pressure_error = 0.0;   ///< Pa, of a plate: mean over the second half of the sinkage; 0: 5 %
+  double exponent = 0.0, exponent_error = 0.05;  ///< n of p = k z^n, of the same plate
 
   // Ranges
   std::vector<double> friction_range = {0.1, 0.9};
@@ -92,7 +93,14 @@ inline std::vector<Quantity> quantities_of(const Settings& s) {
   if (s.phi > 0.0) list.push_back(Quantity::phi);
   if (s.repose > 0.0) list.push_back(Quantity::repose);
   if (s.pressure > 0.0) list.push_back(Quantity::pressure);
+  if (s.exponent > 0.0) list.push_back(Quantity::exponent);
   return list;
+}
+inline bool is_of_plate(Quantity q) { return q == Quantity::pressure || q == Quantity::exponent; }
+/// Whether a plate is pressed.
+inline bool presses(const Settings& s) {
+  const auto list = quantities_of(s);
+  return std::any_of(list.begin(), list.end(), is_of_plate);
 }
 
 inline const std::vector<double>& range_of(const Settings& s, Constant c) {
@@ -124,8 +132,10 @@ inline void declare(Options& options, Settings& s) {
   add("--repose-error", s.repose_error, "its standard error [deg]");
   add("--pressure", s.pressure, "on a plate, mean over the second half of its sinkage [Pa]; 0: no target");
   add("--pressure-error", s.pressure_error, "its standard error [Pa]; 0: 5 %");
+  add("--exponent", s.exponent, "n of the plate's curve p = k z^n: with --pressure its course; 0: no target");
+  add("--exponent-error", s.exponent_error, "its standard error");
   add("--known", s.known, "values of the constants that targets are made with by the rigs: to try the search out");
-  add("--targets", s.targets, "that are made: of phi, repose, pressure, with commas between them");
+  add("--targets", s.targets, "that are made: of phi, repose, pressure, exponent, with commas between them");
   options.group("Constants");
   add("--find", s.find, "which: of friction, stiffness, relative-density, rolling, with commas between them");
   add("--friction-range", s.friction_range, "least and greatest, e.g. 0.1,0.9");
@@ -160,16 +170,19 @@ inline void find_idle(IdleOptions& idle, const Settings& s) {
   };
   const bool made = !s.known.empty();
   idle.unless(!made, "without --known, by which targets are made",
-              {"--phi", "--phi-error", "--repose", "--repose-error", "--pressure", "--pressure-error"});
+              {"--phi", "--phi-error", "--repose", "--repose-error", "--pressure", "--pressure-error", "--exponent",
+               "--exponent-error"});
   idle.unless(made, "with --known", {"--targets"});
   idle.unless(s.phi != 0.0, "with --phi", {"--phi-error"});
   idle.unless(s.repose != 0.0, "with --repose", {"--repose-error"});
   idle.unless(s.pressure != 0.0, "with --pressure", {"--pressure-error"});
+  idle.unless(s.exponent != 0.0, "with --exponent", {"--exponent-error"});
   const auto aims = [&](double target, const char* name) {
     return made ? has(s.targets.empty() ? "phi" : s.targets, name) : target != 0.0;
   };
   idle.unless(aims(s.phi, "phi"), "with the target phi", {"--loads"});
-  idle.unless(aims(s.pressure, "pressure"), "with the target pressure", {"--plate"});
+  const bool by_plate = aims(s.pressure, "pressure") || aims(s.exponent, "exponent");
+  idle.unless(by_plate, "with the target pressure or exponent", {"--plate"});
   idle.unless(aims(s.repose, "repose"), "with the target repose", {"--pile-kind"});
   idle.unless(has(s.find, "friction"), "with --find friction", {"--friction-range"});
   idle.unless(has(s.find, "stiffness"), "with --find stiffness", {"--stiffness-range"});
@@ -177,9 +190,10 @@ inline void find_idle(IdleOptions& idle, const Settings& s) {
   idle.unless(has(s.find, "rolling"), "with --find rolling", {"--rolling-range"});
   idle.unless(!has(s.find, "friction"), "where --find does not name friction", {"--friction"});
   idle.unless(!has(s.find, "stiffness"), "where --find does not name stiffness", {"--stiffness"});
-  const bool packs = aims(s.phi, "phi") || aims(s.pressure, "pressure");
+  const bool packs = aims(s.phi, "phi") || by_plate;
   idle.unless(packs && !has(s.find, "relative-density"),
-              "with the target phi or pressure, where --find does not name relative-density", {"--relative-density"});
+              "with the target phi, pressure or exponent, where --find does not name relative-density",
+              {"--relative-density"});
   idle.unless(aims(s.repose, "repose") && s.kind == "sphere-rolling" && !has(s.find, "rolling"),
               "with the target repose of sphere-rolling, where --find does not name rolling", {"--rolling"});
 }
@@ -208,9 +222,7 @@ inline std::vector<OwnWord> own_words(const Settings& s) {
 /// m, the half-edge that a stiffness is given for: that of the rigs, which `held.constants_for` overrides.
 inline double size_of_stiffness(const Settings& s) {
   if (s.held.constants_for > 0.0) return s.held.constants_for;
-  const auto quantities = quantities_of(s);
-  const bool by_plates = std::count(quantities.begin(), quantities.end(), Quantity::pressure) > 0;
-  return by_plates ? plate_sinkage::Settings{}.grains.constants_for : sand_pile::Settings{}.constants_for;
+  return presses(s) ? plate_sinkage::Settings{}.grains.constants_for : sand_pile::Settings{}.constants_for;
 }
 
 /// Fills in what depends on the size, and checks every option. Throws Error.
@@ -221,20 +233,22 @@ inline void resolve(Settings& s) {
   require_within(s.phi, 0.0, 89.0, "--phi (deg)");
   require_within(s.repose, 0.0, 89.0, "--repose (deg)");
   require_non_negative(s.pressure, "--pressure", "Pa");
+  require_within(s.exponent, 0.0, 10.0, "--exponent");
   const auto constants = constants_of(s);
   const auto quantities = quantities_of(s);
   if (quantities.empty()) {
     fail(
-        "there is no target; give --phi, --repose or --pressure, or make one with --known; to go on with a search, "
+        "there is no target; give --phi, --repose, --pressure or --exponent, or make one with --known; to go on with a "
+        "search, "
         "give those that it had (or --config with its settings.toml)");
   }
   if (quantities.size() < constants.size()) {
     fail("{} constants cannot be told from {} target{}; give as many targets as constants", constants.size(),
          quantities.size(), quantities.size() == 1 ? "" : "s");
   }
-  const bool by_plates = std::count(quantities.begin(), quantities.end(), Quantity::pressure) > 0;
+  const bool by_plates = presses(s), by_others = !std::all_of(quantities.begin(), quantities.end(), is_of_plate);
   if (std::count(constants.begin(), constants.end(), Constant::stiffness) + (s.held.stiffness >= 0.0 ? 1 : 0) > 0 &&
-      by_plates && quantities.size() > 1 && !(s.held.constants_for > 0.0)) {
+      by_plates && by_others && !(s.held.constants_for > 0.0)) {
     fail(
         "a stiffness is that of grains of one half-edge, but the plate has it for {:g} mm, shear test and pile for "
         "{:g} "
@@ -256,8 +270,8 @@ inline void resolve(Settings& s) {
       require_within(range[1], 0.0, sand_pile::sphere_radius(1.0),
                      "the greatest of --rolling-range (half-edges, at most the radius of a sphere)");
     }
-    if (c == Constant::density && !measures(Quantity::phi) && !measures(Quantity::pressure)) {
-      fail("no target depends on the relative density; aim at --phi or --pressure");
+    if (c == Constant::density && !measures(Quantity::phi) && !by_plates) {
+      fail("no target depends on the relative density; aim at --phi, --pressure or --exponent");
     }
   }
   if (range_of(s, Constant::density).size() == 2)
@@ -272,6 +286,7 @@ inline void resolve(Settings& s) {
   require_non_negative(s.phi_error, "--phi-error", "deg");
   require_non_negative(s.repose_error, "--repose-error", "deg");
   require_non_negative(s.pressure_error, "--pressure-error", "Pa");
+  require_non_negative(s.exponent_error, "--exponent-error", "(no unit)");
   fill(s.pressure_error, 0.05 * s.pressure);
   require_within(static_cast<double>(s.trials), 3.0, 1e4, "--trials (0: by size)");
   require_within(static_cast<double>(s.repeats), 1.0, 1e3, "--repeats");

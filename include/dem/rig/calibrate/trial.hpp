@@ -12,7 +12,7 @@
 #include <dem/rig/session.hpp>
 
 #include <cmath>
-#include <iterator>
+#include <optional>
 #include <string>
 #include <system_error>
 #include <vector>
@@ -107,11 +107,16 @@ inline plate_sinkage::Settings plate_settings(const Settings& s, const Trial& t,
   return p;
 }
 
-inline double measure_pressure(const Settings& s, const Trial& t, const Worlds& worlds, Session& session) {
+/// What a plate has told.
+struct Pressed {
+  double pressure = std::nan(""), exponent = std::nan("");
+};
+inline Pressed press(const Settings& s, const Trial& t, const Worlds& worlds, Session& session) {
   const auto p = plate_settings(s, t, session.folder().string());
   plate_sinkage::Campaign campaign;
   worlds.press(p, campaign, session);
-  return plate_sinkage::mean_pressure(campaign.variants.front().plates.front(), p);
+  const auto& plate = campaign.variants.front().plates.front();
+  return {plate_sinkage::mean_pressure(plate, p), plate.fit ? plate.fit->curve.exponent : std::nan("")};
 }
 
 inline sand_pile::Settings pile_settings(const Settings& s, const Trial& t, const std::string& output) {
@@ -186,21 +191,29 @@ inline void run_trial(const Settings& s, Trial& t, const Worlds& worlds, const s
                       const CheckpointOptions& checkpoints, Stages& stages) {
   const auto quantities = quantities_of(s);
   t.results.assign(quantities.size(), std::nan(""));
+  std::optional<detail::Pressed> pressed;  // one plate tells its pressure and its exponent
   for (std::size_t q = 0; q < quantities.size(); ++q) {
+    const auto of_plate = [&] { return quantities[q] == Quantity::pressure ? pressed->pressure : pressed->exponent; };
+    if (pressed && is_of_plate(quantities[q])) {
+      t.results[q] = of_plate();
+      continue;
+    }
     ShareOf share(stages, q, quantities.size());
     const auto own = detail::folder_of(folder, t, quantities[q]);
     const std::string config = detail::values_text(s, t);
     const CheckpointOptions kept = checkpoints_within(checkpoints, "calibrate", own, config);
     Session session({"calibrate", own.string(), config, {}, own_words(s), kept, &share});
     try {
+      if (is_of_plate(quantities[q])) pressed = detail::press(s, t, worlds, session);
       t.results[q] = quantities[q] == Quantity::phi      ? detail::measure_phi(s, t, worlds, session)
                      : quantities[q] == Quantity::repose ? detail::measure_repose(s, t, worlds, session)
-                                                         : detail::measure_pressure(s, t, worlds, session);
+                                                         : of_plate();
       session.end();
     } catch (const Interrupted&) {
       throw;
     } catch (const std::exception& problem) {
       if (kept.resume && !session.has_begun()) throw;  // what it was to go on from is damaged
+      if (is_of_plate(quantities[q])) pressed.emplace();
       stages.message(
           text("warning: run {} found nothing: {}", own.filename().string(), session.in_own_words(problem.what())));
     }
