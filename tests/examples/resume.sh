@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # A rig that is killed at random moments, again and again, and goes on each time, ends with the same bytes in all its
 # files (CSV, frames, beds, scripts of plots) as a run that was never stopped, and with the same numbers in what it prints.
-# Only kills that hit a running program count. A run that comes to its end before there were enough of them is compared,
-# and the next one is begun.
+# It goes on with its folder written otherwise. Only kills that hit a running program count. A run that comes to its end
+# before there were enough of them is compared, and the next one is begun.
 #
 #   resume.sh <rig> <output folder> <kills> <options>...
 #
@@ -64,7 +64,7 @@ has_ended() { grep -q 'has ended, or kept nothing' "$output/killed.txt"; }
 # Each kill comes after up to a fifth of the run, so that it dies in all its stages, at times before anything is kept anew.
 killed=0 gone_on=0 ends=0 resume=()
 while ((killed < kills && ends <= kills)); do
-  "$rig" "$@" --output "$output/killed" --checkpoint-every "$every" "${resume[@]}" > "$output/killed.txt" 2>&1 & run=$!
+  "$rig" "$@" --output "$output/${resume[0]:+./}killed" --checkpoint-every "$every" "${resume[@]}" > "$output/killed.txt" 2>&1 & run=$!
   wait_s=$(awk -v w="$whole" -v r="$RANDOM" -v n="$kills" 'BEGIN { print 0.02 + 1e-3 * w * (0.6 / n + 0.2 * r / 32768) }')
   sleep "$wait_s"
   kill -KILL "$run" 2> /dev/null || true
@@ -88,7 +88,7 @@ while ((killed < kills && ends <= kills)); do
 done
 ((killed == kills)) || refuse "only $killed of $kills kills hit a running program, which came to its end $ends times"
 for ((end = 0; end < 2; ++end)); do
-  "$rig" "$@" --output "$output/killed" "${resume[@]}" > "$output/killed.txt" 2>&1 & run=$!
+  "$rig" "$@" --output "$output/${resume[0]:+./}killed" "${resume[@]}" > "$output/killed.txt" 2>&1 & run=$!
   status=0
   wait "$run" || status=$?
   ((status != 0)) || break

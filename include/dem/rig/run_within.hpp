@@ -54,6 +54,13 @@ inline std::string settings_as_they_are(Rig& rig) {
   return settings_text(options, idle);
 }
 
+/// Whether a path lies in a folder, however both are written.
+inline bool lies_in(const std::filesystem::path& path, const std::filesystem::path& folder) {
+  const auto home = (folder.empty() ? std::filesystem::path(".") : folder).lexically_normal();
+  const auto from = path.lexically_normal().lexically_relative(home);
+  return !from.empty() && *from.begin() != "..";
+}
+
 /// Runs a rig, whose settings are resolved, in its own output folder as a stage of another run, and makes its report
 /// there. `session` has begun that stage with the total 1. What ends the run early is thrown here, after the report.
 /// Parts of the report and files for ParaView that are missing are noted in the outcome of `session`. The run is kept
@@ -65,7 +72,10 @@ inline void run_within(Session& session, Rig& rig, const char* program, const ch
   Options options;
   rig.declare(options);
   for (const Option& option : options.all()) {
-    if (!option.changes_results) free_settings.push_back(option.key());
+    // What lies in the folder of the other run, as its soil and its beds do, is where that folder is now.
+    const auto* const place = std::get_if<std::string*>(&option.value);
+    const bool goes_along = place != nullptr && !(*place)->empty() && lies_in(**place, session.folder());
+    if (!option.changes_results || goes_along) free_settings.push_back(option.key());
   }
   const std::string config = settings_as_they_are(rig);
   CheckpointOptions checkpoints =

@@ -70,8 +70,7 @@ inline void add_bed_options(Options& options, BedSettings& s) {
       "them");
   add("--save-bed", s.save,
       "file for the levelled bed; .h5: with all contacts, so that it needs no settling (needs HDF5); empty: bed.txt in "
-      "the output folder")
-      .changes_no_result();
+      "the output folder");
 }
 
 /// Those that change nothing with a bed from a file, or one that is not shaken.
