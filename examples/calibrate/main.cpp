@@ -1,6 +1,6 @@
 // Which constants must grains have, to do in a test what a soil does? Friction, stiffness, packing and rolling
-// resistance are looked for that reproduce an angle of friction, an angle of repose or the pressure on a plate. See
-// --help. Its runs are small and go side by side on the threads of one process.
+// resistance are looked for that reproduce an angle of friction, an angle of repose, or pressure and exponent of a
+// plate's curve. See --help. Its runs are small and go side by side on the threads of one process.
 //
 //   calibrate --known 0.35                              a target of known friction is made, and found again
 //   calibrate --phi 38.04 --loads 6.2,16.2,26.2         friction for table 3.3 of the thesis

@@ -34,7 +34,7 @@ using namespace dem;
 using namespace dem::terramechanics;
 
 int main(int argc, char** argv) {
-  ColumnWheel s;
+  ColumnWheel s{.travel = 0.0};
   NamedSoil named = {"sand P1", "D. Melanz", melanz_sand};
   std::string soil_file, output = "soil_columns_output", kind = "rough";
   std::vector<double> slips = {-0.7, -0.5, -0.3, -0.2, -0.1, -0.05, 0.0, 0.05, 0.1, 0.2, 0.3, 0.5, 0.7};
@@ -55,13 +55,13 @@ int main(int argc, char** argv) {
   app.add_option("--width", s.wheel.width, "of the wheel [m], 0.02 to 2")->capture_default_str();
   app.add_option("--load", s.load, "on the wheel [N], 20 to 100000")->capture_default_str();
   app.add_option("--spin", spin, "[deg/s], 1 to 360")->capture_default_str();
-  app.add_option("--slips", slips, "s = 1 - v/(omega r), from -5 to below 1, with commas between them")
+  app.add_option("--slips", slips, "s = 1 - v/(omega r), from -5 to 0.95, with commas between them")
       ->delimiter(',')
       ->capture_default_str();
   app.add_option("--bulldozing", s.bulldozing, "share of the soil pressed aside that is piled up there, 0 to 1")
       ->capture_default_str();
   app.add_option("--spacing", s.spacing, "of the columns [m], 0.001 to 0.05")->capture_default_str();
-  app.add_option("--travel", s.travel, "[m], 0.05 to 10")->capture_default_str();
+  app.add_option("--travel", s.travel, "[m], 0.05 to 10; 0: 0.3, or one and a half radii, whichever is more");
   app.add_option("--output", output, "folder for the results")->capture_default_str();
   CLI11_PARSE(app, argc, argv);
   if (!dem::rig::may_run("soil_columns", argv[0])) return 1;
@@ -83,6 +83,8 @@ int main(int argc, char** argv) {
     for (const double slip : slips) require_within(slip, -5.0, 0.95, "a slip of --slips, 1 - v/(omega r)");
     s.spin = radians(spin);
     require_within(s.spacing, 1e-3, 0.05, "--spacing (m)");
+    if (s.travel == 0.0) s.travel = std::max(0.3, 1.5 * s.wheel.radius);
+    s.wheel_mass = std::max(1.5, 0.1 * s.load / 9.81);  // kg, of its load; the rest is the hub's
     require_within(s.travel, 0.05, 10.0, "--travel (m)");
     if (!soil_file.empty()) named = load_soil(soil_file);
     s.soil = named.soil;
@@ -112,6 +114,7 @@ int main(int argc, char** argv) {
     }
     io::AtomicFile{output + "/wheel.csv"};  // can be written; it is gone again, for it is not committed
     std::vector<std::vector<double>> rows;
+    if (kind == "grousers") fmt::print("Sinkage on columns is that of the tips, by the equations that of the rim.\n");
     if (kind == "smooth") fmt::print("The equations know no smooth rim: theirs are of soil on soil.\n");
     const std::clock_t start = std::clock();
     double simulated = 0.0;

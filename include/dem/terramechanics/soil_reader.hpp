@@ -28,6 +28,16 @@ inline std::string_view trimmed(std::string_view text) {
   return text;
 }
 
+/// A number without what TOML allows in it besides: a plus before it, and underscores between digits (1_528_430).
+inline std::string plain_number(std::string text) {
+  const auto is_digit = [&](std::size_t k) { return k < text.size() && text[k] >= '0' && text[k] <= '9'; };
+  for (std::size_t k = 1; k + 1 < text.size(); ++k) {
+    if (text[k] == '_' && is_digit(k - 1) && is_digit(k + 1)) text.erase(k, 1);
+  }
+  if (text.starts_with('+') && (is_digit(1) || text.substr(1).starts_with('.'))) text.erase(0, 1);
+  return text;
+}
+
 inline std::vector<SoilLine> soil_lines(std::string_view text, const std::string& where) {
   std::vector<SoilLine> lines;
   for (std::size_t number = 1; !text.empty(); ++number) {
@@ -59,8 +69,7 @@ inline std::vector<SoilLine> soil_lines(std::string_view text, const std::string
       }
     } else {
       line.value = trimmed(value.substr(0, value.find('#')));
-      if (line.value.starts_with('+')) line.value.erase(0, 1);
-      std::erase(line.value, '_');  // 1_528_430, as TOML may have it
+      line.value = plain_number(std::move(line.value));
     }
     for (const SoilLine& other : lines) {
       if (other.name == line.name) {

@@ -84,9 +84,15 @@ TEST_CASE("a search goes on by --resume with its own settings, more points allow
   CHECK(search(output, {"--resume"}, -1, 8) == 2);  // it has ended
   REQUIRE(search(output, {"--go-on"}, -1, 8) == 0);
   CHECK(runs == 4);
-  // Begun anew, nothing of it is left.
+  // Begun anew, nothing of it is left but what it does not know.
+  for (const char* name : {"1_1_repose", "9_1_phi", "9_1_phi_mine"}) {
+    dem::io::write_file(output / "runs" / name / "load.csv", "0\n");
+  }
   REQUIRE(search(output, {}, 3) == 130);
   CHECK(runs == 3);
+  CHECK_FALSE(fs::exists(output / "runs/1_1_repose/load.csv"));
+  CHECK_FALSE(fs::exists(output / "runs/9_1_phi"));
+  CHECK(fs::exists(output / "runs/9_1_phi_mine/load.csv"));
 }
 
 }  // namespace calibrate_resume_test

@@ -269,9 +269,15 @@ TEST_CASE("constants that are not looked for are those of all rigs, and the othe
   CHECK(pile.rolling_length == Approx(0.25 * 3.2e-3));
   CHECK(shear.stiffness == 2e4);
   CHECK(pile.stiffness == 2e3);
+  const double fine = s.held.half_edge;
+  s.held.half_edge = 5e-5;
+  CHECK_THROWS_WITH(check_rigs(s), Catch::Contains("change --half-edge") && !Catch::Contains("--grains"));
+  s.phi = 0.0;
+  CHECK_THROWS_WITH(check_rigs(s), Catch::Contains("change --half-edge or --size"));
+  s.phi = 30.0, s.held.half_edge = fine;
   s.held.density = 0.0;
   CHECK_THROWS_WITH(check_rigs(s), Catch::Contains("--density is 0"));
-  s.held.density = -1.0, s.held.rolling = 5.0;
+  s.held.density = -1.0, s.held.rolling = 5.0, s.held.constants_for = 1e-3;
   CHECK_THROWS_WITH(resolve(s), Catch::Contains("--rolling (half-edges, at most the radius of a sphere) is 5"));
   s.held.rolling = 0.2;
   s.find = "relative-density", s.held.friction = std::nan("");
@@ -331,7 +337,8 @@ TEST_CASE("searches that cannot work are refused by the names of their options")
   refuses([](auto& s) { s.find = "friction,rolling", s.repose = 20.0, s.repeats = 1, s.trials = 3; },
           "raise --trials to 4, or --repeats");
   const auto by_both = [](auto& s) { s.find = "stiffness", s.pressure = 1e4; };
-  refuses(by_both, "the plate has it for 1.86 mm, shear test and pile for 0.9 mm; give one for all by --constants-for");
+  refuses(by_both,
+          "the plate has them for 1.86 mm, shear test and pile for 0.9 mm; give one for all by --constants-for");
   Settings both;
   both.phi = 30.0, by_both(both);
   both.held.constants_for = 1.2e-3;

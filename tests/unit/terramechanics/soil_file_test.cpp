@@ -112,6 +112,10 @@ TEST_CASE("soil files with mistakes are refused with the line") {
   CHECK_NOTHROW(refused("shear_displacement = 1e-3")());
   CHECK_THROWS_WITH(refused("")(), ContainsSubstring("'s.toml': shear_displacement is missing"));
   CHECK_THROWS_WITH(refused("shear_displacement = 1,5")(), ContainsSubstring("line 7: shear_displacement is '1,5'"));
+  for (const char* wrong : {"+-1e-3", "_1e-3", "1__0", "1_", "++1"}) {
+    CHECK_THROWS_WITH(refused("shear_displacement = " + std::string(wrong))(),
+                      ContainsSubstring("'" + std::string(wrong) + "'"));
+  }
   CHECK_THROWS_WITH(refused("shear_displacement = nan")(), ContainsSubstring("finite number"));
   CHECK_THROWS_WITH(refused("shear_displacement")(), ContainsSubstring("line 7: no '='"));
   CHECK_THROWS_WITH(refused("k = 3")(), ContainsSubstring("has no k; it has n, k_c, k_phi, cohesion"));

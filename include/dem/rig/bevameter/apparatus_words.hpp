@@ -10,7 +10,8 @@
 namespace dem::rig::bevameter {
 
 /// What the apparatus call otherwise than the bevameter, each for its own.
-inline constexpr OwnWord plate_words[] = {{"--speed", "--plate-speed"}};
+inline constexpr OwnWord plate_words[] = {{"--speed", "--plate-speed"},
+                                          {"lower --threshold or --sinkage", "lower --sinkage"}};
 inline constexpr OwnWord shear_words[] = {
     {"--travel", "--shear-travel"},
     {"--smoothing", "--shear-smoothing"},

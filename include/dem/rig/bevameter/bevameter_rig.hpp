@@ -15,6 +15,7 @@
 #include <span>
 #include <string>
 #include <utility>
+#include <vector>
 
 namespace dem::rig::bevameter {
 
@@ -44,7 +45,7 @@ class BevameterRig : public Rig {
     const Settings& s = settings;
     plates_.settings = plates_of(s);
     session.begin_run(s.has_wheel() ? 3 : 2);
-    if (!session.checkpoints().resume) clear_apparatus();
+    if (!session.checkpoints().resume) clear_apparatus(session);
     keep_begun(session, "bevameter");
     session.begin("plates", 1.0);
     run_in(plate_words, session, plates_, "plate_sinkage", "Plates of the bevameter");
@@ -112,12 +113,16 @@ class BevameterRig : public Rig {
   std::optional<Constants> constants = {};
 
  private:
-  /// Removes what an earlier run has left of the apparatus: those of this one come in turn, or not at all.
-  void clear_apparatus() const {
+  /// Removes what an earlier run has left of the apparatus of this one, which come in turn: until then their results
+  /// would stand beside another soil, and their checkpoints would be gone on from.
+  void clear_apparatus(Session& session) const {
     if (!process_writes_files) return;
-    for (const auto& [folder, rig] :
-         {std::pair<const char*, const Rig*>{"plates", &plates_}, {"shear", &shear_}, {"wheel", &wheel_}}) {
-      const std::filesystem::path own = folder_in(settings, folder);
+    std::vector<std::pair<const char*, const Rig*>> all{{"plates", &plates_}, {"shear", &shear_}};
+    if (settings.has_wheel()) all.emplace_back("wheel", &wheel_);
+    for (const auto& [name, rig] : all) {
+      const std::filesystem::path own = folder_in(settings, name);
+      const std::size_t results = find_old_results(own, rig->results()).size();
+      if (results > 0) session.message(text("Replacing {} results of an earlier run in '{}'.", results, own.string()));
       forget_run_within(own);
       remove_old_results(own, rig->results());
     }

@@ -140,8 +140,11 @@ inline NamesAndValues list_settings(const Settings& s) {
                {"seed", text("{}", s.seed)},
                {"plates", text("{:g} mm x {} mm, {:g} mm deep at {:g} mm/s", 1e3 * s.plate_length, all(s.widths, 1e3),
                                1e3 * s.sinkage, 1e3 * s.plate_speed)},
+               {"friction, grain on plate", text("{:g}", s.plate_friction)},
                {"normal stresses", all(s.normal_stresses, 1e-3) + " kPa"},
                {"wheel", s.has_wheel() ? text("{}, {:g} N, slips {}", s.wheel, s.load, all(s.slips, 1.0)) : "none"},
+               {"friction, grain on wheel", s.has_wheel() ? text("{:g}", wheel_of(s, "").wheel_friction) : "-"},
+               {"grains at rest", s.sleep ? "may sleep in the beds" : "stay awake"},
                {"intervals", text("{:g} % confidence", 100.0 * s.confidence)}});
   return list;
 }

@@ -60,7 +60,7 @@ class CalibrateRig : public Rig {
     session.begin_run(static_cast<int>(batches) + (s.known.empty() ? 0 : 1));
     if (!resumes) {
       forget_trials(session.folder() / "runs");
-      if (!s.go_on) remove_trials(session.folder() / "runs");
+      if (!s.go_on) remove_trials(session.folder() / "runs", session);
     } else if (std::filesystem::exists(table_)) {
       tried = load_tried(table_, s);
       session.message(text("Going on with the {} run{} in tried.csv.", tried.size(), tried.size() == 1 ? "" : "s"));

@@ -15,7 +15,7 @@ struct HeldConstants {
   double damping = -1.0;             ///< C, N s/m
   double separation_factor = -1.0;   ///< Sp
   double friction = -1.0;            ///< mu, grain on grain
-  double wall_friction = -1.0;       ///< mu, grain on wall, plate or floor
+  double wall_friction = -1.0;       ///< mu, grain on wall, and on the plate that a pile stands on
   double friction_stiffness = -1.0;  ///< kt, N/m
   double velocity_stiffness = -1.0;  ///< cv, N s/m
   double breaking_factor = -1.0;     ///< share of the friction that a broken asperity keeps
@@ -40,6 +40,11 @@ void for_each_held(Held& h, F&& f) {
   f("--constants-for", h.constants_for, "m", "half-edge that K, kt, C and cv are given for");
   f("--relative-density", h.relative_density, "", "of packing and bed");
   f("--rolling", h.rolling, "half-edges", "rolling length of the pile's grains");
+}
+
+/// Whether one is held whose number goes with the size of the grains.
+inline bool scales(const HeldConstants& h) {
+  return h.stiffness >= 0.0 || h.damping >= 0.0 || h.friction_stiffness >= 0.0 || h.velocity_stiffness >= 0.0;
 }
 
 /// Names the options, in a group of their own.

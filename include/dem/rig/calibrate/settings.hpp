@@ -208,6 +208,11 @@ inline std::vector<OwnWord> own_words(const Settings& s) {
       {"raise --consolidation-limit, --rest-speed or --damping", "change the ranges of the constants, or --damping"},
       {"raise --settle-limit or --damping", "change the ranges of the constants, or --damping"},
       {"raise --stage-limit or --damping", "change the ranges of the constants, or --damping"},
+      {"take more --grains or a smaller --half-edge, or let", "take another --size or a smaller --half-edge, or let"},
+      {"take fewer --grains, or a higher box", "take a smaller --half-edge"},
+      {"take fewer --grains, or larger ones (--half-edge)", "take a larger --half-edge"},
+      {"change --half-edge, or give --grains", "change --half-edge"},
+      {"change --half-edge, --bed-length, --bed-width or --bed-depth", "change --half-edge or --size"},
       {"--plates", "--plate"},
       {"--plate-friction", "--wall-friction"},
       {"--rolling-length", "--rolling"}};
@@ -219,8 +224,8 @@ inline std::vector<OwnWord> own_words(const Settings& s) {
   return words;
 }
 
-/// m, the half-edge that a stiffness is given for: that of the rigs, which `held.constants_for` overrides.
-inline double size_of_stiffness(const Settings& s) {
+/// m, the half-edge that K, kt, C and cv are given for: that of the rigs, which `held.constants_for` overrides.
+inline double size_of_constants(const Settings& s) {
   if (s.held.constants_for > 0.0) return s.held.constants_for;
   return presses(s) ? plate_sinkage::Settings{}.grains.constants_for : sand_pile::Settings{}.constants_for;
 }
@@ -247,10 +252,11 @@ inline void resolve(Settings& s) {
          quantities.size(), quantities.size() == 1 ? "" : "s");
   }
   const bool by_plates = presses(s), by_others = !std::all_of(quantities.begin(), quantities.end(), is_of_plate);
-  if (std::count(constants.begin(), constants.end(), Constant::stiffness) + (s.held.stiffness >= 0.0 ? 1 : 0) > 0 &&
-      by_plates && by_others && !(s.held.constants_for > 0.0)) {
+  const bool has_size = std::count(constants.begin(), constants.end(), Constant::stiffness) > 0 || scales(s.held);
+  if (has_size && by_plates && by_others && !(s.held.constants_for > 0.0)) {
     fail(
-        "a stiffness is that of grains of one half-edge, but the plate has it for {:g} mm, shear test and pile for "
+        "K, kt, C and cv are those of grains of one half-edge, but the plate has them for {:g} mm, shear test and pile "
+        "for "
         "{:g} "
         "mm; give one for all by --constants-for (m)",
         1e3 * plate_sinkage::Settings{}.grains.constants_for, 1e3 * sand_pile::Settings{}.constants_for);

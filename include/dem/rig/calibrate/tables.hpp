@@ -35,7 +35,7 @@ inline std::string number(double value, const char* format = "{:.4g}") { return 
 
 /// A unit, and what it is a stiffness of.
 inline std::string unit_of(const Settings& s, Constant c) {
-  if (c == Constant::stiffness) return text("N/m for half-edge {:g} mm", 1e3 * size_of_stiffness(s));
+  if (c == Constant::stiffness) return text("N/m for half-edge {:g} mm", 1e3 * size_of_constants(s));
   const std::string unit = units_of_constants[static_cast<int>(c)];
   return unit.empty() ? "-" : unit;
 }
@@ -190,10 +190,13 @@ inline void write_found(const std::filesystem::path& path, const Settings& s, co
 inline NamesAndValues list_settings(const Settings& s) {
   NamesAndValues list{{"size of the rigs", s.size}};
   for (const Constant c : constants_of(s)) {
+    const std::string unit = unit_of(s, c);
     list.emplace_back(names_of_constants[static_cast<int>(c)],
-                      text("from {:g} to {:g} {}", range_of(s, c)[0], range_of(s, c)[1], unit_of(s, c)));
+                      text("from {:g} to {:g}{}", range_of(s, c)[0], range_of(s, c)[1], unit == "-" ? "" : " " + unit));
   }
   list_settings(list, s.held);
+  if (scales(s.held))
+    list.emplace_back("K, kt, C and cv are for half-edge", text("{:g} mm", 1e3 * size_of_constants(s)));
   list.emplace_back("points", text("{}, {} seeds each, chosen {} at once", s.trials, s.repeats, s.batch));
   return list;
 }

@@ -174,9 +174,14 @@ inline void check_rigs(const Settings& s) {
     for (const Constant c : constants_of(s)) t.values.push_back(range_of(s, c)[end]);
     try {
       for (const Quantity q : quantities_of(s)) {
-        if (q == Quantity::phi) detail::shear_settings(s, t, s.output);
-        else if (q == Quantity::repose) detail::pile_settings(s, t, s.output);
-        else detail::plate_settings(s, t, s.output);
+        if (q == Quantity::phi) {
+          detail::shear_settings(s, t, s.output);
+        } else if (q == Quantity::repose) {
+          detail::pile_settings(s, t, s.output);
+        } else {
+          const auto p = detail::plate_settings(s, t, s.output);
+          grains_in(p.bed, p.grains, soil::cube_volume(p.grains.half_edge));
+        }
       }
     } catch (const Error& problem) {
       throw Error(in_own_words(problem.what(), own_words(s)));
@@ -232,7 +237,7 @@ inline void forget_trials(const std::filesystem::path& folder) {
 
 /// Removes the folders of runs that an earlier search has made there, as a new one begins. What is called otherwise
 /// stays.
-inline void remove_trials(const std::filesystem::path& folder) {
+inline void remove_trials(const std::filesystem::path& folder, Stages& stages) {
   if (!process_writes_files || !std::filesystem::is_directory(folder)) return;
   std::vector<std::filesystem::path> old;
   for (const auto& entry : std::filesystem::directory_iterator(folder)) {
@@ -240,6 +245,10 @@ inline void remove_trials(const std::filesystem::path& folder) {
     for (const char* quantity : names_of_quantities) {
       if (matches(entry.path().filename().string(), text("#+_#+_{}", quantity))) old.push_back(entry.path());
     }
+  }
+  if (!old.empty()) {
+    stages.message(
+        text("Removing {} folders of runs that an earlier search left in '{}'.", old.size(), folder.string()));
   }
   for (const auto& path : old) {
     std::error_code error;

@@ -108,12 +108,12 @@ void run_campaign(const Settings& settings, ShapeOf&& shape_of, Campaign& campai
                                 is_first ? static_cast<PartStore&>(store) : session.parts(), v.prefix() + "bed"));
       if (is_first) store.save_places(*bed);
     }
-    require_depth(v.settings, bed->level);
     result.level = bed->level;
     result.solid_fraction = bed->solid_fraction(bed->level);
     result.grains = bed->world.grain_count();
     result.time_step = bed->world.time_step();
     session.finish(level_text(result.level, result.solid_fraction));
+    require_depth(v.settings, result.level);
     detail::press_all(variant, *bed, result, campaign.replay, session);
   }
 }

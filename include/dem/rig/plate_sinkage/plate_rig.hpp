@@ -116,17 +116,17 @@ class PlateRig : public Rig {
     csv.flush();
   }
 
-  /// Of the forms over all plates, beside each other: in Pa/m^(n-1) and Pa/m^n (Bekker), without unit (Reece).
+  /// Of the forms over all plates, beside each other; the form says the units.
   void write_constants(const std::filesystem::path& path) const {
     io::CsvWriter csv(path, {"run", "form", "kc", "kc_error", "kphi", "kphi_error", "n", "n_error", "r_squared"});
     for (const VariantResult& v : campaign.variants) {
       const OverPlates fits = fit_over_plates(v);
       if (const auto& b = fits.bekker) {
-        csv.row(v.variant.text, "Bekker", cell(b->law.k_c), cell(b->error.k_c), cell(b->law.k_phi),
+        csv.row(v.variant.text, "Bekker [Pa/m^(n-1), Pa/m^n]", cell(b->law.k_c), cell(b->error.k_c), cell(b->law.k_phi),
                 cell(b->error.k_phi), cell(b->law.n), cell(b->error.n), cell(b->r_squared));
       }
       if (const auto& r = fits.reece) {
-        csv.row(v.variant.text, "Reece, c = 0", cell(not_known), cell(not_known), cell(r->law.k_phi),
+        csv.row(v.variant.text, "Reece, c = 0 [-]", cell(not_known), cell(not_known), cell(r->law.k_phi),
                 cell(r->k_phi_error), cell(r->law.n), cell(r->n_error), cell(r->r_squared));
       }
     }

@@ -75,9 +75,8 @@ struct VariantResult {
   double time_step = not_known;  ///< s
   std::vector<PlateResult> plates = {};
 
-  [[nodiscard]] double unit_weight() const {
-    return 9.81 * variant.settings.grains.density * solid_fraction;
-  }  ///< N/m^3
+  /// N/m^3
+  [[nodiscard]] double unit_weight() const { return 9.81 * variant.settings.grains.density * solid_fraction; }
 };
 
 /// Everything that a run finds.

@@ -46,7 +46,10 @@ struct Settings {
 /// Throws Error where a levelled bed is shallower (m) than twice the sinkage.
 inline void require_depth(const Settings& s, double level) {
   if (s.sinkage <= 0.5 * level || s.bed.file.empty() || BedSettings::is_state(s.bed.file)) return;
-  fail("--sinkage is {:g} m, but must be at most half of the bed's depth, which came out as {:g} m", s.sinkage, level);
+  fail(
+      "--sinkage is {:g} m, but must be at most half of the bed's depth, which came out as {:.4g} m; lower it, or take "
+      "a deeper bed",
+      s.sinkage, level);
 }
 
 using Variant = rig::Variant<Settings>;

@@ -136,6 +136,7 @@ inline void resolve(Settings& s) {
   resolve_study(s.study, s.study_seeds, s.bed);
   if (s.wheel_friction < 0.0)
     s.wheel_friction = s.wheel == "smooth" ? 0.2 : s.wheel == "rough" ? 0.8 : s.grains.friction;
+  require_within(s.wheel_friction, 0.0, 100.0, "--wheel-friction");
   std::sort(s.slips.begin(), s.slips.end());
   for (std::size_t k = 0; k < s.slips.size(); ++k) {
     require_within(s.slips[k], -5.0, 1.0, "a slip of --slips (1 - v/(omega r))");

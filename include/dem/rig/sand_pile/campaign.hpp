@@ -45,7 +45,9 @@ void make_pile(const SandPile<Model>& sand_pile, PileResult& r, report::Replay* 
       const bool drains = s.method == "drain";
       const double length = drains ? s.box_length : 2.0 * s.plate_radius;
       const double width = drains ? s.box_width : 2.0 * s.plate_radius;
-      soil::save_packing({s.half_edge, length, width, "a pile, " + s.method, r.pile, r.kind.shape},
+      std::vector<soil::Placement> pile = r.pile;
+      for (auto& grain : pile) grain.position.x() += drains ? 0.5 * length : 0.0;  // its floor ends at x = 0
+      soil::save_packing({s.half_edge, length, width, "a pile, " + s.method, std::move(pile), r.kind.shape},
                          session.folder() / (name + ".txt"));
     }
   });
