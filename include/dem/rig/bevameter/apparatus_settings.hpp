@@ -31,6 +31,15 @@ inline std::string folder_in(const Settings& s, const char* apparatus) {
   return (std::filesystem::path(s.output) / apparatus).string();
 }
 
+/// What an apparatus leaves in its folder.
+template <class ApparatusSettings>
+void set_output(ApparatusSettings& of, const Settings& s, const char* apparatus) {
+  of.output = folder_in(s, apparatus);
+  of.replay = s.replay;
+  of.replay_forces = s.replay_forces;
+  of.vtk = s.vtk;
+}
+
 /// The plates, drawn up again at the end.
 inline plate_sinkage::Settings plates_of(const Settings& s) {
   plate_sinkage::Settings p;
@@ -43,10 +52,7 @@ inline plate_sinkage::Settings plates_of(const Settings& s) {
   p.sinkage = s.sinkage;
   p.plate_friction = s.plate_friction;
   p.unload = true;
-  p.output = folder_in(s, "plates");
-  p.replay = s.replay;
-  p.replay_forces = s.replay_forces;
-  p.vtk = s.vtk;
+  set_output(p, s, "plates");
   plate_sinkage::resolve(p);
   return p;
 }
@@ -80,10 +86,7 @@ inline direct_shear::Settings shear_of(const Settings& s, double relative_densit
   d.stable_share = s.stable_share;
   d.seed = s.seed;
   d.threads = s.threads;
-  d.output = folder_in(s, "shear");
-  d.replay = s.replay;
-  d.replay_forces = s.replay_forces;
-  d.vtk = s.vtk;
+  set_output(d, s, "shear");
   direct_shear::resolve(d);
   return d;
 }
@@ -101,10 +104,7 @@ inline rigid_wheel::Settings wheel_of(const Settings& s, const std::string& soil
   w.slips = s.slips;
   w.path = s.path;
   w.soil = soil;
-  w.output = folder_in(s, "wheel");
-  w.replay = s.replay;
-  w.replay_forces = s.replay_forces;
-  w.vtk = s.vtk;
+  set_output(w, s, "wheel");
   rigid_wheel::resolve(w);
   return w;
 }

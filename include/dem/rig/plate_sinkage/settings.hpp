@@ -45,7 +45,7 @@ struct Settings {
 
 /// Throws Error where a levelled bed is shallower (m) than twice the sinkage.
 inline void require_depth(const Settings& s, double level) {
-  if (s.sinkage <= 0.5 * level || s.bed.file.empty() || BedSettings::is_state(s.bed.file)) return;
+  if (s.sinkage <= 0.5 * level || s.bed.is_rained()) return;
   fail(
       "--sinkage is {:g} m, but must be at most half of the bed's depth, which came out as {:.4g} m; lower it, or take "
       "a deeper bed",
@@ -130,8 +130,8 @@ inline void resolve(Settings& s) {
   require_within(s.speed, 1e-4, 1.0, "--speed (m/s)");
   require_within(s.unload_speed, 1e-5, 1.0, "--unload-speed (m/s)");
   // How deep a bed of grains from a file is, is known once it is level (require_depth).
-  const bool is_known = s.bed.file.empty() || BedSettings::is_state(s.bed.file);
-  require_within(s.sinkage, 1e-4, is_known ? 0.5 * s.bed.depth : 1e3, "--sinkage (m, at most half the bed's depth)");
+  require_within(s.sinkage, 1e-4, s.bed.is_rained() ? 0.5 * s.bed.depth : 1e3,
+                 "--sinkage (m, at most half the bed's depth)");
   require_within(s.ramp_time, 0.0, s.sinkage / s.speed, "--ramp-time (s, at most what the sinkage takes)");
   require_positive(s.threshold, "--threshold", "Pa");
   require_within(s.smoothing, 0.0, 0.5, "--smoothing");
