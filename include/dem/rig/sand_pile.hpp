@@ -1,5 +1,6 @@
 #pragma once
 
+#include <dem/rig/sand_pile/fill_file.hpp>
 #include <dem/rig/sand_pile/forming.hpp>
 #include <dem/rig/sand_pile/resolve.hpp>
 
@@ -41,7 +42,7 @@ class SandPile {
     return sand_pile::lattice(settings_, grains_.shape.bounding_radius(), seed);
   }
 
-  /// Makes one pile and measures it.
+  /// Makes one pile and measures it. The seed is that of grains that are rained in, not read from a file.
   [[nodiscard]] sand_pile::PileResult make(std::uint64_t seed) const {
     sand_pile::PileResult result;
     result.kind.name = "grains";
@@ -55,7 +56,8 @@ class SandPile {
   /// and is filled as the pile is made, so that a run that is stopped leaves its samples.
   template <class Look>
   void make(sand_pile::PileResult& result, Stages& stages, Look&& look) const {
-    const auto grains = lattice(result.seed);
+    const auto grains =
+        settings_.fill_file.empty() ? lattice(result.seed) : sand_pile::read_fill(settings_, result.kind.shape);
     Apparatus rig(settings_, grains_, grains);
     result.poured = grains.size();
     result.time_step_limit = rig.world.stable_time_step().limited_by;

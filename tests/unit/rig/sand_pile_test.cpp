@@ -8,6 +8,7 @@
 #include <dem/rig/sand_pile/pile_rig.hpp>
 #include <dem/rig/settings_file.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <iterator>
 #include <string>
@@ -127,21 +128,35 @@ TEST_CASE("what is no pile has no angle, and it is said why and what to change")
   CHECK_THAT(pile_up(1.5 * d, [](double) { return 8.0; }), ContainsSubstring("fewer than 5 places in every sector"));
 }
 
-TEST_CASE("a flank has an angle once the cylinder holds no grain any more") {
+namespace {
+
+using Cubes = models::VerletCubes;
+
+/// A small pile of cubes that come to rest soon.
+Settings small_pile() {
   Settings s;
   s.size = "smoke";
   s.half_edge = 5e-3;
   s.grains = 90;
   s.cylinder_radius = 0.025;
-  s.damping = 0.1;  // comes to rest soon
+  s.damping = 0.1;
   s.separation_factor = 1.0;
   s.lift_speed = 0.3;
   s.creep_time = 0.01;
   s.rest_limit = 0.05;
   s.threads = 1;
   sand_pile::resolve(s);
-  using Cubes = models::VerletCubes;
-  const SandPile<Cubes> pile(s, grains_of<Cubes>(s, kind_named("cube8"), shape::cube8(s.half_edge)));
+  return s;
+}
+SandPile<Cubes> pile_of(const Settings& s) {
+  return {s, grains_of<Cubes>(s, kind_named("cube8"), shape::cube8(s.half_edge))};
+}
+
+}  // namespace
+
+TEST_CASE("a flank has an angle once the cylinder holds no grain any more") {
+  const Settings s = small_pile();
+  const SandPile<Cubes> pile = pile_of(s);
   PileResult r;
   r.kind = kind_named("cube8");
   r.seed = 1;
@@ -162,6 +177,73 @@ TEST_CASE("a flank has an angle once the cylinder holds no grain any more") {
   CHECK(steep > 0);  // the grains in the cylinder would have one
   CHECK(free > 0);
   CHECK(r.finished);
+}
+
+TEST_CASE("a pile starts from the fill that an earlier one has left") {
+  Settings s = small_pile();
+  const PileResult first = pile_of(s).make(1);
+  REQUIRE(first.fill.size() == s.grains);
+  const TempFolder folder;
+  s.fill_file = (folder / "cube8_1_filled.txt").string();
+  save_fill(s, "cube8", first.fill, s.fill_file);
+
+  const auto start = read_fill(s, "cube8");
+  REQUIRE(start.size() == s.grains);
+  for (std::size_t k = 0; k < start.size(); ++k) CHECK(start[k].position == first.fill[k].position);
+
+  const PileResult second = pile_of(s).make(7);  // the seed is that of grains that are rained in
+  CHECK(second.finished);
+  // Without the springs of friction that the first had, the grains shift a little as they come to rest once more. A
+  // lattice falls through many grains.
+  double farthest = 0.0;
+  for (std::size_t k = 0; k < start.size(); ++k) {
+    farthest = std::max(farthest, (second.fill[k].position - start[k].position).norm());
+  }
+  CHECK(farthest < 0.5 * s.half_edge);
+  CHECK(second.samples.back().time < first.samples.back().time);  // nothing has to fall
+}
+
+TEST_CASE("a fill of other grains or of another container is refused") {
+  const TempFolder folder;
+  Settings s;
+  s.size = "smoke";
+  s.fill_file = (folder / "filled.txt").string();
+  for (const char* method : {"lift", "funnel", "drain"}) {
+    INFO(method);
+    Settings of = s;
+    of.method = method;
+    sand_pile::resolve(of);
+    CHECK(of.seeds == 1);
+    const auto grains = sand_pile::lattice(of, 1.8 * of.half_edge, 1);
+    save_fill(of, "cube8", grains, s.fill_file);
+    const auto read = read_fill(of, "cube8");
+    REQUIRE(read.size() == grains.size());
+    CHECK((read.back().position - grains.back().position).norm() < 1e-15);
+    CHECK_THROWS_WITH(read_fill(of, "sphere"),
+                      ContainsSubstring("has grains of shape cube8") && ContainsSubstring("give --kinds cube8"));
+    Settings other = of;
+    other.grains = 251;
+    CHECK_THROWS_WITH(read_fill(other, ""), ContainsSubstring("give --grains 250 --half-edge 0.003"));
+    other = of;
+    other.plate = "flat";
+    CHECK_THROWS_WITH(read_fill(other, ""),
+                      ContainsSubstring("another container") &&
+                          ContainsSubstring(std::string("give --method ") + method + " --plate ridged"));
+    other = of;
+    other.orifice_radius *= 1.1;
+    CHECK((method == std::string("funnel")) == [&] {
+      try {
+        read_fill(other, "");
+        return false;
+      } catch (const Error&) {
+        return true;
+      }
+    }());
+  }
+  soil::save_packing({3e-3, 0.1, 0.1, "a pile, lift", {{}}}, s.fill_file);
+  CHECK_THROWS_WITH(read_fill(s, ""), ContainsSubstring("is no fill of a container"));
+  s.seeds = 2;
+  CHECK_THROWS_WITH(sand_pile::resolve(s), ContainsSubstring("--seeds is 2, but must be 1 with --fill-file"));
 }
 
 TEST_CASE("options of a sand pile that change nothing are named") {

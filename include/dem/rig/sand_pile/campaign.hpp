@@ -41,6 +41,7 @@ void make_pile(const SandPile<Model>& sand_pile, PileResult& r, report::Replay* 
   };
   work_and_save(make, [&] {
     if (!r.samples.empty()) save_samples<Sample>(session.folder() / (name + ".csv"), r.samples, sample_columns);
+    if (!r.fill.empty()) save_fill(s, r.kind.shape, r.fill, session.folder() / (name + "_filled.txt"));
     if (!r.pile.empty()) {
       const bool drains = s.method == "drain";
       const double length = drains ? s.box_length : 2.0 * s.plate_radius;

@@ -73,6 +73,7 @@ class Forming {
           text("the grains are not at rest in their container after {:g} s; raise --settle-limit or --damping",
                s_.settle_limit));
     }
+    if (stage) result_.fill = soil::placements(rig_.world);
   }
 
   /// Lifts the cylinder over the grains, or opens the funnel or the slot until nothing flows out of it any more.

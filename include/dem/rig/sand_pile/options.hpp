@@ -26,6 +26,10 @@ inline void declare(Options& options, Settings& s) {
   add("--half-edge", s.half_edge, "half edge of a cube; spheres have its volume [m]; 0: by size");
   add("--grains", s.grains, "number of grains; 0: by size");
   add("--density", s.density, "of a grain [kg/m^3]");
+  add("--fill-file", s.fill_file,
+      "start from grains at rest in their container: the KIND_SEED_filled.txt of an earlier run (of this shape, in "
+      "this "
+      "container), in place of raining them in");
   options.group("Apparatus");
   add("--plate", s.plate, "flat, or ridged: rings or bars a half-edge high").one_of({"flat", "ridged"});
   add("--plate-radius", s.plate_radius, "[m]; 0: three times the cylinder's");
@@ -76,6 +80,7 @@ inline void find_idle(IdleOptions& idle, const Settings& s) {
   idle.unless(funnel, "with --method funnel", {"--orifice-radius", "--orifice-height", "--funnel-angle"});
   idle.unless(drain, "with --method drain", {"--box-length", "--box-width", "--slot-width"});
   idle.unless(!lift, "with --method funnel or drain", {"--flow-limit"});
+  idle.unless(s.fill_file.empty(), "without --fill-file, which fixes where the grains are", {"--seed"});
   const auto piles = [&](const char* kind) { return s.kinds.find(kind) != std::string::npos; };
   idle.unless(s.kinds.empty() || piles("sphere-rolling") || piles("sphere-braked"),
               "with --kinds sphere-rolling or sphere-braked", {"--rolling-length", "--plate-rolling-length"});

@@ -2,6 +2,7 @@
 
 #include <dem/rig/affordable.hpp>
 #include <dem/rig/rig.hpp>
+#include <dem/rig/sand_pile/fill_file.hpp>
 #include <dem/rig/sand_pile/options.hpp>
 #include <dem/rig/sand_pile/report.hpp>
 #include <dem/rig/sand_pile/resolve.hpp>
@@ -38,7 +39,8 @@ class PileRig : public Rig {
                          .frames = {"grains", "apparatus", "spheres", "superquadrics", "polyhedra"}};
     for (const char* shape : {"cube8", "polyhedron", "superquadric", "sphere"}) {
       for (const char* law : {"", "-viscous", "-rolling", "-braked"}) {
-        for (const char* type : {".csv", ".txt", ".pvd"}) names.files.push_back(text("{}{}_#+{}", shape, law, type));
+        for (const char* type : {".csv", ".txt", "_filled.txt", ".pvd"})
+          names.files.push_back(text("{}{}_#+{}", shape, law, type));
       }
     }
     return names;
@@ -48,7 +50,10 @@ class PileRig : public Rig {
 
   void run(Session& session) override {
     const std::vector<Kind> kinds = kinds_in(settings.kinds);
-    for (const Kind& kind : kinds) world_of(kind);
+    for (const Kind& kind : kinds) {
+      world_of(kind);
+      if (!settings.fill_file.empty()) read_fill(settings, kind.shape);  // refused before anything is replaced
+    }
     session.begin_run(1);
     auto& piles = campaign.piles;
     for (const Kind& kind : kinds) {

@@ -32,6 +32,9 @@ inline void check(const Settings& s) {
   if (s.plate != "flat" && s.plate != "ridged") fail("--plate is '{}', but must be flat or ridged", s.plate);
   require_within(static_cast<double>(s.grains), 10.0, 1e7, "--grains (0: by size)");
   require_within(static_cast<double>(s.seeds), 1.0, 1000.0, "--seeds (0: by size)");
+  if (!s.fill_file.empty() && s.seeds > 1) {
+    fail("--seeds is {}, but must be 1 with --fill-file: all of them would be the same pile", s.seeds);
+  }
   require_within(s.half_edge, 1e-6, 1.0, "--half-edge (m, 0: by size)");
   require_positive(s.density, "--density", "kg/m^3");
   const double d = 2.0 * s.half_edge;
@@ -94,7 +97,7 @@ inline void resolve(Settings& s) {
   fill(s.rest_limit, size.rest_limit);
   fill(s.creep_time, size.creep_time);
   if (s.grains == 0) s.grains = size.grains;
-  if (s.seeds == 0) s.seeds = size.seeds;
+  if (s.seeds == 0) s.seeds = s.fill_file.empty() ? size.seeds : 1;
   if (s.kinds.empty()) s.kinds = size.kinds;
   kinds_in(s.kinds);
   const double volume = bulk_volume(s), pi = std::numbers::pi;

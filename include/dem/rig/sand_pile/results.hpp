@@ -34,6 +34,7 @@ struct PileResult {
   std::uint64_t seed = 0;
   bool finished = false;
   std::size_t poured = 0;             ///< grains
+  std::vector<soil::Placement> fill;  ///< they at rest in their container
   std::vector<soil::Placement> pile;  ///< as it was measured
   soil::Flank flank = {};             ///< of it
   bool at_rest = false;               ///< it stood still when it was measured
@@ -49,7 +50,8 @@ struct PileResult {
   /// What a run that goes on takes over.
   template <class V>
   void fields(V& v) {
-    v("finished", finished), v("poured", poured), v("pile", pile), v("flank", flank), v("at_rest", at_rest);
+    v("finished", finished), v("poured", poured), v("fill", fill), v("pile", pile), v("flank", flank),
+        v("at_rest", at_rest);
     v("lost", lost), v("creep_time", creep_time, "s"), v("creep", creep), v("creep_median", creep_median);
     v("angle_after", angle_after, "rad"), v("time_step", time_step, "s"), v("time_step_limit", time_step_limit);
     v.numbers("samples", samples);

@@ -25,6 +25,7 @@ struct Settings {
   double half_edge = 0.0;    ///< m, of the cube that a grain's volume is about that of; 0: by size
   std::uint64_t grains = 0;  ///< 0: by size
   double density = 2650.0;   ///< kg/m^3
+  std::string fill_file;     ///< grains at rest in their container, of an earlier run; empty: they are rained in
 
   // Apparatus
   std::string plate = "ridged";        ///< flat, or ridged: rings (of a box's floor: bars) a half-edge high
