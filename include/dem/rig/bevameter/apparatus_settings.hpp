@@ -102,6 +102,7 @@ inline rigid_wheel::Settings wheel_of(const Settings& s, const std::string& soil
   w.load = s.load;
   w.spin_deg = s.spin_deg;
   w.slips = s.slips;
+  w.travel = s.wheel_travel;
   w.path = s.path;
   w.soil = soil;
   set_output(w, s, "wheel");

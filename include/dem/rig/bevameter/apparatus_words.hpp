@@ -23,7 +23,7 @@ inline constexpr OwnWord shear_words[] = {
 inline constexpr OwnWord wheel_words[] = {
     {"--width (m, within the bed)", "width of the wheel (m, within --wheel-bed-width)"},
     {"--bed-length", "--wheel-bed-length"},
-    {"--travel or --path", "--path"},
+    {"--travel", "--wheel-travel"},
     {"--bed-width", "--wheel-bed-width"},
     {"--bed-depth", "--wheel-bed-depth"}};
 

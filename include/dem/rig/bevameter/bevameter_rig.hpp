@@ -77,6 +77,7 @@ class BevameterRig : public Rig {
       tables = {constants_table(*constants, settings.confidence), shear_table(*constants)};
       if (has_rolled()) {
         predictions = predict(*constants, wheel_.campaign, wheel_.settings);
+        words += text(" {}", beds_text(plates(), wheel_.campaign));
         if (!rigid_wheel::grips(wheel_.settings)) words += text(" {}", rigid_wheel::smooth_text);
         tables.push_back(circle_table(predictions, wheel_.campaign));
         report.part("predicted.csv",

@@ -57,6 +57,15 @@ inline constexpr Compared compared[] = {
     {"torque", "N m", &rigid_wheel::SlipResult::torque, &WheelForces::torque, 1.0, "{:.2f}"},
     {"sinkage", "mm", &rigid_wheel::SlipResult::sinkage, &WheelForces::sinkage, 1e3, "{:.1f}"}};
 
+/// The bed that the wheel rolls in, beside that of the plates.
+inline std::string beds_text(const plate_sinkage::VariantResult& plates, const rigid_wheel::Campaign& w) {
+  return text(
+      "The wheel rolls in a bed of its own of the same grains: solid fraction {}, {} mm deep; that of the plates has "
+      "{}, {} mm.",
+      number(w.solid_fraction, "{:.3f}"), number(1e3 * w.level, "{:.1f}"), number(plates.solid_fraction, "{:.3f}"),
+      number(1e3 * plates.level, "{:.1f}"));
+}
+
 /// Pull, torque and sinkage of the wheel in the grains, what is predicted, and by how much it errs, at each slip.
 inline io::Table circle_table(const Predictions& predictions, const rigid_wheel::Campaign& w) {
   io::Table t{.caption = "The wheel in the same soil, and what the constants predict; slip s = 1 - v/(omega r)",
@@ -90,8 +99,8 @@ inline void write_predicted(const std::filesystem::path& path, const Predictions
     const auto& r = w.slips[k];
     for (const Compared& q : compared) {
       const auto of = [&](std::size_t p) { return q.of(predictions[p].at_runs[k]); };
-      csv.row(r.slip, text("{} [{}]", q.name, q.unit), q.scale * (r.*q.grains).mean, q.scale * (r.*q.grains).deviation,
-              r.is_steady, of(0), of(1), of(2));
+      csv.row(r.slip, text("{} [{}]", q.name, q.unit), cell(q.scale * (r.*q.grains).mean),
+              cell(q.scale * (r.*q.grains).deviation), r.is_steady, cell(of(0)), cell(of(1)), cell(of(2)));
     }
   }
   csv.flush();

@@ -61,7 +61,7 @@ inline std::vector<terramechanics::PlateCurve> pieces_of(std::span<const terrame
 
 /// The curve of a load up to its strength, for Janosi's fit.
 inline terramechanics::ShearCurve shear_curve(const direct_shear::LoadResult& r, const direct_shear::Settings& s) {
-  terramechanics::ShearCurve curve{.normal_stress = r.normal_at_maximum, .displacement = {}, .stress = {}};
+  terramechanics::ShearCurve curve{.normal_stress = r.plane_stress, .displacement = {}, .stress = {}};
   const auto stress = direct_shear::smoothed(r.samples, &direct_shear::Sample::stress, s.smoothing);
   for (std::size_t i = 0; i < stress.size(); ++i) {
     const double j = r.samples[i].displacement;
@@ -78,16 +78,17 @@ inline Estimate mean_estimate(std::span<const double> values) {
   return {all.mean, all.error(), all.count > 1 ? all.count - 1 : 0};
 }
 
-/// Cohesion and friction angle of the strengths, and K of the curves. The cohesion is kept where it differs from none
-/// with the confidence; else the line goes through the origin. So it does with two strengths: a line through two points
-/// is exact, and no error can be told.
+/// Cohesion and friction angle of the strengths, and K of the curves. The normal stress is that on the plane of shear,
+/// which bears more than the box is loaded with: over the stress as it is set, grains without cohesion seem to have
+/// some. The cohesion is kept where it differs from none with the confidence; else the line goes through the origin. So
+/// it does with two strengths: a line through two points is exact, and no error can be told.
 inline void find_strength(Constants& c, const direct_shear::Campaign& shear, const direct_shear::Settings& s,
                           double confidence) {
   using terramechanics::Intercept;
   std::vector<double> sigma, tau, bends;  // of the latter K, m
   for (const auto& r : shear.loads) {
     if (!r.finished || !(r.maximum > 0.0)) continue;
-    sigma.push_back(r.normal_at_maximum);
+    sigma.push_back(r.plane_stress);
     tau.push_back(r.maximum);
     c.shear_curves.push_back(terramechanics::fit_janosi_below(shear_curve(r, s), r.maximum));
     bends.push_back(c.shear_curves.back().displacement);

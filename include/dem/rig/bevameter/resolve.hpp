@@ -3,6 +3,7 @@
 #include <dem/rig/bevameter/apparatus_settings.hpp>
 #include <dem/rig/bevameter/apparatus_words.hpp>
 
+#include <algorithm>
 #include <initializer_list>
 #include <string>
 #include <utility>
@@ -28,7 +29,7 @@ inline void resolve(Settings& s) {
     double shear_speed, shear_travel;
     const char* wheel;
     BedBySize wheel_bed;
-    double spin_deg, path;
+    double spin_deg, wheel_travel;
     std::vector<double> slips;
   };
   const auto by_size = BySize<Defaults>{.smoke = {4e-3,
@@ -43,7 +44,7 @@ inline void resolve(Settings& s) {
                                                   "none",
                                                   {0.30, 0.18, 0.03},
                                                   90.0,
-                                                  0.03,
+                                                  0.021,
                                                   {0.3}},
                                         .quick = {4e-3,
                                                   {0.17, 0.30, 0.12},
@@ -57,7 +58,7 @@ inline void resolve(Settings& s) {
                                                   "rough",
                                                   {0.46, 0.40, 0.055},
                                                   90.0,
-                                                  0.15,
+                                                  0.12,
                                                   {-0.3, 0.1, 0.3, 0.6}},
                                         .full = {1.86e-3,
                                                  {0.25, 0.20, 0.2833},
@@ -71,7 +72,7 @@ inline void resolve(Settings& s) {
                                                  "rough",
                                                  {0.50, 0.40, 0.05},
                                                  17.0,
-                                                 0.20,
+                                                 0.12,
                                                  {-0.5, -0.3, -0.1, 0.0, 0.1, 0.3, 0.5}}}[size_named(s.size)];
   rig::resolve(s.grains, by_size.half_edge);
   const auto fill_all = [](std::initializer_list<std::pair<double*, double>> all) {
@@ -86,7 +87,7 @@ inline void resolve(Settings& s) {
             {&s.shear_speed, by_size.shear_speed},
             {&s.shear_travel, by_size.shear_travel},
             {&s.spin_deg, by_size.spin_deg},
-            {&s.path, by_size.path},
+            {&s.wheel_travel, by_size.wheel_travel},
             {&s.wheel_bed_length, by_size.wheel_bed.length},
             {&s.wheel_bed_width, by_size.wheel_bed.width},
             {&s.wheel_bed_depth, by_size.wheel_bed.depth}});
@@ -123,6 +124,10 @@ inline void resolve(Settings& s) {
   rigid_wheel::Settings wheel;
   wheel.spin_deg = s.spin_deg;
   require_start(s.path, wheel.rim_speed(), wheel.ramp_time, "--path", "--spin");
+  if (s.path == 0.0) {
+    const double slowest = std::max(1.0 - *std::min_element(s.slips.begin(), s.slips.end()), 0.25);  // of the travel
+    require_start(s.wheel_travel, slowest * wheel.rim_speed(), wheel.ramp_time, "--wheel-travel", "--spin");
+  }
   in_words(wheel_words, [&] { wheel_of(s, ""); });
 }
 

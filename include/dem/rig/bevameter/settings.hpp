@@ -43,7 +43,8 @@ struct Settings {
   std::vector<double> slips;     ///< 1 - v/(omega r); empty: by size
   double load = 130.0;           ///< N
   double spin_deg = 0.0;         ///< deg/s; 0: by size
-  double path = 0.0;             ///< m; 0: by size
+  double wheel_travel = 0.0;     ///< m, of the wheel in a run, its rim at most four times as far; 0: by size
+  double path = 0.0;             ///< m, that the rim turns in each run; 0: as `wheel_travel` says
   double wheel_bed_length = 0.0, wheel_bed_width = 0.0, wheel_bed_depth = 0.0;  ///< m; 0: by size
 
   double confidence = 0.95;  ///< of the intervals
@@ -58,7 +59,7 @@ struct Settings {
 /// Names every option and the place of its value.
 inline void declare(Options& options, Settings& s) {
   const auto add = [&](const char* name, auto& value, const char* text) { return options.add(name, value, text); };
-  add("--size", s.size, "smoke (seconds, without a wheel), quick (minutes) or full (many hours)");
+  add("--size", s.size, "smoke (seconds, without a wheel), quick (a quarter of an hour) or full (many hours)");
   add("--fall-speed", s.fall_speed, "at which grains of the beds fall at most while they are rained [m/s]; 0: freely");
   add("--relative-density", s.relative_density, "of the beds, 0 (as they settle) to 1");
   add("--stage-limit", s.stage_limit, "a bed must be at rest by then [s]");
@@ -89,7 +90,8 @@ inline void declare(Options& options, Settings& s) {
   add("--slips", s.slips, "1 - v/(omega r); empty: by size");
   add("--load", s.load, "weight of wheel and shaft [N]");
   add("--spin", s.spin_deg, "[deg/s]; 0: by size");
-  add("--path", s.path, "that the rim turns [m]; 0: by size");
+  add("--wheel-travel", s.wheel_travel, "of the wheel in a run [m], its rim at most four times as far; 0: by size");
+  add("--path", s.path, "that the rim turns in each run [m]; 0: as --wheel-travel says");
   add("--wheel-bed-length", s.wheel_bed_length, "[m]; 0: by size");
   add("--wheel-bed-width", s.wheel_bed_width, "[m]; 0: by size");
   add("--wheel-bed-depth", s.wheel_bed_depth, "[m]; 0: by size");
@@ -102,8 +104,9 @@ inline void find_idle(IdleOptions& idle, const Settings& s) {
   find_idle_replay(idle, s);
   const bool rolls = s.has_wheel() && !(s.wheel.empty() && s.size == "smoke");
   idle.unless(rolls, "with a --wheel",
-              {"--wheel-friction", "--slips", "--load", "--spin", "--path", "--wheel-bed-length", "--wheel-bed-width",
-               "--wheel-bed-depth"});
+              {"--wheel-friction", "--slips", "--load", "--spin", "--wheel-travel", "--path", "--wheel-bed-length",
+               "--wheel-bed-width", "--wheel-bed-depth"});
+  idle.unless(s.path == 0.0, "without --path", {"--wheel-travel"});
 }
 
 }  // namespace dem::rig::bevameter

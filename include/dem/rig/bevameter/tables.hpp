@@ -59,8 +59,8 @@ inline void write_constants(const std::filesystem::path& path, const Constants& 
                     {"constant", "value", "standard_error", "half_interval", "degrees_of_freedom", "unit", "state"});
   for (const NamedConstant& n : list(c)) {
     const Estimate e = n.is_left_out() ? Estimate{.value = 0.0} : n.estimate;
-    csv.row(n.name, n.scale * e.value, n.scale * e.error, n.scale * e.half_width(confidence), e.freedom, n.unit,
-            n.is_left_out() ? "left out" : "measured");
+    csv.row(n.name, cell(n.scale * e.value), cell(n.scale * e.error), cell(n.scale * e.half_width(confidence)),
+            e.freedom, n.unit, n.is_left_out() ? "left out" : "measured");
   }
   csv.flush();
 }
@@ -99,9 +99,10 @@ inline std::string cohesion_text(const Constants& c, double confidence) {
         "test it.",
         number(1e-3 * free.value));
   }
-  return text("The line of the strengths has the cohesion {} ± {} kPa ({:g} %){}.", number(1e-3 * free.value),
-              number(1e-3 * free.half_width(confidence)), 100.0 * confidence,
-              c.has_cohesion ? "" : ", which is no more than none: it goes through the origin");
+  return text(
+      "The line of the strengths over the stress on the plane of shear has the cohesion {} ± {} kPa ({:g} %){}.",
+      number(1e-3 * free.value), number(1e-3 * free.half_width(confidence)), 100.0 * confidence,
+      c.has_cohesion ? "" : ", which is no more than none: it goes through the origin");
 }
 
 /// Where a density comes from that was not measured; empty where it was.
@@ -126,8 +127,9 @@ inline std::string constants_text(const Constants& c, double confidence) {
 
 /// Janosi's fit of each load.
 inline io::Table shear_table(const Constants& c) {
-  io::Table t{.caption = "tau = tau_max (1 - exp(-j/K)) of each normal stress, up to the strength",
-              .header = {"normal [kPa]", "tau_max [kPa]", "K [mm]", "R²"}};
+  io::Table t{
+      .caption = "tau = tau_max (1 - exp(-j/K)) of each normal stress (on the plane of shear), up to the strength",
+      .header = {"normal [kPa]", "tau_max [kPa]", "K [mm]", "R²"}};
   for (const auto& f : c.shear_curves) {
     t.row(number(1e-3 * f.normal_stress), number(1e-3 * f.strength), number(1e3 * f.displacement, "{:.3f}"),
           number(f.r_squared, "{:.4f}"));
@@ -185,7 +187,7 @@ inline io::Plot shear_plot(const direct_shear::Campaign& d, const direct_shear::
       line.y.push_back(1e-3 * stress[i]);
       if (!c || j < 0.0) continue;
       law.x.push_back(1e3 * j);
-      law.y.push_back(1e-3 * c->bekker_soil.shear.stress(r.normal_stress, j));
+      law.y.push_back(1e-3 * c->bekker_soil.shear.stress(r.plane_stress, j));
     }
     plot.series.push_back(std::move(line));
     if (c) plot.series.push_back(std::move(law));
@@ -193,9 +195,11 @@ inline io::Plot shear_plot(const direct_shear::Campaign& d, const direct_shear::
   return plot;
 }
 
-/// Strengths over normal stress, and the line that the soil has through them.
-inline io::Plot strength_plot(const direct_shear::Campaign& d, const std::optional<Constants>& c) {
+/// Strengths over the stress on the plane of shear, and the line that the soil has through them.
+inline io::Plot strength_plot(direct_shear::Campaign d, const std::optional<Constants>& c) {
+  for (auto& r : d.loads) r.normal_at_maximum = r.plane_stress;
   io::Plot plot = direct_shear::mohr_coulomb_plot(d, {});
+  plot.x_label = "normal stress on the plane of shear [kPa]";
   if (!c) return plot;
   const auto& soil = c->bekker_soil.shear;
   const double end = plot.series.back().x.back();
