@@ -1,5 +1,6 @@
 #include "catch.hpp"
 
+#include <dem/rig/calibrate/rig_words.hpp>
 #include <dem/rig/calibrate/search.hpp>
 #include <dem/rig/calibrate/settings.hpp>
 #include <dem/rig/calibrate/tables.hpp>
@@ -176,6 +177,8 @@ TEST_CASE("of two places that fit, that between the tried points is found, and t
   auto vague = left;
   vague.error = {0.9};
   CHECK(found_text(s, vague).find(" (wider than its range: not told by the targets)") != std::string::npos);
+  vague.error = {0.3};  // ± more than half of the range
+  CHECK(found_text(s, vague).find("not told by the targets") != std::string::npos);
   const auto both = find_constants(measure(0.95), goals, by_grids);
   CHECK(both.place[0] + both.other.at(0) == Approx(1.0).margin(2e-3));
   const auto short_of = find_constants(measure(0.2), goals, [](auto* function, const void* data, const auto&) {
@@ -273,7 +276,7 @@ TEST_CASE("constants that are not looked for are those of all rigs, and the othe
   s.held.half_edge = 5e-5;
   CHECK_THROWS_WITH(check_rigs(s), Catch::Contains("change --half-edge") && !Catch::Contains("--grains"));
   s.phi = 0.0;
-  CHECK_THROWS_WITH(check_rigs(s), Catch::Contains("change --half-edge or --size"));
+  CHECK_THROWS_WITH(check_rigs(s), Catch::Contains("change --half-edge, --bed-length, --bed-width or --bed-depth"));
   s.phi = 30.0, s.held.half_edge = fine;
   s.held.density = 0.0;
   CHECK_THROWS_WITH(check_rigs(s), Catch::Contains("--density is 0"));
@@ -282,6 +285,39 @@ TEST_CASE("constants that are not looked for are those of all rigs, and the othe
   s.held.rolling = 0.2;
   s.find = "relative-density", s.held.friction = std::nan("");
   CHECK_THROWS_WITH(resolve(s), Catch::Contains("--friction is nan"));
+}
+
+TEST_CASE("it is said what grains each rig has, and that their stiffnesses differ") {
+  Settings s;
+  s.size = "smoke";
+  s.phi = 30.0, s.repose = 25.0, s.pressure = 1e4, s.exponent = 0.8;
+  s.held.friction = 0.5;
+  s.find = "relative-density";
+  const auto rigs = rigs_of(s);
+  REQUIRE(rigs.size() == 3);  // one plate tells pressure and exponent
+  CHECK(rigs[0].words ==
+        "Shear test: half-edge 3 mm, friction 0.5, K 20000 N/m for half-edge 0.9 mm, relative density looked for.");
+  CHECK(rigs[1].words == "Pile: half-edge 3 mm, friction 0.5, K 2000 N/m for half-edge 0.9 mm, of sphere-rolling.");
+  CHECK(rigs[2].words ==
+        "Plate: half-edge 4 mm, friction 0.5, K 20000 N/m for half-edge 1.86 mm, relative density looked for.");
+  CHECK(stiffness_note(s).find("--stiffness and --constants-for") != std::string::npos);
+  s.held.stiffness = 1e4, s.held.constants_for = 1e-3;
+  CHECK(stiffness_note(s).empty());
+  s.held.stiffness = s.held.constants_for = -1.0;
+  s.find = "stiffness";
+  CHECK(stiffness_note(s).empty());
+}
+
+TEST_CASE("a plate of a search is pressed as its options say") {
+  Settings s;
+  s.size = "smoke";
+  s.pressure = 1e4;
+  s.plates = {0.02}, s.plate_length = 0.04, s.plate_friction = 0.3, s.sinkage = 3e-3, s.fall_speed = 0.4;
+  s.bed_length = 0.12, s.bed_width = 0.08, s.bed_depth = 0.05;
+  const auto plate = detail::plate_settings(s, {.values = {0.4}}, "");
+  CHECK((plate.widths == std::vector{0.02} && plate.length == 0.04 && plate.plate_friction == 0.3));
+  CHECK((plate.sinkage == 3e-3 && plate.bed.fall_speed == 0.4));
+  CHECK((plate.bed.length == 0.12 && plate.bed.width == 0.08 && plate.bed.depth == 0.05));
 }
 
 TEST_CASE("options of rigs that measure no target are idle") {

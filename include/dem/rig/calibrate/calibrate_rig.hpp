@@ -1,5 +1,6 @@
 #pragma once
 
+#include <dem/rig/calibrate/rig_words.hpp>
 #include <dem/rig/calibrate/search.hpp>
 #include <dem/rig/calibrate/tables.hpp>
 #include <dem/rig/calibrate/tried.hpp>
@@ -13,6 +14,7 @@
 #include <algorithm>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace dem::rig::calibrate {
@@ -57,6 +59,7 @@ class CalibrateRig : public Rig {
       tried = load_tried(table_, s);
     }
     const std::size_t batches = (s.trials + batch - 1) / batch;
+    if (auto note = stiffness_note(s); !note.empty()) session.say_when_begun(std::move(note));
     session.begin_run(static_cast<int>(batches) + (s.known.empty() ? 0 : 1));
     if (!resumes) {
       forget_trials(session.folder() / "runs");
@@ -97,7 +100,12 @@ class CalibrateRig : public Rig {
     if (found) tables = {found_table(s, *found), goals_table(s, *found, goals)};
     tables.push_back(tried_table(s, tried));
     if (found) report.part("found.csv", [&] { write_found(report.folder() / "found.csv", s, *found); });
+    std::vector<std::string> rigs;
+    for (auto& rig : rigs_of(s)) rigs.push_back(std::move(rig.words));
+    if (auto note = stiffness_note(s); !note.empty()) rigs.push_back(std::move(note));
     report.part("the printed report", [&] {
+      fmt::print("\n");
+      for (const auto& line : rigs) fmt::print("{}\n", line);
       fmt::print("\n");
       for (const auto& table : tables) {
         io::print(table);
@@ -108,6 +116,7 @@ class CalibrateRig : public Rig {
     });
     report.page(list_settings(s), [&](io::HtmlReport& page) {
       page.paragraph(method_text);
+      for (const auto& line : rigs) page.paragraph(line);
       if (found) page.paragraph(found_text(s, *found));
       for (const auto& table : tables) page.table(table);
       if (!found) return;
@@ -117,7 +126,7 @@ class CalibrateRig : public Rig {
         const std::string name = text("response_{}", names_of_quantities[static_cast<int>(quantities[q])]);
         report.plot(
             page, response_plot(s, tried, *found, goals, q), name.c_str(),
-            "What was measured over the first constant; the surface along it through what was found; the target.");
+            "What was measured over the first constant; the fitted curve along it through what was found; the target.");
       }
       report.plot(page, search_plot(s, tried), "search", "Points in the order in which they were tried.");
     });

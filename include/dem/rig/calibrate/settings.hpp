@@ -50,9 +50,14 @@ struct Settings {
   HeldConstants held;
 
   // Rigs
-  std::vector<double> loads;            ///< kg, of the shear test; empty: by size
-  std::vector<double> plates;           ///< m, widths; empty: the rig's in the middle
-  std::string kind = "sphere-rolling";  ///< of the grains of the pile: that or cube8
+  std::vector<double> loads;                                  ///< kg, of the shear test; empty: by size
+  std::vector<double> plates;                                 ///< m, width; empty: the rig's in the middle
+  double plate_length = 0.0;                                  ///< m; 0: by size
+  double plate_friction = 0.0;                                ///< mu, grain on plate
+  double sinkage = 0.0;                                       ///< m, of the plate; 0: by size
+  double fall_speed = 0.0;                                    ///< m/s, of the grains of its bed; 0: freely
+  double bed_length = 0.0, bed_width = 0.0, bed_depth = 0.0;  ///< m, of its bed; 0: by size
+  std::string kind = "sphere-rolling";                        ///< of the grains of the pile: that or cube8
 
   // Search
   std::uint64_t trials = 0;   ///< points; 0: by size
@@ -124,7 +129,9 @@ inline double place_of(const Settings& s, Constant c, double value) {
 /// Names every option and the place of its value.
 inline void declare(Options& options, Settings& s) {
   const auto add = [&](const char* name, auto& value, const char* text) { return options.add(name, value, text); };
-  add("--size", s.size, "of the rigs: smoke (seconds a run), quick (minutes) or full (hours)");
+  add("--size", s.size,
+      "of the rigs: smoke (seconds a run, minutes a search), quick (minutes a run, half an hour to two hours a search) "
+      "or full (hours a run)");
   options.group("Targets");
   add("--phi", s.phi, "angle of friction of the shear strengths, through the origin [deg]; 0: no target");
   add("--phi-error", s.phi_error, "its standard error [deg]");
@@ -146,6 +153,13 @@ inline void declare(Options& options, Settings& s) {
   options.group("Rigs");
   add("--loads", s.loads, "of the shear test [kg]; empty: by size");
   add("--plate", s.plates, "width of the plate [m]; empty: by size");
+  add("--plate-length", s.plate_length, "[m]; 0: by size");
+  add("--plate-friction", s.plate_friction, "mu, grain on plate");
+  add("--sinkage", s.sinkage, "of the plate [m]; 0: by size");
+  add("--fall-speed", s.fall_speed, "at which grains of its bed fall at most while they are rained [m/s]; 0: freely");
+  add("--bed-length", s.bed_length, "of the plate's bed [m]; 0: by size");
+  add("--bed-width", s.bed_width, "[m]; 0: by size");
+  add("--bed-depth", s.bed_depth, "[m]; 0: by size");
   add("--pile-kind", s.kind, "grains of the pile").one_of({"sphere-rolling", "cube8"});
   options.group("Search");
   add("--trials", s.trials,
@@ -182,7 +196,9 @@ inline void find_idle(IdleOptions& idle, const Settings& s) {
   };
   idle.unless(aims(s.phi, "phi"), "with the target phi", {"--loads"});
   const bool by_plate = aims(s.pressure, "pressure") || aims(s.exponent, "exponent");
-  idle.unless(by_plate, "with the target pressure or exponent", {"--plate"});
+  idle.unless(by_plate, "with the target pressure or exponent",
+              {"--plate", "--plate-length", "--plate-friction", "--sinkage", "--fall-speed", "--bed-length",
+               "--bed-width", "--bed-depth"});
   idle.unless(aims(s.repose, "repose"), "with the target repose", {"--pile-kind"});
   idle.unless(has(s.find, "friction"), "with --find friction", {"--friction-range"});
   idle.unless(has(s.find, "stiffness"), "with --find stiffness", {"--stiffness-range"});
@@ -212,9 +228,7 @@ inline std::vector<OwnWord> own_words(const Settings& s) {
       {"take fewer --grains, or a higher box", "take a smaller --half-edge"},
       {"take fewer --grains, or larger ones (--half-edge)", "take a larger --half-edge"},
       {"change --half-edge, or give --grains", "change --half-edge"},
-      {"change --half-edge, --bed-length, --bed-width or --bed-depth", "change --half-edge or --size"},
       {"--plates", "--plate"},
-      {"--plate-friction", "--wall-friction"},
       {"--rolling-length", "--rolling"}};
   for (const Constant c : constants_of(s)) {
     if (c == Constant::friction) words.push_back({"--friction", "--friction-range"});

@@ -9,7 +9,10 @@
 #include <dem/rig/calibrate/trial.hpp>
 #include <dem/rig/number.hpp>
 
+#include <algorithm>
+#include <cmath>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace dem::rig::calibrate {
@@ -56,7 +59,7 @@ inline std::string found_text(const Settings& s, const Found& f) {
     words += text("{}{} {} ± {}", words.empty() ? "" : ", ", names_of_constants[static_cast<int>(constants[k])],
                   number(e.value), number(e.half_width(), "{:.2g}"));
     const auto& range = range_of(s, constants[k]);
-    if (!(e.half_width() <= range[1] - range[0])) words += " (wider than its range: not told by the targets)";
+    if (!(2.0 * e.half_width() <= range[1] - range[0])) words += " (wider than its range: not told by the targets)";
     if (f.place[k] < 1e-3 || f.place[k] > 1.0 - 1e-3) words += " (at the end of its range)";
     if (f.is_beyond(k)) {
       words += text(" (beyond the points that were tried, {} to {}: extrapolated; try more with --go-on and --trials)",
@@ -116,43 +119,60 @@ inline io::Table tried_table(const Settings& s, const std::vector<Trial>& tried)
   return t;
 }
 
-/// A quantity over the first constant, the others as they were found.
+/// A quantity over the first constant, the others as they were found. The curve ends with the points that were tried.
 inline io::Plot response_plot(const Settings& s, const std::vector<Trial>& tried, const Found& f,
                               const std::vector<Goal>& goals, std::size_t q) {
+  constexpr const char* of_quantities[] = {"Angle of friction", "Angle of repose", "Mean pressure on the plate",
+                                           "Exponent of the plate's curve"};
+  constexpr const char* of_constants[] = {"the friction of grains", "the stiffness", "the relative density",
+                                          "the rolling length"};
   const Constant first = constants_of(s).front();
-  io::Plot plot{.title = text("{} over {}", names_of_quantities[static_cast<int>(quantities_of(s)[q])],
-                              names_of_constants[static_cast<int>(first)]),
+  const Quantity quantity = quantities_of(s)[q];
+  const double scale = quantity == Quantity::pressure ? 1e-3 : 1.0;  // kPa
+  io::Plot plot{.title = text("{} over {}, size {}", of_quantities[static_cast<int>(quantity)],
+                              of_constants[static_cast<int>(first)], s.size),
                 .x_label = titled(first),
-                .y_label = titled(quantities_of(s)[q])};
+                .y_label = quantity == Quantity::pressure ? "pressure [kPa]" : titled(quantity)};
   io::Series points{.name = "runs", .style = io::SeriesStyle::Points, .color = 0};
   for (const Trial& t : tried) {
     if (t.point == 0) continue;
     points.x.push_back(t.values.front());
-    points.y.push_back(t.results[q]);
+    points.y.push_back(scale * t.results[q]);
   }
-  io::Series line{.name = "surface", .style = io::SeriesStyle::Line, .color = 0};
+  io::Series line{.name = "fitted curve", .style = io::SeriesStyle::Line, .color = 0};
   io::Series low{.name = "± standard error", .style = io::SeriesStyle::Dotted, .color = 0}, high = low;
   high.name = "";
   std::vector<double> place = f.place;
   for (int k = 0; k <= 60; ++k) {
-    place.front() = k / 60.0;
+    place.front() = f.low.front() + (f.high.front() - f.low.front()) * k / 60.0;
     const double x = value_at(s, first, place.front()), y = f.surrogates[q].value(place);
     const double error = f.surrogates[q].error(place);
     for (auto* series : {&line, &low, &high}) series->x.push_back(x);
-    line.y.push_back(y), low.y.push_back(y - error), high.y.push_back(y + error);
+    line.y.push_back(scale * y), low.y.push_back(scale * (y - error)), high.y.push_back(scale * (y + error));
   }
   const auto& range = range_of(s, first);
-  io::Series goal{.name = "target",
-                  .x = range,
-                  .y = {goals[q].value, goals[q].value},
-                  .style = io::SeriesStyle::Dashed,
-                  .color = 1};
-  io::Series here{.name = "found",
-                  .x = {value_at(s, first, f.place.front())},
-                  .y = {f.surrogates[q].value(f.place)},
-                  .style = io::SeriesStyle::Points,
-                  .color = 2};
-  plot.series = {points, line, low, high, goal, here};
+  const double target = scale * goals[q].value, error = scale * goals[q].error_with(f.surrogates[q].scatter());
+  const auto level = [&](std::string name, double y, io::SeriesStyle style) {
+    return io::Series{.name = std::move(name), .x = range, .y = {y, y}, .style = style, .color = 1};
+  };
+  const terramechanics::Estimate e = estimate_of(s, f, 0);
+  const double half = e.half_width(), found = scale * f.surrogates[q].value(f.place);
+  io::Series here{.name = "found", .x = {e.value}, .y = {found}, .style = io::SeriesStyle::Points, .color = 2};
+  plot.series = {points,
+                 line,
+                 low,
+                 high,
+                 level("target", target, io::SeriesStyle::Dashed),
+                 level("± its error", target - error, io::SeriesStyle::Dotted),
+                 level("", target + error, io::SeriesStyle::Dotted),
+                 here};
+  if (std::isfinite(half)) {
+    plot.series.push_back({.name = "± 95 %, within its range",
+                           .x = {std::max(range[0], e.value - half), std::min(range[1], e.value + half)},
+                           .y = {found, found},
+                           .style = io::SeriesStyle::Line,
+                           .color = 2});
+  }
   return plot;
 }
 
@@ -181,7 +201,8 @@ inline void write_found(const std::filesystem::path& path, const Settings& s, co
   for (std::size_t k = 0; k < constants.size(); ++k) {
     const auto e = estimate_of(s, f, k);
     const int c = static_cast<int>(constants[k]);
-    csv.row(names_of_constants[c], e.value, e.error, e.half_width(), e.freedom, unit_of(s, constants[k]));
+    csv.row(names_of_constants[c], cell(e.value), cell(e.error), cell(e.half_width()), e.freedom,
+            unit_of(s, constants[k]));
   }
   csv.flush();
 }

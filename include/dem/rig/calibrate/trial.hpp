@@ -95,6 +95,11 @@ inline plate_sinkage::Settings plate_settings(const Settings& s, const Trial& t,
   plate_sinkage::Settings p;
   p.size = s.size;
   p.widths = s.plates.empty() ? std::vector{size_named(s.size) == Size::smoke ? 0.03 : 0.05} : s.plates;
+  p.length = s.plate_length;
+  p.plate_friction = s.plate_friction;
+  p.sinkage = s.sinkage;
+  p.bed.fall_speed = s.fall_speed;
+  p.bed.length = s.bed_length, p.bed.width = s.bed_width, p.bed.depth = s.bed_depth;
   hold(p.grains, s.held);
   if (s.held.relative_density >= 0.0) p.bed.relative_density = s.held.relative_density;
   set_constants(p.grains, constants_of(s), t.values);

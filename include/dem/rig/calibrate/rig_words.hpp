@@ -1,0 +1,63 @@
+#pragma once
+// What is said of the rigs of a search: each keeps what its own program has, unless another is given.
+
+#include <dem/rig/calibrate/trial.hpp>
+
+#include <algorithm>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace dem::rig::calibrate {
+
+/// The grains of a rig, and its K over the half-edge that this is for (N/m^2).
+struct RigWords {
+  std::string words;
+  double stiffness_of_size;
+};
+
+/// The rigs of the targets, in their order.
+inline std::vector<RigWords> rigs_of(const Settings& s) {
+  const auto constants = constants_of(s);
+  Trial middle;
+  for (const Constant c : constants) middle.values.push_back(value_at(s, c, 0.5));
+  const auto value = [&](Constant c, double held) {
+    return std::count(constants.begin(), constants.end(), c) > 0 ? "looked for" : text("{:g}", held);
+  };
+  std::vector<RigWords> rigs;
+  const auto add = [&](const char* rig, const auto& grains, std::string more) {
+    rigs.push_back({text("{}: half-edge {:g} mm, friction {}, K {} N/m for half-edge {:g} mm, {}.", rig,
+                         1e3 * grains.half_edge, value(Constant::friction, grains.friction),
+                         value(Constant::stiffness, grains.stiffness), 1e3 * grains.constants_for, more),
+                    grains.stiffness / grains.constants_for});
+  };
+  const auto dense = [&](double density) { return "relative density " + value(Constant::density, density); };
+  bool has_plate = false;
+  for (const Quantity q : quantities_of(s)) {
+    if (q == Quantity::phi) {
+      const auto d = detail::shear_settings(s, middle, s.output);
+      add("Shear test", d, dense(d.relative_density));
+    } else if (q == Quantity::repose) {
+      add("Pile", detail::pile_settings(s, middle, s.output), "of " + s.kind);
+    } else if (!std::exchange(has_plate, true)) {
+      const auto p = detail::plate_settings(s, middle, s.output);
+      add("Plate", p.grains, dense(p.bed.relative_density));
+    }
+  }
+  return rigs;
+}
+
+/// That the rigs have different stiffnesses; empty where they have one, or where it is looked for.
+inline std::string stiffness_note(const Settings& s) {
+  const auto constants = constants_of(s);
+  if (std::count(constants.begin(), constants.end(), Constant::stiffness) > 0) return {};
+  const auto rigs = rigs_of(s);
+  const auto [least, most] = std::minmax_element(rigs.begin(), rigs.end(), [](const RigWords& a, const RigWords& b) {
+    return a.stiffness_of_size < b.stiffness_of_size;
+  });
+  if (most->stiffness_of_size <= 1.01 * least->stiffness_of_size) return {};
+  return "Note: the rigs have different stiffnesses, each as its own program has it. Give --stiffness and "
+         "--constants-for for one of all.";
+}
+
+}  // namespace dem::rig::calibrate
