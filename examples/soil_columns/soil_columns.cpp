@@ -36,13 +36,14 @@ using namespace dem::terramechanics;
 int main(int argc, char** argv) {
   ColumnWheel s{.travel = 0.0};
   NamedSoil named = {"sand P1", "D. Melanz", melanz_sand};
-  std::string soil_file, output = "soil_columns_output", kind = "rough";
+  std::string soil, output = "soil_columns_output", kind = "rough";
   std::vector<double> slips = {-0.7, -0.5, -0.3, -0.2, -0.1, -0.05, 0.0, 0.05, 0.1, 0.2, 0.3, 0.5, 0.7};
   double spin = 17.0;  // deg/s
   double grouser = 0.01, friction = 0.3;
   bool halve = false;
   CLI::App app("A rigid wheel on soil columns, beside the semi-empirical curves");
-  app.add_option("--soil", soil_file, "file of a soil; without, the sand P1");
+  app.add_option("--soil", soil,
+                 "dry-sand, sandy-loam, lete-sand, clayey, snow, hard, p1 or p3, or the file of a soil; without, p1");
   app.add_option("--wheel", kind, "rough (soil shears on soil), smooth or grousers")
       ->capture_default_str()
       ->check(CLI::IsMember({"rough", "smooth", "grousers"}));
@@ -53,7 +54,7 @@ int main(int argc, char** argv) {
   app.add_flag("--halve", halve, "the same on columns half as wide, and how much that changes");
   app.add_option("--radius", s.wheel.radius, "of the wheel without grousers [m], 0.05 to 2")->capture_default_str();
   app.add_option("--width", s.wheel.width, "of the wheel [m], 0.02 to 2")->capture_default_str();
-  app.add_option("--load", s.load, "on the wheel [N], 20 to 100000")->capture_default_str();
+  app.add_option("--load", s.load, "on the wheel [N], 1 to 100000")->capture_default_str();
   app.add_option("--spin", spin, "[deg/s], 1 to 360")->capture_default_str();
   app.add_option("--slips", slips, "s = 1 - v/(omega r), from -5 to 0.95, with commas between them")
       ->delimiter(',')
@@ -76,7 +77,7 @@ int main(int argc, char** argv) {
     require_within(friction, 0.0, 2.0, "--friction");
     require_within(s.wheel.radius, 0.05, 2.0, "--radius (m)");
     require_within(s.wheel.width, 0.02, 2.0, "--width (m)");
-    require_within(s.load, 20.0, 1e5, "--load (N)");
+    require_within(s.load, 1.0, 1e5, "--load (N)");
     require_within(spin, 1.0, 360.0, "--spin (deg/s)");
     require_within(s.bulldozing, 0.0, 1.0, "--bulldozing");
     std::sort(slips.begin(), slips.end());
@@ -86,7 +87,7 @@ int main(int argc, char** argv) {
     if (s.travel == 0.0) s.travel = std::max(0.3, 1.5 * s.wheel.radius);
     s.wheel_mass = std::max(1.5, 0.1 * s.load / 9.81);  // kg, of its load; the rest is the hub's
     require_within(s.travel, 0.05, 10.0, "--travel (m)");
-    if (!soil_file.empty()) named = load_soil(soil_file);
+    if (!soil.empty()) named = find_soil(soil);
     s.soil = named.soil;
     if (kind == "grousers") s.wheel.grouser_height = grouser;
     if (kind == "smooth") s.friction = friction;

@@ -1,11 +1,13 @@
 #pragma once
 
 #include <dem/io/file.hpp>
+#include <dem/terramechanics/named_soils.hpp>
 #include <dem/terramechanics/soil_text.hpp>
 
 #include <charconv>
 #include <cmath>
 #include <cstddef>
+#include <filesystem>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -152,6 +154,19 @@ inline NamedSoil read_soil(std::string_view text, const std::string& where = "so
 
 /// Reads a soil file. Throws Error as read_soil does, and if the file cannot be read.
 inline NamedSoil load_soil(const std::string& path) { return read_soil(io::read_file(path), path); }
+
+/// The soil of that name (named_soils.hpp), or in the file of that path. Throws Error for what is neither.
+inline NamedSoil find_soil(const std::string& name_or_path) {
+  std::string names;
+  for (const NamedSoil& s : known_soils()) {
+    if (s.name == name_or_path) return s;
+    names += (names.empty() ? "" : ", ") + s.name;
+  }
+  if (!std::filesystem::exists(name_or_path)) {
+    fail("'{}' is neither a soil that is known by name nor a file; known are {}", name_or_path, names);
+  }
+  return load_soil(name_or_path);
+}
 
 /// Writes a soil file, complete or not at all; its folder is made when it is missing. Throws Error for a soil that
 /// check_soil refuses, and if the file cannot be written.

@@ -79,6 +79,10 @@ TEST_CASE("soil files may be kept on disk") {
   dem::io::write_file(other, "half a soi");
   save_soil(file.string(), {"clay", "", clay});
   check_same(load_soil(file.string()).soil, clay);
+  check_same(find_soil(file.string()).soil, clay);
+  check_same(find_soil("p1").soil, melanz_sand);  // by its name
+  CHECK_THROWS_WITH(find_soil("dry-snad"), ContainsSubstring("'dry-snad' is neither a soil that is known by name nor a "
+                                                             "file; known are dry-sand, sandy-loam"));
   CHECK(dem::io::read_file(other) == "half a soi");
   CHECK_THROWS_WITH(save_soil((file / "soil.toml").string(), {"", "", melanz_sand}),
                     ContainsSubstring("cannot make the folder"));

@@ -38,7 +38,7 @@ struct Settings {
 
   std::string study = "none";     ///< none, box, speed or seeds
   std::uint64_t study_seeds = 0;  ///< of each run of the study; 0: three, but one with a bed from a file
-  std::string soil;               ///< file of a soil, which the grains stand beside too
+  std::string soil;               ///< name or file of a soil, which the grains stand beside too
   std::string output = "rigid_wheel_output";
   bool replay = true;
   std::uint64_t replay_forces = 2000;  ///< force chains of a frame of the replay, the largest; 0: none
@@ -92,7 +92,9 @@ inline void declare(Options& options, Settings& s) {
   add("--ramp-time", s.ramp_time, "smooth start of a run [s]");
   add("--set-down-speed", s.set_down_speed, "of the load servo [m/s]");
   add("--soil", s.soil,
-      "file of a soil as the bevameter writes it: Bekker-Wong and dynamic Bekker with it are drawn too")
+      "a soil that the grains stand beside too, by Bekker-Wong and dynamic Bekker: its file as the bevameter writes "
+      "it, "
+      "or a name (dry-sand, sandy-loam, lete-sand, clayey, snow)")
       .changes_no_result();
   add_study_options(options, s.study, s.study_seeds);
   add_grain_options(options, s.grains);

@@ -52,7 +52,9 @@ inline io::Table reference_table(const Settings& s, const Campaign& c, std::span
 }
 
 inline io::Table rut_table(const Campaign& c) {
-  io::Table t{.caption = "Ruts and checks, slip s = 1 - v/(omega r)",
+  io::Table t{.caption =
+                  "Ruts and checks, slip s = 1 - v/(omega r). A rut's depth is a mean over the middle half of the "
+                  "wheel's width; it is as wide as the surface sank by more than half of that",
               .header = {"slip", "rut depth [mm]", "rut width [mm]", "drive against grains [N]",
                          "motor against grains [N m]", "slip as it was"}};
   for (const SlipResult& r : c.slips) {
@@ -159,8 +161,8 @@ inline io::Plot rut_plot(const Campaign& c) {
 
 inline io::Table print_table(const Campaign& c) {
   io::Table t{.caption = "Under the wheel, means over the second half of each run, slip s = 1 - v/(omega r)",
-              .header = {"slip", "contact area [cm²]", "pressure there [kPa]", "largest pressure [kPa]", "at [deg]",
-                         "shear stress there [kPa]"}};
+              .header = {"slip", "contact area [cm²]", "mean pressure on it [kPa]", "largest pressure [kPa]",
+                         "at [deg]", "shear stress at that angle [kPa]"}};
   for (const SlipResult& r : c.slips) {
     const ContactPrint& p = r.print;
     if (p.empty()) continue;
@@ -182,6 +184,12 @@ inline io::Plot print_plot(const Settings& s, std::span<const Reference> soils, 
                 .x_label = "angle from the lowest point, forward [deg]",
                 .y_label = "stress [kPa]"};
   const double degree = std::numbers::pi / 180.0;
+  double back = 0.0, front = 0.0;  // deg, of the cells that bear at least a hundredth of the largest pressure
+  for (std::size_t a = 0; a < ContactPrint::along; ++a) {
+    if (r.print.pressure(a) < 0.01 * r.print.pressure(r.print.peak())) continue;
+    back = std::min(back, r.print.angle(a) / degree), front = std::max(front, r.print.angle(a) / degree);
+  }
+  plot.x_range = {.min = back - 10.0, .max = front + 10.0};
   io::Series pressure{.name = "pressure of the grains", .style = io::SeriesStyle::LinePoints, .color = 0};
   io::Series shear{.name = "shear stress of the grains", .style = io::SeriesStyle::LinePoints, .color = 5};
   for (std::size_t a = 0; a < ContactPrint::along; ++a) {

@@ -22,7 +22,7 @@ class WheelRig : public Rig {
   void resolve() override { rigid_wheel::resolve(settings); }
   [[nodiscard]] std::string output() const override { return settings.output; }
   [[nodiscard]] ResultNames results() const override {
-    ResultNames names{.files = {"results.csv", "references.csv", "rut.csv", "under_wheel.csv", "study.csv",
+    ResultNames names{.files = {"results.csv", "references.csv", "rut.csv", "under_wheel.csv", "print.csv", "study.csv",
                                 "study_runs.csv", "slip_#+.csv", "slip_m#+.csv", "slip_#+.pvd", "slip_m#+.pvd"},
                       .plots = {"pull", "torque", "sinkage", "efficiency", "pull_over_time", "sinkage_over_time", "rut",
                                 "stress", "print"},
@@ -50,6 +50,7 @@ class WheelRig : public Rig {
     report.part("references.csv", [&] { write_references(report.folder() / "references.csv", soils); });
     report.part("rut.csv", [&] { write_ruts(report.folder() / "rut.csv"); });
     report.part("under_wheel.csv", [&] { write_print(report.folder() / "under_wheel.csv"); });
+    report.part("print.csv", [&] { write_map(report.folder() / "print.csv"); });
     std::vector<std::string> words{bed_text(s, campaign), window_text, reference_text, print_text};
     if (!grips(s)) words.emplace_back(smooth_text);
     if (!campaign.study.empty()) {
@@ -131,13 +132,18 @@ class WheelRig : public Rig {
 
   void write_results(const std::filesystem::path& path) const {
     io::CsvWriter csv(
-        path, {"slip_1-v/(omega*r)", "drawbar_pull_N", "pull_deviation_N", "torque_Nm", "torque_deviation_Nm",
-               "sinkage_m", "sinkage_deviation_m", "efficiency", "efficiency_deviation", "carried_N", "steady_from_s",
-               "steady", "rut_depth_m", "rut_width_m", "finished"});
+        path,
+        {"slip_1-v/(omega*r)", "drawbar_pull_N", "pull_deviation_N", "torque_Nm", "torque_deviation_Nm", "sinkage_m",
+         "sinkage_deviation_m", "efficiency", "efficiency_deviation", "carried_N", "steady_from_s", "steady",
+         "rut_depth_m", "rut_width_m", "contact_area_m2", "contact_pressure_Pa", "largest_pressure_Pa", "finished"});
     for (const SlipResult& r : campaign.slips) {
+      const ContactPrint& p = r.print;
+      const bool is_known = !p.empty();
       csv.row(r.slip, cell(r.pull.mean), cell(r.pull.deviation), cell(r.torque.mean), cell(r.torque.deviation),
               cell(r.sinkage.mean), cell(r.sinkage.deviation), cell(r.efficiency.mean), cell(r.efficiency.deviation),
-              cell(r.carried.mean), cell(r.window_from), r.is_steady, cell(r.rut.depth), cell(r.rut.width), r.finished);
+              cell(r.carried.mean), cell(r.window_from), r.is_steady, cell(r.rut.depth), cell(r.rut.width),
+              cell(is_known ? p.area() : not_known), cell(is_known ? p.mean_pressure() : not_known),
+              cell(is_known ? p.pressure(p.peak()) : not_known), r.finished);
     }
     csv.flush();
   }
@@ -166,6 +172,18 @@ class WheelRig : public Rig {
     for (const SlipResult& r : campaign.slips) {
       for (std::size_t a = 0; a < ContactPrint::along && !r.print.empty(); ++a)
         csv.row(r.slip, r.print.angle(a), r.print.pressure(a), r.print.shear(a));
+    }
+    csv.flush();
+  }
+
+  /// The same in cells across the wheel: what the picture of the print shows.
+  void write_map(const std::filesystem::path& path) const {
+    io::CsvWriter csv(path, {"slip_1-v/(omega*r)", "angle_rad", "across_m", "pressure_Pa"});
+    for (const SlipResult& r : campaign.slips) {
+      for (std::size_t w = 0; w < r.print.across && !r.print.empty(); ++w) {
+        for (std::size_t a = 0; a < ContactPrint::along; ++a)
+          csv.row(r.slip, r.print.angle(a), r.print.place(w), r.print.pressure(a, w));
+      }
     }
     csv.flush();
   }
