@@ -157,7 +157,11 @@ void simulate(Arguments& arguments) {
     }
   }
   csv.flush();
-  io::render_plot({.x_label = "Froude number", .y_label = "slope [deg]", .series = {slope, low, high}, .log_x = true},
+  io::render_plot({.title = "Slope of the beads in a rotating drum",
+                   .x_label = "Froude number",
+                   .y_label = "slope [deg]",
+                   .series = {slope, low, high},
+                   .log_x = true},
                   folder + "/slope");
 }
 

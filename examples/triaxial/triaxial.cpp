@@ -141,8 +141,10 @@ void simulate(Arguments& arguments) {
   if (side != std::floor(side)) fail("--side is {:g}, but must be a whole number of beads", side);
   require_within(strain, 0.01, 0.6, "--strain");
 
-  io::Plot strength{.x_label = "axial strain", .y_label = "ratio of axial to lateral stress"};
-  io::Plot density{.x_label = "axial strain", .y_label = "solid fraction"};
+  io::Plot strength{.title = "Triaxial compression: strength",
+                    .x_label = "axial strain",
+                    .y_label = "ratio of axial to lateral stress"};
+  io::Plot density{.title = "Triaxial compression: density", .x_label = "axial strain", .y_label = "solid fraction"};
   io::CsvWriter csv(folder + "/curves.csv", {"loose", "strain", "axial_stress_Pa", "lateral_stress_Pa", "stress_ratio",
                                              "solid_fraction", "coordination"});
   for (const bool loose : {false, true}) {

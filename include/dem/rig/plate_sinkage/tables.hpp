@@ -15,7 +15,7 @@
 
 namespace dem::rig::plate_sinkage {
 
-/// P3 under a plate: the surrogate of the thesis's measured curves, which are lost.
+/// P3 under a plate: it stands for the thesis's measured curves, of which only a picture is left.
 inline terramechanics::PressureCurve reference(double width) {
   return under(terramechanics::mojave_martian_simulant.pressure, width);
 }
@@ -35,7 +35,7 @@ inline io::Table pressure_table(const VariantResult& v) {
 }
 
 inline io::Table fit_table(const VariantResult& v) {
-  io::Table t{.caption = "p = k z^n of each plate (weighted logarithms; standard errors)",
+  io::Table t{.caption = "p = k z^n of each plate (weighted logarithms; standard errors of this fit, not of beds)",
               .header = {"plate [mm]", "k [kPa/m^n]", "± [kPa/m^n]", "n", "±", "R²", "unloading [MPa/m]",
                          "drive against sensor [%]", "done"}};
   for (const PlateResult& r : v.plates) {
@@ -79,7 +79,7 @@ inline OverPlates fit_over_plates(const VariantResult& v) {
 
 /// Bekker's and Reece's constants over the plates; empty if there are not two plates.
 inline io::Table constants_table(const VariantResult& v) {
-  io::Table t{.caption = "Constants over all plates (weighted logarithms; standard errors)",
+  io::Table t{.caption = "Constants over all plates (weighted logarithms; standard errors of this fit, not of beds)",
               .header = {"form", "kc", "±", "kphi", "±", "n", "±", "R²"}};
   if (fitted_curves(v).size() < 2) return t;
   const auto g = [](double x) { return number(x, "{:.4g}"); };
@@ -141,8 +141,24 @@ inline std::string finding_text(const VariantResult& v) {
   return words +
          text(
              " The widest plate carries {:.2f} times the pressure of the narrowest one. The thesis expects more under "
-             "the wider plate, and its measured curves, and P3, have less.",
+             "the wider plate, but reports that its measured curve of the widest one lay lower and is probably not "
+             "accurate; P3 has less under it.",
              wide / narrow);
+}
+
+/// What the constants' standard errors are, and what Bekker's form cannot take.
+inline std::string constants_text(const VariantResult& v) {
+  std::string words =
+      "Neighbouring points of a curve err alike, so these standard errors are too small: the bevameter's are made by "
+      "fitting anew without parts of the curves, and beds of other seeds differ by more (--study seeds).";
+  const OverPlates fits = fit_over_plates(v);
+  if (!fits.bekker || fits.bekker->law.k_c >= 0.0) return words;
+  const auto plain =
+      terramechanics::fit_bekker_not_negative(fitted_curves(v), terramechanics::PlateFit::weighted_logarithms);
+  return words + text(
+                     " Bekker's kc came out negative, as wider plates carry more; programs that take a soil refuse it. "
+                     "Without kc, kphi is {:.4g} kPa/m^n and n {:.3f}.",
+                     1e-3 * plain.law.k_phi, plain.law.n);
 }
 
 inline io::Plot pressure_plot(const VariantResult& v) {

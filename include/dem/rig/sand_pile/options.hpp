@@ -11,7 +11,10 @@ namespace dem::rig::sand_pile {
 /// Names every option and the place of its value.
 inline void declare(Options& options, Settings& s) {
   const auto add = [&](const char* name, auto& value, const char* text) { return options.add(name, value, text); };
-  add("--size", s.size, "smoke (seconds), quick (minutes) or full (12000 grains, three seeds, 10 s of creep)");
+  add("--size", s.size,
+      "smoke (seconds), quick (minutes) or full (12000 grains, three seeds, 10 s of creep: two hours for a pile of "
+      "cubes, "
+      "days for all kinds; choose by --kinds and --seeds)");
   add("--method", s.method,
       "lift (a cylinder), funnel, or drain (a box, through a slot in its floor); a drum that turns is the example drum")
       .one_of({"lift", "funnel", "drain"});
