@@ -5,6 +5,7 @@ set output folder."/rut.png"
 set datafile separator ","
 set size ratio -1
 set palette defined (0 "#3b2a1a", 0.4 "#a5895a", 0.5 "#c2a26b", 1 "#fff6d8")
+set title "Rut on soil columns: the wheel rolled from x = 0 to the right"
 set xlabel "x [mm]"
 set ylabel "y [mm]"
 set cblabel "height [mm]"

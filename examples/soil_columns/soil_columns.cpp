@@ -85,7 +85,7 @@ int main(int argc, char** argv) {
     s.spin = radians(spin);
     require_within(s.spacing, 1e-3, 0.05, "--spacing (m)");
     if (s.travel == 0.0) s.travel = std::max(0.3, 1.5 * s.wheel.radius);
-    s.wheel_mass = std::max(1.5, 0.1 * s.load / 9.81);  // kg, of its load; the rest is the hub's
+    s.wheel_mass = std::min(std::max(1.5, 0.1 * s.load / 9.81), 0.5 * s.load / 9.81);  // kg; the rest is the hub's
     require_within(s.travel, 0.05, 10.0, "--travel (m)");
     if (!soil.empty()) named = find_soil(soil);
     s.soil = named.soil;

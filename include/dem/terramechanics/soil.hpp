@@ -27,8 +27,8 @@ struct Soil {
   //
   // Only soil columns unload. Where k0 is not known they spring back by at most a tenth of their sinkage
   // (ColumnLaw::unknown_ratio), which pushes a wheel from behind. The equations of a wheel know it by exit_share: a
-  // small wheel (0.05 m x 0.03 m, 10 N, n = 1, slip 0.3) pulls 3.79 N on columns, and 3.77 N by the equations with
-  // exit_share = 0.1, but 2.56 N with 0.
+  // small wheel on P1 (0.05 m x 0.03 m, 10 N, slip 0.3) pulls 5.56 N on columns, and by the equations with a0 = a1 = 0
+  // 5.59 N with exit_share = 0.1, but 4.85 N with 0.
   double unloading_stiffness = 0.0;  ///< k0, Pa/m; 0: not known
   double unloading_growth =
       0.0;  ///< A, Pa/m^2; alone it counts where it is steeper than what stands for k0 (ColumnLaw)
