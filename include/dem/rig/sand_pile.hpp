@@ -42,7 +42,7 @@ class SandPile {
     return sand_pile::lattice(settings_, grains_.shape.bounding_radius(), seed);
   }
 
-  /// Makes one pile and measures it. The seed is that of grains that are rained in, not read from a file.
+  /// Makes one pile and measures it. The seed is that of grains that are rained in; a fill from a file has none.
   [[nodiscard]] sand_pile::PileResult make(std::uint64_t seed) const {
     sand_pile::PileResult result;
     result.kind.name = "grains";

@@ -3,7 +3,10 @@
 #include <dem/terramechanics/soil_text.hpp>
 
 #include <array>
+#include <optional>
+#include <string>
 #include <string_view>
+#include <utility>
 
 namespace dem::terramechanics {
 
@@ -29,14 +32,24 @@ inline std::array<NamedSoil, 8> known_soils() {
            {"p3", "Mojave Martian Simulant, arXiv:1901.10667", mojave_martian_simulant}}};
 }
 
-/// One of them. Throws Error, with their names, for another name.
-inline NamedSoil known_soil(std::string_view name) {
+/// Their names, with commas between them.
+inline std::string known_soil_names() {
   std::string names;
-  for (const NamedSoil& s : known_soils()) {
-    if (s.name == name) return s;
-    names += (names.empty() ? "" : ", ") + s.name;
+  for (const NamedSoil& s : known_soils()) names += (names.empty() ? "" : ", ") + s.name;
+  return names;
+}
+
+/// One of them; none of another name.
+inline std::optional<NamedSoil> known_soil_if(std::string_view name) {
+  for (NamedSoil& s : known_soils()) {
+    if (s.name == name) return std::move(s);
   }
-  fail("there is no soil '{}'; these are known: {}", std::string(name), names);
+  return {};
+}
+/// The same. Throws Error, with their names, for another name.
+inline NamedSoil known_soil(std::string_view name) {
+  if (auto soil = known_soil_if(name)) return *std::move(soil);
+  fail("there is no soil '{}'; these are known: {}", std::string(name), known_soil_names());
 }
 
 }  // namespace dem::terramechanics

@@ -10,6 +10,8 @@
 #include <filesystem>
 #include <string>
 #include <string_view>
+#include <system_error>
+#include <utility>
 #include <vector>
 
 namespace dem::terramechanics {
@@ -157,13 +159,10 @@ inline NamedSoil load_soil(const std::string& path) { return read_soil(io::read_
 
 /// The soil of that name (named_soils.hpp), or in the file of that path. Throws Error for what is neither.
 inline NamedSoil find_soil(const std::string& name_or_path) {
-  std::string names;
-  for (const NamedSoil& s : known_soils()) {
-    if (s.name == name_or_path) return s;
-    names += (names.empty() ? "" : ", ") + s.name;
-  }
-  if (!std::filesystem::exists(name_or_path)) {
-    fail("'{}' is neither a soil that is known by name nor a file; known are {}", name_or_path, names);
+  if (auto soil = known_soil_if(name_or_path)) return *std::move(soil);
+  std::error_code ignored;
+  if (!std::filesystem::exists(name_or_path, ignored)) {
+    fail("'{}' is neither a soil that is known by name nor a file; known are {}", name_or_path, known_soil_names());
   }
   return load_soil(name_or_path);
 }

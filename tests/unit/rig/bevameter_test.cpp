@@ -98,6 +98,12 @@ TEST_CASE("a bevameter gives back the constants of a soil that obeys the laws") 
     CHECK(c.bekker[0].value == 0.0);
     CHECK(c.bekker[1].value > 0.0);
     CHECK(c.bekker_r_squared < c.reece_r_squared);
+    // The plates' own report says so too, with the constants that are left.
+    const MadeSoil made(law, dry);
+    CHECK_THAT(plate_sinkage::constants_text(made.plates),
+               Catch::Contains("kc came out negative") &&
+                   Catch::Contains(dem::text("kphi is {:.4g} kPa/m^n", 1e-3 * c.bekker[1].value)));
+    CHECK(plate_sinkage::constants_text({}).empty());
     CHECK_FALSE(c.has_cohesion);
     CHECK(c.cohesion.value == 0.0);
     // Nobody takes its 0 for measured.
@@ -145,8 +151,8 @@ TEST_CASE("the line of the picture is the soil's, and strengths at the end of th
   CHECK(line.y.at(1) == Approx(line.x.at(1) * std::tan(c.friction_angle.value)));
   CHECK(bevameter::strength_plot(soil.shear, c).series.at(1).x.at(0) == Approx(5.0));  // kPa, on the plane
   CHECK(c.rising.size() == 4);
-  CHECK(bevameter::constants_text(c, 0.95).find("At 2.5, 5, 10, 20 kPa the shear stress is largest in the last 5 %") !=
-        std::string::npos);
+  CHECK(bevameter::constants_text(c, 0.95).find(
+            "Loaded with 2.5, 5, 10, 20 kPa the shear stress is largest in the last 5 %") != std::string::npos);
   soil.shear_settings.travel = 9e-3;
   CHECK(bevameter::rising_text(soil.constants()).empty());
 }
@@ -281,6 +287,11 @@ TEST_CASE("the wheel stands beside Bekker, Reece and dynamic Bekker in the table
   CHECK(predictions[2].at_runs[0]->pull == pull);
   CHECK_FALSE(predictions[2].at_runs[1]);  // it hardly gets on there
 
+  w.solid_fraction = 0.7881, w.level = 0.0521;
+  plate_sinkage::VariantResult plates;
+  plates.level = 0.116, plates.solid_fraction = 0.785;
+  CHECK_THAT(bevameter::beds_text(plates, w),
+             Catch::Contains("solid fraction 0.788, 52.1 mm deep; that of the plates has 0.785, 116.0 mm"));
   const auto table = bevameter::circle_table(predictions, w);
   dem::io::check_table(table);
   CHECK(table.rows.size() == 6);

@@ -298,8 +298,11 @@ TEST_CASE("it is said what grains each rig has, and that their stiffnesses diffe
   CHECK(rigs[0].words ==
         "Shear test: half-edge 3 mm, friction 0.5, K 20000 N/m for half-edge 0.9 mm, relative density looked for.");
   CHECK(rigs[1].words == "Pile: half-edge 3 mm, friction 0.5, K 2000 N/m for half-edge 0.9 mm, of sphere-rolling.");
-  CHECK(rigs[2].words ==
-        "Plate: half-edge 4 mm, friction 0.5, K 20000 N/m for half-edge 1.86 mm, relative density looked for.");
+  CHECK(
+      rigs[2].words ==
+      "Plate: half-edge 4 mm, friction 0.5, K 20000 N/m for half-edge 1.86 mm, relative density looked for; 50 x 30 mm "
+      "of friction 0, pressed by 4 mm into a bed of 0.1 x 0.06 x 0.04 m.");
+  CHECK(rigs[2].note.find("2.0 widths wide and 1.3 widths deep") != std::string::npos);
   CHECK(stiffness_note(s).find("--stiffness and --constants-for") != std::string::npos);
   s.held.stiffness = 1e4, s.held.constants_for = 1e-3;
   CHECK(stiffness_note(s).empty());
@@ -318,6 +321,8 @@ TEST_CASE("a plate of a search is pressed as its options say") {
   CHECK((plate.widths == std::vector{0.02} && plate.length == 0.04 && plate.plate_friction == 0.3));
   CHECK((plate.sinkage == 3e-3 && plate.bed.fall_speed == 0.4));
   CHECK((plate.bed.length == 0.12 && plate.bed.width == 0.08 && plate.bed.depth == 0.05));
+  s.sinkage = 5e-4;
+  CHECK_THROWS_WITH(check_rigs(s), Catch::Contains("raise --sinkage: the plate's smooth start"));
 }
 
 TEST_CASE("options of rigs that measure no target are idle") {

@@ -57,7 +57,7 @@ class BevameterRig : public Rig {
     if (s.has_wheel()) {
       session.begin("wheel", 1.0);
       wheel_.settings = wheel_of(s, (session.folder() / "soil_bekker.toml").string());
-      run_in(wheel_words, session, wheel_, "rigid_wheel", "Wheel in the soil of the bevameter");
+      run_in(wheel_words, session, wheel_, "rigid_wheel", "Wheel in a bed of the bevameter's grains");
     }
     if (!session.outcome.report_problem.empty()) return;  // a run that goes on makes what is missing
     for (const Rig* rig :
@@ -163,8 +163,9 @@ class BevameterRig : public Rig {
     if (shear_.campaign.loads.empty()) return;
     report.plot(page, shear_plot(shear_.campaign, shear_.settings, constants), "shear",
                 "Shear stress; dashed: Janosi and Hanamoto with the soil's K and strength.");
-    report.plot(page, strength_plot(shear_.campaign, constants), "mohr_coulomb",
-                "Strength over normal stress; the line is that of the soil in the table and the files.");
+    report.plot(
+        page, strength_plot(shear_.campaign, constants), "mohr_coulomb",
+        "Strength over the stress on the plane of shear; the line is that of the soil in the table and the files.");
     if (!has_rolled() || !constants) return;
     for (const Compared& q : compared) {
       report.plot(page, circle_plot(*constants, predictions, wheel_.campaign, wheel_.settings, q), q.name,

@@ -68,8 +68,10 @@ inline std::string beds_text(const plate_sinkage::VariantResult& plates, const r
 
 /// Pull, torque and sinkage of the wheel in the grains, what is predicted, and by how much it errs, at each slip.
 inline io::Table circle_table(const Predictions& predictions, const rigid_wheel::Campaign& w) {
-  io::Table t{.caption = "The wheel in the same soil, and what the constants predict; slip s = 1 - v/(omega r)",
-              .header = {"slip", "steady", "quantity", "grains", "± in time"}};
+  io::Table t{
+      .caption =
+          "The wheel in another bed of the same grains, and what the constants predict; slip s = 1 - v/(omega r)",
+      .header = {"slip", "steady", "quantity", "grains", "± in time"}};
   for (const Prediction& p : predictions) t.header.insert(t.header.end(), {p.name, "error"});
   t.header.push_back("unit");
   for (std::size_t k = 0; k < w.slips.size(); ++k) {

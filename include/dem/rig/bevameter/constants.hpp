@@ -30,8 +30,9 @@ struct Constants {
   bool has_cohesion = false;  ///< false: it does not differ from none, and the strength goes through the origin
   /// Pa and rad, of the line that does not go through the origin; of two strengths without an error.
   Estimate free_cohesion = {}, free_friction_angle = {};
-  std::vector<double> rising = {};  ///< Pa, normal stresses whose shear stress is largest at the end of the travel
-  double unit_weight = 0.0;         ///< N/m^3
+  std::vector<double> rising = {};       ///< Pa, loads whose shear stress is largest at the end of the travel
+  std::vector<double> loaded_with = {};  ///< Pa, of each of the shear curves; they have the stress on the plane
+  double unit_weight = 0.0;              ///< N/m^3
   double relative_density = 0.0;
   bool is_density_measured = true;  ///< false: the plates' bed is too small for that (bed_density())
   std::vector<terramechanics::JanosiFit> shear_curves = {};
@@ -90,6 +91,7 @@ inline void find_strength(Constants& c, const direct_shear::Campaign& shear, con
     if (!r.finished || !(r.maximum > 0.0)) continue;
     sigma.push_back(r.plane_stress);
     tau.push_back(r.maximum);
+    c.loaded_with.push_back(r.normal_stress);
     c.shear_curves.push_back(terramechanics::fit_janosi_below(shear_curve(r, s), r.maximum));
     bends.push_back(c.shear_curves.back().displacement);
     // A mean over the smoothing can be largest no later than half of that before the end.

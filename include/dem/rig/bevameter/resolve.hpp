@@ -124,9 +124,10 @@ inline void resolve(Settings& s) {
   rigid_wheel::Settings wheel;
   wheel.spin_deg = s.spin_deg;
   require_start(s.path, wheel.rim_speed(), wheel.ramp_time, "--path", "--spin");
-  if (s.path == 0.0) {
-    const double slowest = std::max(1.0 - *std::min_element(s.slips.begin(), s.slips.end()), 0.25);  // of the travel
-    require_start(s.wheel_travel, slowest * wheel.rim_speed(), wheel.ramp_time, "--wheel-travel", "--spin");
+  const double least = *std::min_element(s.slips.begin(), s.slips.end());
+  if (s.path == 0.0 && least >= -5.0) {  // wheel_of() refuses others
+    const double fastest = std::max(1.0 - least, 0.25) * wheel.rim_speed();
+    require_start(s.wheel_travel, fastest, wheel.ramp_time, "--wheel-travel", "--spin");
   }
   in_words(wheel_words, [&] { wheel_of(s, ""); });
 }

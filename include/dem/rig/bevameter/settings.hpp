@@ -79,7 +79,8 @@ inline void declare(Options& options, Settings& s) {
   add("--bed-depth", s.bed_depth, "[m]; 0: by size");
   add("--pieces", s.pieces, "that the curve of a plate is cut into: the fits are made anew without each");
   options.group("Shear");
-  add("--normal-stresses", s.normal_stresses, "[Pa], at least two, for a cohesion three; empty: by size");
+  add("--normal-stresses", s.normal_stresses,
+      "that the shear box is loaded with [Pa], at least two, for a cohesion three; empty: by size");
   add("--shear-speed", s.shear_speed, "[m/s]; 0: by size");
   add("--shear-travel", s.shear_travel, "[m]; 0: by size");
   add("--shear-smoothing", s.shear_smoothing, "share of the travel over which stresses are averaged");

@@ -83,7 +83,8 @@ inline std::string rising_text(const Constants& c) {
   std::string stresses;
   for (const double sigma : c.rising) stresses += (stresses.empty() ? "" : ", ") + number(1e-3 * sigma, "{:g}");
   return text(
-      " At {} kPa the shear stress is largest in the last 5 % of the shear travel, and may still rise: the strength, "
+      " Loaded with {} kPa the shear stress is largest in the last 5 % of the shear travel, and may still rise: the "
+      "strength, "
       "phi and K depend on --shear-travel; make it longer.",
       stresses);
 }
@@ -129,10 +130,11 @@ inline std::string constants_text(const Constants& c, double confidence) {
 inline io::Table shear_table(const Constants& c) {
   io::Table t{
       .caption = "tau = tau_max (1 - exp(-j/K)) of each normal stress (on the plane of shear), up to the strength",
-      .header = {"normal [kPa]", "tau_max [kPa]", "K [mm]", "R²"}};
-  for (const auto& f : c.shear_curves) {
-    t.row(number(1e-3 * f.normal_stress), number(1e-3 * f.strength), number(1e3 * f.displacement, "{:.3f}"),
-          number(f.r_squared, "{:.4f}"));
+      .header = {"loaded with [kPa]", "on the plane [kPa]", "tau_max [kPa]", "K [mm]", "R²"}};
+  for (std::size_t k = 0; k < c.shear_curves.size(); ++k) {
+    const auto& f = c.shear_curves[k];
+    t.row(number(1e-3 * c.loaded_with[k]), number(1e-3 * f.normal_stress), number(1e-3 * f.strength),
+          number(1e3 * f.displacement, "{:.3f}"), number(f.r_squared, "{:.4f}"));
   }
   return t;
 }
@@ -196,19 +198,29 @@ inline io::Plot shear_plot(const direct_shear::Campaign& d, const direct_shear::
 }
 
 /// Strengths over the stress on the plane of shear, and the line that the soil has through them.
-inline io::Plot strength_plot(direct_shear::Campaign d, const std::optional<Constants>& c) {
-  for (auto& r : d.loads) r.normal_at_maximum = r.plane_stress;
-  io::Plot plot = direct_shear::mohr_coulomb_plot(d, {});
-  plot.x_label = "normal stress on the plane of shear [kPa]";
-  if (!c) return plot;
-  const auto& soil = c->bekker_soil.shear;
-  const double end = plot.series.back().x.back();
-  plot.series.insert(plot.series.begin(),
-                     {.name = text("the soil: {:.1f}°, c = {:.2f} kPa{}", degrees(soil.friction_angle),
-                                   1e-3 * soil.cohesion, c->has_cohesion ? "" : ", through the origin"),
-                      .x = {0.0, end},
-                      .y = {1e-3 * soil.strength(0.0), 1e-3 * soil.strength(1e3 * end)},
-                      .color = 0});
+inline io::Plot strength_plot(const direct_shear::Campaign& d, const std::optional<Constants>& c) {
+  io::Plot plot{.title = "Mohr-Coulomb line",
+                .x_label = "normal stress on the plane of shear [kPa]",
+                .y_label = "maximum shear stress [kPa]",
+                .x_range = {.min = 0.0},
+                .y_range = {.min = 0.0}};
+  io::Series points{.name = "this run", .style = io::SeriesStyle::Points, .color = 0};
+  double end = 0.0;
+  for (const auto& r : d.loads) {
+    if (!r.finished) continue;
+    points.x.push_back(1e-3 * r.plane_stress);
+    points.y.push_back(1e-3 * r.maximum);
+    end = std::fmax(end, 1.1e-3 * r.plane_stress);
+  }
+  if (c) {
+    const auto& soil = c->bekker_soil.shear;
+    plot.series.push_back({.name = text("the soil: {:.1f}°, c = {:.2f} kPa{}", degrees(soil.friction_angle),
+                                        1e-3 * soil.cohesion, c->has_cohesion ? "" : ", through the origin"),
+                           .x = {0.0, end},
+                           .y = {1e-3 * soil.strength(0.0), 1e-3 * soil.strength(1e3 * end)},
+                           .color = 0});
+  }
+  plot.series.push_back(std::move(points));
   return plot;
 }
 

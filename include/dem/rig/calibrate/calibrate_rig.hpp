@@ -101,7 +101,10 @@ class CalibrateRig : public Rig {
     tables.push_back(tried_table(s, tried));
     if (found) report.part("found.csv", [&] { write_found(report.folder() / "found.csv", s, *found); });
     std::vector<std::string> rigs;
-    for (auto& rig : rigs_of(s)) rigs.push_back(std::move(rig.words));
+    for (auto& rig : rigs_of(s)) {
+      rigs.push_back(std::move(rig.words));
+      if (!rig.note.empty()) rigs.push_back(in_own_words(rig.note, own_words(s)));
+    }
     if (auto note = stiffness_note(s); !note.empty()) rigs.push_back(std::move(note));
     report.part("the printed report", [&] {
       fmt::print("\n");

@@ -1,6 +1,7 @@
 #pragma once
 // What is said of the rigs of a search: each keeps what its own program has, unless another is given.
 
+#include <dem/rig/bed/small_bed.hpp>
 #include <dem/rig/calibrate/trial.hpp>
 
 #include <algorithm>
@@ -14,6 +15,7 @@ namespace dem::rig::calibrate {
 struct RigWords {
   std::string words;
   double stiffness_of_size;
+  std::string note = {};  ///< of what may spoil what it tells
 };
 
 /// The rigs of the targets, in their order.
@@ -41,7 +43,12 @@ inline std::vector<RigWords> rigs_of(const Settings& s) {
       add("Pile", detail::pile_settings(s, middle, s.output), "of " + s.kind);
     } else if (!std::exchange(has_plate, true)) {
       const auto p = detail::plate_settings(s, middle, s.output);
-      add("Plate", p.grains, dense(p.bed.relative_density));
+      const double width = p.widths.front();
+      add("Plate", p.grains,
+          text("{}; {:g} x {:g} mm of friction {:g}, pressed by {:g} mm into a bed of {:g} x {:g} x {:g} m{}",
+               dense(p.bed.relative_density), 1e3 * p.length, 1e3 * width, p.plate_friction, 1e3 * p.sinkage,
+               p.bed.length, p.bed.width, p.bed.depth, fall_text(p.bed)));
+      rigs.back().note = small_bed_note(width, p.bed.width, p.bed.depth);
     }
   }
   return rigs;

@@ -154,7 +154,7 @@ inline void declare(Options& options, Settings& s) {
   add("--loads", s.loads, "of the shear test [kg]; empty: by size");
   add("--plate", s.plates, "width of the plate [m]; empty: by size");
   add("--plate-length", s.plate_length, "[m]; 0: by size");
-  add("--plate-friction", s.plate_friction, "mu, grain on plate");
+  add("--plate-friction", s.plate_friction, "mu, grain on the plate that is pressed");
   add("--sinkage", s.sinkage, "of the plate [m]; 0: by size");
   add("--fall-speed", s.fall_speed, "at which grains of its bed fall at most while they are rained [m/s]; 0: freely");
   add("--bed-length", s.bed_length, "of the plate's bed [m]; 0: by size");
@@ -228,6 +228,9 @@ inline std::vector<OwnWord> own_words(const Settings& s) {
       {"take fewer --grains, or a higher box", "take a smaller --half-edge"},
       {"take fewer --grains, or larger ones (--half-edge)", "take a larger --half-edge"},
       {"change --half-edge, or give --grains", "change --half-edge"},
+      {"lower --threshold or --sinkage", "lower --sinkage"},
+      {"--ramp-time (s, at most what the sinkage takes)",
+       "raise --sinkage: the plate's smooth start (s, at most what the sinkage takes)"},
       {"--plates", "--plate"},
       {"--rolling-length", "--rolling"}};
   for (const Constant c : constants_of(s)) {

@@ -44,7 +44,7 @@ class PlateRig : public Rig {
     }
     const VariantResult& v = campaign.variants.front();
     std::vector<std::string> words{bed_text(v), finding_text(v)};
-    if (!constants_table(v).rows.empty()) words.push_back(constants_text(v));
+    if (auto constants = constants_text(v); !constants.empty()) words.push_back(std::move(constants));
     if (!small_bed().empty()) words.push_back(small_bed());
     if (campaign.variants.size() > 1) {
       const StudiedValue of = studied_pressure(settings);

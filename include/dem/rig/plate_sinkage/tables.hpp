@@ -146,12 +146,13 @@ inline std::string finding_text(const VariantResult& v) {
              wide / narrow);
 }
 
-/// What the constants' standard errors are, and what Bekker's form cannot take.
+/// What the constants' standard errors are, and what Bekker's form cannot take; empty where there are no constants.
 inline std::string constants_text(const VariantResult& v) {
-  std::string words =
-      "Neighbouring points of a curve err alike, so these standard errors are too small: the bevameter's are made by "
-      "fitting anew without parts of the curves, and beds of other seeds differ by more (--study seeds).";
   const OverPlates fits = fit_over_plates(v);
+  if (!fits.bekker && !fits.reece) return {};
+  std::string words =
+      "Neighbouring points of a curve err alike, so the standard errors of the constants are too small; beds of other "
+      "seeds differ by more.";
   if (!fits.bekker || fits.bekker->law.k_c >= 0.0) return words;
   const auto plain =
       terramechanics::fit_bekker_not_negative(fitted_curves(v), terramechanics::PlateFit::weighted_logarithms);

@@ -21,7 +21,8 @@ struct Reference {
 /// The published soils, and that of --soil. Throws Error if there is none of that name, or its file cannot be read.
 inline std::vector<Reference> references(const Settings& s) {
   std::vector<Reference> list{{"P1", terramechanics::melanz_sand}, {"P3", terramechanics::mojave_martian_simulant}};
-  if (!s.soil.empty()) list.push_back({s.soil.substr(s.soil.rfind('/') + 1), terramechanics::find_soil(s.soil).soil});
+  if (!s.soil.empty() && s.soil != "p1" && s.soil != "p3")
+    list.push_back({s.soil.substr(s.soil.rfind('/') + 1), terramechanics::find_soil(s.soil).soil});
   return list;
 }
 

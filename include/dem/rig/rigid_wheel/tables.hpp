@@ -189,7 +189,6 @@ inline io::Plot print_plot(const Settings& s, std::span<const Reference> soils, 
     if (r.print.pressure(a) < 0.01 * r.print.pressure(r.print.peak())) continue;
     back = std::min(back, r.print.angle(a) / degree), front = std::max(front, r.print.angle(a) / degree);
   }
-  plot.x_range = {.min = back - 10.0, .max = front + 10.0};
   io::Series pressure{.name = "pressure of the grains", .style = io::SeriesStyle::LinePoints, .color = 0};
   io::Series shear{.name = "shear stress of the grains", .style = io::SeriesStyle::LinePoints, .color = 5};
   for (std::size_t a = 0; a < ContactPrint::along; ++a) {
@@ -204,6 +203,7 @@ inline io::Plot print_plot(const Settings& s, std::span<const Reference> soils, 
     if (!f) continue;
     using namespace terramechanics;
     const WheelContact contact(reference_wheel(s), soil, {r.slip, SlipDefinition::wheel_speed}, f->sinkage);
+    back = std::min(back, f->exit / degree), front = std::max(front, f->entry / degree);
     io::Series p{.name = name + ", pressure", .style = io::SeriesStyle::Dashed, .color = color};
     io::Series t{.name = name + ", shear stress", .style = io::SeriesStyle::Dotted, .color = color++};
     for (int k = 0; k <= 60; ++k) {
@@ -214,6 +214,7 @@ inline io::Plot print_plot(const Settings& s, std::span<const Reference> soils, 
     plot.series.push_back(std::move(p));
     plot.series.push_back(std::move(t));
   }
+  plot.x_range = {.min = back - 10.0, .max = front + 10.0};
   return plot;
 }
 

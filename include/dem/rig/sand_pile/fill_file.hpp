@@ -11,7 +11,7 @@
 
 namespace dem::rig::sand_pile {
 
-/// m, length, width and middle of the container's floor along x and y.
+/// m, length and width of the container's floor, and where its middle is along x.
 struct ContainerFloor {
   double length, width, middle;
 };
@@ -52,9 +52,9 @@ inline std::vector<soil::Placement> read_fill(const Settings& s, const std::stri
     fail("the fill '{}' has grains of shape {}, but the pile is one of {}; give --kinds {}, or another --fill-file",
          s.fill_file, p.shape, shape, p.shape);
   }
-  if (p.grains.size() != s.grains || std::abs(p.half_edge - s.half_edge) > 1e-9) {
+  if (p.grains.size() != s.grains || p.half_edge != s.half_edge) {
     fail(
-        "the fill '{}' has {} grains of half-edge {:g} m, but the settings say {} of {:g} m; give --grains {} "
+        "the fill '{}' has {} grains of half-edge {} m, but the settings say {} of {} m; give --grains {} "
         "--half-edge {}",
         s.fill_file, p.grains.size(), p.half_edge, s.grains, s.half_edge, p.grains.size(), p.half_edge);
   }

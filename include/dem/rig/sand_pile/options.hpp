@@ -23,7 +23,7 @@ inline void declare(Options& options, Settings& s) {
       "sphere; any of them with -viscous behind it (friction without springs); sphere-rolling (springs resist "
       "rolling); "
       "sphere-braked (a constant torque does); empty: by size");
-  add("--seed", s.seed, "of the first pile of each kind");
+  add("--seed", s.seed, "of the first pile of each kind; with --fill-file its number alone, in the names of files");
   add("--seeds", s.seeds, "piles of each kind; 0: by size");
   options.group("Grains");
   add("--half-edge", s.half_edge, "half edge of a cube; spheres have its volume [m]; 0: by size");
@@ -83,7 +83,6 @@ inline void find_idle(IdleOptions& idle, const Settings& s) {
   idle.unless(funnel, "with --method funnel", {"--orifice-radius", "--orifice-height", "--funnel-angle"});
   idle.unless(drain, "with --method drain", {"--box-length", "--box-width", "--slot-width"});
   idle.unless(!lift, "with --method funnel or drain", {"--flow-limit"});
-  idle.unless(s.fill_file.empty(), "without --fill-file, which fixes where the grains are", {"--seed"});
   const auto piles = [&](const char* kind) { return s.kinds.find(kind) != std::string::npos; };
   idle.unless(s.kinds.empty() || piles("sphere-rolling") || piles("sphere-braked"),
               "with --kinds sphere-rolling or sphere-braked", {"--rolling-length", "--plate-rolling-length"});

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <dem/rig/affordable.hpp>
+#include <dem/rig/old_results.hpp>
 #include <dem/rig/rig.hpp>
 #include <dem/rig/sand_pile/fill_file.hpp>
 #include <dem/rig/sand_pile/options.hpp>
@@ -31,7 +32,10 @@ class PileRig : public Rig {
 
   void declare(Options& options) override { sand_pile::declare(options, settings); }
   void find_idle(IdleOptions& idle) const override { sand_pile::find_idle(idle, settings); }
-  void resolve() override { sand_pile::resolve(settings); }
+  void resolve() override {
+    sand_pile::resolve(settings);
+    require_not_own(settings.fill_file, "--fill-file", output(), results());
+  }
   std::string output() const override { return settings.output; }
   ResultNames results() const override {
     ResultNames names = {.files = {"results.csv"},

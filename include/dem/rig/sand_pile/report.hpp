@@ -124,7 +124,8 @@ inline std::vector<std::pair<std::string, std::string>> list_settings(const Sett
       {"size", s.size},
       {"method", s.method},
       {"grains", text("{} of half-edge {}", s.grains, mm(s.half_edge))},
-      {"seeds", text("{}, from {}", s.seeds, s.seed)},
+      s.fill_file.empty() ? std::pair<std::string, std::string>{"seeds", text("{}, from {}", s.seeds, s.seed)}
+                          : std::pair<std::string, std::string>{"grains start from", s.fill_file},
       {"plate", s.plate},
       {"friction, grain on grain", text("{:g}", s.friction)},
       {"friction, grain on plate", text("{:g}", s.plate_friction)},
