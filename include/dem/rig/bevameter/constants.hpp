@@ -80,9 +80,9 @@ inline Estimate mean_estimate(std::span<const double> values) {
 }
 
 /// Cohesion and friction angle of the strengths, and K of the curves. The normal stress is that on the plane of shear,
-/// which bears more than the box is loaded with: over the stress as it is set, grains without cohesion seem to have
-/// some. The cohesion is kept where it differs from none with the confidence; else the line goes through the origin. So
-/// it does with two strengths: a line through two points is exact, and no error can be told.
+/// which bears more than the box is loaded with, most of all under light loads: over the load the line would have too
+/// much cohesion. The cohesion is kept where it differs from none with the confidence; else the line goes through the
+/// origin. So it does with two strengths: a line through two points is exact, and no error can be told.
 inline void find_strength(Constants& c, const direct_shear::Campaign& shear, const direct_shear::Settings& s,
                           double confidence) {
   using terramechanics::Intercept;

@@ -34,7 +34,7 @@ struct PileResult {
   std::uint64_t seed = 0;
   bool finished = false;
   std::size_t poured = 0;             ///< grains
-  std::vector<soil::Placement> fill;  ///< they at rest in their container
+  std::vector<soil::Placement> fill;  ///< these, at rest in their container
   std::vector<soil::Placement> pile;  ///< as it was measured
   soil::Flank flank = {};             ///< of it
   bool at_rest = false;               ///< it stood still when it was measured
