@@ -6,6 +6,7 @@
 #include <dem/rig/calibrate/tables.hpp>
 #include <dem/rig/calibrate/tried.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <vector>
@@ -174,6 +175,23 @@ TEST_CASE("of two places that fit, that between the tried points is found, and t
   CHECK_FALSE(left.is_beyond());
   CHECK(found_text(s, left).find("; but friction 0.75 fits the target as well") != std::string::npos);
   CHECK(found_text(s, left).find("not told") == std::string::npos);
+  // It is drawn where runs were, with what is known of the target and of what was found.
+  const std::vector<Trial> tried{{.point = 1, .values = {0.2}, .results = {0.7}}};
+  const auto drawn = response_plot(s, tried, left, goals, 0);
+  CHECK(drawn.title == "Angle of friction over the friction of grains, size quick");
+  const auto named = [&](const char* name) {
+    const auto at =
+        std::find_if(drawn.series.begin(), drawn.series.end(), [&](const auto& x) { return x.name == name; });
+    REQUIRE(at != drawn.series.end());
+    return *at;
+  };
+  CHECK(named("fitted curve").x.front() == Approx(left.low[0]));
+  CHECK(named("fitted curve").x.back() == Approx(left.high[0]));
+  CHECK(left.high[0] < 0.7);
+  CHECK(named("target").y[0] - named("± its error").y[0] == Approx(goals[0].error_with(left.surrogates[0].scatter())));
+  const double half = estimate_of(s, left, 0).half_width();
+  CHECK(named("± 95 %, within its range").x[0] == Approx(std::max(0.0, 0.25 - half)).margin(1e-3));
+  CHECK(named("± 95 %, within its range").x[1] == Approx(std::min(1.0, 0.25 + half)).margin(1e-3));
   auto vague = left;
   vague.error = {0.9};
   CHECK(found_text(s, vague).find(" (wider than its range: not told by the targets)") != std::string::npos);

@@ -117,6 +117,19 @@ TEST_CASE("the print of a wheel under given stresses has them back, with the are
     CHECK(print.shear(a) == Approx(share * 3e3).margin(1.0));
     CHECK(print.pressure(a, 0) == 0.0);
   }
+  // The plot of it shows where the grains press, and all of the soils' curves: a soft soil holds the rim higher up.
+  rigid_wheel::Settings s;
+  rigid_wheel::resolve(s);
+  rigid_wheel::SlipResult r;
+  r.slip = 0.3, r.print = print;
+  const auto hard = rigid_wheel::print_plot(s, {}, r);
+  CHECK(hard.x_range.min == Approx(-22.5));  // the middle of the last cell, and 10 deg
+  CHECK(hard.x_range.max == Approx(37.5));
+  const std::vector<rigid_wheel::Reference> soft{{"dry sand", dem::terramechanics::known_soil("dry-sand").soil}};
+  const auto forces = rigid_wheel::reference_at(soft[0].soil, 0.3, s);
+  REQUIRE(forces);
+  REQUIRE(forces->entry / degree > 27.5);
+  CHECK(rigid_wheel::print_plot(s, soft, r).x_range.max == Approx(forces->entry / degree + 10.0));
 }
 
 TEST_CASE("settings of wheels that make no sense are refused by the names of their options") {

@@ -93,8 +93,7 @@ inline void declare(Options& options, Settings& s) {
   add("--set-down-speed", s.set_down_speed, "of the load servo [m/s]");
   add("--soil", s.soil,
       "a soil that the grains stand beside too, by Bekker-Wong and dynamic Bekker: its file as the bevameter writes "
-      "it, "
-      "or a name (dry-sand, sandy-loam, lete-sand, clayey, snow, hard)")
+      "it, or a name (dry-sand, sandy-loam, lete-sand, clayey, snow, hard)")
       .changes_no_result();
   add_study_options(options, s.study, s.study_seeds);
   add_grain_options(options, s.grains);

@@ -135,7 +135,7 @@ class WheelRig : public Rig {
         path,
         {"slip_1-v/(omega*r)", "drawbar_pull_N", "pull_deviation_N", "torque_Nm", "torque_deviation_Nm", "sinkage_m",
          "sinkage_deviation_m", "efficiency", "efficiency_deviation", "carried_N", "steady_from_s", "steady",
-         "rut_depth_m", "rut_width_m", "contact_area_m2", "contact_pressure_Pa", "largest_pressure_Pa", "finished"});
+         "rut_depth_m", "rut_width_m", "contact_area_m2", "contact_pressure_Pa", "largest_mean_across_Pa", "finished"});
     for (const SlipResult& r : campaign.slips) {
       const ContactPrint& p = r.print;
       const bool is_known = !p.empty();

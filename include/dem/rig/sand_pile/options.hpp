@@ -13,8 +13,7 @@ inline void declare(Options& options, Settings& s) {
   const auto add = [&](const char* name, auto& value, const char* text) { return options.add(name, value, text); };
   add("--size", s.size,
       "smoke (seconds), quick (minutes) or full (12000 grains, three seeds, 10 s of creep: two hours for a pile of "
-      "cubes, "
-      "days for all kinds; choose by --kinds and --seeds)");
+      "cubes, days for all kinds; choose by --kinds and --seeds)");
   add("--method", s.method,
       "lift (a cylinder), funnel, or drain (a box, through a slot in its floor); a drum that turns is the example drum")
       .one_of({"lift", "funnel", "drain"});
@@ -31,8 +30,7 @@ inline void declare(Options& options, Settings& s) {
   add("--density", s.density, "of a grain [kg/m^3]");
   add("--fill-file", s.fill_file,
       "start from grains at rest in their container: the KIND_SEED_filled.txt of an earlier run (of this shape, in "
-      "this "
-      "container), in place of raining them in");
+      "this container), in place of raining them in");
   options.group("Apparatus");
   add("--plate", s.plate, "flat, or ridged: rings or bars a half-edge high").one_of({"flat", "ridged"});
   add("--plate-radius", s.plate_radius, "[m]; 0: three times the cylinder's");
