@@ -26,6 +26,7 @@
 #include <array>
 #include <cmath>
 #include <ctime>
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
@@ -83,7 +84,8 @@ int main(int argc, char** argv) {
     std::sort(slips.begin(), slips.end());
     for (const double slip : slips) require_within(slip, -5.0, 0.95, "a slip of --slips, 1 - v/(omega r)");
     s.spin = radians(spin);
-    require_within(s.spacing, 1e-3, 0.05, "--spacing (m)");
+    require_within(s.spacing, 1e-3, std::min({0.05, 0.25 * s.wheel.radius, 0.5 * s.wheel.width}),
+                   "--spacing (m; a quarter of the radius and half the width at most)");
     if (s.travel == 0.0) s.travel = std::max(0.3, 1.5 * s.wheel.radius);
     s.wheel_mass = std::min(std::max(1.5, 0.1 * s.load / 9.81), 0.5 * s.load / 9.81);  // kg; the rest is the hub's
     require_within(s.travel, 0.05, 10.0, "--travel (m)");
@@ -113,7 +115,8 @@ int main(int argc, char** argv) {
         table.header.push_back(model == models[0] ? quantities[q] : model == models[1] ? "eqs." : "plain");
       }
     }
-    io::AtomicFile{output + "/wheel.csv"};  // can be written; it is gone again, for it is not committed
+    const std::filesystem::path folder(output);
+    io::AtomicFile{folder / "wheel.csv"};  // can be written; it is gone again, for it is not committed
     std::vector<std::vector<double>> rows;
     if (kind == "grousers") fmt::print("Sinkage on columns is that of the tips, by the equations that of the rim.\n");
     if (kind == "smooth") fmt::print("The equations know no smooth rim: theirs are of soil on soil.\n");
@@ -173,8 +176,8 @@ int main(int argc, char** argv) {
     const double seconds = static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
     fmt::print("{}{:.0f} s of rolling took {:.2f} s of one core: {:.1f} times real time; results in {}\n",
                io::to_text(table), simulated, seconds, simulated / seconds, output);
-    if (!refused.empty()) fmt::print("Gaps are where the soil does not carry the wheel: {}\n", refused);
-    for (int q = 0; q < 3 && halve; ++q) {
+    if (!refused.empty()) fmt::print("Gaps are where there is no result: {}\n", refused);
+    for (int q = 0; q < 3 && halve && largest[q] > 0.0; ++q) {
       fmt::print("columns half as wide change the {} by {:.2f} % of its largest at most\n", quantities[q],
                  100.0 * changed[q] / largest[q]);
     }
@@ -189,7 +192,7 @@ int main(int argc, char** argv) {
       across.series[0].y.push_back(1e3 * field.surface(field.grid.row(middle, iy)));
     }
     // Results of an earlier run in the folder are replaced only now, all together.
-    io::CsvWriter csv(output + "/wheel.csv",
+    io::CsvWriter csv(folder / "wheel.csv",
                       {"slip_1-v/(omega*r)", "pull_N", "eqs_pull_N", "plain_pull_N", "torque_Nm", "eqs_torque_Nm",
                        "plain_torque_Nm", "sinkage_mm", "eqs_sinkage_mm", "plain_sinkage_mm"});
     for (const auto& r : rows) {
@@ -198,11 +201,11 @@ int main(int argc, char** argv) {
               cell(r[8]), cell(r[9]));
     }
     csv.flush();
-    for (int q = 0; q < 3; ++q) io::render_plot(plots[q], output + std::array{"/pull", "/torque", "/sinkage"}[q]);
-    io::render_plot(across, output + "/rut_across");
-    write_rut_csv(output + "/rut.csv", field);
-    write_rut_pgm(output + "/rut.pgm", field);
-    write_rut_vtk(output + "/rut.vtp", field);
+    for (int q = 0; q < 3; ++q) io::render_plot(plots[q], folder / std::array{"pull", "torque", "sinkage"}[q]);
+    io::render_plot(across, folder / "rut_across");
+    write_rut_csv((folder / "rut.csv").string(), field);
+    write_rut_pgm((folder / "rut.pgm").string(), field);
+    write_rut_vtk((folder / "rut.vtp").string(), field);
   } catch (const dem::Error& e) {
     fmt::print(stderr, "{}\n", e.what());
     return 1;

@@ -9,7 +9,8 @@ namespace dem::terramechanics {
 /// A machine part of triangles, in the mesh's own frame: a wheel with grousers, a track shoe, a blade. Rays are cast
 /// upwards through `rays` x `rays` points of each column. The share of them that meets the mesh, up to two columns'
 /// edges above the soil, is the share of the column under it; height and normal are those of the ray next to the
-/// column's point. Faces steeper than 84 degrees are passed through.
+/// column's point. Faces steeper than 84 degrees are passed through: soil before a blade or a grouser does not push it
+/// (see SoilColumns).
 class ColumnMesh final : public ColumnShape {
  public:
   /// `width` (m) is b of the pressure law: the smaller side of what presses on the soil. Throws Error unless it is

@@ -35,7 +35,8 @@ struct ColumnWheelRun {
 
 /// Rolls the wheel at a slip below 1. It sits on a hub that slides up and down on a carriage, which is moved along.
 /// Joints are springs as stiff as the masses at them and the time step allow: so nearly all of the load is the hub's.
-/// Throws Error for a wheel that makes no sense, a way of less than a time step, and where the soil does not carry it.
+/// Throws Error for a wheel that makes no sense, a way of less than a time step, and where the soil does not carry it
+/// with its axle above the ground.
 inline ColumnWheelRun roll_on_columns(const ColumnWheel& w, double slip) {
   check_wheel(w.wheel);
   require_within(slip, -10.0, 0.99, "the slip of a wheel on columns, 1 - v/(omega r)");
@@ -70,8 +71,9 @@ inline ColumnWheelRun roll_on_columns(const ColumnWheel& w, double slip) {
                                 .spacing = w.spacing,
                                 .soil = w.soil,
                                 .bulldozing = w.bulldozing});
+  // b of the pressure law is the wheel's width, as in wheel_forces.
   soil.add(wheel, std::make_shared<ColumnCylinder>(r, w.wheel.width), machine.body(wheel).position(), Mat3::Identity(),
-           0.0, w.friction);
+           w.wheel.width, w.friction);
   ColumnWheelRun mean;
   double count = 0.0;
   const auto report = machine.run(w.travel / v, w.time_step, [&] {
@@ -84,6 +86,13 @@ inline ColumnWheelRun roll_on_columns(const ColumnWheel& w, double slip) {
   if (!report) fail("{}", report.text);
   if (!soil.report()) fail("{}", soil.report().text);
   mean.pull /= count, mean.torque /= count, mean.sinkage /= count;
+  if (!(mean.sinkage < r)) {
+    fail(
+        "the soil carries {:g} N only {:.3g} m below its surface, with the wheel's axle in the ground, where columns "
+        "do "
+        "not tell a wheel's forces; lower the load, or take a larger wheel than one of {:g} m",
+        w.load, mean.sinkage, rim);
+  }
   mean.field = soil.soil().field();
   return mean;
 }

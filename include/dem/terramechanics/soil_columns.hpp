@@ -325,7 +325,9 @@ inline void SoilColumns::commit() {
     if (!(bulldozing_.share > 0.0) || rows_.empty()) continue;
     if (!std::is_sorted(rows_.begin(), rows_.end())) std::sort(rows_.begin(), rows_.end());  // of several pieces
     const Vector3<double>& v = velocity_[static_cast<std::size_t>(owner)];
-    bulldozing_.deposit(field_, rows_, risen * field_.grid.area(), v.x, v.y, step_);
+    // What only sinks has no sides: rounding is no motion.
+    const bool moves = v.x * v.x + v.y * v.y > 1e-4 * v.z * v.z;
+    bulldozing_.deposit(field_, rows_, risen * field_.grid.area(), moves ? v.x : 0.0, moves ? v.y : 0.0, step_);
     top_ = std::max(top_, bulldozing_.roll(field_, rows_, step_));
   }
   strip_count_ = 0;

@@ -72,7 +72,9 @@ class WheelContact {
               : model.bridge > 0.0                  ? std::clamp(1.0 + s / model.bridge, 0.0, 1.0)
               : s >= 0.0                            ? 1.0
                                                     : 0.0;
-    turns_ = {driven_ > 0.0 ? turn_from(shear_entry_) : exit_, driven_ < 1.0 ? turn_from(peak_) : exit_};
+    // Grousers slide before the rim enters: the way may turn before that, where nothing presses.
+    turns_ = {driven_ > 0.0 ? std::min(turn_from(shear_entry_), entry_) : exit_,
+              driven_ < 1.0 ? turn_from(peak_) : exit_};
   }
 
   double entry() const { return entry_; }                ///< theta_f

@@ -3,6 +3,7 @@
 #include <dem/math/rotation.hpp>
 #include <dem/mbd/machine.hpp>
 #include <dem/terramechanics/column_wheel.hpp>
+#include <dem/terramechanics/named_soils.hpp>
 
 #include <array>
 #include <cmath>
@@ -124,6 +125,9 @@ TEST_CASE("a wheel of the library's rig on columns feels what the wheel alone do
   CHECK_THROWS_WITH(roll_on_columns({.travel = 1e-6}, 0.0),
                     ContainsSubstring("travels 1e-06 m") && ContainsSubstring("time step of 0.00025 s"));
   CHECK_THROWS_WITH(roll_on_columns({.time_step = 0.0}, 0.0), ContainsSubstring("time step of a wheel on columns"));
+  // Snow carries 1 kN only where the axle is in it.
+  CHECK_THROWS_WITH(roll_on_columns({.soil = known_soil("snow").soil, .load = 1e3, .wheel_mass = 15.0}, 0.3),
+                    ContainsSubstring("axle in the ground"));
 }
 
 TEST_CASE("a block comes to rest on columns and weighs what it weighs") {

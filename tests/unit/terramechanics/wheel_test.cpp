@@ -221,6 +221,16 @@ TEST_CASE("soil that follows the wheel up behind it carries load and pushes") {
   CHECK(both.pull == Approx(0.0).margin(1e-12 * load));
 }
 
+TEST_CASE("where the rim hardly touches, grousers hardly thrust") {
+  // The soil slides over their tips before the rim enters it, and turns back there where slip is small and negative.
+  const Wheel w = {.radius = 0.13, .width = 0.16, .grouser_height = 0.01};
+  const Soil clay{.pressure = Bekker{0.0, 1e6, 1.0}, .shear = {4140.0, radians(13.0), 6e-3}};
+  for (const double slip : {-0.2, -0.12, -0.1}) {
+    const auto f = wheel_forces(w, clay, {slip}, 1e-9, {.braked = BrakedShear::one_path});
+    CHECK(std::abs(f.thrust) < 4140.0 * w.width * w.shear_radius() * f.entry);
+  }
+}
+
 TEST_CASE("grousers that count for nothing change nothing, and those that count act at their tips") {
   Wheel w = wheel;
   w.grouser_height = 0.01;
