@@ -25,6 +25,7 @@ struct ReeceFit {
 namespace detail {
 
 inline void check_widths(std::span<const PlateCurve> plates, const char* what) {
+  if (plates.empty()) fail("{}: 0 plates tell nothing; press plates of two widths", what);
   double least = 1e300, most = 0.0;
   for (const PlateCurve& plate : plates) {
     check_plate_curve(plate);
@@ -113,6 +114,23 @@ inline ReeceFit fit_reece(std::span<const PlateCurve> plates, double cohesion, d
     }));
   }
   return result;
+}
+
+/// k_c' and n of p = c k_c' (z/b)^n, all plates and points at once; k_phi' is 0. Throws Error as fit_plate does, and
+/// unless the cohesion is above 0.
+inline ReeceFit fit_reece_cohesive(std::span<const PlateCurve> plates, double cohesion, double unit_weight,
+                                   PlateFit kind = PlateFit::pressures) {
+  require_positive(cohesion, "cohesion in Reece's fit", "Pa");
+  const auto fit = detail::fit_form<1>("Reece's fit", plates, kind, [&](double z, double b, std::array<double, 1>& u) {
+    u = {cohesion};
+    return z / b;
+  });
+  ReeceFit one;
+  one.r_squared = fit.r_squared, one.points = fit.points;
+  one.law.cohesion = cohesion, one.law.unit_weight = unit_weight;
+  one.law.k_c = fit.value[0], one.law.k_phi = 0.0, one.law.n = fit.value[1];
+  one.k_c_error = fit.error[0], one.k_phi_error = 0.0, one.n_error = fit.error[1];
+  return one;
 }
 
 }  // namespace dem::terramechanics

@@ -61,7 +61,7 @@ struct MadeSoil {
     shear_settings.smoothing = 0.0;
   }
   [[nodiscard]] bevameter::Constants constants() const {
-    return bevameter::find_constants(plates, shear, shear_settings, 5.0, 0.95);
+    return bevameter::find_constants(plates, shear, shear_settings, 5, 0.95);
   }
 };
 
@@ -89,6 +89,33 @@ TEST_CASE("a bevameter gives back the constants of a soil that obeys the laws") 
     CHECK(mechanics::under(c.bekker_soil.pressure, 0.05).pressure(0.01) ==
           Approx(law.under(0.05).pressure(0.01)).epsilon(1e-4));
   }
+  SECTION("Bekker's k_c alone, with cohesion: Reece's k_phi' would be negative, and is left out") {
+    const auto c = MadeSoil(mechanics::Bekker{.k_c = 2e4, .k_phi = 0.0, .n = 0.5},
+                            {.cohesion = 800.0, .friction_angle = 0.6, .displacement = 8e-4})
+                       .constants();
+    // p = k_c z^0.5/b falls with the width by more than (z/b)^0.5 does: k_phi' of p = (c k_c' + gamma b k_phi') (z/b)^n
+    // is below 0.
+    CHECK(c.reece[0].value > 0.0);
+    CHECK(c.reece[1].value == 0.0);
+    CHECK(c.reece[2].value > 0.0);
+    CHECK_THAT(bevameter::reece_text(c), Catch::Contains("k_phi' came out negative"));
+  }
+  SECTION("a shear curve that is largest at once has a strength, but no K; a single one tells no cohesion") {
+    MadeSoil soil(mechanics::Bekker{.k_c = 2e4, .k_phi = 3e6, .n = 0.9}, dry);
+    auto& first = soil.shear.loads.front();
+    first.samples.front().stress = first.maximum;
+    first.at_maximum = first.samples.front().displacement;
+    auto c = soil.constants();
+    REQUIRE(c.shear_curves.size() == 4);
+    CHECK(std::isnan(c.shear_curves.front().displacement));
+    CHECK(c.displacement.freedom == 2);
+    CHECK(c.displacement.value == Approx(8e-4).epsilon(1e-6));
+    CHECK_THAT(bevameter::no_bend_text(c), Catch::Contains("Loaded with 2.5 kPa"));
+    soil.shear.loads.resize(2);
+    soil.shear.loads[0].maximum = std::nan("");
+    c = soil.constants();
+    CHECK_THAT(bevameter::cohesion_text(c, 0.95), Catch::Contains("one strength alone"));
+  }
   SECTION("Reece, without cohesion: Bekker's k_c would be negative, and is left out") {
     const mechanics::Reece law{.k_phi = 90.0, .n = 0.7, .unit_weight = 9.81 * 2650.0 * 0.8};
     const auto c = MadeSoil(law, dry).constants();
@@ -113,12 +140,25 @@ TEST_CASE("a bevameter gives back the constants of a soil that obeys the laws") 
     CHECK(file.find("Bekker k_c,0,,,0,kPa/m^(n-1),left out\n") != std::string::npos);
     CHECK(file.find("cohesion c,0,,,0,kPa,left out\n") != std::string::npos);
     CHECK(file.find("deg,measured\n") != std::string::npos);
+    auto without = c;
+    without.unloading = {.value = std::nan("")};
+    bevameter::write_constants(path, without, 0.95);
+    CHECK(dem::io::read_file(path).find("MPa/m,not known\n") != std::string::npos);
+    CHECK_THAT(bevameter::interval_comments(without, 0.95, "Reece"),
+               Catch::Contains("# unloading stiffness was not measured\n"));
     CHECK(file.find("cohesion of the free line,") != std::string::npos);
     std::filesystem::remove(path);
     const std::string comments = bevameter::left_out_comments(c);
     CHECK(comments.find("// Bekker_Kc is 0 because it was left out") == 0);
     CHECK(comments.find("Mohr_cohesion") != std::string::npos);
     CHECK(comments.find("Kphi") == std::string::npos);
+    const std::string intervals = bevameter::interval_comments(c, 0.95, "Reece");
+    CHECK_THAT(intervals, Catch::Contains("# Bekker k_c is 0 because it was left out\n") &&
+                              Catch::Contains("kPa/m^n (95 %, this bed alone)\n") && !Catch::Contains("Reece") &&
+                              !Catch::Contains("free line"));
+    const auto soil = mechanics::to_text(mechanics::NamedSoil{"found", "a test", c.bekker_soil});
+    CHECK(mechanics::read_soil(intervals + soil, "found").soil.shear.friction_angle ==
+          mechanics::read_soil(soil, "found").soil.shear.friction_angle);
   }
 }
 

@@ -60,10 +60,7 @@ class BevameterRig : public Rig {
       run_in(wheel_words, session, wheel_, "rigid_wheel", "Wheel in a bed of the bevameter's grains");
     }
     if (!session.outcome.report_problem.empty()) return;  // a run that goes on makes what is missing
-    for (const Rig* rig :
-         {static_cast<const Rig*>(&plates_), static_cast<const Rig*>(&shear_), static_cast<const Rig*>(&wheel_)}) {
-      forget_run_within(*rig);
-    }
+    for (const auto& [folder, rig] : apparatus()) forget_run_within(folder);
     session.parts().clear();  // without those of the runs within there is nothing to go on with
   }
 
@@ -114,14 +111,17 @@ class BevameterRig : public Rig {
   std::optional<Constants> constants = {};
 
  private:
-  /// Removes what an earlier run has left of the apparatus of this one, which come in turn: until then their results
-  /// would stand beside another soil, and their checkpoints would be gone on from.
+  /// The folders of all apparatus, also of a wheel that does not roll: an earlier run may have left one.
+  [[nodiscard]] std::array<std::pair<std::filesystem::path, const Rig*>, 3> apparatus() const {
+    return {{{folder_in(settings, "plates"), &plates_},
+             {folder_in(settings, "shear"), &shear_},
+             {folder_in(settings, "wheel"), &wheel_}}};
+  }
+  /// Removes what an earlier run has left of them, which come in turn: until then their results would stand beside
+  /// another soil, and their checkpoints would be gone on from.
   void clear_apparatus(Session& session) const {
     if (!process_writes_files) return;
-    std::vector<std::pair<const char*, const Rig*>> all{{"plates", &plates_}, {"shear", &shear_}};
-    if (settings.has_wheel()) all.emplace_back("wheel", &wheel_);
-    for (const auto& [name, rig] : all) {
-      const std::filesystem::path own = folder_in(settings, name);
+    for (const auto& [own, rig] : apparatus()) {
       const std::size_t results = find_old_results(own, rig->results()).size();
       if (results > 0) session.message(text("Replacing {} results of an earlier run in '{}'.", results, own.string()));
       forget_run_within(own);
@@ -144,8 +144,12 @@ class BevameterRig : public Rig {
   void save_soils(const std::filesystem::path& folder) {
     const std::string name = text("DEM sand, cubes of half-edge {:g} mm", 1e3 * settings.grains.half_edge);
     const std::string source = "bevameter in grains, settings.toml beside this file";
-    terramechanics::save_soil((folder / "soil_bekker.toml").string(), {name, source, constants->bekker_soil});
-    terramechanics::save_soil((folder / "soil_reece.toml").string(), {name, source, constants->reece_soil});
+    const auto save = [&](const char* file, const terramechanics::Soil& soil, const char* other) {
+      io::write_file(folder / file, interval_comments(*constants, settings.confidence, other) +
+                                        terramechanics::to_text(terramechanics::NamedSoil{name, source, soil}));
+    };
+    save("soil_bekker.toml", constants->bekker_soil, "Reece");
+    save("soil_reece.toml", constants->reece_soil, "Bekker");
     try {
       io::write_file(
           folder / "chrono_scm.txt",

@@ -1,6 +1,7 @@
 #pragma once
 // The constants of a soil from the curves of plates and shear tests, with confidence intervals.
 
+#include <dem/core/error.hpp>
 #include <dem/rig/direct_shear/evaluate.hpp>
 #include <dem/rig/plate_sinkage/results.hpp>
 #include <dem/rig/scatter.hpp>
@@ -10,6 +11,7 @@
 #include <dem/terramechanics/soil.hpp>
 
 #include <array>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -21,7 +23,7 @@ using terramechanics::Estimate;
 /// What is known of a soil.
 struct Constants {
   std::array<Estimate, 3> bekker = {};  ///< k_c (Pa/m^(n-1)), k_phi (Pa/m^n), n; a modulus that came out negative is 0
-  std::array<Estimate, 3> reece = {};   ///< k_c', k_phi', n; k_c' is 0 without cohesion
+  std::array<Estimate, 3> reece = {};   ///< k_c', k_phi', n, likewise; k_c' is 0 without cohesion
   Estimate cohesion = {};               ///< Pa
   Estimate friction_angle = {};         ///< rad
   Estimate displacement = {};           ///< K, m
@@ -73,6 +75,19 @@ inline terramechanics::ShearCurve shear_curve(const direct_shear::LoadResult& r,
   return curve;
 }
 
+/// Janosi's law of a load's curve; none of a curve without a bend to fit, as one that is largest at once: its strength
+/// counts all the same.
+inline std::optional<terramechanics::JanosiFit> janosi_fit(const direct_shear::LoadResult& r,
+                                                           const direct_shear::Settings& s) {
+  const auto curve = shear_curve(r, s);
+  if (curve.displacement.size() < 3) return {};
+  try {
+    return terramechanics::fit_janosi_below(curve, r.maximum);
+  } catch (const Error&) {
+    return {};
+  }
+}
+
 /// The mean of values that do not depend on each other, with its standard error.
 inline Estimate mean_estimate(std::span<const double> values) {
   const Scatter all = scatter_of(values);
@@ -92,8 +107,17 @@ inline void find_strength(Constants& c, const direct_shear::Campaign& shear, con
     sigma.push_back(r.plane_stress);
     tau.push_back(r.maximum);
     c.loaded_with.push_back(r.normal_stress);
-    c.shear_curves.push_back(terramechanics::fit_janosi_below(shear_curve(r, s), r.maximum));
-    bends.push_back(c.shear_curves.back().displacement);
+    if (const auto fit = janosi_fit(r, s)) {
+      c.shear_curves.push_back(*fit);
+      bends.push_back(fit->displacement);
+    } else {
+      c.shear_curves.push_back({.normal_stress = r.plane_stress,
+                                .strength = r.maximum,
+                                .strength_error = not_known,
+                                .displacement = not_known,
+                                .displacement_error = not_known,
+                                .r_squared = not_known});
+    }
     // A mean over the smoothing can be largest no later than half of that before the end.
     if (r.at_maximum > 0.95 * (s.travel - 0.5 * s.smoothing)) c.rising.push_back(r.normal_stress);
   }
@@ -125,16 +149,23 @@ inline void find_moduli(Constants& c, std::span<const terramechanics::PlateCurve
     return std::array{law.k_c, law.k_phi, law.n};
   });
   c.bekker_r_squared = b.r_squared;
+  // Here too a modulus that comes out negative is left out; without cohesion there is no k_c'.
   double cohesion = c.cohesion.value;
+  bool is_cohesive_alone = false;
   if (cohesion > 0.0) {
     const Reece law = fit_reece(curves, cohesion, c.unit_weight, kind).law;
-    if (law.k_c < 0.0 || law.k_phi < 0.0) cohesion = 0.0;
+    is_cohesive_alone = law.k_c >= 0.0 && law.k_phi < 0.0;
+    if (law.k_c < 0.0) cohesion = 0.0;
   }
+  const auto fit_reece_here = [&](std::span<const PlateCurve> some) {
+    return is_cohesive_alone ? fit_reece_cohesive(some, cohesion, c.unit_weight, kind)
+                             : fit_reece(some, cohesion, c.unit_weight, kind);
+  };
   c.reece = jackknife<3>(std::span<const PlateCurve>(cut), [&](std::span<const PlateCurve> some) {
-    const Reece law = fit_reece(some, cohesion, c.unit_weight, kind).law;
+    const Reece law = fit_reece_here(some).law;
     return std::array{law.k_c, law.k_phi, law.n};
   });
-  c.reece_r_squared = fit_reece(curves, cohesion, c.unit_weight, kind).r_squared;
+  c.reece_r_squared = fit_reece_here(curves).r_squared;
 }
 
 /// How dense the plates' bed is. Where it is too small to measure that, it is what was asked for, or the loosest where
@@ -152,7 +183,7 @@ inline BedDensity bed_density(const plate_sinkage::VariantResult& plates) {
 
 /// All constants. Throws Error where plates or shear curves are too few.
 inline Constants find_constants(const plate_sinkage::VariantResult& plates, const direct_shear::Campaign& shear,
-                                const direct_shear::Settings& shear_settings, double pieces, double confidence) {
+                                const direct_shear::Settings& shear_settings, std::size_t pieces, double confidence) {
   using namespace terramechanics;
   Constants c;
   const BedDensity density = bed_density(plates);
@@ -164,7 +195,7 @@ inline Constants find_constants(const plate_sinkage::VariantResult& plates, cons
   if (curves.size() < 2) {
     fail("{} of {} plates can be fitted, but two are needed; raise --sinkage", curves.size(), plates.plates.size());
   }
-  find_moduli(c, curves, static_cast<std::size_t>(pieces));
+  find_moduli(c, curves, pieces);
   std::vector<double> slopes;
   for (const auto& r : plates.plates) slopes.push_back(r.unloading_stiffness);
   c.unloading = mean_estimate(slopes);

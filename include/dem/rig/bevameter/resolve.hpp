@@ -96,7 +96,7 @@ inline void resolve(Settings& s) {
   if (s.wheel.empty()) s.wheel = by_size.wheel;
   if (s.slips.empty()) s.slips = by_size.slips;
   require_within(s.confidence, 0.5, 0.999, "--confidence");
-  require_within(s.pieces, 2.0, 50.0, "--pieces");
+  require_within(static_cast<double>(s.pieces), 2.0, 50.0, "--pieces");
   require_within(s.shear_smoothing, 0.0, 0.5, "--shear-smoothing");
   if (s.widths.size() < 2) {
     fail("--plates has {} width, but k_c and k_phi need plates of at least two; three are usual", s.widths.size());

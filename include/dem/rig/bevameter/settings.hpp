@@ -29,7 +29,7 @@ struct Settings {
   double sinkage = 0.0;                                       ///< m; 0: by size
   double plate_friction = 0.0;                                ///< mu, grain on plate
   double bed_length = 0.0, bed_width = 0.0, bed_depth = 0.0;  ///< m, of the plates' bed; 0: by size
-  double pieces = 5.0;                                        ///< that a curve is cut into for the errors
+  std::uint64_t pieces = 5;                                   ///< that a curve is cut into for the errors
 
   // Shear
   std::vector<double> normal_stresses;  ///< Pa; empty: by size

@@ -25,6 +25,7 @@ struct NamedConstant {
   double scale;
   /// One that was left out is 0, without an error: nothing measured that.
   [[nodiscard]] bool is_left_out() const { return estimate.error == 0.0 && estimate.value == 0.0; }
+  [[nodiscard]] bool is_known() const { return std::isfinite(estimate.value); }
 };
 inline std::vector<NamedConstant> list(const Constants& c) {
   return {{"Bekker k_c", "kPa/m^(n-1)", c.bekker[0], 1e-3},
@@ -60,7 +61,10 @@ inline void write_constants(const std::filesystem::path& path, const Constants& 
   for (const NamedConstant& n : list(c)) {
     const Estimate e = n.is_left_out() ? Estimate{.value = 0.0} : n.estimate;
     csv.row(n.name, cell(n.scale * e.value), cell(n.scale * e.error), cell(n.scale * e.half_width(confidence)),
-            e.freedom, n.unit, n.is_left_out() ? "left out" : "measured");
+            e.freedom, n.unit,
+            n.is_left_out() ? "left out"
+            : n.is_known()  ? "measured"
+                            : "not known");
   }
   csv.flush();
 }
@@ -74,6 +78,25 @@ inline std::string left_out_comments(const Constants& c) {
   add(c.bekker[0].value == 0.0, "Bekker_Kc", "it came out negative");
   add(c.bekker[1].value == 0.0, "Bekker_Kphi", "it came out negative");
   add(!c.has_cohesion, "Mohr_cohesion", "it could not be told from none");
+  return lines;
+}
+
+/// What the table of the constants says of a soil's numbers, as comments above them in its file: their intervals, and
+/// what was left out. Those whose names begin with `other` are of another form.
+inline std::string interval_comments(const Constants& c, double confidence, std::string_view other) {
+  std::string lines;
+  for (const NamedConstant& n : list(c)) {
+    const std::string_view name(n.name);
+    if (name.starts_with(other) || name.ends_with("of the free line")) continue;
+    if (!n.is_known()) {
+      lines += text("# {} was not measured\n", name);
+      continue;
+    }
+    lines += n.is_left_out()
+                 ? text("# {} is 0 because it was left out\n", name)
+                 : text("# {}: {:.4g} +- {} {} ({:g} %, this bed alone)\n", name, n.scale * n.estimate.value,
+                        number(n.scale * n.estimate.half_width(confidence), "{:.2g}"), n.unit, 100.0 * confidence);
+  }
   return lines;
 }
 
@@ -92,6 +115,10 @@ inline std::string rising_text(const Constants& c) {
 /// Which line the strengths have, and why.
 inline std::string cohesion_text(const Constants& c, double confidence) {
   const Estimate& free = c.free_cohesion;
+  if (c.loaded_with.size() < 2) {
+    return "There is one strength alone: its line goes through the origin, and cohesion was not looked for. Give three "
+           "--normal-stresses.";
+  }
   if (free.freedom == 0) {
     return text(
         "The strengths are two. A line through two points is exact, and no error can be told: its cohesion, {} kPa, "
@@ -113,17 +140,36 @@ inline std::string density_text(const Constants& c) {
               c.relative_density > 0.0 ? "as asked for" : "taken as the loosest");
 }
 
+/// Which modulus of Reece's a soil with cohesion has lost; empty where none.
+inline std::string reece_text(const Constants& c) {
+  if (!c.has_cohesion) return "";
+  return c.reece[0].value == 0.0   ? " Reece's k_c' came out negative: it is left out."
+         : c.reece[1].value == 0.0 ? " Reece's k_phi' came out negative: it is left out."
+                                   : "";
+}
+
+/// Which shear curves have no K; empty where all have one.
+inline std::string no_bend_text(const Constants& c) {
+  std::string loads;
+  for (std::size_t k = 0; k < c.shear_curves.size(); ++k) {
+    if (std::isfinite(c.shear_curves[k].displacement)) continue;
+    loads += (loads.empty() ? "" : ", ") + number(1e-3 * c.loaded_with[k], "{:g}");
+  }
+  return loads.empty() ? "" : text(" Loaded with {} kPa the curve has no bend to tell K by.", loads);
+}
+
 inline std::string constants_text(const Constants& c, double confidence) {
   return text(
       "Unit weight {:.2f} kN/m³, relative density {:.2f}{}. R² of Bekker's pressure {:.3f}, of Reece's {:.3f}. Errors "
       "of the moduli are those of the jackknife over pieces of the curves, as neighbouring points err alike; of phi, "
-      "those of the line through the strengths; of K and of the unloading, the scatter between the curves. {}{}{}",
+      "those of the line through the strengths; of K and of the unloading, the scatter between the curves. All are of "
+      "this bed: run other --seed for how beds differ. {}{}{}{}{}",
       1e-3 * c.unit_weight, c.relative_density, density_text(c), c.bekker_r_squared, c.reece_r_squared,
       cohesion_text(c, confidence),
       c.bekker[0].value == 0.0   ? " Bekker's k_c came out negative, as the wider plates carried more: it is left out."
       : c.bekker[1].value == 0.0 ? " Bekker's k_phi came out negative: it is left out."
                                  : "",
-      rising_text(c));
+      rising_text(c), reece_text(c), no_bend_text(c));
 }
 
 /// Janosi's fit of each load.
