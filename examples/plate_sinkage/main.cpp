@@ -3,7 +3,7 @@
 //
 //   plate_sinkage --size smoke          seconds, to see that all works
 //   plate_sinkage                       all plates on coarse grains, minutes
-//   plate_sinkage --study box           also in beds twice as wide and twice as deep, each of three seeds
+//   plate_sinkage --study box           also in beds twice as wide, as deep and as long, each of three seeds
 //
 // Ends with 0 when all was done; 1 when the run ended early or a part of the report could not be made; 2 when the
 // settings make no sense; 130 after Ctrl-C or SIGTERM.

@@ -4,8 +4,9 @@
 //
 //   rigid_wheel --size smoke            seconds, to see that all works
 //   rigid_wheel                         five slips on coarse grains, minutes
+//   rigid_wheel --size full --stiffness 2000 --sleep    the thesis's grains, nine slips: some 7 hours on two cores
 //   rigid_wheel --wheel grousers        also smooth; rough is the default
-//   rigid_wheel --study box             also in beds twice as wide and twice as deep, each of three seeds
+//   rigid_wheel --study box             also in beds twice as wide, as deep and as long, each of three seeds
 //
 // Ends with 0 when all was done; 1 when the run ended early or a part of the report could not be made; 2 when the
 // settings make no sense; 130 after Ctrl-C or SIGTERM.

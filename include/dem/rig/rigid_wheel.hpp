@@ -99,18 +99,18 @@ class RigidWheel {
   [[nodiscard]] rigid_wheel::SlipResult roll(const Stand& stand, double slip) const {
     rigid_wheel::SlipResult result{.slip = slip};
     Stages quiet;
-    roll(stand, result, quiet, [](const auto&, double) {});
+    roll(stand, 1, result, quiet, [](const auto&, double) {});
     rigid_wheel::evaluate(result, stand.bed.level, settings_);
     return result;
   }
 
-  /// The same with stages that are told the share of the run, and look(world, share) after each sample. `result` is
-  /// filled as the run goes; its samples are not evaluated.
+  /// The same on so many threads, with stages that are told the share of the run, and look(world, share) after each
+  /// sample. `result` is filled as the run goes; its samples are not evaluated.
   template <class Look>
-  void roll(Stand stand, rigid_wheel::SlipResult& result, Stages& stages, Look&& look) const {
+  void roll(Stand stand, int threads, rigid_wheel::SlipResult& result, Stages& stages, Look&& look) const {
     const Settings& s = settings_;
     auto& world = stand.bed.world;
-    if (processes.count == 1) world.set_threads(1);  // slips go side by side
+    world.set_threads(threads);
     auto& m = world.machine();
     const double interval = s.sample_interval(), speed = (1.0 - result.slip) * s.rim_speed(),
                  duration = s.duration_at(result.slip);

@@ -187,12 +187,13 @@ TEST_CASE("a study of plates changes what it says, and nothing else, in beds of 
   };
   auto s = resolved("box");
   const auto box = plate_sinkage::variants(s);
-  REQUIRE(box.size() == 9);
+  REQUIRE(box.size() == 12);
   CHECK(box[1].settings.bed.width == Approx(2.0 * s.bed.width));
   CHECK(box[1].settings.bed.depth == s.bed.depth);
   CHECK(box[2].settings.bed.depth == Approx(2.0 * s.bed.depth));
-  CHECK(box[4].settings.bed.width == Approx(2.0 * s.bed.width));
-  CHECK(box[4].settings.bed.seed == s.bed.seed + 1);
+  CHECK(box[3].settings.bed.length == Approx(2.0 * s.bed.length));
+  CHECK(box[5].settings.bed.width == Approx(2.0 * s.bed.width));
+  CHECK(box[5].settings.bed.seed == s.bed.seed + 1);
   s = resolved("speed");
   CHECK(plate_sinkage::variants(s).at(1).settings.speed == Approx(0.5 * s.speed));
   CHECK(plate_sinkage::variants(resolved("none")).size() == 1);
@@ -215,9 +216,9 @@ TEST_CASE("the study of plates has the spread of the seeds, and changes paired b
   s.study = "box";
   plate_sinkage::resolve(s);
   plate_sinkage::Campaign c;
-  // Pressures (kPa) under the two plates: as set, twice as wide, twice as deep; beds of three seeds.
-  const double kPa[9][2] = {{20, 30}, {18, 27}, {20.2, 30.3},  {22, 30},      {20.24, 27},
-                            {22, 30}, {24, 33}, {21.12, 29.7}, {23.76, 32.67}};
+  // Pressures (kPa) under the two plates: as set, twice as wide, as deep and as long; beds of three seeds.
+  const double kPa[12][2] = {{20, 30}, {18, 27}, {20.2, 30.3}, {19, 30},      {22, 30},       {20.24, 27},
+                             {22, 30}, {21, 30}, {24, 33},     {21.12, 29.7}, {23.76, 32.67}, {23, 33}};
   const auto all = plate_sinkage::variants(s);
   for (std::size_t v = 0; v < all.size(); ++v) {
     auto& of = c.variants.emplace_back(plate_sinkage::VariantResult{.variant = all[v], .solid_fraction = 0.78});
@@ -230,7 +231,7 @@ TEST_CASE("the study of plates has the spread of the seeds, and changes paired b
     }
   }
   auto rows = plate_sinkage::study_rows(c);
-  REQUIRE(rows.size() == 9);  // two plates and their mean, thrice
+  REQUIRE(rows.size() == 12);  // two plates and their mean, of four boxes
   CHECK(rows[0].value.count == 3);
   CHECK(rows[0].value.mean == Approx(22e3));
   CHECK(rows[0].value.deviation == Approx(2e3));
@@ -241,6 +242,7 @@ TEST_CASE("the study of plates has the spread of the seeds, and changes paired b
   CHECK(rows[3].from_as_set.percent().error == Approx(1.206).epsilon(1e-3));
   CHECK(rows[4].from_as_set.percent().error == Approx(0.0).margin(1e-9));
   CHECK(rows[6].from_as_set.is_within(5.0) == std::string("yes"));
+  CHECK(rows[9].from_as_set.value().value == Approx(-1e3));
 
   const StudiedValue of = plate_sinkage::studied_pressure(s);
   const auto table = study_table(of, rows, plate_sinkage::study_caption);
@@ -254,7 +256,7 @@ TEST_CASE("the study of plates has the spread of the seeds, and changes paired b
   CHECK(table.rows[5][1] == "mean");
   CHECK(table.rows[8][11] == "no");
   const auto words = study_findings(of, rows, 2);
-  REQUIRE(words.size() == 3);
+  REQUIRE(words.size() == 4);
   CHECK_THAT(words[0], Catch::Contains("Beds of 3 seeds in the box as set deviate by 1.80 kPa in the mean pressure of "
                                        "the plates, 26.50 ± 1.04 kPa"));
   CHECK_THAT(words[1],
@@ -264,7 +266,7 @@ TEST_CASE("the study of plates has the spread of the seeds, and changes paired b
   CHECK_THAT(words[2], Catch::EndsWith("not told from none, and within the 5 %."));
 
   // A run that ended early has no pressure; its seed drops out of the pair.
-  c.variants[4].plates.back().finished = false;
+  c.variants[5].plates.back().finished = false;
   rows = plate_sinkage::study_rows(c);
   CHECK(rows[3].from_as_set.pairs() == 3);
   CHECK(rows[4].from_as_set.pairs() == 2);

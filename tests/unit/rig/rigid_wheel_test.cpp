@@ -116,6 +116,7 @@ TEST_CASE("the print of a wheel under given stresses has them back, with the are
     CHECK(print.pressure(a) == Approx(share * 1e4).margin(1.0));
     CHECK(print.shear(a) == Approx(share * 3e3).margin(1.0));
     CHECK(print.pressure(a, 0) == 0.0);
+    CHECK(print.shear(a, 0) == 0.0);
   }
   // The plot of it shows where the grains press, and all of the soils' curves: a soft soil holds the rim higher up.
   rigid_wheel::Settings s;
@@ -207,11 +208,11 @@ TEST_CASE("one run alone is named in the title of a plot of all runs, and severa
   rigid_wheel::Campaign c;
   for (const double slip : {0.1, 0.3}) c.slips.push_back({.slip = slip, .samples = {{}}});
   auto plot = rigid_wheel::time_plot(c, &rigid_wheel::Sample::pull, 1.0, "Pull over time", "pull [N]");
-  CHECK(plot.title == "Pull over time");
+  CHECK(plot.title == "Pull over time, slip s = 1 - v/(ω r)");
   CHECK(plot.series.at(1).name == "s = 0.3");
   c.slips.pop_back();
   plot = rigid_wheel::time_plot(c, &rigid_wheel::Sample::pull, 1.0, "Pull over time", "pull [N]");
-  CHECK(plot.title == "Pull over time, s = 0.1");
+  CHECK(plot.title == "Pull over time, slip 1 - v/(ω r) = 0.1");
   CHECK(plot.series.at(0).name.empty());
 }
 
@@ -220,16 +221,18 @@ TEST_CASE("a study of a wheel changes the box, the speed or the seed, and nothin
   rigid_wheel::resolve(s);
   CHECK(rigid_wheel::variants(s).size() == 1);
   s.study = "box";
-  CHECK(rigid_wheel::variants(s).size() == 9);  // of three seeds
+  CHECK(rigid_wheel::variants(s).size() == 12);  // of three seeds
   s.study_seeds = 2;
   const auto box = rigid_wheel::variants(s);
-  REQUIRE(box.size() == 6);
+  REQUIRE(box.size() == 8);
   CHECK(box[1].settings.bed.width == Approx(2.0 * s.bed.width));
   CHECK(box[1].settings.bed.depth == s.bed.depth);
   CHECK(box[2].settings.bed.depth == Approx(2.0 * s.bed.depth));
   CHECK(box[2].prefix() == "deep_");
-  CHECK(box[3].settings.bed.seed == s.bed.seed + 1);
-  CHECK(box[3].settings.bed.width == s.bed.width);
+  CHECK(box[3].settings.bed.length == Approx(2.0 * s.bed.length));
+  CHECK(box[3].settings.start() == s.start());
+  CHECK(box[4].settings.bed.seed == s.bed.seed + 1);
+  CHECK(box[4].settings.bed.width == s.bed.width);
   s.study = "speed";
   const auto speed = rigid_wheel::variants(s);
   REQUIRE(speed.size() == 4);

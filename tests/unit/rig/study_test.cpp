@@ -45,7 +45,8 @@ struct Run {
 TEST_CASE("a study has its changes for as many seeds as are asked for, all runs of a seed one after the other") {
   using List = std::vector<std::string>;
   CHECK(prefixes("none", 3) == List{""});
-  CHECK(prefixes("box", 2) == List{"", "wide_", "deep_", "second_", "wide_second_", "deep_second_"});
+  CHECK(prefixes("box", 2) ==
+        List{"", "wide_", "deep_", "long_", "second_", "wide_second_", "deep_second_", "long_second_"});
   CHECK(prefixes("speed", 1) == List{"", "slow_"});
   CHECK(prefixes("seeds", 3) == List{"", "second_", "third_"});
   Settings s;

@@ -141,7 +141,9 @@ class Bed {
 
   void build_box(const Box& box) {
     auto& m = world.machine();
-    const double t = bed_.wall_thickness, seam = box.halves ? 0.5 * bed_.depth : box.wall_top;
+    const double t = bed_.wall_thickness;
+    // Grains of a file may lie lower than the depth that the size has.
+    const double seam = box.halves ? 0.5 * std::min(bed_.depth, box.wall_top) : box.wall_top;
     const Vec3 outer(bed_.length + 2.0 * beyond(), bed_.width + 2.0 * t, t);
     const double mass = bed_.half_mass;
     const auto half = [&](const char* name, double height) {

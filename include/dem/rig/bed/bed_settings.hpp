@@ -120,8 +120,11 @@ inline void resolve(BedSettings& s, const BedBySize& by_size, const std::string&
 }
 
 /// How many grains of `volume` (m^3) fill the box to its depth as they settle. Throws Error for none, and for more than
-/// 10^8.
+/// 10^8, or a box in which the surface is less than two grains across.
 inline std::uint64_t grains_in(const BedSettings& s, const GrainSettings& grains, double volume) {
+  const double least = 2.0 * grains.edge();
+  require_within(s.length, least, 1e3, "--bed-length (m, from two edges of a grain)");
+  require_within(s.width, least, 1e3, "--bed-width (m, from two edges of a grain)");
   const double count = std::round(s.length * s.width * s.depth * soil::solid_fraction_at(0.0, grains.limits) / volume);
   if (count >= 1.0 && count <= 1e8) return static_cast<std::uint64_t>(count);
   fail(

@@ -141,12 +141,18 @@ soil::Packing packing_of(const Bed<Model>& bed) {
           "cube8"};
 }
 
-/// The grains of a bed before they are rained. Throws Error if they do not fit into the box or the machine.
-inline soil::Packing bed_grains(const BedSettings& s, const GrainSettings& grains, double volume,
-                                double bounding_radius) {
+/// How many grains are rained into a bed. Throws Error if they do not fit into the box or the machine.
+inline std::uint64_t affordable_grains(const BedSettings& s, const GrainSettings& grains, double volume) {
   const std::uint64_t count = grains_in(s, grains, volume);
   require_memory(1000.0 * static_cast<double>(count), text("{} grains", count).c_str(),
                  "take larger grains (--half-edge) or a smaller bed");
+  return count;
+}
+
+/// The grains of a bed before they are rained. Throws Error if they do not fit into the box or the machine.
+inline soil::Packing bed_grains(const BedSettings& s, const GrainSettings& grains, double volume,
+                                double bounding_radius) {
+  const std::uint64_t count = affordable_grains(s, grains, volume);
   soil::Packing p{grains.half_edge, s.length, s.width, {}, {}, "cube8"};
   p.grains = soil::random_lattice(count, grains.half_edge, s.length, s.width, s.seed, 0.05, bounding_radius);
   return p;

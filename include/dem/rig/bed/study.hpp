@@ -15,11 +15,11 @@ namespace dem::rig {
 inline constexpr const char* more_seeds[] = {"second", "third",   "fourth", "fifth",
                                              "sixth",  "seventh", "eighth", "ninth"};
 /// What a study changes, as files are named after it.
-inline constexpr const char* study_changes[] = {"wide", "deep", "slow"};
+inline constexpr const char* study_changes[] = {"wide", "deep", "long", "slow"};
 /// The same in words.
 inline std::string change_text(const std::string& change) {
   if (change.empty()) return "as set";
-  return change == "slow" ? "half the speed" : change == "wide" ? "bed twice as wide" : "bed twice as deep";
+  return change == "slow" ? "half the speed" : "bed twice as " + change;
 }
 
 /// The run itself, or one of its study.
@@ -51,7 +51,7 @@ inline std::vector<std::string> variant_prefixes() {
 }
 
 inline void add_study_options(Options& options, std::string& study, std::uint64_t& seeds) {
-  options.add("--study", study, "also: a bed twice as wide and one twice as deep (box), half the speed, or other seeds")
+  options.add("--study", study, "also: beds twice as wide, as deep and as long (box), half the speed, or other seeds")
       .one_of({"none", "box", "speed", "seeds"});
   options.add("--study-seeds", seeds,
               "seeds of each run of the study, for its errors (0: three; with --bed-file one): a change is that of two "
@@ -102,6 +102,7 @@ std::vector<Variant<Settings>> variants_of(const Settings& s, SlowDown&& slow_do
     if (s.study == "box") {
       add("wide", [](Settings& x) { x.bed.width *= 2.0; });
       add("deep", [](Settings& x) { x.bed.depth *= 2.0; });
+      add("long", [](Settings& x) { x.bed.length *= 2.0; });
     } else if (s.study == "speed") {
       add("slow", slow_down);
     }

@@ -55,7 +55,7 @@ inline double mean_surface(std::span<const SurfaceProfile> profiles) {
 /// A rut across a track.
 struct Rut {
   double depth = std::nan("");  ///< m: the mean over the middle half of the tool's width; NaN: there is none to see
-  double width = std::nan("");  ///< m, where the surface sank by more than half of that depth
+  double width = std::nan("");  ///< m, of the strips that hang together there and sank by more than half of that depth
 };
 
 /// The rut that a tool of this width (m), whose middle went along y = `middle`, left: the surface after it against the
@@ -70,8 +70,14 @@ inline Rut rut_between(const SurfaceProfile& before, const SurfaceProfile& after
   if (count == 0.0) return rut;
   rut.depth = sum / count;
   rut.width = 0.0;
+  // The largest such group of strips that reaches under the tool: a hollow beside the track is none of the rut.
+  double together = 0.0;
+  bool is_under = false;
   for (std::size_t k = 0; k < before.z.size(); ++k) {
-    if (before.z[k] - after.z[k] > 0.5 * rut.depth) rut.width += before.strip();
+    const bool sank = before.z[k] - after.z[k] > 0.5 * rut.depth;
+    together = sank ? together + before.strip() : 0.0;
+    is_under = sank && (is_under || std::abs(before.y[k] - middle) < 0.5 * tool);
+    if (is_under) rut.width = std::max(rut.width, together);
   }
   return rut;
 }

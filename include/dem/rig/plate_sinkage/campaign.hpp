@@ -92,11 +92,15 @@ void run_campaign(const Settings& settings, ShapeOf&& shape_of, Campaign& campai
     return start_of_bed(s.bed, s.grains, shape.volume(), shape.bounding_radius());
   };
   const auto all = variants(test.settings());
+  for (const Variant& v : all) {  // what one of them cannot have is refused before the first is made
+    const Settings s = PlateSinkage<Model>(v.settings, shape_of).settings();
+    if (s.bed.is_rained()) affordable_grains(s.bed, s.grains, shape.volume());
+  }
   int stages = 0;
   for (const Variant& v : all) stages += 1 + (v.shares_bed() ? 0 : bed_stages(v.settings.bed));
   soil::Packing start = start_of(test.settings());
   BedStore store(session, test.settings().bed, test.settings().grains, BedStore::halves);
-  session.begin_run(stages);
+  session.begin_run(stages, store.also_replaced());
 
   std::optional<Bed<Model>> bed;
   for (const Variant& v : all) {

@@ -123,10 +123,10 @@ inline io::Table runs_table(const Campaign& c) {
 
 inline std::string bed_text(const VariantResult& v) {
   return text(
-      "Bed: {} grains of half-edge {:g} mm, {} mm deep, solid fraction {}, bulk density {} kg/m³. Time step {:.3g} s.",
+      "Bed: {} grains of half-edge {:g} mm, {} mm deep, solid fraction {}, bulk density {} kg/m³. Time step {} s.",
       v.grains, 1e3 * v.variant.settings.grains.half_edge, number(1e3 * v.level, "{:.1f}"),
       number(v.solid_fraction, "{:.3f}"), number(v.variant.settings.grains.density * v.solid_fraction, "{:.0f}"),
-      v.time_step);
+      number(v.time_step, "{:.3g}"));
 }
 
 /// What is said openly of the scale, and of which plate carries more.

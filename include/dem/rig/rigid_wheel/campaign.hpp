@@ -25,7 +25,7 @@ auto set_down(const RigidWheel<Model>& test, Bed<Model> bed, VariantResult& resu
   return stand;
 }
 
-/// All slips from there, side by side, one a thread; for the run itself one of them with frames and a replay.
+/// All slips from there, side by side; for the run itself one of them with frames and a replay.
 template <class Model>
 void roll(const RigidWheel<Model>& test, const typename RigidWheel<Model>::Stand& stand, VariantResult& result,
           std::optional<report::Replay>& replay, Session& session) {
@@ -36,9 +36,10 @@ void roll(const RigidWheel<Model>& test, const typename RigidWheel<Model>::Stand
   if (s.replay && is_run)
     replay.emplace(report::ReplayOptions{
         .frames = 80, .interval = s.duration_at(s.slips[shown]) / 60.0, .force_lines = s.replay_forces});
-  const int threads = s.bed.threads > 0 ? s.bed.threads : std::max(1, omp_get_max_threads());
+  const SharedThreads threads = share_threads(s.slips.size(), s.bed.threads);
+  const int each = std::min(threads.each, stand.bed.world.threads());
   session.begin("roll", static_cast<double>(s.slips.size()));
-  side_by_side(s.slips.size(), threads, session, [&](std::size_t turn, SharedStages& stages) {
+  side_by_side(s.slips.size(), threads.runs, session, [&](std::size_t turn, SharedStages& stages) {
     const std::size_t k = s.slips.size() - 1 - turn;  // the largest slip, whose run is longest, first
     SlipResult& r = result.slips[k];
     const std::string name = result.variant.prefix() + slip_name(r.slip);
@@ -54,7 +55,7 @@ void roll(const RigidWheel<Model>& test, const typename RigidWheel<Model>::Stand
       const auto kept = own.keep("slip", r), series = own.keep("frames", frames),
                  pictures = own.keep("replay", shown_replay);
       if (part.is_done()) return own.go_on(), own.update(1.0);
-      test.roll(stand, r, own, [&](const auto& world, double share) {
+      test.roll(stand, each, r, own, [&](const auto& world, double share) {
         if (k != shown) return;
         frames.show(share, [&](io::VtkSeries& to) {
           add_grains(to, world);
@@ -80,12 +81,16 @@ void run_campaign(const Settings& settings, ShapeOf&& shape_of, Campaign& campai
     return start_of_bed(s.bed, s.grains, test.shape().volume(), test.shape().bounding_radius());
   };
   const auto all = variants(test.settings());
+  for (const Variant& v : all) {  // what one of them cannot have is refused before the first is made
+    const Settings s = RigidWheel<Model>(v.settings, shape_of).settings();
+    if (s.bed.is_rained()) affordable_grains(s.bed, s.grains, test.shape().volume());
+  }
   const auto needs_bed = [&](std::size_t k) { return k < all.size() && !all[k].shares_bed(); };
   int stages = 0;
   for (std::size_t k = 0; k < all.size(); ++k) stages += (needs_bed(k) ? bed_stages(all[k].settings.bed) : 0) + 2;
   const soil::Packing start = start_of(test.settings());
   BedStore store(session, test.settings().bed, test.settings().grains, BedStore::fixed_box);
-  session.begin_run(stages);
+  session.begin_run(stages, store.also_replaced());
 
   campaign.study.reserve(all.size());
   std::optional<Bed<Model>> bed;

@@ -29,7 +29,8 @@ inline void roll_on_columns(std::vector<Reference>& soils, const Campaign& c, co
                   .load = s.load,
                   .pull = run.pull,
                   .torque = run.torque};
-      } catch (const Error&) {  // the soil does not carry the wheel
+      } catch (const Error& problem) {  // as of soil that does not carry the wheel
+        reference.no_columns = problem.what();
       }
     }
   }

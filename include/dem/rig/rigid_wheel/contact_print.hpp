@@ -52,6 +52,9 @@ struct ContactPrint {
   [[nodiscard]] double pressure(std::size_t a, std::size_t w) const {
     return radial[w * along + a] / (moments * cell_area());
   }
+  [[nodiscard]] double shear(std::size_t a, std::size_t w) const {
+    return tangential[w * along + a] / (moments * cell_area());
+  }
   /// Pa, across the whole width.
   [[nodiscard]] double pressure(std::size_t a) const { return mean(radial, a); }
   [[nodiscard]] double shear(std::size_t a) const { return mean(tangential, a); }

@@ -14,8 +14,9 @@ namespace dem::rig::rigid_wheel {
 struct Reference {
   std::string name;
   terramechanics::Soil soil;
-  /// On columns, of each run; filled by roll_on_columns(). None where the soil does not carry the wheel.
+  /// On columns, of each run; filled by roll_on_columns(). None where there is no result; why stands in `no_columns`.
   std::vector<std::optional<terramechanics::WheelForces>> on_columns = {};
+  std::string no_columns = {};  ///< of the last run without one
 };
 
 /// The published soils, and that of --soil. Throws Error if there is none of that name, or its file cannot be read.

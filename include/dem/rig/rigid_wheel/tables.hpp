@@ -116,9 +116,13 @@ inline io::Plot efficiency_plot(const Settings& s, const Campaign& c, std::span<
   return slip_plot(s, c, soils, &SlipResult::efficiency, 1.0, of_forces, "Efficiency", "pull v/(torque ω) [-]");
 }
 
+/// The title of a plot of one run.
+inline std::string title_of_run(const char* title, const SlipResult& r) {
+  return text("{}, slip 1 - v/(ω r) = {:g}", title, r.slip);
+}
 /// The title of a plot of all runs: where there is one run alone, with its slip.
 inline std::string title_of_runs(const char* title, const Campaign& c) {
-  return c.slips.size() == 1 ? text("{}, s = {:g}", title, c.slips.front().slip) : title;
+  return c.slips.size() == 1 ? title_of_run(title, c.slips.front()) : text("{}, slip s = 1 - v/(ω r)", title);
 }
 /// What tells a run from the others in a plot of all runs; empty where there is one alone.
 inline std::string name_of_run(const SlipResult& r, const Campaign& c) {
@@ -180,7 +184,7 @@ inline constexpr const char* print_text =
 
 /// Pressure and shear stress along the rim of a run, beside the soils by Bekker and Wong at this slip.
 inline io::Plot print_plot(const Settings& s, std::span<const Reference> soils, const SlipResult& r) {
-  io::Plot plot{.title = text("Stress under the wheel, s = {:g}", r.slip),
+  io::Plot plot{.title = title_of_run("Stress under the wheel", r),
                 .x_label = "angle from the lowest point, forward [deg]",
                 .y_label = "stress [kPa]"};
   const double degree = std::numbers::pi / 180.0;
@@ -198,7 +202,7 @@ inline io::Plot print_plot(const Settings& s, std::span<const Reference> soils, 
   }
   plot.series = {pressure, shear};
   int color = 1;  // the soils' colours over slip
-  for (const auto& [name, soil, on_columns] : soils) {
+  for (const auto& [name, soil, on_columns, no_columns] : soils) {
     const auto f = reference_at(soil, r.slip, s);
     if (!f) continue;
     using namespace terramechanics;
@@ -218,18 +222,19 @@ inline io::Plot print_plot(const Settings& s, std::span<const Reference> soils, 
   return plot;
 }
 
-/// Pressure under the wheel of a run: seen from above, unrolled.
-inline io::HeatMap print_map(const SlipResult& r) {
-  io::HeatMap map{.title = text("Pressure under the wheel, s = {:g}", r.slip),
+/// A stress under the wheel of a run: seen from above, unrolled.
+inline io::HeatMap print_map(const SlipResult& r, double (ContactPrint::*stress)(std::size_t, std::size_t) const,
+                             const char* title, const char* label) {
+  io::HeatMap map{.title = title_of_run(title, r),
                   .x_label = "angle from the lowest point, forward [deg]",
                   .y_label = "across [mm]",
-                  .c_label = "pressure [kPa]"};
+                  .c_label = label};
   for (std::size_t a = 0; a < ContactPrint::along; ++a) {
     map.x.push_back(std::round(10.0 * r.print.angle(a) * 180.0 / std::numbers::pi) / 10.0);
   }
   for (std::size_t w = 0; w < r.print.across; ++w) {
     map.y.push_back(1e3 * r.print.place(w));
-    for (std::size_t a = 0; a < ContactPrint::along; ++a) map.value.push_back(1e-3 * r.print.pressure(a, w));
+    for (std::size_t a = 0; a < ContactPrint::along; ++a) map.value.push_back(1e-3 * (r.print.*stress)(a, w));
   }
   return map;
 }
@@ -242,8 +247,8 @@ inline std::string bed_text(const Settings& s, const Campaign& c) {
                                               number(s.grains.relative_density(fraction)));
   return text(
       "Bed: {} grains of half-edge {:g} mm, {} mm deep to its mean surface, from which sinkages and ruts are measured; "
-      "{}. Time step {:.3g} s. The wheel, set down by the load servo, rests {} mm deep.{}",
-      c.grains, 1e3 * s.grains.half_edge, number(1e3 * c.level, "{:.1f}"), density, c.time_step,
+      "{}. Time step {} s. The wheel, set down by the load servo, rests {} mm deep.{}",
+      c.grains, 1e3 * s.grains.half_edge, number(1e3 * c.level, "{:.1f}"), density, number(c.time_step, "{:.3g}"),
       number(1e3 * c.set_down_sinkage),
       c.set_down_sinkage < 0.0 ? " Below zero it stands on the highest grains, or on its grousers." : "");
 }

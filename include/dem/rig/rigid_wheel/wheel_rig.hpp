@@ -25,7 +25,7 @@ class WheelRig : public Rig {
     ResultNames names{.files = {"results.csv", "references.csv", "rut.csv", "under_wheel.csv", "print.csv", "study.csv",
                                 "study_runs.csv", "slip_#+.csv", "slip_m#+.csv", "slip_#+.pvd", "slip_m#+.pvd"},
                       .plots = {"pull", "torque", "sinkage", "efficiency", "pull_over_time", "sinkage_over_time", "rut",
-                                "stress", "print"},
+                                "stress", "print", "print_shear"},
                       .frames = {"grains", "surfaces"}};
     for (const std::string& variant : variant_prefixes()) {
       names.files.push_back(variant + "slip_#+.csv");
@@ -53,6 +53,10 @@ class WheelRig : public Rig {
     report.part("print.csv", [&] { write_map(report.folder() / "print.csv"); });
     std::vector<std::string> words{bed_text(s, campaign), window_text, reference_text, print_text};
     if (!grips(s)) words.emplace_back(smooth_text);
+    for (const Reference& soil : soils) {
+      if (!soil.no_columns.empty())
+        words.push_back(text("On columns of {} some runs have no result: {}.", soil.name, soil.no_columns));
+    }
     if (!campaign.study.empty()) {
       const StudiedValue of = studied_pull(s);
       const std::vector<StudyRow> rows = study_rows(campaign);
@@ -127,7 +131,10 @@ class WheelRig : public Rig {
     const SlipResult& shown = c.slips[std::min(shown_slip(s.slips), c.slips.size() - 1)];
     if (shown.print.empty()) return;
     report.plot(page, print_plot(s, soils, shown), "stress", "Stress along the rim, a mean across the wheel's width.");
-    report.map(page, print_map(shown), "print", "Pressure under the wheel, unrolled.");
+    report.map(page, print_map(shown, &ContactPrint::pressure, "Pressure under the wheel", "pressure [kPa]"), "print",
+               "Pressure under the wheel, unrolled.");
+    report.map(page, print_map(shown, &ContactPrint::shear, "Shear stress under the wheel", "shear stress [kPa]"),
+               "print_shear", "Shear stress under the wheel, unrolled: positive where it brakes a driven wheel.");
   }
 
   void write_results(const std::filesystem::path& path) const {
@@ -176,13 +183,13 @@ class WheelRig : public Rig {
     csv.flush();
   }
 
-  /// The same in cells across the wheel: what the picture of the print shows.
+  /// The same in cells across the wheel: what the pictures of the print show.
   void write_map(const std::filesystem::path& path) const {
-    io::CsvWriter csv(path, {"slip_1-v/(omega*r)", "angle_rad", "across_m", "pressure_Pa"});
+    io::CsvWriter csv(path, {"slip_1-v/(omega*r)", "angle_rad", "across_m", "pressure_Pa", "shear_stress_Pa"});
     for (const SlipResult& r : campaign.slips) {
       for (std::size_t w = 0; w < r.print.across && !r.print.empty(); ++w) {
         for (std::size_t a = 0; a < ContactPrint::along; ++a)
-          csv.row(r.slip, r.print.angle(a), r.print.place(w), r.print.pressure(a, w));
+          csv.row(r.slip, r.print.angle(a), r.print.place(w), r.print.pressure(a, w), r.print.shear(a, w));
       }
     }
     csv.flush();

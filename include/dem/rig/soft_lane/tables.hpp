@@ -119,11 +119,11 @@ inline io::Table cost_table(const Settings& s, const Campaign& c) {
 
 inline std::string lane_text(const Settings& s, const Campaign& c) {
   return text(
-      "Lane: {} grains of half-edge {:g} mm, {} mm deep, solid fraction {}; {}. Time step {:.3g} s, {} sub-steps of "
-      "the car. The car weighs {:.2f} kN.",
+      "Lane: {} grains of half-edge {:g} mm, {} mm deep, solid fraction {}; {}. Time step {} s, {} sub-steps of "
+      "the car. The car weighs {} kN.",
       c.grains, 1e3 * s.grains.half_edge, number(1e3 * c.level, "{:.1f}"), number(c.solid_fraction, "{:.3f}"),
-      s.is_bed() ? "one bed under the car" : "two troughs, one under each track", c.time_step, c.substeps,
-      1e-3 * c.weight);
+      s.is_bed() ? "one bed under the car" : "two troughs, one under each track", number(c.time_step, "{:.3g}"),
+      c.substeps, number(1e-3 * c.weight));
 }
 
 inline constexpr const char* words_text =
