@@ -34,13 +34,14 @@ while read -r d mu_pp mu_pw m_pp m_pw; do
   # cube of half-edge 0.403 d. K is about as soft as the 1 MPa of the fit: 3.6 kN/m for 10 mm.
   read -r half width slot length m1 m2 <<< "$(awk -v d="$d" -v a="$m_pp" -v b="$m_pw" -v w="$width_d" -v l="$length_d" 'BEGIN {
     print d * 4.02998e-4, 1e-3 * w * d, 5e-3 * d, 1e-3 * l * d, 1e-3 * a, 1e-3 * b }')"
-  [ -s "$name/results.csv" ] || "$rig" --size quick --method drain --plate flat --kinds "$kind" --density 2400 \
+  # A run that was stopped is made again.
+  awk -F, 'NR > 1 && $15 != 1 { open = 1 } END { exit open || NR < 2 }' "$name/results.csv" 2> /dev/null || "$rig" --size quick --method drain --plate flat --kinds "$kind" --density 2400 \
     --half-edge "$half" --grains "$grains" --box-width "$width" --slot-width "$slot" --box-length "$length" \
     --friction "$mu_pp" --plate-friction "$mu_pw" --rolling-length "$m1" --plate-rolling-length "$m2" \
     --stiffness 200 --rest-limit 2 --creep-time 0.2 --seeds "$seeds" --no-vtk --no-replay \
     --threads "${THREADS:-1}" --output "$name" > "$name.log" 2>&1
   awk -F, -v d="$d" -v a="$mu_pp" -v b="$mu_pw" -v m="$m_pp" -v n="$m_pw" '
-    NR > 1 && $15 == 1 { sum += $3; ++count }
+    NR > 1 && $15 == 1 && $3 != "" { sum += $3; ++count }
     END { if (count) printf "%4g %7g %5g %5g %5g  %5.1f  %5.1f\n", d, a, b, m, n,
                             68.61 * a^0.27 * b^0.22 * m^0.06 * n^0.12 * d^-0.2, sum / count }' "$name/results.csv"
 done <<< "$points"

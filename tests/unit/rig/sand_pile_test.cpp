@@ -291,7 +291,38 @@ TEST_CASE("what a way of piling does not have is not asked for") {
   CHECK_NOTHROW(sand_pile::resolve(s));  // too few for a box that is emptied
   s = {};
   s.method = "lift", s.grains = 20;
+  CHECK_NOTHROW(sand_pile::resolve(s));
+  CHECK(s.cylinder_radius == Approx(6.0 * s.half_edge));  // the least that the lattice has places in
+  s.cylinder_radius = 3.0 * s.half_edge;
   CHECK_THROWS_WITH(sand_pile::resolve(s), ContainsSubstring("--cylinder-radius"));
+}
+
+TEST_CASE("a few grains of any shape have places in the cylinder that is as wide as they need") {
+  for (const std::size_t grains : {20, 31, 37, 60, 90}) {
+    Settings s;
+    s.grains = grains;
+    sand_pile::resolve(s);
+    for (const double bounding_radius : {std::sqrt(3.0) * s.half_edge, sphere_radius(s.half_edge)}) {
+      CHECK(lattice(s, bounding_radius, 1).size() == grains);
+    }
+  }
+}
+
+TEST_CASE("it is said which piles stand, by the one that creeps most, and that they were watched too shortly") {
+  Campaign c;
+  const auto add = [&](const char* kind, double creep, double time) {
+    PileResult& r = c.piles.emplace_back();
+    r.kind = kind_named(kind), r.creep = creep, r.creep_time = time;
+  };
+  add("cube8", not_known, not_known);
+  CHECK(creep_text(c).empty());
+  add("cube8", 2e-4, 10.0);
+  CHECK_THAT(creep_text(c), Catch::EndsWith("cube8 stands (0.0002)."));
+  add("cube8", 3e-4, 10.0);
+  add("sphere", 1e-5, 1.0);
+  add("sphere", 0.02, 1.0);
+  CHECK_THAT(creep_text(c), ContainsSubstring("cube8 stands (0.0003), sphere creeps (0.02).") &&
+                                Catch::EndsWith("for 1 s alone: give --creep-time 10."));
 }
 
 TEST_CASE("piles of a kind are one row of the table") {

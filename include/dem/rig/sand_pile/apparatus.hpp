@@ -169,7 +169,7 @@ inline std::vector<soil::Placement> lattice(const Settings& s, double bounding_r
   const bool round = s.method != "drain";
   const double lx = round ? 2.0 * s.cylinder_radius : s.box_length + s.slot_width,
                ly = round ? 2.0 * s.cylinder_radius : s.box_width;
-  // Of a square's cells at least 0.3 lie in its circle, as 1 of 4 may be too far out where there are few.
+  // Of a square's cells at least 0.3 lie in the circle of a cylinder that is not narrower than resolve() makes it.
   auto all = soil::random_lattice((round ? 4 : 1) * s.grains, s.half_edge, lx, ly, seed, 0.05, bounding_radius);
   std::vector<soil::Placement> grains;
   for (auto& g : all) {
@@ -187,8 +187,10 @@ inline std::vector<soil::Placement> lattice(const Settings& s, double bounding_r
         "floor; lower it, or give more --grains",
         s.cylinder_radius, s.grains, s.half_edge);
   }
-  fail("the container has no place for {} grains of half-edge {:g} m; make it wider, or the grains smaller", s.grains,
-       s.half_edge);
+  fail(
+      "the container has no place for the lattice of {} grains of half-edge {:g} m; make it wider (--{}), or lower "
+      "--grains",
+      s.grains, s.half_edge, round ? "cylinder-radius" : "box-width");
 }
 
 }  // namespace dem::rig::sand_pile

@@ -12,8 +12,9 @@ namespace dem::rig::sand_pile {
 inline void declare(Options& options, Settings& s) {
   const auto add = [&](const char* name, auto& value, const char* text) { return options.add(name, value, text); };
   add("--size", s.size,
-      "smoke (seconds), quick (minutes) or full (12000 grains, three seeds, 10 s of creep: two hours for a pile of "
-      "cubes, days for all kinds; choose by --kinds and --seeds)");
+      "smoke (seconds), quick (minutes; polyhedron half an hour and superquadric an hour a pile) or full (12000 "
+      "grains, "
+      "three seeds, 10 s of creep: two hours for a pile of cubes, days for all kinds; choose by --kinds and --seeds)");
   add("--method", s.method,
       "lift (a cylinder), funnel, or drain (a box, through a slot in its floor); a drum that turns is the example drum")
       .one_of({"lift", "funnel", "drain"});
@@ -56,7 +57,8 @@ inline void declare(Options& options, Settings& s) {
   add("--rolling-damping", s.rolling_damping, "of sphere-rolling: damping ratio of the springs that resist rolling");
   options.group("Stages");
   add("--settle-limit", s.settle_limit, "grains must be at rest in their container by then [s]");
-  add("--flow-limit", s.flow_limit, "funnel and box must have emptied by then [s]");
+  add("--flow-limit", s.flow_limit,
+      "a funnel must have emptied by then; a box that still flows is measured as it is [s]");
   add("--rest-limit", s.rest_limit, "a pile that still moves is measured then [s]; 0: by size");
   add("--creep-time", s.creep_time, "for which the pile is watched [s]; 0: by size");
   add("--sample-time", s.sample_time, "between two samples [s]");

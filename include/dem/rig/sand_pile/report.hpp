@@ -31,6 +31,32 @@ inline std::string fit_text(const Settings& s) {
       s.method == "drain" ? "strips" : "sectors", s.creep_time);
 }
 
+/// Which kinds of grains stand, by the pile of each that creeps most; empty where no pile was watched.
+inline std::string creep_text(const Campaign& c) {
+  constexpr double limit = 1e-3, full_time = 10.0;  // sizes, s
+  std::string kinds;
+  double watched = full_time;
+  for (const auto& piles : by_kind(c)) {
+    double most = not_known;
+    for (const PileResult* r : piles) {
+      if (!std::isfinite(r->creep)) continue;
+      most = std::fmax(most, r->creep);
+      watched = std::min(watched, r->creep_time);
+    }
+    if (std::isnan(most)) continue;
+    kinds += text("{}{} {} ({:.2g})", kinds.empty() ? "" : ", ", piles.front()->kind.name,
+                  most < limit ? "stands" : "creeps", most);
+  }
+  if (kinds.empty()) return {};
+  return text(
+      "A pile stands whose grains move by less than {:g} of their size in {:g} s (root mean square; the pile of each "
+      "kind that creeps most): {}.{}",
+      limit, full_time, kinds,
+      watched < (1.0 - 1e-9) * full_time
+          ? text(" They were watched for {:g} s alone: give --creep-time {:g}.", watched, full_time)
+          : "");
+}
+
 inline io::Table angle_table(const Campaign& c) {
   io::Table t{.caption = "Angle of repose",
               .header = {"grains", "piles", "angle [deg]", "± directions", "± seeds", "after creep [deg]",
@@ -77,7 +103,7 @@ inline io::Plot profiles_plot(const Settings& s, const Campaign& c) {
   int color = 0;
   for (const auto& piles : by_kind(c)) {
     io::Series line{.name = piles.front()->kind.name, .color = color++};
-    const soil::Flank& f = piles.front()->flank;
+    const soil::Flank& f = shown_of(piles).flank;
     for (std::size_t k = 0; k < f.profile_s.size(); ++k) {
       line.x.push_back(1e3 * f.profile_s[k]);
       line.y.push_back(1e3 * f.profile_z[k]);
@@ -93,7 +119,7 @@ inline io::Plot time_plot(const Campaign& c) {
   int color = 0;
   for (const auto& piles : by_kind(c)) {
     io::Series line{.name = piles.front()->kind.name, .color = color++};
-    for (const Sample& sample : piles.front()->samples) {
+    for (const Sample& sample : shown_of(piles).samples) {
       line.x.push_back(sample.time);
       line.y.push_back(sample.angle);
     }
@@ -108,7 +134,7 @@ inline io::Plot angles_plot(const Campaign& c) {
   int color = 0;
   for (const auto& piles : by_kind(c)) {
     io::Series points{.name = piles.front()->kind.name, .style = io::SeriesStyle::LinePoints, .color = color++};
-    const soil::Flank& f = piles.front()->flank;
+    const soil::Flank& f = shown_of(piles).flank;
     for (std::size_t k = 0; k < f.angles.size(); ++k) {
       points.x.push_back(static_cast<double>(k + 1));
       points.y.push_back(degrees * f.angles[k]);
@@ -153,6 +179,7 @@ inline std::vector<std::pair<std::string, std::string>> list_settings(const Sett
 /// when the run ended early. Returns whether there are files for ParaView.
 inline bool report(Report& report, const Settings& s, const Campaign& c) {
   std::vector<std::string> words{fit_text(s)};
+  if (auto creep = creep_text(c); !creep.empty()) words.push_back(std::move(creep));
   if (auto zhou = zhou_text(s, c); !zhou.empty()) words.push_back(std::move(zhou));
   for (const PileResult& r : c.piles) {
     if (auto note = no_angle_note(s, r); !note.empty()) words.push_back(std::move(note));
@@ -166,10 +193,11 @@ inline bool report(Report& report, const Settings& s, const Campaign& c) {
   report.page(detail::list_settings(s), [&](io::HtmlReport& page) {
     page.table(angle_table(c));
     for (const auto& line : words) page.paragraph(line);
-    if (!c.piles.empty() && !c.piles.front().pile.empty()) {
+    if (std::any_of(c.piles.begin(), c.piles.end(), [](const PileResult& r) { return !r.pile.empty(); })) {
       page.heading("Plots");
       report.plot(page, repose_plot(s, c), "repose", "Angle of repose of each kind of grain.");
-      report.plot(page, detail::profiles_plot(s, c), "profiles", "Mean profile of the first pile of each kind.");
+      report.plot(page, detail::profiles_plot(s, c), "profiles",
+                  "Mean profile of the first pile of each kind that was measured.");
       report.plot(page, detail::time_plot(c), "angle_over_time", "Angle of the flank while the pile is made.");
       report.plot(page, detail::angles_plot(c), "angles", "Angle of the flank in each direction.");
     }

@@ -101,7 +101,8 @@ inline void resolve(Settings& s) {
   if (s.kinds.empty()) s.kinds = size.kinds;
   kinds_in(s.kinds);
   const double volume = bulk_volume(s), pi = std::numbers::pi;
-  fill(s.cylinder_radius, std::cbrt(volume / (2.0 * pi)));
+  // At least as wide as the lattice from which few grains fall needs it.
+  fill(s.cylinder_radius, std::max(std::cbrt(volume / (2.0 * pi)), 6.0 * s.half_edge));
   fill(s.plate_radius, 3.0 * s.cylinder_radius);
   fill(s.orifice_radius, std::min(7.0 * s.half_edge, 0.9 * s.cylinder_radius));
   const double steep = std::tan(40.0 * pi / 180.0);

@@ -104,4 +104,12 @@ inline std::vector<std::vector<const PileResult*>> by_kind(const Campaign& c) {
   return kinds;
 }
 
+/// The pile of a kind that plots show: the first that was measured, if there is one.
+inline const PileResult& shown_of(const std::vector<const PileResult*>& piles) {
+  for (const PileResult* r : piles) {
+    if (!r->pile.empty()) return *r;
+  }
+  return *piles.front();
+}
+
 }  // namespace dem::rig::sand_pile
