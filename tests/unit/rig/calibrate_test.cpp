@@ -322,6 +322,14 @@ TEST_CASE("it is said what grains each rig has, and that their stiffnesses diffe
       "of friction 0, pressed by 4 mm into a bed of 0.1 x 0.06 x 0.04 m.");
   CHECK(rigs[2].note.find("2.0 widths wide and 1.3 widths deep") != std::string::npos);
   CHECK(stiffness_note(s).find("--stiffness and --constants-for") != std::string::npos);
+  CHECK_THAT(shape_note(s), Catch::Contains("the pile is of sphere-rolling") && Catch::Contains("--pile-kind cube8"));
+  CHECK(notes_of_differences(s).size() == 2);
+  s.kind = "cube8";
+  CHECK(shape_note(s).empty());
+  CHECK(notes_of_differences(s).size() == 1);
+  s.kind = "sphere-rolling", s.phi = s.pressure = s.exponent = 0.0;
+  CHECK(shape_note(s).empty());  // a pile alone
+  s.phi = 30.0;
   s.held.stiffness = 1e4, s.held.constants_for = 1e-3;
   CHECK(stiffness_note(s).empty());
   s.held.stiffness = s.held.constants_for = -1.0;

@@ -59,7 +59,7 @@ class CalibrateRig : public Rig {
       tried = load_tried(table_, s);
     }
     const std::size_t batches = (s.trials + batch - 1) / batch;
-    if (auto note = stiffness_note(s); !note.empty()) session.say_when_begun(std::move(note));
+    for (auto& note : notes_of_differences(s)) session.say_when_begun(std::move(note));
     session.begin_run(static_cast<int>(batches) + (s.known.empty() ? 0 : 1));
     if (!resumes) {
       forget_trials(session.folder() / "runs");
@@ -72,8 +72,7 @@ class CalibrateRig : public Rig {
     if (!s.known.empty()) {
       std::vector<Trial> making;
       for (std::uint64_t k = 0; k < 2 * s.repeats; ++k) making.push_back({0, s.seed + 1000 + k, s.known, {}});
-      session.begin("target", static_cast<double>(making.size()));
-      run_all(session, making);
+      run_all(session, "target", making);
     }
     goals = find_goals();
     for (std::size_t b = 0; b < batches; ++b) {
@@ -84,9 +83,7 @@ class CalibrateRig : public Rig {
         for (std::size_t i = 0; i < d; ++i) values.push_back(value_at(s, constants_of(s)[i], place[i]));
         for (std::uint64_t r = 0; r < s.repeats; ++r) next.push_back({k + 1, s.seed + r, values, {}});
       }
-      session.begin(text("points {} to {}", b * batch + 1, std::min<std::size_t>(s.trials, (b + 1) * batch)),
-                    static_cast<double>(next.size()));
-      run_all(session, next);
+      run_all(session, text("points {} to {}", b * batch + 1, std::min<std::size_t>(s.trials, (b + 1) * batch)), next);
       found = known_before(s.trials);
       session.finish(found ? found_text(s, *found) : "");
     }
@@ -105,7 +102,7 @@ class CalibrateRig : public Rig {
       rigs.push_back(std::move(rig.words));
       if (!rig.note.empty()) rigs.push_back(in_own_words(rig.note, own_words(s)));
     }
-    if (auto note = stiffness_note(s); !note.empty()) rigs.push_back(std::move(note));
+    for (auto& note : notes_of_differences(s)) rigs.push_back(std::move(note));
     report.part("the printed report", [&] {
       fmt::print("\n");
       for (const auto& line : rigs) fmt::print("{}\n", line);
@@ -142,12 +139,13 @@ class CalibrateRig : public Rig {
   std::optional<Found> found = {};
 
  private:
-  /// Runs those of the trials that were not tried yet, side by side, and keeps the table.
-  void run_all(Session& session, std::vector<Trial>& trials) {
+  /// Runs those of the trials that were not tried yet, side by side, as a stage, and keeps the table.
+  void run_all(Session& session, const std::string& stage, std::vector<Trial>& trials) {
     std::erase_if(trials, [&](const Trial& t) {
       return std::any_of(tried.begin(), tried.end(),
                          [&](const Trial& x) { return x.point == t.point && x.seed == t.seed; });
     });
+    session.begin(stage, std::max(1.0, static_cast<double>(trials.size())));
     const int workers = settings.threads > 0 ? settings.threads : std::max(1, omp_get_max_threads());
     side_by_side(trials.size(), workers, session, [&](std::size_t k, SharedStages& shared) {
       StagesOfOne own(shared, k);

@@ -67,4 +67,23 @@ inline std::string stiffness_note(const Settings& s) {
          "--constants-for for one of all.";
 }
 
+/// That one friction is looked for in grains of two shapes; empty where there is one shape.
+inline std::string shape_note(const Settings& s) {
+  const auto quantities = quantities_of(s);
+  const auto piles = std::count(quantities.begin(), quantities.end(), Quantity::repose);
+  if (piles == 0 || piles == static_cast<long>(quantities.size()) || s.kind == "cube8") return {};
+  return text(
+      "Note: the pile is of {}, the other rigs have cubes of eight spheres: what is found is a compromise between "
+      "grains "
+      "of two shapes. Give --pile-kind cube8 for one of all.",
+      s.kind);
+}
+
+/// What the rigs differ in, which one set of constants has to fit.
+inline std::vector<std::string> notes_of_differences(const Settings& s) {
+  std::vector<std::string> notes{stiffness_note(s), shape_note(s)};
+  std::erase(notes, "");
+  return notes;
+}
+
 }  // namespace dem::rig::calibrate

@@ -133,7 +133,10 @@ inline void declare(Options& options, Settings& s) {
       "of the rigs: smoke (seconds a run, minutes a search), quick (minutes a run, half an hour to two hours a search) "
       "or full (hours a run)");
   options.group("Targets");
-  add("--phi", s.phi, "angle of friction of the shear strengths, through the origin [deg]; 0: no target");
+  add("--phi", s.phi,
+      "angle of friction of the shear strengths over the load, through the origin, as direct_shear prints it [deg]; 0: "
+      "no "
+      "target");
   add("--phi-error", s.phi_error, "its standard error [deg]");
   add("--repose", s.repose, "angle of repose of a pile that a lifted cylinder leaves [deg]; 0: no target");
   add("--repose-error", s.repose_error, "its standard error [deg]");

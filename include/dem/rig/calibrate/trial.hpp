@@ -152,6 +152,10 @@ inline double measure_repose(const Settings& s, const Trial& t, const Worlds& wo
   result.seed = t.seed;
   session.begin_run(4);
   (s.kind == "cube8" ? worlds.cubes : worlds.spheres)(p, result, nullptr, session, session);
+  if (!result.at_rest) {
+    session.message(
+        text("note: the pile of {} still moved when it was measured", session.folder().filename().string()));
+  }
   return terramechanics::degrees(result.flank.angle);
 }
 
@@ -163,6 +167,13 @@ inline std::string values_text(const Settings& s, const Trial& t) {
     lines += text("{}={}\n", names_of_constants[static_cast<int>(constants[k])], t.values[k]);
   }
   return lines;
+}
+
+/// Why a rig that ended well has told nothing of a quantity.
+inline const char* why_nothing(Quantity q) {
+  return q == Quantity::phi      ? "its shear strengths have no line"
+         : q == Quantity::repose ? "its pile has no angle, as one of less than three grains' height"
+                                 : "its plate's curve has no fit";
 }
 
 /// The folder of one run of a trial.
@@ -196,7 +207,8 @@ inline void check_rigs(const Settings& s) {
 
 /// Runs the rigs of a trial one after the other, each on one thread and in a folder of its own, and fills in its
 /// results. They are kept as `checkpoints` says; the files that they go on from stay until forget_trial(). A run that
-/// the simulation stops leaves NaN, and a message says why. Throws Error where such a file is damaged.
+/// the simulation stops, or that tells nothing, leaves NaN, and a message says why. Throws Error where such a file is
+/// damaged; what is no fault of the constants, as memory that is out, ends the search.
 inline void run_trial(const Settings& s, Trial& t, const Worlds& worlds, const std::filesystem::path& folder,
                       const CheckpointOptions& checkpoints, Stages& stages) {
   const auto quantities = quantities_of(s);
@@ -213,19 +225,25 @@ inline void run_trial(const Settings& s, Trial& t, const Worlds& worlds, const s
     const std::string config = detail::values_text(s, t);
     const CheckpointOptions kept = checkpoints_within(checkpoints, "calibrate", own, config);
     Session session({"calibrate", own.string(), config, {}, own_words(s), kept, &share});
+    const auto warn = [&](std::string_view why) {
+      stages.message(text("warning: run {} found nothing: {}", own.filename().string(), session.in_own_words(why)));
+    };
+    const auto give_up = [&](const std::exception& problem) {
+      if (kept.resume && !session.has_begun()) throw;  // what it was to go on from is damaged
+      if (is_of_plate(quantities[q])) pressed.emplace();
+      warn(problem.what());
+    };
     try {
       if (is_of_plate(quantities[q])) pressed = detail::press(s, t, worlds, session);
       t.results[q] = quantities[q] == Quantity::phi      ? detail::measure_phi(s, t, worlds, session)
                      : quantities[q] == Quantity::repose ? detail::measure_repose(s, t, worlds, session)
                                                          : of_plate();
       session.end();
-    } catch (const Interrupted&) {
-      throw;
-    } catch (const std::exception& problem) {
-      if (kept.resume && !session.has_begun()) throw;  // what it was to go on from is damaged
-      if (is_of_plate(quantities[q])) pressed.emplace();
-      stages.message(
-          text("warning: run {} found nothing: {}", own.filename().string(), session.in_own_words(problem.what())));
+      if (std::isnan(t.results[q])) warn(detail::why_nothing(quantities[q]));
+    } catch (const Stopped& problem) {
+      give_up(problem);
+    } catch (const Error& problem) {
+      give_up(problem);
     }
   }
 }
