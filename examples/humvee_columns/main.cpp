@@ -15,7 +15,7 @@
 #include <dem/terramechanics/soil_reader.hpp>
 
 int main(int argc, char** argv) {
-  dem::rig::mobility::MobilityRig rig([](const std::string& path) { return dem::terramechanics::load_soil(path); });
+  dem::rig::mobility::MobilityRig rig(dem::terramechanics::find_soil);
   return dem::rig::run_program({.name = "humvee_columns",
                                 .title = "Humvee on columns of soil",
                                 .about = "A Humvee drives on columns of semi-empirical soil",

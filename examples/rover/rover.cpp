@@ -22,8 +22,8 @@
 #include <dem/terramechanics/column_shapes.hpp>
 #include <dem/terramechanics/column_wheel.hpp>
 #include <dem/terramechanics/machine_columns.hpp>
-#include <dem/terramechanics/named_soils.hpp>
 #include <dem/terramechanics/rut_vtk.hpp>
+#include <dem/terramechanics/soil_reader.hpp>
 
 #include <algorithm>
 #include <array>
@@ -299,8 +299,8 @@ int main(int argc, char** argv) {
       argc, argv, "A rover on a rocker-bogie suspension drives up slopes of soil, or over a rock.", [](Arguments& a) {
         Drive drive;
         const std::string output = a.take("--output", "rover_output", "folder for the results");
-        drive.soil =
-            known_soil(a.take("--soil", "dry-sand", "dry-sand, sandy-loam, lete-sand, clayey, snow, p1 or p3"));
+        drive.soil = find_soil(
+            a.take("--soil", "dry-sand", "dry-sand, sandy-loam, lete-sand, clayey, snow, p1 or p3, or a soil's file"));
         drive.gravity = require_positive(a.number("--gravity", drive.gravity, "m/s^2"), "--gravity", "m/s^2");
         const std::vector<double> slopes = a.numbers("--slopes", {0, 5, 10, 15, 20, 25}, "in degrees, up to 40");
         drive.path = require_within(a.number("--path", drive.path, "m"), 0.5, 100.0, "--path (m)");

@@ -20,7 +20,7 @@ mobility::Settings resolved_study(const char* study, const char* lane = "") {
   mobility::Settings s;
   s.study = study;
   s.lane = lane;
-  mobility::resolve(s, [](const std::string&) { return dem::terramechanics::NamedSoil{}; });
+  mobility::resolve(s);
   return s;
 }
 
@@ -47,7 +47,7 @@ TEST_CASE("a study of one slope takes one, drives of one name are refused, and s
     mobility::Settings s;
     s.study = study;
     change(s);
-    mobility::resolve(s, nullptr);
+    mobility::resolve(s);
     return mobility::cases_of(s);
   };
   using S = mobility::Settings;
@@ -72,7 +72,7 @@ TEST_CASE("a study of one slope takes one, drives of one name are refused, and s
 TEST_CASE("pull over slip stands beside wheels at the slips at which the soil carries them") {
   mobility::Settings s;
   s.study = "drawbar", s.soil = "snow", s.tyre = "ring";
-  mobility::resolve(s, nullptr);
+  mobility::resolve(s);
   const mobility::Case of = mobility::cases_of(s)[0];
   const mobility::Result r{.weight = 8e3, .pulls = {{.slip = 0.1, .pull = 2e3}}};
   const auto plot = mobility::pull_plot(of, r, mobility::wheel_of(s, of));
@@ -94,7 +94,7 @@ TEST_CASE("a lane of stretches is as long as they are, and one that cannot be re
   mobility::Settings longer;
   longer.lane = "hard:3";
   longer.path = 4.0;
-  CHECK_THROWS_WITH(mobility::resolve(longer, nullptr), ContainsSubstring("longer than the --lane of 3 m"));
+  CHECK_THROWS_WITH(mobility::resolve(longer), ContainsSubstring("longer than the --lane of 3 m"));
 }
 
 TEST_CASE("a run of drives that goes on has the soil that it began with") {

@@ -17,14 +17,13 @@ namespace dem::rig::mobility {
 /// where it goes.
 class MobilityRig : public Rig {
  public:
-  /// `read_soil` reads a soil's file.
-  explicit MobilityRig(ReadSoil* read_soil) : read_soil_(read_soil) {}
+  explicit MobilityRig(FindSoil* find_soil) : find_soil_(find_soil) {}
 
   void declare(Options& options) override { mobility::declare(options, settings); }
   void find_idle(IdleOptions& idle) const override { mobility::find_idle(idle, settings); }
   void resolve() override {
     require_not_own(settings.inputs, "--inputs", output(), results());
-    mobility::resolve(settings, read_soil_);
+    mobility::resolve(settings, find_soil_);
   }
   [[nodiscard]] std::string output() const override { return settings.output; }
   [[nodiscard]] ResultNames results() const override {
@@ -230,7 +229,7 @@ class MobilityRig : public Rig {
     csv.flush();
   }
 
-  ReadSoil* read_soil_;
+  FindSoil* find_soil_;
 };
 
 }  // namespace dem::rig::mobility

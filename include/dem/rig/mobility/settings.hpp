@@ -21,7 +21,6 @@ struct Settings {
   std::string size = "quick";       ///< smoke, quick or full
   std::string study = "drive";      ///< drive, slopes, side-slopes, drawbar, passes, map or loads
   std::string soil = "dry-sand";    ///< name of a soil
-  std::string soil_file;            ///< a soil's file instead
   std::string lane;                 ///< stretches, "hard:8,dry-sand:12"; empty: one of the soil
   std::vector<double> slopes;       ///< percent, of slopes and map; one of the other studies
   std::vector<double> side_slopes;  ///< percent, of side-slopes and map; likewise
@@ -64,8 +63,9 @@ inline void declare(Options& options, Settings& s) {
       "side slopes) or loads (soils x loads)")
       .one_of({"drive", "slopes", "side-slopes", "drawbar", "passes", "map", "loads"});
   options.group("Ground");
-  add("--soil", s.soil, "dry-sand, sandy-loam, lete-sand, clayey, snow, hard, p1 or p3");
-  add("--soil-file", s.soil_file, "a soil's file (TOML), as the bevameter writes it; instead of --soil");
+  add("--soil", s.soil,
+      "dry-sand, sandy-loam, lete-sand, clayey, snow, hard, p1 or p3, or a soil's file (TOML), as the bevameter writes "
+      "it");
   add("--lane", s.lane, "stretches of soils with their lengths [m], e.g. hard:8,dry-sand:12; instead of --soil");
   add("--slopes", s.slopes, "percent, up the lane: several of slopes and map, one elsewhere");
   add("--side-slopes", s.side_slopes, "percent, the left side is high: several of side-slopes and map, one elsewhere");
@@ -103,9 +103,8 @@ inline void find_idle(IdleOptions& idle, const Settings& s) {
   idle.unless(s.study == "passes", "with --study passes", {"--passes"});
   idle.unless(loads, "with --study loads", {"--soils", "--loads"});
   idle.unless(!loads, "with another study than loads, which has --soils and --loads",
-              {"--soil", "--soil-file", "--lane", "--sprung-mass"});
-  idle.unless(s.lane.empty() || loads, "without --lane", {"--soil", "--soil-file"});
-  idle.unless(s.soil_file.empty() || loads || !s.lane.empty(), "without --soil-file", {"--soil"});
+              {"--soil", "--lane", "--sprung-mass"});
+  idle.unless(s.lane.empty() || loads, "without --lane", {"--soil"});
   idle.unless(s.study == "drive", "with --study drive", {"--replay"});
   idle.unless(s.tyre == "ring", "with --tyre ring", {"--tyre-pressure"});
   idle.unless(s.study != "drawbar", "with another study than drawbar",
@@ -126,8 +125,13 @@ inline std::vector<std::string> split(const std::string& text, char at) {
 
 }  // namespace detail
 
+/// Finds a soil by its name or in a file: the program's, so that this header needs no files.
+using FindSoil = terramechanics::NamedSoil(const std::string& name_or_path);
+/// One that knows names alone.
+inline terramechanics::NamedSoil soil_by_name(const std::string& name) { return terramechanics::known_soil(name); }
+
 /// Throws Error for a text that is no list of stretches.
-inline std::vector<vehicle::LaneStretch> stretches_of(const std::string& lane) {
+inline std::vector<vehicle::LaneStretch> stretches_of(const std::string& lane, FindSoil* find = soil_by_name) {
   std::vector<vehicle::LaneStretch> all;
   for (const std::string& part : detail::split(lane, ',')) {
     const auto pair = detail::split(part, ':');
@@ -136,16 +140,13 @@ inline std::vector<vehicle::LaneStretch> stretches_of(const std::string& lane) {
     if (!(length > 0.0 && length < 1e4) || *end != '\0') {
       fail("--lane has the stretch '{}', but must be soils with lengths in m, as hard:8,dry-sand:12", part);
     }
-    all.push_back({terramechanics::known_soil(pair[0]), length});
+    all.push_back({find(pair[0]), length});
   }
   return all;
 }
 
-/// A soil read from its file: the program's, so that this header needs no files.
-using ReadSoil = terramechanics::NamedSoil(const std::string& path);
-
 /// Fills in what depends on the size, and checks every option against its range. Throws Error.
-inline void resolve(Settings& s, ReadSoil* read_soil) {
+inline void resolve(Settings& s, FindSoil* find = soil_by_name) {
   const Size size = size_named(s.size);
   using List = std::vector<double>;
   if (s.slopes.empty()) {
@@ -185,7 +186,7 @@ inline void resolve(Settings& s, ReadSoil* read_soil) {
   for (const double mass : s.loads) require_within(mass, 500.0, 2e4, "a sprung mass of --loads (kg)");
   fill(s.speed, s.study == "drawbar" ? 1.0 : 5.0);
   double room = 0.0;
-  if (!s.lane.empty()) s.stretches_ = stretches_of(s.lane);
+  if (!s.lane.empty()) s.stretches_ = stretches_of(s.lane, find);
   for (const auto& stretch : s.stretches_) room += stretch.length;
   fill(s.path, room > 0.0 ? room : BySize<double>{.smoke = 4.0, .quick = 25.0, .full = 50.0}[size]);
   if (!s.lane.empty() && !(s.path <= room * (1.0 + 1e-9)))
@@ -207,13 +208,12 @@ inline void resolve(Settings& s, ReadSoil* read_soil) {
   require_within(s.time_step, 1e-6, 1e-4, "--machine-step (s)");
   vehicle::ColumnCar::steps_of(s.time_step, "--machine-step");
   require_within(s.threads, 0, 1000, "--threads");
-  if (s.lane.empty())
-    s.stretches_ = {{s.soil_file.empty() ? terramechanics::known_soil(s.soil) : read_soil(s.soil_file), s.path}};
+  if (s.lane.empty()) s.stretches_ = {{find(s.soil), s.path}};
   const std::string soils = s.soils.empty() ? "sandy-loam,lete-sand,dry-sand,clayey,snow" : s.soils;
   s.soils_of_loads_.clear();
   if (s.study == "loads") {
     for (const std::string& name : detail::split(soils, ',')) {
-      s.soils_of_loads_.push_back(terramechanics::known_soil(name));
+      s.soils_of_loads_.push_back(find(name));
     }
   }
 }
