@@ -41,8 +41,10 @@ void simulate(Arguments& arguments) {
                given_stiffness =
                    arguments.number("--stiffness", 0, "of beads [N/m]; 0: 500 for 3 mm in 84 mm, more for larger ones");
   const std::string folder = arguments.take("--output", "drum_output", "folder for the results");
-  const int threads = static_cast<int>(arguments.number("--threads", 1, "that share the work"));
+  const double given_threads = arguments.number("--threads", 1, "that share the work");
   arguments.check();
+  require_positive(seconds, "--seconds", "s");
+  const int threads = static_cast<int>(require_within(given_threads, 1, 1000, "--threads"));
   require_non_negative(turns, "--turns", "turns");
   for (const double froude : froude_numbers) require_positive(froude, "a number of --froude", "(no unit)");
   require_positive(d, "--diameter", "m");

@@ -140,6 +140,7 @@ void simulate(Arguments& arguments) {
   require_within(side, 4.0, 60.0, "--side");
   if (side != std::floor(side)) fail("--side is {:g}, but must be a whole number of beads", side);
   require_within(strain, 0.01, 0.6, "--strain");
+  require_non_negative(friction, "--friction", "(no unit)");
 
   io::Plot strength{.title = "Triaxial compression: strength",
                     .x_label = "axial strain",

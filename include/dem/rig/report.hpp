@@ -87,8 +87,9 @@ class Report {
     if (drawn) {
       has_plots_ = true;
       html.picture(drawn.svg, caption);
-    } else if (drawn.is_empty && (outcome().interrupted || !outcome().problem.empty())) {
-      html.paragraph(text("{} Nothing was measured by then.", caption));
+    } else if (drawn.is_empty) {
+      const bool ended_early = outcome().interrupted || !outcome().problem.empty();
+      html.paragraph(text("{} Nothing was measured{}.", caption, ended_early ? " by then" : ""));
     } else {
       has_plots_ = true;
       not_drawn_ = drawn.reason;
