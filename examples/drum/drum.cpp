@@ -43,9 +43,10 @@ void simulate(Arguments& arguments) {
   const std::string folder = arguments.take("--output", "drum_output", "folder for the results");
   const double given_threads = arguments.number("--threads", 1, "that share the work");
   arguments.check();
-  require_positive(seconds, "--seconds", "s");
+  require_non_negative(seconds, "--seconds", "s");
   const int threads = static_cast<int>(require_within(given_threads, 1, 1000, "--threads"));
   require_non_negative(turns, "--turns", "turns");
+  if (seconds + turns == 0.0) fail("--seconds and --turns are 0, but one of them must be above 0");
   for (const double froude : froude_numbers) require_positive(froude, "a number of --froude", "(no unit)");
   require_positive(d, "--diameter", "m");
   require_within(radius, (4 - 1e-9) * d, 1000 * d, "--radius (m; 4 to 1000 beads)");

@@ -276,14 +276,17 @@ Drove run(const Drive& drive, const Files& files) {
 void draw_slip(const std::string& output, const Drive& drive, double weight, io::Series driven) {
   io::Series alone = {.name = "one wheel alone", .style = io::SeriesStyle::LinePoints};
   for (const double slip : {0.0, 0.05, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9}) {
-    const ColumnWheelRun wheel = roll_on_columns({.wheel = {.radius = radius, .width = width},
-                                                  .soil = drive.soil.soil,
-                                                  .load = weight / 6,
-                                                  .spin = drive.speed / radius,
-                                                  .spacing = drive.spacing},
-                                                 slip);
-    alone.x.push_back(degrees(std::atan(wheel.pull / (weight / 6))));
-    alone.y.push_back(slip);
+    try {
+      const ColumnWheelRun wheel = roll_on_columns({.wheel = {.radius = radius, .width = width},
+                                                    .soil = drive.soil.soil,
+                                                    .load = weight / 6,
+                                                    .spin = drive.speed / radius,
+                                                    .spacing = drive.spacing},
+                                                   slip);
+      alone.x.push_back(degrees(std::atan(wheel.pull / (weight / 6))));
+      alone.y.push_back(slip);
+    } catch (const Error&) {  // the soil does not carry it at this slip: no point
+    }
   }
   io::Plot plot = {.title = "Rover on " + drive.soil.name,
                    .x_label = "slope [deg]",

@@ -39,7 +39,7 @@ while read -r d mu_pp mu_pw m_pp m_pw; do
     --half-edge "$half" --grains "$grains" --box-width "$width" --slot-width "$slot" --box-length "$length" \
     --friction "$mu_pp" --plate-friction "$mu_pw" --rolling-length "$m1" --plate-rolling-length "$m2" \
     --stiffness 200 --rest-limit 2 --creep-time 0.2 --seeds "$seeds" --no-vtk --no-replay \
-    --threads "${THREADS:-1}" --output "$name" > "$name.log" 2>&1
+    --threads "${THREADS:-1}" --output "$name" > "$name.log" 2>&1 || echo "  $name: not all piles were made, see $name.log" >&2
   awk -F, -v d="$d" -v a="$mu_pp" -v b="$mu_pw" -v m="$m_pp" -v n="$m_pw" '
     NR > 1 && $15 == 1 && $3 != "" { sum += $3; ++count }
     END { if (count) printf "%4g %7g %5g %5g %5g  %5.1f  %5.1f\n", d, a, b, m, n,

@@ -62,7 +62,9 @@ int main(int argc, char** argv) {
       ->capture_default_str();
   app.add_option("--bulldozing", s.bulldozing, "share of the soil pressed aside that is piled up there, 0 to 1")
       ->capture_default_str();
-  app.add_option("--spacing", s.spacing, "of the columns [m], 0.001 to 0.05")->capture_default_str();
+  app.add_option("--spacing", s.spacing,
+                 "of the columns [m], 0.001 to 0.05, a quarter of the radius and half the width at most")
+      ->capture_default_str();
   app.add_option("--travel", s.travel, "[m], 0.05 to 10; 0: 0.3, or one and a half radii, whichever is more");
   app.add_option("--output", output, "folder for the results")->capture_default_str();
   CLI11_PARSE(app, argc, argv);

@@ -117,6 +117,5 @@ inline void run_within(Session& session, Rig& rig, const char* program, const ch
 
 /// Removes what a run within another one was to go on from: that other one is done.
 inline void forget_run_within(const std::filesystem::path& output) { CheckpointFolder("", output, "", {}).clear(); }
-inline void forget_run_within(const Rig& rig) { forget_run_within(std::filesystem::path(rig.output())); }
 
 }  // namespace dem::rig

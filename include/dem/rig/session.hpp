@@ -156,6 +156,10 @@ class Session final : public Stages {
   }
 
   /// Removes what an earlier run has left, and writes the settings of this one.
+  void tell_or_message(const std::string& words) {
+    if (set_.within == nullptr) tell(stderr, "{}\n", words);
+    else set_.within->message(words);
+  }
   void make_room(const std::string& also) {
     if (!process_writes_files) return;
     const auto settings = folder() / "settings.toml";
@@ -163,6 +167,7 @@ class Session final : public Stages {
     auto old = find_old_results(folder(), set_.results);
     const auto parts = parts_.parts();
     old.insert(old.end(), parts.begin(), parts.end());
+    if (old.empty() && !also.empty()) tell_or_message(text("Replacing {}.", also));
     if (!old.empty()) {
       const bool same = std::filesystem::exists(settings) && io::read_file(settings) == set_.config;
       std::string names;
@@ -171,9 +176,8 @@ class Session final : public Stages {
       }
       const std::string replacing =
           text("Replacing what an earlier run with {} settings left in '{}': {}{}. Another --output keeps it.",
-               same ? "the same" : "other", set_.output, names, also);
-      if (set_.within == nullptr) tell(stderr, "{}\n", replacing);
-      else set_.within->message(replacing);
+               same ? "the same" : "other", set_.output, names, also.empty() ? "" : ", and " + also);
+      tell_or_message(replacing);
     }
     parts_.clear();  // first: they are those of the settings that were there
     io::write_file(settings, set_.config);

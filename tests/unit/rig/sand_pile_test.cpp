@@ -298,11 +298,12 @@ TEST_CASE("what a way of piling does not have is not asked for") {
 }
 
 TEST_CASE("a few grains of any shape have places in the cylinder that is as wide as they need") {
-  for (const std::size_t grains : {20, 31, 37, 60, 90}) {
+  for (const std::size_t grains : {20, 21, 31, 37, 60, 90, 105}) {
     Settings s;
     s.grains = grains;
     sand_pile::resolve(s);
-    for (const double bounding_radius : {std::sqrt(3.0) * s.half_edge, sphere_radius(s.half_edge)}) {
+    for (const double bounding_radius :
+         {std::sqrt(3.0) * s.half_edge, 1.366 * s.half_edge, sphere_radius(s.half_edge)}) {
       CHECK(lattice(s, bounding_radius, 1).size() == grains);
     }
   }

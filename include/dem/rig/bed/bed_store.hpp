@@ -40,8 +40,7 @@ class BedStore final : public PartStore {
   /// What a run says that it will replace besides its results: an older file of a bed.
   [[nodiscard]] std::string also_replaced() const {
     std::error_code ignored;
-    return save_.empty() || !std::filesystem::exists(save_, ignored) ? ""
-                                                                     : text(", and {} once there is a new bed", save_);
+    return save_.empty() || !std::filesystem::exists(save_, ignored) ? "" : text("{} once there is a new bed", save_);
   }
   [[nodiscard]] bool is_on() const override { return !state_.empty() || saves() || run_.is_on(); }
   [[nodiscard]] bool writes() const override { return run_.writes(); }

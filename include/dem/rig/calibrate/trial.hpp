@@ -208,16 +208,22 @@ inline void check_rigs(const Settings& s) {
 /// Runs the rigs of a trial one after the other, each on one thread and in a folder of its own, and fills in its
 /// results. They are kept as `checkpoints` says; the files that they go on from stay until forget_trial(). A run that
 /// the simulation stops, or that tells nothing, leaves NaN, and a message says why. Throws Error where such a file is
-/// damaged; what is no fault of the constants, as memory that is out, ends the search.
+/// damaged; memory that is out (std::bad_alloc) ends the search.
 inline void run_trial(const Settings& s, Trial& t, const Worlds& worlds, const std::filesystem::path& folder,
                       const CheckpointOptions& checkpoints, Stages& stages) {
   const auto quantities = quantities_of(s);
   t.results.assign(quantities.size(), std::nan(""));
   std::optional<detail::Pressed> pressed;  // one plate tells its pressure and its exponent
+  bool plate_stopped = false;
+  const auto warn_of_nothing = [&](std::size_t q, const std::string& why) {
+    const std::string run = detail::folder_of(folder, t, quantities[q]).filename().string();
+    stages.message(text("warning: run {} found nothing: {}", run, why));
+  };
   for (std::size_t q = 0; q < quantities.size(); ++q) {
     const auto of_plate = [&] { return quantities[q] == Quantity::pressure ? pressed->pressure : pressed->exponent; };
     if (pressed && is_of_plate(quantities[q])) {
       t.results[q] = of_plate();
+      if (std::isnan(t.results[q]) && !plate_stopped) warn_of_nothing(q, detail::why_nothing(quantities[q]));
       continue;
     }
     ShareOf share(stages, q, quantities.size());
@@ -225,13 +231,10 @@ inline void run_trial(const Settings& s, Trial& t, const Worlds& worlds, const s
     const std::string config = detail::values_text(s, t);
     const CheckpointOptions kept = checkpoints_within(checkpoints, "calibrate", own, config);
     Session session({"calibrate", own.string(), config, {}, own_words(s), kept, &share});
-    const auto warn = [&](std::string_view why) {
-      stages.message(text("warning: run {} found nothing: {}", own.filename().string(), session.in_own_words(why)));
-    };
     const auto give_up = [&](const std::exception& problem) {
       if (kept.resume && !session.has_begun()) throw;  // what it was to go on from is damaged
-      if (is_of_plate(quantities[q])) pressed.emplace();
-      warn(problem.what());
+      if (is_of_plate(quantities[q])) pressed.emplace(), plate_stopped = true;
+      warn_of_nothing(q, session.in_own_words(problem.what()));
     };
     try {
       if (is_of_plate(quantities[q])) pressed = detail::press(s, t, worlds, session);
@@ -239,7 +242,7 @@ inline void run_trial(const Settings& s, Trial& t, const Worlds& worlds, const s
                      : quantities[q] == Quantity::repose ? detail::measure_repose(s, t, worlds, session)
                                                          : of_plate();
       session.end();
-      if (std::isnan(t.results[q])) warn(detail::why_nothing(quantities[q]));
+      if (std::isnan(t.results[q])) warn_of_nothing(q, detail::why_nothing(quantities[q]));
     } catch (const Stopped& problem) {
       give_up(problem);
     } catch (const Error& problem) {

@@ -109,7 +109,7 @@ void run_campaign(const DirectShear<Model>& shear, Campaign& campaign, Session& 
   const int making = made ? making_stages(s) : 0;
   const bool replaces = made && std::filesystem::exists(s.save_packing);
   session.begin_run(making + 2 * static_cast<int>(s.loads.size()),
-                    replaces ? ", and " + s.save_packing + " once there is a new packing" : "");
+                    replaces ? s.save_packing + " once there is a new packing" : "");
   PackingResult& packing = campaign.packing;
   if (made) {
     PartOf<Model> part(session, session, "packing");

@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -66,10 +67,11 @@ inline void declare(Options& options, Settings& s) {
   add("--soil", s.soil,
       "dry-sand, sandy-loam, lete-sand, clayey, snow, hard, p1 or p3, or a soil's file (TOML), as the bevameter writes "
       "it");
-  add("--lane", s.lane, "stretches of soils with their lengths [m], e.g. hard:8,dry-sand:12; instead of --soil");
+  add("--lane", s.lane,
+      "stretches of soils (names or files) with their lengths [m], e.g. hard:8,dry-sand:12; instead of --soil");
   add("--slopes", s.slopes, "percent, up the lane: several of slopes and map, one elsewhere");
   add("--side-slopes", s.side_slopes, "percent, the left side is high: several of side-slopes and map, one elsewhere");
-  add("--soils", s.soils, "of loads, e.g. dry-sand,clayey; empty: five soils");
+  add("--soils", s.soils, "of loads, by names or files, e.g. dry-sand,clayey; empty: five soils");
   add("--loads", s.loads, "sprung masses of the study of that name [kg]; empty: by size");
   add("--passes", s.passes, "of the study of that name: each in the ruts of the one before");
   add("--spacing", s.spacing, "of the columns of soil [m]");
@@ -214,6 +216,9 @@ inline void resolve(Settings& s, FindSoil* find = soil_by_name) {
   if (s.study == "loads") {
     for (const std::string& name : detail::split(soils, ',')) {
       s.soils_of_loads_.push_back(find(name));
+      // Drives are named after their soils: one from a file after that, as files may say the same name.
+      if (std::string& own = s.soils_of_loads_.back().name; own != name)
+        own = std::filesystem::path(name).stem().string();
     }
   }
 }

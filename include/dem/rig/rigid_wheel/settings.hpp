@@ -73,7 +73,7 @@ inline void declare(Options& options, Settings& s) {
   add("--size", s.size,
       "smoke (seconds), quick (minutes) or full (the thesis's 231264 grains: with --stiffness 2000 --sleep some 7 "
       "hours on "
-      "two cores, as it is by default some 20)");
+      "two cores, else days)");
   options.group("Wheel");
   add("--wheel", s.wheel, "smooth, rough (its surface has more friction) or grousers (a mesh)")
       .one_of({"smooth", "rough", "grousers"});

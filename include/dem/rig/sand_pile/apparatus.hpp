@@ -169,8 +169,9 @@ inline std::vector<soil::Placement> lattice(const Settings& s, double bounding_r
   const bool round = s.method != "drain";
   const double lx = round ? 2.0 * s.cylinder_radius : s.box_length + s.slot_width,
                ly = round ? 2.0 * s.cylinder_radius : s.box_width;
-  // Of a square's cells at least 0.3 lie in the circle of a cylinder that is not narrower than resolve() makes it.
-  auto all = soil::random_lattice((round ? 4 : 1) * s.grains, s.half_edge, lx, ly, seed, 0.05, bounding_radius);
+  // Of a square's cells at least a quarter lie in the circle of a cylinder that is not narrower than resolve() makes
+  // it, but of a last row that is not full none may.
+  auto all = soil::random_lattice((round ? 5 : 1) * s.grains, s.half_edge, lx, ly, seed, 0.05, bounding_radius);
   std::vector<soil::Placement> grains;
   for (auto& g : all) {
     if (grains.size() == s.grains) break;

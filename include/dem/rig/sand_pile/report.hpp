@@ -35,13 +35,14 @@ inline std::string fit_text(const Settings& s) {
 inline std::string creep_text(const Campaign& c) {
   constexpr double limit = 1e-3, full_time = 10.0;  // sizes, s
   std::string kinds;
-  double watched = full_time;
+  double watched = full_time, longest = 0.0;
   for (const auto& piles : by_kind(c)) {
     double most = not_known;
     for (const PileResult* r : piles) {
       if (!std::isfinite(r->creep)) continue;
       most = std::fmax(most, r->creep);
       watched = std::min(watched, r->creep_time);
+      longest = std::max(longest, r->creep_time);
     }
     if (std::isnan(most)) continue;
     kinds += text("{}{} {} ({:.2g})", kinds.empty() ? "" : ", ", piles.front()->kind.name,
@@ -54,6 +55,8 @@ inline std::string creep_text(const Campaign& c) {
       limit, full_time, kinds,
       watched < (1.0 - 1e-9) * full_time
           ? text(" They were watched for {:g} s alone: give --creep-time {:g}.", watched, full_time)
+      : longest > 1.01 * full_time
+          ? text(" They were watched for {:g} s: one that creeps by that may stand by this.", longest)
           : "");
 }
 

@@ -34,7 +34,7 @@ void run_campaign(const Settings& settings, ShapeOf&& shape_of, Campaign& c, Ses
   const soil::Packing start =
       start_of_bed(s.bed, s.grains, test.shape().volume(), test.shape().bounding_radius(), s.goes_along());
   BedStore store(session, s.bed, s.grains, s.goes_along() ? BedStore::repeating : BedStore::fixed_box);
-  session.begin_run(bed_stages(s.bed) + s.passes * (s.slope_angle() != 0.0 ? 4 : 3));
+  session.begin_run(bed_stages(s.bed) + s.passes * (s.slope_angle() != 0.0 ? 4 : 3), store.also_replaced());
 
   const io::SurfaceMesh hull = vehicle::drawn_hull(s.car);
   // A lane that goes along meets ever new grains: the limit is one of all that a replay meets.
