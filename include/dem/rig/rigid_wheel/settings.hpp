@@ -72,8 +72,7 @@ inline void declare(Options& options, Settings& s) {
   const auto add = [&](const char* name, auto& value, const char* text) { return options.add(name, value, text); };
   add("--size", s.size,
       "smoke (seconds), quick (minutes) or full (the thesis's 231264 grains: with --stiffness 2000 --sleep some 7 "
-      "hours on "
-      "two cores, else days)");
+      "hours on two cores, else days)");
   options.group("Wheel");
   add("--wheel", s.wheel, "smooth, rough (its surface has more friction) or grousers (a mesh)")
       .one_of({"smooth", "rough", "grousers"});
