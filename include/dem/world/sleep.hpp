@@ -1,6 +1,7 @@
 #pragma once
 
 #include <dem/core/macros.hpp>
+#include <dem/core/prefetch.hpp>
 #include <dem/grain/sleep.hpp>
 #include <dem/world/gather.hpp>
 #include <dem/world/images.hpp>
@@ -288,13 +289,23 @@ void wake_and_put_to_sleep(WorldState<Model>& w) {
   const SleepOptions& o = *w.options.sleep;
   const double g = w.options.gravity.norm();
   const grain::WindowEnd window = {o, w.options.gravity, o.window * w.time_step};
+  // Whether what is known of a grain's rest is read; by id, so anywhere in memory.
+  const auto looks_at = [&](std::size_t i) {
+    if (s.doing[i] & grain::awake) return s.measuring;
+    return s.acted_on[i] != 0 || (s.doing[i] & (grain::watched | grain::touched)) != 0;
+  };
   w.executor.for_each(s.working.size(), [&](std::size_t k) {
     const std::size_t c = s.working[k];
     Chunk<Model>& chunk = w.chunks[c];
     chunk.watched = chunk.asked = chunk.touched = false;
     chunk.asleep = true;
     chunk.stopped = 0.0;
-    for (std::size_t i = c * chunk_size; i < std::min((c + 1) * chunk_size, p.count); ++i) {
+    const std::size_t end = std::min((c + 1) * chunk_size, p.count);
+    for (std::size_t i = c * chunk_size; i < end; ++i) {
+      constexpr std::size_t ahead = 8;
+      if (const std::size_t later = i + ahead; later < end && looks_at(later)) {
+        prefetch(&s.grains[p.id[later]], sizeof(grain::Rest));
+      }
       const std::uint8_t did = s.doing[i];
       s.doing[i] &= grain::awake | grain::changed | grain::counted;  // a part that holds grains may just have woken it
       if ((did & grain::awake) == 0) {
