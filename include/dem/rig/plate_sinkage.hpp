@@ -90,6 +90,7 @@ class PlateSinkage {
         }
         look(std::as_const(world), travel);
         stages.update(std::isnan(n.zero) ? 0.0 : travel - n.zero, text("{:.1f} kPa", 1e-3 * pressure));
+        use_free_threads(world, stages);
         if (travel > farthest) {
           throw Stopped(
               text("the plate of {:g} mm is {:g} mm down and has no sinkage of {:g} mm yet: the bed hardly "

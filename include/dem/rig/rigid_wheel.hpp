@@ -132,6 +132,7 @@ class RigidWheel {
       if (share > 0.5 && result.samples.size() % 2 == 0) look_under(stand, result.print);
       look(std::as_const(world), share);
       stages.update(std::min(1.0, share), text("slip {:g}: pull {:.1f} N", result.slip, grains.force.x));
+      use_free_threads(world, stages);
     }
     // Behind the wheel, and not where it was set down.
     const double chord = std::sqrt(2.0 * s.radius * std::max(sinkage(stand), s.grains.edge()));

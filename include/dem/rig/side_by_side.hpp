@@ -21,22 +21,33 @@ namespace dem::rig {
 struct SharedThreads {
   int runs = 1;  ///< that go side by side
   int each = 1;  ///< threads of each
+  int all = 1;   ///< of all runs together
+  int most = 1;  ///< that one of them may use
+
+  /// Threads of each while so many runs go on: those of runs that have ended are shared anew.
+  [[nodiscard]] int of_each(std::size_t going_on) const {
+    const auto beside = static_cast<int>(std::clamp<std::size_t>(going_on, 1, static_cast<std::size_t>(runs)));
+    return std::clamp(all / beside, 1, most);
+  }
 };
 
-/// A thread for each run where there are as many runs as `threads` (0: all); fewer runs have as many more each. Where
-/// several processes share each run, one goes after the other, on all threads.
-inline SharedThreads share_threads(std::size_t runs, int threads) {
+/// A thread for each run where there are as many runs as `threads` (0: all); fewer runs have more each, up to `most`
+/// (0: any number). Where several processes share each run, one goes after the other, on all threads.
+inline SharedThreads share_threads(std::size_t runs, int threads, int most = 0) {
   if (threads <= 0) threads = std::max(1, omp_get_max_threads());
-  if (processes.count > 1) return {1, threads};
-  const int beside = static_cast<int>(std::clamp<std::size_t>(runs, 1, static_cast<std::size_t>(threads)));
-  return {beside, threads / beside};
+  SharedThreads shared{.all = threads, .most = most > 0 ? std::min(most, threads) : threads};
+  const std::size_t beside = processes.count > 1 ? 1 : static_cast<std::size_t>(threads);
+  shared.runs = static_cast<int>(std::clamp<std::size_t>(runs, 1, beside));
+  shared.each = shared.of_each(runs);
+  return shared;
 }
 
 /// What one of several runs that go on side by side tells: its progress counts in that of all.
 class SharedStages {
  public:
   /// `of` runs share `stages`, whose stage has begun with the total `of`: each is done when it has told 1.
-  SharedStages(Stages& stages, std::size_t of) : stages_(stages), done_(of, 0.0) {}
+  SharedStages(Stages& stages, std::size_t of, SharedThreads threads = {})
+      : stages_(stages), done_(of, 0.0), threads_(threads), going_on_(of) {}
 
   /// So much, from 0 to 1, of a run is done. Throws Interrupted when another run has failed; not when all are asked to
   /// stop, as each is then to save itself first. `was_done`: an earlier run did it.
@@ -57,11 +68,17 @@ class SharedStages {
   }
   /// Those that are shared, for use within alone().
   Stages& all() { return stages_; }
+  /// Threads that each run may use now.
+  [[nodiscard]] int threads() const { return threads_.of_each(going_on_); }
+  /// One of the runs has ended, or will not begin.
+  void end_one() { --going_on_; }
   std::atomic<bool> has_failed = false;
 
  private:
   Stages& stages_;
   std::vector<double> done_;
+  SharedThreads threads_;
+  std::atomic<std::size_t> going_on_;
   std::mutex mutex_;
 };
 
@@ -84,6 +101,7 @@ class StagesOfOne final : public Stages {
     save_if_due();
   }
   void go_on() override { goes_on_ = true; }
+  [[nodiscard]] int threads() const override { return shared_.threads(); }
   void alone(const std::function<void()>& f) override { shared_.alone(f); }
   void message(std::string_view text) override {
     shared_.alone([&] { shared_.all().message(text); });
@@ -98,14 +116,16 @@ class StagesOfOne final : public Stages {
   bool goes_on_ = false;
 };
 
-/// Calls job(k, shared) for each k below `jobs`, up to `workers` at a time. Where several processes share each of them
-/// it is one after the other. What a job throws ends the others at their
-/// next update, and is thrown here once all have ended; a problem goes before an interruption.
+/// Calls job(k, shared) for each k below `jobs`, as many at a time as `threads` says. Where several processes share
+/// each of them it is one after the other. One whose simulation is Stopped is told of, and the others go on. Anything
+/// else that a job throws ends them at their next update. It is thrown here once all have ended; a problem goes before
+/// an interruption.
 template <class Job>
-void side_by_side(std::size_t jobs, int workers, Stages& stages, Job&& job) {
-  SharedStages shared(stages, jobs);
+void side_by_side(std::size_t jobs, const SharedThreads& threads, Stages& stages, Job&& job) {
+  SharedStages shared(stages, jobs, threads);
   std::atomic<std::size_t> next = 0;
   std::exception_ptr problem, interrupted;
+  const auto note_problem = [&] { problem = problem ? problem : std::current_exception(); };
   const auto work = [&] {
     for (std::size_t k = next++; k < jobs; k = next++) {
       try {
@@ -114,19 +134,32 @@ void side_by_side(std::size_t jobs, int workers, Stages& stages, Job&& job) {
       } catch (const Interrupted&) {
         shared.has_failed = true;
         shared.alone([&] { interrupted = std::current_exception(); });
+      } catch (const Stopped& stopped) {
+        shared.alone([&] {
+          if (jobs > 1) shared.all().message(text("One of {} runs stopped: {}", jobs, stopped.what()));
+          note_problem();
+        });
+        if (processes.count > 1) shared.has_failed = true;  // the others may not have seen it
       } catch (...) {
         shared.has_failed = true;
-        shared.alone([&] { problem = problem ? problem : std::current_exception(); });
+        shared.alone(note_problem);
       }
+      shared.end_one();
     }
   };
-  if (processes.count > 1) workers = 1;
-  std::vector<std::thread> threads;
-  for (int k = 1; k < workers && static_cast<std::size_t>(k) < jobs; ++k) threads.emplace_back(work);
+  const int workers = processes.count > 1 ? 1 : threads.runs;
+  std::vector<std::thread> beside;
+  for (int k = 1; k < workers && static_cast<std::size_t>(k) < jobs; ++k) beside.emplace_back(work);
   work();
-  for (auto& thread : threads) thread.join();
+  for (auto& thread : beside) thread.join();
   if (problem) std::rethrow_exception(problem);
   if (interrupted) std::rethrow_exception(interrupted);
+}
+
+/// The same with so many at a time, of a thread each.
+template <class Job>
+void side_by_side(std::size_t jobs, int workers, Stages& stages, Job&& job) {
+  side_by_side(jobs, SharedThreads{.runs = workers, .all = workers}, stages, std::forward<Job>(job));
 }
 
 }  // namespace dem::rig

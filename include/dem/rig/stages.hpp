@@ -108,6 +108,8 @@ class Stages {
   virtual void finish([[maybe_unused]] std::string_view result = {}) {}
   /// Calls `f` while no run beside this one calls anything so: for what only one may do at a time.
   virtual void alone(const std::function<void()>& f) { f(); }
+  /// Threads that a world of this stage may use now; 0: those that it has. More, where runs beside this one have ended.
+  [[nodiscard]] virtual int threads() const { return 0; }
   /// Something to know besides, as a warning.
   virtual void message([[maybe_unused]] std::string_view text) {}
 
@@ -208,6 +210,12 @@ void run(World& world, double duration, BeforeStep&& before_step) {
 template <class World>
 void run(World& world, double duration) {
   run(world, duration, [] {});
+}
+
+/// Gives a world the threads that its run may use now.
+template <class World>
+void use_free_threads(World& world, const Stages& stages) {
+  if (const int threads = stages.threads(); threads > 0 && threads != world.threads()) world.set_threads(threads);
 }
 
 }  // namespace dem::rig

@@ -4,8 +4,12 @@
 #include <dem/rig/side_by_side.hpp>
 #include <dem/rig/steady_window.hpp>
 
+#include <barrier>
 #include <cmath>
+#include <mutex>
 #include <stdexcept>
+#include <string>
+#include <thread>
 #include <vector>
 
 namespace steady_window_test {
@@ -141,16 +145,64 @@ TEST_CASE("a thread for each run, and more where there are fewer runs") {
   CHECK(shared(1000, 0).second == 1);
 }
 
+TEST_CASE("runs that go on share the threads of those that have ended") {
+  const SharedThreads of_nine = share_threads(9, 2), of_three = share_threads(3, 8), of_small = share_threads(5, 4, 2);
+  CHECK(of_nine.of_each(9) == 1);
+  CHECK(of_nine.of_each(2) == 1);
+  CHECK(of_nine.of_each(1) == 2);
+  CHECK(of_three.of_each(3) == 2);
+  CHECK(of_three.of_each(2) == 4);
+  CHECK(of_three.of_each(1) == 8);
+  CHECK(of_small.of_each(1) == 2);  // not more than a run may use
+  Stages quiet;
+  std::vector<int> threads;
+  side_by_side(3, SharedThreads{.runs = 1, .all = 4, .most = 4}, quiet, [&](std::size_t k, SharedStages& stages) {
+    const StagesOfOne own(stages, k);
+    threads.push_back(own.threads());
+  });
+  CHECK(threads == std::vector{4, 4, 4});  // one after the other, each has all
+  threads.clear();
+  std::mutex mutex;
+  std::barrier both(2);
+  side_by_side(3, SharedThreads{.runs = 2, .all = 2, .most = 2}, quiet, [&](std::size_t k, SharedStages& stages) {
+    const StagesOfOne own(stages, k);
+    if (k < 2) both.arrive_and_wait();
+    while (k == 2 && own.threads() < 2) std::this_thread::yield();  // until the other one has ended
+    const std::lock_guard lock(mutex);
+    threads.push_back(own.threads());
+  });
+  REQUIRE(threads.size() == 3);
+  CHECK(threads.front() == 1);
+  CHECK(threads.back() == 2);
+}
+
 TEST_CASE("a run that fails ends those beside it, and its problem is thrown") {
   Stages quiet;
   int begun = 0;
   const auto run = [&](std::size_t k, SharedStages& stages) {
     ++begun;
-    if (k == 1) throw Stopped("the second one");
+    if (k == 1) throw std::runtime_error("the second one");
     for (int i = 0; i < 10; ++i) stages.update(k, 0.1 * i, "");
   };
   CHECK_THROWS_WITH(side_by_side(5, 1, quiet, run), "the second one");
   CHECK(begun == 2);
+}
+
+TEST_CASE("a run whose simulation is stopped is told of, and those beside it go on") {
+  struct Told : Stages {
+    void message(std::string_view text) override { said.emplace_back(text); }
+    std::vector<std::string> said;
+  } told;
+  int done = 0;
+  const auto run = [&](std::size_t k, SharedStages& stages) {
+    if (k == 1 || k == 3) throw Stopped(dem::text("grain {} is lost", k));
+    stages.update(k, 1.0, "");
+    ++done;
+  };
+  CHECK_THROWS_WITH(side_by_side(5, 1, told, run), "grain 1 is lost");
+  CHECK(done == 3);
+  CHECK(told.said ==
+        std::vector<std::string>{"One of 5 runs stopped: grain 1 is lost", "One of 5 runs stopped: grain 3 is lost"});
 }
 
 }  // namespace steady_window_test

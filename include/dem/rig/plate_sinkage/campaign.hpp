@@ -63,15 +63,14 @@ void press_all(const PlateSinkage<Model>& test, const Bed<Model>& bed, VariantRe
   if (s.replay && v.is_run_itself())
     replay.emplace(
         report::ReplayOptions{.frames = 80, .interval = s.sinkage / s.speed / 60.0, .force_lines = s.replay_forces});
-  const SharedThreads threads = share_threads(plates.size(), s.bed.threads);
-  const int each = std::min(threads.each, bed.world.threads());
+  const SharedThreads threads = share_threads(plates.size(), s.bed.threads, bed.world.threads());
   session.begin(v.is_run_itself() ? "press" : "press, " + v.text, static_cast<double>(plates.size()));
   const auto press_one = [&](std::size_t k, SharedStages& stages) {
     StagesOfOne own(stages, k, s.unload ? 2 : 1);
     report::Replay* const own_replay = v.is_run_itself() && k == shown && replay ? &*replay : nullptr;
-    press(test, bed, each, v, plates[k], own_replay, session, own);
+    press(test, bed, threads.each, v, plates[k], own_replay, session, own);
   };
-  work_and_save([&] { side_by_side(plates.size(), threads.runs, session, press_one); },
+  work_and_save([&] { side_by_side(plates.size(), threads, session, press_one); },
                 [&] { std::erase_if(plates, [](const PlateResult& r) { return r.samples.empty(); }); });  // not begun
   std::string found;
   for (const PlateResult& r : plates) {

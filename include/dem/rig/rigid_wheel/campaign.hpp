@@ -36,10 +36,9 @@ void roll(const RigidWheel<Model>& test, const typename RigidWheel<Model>::Stand
   if (s.replay && is_run)
     replay.emplace(report::ReplayOptions{
         .frames = 80, .interval = s.duration_at(s.slips[shown]) / 60.0, .force_lines = s.replay_forces});
-  const SharedThreads threads = share_threads(s.slips.size(), s.bed.threads);
-  const int each = std::min(threads.each, stand.bed.world.threads());
+  const SharedThreads threads = share_threads(s.slips.size(), s.bed.threads, stand.bed.world.threads());
   session.begin("roll", static_cast<double>(s.slips.size()));
-  side_by_side(s.slips.size(), threads.runs, session, [&](std::size_t turn, SharedStages& stages) {
+  side_by_side(s.slips.size(), threads, session, [&](std::size_t turn, SharedStages& stages) {
     const std::size_t k = s.slips.size() - 1 - turn;  // the largest slip, whose run is longest, first
     SlipResult& r = result.slips[k];
     const std::string name = result.variant.prefix() + slip_name(r.slip);
@@ -55,7 +54,7 @@ void roll(const RigidWheel<Model>& test, const typename RigidWheel<Model>::Stand
       const auto kept = own.keep("slip", r), series = own.keep("frames", frames),
                  pictures = own.keep("replay", shown_replay);
       if (part.is_done()) return own.go_on(), own.update(1.0);
-      test.roll(stand, each, r, own, [&](const auto& world, double share) {
+      test.roll(stand, threads.each, r, own, [&](const auto& world, double share) {
         if (k != shown) return;
         frames.show(share, [&](io::VtkSeries& to) {
           add_grains(to, world);

@@ -159,6 +159,7 @@ class Forming {
 
   /// Goes on for a sampling interval.
   void go_on() {
+    use_free_threads(rig_.world, stages_);
     run(rig_.world, s_.sample_time);
     result_.lost += rig_.remove_fallen();
     if (rig_.world.grain_count() == 0) throw Stopped("no grain is left");

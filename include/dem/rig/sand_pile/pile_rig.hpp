@@ -70,16 +70,17 @@ class PileRig : public Rig {
     if (settings.replay)
       campaign.replay.emplace(
           report::ReplayOptions{.frames = 100, .interval = settings.frame_time, .force_lines = settings.replay_forces});
-    const SharedThreads threads = share_threads(piles.size(), settings.threads);
+    const int most = settings.threads > 0 ? 0 : threads_for(settings.grains);
+    const SharedThreads threads = share_threads(piles.size(), settings.threads, most);
     Settings of_one = settings;
-    of_one.threads = settings.threads > 0 ? threads.each : std::min(threads.each, threads_for(settings.grains));
+    of_one.threads = threads.each;
     session.begin("piles", static_cast<double>(piles.size()));
     const auto make = [&](std::size_t k, SharedStages& stages) {
       StagesOfOne own(stages, k, 4);
       report::Replay* replay = k == 0 && campaign.replay ? &*campaign.replay : nullptr;
       world_of(piles[k].kind).make(of_one, piles[k], replay, session, own);
     };
-    work_and_save([&] { side_by_side(piles.size(), threads.runs, session, make); },
+    work_and_save([&] { side_by_side(piles.size(), threads, session, make); },
                   [&] { std::erase_if(piles, [](const PileResult& r) { return r.poured == 0; }); });  // not begun
     std::string angles;
     for (const PileResult& r : piles) angles += (angles.empty() ? "" : ", ") + number(degrees * r.flank.angle);
