@@ -47,7 +47,7 @@ class SharedStages {
  public:
   /// `of` runs share `stages`, whose stage has begun with the total `of`: each is done when it has told 1.
   SharedStages(Stages& stages, std::size_t of, SharedThreads threads = {})
-      : stages_(stages), done_(of, 0.0), threads_(threads), going_on_(of) {}
+      : stages_(stages), done_(of, 0.0), status_(of), threads_(threads), going_on_(of) {}
 
   /// So much, from 0 to 1, of a run is done. Throws Interrupted when another run has failed; not when all are asked to
   /// stop, as each is then to save itself first. `was_done`: an earlier run did it.
@@ -56,6 +56,7 @@ class SharedStages {
     const std::lock_guard lock(mutex_);
     if (was_done) stages_.go_on();
     done_[run] = done;
+    status_[run] = status;
     double sum = 0.0;
     for (const double d : done_) sum += d;
     stages_.update(sum, status);
@@ -66,6 +67,8 @@ class SharedStages {
     const std::lock_guard lock(mutex_);
     f();
   }
+  /// What a run told last, for use within alone().
+  [[nodiscard]] const std::string& status(std::size_t run) const { return status_[run]; }
   /// Those that are shared, for use within alone().
   Stages& all() { return stages_; }
   /// Threads that each run may use now.
@@ -77,6 +80,7 @@ class SharedStages {
  private:
   Stages& stages_;
   std::vector<double> done_;
+  std::vector<std::string> status_;
   SharedThreads threads_;
   std::atomic<std::size_t> going_on_;
   std::mutex mutex_;
@@ -116,10 +120,10 @@ class StagesOfOne final : public Stages {
   bool goes_on_ = false;
 };
 
-/// Calls job(k, shared) for each k below `jobs`, as many at a time as `threads` says. Where several processes share
-/// each of them it is one after the other. One whose simulation is Stopped is told of, and the others go on. Anything
-/// else that a job throws ends them at their next update. It is thrown here once all have ended; a problem goes before
-/// an interruption.
+/// Calls job(k, shared) for each k below `jobs`, which is the run k of `shared`, as many at a time as `threads` says.
+/// Where several processes share each of them it is one after the other. One whose simulation is Stopped is told of,
+/// and the others go on; anything else that a job throws ends them at their next update. The first problem is thrown
+/// here once all have ended. It goes before an interruption.
 template <class Job>
 void side_by_side(std::size_t jobs, const SharedThreads& threads, Stages& stages, Job&& job) {
   SharedStages shared(stages, jobs, threads);
@@ -136,7 +140,11 @@ void side_by_side(std::size_t jobs, const SharedThreads& threads, Stages& stages
         shared.alone([&] { interrupted = std::current_exception(); });
       } catch (const Stopped& stopped) {
         shared.alone([&] {
-          if (jobs > 1) shared.all().message(text("One of {} runs stopped: {}", jobs, stopped.what()));
+          if (jobs > 1) {
+            const std::string& at = shared.status(k);
+            shared.all().message(
+                text("One of {} runs stopped{}: {}", jobs, at.empty() ? "" : " (" + at + ")", stopped.what()));
+          }
           note_problem();
         });
         if (processes.count > 1) shared.has_failed = true;  // the others may not have seen it

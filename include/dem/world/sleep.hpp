@@ -302,7 +302,7 @@ void wake_and_put_to_sleep(WorldState<Model>& w) {
     chunk.stopped = 0.0;
     const std::size_t end = std::min((c + 1) * chunk_size, p.count);
     for (std::size_t i = c * chunk_size; i < end; ++i) {
-      constexpr std::size_t ahead = 8;
+      constexpr std::size_t ahead = 8;  // rows
       if (const std::size_t later = i + ahead; later < end && looks_at(later)) {
         prefetch(&s.grains[p.id[later]], sizeof(grain::Rest));
       }

@@ -195,14 +195,15 @@ TEST_CASE("a run whose simulation is stopped is told of, and those beside it go 
   } told;
   int done = 0;
   const auto run = [&](std::size_t k, SharedStages& stages) {
+    if (k == 3) stages.update(k, 0.5, "slip 0.3");
     if (k == 1 || k == 3) throw Stopped(dem::text("grain {} is lost", k));
     stages.update(k, 1.0, "");
     ++done;
   };
   CHECK_THROWS_WITH(side_by_side(5, 1, told, run), "grain 1 is lost");
   CHECK(done == 3);
-  CHECK(told.said ==
-        std::vector<std::string>{"One of 5 runs stopped: grain 1 is lost", "One of 5 runs stopped: grain 3 is lost"});
+  CHECK(told.said == std::vector<std::string>{"One of 5 runs stopped: grain 1 is lost",
+                                              "One of 5 runs stopped (slip 0.3): grain 3 is lost"});
 }
 
 }  // namespace steady_window_test

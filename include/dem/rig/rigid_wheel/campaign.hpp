@@ -47,7 +47,7 @@ void roll(const RigidWheel<Model>& test, const typename RigidWheel<Model>::Stand
       if (!r.samples.empty()) save_samples<Sample>(session.folder() / (name + ".csv"), r.samples, sample_columns);
     };
     const auto run = [&] {
-      StagesOfOne own(stages, k);
+      StagesOfOne own(stages, turn);
       PartOf<Model> part(session, own, name);
       Frames frames(session, own, s.vtk && k == shown ? name : "", 0.05, "this slip");
       report::Replay* shown_replay = replay && k == shown ? &*replay : nullptr;
