@@ -122,14 +122,14 @@ class StagesOfOne final : public Stages {
 
 /// Calls job(k, shared) for each k below `jobs`, which is the run k of `shared`, as many at a time as `threads` says.
 /// Where several processes share each of them it is one after the other. One whose simulation is Stopped is told of,
-/// and the others go on; anything else that a job throws ends them at their next update. The first problem is thrown
-/// here once all have ended. It goes before an interruption.
+/// and the others go on; anything else that a job throws ends them at their next update. What is thrown here once all
+/// have ended is the first problem, else that all were asked to stop, else the first that Stopped.
 template <class Job>
 void side_by_side(std::size_t jobs, const SharedThreads& threads, Stages& stages, Job&& job) {
   SharedStages shared(stages, jobs, threads);
   std::atomic<std::size_t> next = 0;
-  std::exception_ptr problem, interrupted;
-  const auto note_problem = [&] { problem = problem ? problem : std::current_exception(); };
+  std::exception_ptr problem, interrupted, first_stopped;
+  const auto note = [](std::exception_ptr& first) { first = first ? first : std::current_exception(); };
   const auto work = [&] {
     for (std::size_t k = next++; k < jobs; k = next++) {
       try {
@@ -137,7 +137,7 @@ void side_by_side(std::size_t jobs, const SharedThreads& threads, Stages& stages
         job(k, shared);
       } catch (const Interrupted&) {
         shared.has_failed = true;
-        shared.alone([&] { interrupted = std::current_exception(); });
+        shared.alone([&] { note(interrupted); });
       } catch (const Stopped& stopped) {
         shared.alone([&] {
           if (jobs > 1) {
@@ -145,12 +145,12 @@ void side_by_side(std::size_t jobs, const SharedThreads& threads, Stages& stages
             shared.all().message(
                 text("One of {} runs stopped{}: {}", jobs, at.empty() ? "" : " (" + at + ")", stopped.what()));
           }
-          note_problem();
+          note(first_stopped);
         });
         if (processes.count > 1) shared.has_failed = true;  // the others may not have seen it
       } catch (...) {
         shared.has_failed = true;
-        shared.alone(note_problem);
+        shared.alone([&] { note(problem); });
       }
       shared.end_one();
     }
@@ -160,8 +160,9 @@ void side_by_side(std::size_t jobs, const SharedThreads& threads, Stages& stages
   for (int k = 1; k < workers && static_cast<std::size_t>(k) < jobs; ++k) beside.emplace_back(work);
   work();
   for (auto& thread : beside) thread.join();
-  if (problem) std::rethrow_exception(problem);
-  if (interrupted) std::rethrow_exception(interrupted);
+  for (const auto& first : {problem, io::interrupted() ? interrupted : nullptr, first_stopped, interrupted}) {
+    if (first) std::rethrow_exception(first);
+  }
 }
 
 /// The same with so many at a time, of a thread each.

@@ -1,11 +1,13 @@
 #include "catch.hpp"
 
+#include <dem/rig/runs_in_turn.hpp>
 #include <dem/rig/scatter.hpp>
 #include <dem/rig/side_by_side.hpp>
 #include <dem/rig/steady_window.hpp>
 
 #include <barrier>
 #include <cmath>
+#include <csignal>
 #include <mutex>
 #include <stdexcept>
 #include <string>
@@ -188,11 +190,13 @@ TEST_CASE("a run that fails ends those beside it, and its problem is thrown") {
   CHECK(begun == 2);
 }
 
+struct Told : Stages {
+  void message(std::string_view text) override { said.emplace_back(text); }
+  std::vector<std::string> said;
+};
+
 TEST_CASE("a run whose simulation is stopped is told of, and those beside it go on") {
-  struct Told : Stages {
-    void message(std::string_view text) override { said.emplace_back(text); }
-    std::vector<std::string> said;
-  } told;
+  Told told;
   int done = 0;
   const auto run = [&](std::size_t k, SharedStages& stages) {
     if (k == 3) stages.update(k, 0.5, "slip 0.3");
@@ -204,6 +208,36 @@ TEST_CASE("a run whose simulation is stopped is told of, and those beside it go 
   CHECK(done == 3);
   CHECK(told.said == std::vector<std::string>{"One of 5 runs stopped: grain 1 is lost",
                                               "One of 5 runs stopped (slip 0.3): grain 3 is lost"});
+}
+
+TEST_CASE("where one run is stopped and all are then asked to stop, that is what is told, as the others are saved") {
+  Told told;
+  const dem::io::InterruptGuard guard(dem::io::InterruptGuard::Message::Silent);
+  const auto run = [&](std::size_t k, SharedStages&) {
+    if (k == 0) throw Stopped("grain 1 is lost");
+    std::raise(SIGINT);
+    throw Interrupted{};
+  };
+  CHECK_THROWS_AS(side_by_side(3, 1, told, run), Interrupted);
+  CHECK(told.said == std::vector<std::string>{"One of 3 runs stopped: grain 1 is lost"});
+}
+
+TEST_CASE(
+    "of runs in turn one whose simulation is stopped is told of, the others go on, and the first is thrown at the "
+    "end") {
+  Told told;
+  int done = 0;
+  RunsInTurn runs(told, 3);
+  runs.run("", [&] { throw Stopped("grain 1 is lost"); });
+  runs.run("twice as wide", [&] { ++done; });
+  runs.run("twice as deep", [&] { throw Stopped("grain 2 is lost"); });
+  CHECK(done == 1);
+  CHECK(told.said == std::vector<std::string>{"the run itself stopped; the others go on: grain 1 is lost",
+                                              "twice as deep stopped; the others go on: grain 2 is lost"});
+  CHECK_THROWS_WITH(runs.end(), "grain 1 is lost");
+  CHECK_THROWS_AS(runs.run("", [] { throw Interrupted{}; }), Interrupted);
+  RunsInTurn one(told, 1);
+  CHECK_THROWS_WITH(one.run("", [] { throw Stopped("grain 3 is lost"); }), "grain 3 is lost");
 }
 
 }  // namespace steady_window_test

@@ -5,6 +5,7 @@
 #include <dem/rig/frames.hpp>
 #include <dem/rig/part_of.hpp>
 #include <dem/rig/plate_sinkage.hpp>
+#include <dem/rig/runs_in_turn.hpp>
 #include <dem/rig/samples_file.hpp>
 #include <dem/rig/session.hpp>
 #include <dem/rig/side_by_side.hpp>
@@ -82,7 +83,8 @@ void press_all(const PlateSinkage<Model>& test, const Bed<Model>& bed, VariantRe
 }  // namespace detail
 
 /// The run of a program: a bed and all plates, side by side, and those of the study. What can be refused is refused
-/// before session.begin_run(). `campaign` is filled as the run goes.
+/// before session.begin_run(). `campaign` is filled as the run goes. Runs that share a bed which could not be made are
+/// left out.
 template <class Model, class ShapeOf>
 void run_campaign(const Settings& settings, ShapeOf&& shape_of, Campaign& campaign, Session& session) {
   const PlateSinkage<Model> test(settings, shape_of);
@@ -93,7 +95,8 @@ void run_campaign(const Settings& settings, ShapeOf&& shape_of, Campaign& campai
   const auto all = variants(test.settings());
   for (const Variant& v : all) {  // what one of them cannot have is refused before the first is made
     const Settings s = PlateSinkage<Model>(v.settings, shape_of).settings();
-    if (s.bed.is_rained()) affordable_grains(s.bed, s.grains, shape.volume());
+    const int copies = share_threads(s.widths.size(), s.bed.threads).runs;
+    if (s.bed.is_rained()) affordable_grains(s.bed, s.grains, shape.volume(), copies);
   }
   int stages = 0;
   for (const Variant& v : all) stages += 1 + (v.shares_bed() ? 0 : bed_stages(v.settings.bed));
@@ -102,10 +105,10 @@ void run_campaign(const Settings& settings, ShapeOf&& shape_of, Campaign& campai
   session.begin_run(stages, store.also_replaced());
 
   std::optional<Bed<Model>> bed;
-  for (const Variant& v : all) {
-    VariantResult& result = campaign.variants.emplace_back(VariantResult{.variant = v});
+  const auto run = [&](const Variant& v, VariantResult& result) {
     const PlateSinkage<Model> variant(v.settings, shape_of);
     if (!v.shares_bed()) {
+      bed.reset();
       const bool is_first = v.is_run_itself();
       bed.emplace(make_kept_bed(variant, is_first ? start : start_of(v.settings), session,
                                 is_first ? static_cast<PartStore&>(store) : session.parts(), v.prefix() + "bed"));
@@ -118,7 +121,13 @@ void run_campaign(const Settings& settings, ShapeOf&& shape_of, Campaign& campai
     session.finish(level_text(result.level, result.solid_fraction));
     require_depth(v.settings, result.level);
     detail::press_all(variant, *bed, result, campaign.replay, session);
+  };
+  RunsInTurn runs(session, all.size());
+  for (const Variant& v : all) {
+    VariantResult& result = campaign.variants.emplace_back(VariantResult{.variant = v});
+    if (!v.shares_bed() || bed) runs.run(v.text, [&] { run(v, result); });
   }
+  runs.end();
 }
 
 }  // namespace dem::rig::plate_sinkage

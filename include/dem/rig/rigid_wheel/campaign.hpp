@@ -5,6 +5,7 @@
 #include <dem/rig/frames.hpp>
 #include <dem/rig/part_of.hpp>
 #include <dem/rig/rigid_wheel.hpp>
+#include <dem/rig/runs_in_turn.hpp>
 #include <dem/rig/samples_file.hpp>
 #include <dem/rig/session.hpp>
 #include <dem/rig/side_by_side.hpp>
@@ -72,7 +73,8 @@ void roll(const RigidWheel<Model>& test, const typename RigidWheel<Model>::Stand
 }  // namespace detail
 
 /// The run of a program: a bed, the wheel set down on it, and all slips from there; and those of the study. What can be
-/// refused is refused before session.begin_run(). `campaign` is filled as the run goes.
+/// refused is refused before session.begin_run(). `campaign` is filled as the run goes. Runs that share a bed which
+/// could not be made are left out.
 template <class Model, class ShapeOf>
 void run_campaign(const Settings& settings, ShapeOf&& shape_of, Campaign& campaign, Session& session) {
   const RigidWheel<Model> test(settings, shape_of);
@@ -82,7 +84,8 @@ void run_campaign(const Settings& settings, ShapeOf&& shape_of, Campaign& campai
   const auto all = variants(test.settings());
   for (const Variant& v : all) {  // what one of them cannot have is refused before the first is made
     const Settings s = RigidWheel<Model>(v.settings, shape_of).settings();
-    if (s.bed.is_rained()) affordable_grains(s.bed, s.grains, test.shape().volume());
+    const int copies = share_threads(s.slips.size(), s.bed.threads).runs;
+    if (s.bed.is_rained()) affordable_grains(s.bed, s.grains, test.shape().volume(), copies);
   }
   const auto needs_bed = [&](std::size_t k) { return k < all.size() && !all[k].shares_bed(); };
   int stages = 0;
@@ -93,13 +96,12 @@ void run_campaign(const Settings& settings, ShapeOf&& shape_of, Campaign& campai
 
   campaign.study.reserve(all.size());
   std::optional<Bed<Model>> bed;
-  for (std::size_t k = 0; k < all.size(); ++k) {
+  const auto run = [&](std::size_t k, VariantResult& result) {
     const Variant& v = all[k];
-    VariantResult& result = k == 0 ? campaign : campaign.study.emplace_back();
-    result.variant = v;
     const RigidWheel<Model> variant(v.settings, shape_of);
     if (k > 0) session.message(text("Study: {}", v.text));
     if (needs_bed(k)) {
+      bed.reset();
       bed.emplace(make_kept_bed(variant, k == 0 ? start : start_of(v.settings), session,
                                 k == 0 ? static_cast<PartStore&>(store) : session.parts(), v.prefix() + "bed"));
       if (k == 0) store.save_places(*bed);
@@ -112,7 +114,14 @@ void run_campaign(const Settings& settings, ShapeOf&& shape_of, Campaign& campai
     const bool is_last = k + 1 == all.size() || needs_bed(k + 1);  // that this bed serves
     const auto stand = detail::set_down(variant, is_last ? std::move(*bed) : *bed, result, session);
     detail::roll(variant, stand, result, campaign.replay, session);
+  };
+  RunsInTurn runs(session, all.size());
+  for (std::size_t k = 0; k < all.size(); ++k) {
+    VariantResult& result = k == 0 ? campaign : campaign.study.emplace_back();
+    result.variant = all[k];
+    if (needs_bed(k) || bed) runs.run(all[k].text, [&] { run(k, result); });
   }
+  runs.end();
 }
 
 }  // namespace dem::rig::rigid_wheel
