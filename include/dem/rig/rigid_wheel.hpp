@@ -82,7 +82,7 @@ class RigidWheel {
       if (!n.done && world.time() - n.start > s.bed.stage_limit) {
         throw Stopped(
             text("the wheel is not at rest after {:g} s: the grains carry {:.4g} N of {:.4g} N; raise "
-                 "--stage-limit or --damping",
+                 "--stage-limit or --set-down-speed",
                  s.bed.stage_limit, force, s.load));
       }
     }
@@ -105,10 +105,18 @@ class RigidWheel {
   }
 
   /// The same on so many threads, with stages that are told the share of the run, and look(world, share) after each
-  /// sample. `result` is filled as the run goes; its samples are not evaluated.
+  /// sample. `result` is filled as the run goes; its samples are not evaluated. Throws Error for a slip at which the
+  /// wheel would leave the bed.
   template <class Look>
   void roll(Stand stand, int threads, rigid_wheel::SlipResult& result, Stages& stages, Look&& look) const {
     const Settings& s = settings_;
+    require_within(result.slip, -5.0, 1.0, "the slip of a run (1 - v/(omega r))");
+    if (!(s.start() + s.travel_at(result.slip) + 0.5 * s.radius < 0.5 * s.bed.length)) {
+      fail(
+          "at slip {:g} the wheel travels {:g} m from {:g} m, and leaves a bed that ends at {:g} m; give the settings "
+          "this slip too, a longer bed, or a shorter travel or path",
+          result.slip, s.travel_at(result.slip), s.start(), 0.5 * s.bed.length);
+    }
     auto& world = stand.bed.world;
     world.set_threads(threads);
     auto& m = world.machine();

@@ -55,7 +55,7 @@ TEST_CASE("a bed is taken with the settings that it was made with, and what diff
   save(session, made, file);
   CHECK(refusal(session, made, file) == taken);
   BedSettings other = made;
-  other.threads = 2, other.sleep = true;  // change nothing of the bed
+  other.threads = 2, other.sleep = true, other.stage_limit = 9.0;  // change nothing of the bed
   CHECK(refusal(session, other, file) == taken);
   other.seed = 4;
   CHECK_THAT(refusal(session, other, file), ContainsSubstring("was made with --seed 3, but here it is 4"));

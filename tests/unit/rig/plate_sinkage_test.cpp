@@ -92,6 +92,7 @@ TEST_CASE("settings of plates that make no sense are refused by the names of the
   refuses([](auto& s) { s.plate_density = 0.0; }, "--plate-density");
   refuses([](auto& s) { s.drive_stiffness = -1e7; }, "--drive-stiffness");
   refuses([](auto& s) { s.unload_speed = 2.0; }, "--unload-speed");
+  refuses([](auto& s) { s.fit_from = 0.6; }, "--fit-from");
   refuses([](auto& s) { s.bed.relative_density = 1.5; }, "--relative-density");
   refuses([](auto& s) { s.bed.fall_speed = 0.01; }, "--fall-speed is 0.01 m/s");
   refuses([](auto& s) { s.grains.half_edge = -1.0; }, "--half-edge");

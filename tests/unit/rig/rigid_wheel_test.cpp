@@ -148,6 +148,7 @@ TEST_CASE("settings of wheels that make no sense are refused by the names of the
   refuses([](auto& s) { s.carriage_mass = 0.0; }, "--carriage-mass");
   refuses([](auto& s) { s.drive_stiffness = 0.0; }, "--drive-stiffness");
   refuses([](auto& s) { s.motor_stiffness = -1.0; }, "--motor-stiffness");
+  refuses([](auto& s) { s.wheel = "grousers", s.grousers = 400; }, "give fewer --grousers");
   CHECK(rigid_wheel::slip_name(-0.3) == "slip_m30");
   CHECK(rigid_wheel::slip_name(0.3) == "slip_30");
 }
@@ -306,6 +307,8 @@ TEST_CASE("a wheel is set down gently, carries its load, and keeps its slip") {
   CHECK(m.parts().actuators.size() == 4);                                     // those of the table, and the load servo
   CHECK(m.sensor(stand.grains).mean().force.z == Approx(5.0).epsilon(0.03));  // the servo ends within 2 %
 
+  CHECK_THROWS_WITH(test.roll(stand, 1.5), Catch::Contains("the slip of a run"));
+  CHECK_THROWS_WITH(test.roll(stand, -4.0), Catch::Contains("leaves a bed that ends at"));
   const auto run = test.roll(stand, 0.3), again = test.roll(stand, 0.3);
   REQUIRE(run.finished);
   bool same = run.samples.size() == again.samples.size();

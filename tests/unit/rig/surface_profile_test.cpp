@@ -23,6 +23,9 @@ TEST_CASE("the depth and the width of a rut are those of its profile") {
   const Rut rut = rut_between(before, after, 0.1, 0.25);
   CHECK(rut.depth == Approx(0.06));
   CHECK(rut.width == Approx(0.3));
+  const Rut heap = rut_between(after, before, 0.1, 0.25);
+  CHECK(heap.depth == Approx(-0.06));
+  CHECK(std::isnan(heap.width));  // nothing sank there
   CHECK(std::isnan(rut_between(before, {}, 0.1, 0.25).depth));
   CHECK(std::isnan(rut_between(before, after, 2.0, 0.25).depth));  // no strip there
 }

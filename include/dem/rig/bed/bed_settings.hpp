@@ -60,7 +60,9 @@ inline void add_bed_options(Options& options, BedSettings& s) {
   add("--strike-off", s.strike_off, "share of the grains, the highest, taken off before the lid comes");
   add("--lid-pressure", s.lid_pressure, "of the lid that levels the bed [Pa]");
   add("--lid-speed", s.lid_speed, "[m/s]");
-  add("--stage-limit", s.stage_limit, "a bed or a lid must be at rest by then [s]; with --fall-speed, after the fall");
+  add("--stage-limit", s.stage_limit,
+      "a bed, a lid or what is set down on the bed must be at rest by then [s]; with --fall-speed, after the fall")
+      .changes_no_result();
   add("--stable-share", s.stable_share, "time step, as a share of the largest stable one");
   add("--seed", s.seed, "of the rain");
   add("--threads", s.threads, "0: all, at least 1000 grains for each").changes_no_result();

@@ -55,7 +55,8 @@ inline double mean_surface(std::span<const SurfaceProfile> profiles) {
 /// A rut across a track.
 struct Rut {
   double depth = std::nan("");  ///< m: the mean over the middle half of the tool's width; NaN: there is none to see
-  double width = std::nan("");  ///< m, of the strips that hang together there and sank by more than half of that depth
+  double width =
+      std::nan("");  ///< m, of the strips that hang together there and sank by more than half of that depth; NaN: none
 };
 
 /// The rut that a tool of this width (m), whose middle went along y = `middle`, left: the surface after it against the
@@ -69,6 +70,7 @@ inline Rut rut_between(const SurfaceProfile& before, const SurfaceProfile& after
   }
   if (count == 0.0) return rut;
   rut.depth = sum / count;
+  if (!(rut.depth > 0.0)) return rut;
   rut.width = 0.0;
   // The largest such group of strips that reaches under the tool: a hollow beside the track is none of the rut.
   double together = 0.0;

@@ -22,6 +22,7 @@ inline constexpr OwnWord shear_words[] = {
     {"take more --grains or a smaller --half-edge, or let", "let"}};
 inline constexpr OwnWord wheel_words[] = {
     {"--width (m, within the bed)", "width of the wheel (m, within --wheel-bed-width)"},
+    {"raise --stage-limit or --set-down-speed", "raise --stage-limit"},
     {"--bed-length", "--wheel-bed-length"},
     {"--travel", "--wheel-travel"},
     {"--bed-width", "--wheel-bed-width"},

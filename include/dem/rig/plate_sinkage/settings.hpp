@@ -135,7 +135,7 @@ inline void resolve(Settings& s) {
   require_within(s.ramp_time, 0.0, s.sinkage / s.speed, "--ramp-time (s, at most what the sinkage takes)");
   require_positive(s.threshold, "--threshold", "Pa");
   require_within(s.smoothing, 0.0, 0.5, "--smoothing");
-  require_within(s.fit_from, 1e-3, 0.9, "--fit-from");
+  require_within(s.fit_from, 1e-3, 0.45, "--fit-from (a fit needs points over a factor of two)");
   resolve_study(s.study, s.study_seeds, s.bed);
 }
 

@@ -151,6 +151,13 @@ inline void resolve(Settings& s) {
   require_within(s.grousers, 1, 400, "--grousers");
   require_within(s.grouser_height, 1e-3, 0.5 * s.radius, "--grouser-height (m)");
   require_within(s.grouser_thickness, 1e-3, 0.5 * s.radius, "--grouser-thickness (m)");
+  const double half_pitch = std::numbers::pi / s.grousers;
+  if (s.wheel == "grousers" && !(std::asin(0.5 * s.grouser_thickness / s.radius) < half_pitch)) {
+    fail(
+        "{} grousers {:g} m thick do not fit round a wheel of radius {:g} m; give fewer --grousers, or a "
+        "--grouser-thickness below {:.2g} m",
+        s.grousers, s.grouser_thickness, s.radius, 2.0 * s.radius * std::sin(half_pitch));
+  }
   require_within(s.load, 0.1, 1e6, "--load (N)");
   require_within(s.wheel_share, 0.01, 0.99, "--wheel-share");
   require_within(s.carriage_mass, 1e-3, 1e6, "--carriage-mass (kg)");

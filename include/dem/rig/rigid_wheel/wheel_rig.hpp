@@ -82,7 +82,8 @@ class WheelRig : public Rig {
       for (const auto& table : tables) page.table(table);
       if (any_rolled()) add_plots(report, page, soils);
       if (campaign.replay && campaign.replay->frames().size() > 1) {
-        page.heading("Replay").replay(*campaign.replay, "The wheel at the largest slip up to 0.3.");
+        page.heading("Replay").replay(*campaign.replay,
+                                      text("The wheel at a slip of {:g}.", s.slips[shown_slip(s.slips)]));
       }
     });
     return s.vtk && any_rolled();
